@@ -88,7 +88,7 @@ kernels! {
     FORCES = "forces", Team: "team", "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Which constraints act, and how soft they are.
-    CONSTRAINTS = "constraints", Thread: "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
     /// Their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.

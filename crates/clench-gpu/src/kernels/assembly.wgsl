@@ -4,6 +4,28 @@
 // R is at least this share of the inverse inertia: 4.5 ε of single precision, as on the processor.
 const MIN_REGULARIZATION: f32 = 4.5 * EPSILON;
 
+// Axes of dofs: in the memory of the workgroup, where they are no more than these. There a number beside another is of the same environment.
+const NEAR_AXES: u32 = 96u;
+var<workgroup> near_axes: array<f32, 6u * NEAR_AXES>;
+
+fn fetch_axes() {
+    for (var k = lane; NV <= NEAR_AXES && k < bound(6u * NV); k += GROUP) {
+        near_axes[k] = fetch(CDOF + k);
+    }
+    workgroupBarrier();
+}
+
+fn axis_of(i: u32) -> Spatial {
+    if (NV > NEAR_AXES) {
+        return fetch_spatial(CDOF + 6u * i);
+    }
+    let k = 6u * i;
+    return Spatial(
+        vec3f(near_axes[k], near_axes[k + 1u], near_axes[k + 2u]),
+        vec3f(near_axes[k + 3u], near_axes[k + 4u], near_axes[k + 5u]),
+    );
+}
+
 // Row `k` of a connect or weld: what separates the points, then what turns one frame in the other.
 fn held_entry(equality: u32, k: u32, i: u32) -> f32 {
     let first = words[EQ_PAIR + 2u * equality];
@@ -47,8 +69,9 @@ fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
         return 0.0;
     }
     let axis = fetch3(place + 5u + 3u * (k % 3u));
-    let motion = motion_at(select(first, second, by_second), i, fetch3(place + 2u));
-    let along = dot(axis, select(motion.angular, motion.linear, k < 3u));
+    let motion = axis_of(i);
+    let linear = motion.linear + cross(motion.angular, offset_of(select(first, second, by_second), fetch3(place + 2u)));
+    let along = dot(axis, select(motion.angular, linear, k < 3u));
     return select(-along, along, by_second);
 }
 
@@ -165,12 +188,15 @@ fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
     }
     let nrow = reports[NROW * envs + env];
     let nblock = reports[NBLOCK * envs + env];
-    for (var k = lane; k < nrow * NV; k += GROUP) {
-        let a = k / NV;
-        let i = k % NV;
-        let j = entry(a, i);
-        put_row(JACOBIAN + k, j);
-        put_row(COLUMNS + i * MAX_ROWS + a, j);
+    fetch_axes();
+    // Eight rows and eight dofs at a time: either way numbers side by side are written together.
+    for (var first_row = 0u; first_row < nrow; first_row += 8u) {
+        let a = first_row + lane / 8u;
+        for (var i = lane % 8u; a < nrow && i < bound(NV); i += 8u) {
+            let j = entry(a, i);
+            put_row(JACOBIAN + a * NV + i, j);
+            put_row(COLUMNS + i * MAX_ROWS + a, j);
+        }
     }
     join();
     for (var a = lane; a < nrow; a += GROUP) {

@@ -1,8 +1,11 @@
 // Every active constraint becomes a block of rows: equalities, dry friction, limits, contacts, in this order. Sisters of
 // `constraint/friction.rs`, `limit.rs` and `contact.rs`, and of `contact/surface.rs`. Jacobians and velocities are added by `assembly.wgsl`.
+//
+// A thread first counts what its constraint has, and writes it when it knows what those before it have.
 
 var<private> nblock: u32;
 var<private> nrow: u32;
+var<private> writes: bool;
 // The impedance of the present block.
 var<private> block_impedance: f32;
 
@@ -10,37 +13,39 @@ var<private> block_impedance: f32;
 fn begin_block(kind: u32, dim: u32, source: u32, impedance: f32) {
     block_impedance = impedance;
     let place = BLOCKS + BLOCK_SIZE * nblock;
-    put_row(place + BLOCK_KIND, f32(kind));
-    put_row(place + BLOCK_DIM, f32(dim));
-    put_row(place + BLOCK_ROW, f32(nrow));
-    put_row(place + BLOCK_SOURCE, f32(source));
+    if (writes) {
+        put_row(place + BLOCK_KIND, f32(kind));
+        put_row(place + BLOCK_DIM, f32(dim));
+        put_row(place + BLOCK_ROW, f32(nrow));
+        put_row(place + BLOCK_SOURCE, f32(source));
+    }
     nblock++;
 }
 
 // Adds a row to the block. The part of aref that its velocity has comes later: −damping · velocity. Until then VELOCITY has the part
 // of that which is not J v, PULL the force for which aref is raised by R times as much, and D the impedance.
 fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
-    put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
-    put_row(POSITION + nrow, position);
-    put_row(AREF + nrow, aref);
-    put_row(DAMPING + nrow, damping);
-    put_row(R + nrow, r);
-    put_row(SHAPE + nrow, shape);
-    put_row(VELOCITY + nrow, 0.0);
-    put_row(D + nrow, block_impedance);
-    if (ANY_ADHESION) {
+    if (writes) {
+        put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
+        put_row(POSITION + nrow, position);
+        put_row(AREF + nrow, aref);
+        put_row(DAMPING + nrow, damping);
+        put_row(R + nrow, r);
+        put_row(SHAPE + nrow, shape);
+        put_row(VELOCITY + nrow, 0.0);
+        put_row(D + nrow, block_impedance);
+    }
+    if (writes && ANY_ADHESION) {
         put_row(PULL + nrow, 0.0);
     }
     nrow++;
 }
 
-fn push_friction() {
-    for (var k = 0u; k < NFRICTION; k++) {
-        let prm = FRICTION_PRM + 9u * k;
-        let soft = soften(prm + 2u, 0.0);
-        begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k], soft.impedance);
-        add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
-    }
+fn push_friction(k: u32) {
+    let prm = FRICTION_PRM + 9u * k;
+    let soft = soften(prm + 2u, 0.0);
+    begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k], soft.impedance);
+    add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
 }
 
 // One end of the range of a coordinate. `source` is twice the coordinate, one more at the upper end.
@@ -55,20 +60,19 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
     add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + 3u)), 0.0);
 }
 
-fn push_limits() {
-    for (var k = 0u; k < NLIMIT; k++) {
-        let c = words[LIMIT_COORDINATE + k];
-        let prm = LIMIT_PRM + 11u * k;
-        if (is_ball(c)) {
-            let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
-            let angle = length(quat_rotation_vector(turn));
-            push_limit(prm, max(parameter(prm), parameter(prm + 1u)) - angle, 2u * c);
-            continue;
-        }
-        let value = coordinate_value(c);
-        push_limit(prm, value - parameter(prm), 2u * c);
-        push_limit(prm, parameter(prm + 1u) - value, 2u * c + 1u);
+// Both ends.
+fn push_limits(k: u32) {
+    let c = words[LIMIT_COORDINATE + k];
+    let prm = LIMIT_PRM + 11u * k;
+    if (is_ball(c)) {
+        let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
+        let angle = length(quat_rotation_vector(turn));
+        push_limit(prm, max(parameter(prm), parameter(prm + 1u)) - angle, 2u * c);
+        return;
     }
+    let value = coordinate_value(c);
+    push_limit(prm, value - parameter(prm), 2u * c);
+    push_limit(prm, parameter(prm + 1u) - value, 2u * c + 1u);
 }
 
 // Velocity of the second geom's surface less that of the first where they touch: along both tangents, and about the normal. Sister of
@@ -95,7 +99,7 @@ fn surface_velocity(contact: u32) -> vec3f {
 fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
     let mu1 = parameter(friction);
     var drift = vec3f();
-    if (SURFACES_MOVE) {
+    if (writes && SURFACES_MOVE) {
         drift = surface_velocity(contact);
     }
     for (var k = 1u; k < dim; k++) {
@@ -106,7 +110,7 @@ fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: 
         } else {
             add_row(0.0, 0.0, damping, normal_r, mu);
         }
-        if (SURFACES_MOVE && k < 4u) {
+        if (writes && SURFACES_MOVE && k < 4u) {
             put_row(VELOCITY + nrow - 1u, drift[k - 1u]);
         }
     }
@@ -115,7 +119,7 @@ fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: 
 // The row along the normal, which pulls where the contact adheres.
 fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull: f32) {
     add_row(distance, aref, damping, r, shape);
-    if (ANY_ADHESION) {
+    if (writes && ANY_ADHESION) {
         put_row(PULL + nrow - 1u, pull);
     }
 }
@@ -163,22 +167,55 @@ fn push_contact(contact: u32) {
     push_tangents(contact, dim, friction, r, soft.damping, soft.damping);
 }
 
-// One thread an environment.
-@compute @workgroup_size(GROUP)
-fn constraints(@builtin(global_invocation_id) id: vec3u) {
-    if (!begin(id.x)) {
+// The n-th of all constraints, if it acts.
+fn push(n: u32) {
+    var k = n;
+    if (k < NEQ) {
+        push_equality(k);
         return;
     }
-    nblock = 0u;
-    nrow = 0u;
-    push_equalities();
-    push_friction();
-    push_limits();
-    let ncon = reports[NCON * envs + env];
-    for (var contact = 0u; contact < ncon; contact++) {
-        push_contact(contact);
+    k -= NEQ;
+    if (k < NFRICTION) {
+        push_friction(k);
+        return;
     }
-    reports[NBLOCK * envs + env] = nblock;
-    reports[NROW * envs + env] = nrow;
+    k -= NFRICTION;
+    if (k < NLIMIT) {
+        push_limits(k);
+        return;
+    }
+    push_contact(k - NLIMIT);
+}
+
+// A workgroup an environment, a thread a constraint.
+@compute @workgroup_size(GROUP)
+fn constraints(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
+    lane = index;
+    if (!begin_together(workgroup)) {
+        return;
+    }
+    let all = NEQ + NFRICTION + NLIMIT + reports[NCON * envs + env];
+    // Blocks and rows of the threads in earlier turns.
+    var earlier = vec2u();
+    for (var start = 0u; start < all; start += GROUP) {
+        var first = vec2u();
+        for (var round = 0u; round < bound(2u); round++) {
+            writes = round == 1u;
+            nblock = first.x;
+            nrow = first.y;
+            if (start + lane < all) {
+                push(start + lane);
+            }
+            if (round == 0u) {
+                let sums = sums_up_to(vec4f(f32(nblock), f32(nrow), 0.0, 0.0));
+                first = earlier + vec2u(sums.before.xy);
+                earlier += vec2u(sums.all.xy);
+            }
+        }
+    }
+    if (lane == 0u) {
+        reports[NBLOCK * envs + env] = earlier.x;
+        reports[NROW * envs + env] = earlier.y;
+    }
     note_end();
 }

@@ -59,16 +59,14 @@ fn push_held(equality: u32, prm: u32, dim: u32) {
     }
 }
 
-fn push_equalities() {
-    for (var equality = 0u; equality < NEQ; equality++) {
-        let dim = words[EQ_ROWS + equality];
-        if (dim == 0u || given(EQ_ACTIVE + equality) == 0.0) {
-            continue;
-        }
-        if (dim == 1u) {
-            push_coupling(equality, words[EQ_PRM + equality]);
-        } else {
-            push_held(equality, words[EQ_PRM + equality], dim);
-        }
+fn push_equality(equality: u32) {
+    let dim = words[EQ_ROWS + equality];
+    if (dim == 0u || given(EQ_ACTIVE + equality) == 0.0) {
+        return;
+    }
+    if (dim == 1u) {
+        push_coupling(equality, words[EQ_PRM + equality]);
+    } else {
+        push_held(equality, words[EQ_PRM + equality], dim);
     }
 }
