@@ -4,7 +4,7 @@ use crate::batch::{GpuBatch, GpuOptions};
 use crate::error::{GpuError, GpuFault};
 use crate::kernels::DIVERGED_FIELDS;
 use crate::precision::GpuReal;
-use clench_math::Real;
+use clench_math::{Motion, Real, Vec3};
 use clench_rigid::batch::{Backend, Outcome, Trouble};
 use clench_rigid::model::{Model, RowPattern};
 use clench_rigid::{Batch, BatchOptions, Output, SimError};
@@ -121,6 +121,47 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 }
 
+/// The vectors of three numbers in a row.
+fn vectors<S: GpuReal>(numbers: &[S]) -> Vec<Vec3<S>> {
+    let vectors = numbers.chunks_exact(3);
+    vectors.map(|v| Vec3::new(v[0], v[1], v[2])).collect()
+}
+
+impl<S: GpuReal> GpuBatch<S> {
+    /// Three rows over all dofs for each site of each environment: what a part of a dof's motion is at the site.
+    fn site_jacobians(
+        &self,
+        part: impl Fn(Motion<S>, Vec3<S>) -> Vec3<S>,
+        rows: &mut [S],
+    ) -> Result<(), GpuError> {
+        let axes = vectors(&GpuBatch::read(self, "cdof")?);
+        let points = vectors(&GpuBatch::read(self, "site_xpos")?);
+        let centres = vectors(&GpuBatch::read(self, "subtree_com")?);
+        let m = self.model();
+        rows.fill(S::ZERO);
+        let jacobians = rows.chunks_exact_mut((3 * m.nv).max(1)).enumerate();
+        for (k, jacobian) in jacobians {
+            let (env, body) = (
+                k / m.sites.len(),
+                &m.bodies[m.sites[k % m.sites.len()].body],
+            );
+            let offset = points[k] - centres[env * m.nbody() + body.root];
+            for &dof in body.last_dof.map_or(&[][..], |last| m.tree.row(last)) {
+                let axis = &axes[2 * (env * m.nv + dof as usize)..][..2];
+                let motion = Motion {
+                    angular: axis[0],
+                    linear: axis[1],
+                };
+                let column = part(motion, offset).to_array();
+                for (row, number) in column.into_iter().enumerate() {
+                    jacobian[row * m.nv + dof as usize] = number;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     fn name(&self) -> String {
         self.device.info.name.clone()
@@ -137,6 +178,7 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     fn computes(&self, output: Output) -> bool {
         match output {
             Output::ten_J | Output::actuator_moment | Output::actuator_power => true,
+            Output::site_jacp | Output::site_jacr => true,
             output => word(output).is_some() || self.work.find(output.name()).is_some(),
         }
     }
@@ -207,6 +249,8 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
                         .fold(S::ZERO, |sum, &power| sum + Real::max(power, S::ZERO));
                 }
             }
+            Output::site_jacp => self.site_jacobians(Motion::velocity_at, rows)?,
+            Output::site_jacr => self.site_jacobians(|axis, _| axis.angular, rows)?,
             output => rows.copy_from_slice(&GpuBatch::read(self, output.name())?),
         }
         Ok(())

@@ -177,6 +177,28 @@ fn results_depend_on_nothing_but_the_state() {
     }
 }
 
+#[test]
+fn a_step_whose_kernels_are_timed_is_a_step() {
+    let model = runner();
+    let states = some_states(&model, 3);
+    let Some(mut timed) = batch(&model, 3) else {
+        return;
+    };
+    let mut plain = batch(&model, 3).expect("a device");
+    after(&mut timed, &states, 2);
+    after(&mut plain, &states, 3);
+    let times = timed.time_stages().expect("a clock");
+    let names = Vec::from_iter(times.iter().map(|&(name, _)| name));
+    assert_eq!((names[0], names[names.len() - 1]), ("positions", "euler"));
+    assert!(times.iter().any(|&(_, time)| time > 0.0), "{times:?}");
+    plain.finish().expect("a device");
+    assert_eq!(timed.steps().expect("a device"), [3; 3]);
+    for name in ["qpos", "qvel"] {
+        let [found, expected] = [&timed, &plain].map(|b| b.read(name).expect("a device"));
+        assert_eq!(found, expected, "{name}");
+    }
+}
+
 /// Batches of a process share a device.
 #[test]
 fn batches_that_step_at_a_time_know_nothing_of_each_other() {

@@ -2,15 +2,15 @@
 
 use super::backend::{Backend, Outcome};
 use super::env_rows::ParamRows;
-use super::shared::Shared;
+use super::precision::Precision;
 use crate::error::SimError;
 use crate::model::{Model, ParamField};
 use crate::output::Output;
+use crate::sim::Sim;
 use crate::state::FIELDS;
-use clench_math::Scalar;
 
 /// A device, and what it holds of the rows on this side.
-pub(super) struct Mirror<S> {
+pub(super) struct Mirror<S: Precision> {
     pub(super) backend: Box<dyn Backend<S>>,
     /// Each field of [`FIELDS`] as it went up or came down.
     pub(super) held: Vec<Vec<S>>,
@@ -21,9 +21,11 @@ pub(super) struct Mirror<S> {
     pub(super) outcomes: Vec<Outcome>,
     /// Room for a field or an output.
     pub(super) numbers: Vec<S>,
+    /// Takes up the state of one environment after the other, once energies are recorded.
+    pub(super) sim: Option<Box<Sim<S>>>,
 }
 
-impl<S: Scalar> Mirror<S> {
+impl<S: Precision> Mirror<S> {
     /// Bytes that an environment takes, on both sides.
     pub(super) fn bytes_per_env(&self, model: &Model) -> usize {
         let held: usize = FIELDS.iter().map(|field| field.numbers(model)).sum();
@@ -36,12 +38,13 @@ impl<S: Scalar> Mirror<S> {
         self.backend.name()
     }
 
-    /// Lets the device compute these outputs from now on.
+    /// Lets the device compute these outputs from now on, but for those that follow from the rows.
     ///
     /// # Errors
     /// Outputs that it does not compute.
     pub(super) fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
-        let there = |output: &Output| output.is_state() || self.backend.computes(*output);
+        let from_rows = |output: &Output| output.is_state() || *output == Output::energy;
+        let there = |output: &Output| from_rows(output) || self.backend.computes(*output);
         let Some(missing) = outputs.iter().find(|output| !there(output)) else {
             return self.backend.want(outputs);
         };
@@ -56,7 +59,7 @@ impl<S: Scalar> Mirror<S> {
     }
 }
 
-impl<S: Scalar + Shared> Mirror<S> {
+impl<S: Precision> Mirror<S> {
     /// What the device takes as the parameters of environments of which `field` will have these rows.
     ///
     /// # Errors

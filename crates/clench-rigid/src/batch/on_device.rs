@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 impl<S: Precision> Batch<S> {
     /// `count` environments in the model's initial state that `backend` steps, whose environments are in any state. Outputs that
-    /// it does not compute cannot be recorded; options are those that `backend` was made with, and constraints at run time cannot be
+    /// it does not compute, and that do not follow from the rows, cannot be recorded; options are those that `backend` was made with, and constraints at run time cannot be
     /// added. Figures are those of the processor's steps: none are counted of a backend's, so that [`quality`](Self::quality),
     /// [`divergence`](Self::divergence) and [`profile`](Self::profile) stay at zero.
     ///
@@ -38,6 +38,7 @@ impl<S: Precision> Batch<S> {
             restarted: per_env(count, || false)?,
             outcomes: per_env(count, Outcome::default)?,
             numbers: Vec::new(),
+            sim: None,
         };
         for field in FIELDS {
             let mut numbers = Vec::new();
@@ -327,6 +328,20 @@ impl<S: Precision> Batch<S> {
         fetched
     }
 
+    /// The energies of the states of those that run, which are on this side already.
+    fn energies(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
+        for env in (0..mirror.running.len()).filter(|&env| mirror.running[env]) {
+            let sim = match &mut mirror.sim {
+                Some(sim) => sim,
+                none => none.insert(Box::new(self.sim(env)?)),
+            };
+            self.copy_to_sim(env, sim)?;
+            let energy = sim.energy()?;
+            mirror.numbers[2 * env..][..2].copy_from_slice(&[energy.potential, energy.kinetic]);
+        }
+        Ok(())
+    }
+
     /// Copies an output of those that run into its rows, as step `step` of what they hold.
     fn fetch(
         &mut self,
@@ -350,6 +365,7 @@ impl<S: Precision> Batch<S> {
             output if output.is_state() => {
                 self.state.read_field(output.name(), &mut mirror.numbers);
             }
+            Output::energy => self.energies(mirror)?,
             output => mirror.backend.read_output(output, &mut mirror.numbers)?,
         }
         let rows = mirror.numbers.chunks_exact(width.max(1)).enumerate();

@@ -207,7 +207,7 @@ fn each<R: PartialEq + std::fmt::Debug>(
 fn what_is_written_goes_up_and_what_moves_comes_down() {
     let (mut batches, _) = both(arm_and_box(), false);
     each(&mut batches, |batch| {
-        batch.record(&["qacc", "time", "qvel"])
+        batch.record(&["qacc", "time", "qvel", "energy"])
     })
     .expect("outputs");
     let envs = Vec::from_iter(0..COUNT);
@@ -225,7 +225,7 @@ fn what_is_written_goes_up_and_what_moves_comes_down() {
         assert_same(&batches);
     }
     let [played, processor] = &batches;
-    for name in ["time", "qvel"] {
+    for name in ["time", "qvel", "energy"] {
         let rows = |batch: &Batch<f64>| batch.output(name).expect("it is kept").as_slice().to_vec();
         assert_bits(&rows(played), &rows(processor), &|| name.to_owned());
     }
@@ -249,7 +249,11 @@ fn rollouts_are_what_they_are_on_the_processor() {
     let nu = batches[0].model().nu();
     let ctrl = Vec::from_iter((0..COUNT * 12 * nu).map(|i| (0.3 * i as f64).sin()));
     let recorded = batches.each_mut().map(|batch| {
-        let recording = batch.rollout(12, Controls::Each(&ctrl), &["qpos", "qacc", "time"]);
+        let recording = batch.rollout(
+            12,
+            Controls::Each(&ctrl),
+            &["qpos", "qacc", "time", "energy"],
+        );
         let rows = recording.expect("good controls").into_rows();
         Vec::from_iter(rows.map(|(output, rows)| (output, rows.as_slice().to_vec())))
     });
@@ -303,7 +307,7 @@ fn what_the_device_does_not_do_is_said() {
     let told = |result: Result<(), SimError>| result.expect_err("it cannot").to_string();
     assert_eq!(
         told(played.record(&["sensordata"])),
-        "a played device does not compute sensordata yet; it computes time, qpos, qvel, act, qacc"
+        "a played device does not compute sensordata yet; it computes time, qpos, qvel, act, qacc, energy"
     );
     let masses = vec![1.0; played.model().nbody()];
     assert_eq!(
