@@ -1,5 +1,5 @@
 // The duality gap ½ gᵀM⁻¹g that the last solve has left, where somebody asks: a team an environment, also of one that stands still. The cost less ½ |a|²_M is
-// convex, so that the cost exceeds its minimum by at most this.
+// convex, so that the cost exceeds its minimum by at most this. Sister of `clench-solver/src/descent.rs`.
 
 @compute @workgroup_size(GROUP, TEAM)
 fn gap(@builtin(global_invocation_id) id: vec3u) {
