@@ -4,9 +4,9 @@ use crate::batch::{GpuBatch, GpuOptions};
 use crate::error::{GpuError, GpuFault};
 use crate::kernels::DIVERGED_FIELDS;
 use crate::precision::GpuReal;
-use clench_math::{Motion, Real, Vec3};
+use clench_math::Motion;
 use clench_rigid::batch::{Backend, Outcome, Trouble};
-use clench_rigid::model::{Model, RowPattern};
+use clench_rigid::model::Model;
 use clench_rigid::{Batch, BatchOptions, Output, SimError};
 use std::sync::Arc;
 
@@ -60,24 +60,6 @@ fn word(output: Output) -> Option<&'static str> {
     }
 }
 
-/// Rows of sparse numbers of each environment, each over all `nv` dofs.
-fn spread<S: GpuReal>(
-    nv: usize,
-    (pattern, rows): (&RowPattern, usize),
-    sparse: &[S],
-    dense: &mut [S],
-) {
-    dense.fill(S::ZERO);
-    let envs = dense.chunks_exact_mut((rows * nv).max(1));
-    for (out, values) in envs.zip(sparse.chunks_exact(pattern.len().max(1))) {
-        for row in 0..rows {
-            for (&dof, &value) in pattern.dofs(row).iter().zip(&values[pattern.range(row)]) {
-                out[row * nv + dof as usize] = value;
-            }
-        }
-    }
-}
-
 impl<S: GpuReal> GpuBatch<S> {
     /// What became of each environment that took part in a call, by the words of the field `verdict`.
     fn outcomes(
@@ -116,47 +98,6 @@ impl<S: GpuReal> GpuBatch<S> {
                 steps: steps[env] as usize,
                 trouble,
             };
-        }
-        Ok(())
-    }
-}
-
-/// The vectors of three numbers in a row.
-fn vectors<S: GpuReal>(numbers: &[S]) -> Vec<Vec3<S>> {
-    let vectors = numbers.chunks_exact(3);
-    vectors.map(|v| Vec3::new(v[0], v[1], v[2])).collect()
-}
-
-impl<S: GpuReal> GpuBatch<S> {
-    /// Three rows over all dofs for each site of each environment: what a part of a dof's motion is at the site.
-    fn site_jacobians(
-        &self,
-        part: impl Fn(Motion<S>, Vec3<S>) -> Vec3<S>,
-        rows: &mut [S],
-    ) -> Result<(), GpuError> {
-        let axes = vectors(&GpuBatch::read(self, "cdof")?);
-        let points = vectors(&GpuBatch::read(self, "site_xpos")?);
-        let centres = vectors(&GpuBatch::read(self, "subtree_com")?);
-        let m = self.model();
-        rows.fill(S::ZERO);
-        let jacobians = rows.chunks_exact_mut((3 * m.nv).max(1)).enumerate();
-        for (k, jacobian) in jacobians {
-            let (env, body) = (
-                k / m.sites.len(),
-                &m.bodies[m.sites[k % m.sites.len()].body],
-            );
-            let offset = points[k] - centres[env * m.nbody() + body.root];
-            for &dof in body.last_dof.map_or(&[][..], |last| m.tree.row(last)) {
-                let axis = &axes[2 * (env * m.nv + dof as usize)..][..2];
-                let motion = Motion {
-                    angular: axis[0],
-                    linear: axis[1],
-                };
-                let column = part(motion, offset).to_array();
-                for (row, number) in column.into_iter().enumerate() {
-                    jacobian[row * m.nv + dof as usize] = number;
-                }
-            }
         }
         Ok(())
     }
@@ -226,29 +167,9 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
             return Ok(());
         }
         match output {
-            Output::ten_J => {
-                let sparse = GpuBatch::read(self, "ten_jacobian")?;
-                let model = self.model();
-                let pattern = (&model.tendon_dofs, model.tendons.len());
-                spread(model.nv, pattern, &sparse, rows);
-            }
-            Output::actuator_moment => {
-                let sparse = GpuBatch::read(self, "actuator_moment")?;
-                let model = self.model();
-                let pattern = (&model.actuator_dofs, model.nout());
-                spread(model.nv, pattern, &sparse, rows);
-            }
-            Output::actuator_power => {
-                let forces = GpuBatch::read(self, "actuator_force")?;
-                let velocities = GpuBatch::read(self, "actuator_velocity")?;
-                let powers = Vec::from_iter(forces.iter().zip(velocities).map(|(&f, v)| f * v));
-                let each = powers.chunks(self.model().nout().max(1));
-                for (row, powers) in rows.iter_mut().zip(each) {
-                    *row = powers
-                        .iter()
-                        .fold(S::ZERO, |sum, &power| sum + Real::max(power, S::ZERO));
-                }
-            }
+            Output::ten_J => self.tendon_jacobians(rows)?,
+            Output::actuator_moment => self.moment_arms(rows)?,
+            Output::actuator_power => self.driving_powers(rows)?,
             Output::site_jacp => self.site_jacobians(Motion::velocity_at, rows)?,
             Output::site_jacr => self.site_jacobians(|axis, _| axis.angular, rows)?,
             output => rows.copy_from_slice(&GpuBatch::read(self, output.name())?),

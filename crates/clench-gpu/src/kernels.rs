@@ -75,7 +75,7 @@ kernels! {
     /// Puts environments into the initial state.
     RESTART = "restart", Thread: "restart";
     /// Poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
-    POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "chains", "wrap", "tendon",
+    POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "substitution", "chains", "wrap", "tendon",
         "outputs", "transmission", "articulated", "outer", "mass_factor", "inertia";
     /// Which pairs are near.
     BROAD_PHASE = "broad_phase", Team: "team", "broad_phase";
@@ -85,16 +85,16 @@ kernels! {
     /// Contacts.
     CONTACTS = "contacts", Team: "team", "near", "contacts";
     /// Smooth forces and the acceleration they cause.
-    FORCES = "forces", Team: "team", "tree", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
+    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Which constraints act, and how soft they are.
     CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
     /// Their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// The convex problem.
-    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "cg", "descent";
+    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
     /// The duality gap that it has left, where somebody asks.
-    GAP = "gap", Team: "team", "tree", "articulated", "mass_factor", "gap";
+    GAP = "gap", Team: "team", "tree", "substitution", "articulated", "mass_factor", "gap";
     /// Where cameras are, where somebody asks.
     CAMERAS = "cameras", Thread: "cameras";
     /// Accelerations of bodies, forces between them and the energy, where somebody asks.
@@ -106,17 +106,17 @@ kernels! {
     /// Whether what they found is within bounds.
     VERDICT = "verdict", Team: "team", "verdict", "judge";
     /// The next state, by semi-implicit Euler.
-    EULER = "euler", Team: "team", "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "euler";
+    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "euler";
     /// The same, implicit in velocity derivatives.
-    IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
         "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "gyroscopic", "implicit_fast";
     /// The same with Coriolis forces.
-    IMPLICIT = "implicit", Team: "team", "tree", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+    IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
         "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "coriolis", "lu", "implicit";
     /// The same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "rk4";
 }
 
 /// What the constants before every kernel say, besides the tables.

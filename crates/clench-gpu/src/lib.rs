@@ -23,6 +23,7 @@ mod fields;
 mod kernels;
 mod layout;
 mod methods;
+mod outputs;
 mod parameters;
 mod pipelines;
 mod precision;

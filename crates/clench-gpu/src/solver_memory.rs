@@ -15,7 +15,7 @@ const MAX_NEWTON_DOFS: usize = 512;
 /// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
 const MAX_SHARED_DOFS: usize = 96;
 /// Numbers of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
-const STAGING: usize = 2 * 4 * 80 + TILE + 4 * 8 + 64;
+const STAGING: usize = 2 * TILE * 20 + TILE + 4 * 8 + 64;
 
 /// Where a solve keeps what is of the size of the dofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

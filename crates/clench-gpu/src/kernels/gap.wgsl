@@ -11,6 +11,7 @@ fn gap(@builtin(global_invocation_id) id: vec3u) {
     for (var i = member; i < bound(NV); i += TEAM) {
         put(PRECONDITIONED + i, fetch(GRADIENT + i));
     }
+    join();
     substitute_towards_root(PRECONDITIONED);
     if (is_first()) {
         var square: f32 = 0.0;

@@ -9,7 +9,7 @@ const QUADS_OF_TILE: u32 = TILE * QUADS;
 
 // Tiles of the lower triangle of a matrix, where the workgroup has room for them; else they lie with the rows of the environment. From RIGHT on, where the
 // last tile will be, the second factor of a product waits; the first is in `scratch`.
-var<workgroup> tiles: array<vec4f, RIGHT + 80u>;
+var<workgroup> tiles: array<vec4f, RIGHT + TILE * STRIDE>;
 
 // Where this thread's part of a tile is: its row, and its columns over four. There are as many threads as parts.
 fn own_row() -> u32 {

@@ -57,35 +57,30 @@ fn factor_tree() -> bool {
     return positive;
 }
 
-// x ← L⁻ᵀ x, in place.
-fn substitute_towards_root(x: u32) {
+// What `substitution.wgsl` asks for: the team, and where it has unknowns.
+fn worker() -> u32 {
+    return member;
+}
+
+fn workers() -> u32 {
+    return TEAM;
+}
+
+fn unknown(x: u32, i: u32) -> f32 {
+    return fetch(x + i);
+}
+
+fn put_unknown(x: u32, i: u32, value: f32) {
+    put(x + i, value);
+}
+
+fn join_unknowns() {
     join();
-    for (var level = NLEVEL; level > 0u; level--) {
-        for (var n = words[LEVEL_START + level - 1u] + member; n < words[LEVEL_START + level]; n += TEAM) {
-            let i = words[LEVEL_DOF + n];
-            var rest = fetch(x + i);
-            for (var p = words[BELOW_START + i + 1u]; p > words[BELOW_START + i]; p--) {
-                rest -= fetch(QLD + words[BELOW_PLACE + p - 1u]) * fetch(x + words[BELOW_DOF + p - 1u]);
-            }
-            put(x + i, rest);
-        }
-        join();
-    }
 }
 
 // x ← (LᵀDL)⁻¹ x, in place.
 fn solve_tree(x: u32) {
+    join();
     substitute_towards_root(x);
-    for (var level = 0u; level < bound(NLEVEL); level++) {
-        for (var n = words[LEVEL_START + level] + member; n < words[LEVEL_START + level + 1u]; n += TEAM) {
-            let i = words[LEVEL_DOF + n];
-            let pivot = pivot_of(i);
-            var rest = fetch(x + i) * fetch(QLD + pivot);
-            for (var p = words[TREE_START + i]; p < pivot; p++) {
-                rest -= fetch(QLD + p) * fetch(x + words[TREE_DOF + p]);
-            }
-            put(x + i, rest);
-        }
-        join();
-    }
+    substitute_towards_leaves(x);
 }

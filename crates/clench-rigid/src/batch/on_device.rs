@@ -335,7 +335,10 @@ impl<S: Precision> Batch<S> {
                 Some(sim) => sim,
                 none => none.insert(Box::new(self.sim(env)?)),
             };
-            self.copy_to_sim(env, sim)?;
+            self.state.read(env, &mut sim.state)?;
+            for own in &self.params {
+                own.read(env, 0, sim.params_mut());
+            }
             let energy = sim.energy()?;
             mirror.numbers[2 * env..][..2].copy_from_slice(&[energy.potential, energy.kinetic]);
         }
