@@ -9,8 +9,8 @@ use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
 ///
 /// The body moves into `T::vectorize(...)`, and what it calls must either be inlined into it (`#[inline(always)]`) or be a
 /// kernel itself: a plain function in between would be compiled for the oldest processor of its architecture, and every
-/// operation on lanes in it would be a call. That costs speed, never correctness. For `f64` and `f32` the attribute changes
-/// nothing.
+/// operation on lanes in it would be a call. That costs speed, never correctness. For `f64` and `f32` the attribute keeps the
+/// body a function of its own, which would otherwise be copied into each of its callers.
 ///
 /// The same goes for closures and what they are passed to. Where they hold operations on lanes, prefer a loop: iterator
 /// adaptors, `std::array::from_fn` and an array's `map` are functions in between when the closure is large. A closure

@@ -38,7 +38,12 @@ macro_rules! scalar {
 
                 #[inline(always)]
                 fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {
-                    kernel()
+                    // One copy a kernel: inlined, kernels made scalar code three times as large, and slower.
+                    #[inline(never)]
+                    fn run<R>(kernel: impl FnOnce() -> R) -> R {
+                        kernel()
+                    }
+                    run(kernel)
                 }
                 #[inline(always)]
                 fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R {

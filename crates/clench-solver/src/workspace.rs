@@ -22,7 +22,6 @@ pub(crate) struct Workspace<T: Real> {
 impl<T: Real> Workspace<T> {
     /// Minimises, then removes slip where the settings ask for it.
     #[kernel]
-    #[inline(never)] // it would be copied to each of its callers
     pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
         let Workspace {
             state, newton, cg, ..

@@ -1,9 +1,9 @@
 //! Which instructions the processor has, and running a task in lanes of them.
 
 use super::Lanes;
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(lanes = "portable")]
 use super::Portable;
-#[cfg(target_arch = "aarch64")]
+#[cfg(lanes = "neon")]
 use super::neon::Neon;
 #[cfg(target_arch = "x86_64")]
 use super::registers::Registers;
@@ -37,29 +37,27 @@ impl Instructions {
         Instructions::Avx512,
     ];
 
-    /// Whether this processor has them.
+    /// Returns whether lanes of these instructions were compiled and this processor has them.
     pub fn available(self) -> bool {
         match self {
             Instructions::Scalar => true,
-            Instructions::Portable => {
-                cfg!(not(any(target_arch = "x86_64", target_arch = "aarch64")))
-            }
-            Instructions::Neon => cfg!(target_arch = "aarch64"),
+            Instructions::Portable => cfg!(lanes = "portable"),
+            Instructions::Neon => cfg!(lanes = "neon"),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => Avx2::detected(),
+            Instructions::Avx2 => cfg!(lanes = "avx2") && Avx2::detected(),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => Avx512::detected(),
+            Instructions::Avx512 => cfg!(lanes = "avx512") && Avx512::detected(),
             #[cfg(not(target_arch = "x86_64"))]
             Instructions::Avx2 | Instructions::Avx512 => false,
         }
     }
 
-    /// Those that this processor has, narrowest first.
+    /// Returns those that are [available](Self::available), narrowest first.
     pub fn all_available() -> impl DoubleEndedIterator<Item = Instructions> {
         Self::ALL.into_iter().filter(|i| i.available())
     }
 
-    /// The widest that this processor has.
+    /// Returns the widest that are [available](Self::available).
     pub fn widest() -> Instructions {
         Self::all_available()
             .next_back()
@@ -100,7 +98,7 @@ pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
 
 macro_rules! in_lanes {
     ($scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
-        /// Runs a task in lanes of these instructions; `None` if the processor lacks them.
+        /// Runs a task in lanes of these instructions; `None` if they are not available.
         #[inline(always)]
         pub(crate) fn $scalar<K: LaneTask<$scalar>>(
             instructions: Instructions,
@@ -109,13 +107,13 @@ macro_rules! in_lanes {
             Some(match instructions {
                 _ if !instructions.available() => return None,
                 Instructions::Scalar => task.run::<$scalar>(),
-                #[cfg(target_arch = "aarch64")]
+                #[cfg(lanes = "neon")]
                 Instructions::Neon => task.run::<Lanes<$scalar, $narrow, Neon>>(),
-                #[cfg(target_arch = "x86_64")]
+                #[cfg(lanes = "avx2")]
                 Instructions::Avx2 => task.run::<Lanes<$scalar, $medium, Avx2>>(),
-                #[cfg(target_arch = "x86_64")]
+                #[cfg(lanes = "avx512")]
                 Instructions::Avx512 => task.run::<Lanes<$scalar, $wide, Avx512>>(),
-                #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+                #[cfg(lanes = "portable")]
                 Instructions::Portable => task.run::<Lanes<$scalar, $narrow, Portable>>(),
                 _ => return None,
             })
