@@ -141,12 +141,11 @@ impl<T: Real> StoredRows<T> {
 
     /// Appends a block of zeros.
     #[inline(always)]
-    pub(crate) fn push(&mut self, block: BlockIndex, dofs: &[u32]) -> &mut [T] {
+    pub(crate) fn push(&mut self, block: BlockIndex, dofs: &[u32]) {
         self.blocks.push(block);
         self.dofs.extend_from_slice(dofs);
         self.values
             .resize(block.value + block.dim * block.ndof, T::ZERO);
-        &mut self.values[block.value..]
     }
 
     /// Appends a copy of another problem's block with these `values`, at the row and the entry of the active set that are given; its dofs
@@ -216,6 +215,11 @@ impl<T: Real> StoredRows<T> {
     #[inline(always)]
     pub(crate) fn values(&self, b: &BlockIndex) -> &[T] {
         &self.values[b.value..b.value + b.dim * b.ndof]
+    }
+
+    #[inline(always)]
+    pub(crate) fn values_mut(&mut self, b: &BlockIndex) -> &mut [T] {
+        &mut self.values[b.value..b.value + b.dim * b.ndof]
     }
 
     /// The rows of a block whose number is known to the compiler.

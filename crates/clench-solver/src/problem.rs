@@ -167,7 +167,7 @@ impl<T: Real> Problem<T> {
             self.malformed = Some((self.nblock(), reason));
         }
         let row = self.nrow();
-        let jacobian = self.jacobian.push(
+        self.jacobian.push(
             BlockIndex {
                 cost,
                 dim,
@@ -183,12 +183,22 @@ impl<T: Real> Problem<T> {
         for pool in [&mut self.aref, &mut self.r, &mut self.d, &mut self.shape] {
             pool.resize(row + dim, T::ZERO);
         }
+        self.last_block_mut()
+    }
+
+    /// The block that was pushed last.
+    ///
+    /// # Panics
+    /// A problem without blocks.
+    pub fn last_block_mut(&mut self) -> BlockMut<'_, T> {
+        let last = self.jacobian.blocks[self.jacobian.blocks.len() - 1];
+        let rows = last.rows();
         BlockMut {
-            jacobian,
-            aref: &mut self.aref[row..],
-            r: &mut self.r[row..],
-            d: &mut self.d[row..],
-            shape: &mut self.shape[row..],
+            jacobian: self.jacobian.values_mut(&last),
+            aref: &mut self.aref[rows.clone()],
+            r: &mut self.r[rows.clone()],
+            d: &mut self.d[rows.clone()],
+            shape: &mut self.shape[rows],
         }
     }
 

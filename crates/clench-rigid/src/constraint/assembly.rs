@@ -4,7 +4,7 @@ use super::exact::ExactDiagonal;
 use super::implicit::ImplicitRows;
 use super::row::Row;
 use super::softness::{is_single, least_regularization};
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 use clench_solver::{Cost, Problem};
 
 /// The most rows of a block.
@@ -89,18 +89,26 @@ impl<T: Real> Assembly<'_, T> {
     pub(super) fn push(
         &mut self,
         cost: Cost,
-        mut block: BlockRecord<T>,
+        block: BlockRecord<T>,
         rows: &[Row<T>],
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
+        let dofs = &self.record.dofs;
+        let target = self.problem.push(cost, rows.len(), dofs);
+        fill(dofs, target.jacobian);
+        self.finish(cost, block, rows);
+    }
+
+    /// Completes the last block of the problem, whose Jacobian is there.
+    #[kernel]
+    fn finish(&mut self, cost: Cost, mut block: BlockRecord<T>, rows: &[Row<T>]) {
         let ConstraintRecord {
             blocks,
             pos,
             vel,
             dofs,
         } = &mut *self.record;
-        let target = self.problem.push(cost, rows.len(), dofs);
-        fill(dofs, target.jacobian);
+        let target = self.problem.last_block_mut();
         let is_contact = matches!(block.source, ConstraintSource::Contact(_));
         if !is_contact {
             block.active &= any_nonzero(target.jacobian);

@@ -8,10 +8,10 @@ use crate::dynamics::{dc_motor, orientation};
 use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
-use clench_math::{Mask, Real};
+use clench_math::{Mask, Real, kernel};
 
 /// ∂force/∂velocity of actuator `u`.
-#[inline(always)]
+#[kernel]
 pub(crate) fn velocity_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -42,7 +42,7 @@ pub(crate) fn velocity_derivative<T: Real>(
 }
 
 /// ∂force/∂length of actuator `u`. Of an orientation servo it is that for small angles, the same about each axis.
-#[inline(always)]
+#[kernel]
 pub(crate) fn length_derivative<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -58,7 +58,7 @@ enum Part {
 
 /// Adds what the medium has in D, or its drag alone, times `scale`. As in MuJoCo, drag of a body whose mass matrix is diagonal is then
 /// diagonal too.
-#[inline(always)]
+#[kernel]
 pub(crate) fn add_fluid_derivatives<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -15,7 +15,7 @@ use crate::settings::StepSettings;
 use crate::stages::Positions;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, array, kernel};
 use clench_solver::{ConstraintSolver, Cost, Problem, Settings};
 
 /// Newton steps that a quadratic cost is given: one leads to its minimum, more take away what rounding has left.
@@ -170,7 +170,8 @@ pub(crate) fn spin_freely<T: Real>(
         if !free || !alone.any() {
             continue;
         }
-        let (stages, system) = ((pos as &_, vel as &_), (&problem.mass, total));
+        let system = (&problem.mass, array(|r| total(joint.dof + r)));
+        let stages = (pos as &_, vel as &_);
         let x = solve_gyroscopic(model, params, j, qvel, stages, FluidForces::Drag, system);
         for (qacc, x) in qacc[joint.dof..].iter_mut().zip(x) {
             *qacc = T::select(alone, x, *qacc);

@@ -28,7 +28,7 @@ pub(crate) fn is_free_tree(model: &Model, j: usize) -> bool {
         && (after >= model.nv || tree.tree_of(after) != tree.tree_of(joint.dof))
 }
 
-/// The joint's part of the acceleration (nv) that `force` (nv) causes, with M − h D in `matrix`. Of the medium `fluid` has what is
+/// The joint's part of the acceleration (nv) that `force` along its dofs causes, with M − h D in `matrix`. Of the medium `fluid` has what is
 /// not symmetric in D, if that counts.
 #[kernel]
 pub(crate) fn solve_gyroscopic<T: Real>(
@@ -38,7 +38,7 @@ pub(crate) fn solve_gyroscopic<T: Real>(
     qvel: &[T],
     (pos, vel): (&Positions<T>, &Velocities<T>),
     fluid: FluidForces,
-    (matrix, force): (&TreeMatrix<T>, impl Fn(usize) -> T),
+    (matrix, force): (&TreeMatrix<T>, [T; 6]),
 ) -> [T; 6] {
     let dof = model.joints[j].dof;
     let mut rows = [[T::ZERO; 7]; 6];
@@ -46,7 +46,7 @@ pub(crate) fn solve_gyroscopic<T: Real>(
         for (c, entry) in row[..6].iter_mut().enumerate() {
             *entry = matrix.row(&model.tree, dof + r.max(c))[r.min(c)];
         }
-        row[6] = force(dof + r);
+        row[6] = force[r];
     }
     add_bias_derivative(model, params, j, qvel, pos, &mut rows);
     if fluid == FluidForces::All {

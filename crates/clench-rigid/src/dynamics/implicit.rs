@@ -15,7 +15,7 @@ use crate::dynamics::integrate::{add_scaled, advance_semi_implicit, solve_implic
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Real, kernel};
+use clench_math::{Real, array, kernel};
 
 /// Advances the state by a time step, from the accelerations and forces of `ws`.
 #[kernel]
@@ -40,7 +40,7 @@ pub fn implicit_fast<T: Real>(
     let total = |i: usize| force.qfrc_smooth[i] + qfrc_constraint[i];
     for (j, joint) in model.joints.iter().enumerate() {
         if is_free_tree(model, j) {
-            let system = (&integration.matrix, total);
+            let system = (&integration.matrix, array(|r| total(joint.dof + r)));
             let stages = (pos as &_, vel as &_);
             let fluid = FluidForces::All;
             let x = solve_gyroscopic(model, params, j, &state.qvel, stages, fluid, system);

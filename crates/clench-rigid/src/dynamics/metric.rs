@@ -312,7 +312,7 @@ impl<T: Real> Term<T> {
     }
 
     /// Adds it to the matrix, or to the couplings where it is one, `place`.
-    #[inline(always)]
+    #[kernel]
     fn add(
         &self,
         model: &Model,

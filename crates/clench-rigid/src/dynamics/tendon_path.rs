@@ -10,7 +10,7 @@ use crate::dynamics::wrap::{Obstacle, WrapShape, wrap};
 use crate::model::{Model, Params, Section, Tendon};
 use crate::stages::{Positions, Velocities};
 use clench_collide::ShapeKind;
-use clench_math::{Real, Vec3};
+use clench_math::{Real, Vec3, kernel};
 
 /// Points nearer than this (m) have no direction between them (MuJoCo's `mjMINVAL`).
 const MIN_DISTANCE: f64 = 1e-15;
@@ -169,7 +169,7 @@ fn add_span<T: Real>(
 
 /// d²length/dt² of tendon `t` while no dof accelerates, J̇ v, for tendons without obstacles: a span of length s between points
 /// that move apart with w and accelerate apart with c changes its length with u·c + (w² − (u·w)²) / s.
-#[inline(always)]
+#[kernel]
 pub(crate) fn bias_acceleration<T: Real>(
     model: &Model,
     params: &Params<T>,

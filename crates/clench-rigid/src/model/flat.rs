@@ -34,6 +34,7 @@ impl<T: Real, const N: usize> Broadcast<T> for [f64; N] {
 }
 impl<T, A: Broadcast<T>> Broadcast<T> for Vec<A> {
     type Output = Vec<A::Output>;
+    #[inline(never)] // Some ninety fields call it.
     fn broadcast(&self) -> Vec<A::Output> {
         self.iter().map(|a| a.broadcast()).collect()
     }

@@ -91,6 +91,11 @@ impl Field {
     }
 }
 
+#[inline(never)] // Every field calls it.
+fn zeros<T: Real, K: Kind>(count: usize) -> Vec<K::Of<T>> {
+    vec![K::zero::<T>(); count]
+}
+
 macro_rules! declare_state {
     ($($group:ident { $(
         $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
@@ -129,7 +134,7 @@ macro_rules! declare_state {
             fn zero(model: &Model) -> Self {
                 State {
                     time: T::Clock::splat(0.0),
-                    $($($name: vec![<kind::$kind as Kind>::zero::<T>(); Size::$size.of(model)],)*)*
+                    $($($name: zeros::<T, kind::$kind>(Size::$size.of(model)),)*)*
                 }
             }
 
