@@ -219,8 +219,7 @@ impl<T: Precision> Sim<T> {
     pub(crate) fn check_present(&self) -> Result<(), SimError> {
         self.check_threads()?;
         check::check_lengths(&self.model, &self.state)?;
-        let occasional = check::has_occasional(&self.state);
-        if check::good_inputs(&self.state, occasional) {
+        if T::good_inputs(&self.state) {
             return Ok(());
         }
         Err(check::input_fault(&self.model, &self.state, 0).into())
@@ -228,7 +227,7 @@ impl<T: Precision> Sim<T> {
 
     /// Finds the fault in what a step from `time` computed, if there is one.
     fn check_result(&self, time: f64) -> Result<(), SimError> {
-        if check::good_results(&self.state, &self.ws) {
+        if T::good_results(&self.state, &self.ws) {
             return Ok(());
         }
         Err(check::result_fault(&self.model, time, &self.state, &self.ws, 0).into())
@@ -409,7 +408,7 @@ impl<T: Precision> Sim<T> {
         let given = (qacc, given);
         let (params, settings) = (&self.params, &self.settings);
         T::inverse(model, params, settings, state, given, ws, qfrc_inverse);
-        match check::good_results(state, ws) {
+        match T::good_results(state, ws) {
             true => Ok(()),
             false => Err(check::result_fault(model, state.time, state, ws, 0).into()),
         }

@@ -14,9 +14,11 @@ use crate::row_sim::AnySim;
 use crate::sim::Sim;
 use crate::state_views::StateViews;
 use crate::view::Keeper;
+use clench::math::Instructions;
 use clench::{BatchOptions, Output};
-use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError};
+use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyRuntimeWarning};
 use pyo3::prelude::*;
+use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
 /// A batch in either precision.
@@ -106,6 +108,11 @@ impl Batch {
         device: Device,
     ) -> PyResult<PyClassInitializer<Self>> {
         let py = model.py();
+        if let (Device::Processor, Some(advice)) = (&device, Instructions::advice()) {
+            let category = py.get_type::<PyRuntimeWarning>();
+            let advice = CString::new(advice)?;
+            PyErr::warn(py, &category, &advice, 1)?;
+        }
         let options = options.copied().unwrap_or_default();
         let own = BatchOptions {
             options: options.0,

@@ -10,6 +10,7 @@ use super::run::Run;
 use super::start::widen;
 use super::summary::{is_conservative, status};
 use crate::allocator::ALLOCATOR;
+use crate::message::tell;
 use anyhow::Result;
 use clench::math::{Instructions, Scalar};
 use clench::rigid::batch::Recording;
@@ -42,6 +43,9 @@ pub(crate) fn run<S: Precision>(
     envs: u32,
     options: RigidOptions,
 ) -> Result<Report> {
+    if let Some(advice) = Instructions::advice() {
+        tell(format_args!("note: {advice}"));
+    }
     let mut heap = Heap::default();
     let options = arguments.batch.options(options);
     let model = Arc::clone(&run.model);

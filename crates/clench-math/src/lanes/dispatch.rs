@@ -39,17 +39,47 @@ impl Instructions {
 
     /// Returns whether lanes of these instructions were compiled and this processor has them.
     pub fn available(self) -> bool {
+        self.compiled() && self.detected()
+    }
+
+    /// Returns whether lanes of these instructions were compiled: `build.rs` chooses them.
+    fn compiled(self) -> bool {
         match self {
             Instructions::Scalar => true,
             Instructions::Portable => cfg!(lanes = "portable"),
             Instructions::Neon => cfg!(lanes = "neon"),
+            Instructions::Avx2 => cfg!(lanes = "avx2"),
+            Instructions::Avx512 => cfg!(lanes = "avx512"),
+        }
+    }
+
+    /// Returns whether this processor has them.
+    fn detected(self) -> bool {
+        match self {
+            Instructions::Scalar => true,
+            Instructions::Portable => {
+                cfg!(not(any(target_arch = "x86_64", target_arch = "aarch64")))
+            }
+            Instructions::Neon => cfg!(target_arch = "aarch64"),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => cfg!(lanes = "avx2") && Avx2::detected(),
+            Instructions::Avx2 => Avx2::detected(),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => cfg!(lanes = "avx512") && Avx512::detected(),
+            Instructions::Avx512 => Avx512::detected(),
             #[cfg(not(target_arch = "x86_64"))]
             Instructions::Avx2 | Instructions::Avx512 => false,
         }
+    }
+
+    /// Returns what a user should know whose batches go one environment at a time on a processor that has lanes: the build left
+    /// them out.
+    pub fn advice() -> Option<&'static str> {
+        let has_lanes = Self::ALL
+            .into_iter()
+            .any(|i| i.detected() && i != Instructions::Scalar);
+        (has_lanes && Self::widest() == Instructions::Scalar).then_some(
+            "this build of Clench has no lanes for this processor, so environments are stepped one at a time; \
+             build it on this machine, or with CLENCH_INSTRUCTIONS=all in the environment",
+        )
     }
 
     /// Returns those that are [available](Self::available), narrowest first.

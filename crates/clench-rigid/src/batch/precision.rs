@@ -3,6 +3,7 @@
 use super::job::Stepper;
 use super::shared::Shared;
 use super::stepper::MakeStepper;
+use crate::check;
 use crate::dynamics::energy::Energy;
 use crate::ik::{Ik, Search};
 use crate::inverse::{self, Acceleration};
@@ -36,6 +37,10 @@ pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
         state: &mut State<Self>,
         ws: &mut Workspace<Self>,
     );
+    /// Returns whether a step can start from the state of one environment.
+    fn good_inputs(state: &State<Self>) -> bool;
+    /// Returns whether a step or forward pass of one environment went well.
+    fn good_results(state: &State<Self>, ws: &Workspace<Self>) -> bool;
     /// [`pipeline::forward`] of one environment.
     fn forward(
         model: &Model,
@@ -113,6 +118,12 @@ macro_rules! lanewise {
                 ws: &mut Workspace<$scalar>,
             ) {
                 pipeline::step(model, params, settings, state, ws);
+            }
+            fn good_inputs(state: &State<$scalar>) -> bool {
+                check::good_inputs(state, check::has_occasional(state))
+            }
+            fn good_results(state: &State<$scalar>, ws: &Workspace<$scalar>) -> bool {
+                check::good_results(state, ws)
             }
             fn forward(
                 model: &Model,
