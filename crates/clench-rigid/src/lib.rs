@@ -5,7 +5,7 @@
 //! Data lives in three kinds of struct: [`Model`] never changes while stepping, [`State`] is what a user saves and
 //! restores, [`Workspace`] is everything derived. File formats live in `clench-formats`, not here.
 
-#![deny(unreachable_pub)]
+#![deny(unreachable_pub, unsafe_code)]
 
 pub mod batch;
 pub mod budget;

@@ -13,7 +13,6 @@ use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::{EnergyScratch, Workspace};
 use clench_math::{Instructions, Scalar};
-use zerocopy::{Immutable, IntoBytes};
 
 /// A number type of simulations and batches: `f64` or `f32`.
 ///
@@ -25,7 +24,7 @@ impl Precision for f64 {}
 impl Precision for f32 {}
 
 /// What a batch needs of a number type; outside this crate only its name is known.
-pub trait Lanewise: Scalar + Shared + IntoBytes + Immutable {
+pub trait Lanewise: Scalar + Shared {
     /// A thread's scratch in lanes of these instructions; `None` if the processor lacks them. Not generic, so that stepping in
     /// lanes is compiled with this crate and not with each of its users.
     fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>>;

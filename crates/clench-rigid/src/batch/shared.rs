@@ -1,5 +1,7 @@
 //! Numbers in atomic cells, so that threads can share the rows that hold them.
 
+#![allow(unsafe_code, reason = "the standard library's view of numbers as atomics is unstable")]
+
 use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
 
 /// What rows that threads share are made of.
@@ -21,8 +23,12 @@ macro_rules! shared {
         impl Shared for $number {
             type Cell = $cell;
             fn cells(values: &mut [$number]) -> &[$cell] {
-                let cells: &mut [$cell] = zerocopy::transmute_mut!(values);
-                cells
+                const { assert!(size_of::<$number>() == size_of::<$cell>()) };
+                const { assert!(align_of::<$number>() >= align_of::<$cell>()) };
+                let cells: *mut [$number] = values;
+                // SAFETY: a cell has the size, the alignment and the bits of its number, any bits are a number, and the
+                // borrow of the numbers lasts as long as that of the cells.
+                unsafe { &*(cells as *const [$cell]) }
             }
             #[inline(always)]
             fn load(cell: &$cell) -> $number {
