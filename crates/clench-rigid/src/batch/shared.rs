@@ -1,6 +1,9 @@
 //! Numbers in atomic cells, so that threads can share the rows that hold them.
 
-#![allow(unsafe_code, reason = "the standard library's view of numbers as atomics is unstable")]
+#![allow(
+    unsafe_code,
+    reason = "the standard library's view of numbers as atomics is unstable"
+)]
 
 use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
 
