@@ -42,8 +42,8 @@ const SOAKS: [Soak; 5] = [
     Soak {
         name: "recordings",
         package: "clench-cli",
-        test: "killed",
-        case: "long",
+        test: "suite",
+        case: "killed::long",
     },
 ];
 

@@ -1,6 +1,7 @@
 //! Pictures and films of a program that can draw. Without a device that draws, these tests say so and check nothing else.
 #![cfg(all(feature = "render", unix))]
 
+#[path = "suite/program/mod.rs"]
 mod program;
 
 use program::{code, command, errors, folder};

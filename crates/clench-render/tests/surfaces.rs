@@ -1,6 +1,6 @@
 //! Pictures lie on surfaces, and lights shine, as a file says. Without a device that draws these tests say so and check nothing else.
 
-#[path = "../../clench-formats/tests/pictures/mod.rs"]
+#[path = "../../clench-formats/tests/suite/pictures/mod.rs"]
 mod pictures;
 
 use clench::{Loader, Sim};

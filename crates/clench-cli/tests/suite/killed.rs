@@ -1,0 +1,91 @@
+//! `clench simulate --record` ended by `kill -9` at any moment: the record that was there before is there whole, or the new one is.
+//!
+//! The short form is an ordinary test; `cargo xtask soak --only recordings` runs the long one.
+
+use crate::program::{folder, model, simulation};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::thread;
+use std::time::Instant;
+
+/// Rows of the record that is there before.
+const OLD: u64 = 10;
+
+fn record(path: &Path, steps: u64) -> Child {
+    let words = format!("--steps {steps}");
+    simulation(&model("pendulum"), &words, &[("--record", path)])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program can be run")
+}
+
+fn record_all(path: &Path, steps: u64) {
+    let status = record(path, steps).wait().expect("the run ends");
+    assert!(status.success());
+    assert_eq!(rows(path), steps);
+}
+
+/// The rows of a record, all of whose arrays can be read.
+fn rows(path: &Path) -> u64 {
+    let file = File::open(path).expect("the record is there");
+    let mut archive = zip::ZipArchive::new(file).expect("a whole archive");
+    let mut rows = Vec::new();
+    for index in 0..archive.len() {
+        let mut bytes = Vec::new();
+        let mut entry = archive.by_index(index).expect("an array");
+        entry
+            .read_to_end(&mut bytes)
+            .expect("its checksum is right");
+        let array = npyz::NpyFile::new(&bytes[..]).expect("an array");
+        rows.push(array.shape()[0]);
+    }
+    let first = *rows.first().expect("arrays");
+    assert!(rows.iter().all(|&count| count == first), "{rows:?}");
+    first
+}
+
+/// Ends so many runs of so many steps, at moments spread over the time that a whole one takes.
+fn kill(times: u32, steps: u64) {
+    let folder = folder();
+    let path = folder.path().join("run.npz");
+    let begin = Instant::now();
+    record_all(&path, steps);
+    let whole = begin.elapsed();
+    record_all(&path, OLD);
+    let (mut kept, mut replaced) = (0, 0);
+    for time in 0..times {
+        let mut child = record(&path, steps);
+        thread::sleep(whole * time / times);
+        // An error means that it has ended already.
+        let _ = child.kill();
+        child.wait().expect("the run ends");
+        match rows(&path) {
+            OLD => kept += 1,
+            found => {
+                assert_eq!(found, steps, "neither the old record nor the new one");
+                replaced += 1;
+                record_all(&path, OLD);
+            }
+        }
+    }
+    println!(
+        "{times} runs of {whole:?} killed: {kept} times the old record is there, {replaced} times the new one"
+    );
+    assert!(kept > 0, "none was ended before its end");
+}
+
+#[test]
+fn a_killed_recording_leaves_the_old_file_or_the_new_one_whole() {
+    kill(8, 20_000);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask soak --only recordings"]
+fn long() {
+    let scale = std::env::var("SOAK_SCALE").unwrap_or("1".into());
+    let scale: u32 = scale.parse().expect("SOAK_SCALE is a whole number");
+    kill(1_000 / scale, 200_000);
+}

@@ -1,0 +1,32 @@
+//! Tests of readers through the crate's public face: one program, for linking takes longer than most of them run.
+
+mod actuators;
+mod assets;
+mod attach;
+mod attached_keyframes;
+mod broken_assets;
+mod collada;
+mod defaults;
+mod errors;
+mod files;
+mod gltf;
+mod height_fields;
+mod hostile;
+mod includes;
+mod leave_out;
+mod lights;
+mod meshes;
+mod only_seen;
+mod pictures;
+mod replicas;
+mod scaled_frames;
+mod sections;
+mod sensors;
+mod sleeping;
+mod sliders;
+mod textures;
+mod tree;
+mod urdf;
+mod user_numbers;
+mod visuals;
+mod xml;
