@@ -6,33 +6,66 @@ use std::process::Command;
 
 #[test]
 fn what_the_kernels_are_built_of_has_the_same_features_in_all_packages() {
-    let program = below_the_kernels("clench-cli");
-    assert!(program.len() > 20, "{program:?}");
+    let program = below("clench-rigid ", "clench-cli");
+    assert!(program.len() > 10, "{program:?}");
     for package in ["clench-python", "clench-gpu", "clench-formats"] {
-        assert_eq!(program, below_the_kernels(package), "{package}");
+        assert_eq!(program, below("clench-rigid ", package), "{package}");
     }
 }
 
-/// The packages that `clench-rigid` is built of in the build of `package`, each with its features.
-fn below_the_kernels(package: &str) -> BTreeSet<String> {
-    let tree = Command::new(env!("CARGO"))
-        .args(["tree", "--no-dedupe", "--edges", "normal,build"])
-        .args(["--prefix", "depth", "--format", " {p} {f}"])
-        .args(["--package", package])
-        .output()
-        .expect("cargo runs");
-    assert!(tree.status.success(), "{tree:?}");
+/// The same of `wgpu` and the readers, which take a minute: the Python package is built alone, and the tests with all packages at once.
+#[test]
+fn what_draws_has_the_features_in_the_python_package_that_it_has_in_tests() {
+    let package = below("clench-render ", "clench-python");
+    assert!(package.len() > 100, "{package:?}");
+    let mut tests = tree(&["--prefix", "none", "--edges", "normal,build,dev"]);
+    tests.args(["--format", "{p} {f}", "--workspace"]);
+    tests.args(["--features", "clench-cli/gpu,clench-cli/render"]);
+    let tests = output(tests);
+    let tests: BTreeSet<&str> = (tests.lines())
+        .map(|line| line.trim_end_matches(" (*)").trim_end())
+        .collect();
+    let others = package.iter().filter(|part| !tests.contains(&***part));
+    let others = Vec::from_iter(others);
+    assert!(
+        others.is_empty(),
+        "python/Cargo.toml does not ask for the features that tests have: {others:#?}"
+    );
+}
+
+/// The packages that the package `top` is built of in the build of `package`, each with its features.
+fn below(top: &str, package: &str) -> BTreeSet<String> {
+    let mut tree = tree(&[
+        "--no-dedupe",
+        "--edges",
+        "normal,build",
+        "--prefix",
+        "depth",
+    ]);
+    tree.args(["--format", " {p} {f}", "--package", package]);
     let mut inside = None;
     let mut found = BTreeSet::new();
-    for line in String::from_utf8_lossy(&tree.stdout).lines() {
+    for line in output(tree).lines() {
         let Some((depth, text)) = line.split_once(' ') else {
             continue;
         };
         let depth: usize = depth.parse().expect("a depth");
         match inside {
-            Some(top) if depth > top => _ = found.insert(text.to_owned()),
-            _ => inside = text.starts_with("clench-rigid ").then_some(depth),
+            Some(top) if depth > top => _ = found.insert(text.trim_end().to_owned()),
+            _ => inside = text.starts_with(top).then_some(depth),
         }
     }
     found
+}
+
+fn tree(arguments: &[&str]) -> Command {
+    let mut tree = Command::new(env!("CARGO"));
+    tree.arg("tree").args(arguments);
+    tree
+}
+
+fn output(mut command: Command) -> String {
+    let output = command.output().expect("cargo runs");
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
 }
