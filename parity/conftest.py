@@ -25,6 +25,10 @@ def models():
     ]
 
 
+def pytest_configure(config):
+    config.addinivalue_line("markers", "long: takes long; `cargo xtask test --quick` leaves it out")
+
+
 def pytest_sessionstart(session):
     if not program.CLENCH.is_file():
         pytest.exit(f"{program.CLENCH} is missing: run `cargo build --release -p clench-cli`", returncode=2)

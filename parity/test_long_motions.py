@@ -27,6 +27,7 @@ def diverges(model, controls):
     return False
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_motion_stays_finite(path, tmp_path):
     model = mujoco.MjModel.from_xml_path(str(path))

@@ -3,6 +3,8 @@
 `soak_models.py` does the same with as many seeds as one has time for; its models and these differ in seeds alone.
 """
 
+import pytest
+
 from random_models import rules, search
 
 SEEDS = range(1, 1701)  # of these MuJoCo compiles a thousand
@@ -10,6 +12,8 @@ MIN_COMPARED = 1000
 # MuJoCo ends the process where touch is felt in a mesh; `models/sensors.xml` has such a site.
 NEVER = {("site", "mesh")}
 
+
+@pytest.mark.long
 def test_the_engines_agree():
     findings = search.search(SEEDS)
     assert not findings.differences, f"{findings}\nThe models are in {search.FOLDER}."

@@ -15,6 +15,7 @@ STDERR = pytest.StashKey[TextIO]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "long: takes long; `cargo xtask test --quick` leaves it out")
     # Not what a test's own output goes to: that would be lost at the end of the run.
     config.stash[STDERR] = open(os.dup(2), "w", encoding="utf-8")
     # A shell's background jobs ignore Ctrl-C, and so would the tests of it.

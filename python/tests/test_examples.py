@@ -23,6 +23,7 @@ def run(name: str, *arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("train_policy", "cluster_plan")])
 def test_example_runs_and_plots(name: str, tmp_path: Path) -> None:
     plot = tmp_path / "plot.png"
@@ -31,6 +32,7 @@ def test_example_runs_and_plots(name: str, tmp_path: Path) -> None:
     assert plot.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 def test_policy_learns(tmp_path: Path) -> None:
     plot = tmp_path / "curve.svg"
     printed = run("train_policy", "--plot", str(plot))

@@ -15,6 +15,7 @@ import pytest
 CALLS = 10_000
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_nothing_but_exceptions_comes_back(seed: int) -> None:
     program = pathlib.Path(fuzz.__file__)

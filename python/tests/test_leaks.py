@@ -17,7 +17,7 @@ from scenes import PUPPET, example, puppet
 STATM = pathlib.Path("/proc/self/statm")
 PAGE = 4096
 
-pytestmark = pytest.mark.skipif(not STATM.exists(), reason="resident memory is read from /proc")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(not STATM.exists(), reason="resident memory is read from /proc")]
 
 # What an allocator may take besides, however long a loop is, and how many objects the interpreter keeps for itself.
 SLACK, OBJECTS = 512 * 1024, 400

@@ -292,6 +292,7 @@ def test_states_have_no_hash() -> None:
         hash(moving("sim").state)
 
 
+@pytest.mark.long
 def test_bytes_take_no_more_memory_than_they_are() -> None:
     """Few bytes that unpack to many, of whatever version."""
     zeros = np.zeros(10**8)

@@ -2,7 +2,7 @@
 
 use crate::install::try_to_install;
 use crate::python;
-use crate::run::{ALL_FEATURES, cargo, command, run, target};
+use crate::run::{ALL_FEATURES, Profile, command, run, target};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
@@ -26,12 +26,12 @@ const APART: u64 = 1_000_000;
 ///
 /// # Errors
 /// That a test failed.
-pub(crate) fn test() -> Result<(), String> {
+pub(crate) fn test(profile: Profile) -> Result<(), String> {
     write_random_models(1, RANDOM_MODELS)?;
-    let mut part = computing(&COMPUTING[..1])?;
+    let mut part = computing(profile, &COMPUTING[..1])?;
     part.arg("--").args(PART);
     // What is left, and the program's.
-    let mut rest = computing(&COMPUTING)?;
+    let mut rest = computing(profile, &COMPUTING)?;
     rest.arg("--");
     for name in PART {
         rest.args(["--skip", name]);
@@ -42,7 +42,7 @@ pub(crate) fn test() -> Result<(), String> {
         let part = beside.join();
         rest.and(part.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
     })?;
-    run(tests(&DRAWING))
+    run(tests(profile, &DRAWING))
 }
 
 /// Compares many random models with the processor.
@@ -52,7 +52,7 @@ pub(crate) fn test() -> Result<(), String> {
 pub(crate) fn soak(seed: u64) -> Result<(), String> {
     python::prepare()?;
     write_random_models(seed * APART, SOAKED_MODELS)?;
-    let mut test = computing(&COMPUTING[..1])?;
+    let mut test = computing(Profile::Dev, &COMPUTING[..1])?;
     test.args(["--", "random::", "--nocapture"]);
     run(test)
 }
@@ -70,8 +70,8 @@ fn random_folder() -> PathBuf {
 }
 
 /// The tests of these names, with what those that compute need.
-fn computing(names: &[&str]) -> Result<Command, String> {
-    let mut tests = tests(names);
+fn computing(profile: Profile, names: &[&str]) -> Result<Command, String> {
+    let mut tests = tests(profile, names);
     // Tests ask a few times for many kernels: Mesa's software device takes longer to optimize them than to run them as they are.
     tests.env("GALLIVM_PERF", "nopt");
     tests.env("LP_NATIVE_VECTOR_WIDTH", "128");
@@ -82,8 +82,8 @@ fn computing(names: &[&str]) -> Result<Command, String> {
 }
 
 /// Runs the tests of these names, which the stage `unit` has compiled: all packages are named, so that nothing is compiled anew for other features.
-fn tests(names: &[&str]) -> Command {
-    let mut tests = cargo(&["test", "--quiet", "--workspace"]);
+fn tests(profile: Profile, names: &[&str]) -> Command {
+    let mut tests = profile.cargo(&["test", "--quiet", "--workspace"]);
     tests.args(["--features", ALL_FEATURES]);
     for name in names {
         tests.args(["--test", name]);

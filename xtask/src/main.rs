@@ -5,6 +5,7 @@
 
 mod audit;
 mod docs;
+mod estimate;
 mod fuzz;
 mod gpu;
 mod install;
@@ -15,6 +16,7 @@ mod package;
 mod python;
 mod run;
 mod sanitize;
+mod size;
 mod soak;
 mod stages;
 mod unit;
@@ -28,7 +30,7 @@ Clench's own chores.
 Usage: cargo xtask COMMAND
 
 Commands:
-  test [--release] [STAGE...]
+  test [--release | --quick] [STAGE...]
                     Check everything, or only the named stages, in this order:
                       fmt      rustfmt finds nothing to change
                       page     the viewer's page, built by Node; without npm skipped
@@ -36,13 +38,20 @@ Commands:
                       unit     all Rust tests but those on a graphics device
                       doc      rustdoc without warnings
                       build    the `clench` program, as the stages after it run it
+                      size     the release program and Python module, which may not outgrow their limits; on 64-bit Linux
                       browser  the page driven in Chromium; without one skipped (CHROMIUM names another than /usr/bin/chromium)
                       python   .venv with MuJoCo and gymnasium
                       gpu      steps on a graphics device, or on Mesa's software device; without a driver skipped
                       package  the Python package, built and installed in .venv by pip; its types
                       pytest   its tests, every example in a short form among them
                       parity   `clench` against MuJoCo, with pytest
-                    The program and the package are compiled as the Rust tests are, with their checks; with --release as users have them.
+                    The program and the package are compiled as the Rust tests are, with their checks, for all instruction sets,
+                    and lanes are tested in those that the processor has.
+                    --release  compiles both as users have them, for this processor.
+                    --quick    takes minutes: it compiles for this processor, and leaves out clippy, doc, size, browser, gpu, package
+                               and pytest, and tests that take long. Named after it, clippy, package and pytest run in a
+                               short form. It ends with a list of what it left out.
+                    It says at each stage how long the rest will take, by the last such run (target/xtask-times).
   bench [ARG...]    Build `clench` with the `dist` profile, as it is shipped, and time it against MuJoCo.
                     Arguments go to bench/speed.py; try `cargo xtask bench --help`.
   soak [--only NAME] [SEED]
@@ -60,7 +69,8 @@ Commands:
   lanes             List the functions of the release program in which operations on lanes are calls: where a #[kernel] is missing.
   docs              Build the site in target/site: pages, notebooks, which are run, and the reference of the Python package.
   stubs             Install the Python package, and write the sections of its stub that follow from tables in Rust.
-  wheel             Build the Python package that this machine can, in target/wheels, with the licences of what is compiled in.
+  wheel             Build the Python package that this machine can, in target/wheels, for all processors of its kind, with the
+                    licences of what is compiled in.
   others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
                       ray       a batch on a cluster, whose workers are killed (500 MB)
                       learning  Stable-Baselines3 and TorchRL (5 GB)

@@ -3,6 +3,7 @@
 use crate::python::{self, interpreter, prepare};
 use crate::run::{Profile, command, run, target};
 use crate::web;
+use std::process::Command;
 
 /// Installs the package, and holds its types to what was installed.
 ///
@@ -37,12 +38,7 @@ pub(crate) fn install(profile: Profile) -> Result<(), String> {
         interpreter(),
         &["-m", "pip", "install", "--quiet", "./python[gymnasium]"],
     );
-    install.arg(format!(
-        "--config-settings=build-args=--profile={}",
-        profile.name()
-    ));
-    // A relative one would mean another folder there, as pip builds in `python`.
-    install.env("CARGO_TARGET_DIR", target());
+    compile_with(&mut install, profile);
     run(install).map_err(|e| {
         format!("{e}\nBesides cargo this needs a package index: pip fetches maturin, which builds the package, every time.")
     })
@@ -57,7 +53,7 @@ pub(crate) fn write_stubs() -> Result<(), String> {
     run(command(interpreter(), &["python/tests/stubs.py"]))
 }
 
-/// Builds the package for others to install, in `target/wheels`.
+/// Builds the package for others to install, for all processors of this machine's kind, in `target/wheels`.
 ///
 /// # Errors
 /// What failed, and what to check.
@@ -68,8 +64,19 @@ pub(crate) fn wheel() -> Result<(), String> {
         &["-m", "pip", "wheel", "--no-deps", "./python"],
     );
     build.arg("--wheel-dir").arg(target().join("wheels"));
-    build.env("CARGO_TARGET_DIR", target());
+    compile_with(&mut build, Profile::Dist);
     run(build)
+}
+
+/// Tells pip how the package is to be compiled, and where.
+fn compile_with(pip: &mut Command, profile: Profile) {
+    pip.arg(format!(
+        "--config-settings=build-args=--profile={}",
+        profile.name()
+    ));
+    profile.choose_instructions(pip);
+    // A relative one would mean another folder there, as pip builds in `python`.
+    pip.env("CARGO_TARGET_DIR", target());
 }
 
 /// Runs the tests of the package, and with them every example in its short form; then looks at a loop in Python through a browser, where
@@ -78,7 +85,12 @@ pub(crate) fn wheel() -> Result<(), String> {
 /// # Errors
 /// That a test failed.
 pub(crate) fn test(profile: Profile) -> Result<(), String> {
-    run(python::tests(&["-rs", "python/tests"]))?;
+    let mut tests = python::tests(profile, &["-rs", "python/tests"]);
+    if profile == Profile::Quick {
+        tests.env("CLENCH_GPU", "skip");
+        return run(tests);
+    }
+    run(tests)?;
     match web::no_browser() {
         None => web::test_python(profile),
         Some(reason) => {

@@ -1,7 +1,7 @@
 //! The Python side of the checks: a virtual environment, `.venv`, with what `parity/requirements.txt` names, and beside it, in
 //! `.venv/models`, the packages whose models are compared. It is made once.
 
-use crate::run::{command, root, run};
+use crate::run::{Profile, command, root, run};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -34,10 +34,13 @@ pub(crate) fn interpreter() -> PathBuf {
     })
 }
 
-/// Tests in Python, some on each core; who is done takes over what others have left.
-pub(crate) fn tests(arguments: &[&str]) -> Command {
+/// Tests in Python, some on each core; who is done takes over what others have left. A quick run leaves out those that are marked as long.
+pub(crate) fn tests(profile: Profile, arguments: &[&str]) -> Command {
     let mut pytest = command(interpreter(), &["-m", "pytest", "--quiet"]);
     pytest.args(["--numprocesses", "auto", "--dist", "worksteal"]);
+    if profile == Profile::Quick {
+        pytest.args(["-m", "not long"]);
+    }
     pytest.args(arguments);
     pytest
 }

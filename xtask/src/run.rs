@@ -6,6 +6,9 @@ use std::process::Command;
 /// The parts of the program that are left out by default; checks and tests have them.
 pub(crate) const ALL_FEATURES: &str = "clench-cli/gpu,clench-cli/render";
 
+/// The environment variable that chooses instruction sets; see the build script of clench-math.
+const INSTRUCTIONS: &str = "CLENCH_INSTRUCTIONS";
+
 /// The workspace's root folder.
 pub(crate) fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -19,11 +22,13 @@ pub(crate) fn target() -> PathBuf {
     root().join(chosen)
 }
 
-/// How cargo compiles what is not a test.
-#[derive(Clone, Copy)]
+/// How cargo compiles what is not a test, and for which instruction sets it compiles all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Profile {
-    /// As tests are compiled: what they share with it is there.
+    /// As tests are compiled, which share it, for all instruction sets: the tests run those that the processor has.
     Dev,
+    /// The same for the widest set of this processor.
+    Quick,
     /// Faster, and without the checks of tests; quick to build.
     Release,
     /// What is shipped and timed: slower to build, a few percent faster.
@@ -34,20 +39,40 @@ impl Profile {
     /// Its name in `Cargo.toml`.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Profile::Dev => "dev",
+            Profile::Dev | Profile::Quick => "dev",
             Profile::Release => "release",
             Profile::Dist => "dist",
         }
     }
 
-    /// A program built with it, where cargo puts it.
+    /// Where cargo puts what is built with it.
+    pub(crate) fn folder(self) -> PathBuf {
+        target().join(match self {
+            Profile::Dev | Profile::Quick => "debug",
+            other => other.name(),
+        })
+    }
+
+    /// A program built with it.
     pub(crate) fn program(self, name: &str) -> PathBuf {
         let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
-        let folder = match self {
-            Profile::Dev => "debug",
-            other => other.name(),
+        self.folder().join(name)
+    }
+
+    /// A cargo command that may compile. All of a run choose the same instruction sets: with others everything is compiled anew.
+    pub(crate) fn cargo(self, args: &[&str]) -> Command {
+        let mut cargo = cargo(args);
+        self.choose_instructions(&mut cargo);
+        cargo
+    }
+
+    /// Chooses the instruction sets that a command compiles for, if it runs cargo.
+    pub(crate) fn choose_instructions(self, command: &mut Command) {
+        match self {
+            Profile::Dev | Profile::Dist => command.env(INSTRUCTIONS, "all"),
+            // Not by name: a plain `cargo build` then shares what was compiled.
+            Profile::Quick | Profile::Release => command.env_remove(INSTRUCTIONS),
         };
-        target().join(folder).join(name)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::fuzz::host;
 use crate::python;
-use crate::run::{cargo, command, root, run, target};
+use crate::run::{Profile, cargo, command, root, run, target};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -57,8 +57,14 @@ fn sanitize_python(args: &[String]) -> Result<(), String> {
     copy(&compiled, &package.join("_core.abi3.so"))?;
     let mut tests = match args {
         // How much memory a loop takes is not told where freed memory is kept to see whether somebody uses it.
-        [] => python::tests(&["python/tests", "--ignore", "python/tests/test_leaks.py"]),
-        _ => python::tests(&args.iter().map(String::as_str).collect::<Vec<_>>()),
+        [] => python::tests(
+            Profile::Dev,
+            &["python/tests", "--ignore", "python/tests/test_leaks.py"],
+        ),
+        _ => python::tests(
+            Profile::Dev,
+            &args.iter().map(String::as_str).collect::<Vec<_>>(),
+        ),
     };
     tests.env("PYTHONPATH", folder().join("python"));
     // Modules of others throw exceptions of C++, whose runtime has to be there before the checks are.

@@ -1,9 +1,11 @@
 //! The stages of `cargo xtask test`, in order, and `cargo xtask bench`.
 
+use crate::estimate::{Times, spoken};
 use crate::gpu;
 use crate::package;
 use crate::python;
 use crate::run::{ALL_FEATURES, Profile, cargo, command, run};
+use crate::size;
 use crate::unit;
 use crate::web;
 use std::time::Instant;
@@ -16,6 +18,18 @@ struct Stage {
     check: fn(Profile) -> Result<(), String>,
     /// Why it cannot run on this machine, if it cannot.
     missing: fn() -> Option<String>,
+    quick: Quick,
+}
+
+/// What a quick run does of a stage.
+#[derive(PartialEq)]
+enum Quick {
+    All,
+    /// All but this.
+    Without(&'static str),
+    /// Nothing, unless the stage is named: then all but this.
+    Named(&'static str),
+    Nothing,
 }
 
 /// From cheap to dear, so that most mistakes show early.
@@ -25,97 +39,133 @@ const STAGES: &[Stage] = &[
         remedy: "run `cargo fmt --all`",
         check: |_| fmt(),
         missing: nothing,
+        quick: Quick::All,
     },
     Stage {
         name: "page",
         remedy: "see the message above",
         check: |_| web::build(),
         missing: web::no_node,
+        quick: Quick::All,
     },
     Stage {
         name: "clippy",
         remedy: "mend the warnings above",
-        check: |_| clippy(),
+        check: clippy,
         missing: nothing,
+        quick: Quick::Named(""),
     },
     Stage {
         name: "unit",
-        remedy: "run the failing crate alone with `cargo test -p CRATE`",
-        check: |_| unit::test(),
+        remedy: "run the failing crate alone with `CLENCH_INSTRUCTIONS=all cargo test -p CRATE`",
+        check: unit::test,
         missing: nothing,
+        quick: Quick::Without(unit::LEFT_OUT),
     },
     Stage {
         name: "doc",
         remedy: "mend the documentation comments named above",
-        check: |_| doc(),
+        check: doc,
         missing: nothing,
+        quick: Quick::Nothing,
     },
     Stage {
         name: "build",
         remedy: "mend the errors above",
         check: build,
         missing: nothing,
+        quick: Quick::All,
+    },
+    Stage {
+        name: "size",
+        remedy: "see what has grown with `cargo xtask lanes` or a tool such as cargo-bloat, or raise the limit in xtask/src/size.rs and say why",
+        check: |_| size::check(),
+        missing: size::no_elf,
+        quick: Quick::Nothing,
     },
     Stage {
         name: "browser",
         remedy: "run one case alone in web/ with `CLENCH=../target/debug/clench NAME='part of its name' npm test`",
         check: web::test,
         missing: web::no_browser,
+        quick: Quick::Nothing,
     },
     Stage {
         name: "python",
         remedy: "see the message above",
         check: |_| python::prepare(),
         missing: nothing,
+        quick: Quick::All,
     },
     Stage {
         name: "gpu",
-        remedy: "run one test alone with `cargo test -p clench-gpu NAME`",
-        check: |_| gpu::test(),
+        remedy: "run one test alone with `CLENCH_INSTRUCTIONS=all cargo test -p clench-gpu NAME`",
+        check: gpu::test,
         missing: gpu::no_device,
+        quick: Quick::Nothing,
     },
     Stage {
         name: "package",
         remedy: "see the message above",
         check: package::check,
         missing: nothing,
+        quick: Quick::Named(""),
     },
     Stage {
         name: "pytest",
         remedy: "run one case alone with `.venv/bin/python -m pytest python/tests -k NAME`",
         check: package::test,
         missing: nothing,
+        quick: Quick::Named(
+            "tests marked as long (leaks, random calls, examples), a graphics device, the page of a loop in Python",
+        ),
     },
     Stage {
         name: "parity",
         remedy: "run one case alone with `CLENCH=target/debug/clench .venv/bin/python -m pytest parity -k NAME`",
         check: parity,
         missing: nothing,
+        quick: Quick::Without("tests marked as long (long motions, random models)"),
     },
 ];
 
 /// Runs all stages, or those named, up to the first that fails. With `--release` among the arguments the program and the Python package are
-/// compiled as users have them.
+/// compiled as users have them; with `--quick` what takes long is left out.
 ///
 /// # Errors
 /// The failing stage with its remedy, or a name that is no stage.
 pub(crate) fn test(args: &[String]) -> Result<(), String> {
-    let (flags, names): (Vec<_>, Vec<_>) = args.iter().partition(|arg| *arg == "--release");
-    let profile = match flags.is_empty() {
-        true => Profile::Dev,
-        false => Profile::Release,
+    let (flags, names): (Vec<&str>, Vec<&str>) =
+        (args.iter().map(String::as_str)).partition(|arg| arg.starts_with("--"));
+    let profile = match flags[..] {
+        [] => Profile::Dev,
+        ["--release"] => Profile::Release,
+        ["--quick"] => Profile::Quick,
+        _ => return Err("test takes --release or --quick; see `cargo xtask --help`".to_owned()),
     };
-    if let Some(name) = names.iter().find(|n| STAGES.iter().all(|s| s.name != **n)) {
-        return Err(format!("unknown stage `{name}`; see `cargo xtask --help`"));
-    }
-    let chosen: Vec<&Stage> = STAGES
-        .iter()
-        .filter(|s| names.is_empty() || names.iter().any(|n| *n == s.name))
-        .collect();
+    let chosen = choose(&names, profile)?;
     let begin = Instant::now();
+    let mut times = Times::read(profile);
+    let expected = |times: &Times, stages: &[&Stage]| -> f64 {
+        stages.iter().map(|stage| times.seconds(stage.name)).sum()
+    };
+    let source = match times.knows(chosen.iter().map(|stage| stage.name)) {
+        true => "as the last such run did",
+        false => "a guess by the number of processors",
+    };
+    println!(
+        "This takes about {}, {source}.",
+        spoken(expected(&times, &chosen))
+    );
     let mut summary = String::new();
     for (k, stage) in chosen.iter().enumerate() {
-        println!("\n==> [{}/{}] {}", k + 1, chosen.len(), stage.name);
+        let left = spoken(expected(&times, &chosen[k..]));
+        println!(
+            "\n==> [{}/{}] {} (about {left} left)",
+            k + 1,
+            chosen.len(),
+            stage.name
+        );
         if let Some(reason) = (stage.missing)() {
             println!("skipped: {reason}");
             summary += &format!("  {:<8}skipped: {reason}\n", stage.name);
@@ -131,6 +181,7 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
                 stage.name, stage.name, stage.remedy
             ));
         }
+        times.keep(stage.name, seconds);
         summary += &format!("  {:<8}ok      {seconds:6.1} s\n", stage.name);
     }
     println!(
@@ -138,7 +189,50 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
         chosen.len(),
         begin.elapsed().as_secs_f64()
     );
+    if profile == Profile::Quick {
+        println!("{}", left_out(&names));
+    }
     Ok(())
+}
+
+/// The stages of these names, or all of a run.
+fn choose(names: &[&str], profile: Profile) -> Result<Vec<&'static Stage>, String> {
+    let is_quick = profile == Profile::Quick;
+    for name in names {
+        match STAGES.iter().find(|stage| stage.name == *name) {
+            None => return Err(format!("unknown stage `{name}`; see `cargo xtask --help`")),
+            Some(stage) if is_quick && stage.quick == Quick::Nothing => {
+                return Err(format!(
+                    "a quick run leaves out `{name}`: run it without --quick"
+                ));
+            }
+            Some(_) => {}
+        }
+    }
+    let is_chosen = |stage: &&Stage| match names {
+        [] => !(is_quick && matches!(stage.quick, Quick::Nothing | Quick::Named(_))),
+        names => names.contains(&stage.name),
+    };
+    Ok(STAGES.iter().filter(is_chosen).collect())
+}
+
+/// What a quick run of these stages, or of all, has not looked at.
+fn left_out(names: &[&str]) -> String {
+    let mut text = String::from("A quick run leaves out, and `cargo xtask test` has:");
+    for stage in STAGES {
+        let is_named = names.contains(&stage.name);
+        let what = match stage.quick {
+            Quick::Without(what) if is_named || names.is_empty() => what,
+            Quick::Named(what) if is_named => what,
+            Quick::Named(_) if names.is_empty() => "all of it, unless it is named",
+            Quick::Nothing if names.is_empty() => "all of it",
+            _ => "",
+        };
+        if !what.is_empty() {
+            text += &format!("\n  {:<8}{what}", stage.name);
+        }
+    }
+    text + "\n  lanes of other instruction sets than the widest of this processor"
 }
 
 /// Times `clench` against MuJoCo; `args` go to the script.
@@ -171,22 +265,15 @@ fn fmt() -> Result<(), String> {
     run(cargo(&["fmt", "--all", "--check"]))
 }
 
-fn clippy() -> Result<(), String> {
-    run(cargo(&[
-        "clippy",
-        "--quiet",
-        "--workspace",
-        "--features",
-        ALL_FEATURES,
-        "--all-targets",
-        "--",
-        "-D",
-        "warnings",
-    ]))
+fn clippy(profile: Profile) -> Result<(), String> {
+    let mut clippy = profile.cargo(&["clippy", "--quiet", "--workspace"]);
+    clippy.args(["--features", ALL_FEATURES]);
+    clippy.args(["--all-targets", "--", "-D", "warnings"]);
+    run(clippy)
 }
 
-fn doc() -> Result<(), String> {
-    let mut doc = cargo(&["doc", "--quiet", "--workspace", "--no-deps"]);
+fn doc(profile: Profile) -> Result<(), String> {
+    let mut doc = profile.cargo(&["doc", "--quiet", "--workspace", "--no-deps"]);
     doc.env("RUSTDOCFLAGS", "-D warnings");
     run(doc)
 }
@@ -198,7 +285,7 @@ pub(crate) fn build(profile: Profile) -> Result<(), String> {
 
 /// Builds a target of a package.
 fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), String> {
-    let mut build = cargo(&["build", "--quiet", "--profile", profile.name()]);
+    let mut build = profile.cargo(&["build", "--quiet", "--profile", profile.name()]);
     build.args(["--package", package]).args(target);
     run(build)
 }
@@ -206,7 +293,7 @@ fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), Str
 fn parity(profile: Profile) -> Result<(), String> {
     // Tests of the program with all its parts may have put theirs in its place.
     build(profile)?;
-    let mut pytest = python::tests(&["parity"]);
+    let mut pytest = python::tests(profile, &["parity"]);
     pytest.env("CLENCH", profile.program("clench"));
     run(pytest)
 }

@@ -1,18 +1,33 @@
 //! The stage `unit`: all Rust tests but those on a graphics device, with a line for each program of tests, so that one sees how far
 //! it is. What `cargo test` prints besides is shown where a test fails.
 
-use crate::run::{ALL_FEATURES, cargo, shown};
+use crate::run::{ALL_FEATURES, Profile, shown};
 use std::io::{BufRead, BufReader, pipe};
 use std::process::Command;
+
+/// Parts of names of tests that take from 8 s to a minute, which a quick run leaves out.
+const LONG: [&str; 8] = [
+    "accuracy::depths_and_normals_are_true",
+    "closed_forms::a_cylinder_in_a_",
+    "distance::the_distance_is_true_and_its_points_lie_on_the_surfaces",
+    "hostile::replicas_are_counted",
+    "truth::the_deepest_point_is_the_true_distance",
+    "a_pile_of_all_shapes_settles_in_its_bin",
+    "accelerations_and_forces_agree_from_every_start",
+    "minima_agree_and_the_gap_certifies_them",
+];
+/// What a quick run leaves out of this stage.
+pub(crate) const LEFT_OUT: &str = "clench-gpu, clench-render, examples of documentation, and the tests that xtask/src/unit.rs lists as long";
 
 /// Builds and runs them.
 ///
 /// # Errors
 /// What cannot be built, or that a test failed.
-pub(crate) fn test() -> Result<(), String> {
+pub(crate) fn test(profile: Profile) -> Result<(), String> {
     let mut programs = 0;
     // Not examples, which have no tests: the stage `clippy` has looked at them.
-    let build = tests(&["--tests", "--no-run"]);
+    let mut build = tests(profile, "--tests");
+    build.arg("--no-run");
     read_lines(build, |line| {
         if line.trim_start().starts_with("Executable") {
             programs += 1;
@@ -22,8 +37,17 @@ pub(crate) fn test() -> Result<(), String> {
     })?;
     let mut report = Report::new(programs);
     let mut outcome = Ok(());
-    for chosen in ["--tests", "--doc"] {
-        outcome = read_lines(tests(&[chosen]), |line| {
+    let kinds: &[&str] = match profile {
+        Profile::Quick => &["--tests"],
+        _ => &["--tests", "--doc"],
+    };
+    for kind in kinds {
+        let mut tests = tests(profile, kind);
+        if profile == Profile::Quick {
+            tests.arg("--");
+            tests.args(LONG.iter().flat_map(|name| ["--skip", name]));
+        }
+        outcome = read_lines(tests, |line| {
             if let Some(text) = report.read(line) {
                 println!("{text}");
             }
@@ -36,9 +60,17 @@ pub(crate) fn test() -> Result<(), String> {
     outcome
 }
 
-fn tests(chosen: &[&str]) -> Command {
-    let mut tests = cargo(&["test", "--workspace", "--features", ALL_FEATURES]);
-    tests.args(chosen).env("CLENCH_GPU", "skip");
+fn tests(profile: Profile, kind: &str) -> Command {
+    let mut tests = profile.cargo(&["test", "--workspace", kind]);
+    match profile {
+        // Nothing that needs `wgpu`, which takes a minute and a half to compile.
+        Profile::Quick => tests.args(
+            ["clench-gpu", "clench-render", "clench-python"]
+                .map(|name| format!("--exclude={name}")),
+        ),
+        _ => tests.args(["--features", ALL_FEATURES]),
+    };
+    tests.env("CLENCH_GPU", "skip");
     tests
 }
 
@@ -166,6 +198,8 @@ fn count(result: &str, word: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::root;
+    use std::fs;
 
     const RUN: &str = "\
      Running unittests src/lib.rs (target/debug/deps/clench_math-0a1b)
@@ -199,6 +233,26 @@ test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out; fini
         assert!(lines[1].contains(" 3 passed in 1.50s"));
         assert!(lines[1].ends_with(" documentation of clench"));
         assert_eq!(report.rest(), "4 passed, 1 failed");
+    }
+
+    #[test]
+    fn the_tests_that_take_long_exist() {
+        let mut folders = vec![root().join("crates")];
+        let mut code = String::new();
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).expect("a folder").flatten() {
+                let path = entry.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|end| end == "rs") {
+                    code += &fs::read_to_string(path).expect("code");
+                }
+            }
+        }
+        for name in LONG {
+            let function = name.rsplit(':').next().expect("a name");
+            assert!(code.contains(&format!("fn {function}")), "{name}");
+        }
     }
 
     #[test]

@@ -1,0 +1,179 @@
+//! How long stages will take: as long as last time on this machine, or, where one has not run yet, what it took elsewhere.
+
+use crate::run::{Profile, target};
+use std::fs;
+use std::path::PathBuf;
+use std::thread::available_parallelism;
+
+/// Seconds of a stage on one processor: when everything is compiled, and how much more when nothing was. Measured on two.
+const SECONDS: [(&str, f64, f64); 13] = [
+    ("fmt", 4.0, 0.0),
+    ("page", 20.0, 20.0),
+    ("clippy", 20.0, 300.0),
+    ("unit", 600.0, 1500.0),
+    ("doc", 20.0, 100.0),
+    ("build", 20.0, 60.0),
+    ("size", 10.0, 420.0),
+    ("browser", 120.0, 0.0),
+    ("python", 4.0, 80.0),
+    ("gpu", 700.0, 0.0),
+    ("package", 60.0, 100.0),
+    ("pytest", 700.0, 0.0),
+    ("parity", 900.0, 0.0),
+];
+/// What a quick run takes of that.
+const QUICK: f64 = 0.3;
+
+/// What is known of earlier runs, and what kind of run this is.
+pub(crate) struct Times {
+    /// How it compiles, and whether anything was compiled before it: runs that differ in that take other times.
+    kind: String,
+    guess: f64,
+    cold: bool,
+    /// Kind of run, stage and seconds.
+    known: Vec<(String, String, f64)>,
+}
+
+impl Times {
+    /// Of runs before this one, which compiles by a profile.
+    pub(crate) fn read(profile: Profile) -> Self {
+        // A first run has no file, and what cannot be read is guessed.
+        let known = parse(&fs::read_to_string(file()).unwrap_or_default());
+        let all_sets = |kind: &str| kind.starts_with("dev");
+        let (last, now) = (known.last(), format!("{profile:?}").to_lowercase());
+        let has_other_sets = last.is_some_and(|(kind, ..)| all_sets(kind) != all_sets(&now));
+        let cold = has_other_sets || !has_kernels(profile);
+        let share = if profile == Profile::Quick {
+            QUICK
+        } else {
+            1.0
+        };
+        let cores = available_parallelism().map_or(1, usize::from);
+        Times {
+            kind: format!("{now}-{}", if cold { "cold" } else { "warm" }),
+            guess: share / cores as f64,
+            cold,
+            known,
+        }
+    }
+
+    /// Seconds that a stage will take.
+    pub(crate) fn seconds(&self, stage: &str) -> f64 {
+        let mut known = self.known.iter();
+        if let Some((.., seconds)) =
+            known.find(|(kind, name, _)| *kind == self.kind && name == stage)
+        {
+            return *seconds;
+        }
+        let mut all = SECONDS.iter().filter(|(name, ..)| *name == stage);
+        all.next().map_or(0.0, |(_, warm, more)| {
+            self.guess * (warm + if self.cold { *more } else { 0.0 })
+        })
+    }
+
+    /// Whether all of these stages have run on this machine in this way.
+    pub(crate) fn knows<'a>(&self, mut stages: impl Iterator<Item = &'a str>) -> bool {
+        let has =
+            |stage| (self.known.iter()).any(|(kind, name, _)| *kind == self.kind && name == stage);
+        stages.all(has)
+    }
+
+    /// Keeps what a stage took, for the next run.
+    pub(crate) fn keep(&mut self, stage: &str, seconds: f64) {
+        let is_old = |kind: &str, name: &str| kind == self.kind && name == stage;
+        self.known.retain(|(kind, name, _)| !is_old(kind, name));
+        self.known
+            .push((self.kind.clone(), stage.to_owned(), seconds));
+        // Without the file the next run guesses, which fails no test.
+        let _ = fs::write(file(), text(&self.known));
+    }
+}
+
+fn file() -> PathBuf {
+    target().join("xtask-times")
+}
+
+/// Whether the kernels were compiled, which take most of the time.
+fn has_kernels(profile: Profile) -> bool {
+    let entries = fs::read_dir(profile.folder().join(".fingerprint"));
+    let mut names = entries.into_iter().flatten().flatten();
+    names.any(|entry| {
+        entry
+            .file_name()
+            .to_string_lossy()
+            .starts_with("clench-rigid-")
+    })
+}
+
+/// A line for each stage of each kind of run: what was read of a file.
+fn parse(text: &str) -> Vec<(String, String, f64)> {
+    let line = |line: &str| {
+        let mut words = line.split_whitespace();
+        let (kind, stage) = (words.next()?, words.next()?);
+        let seconds: f64 = words.next()?.parse().ok()?;
+        seconds
+            .is_finite()
+            .then(|| (kind.to_owned(), stage.to_owned(), seconds))
+    };
+    text.lines().filter_map(line).collect()
+}
+
+fn text(known: &[(String, String, f64)]) -> String {
+    let line =
+        |(kind, stage, seconds): &(String, String, f64)| format!("{kind} {stage} {seconds:.1}\n");
+    known.iter().map(line).collect()
+}
+
+/// A time as one says it: `40 s`, `7 min`.
+pub(crate) fn spoken(seconds: f64) -> String {
+    match seconds {
+        ..90.0 => format!("{seconds:.0} s"),
+        _ => format!("{:.0} min", seconds / 60.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(text: &str) -> Times {
+        Times {
+            kind: "dev-warm".to_owned(),
+            guess: 0.5,
+            cold: false,
+            known: parse(text),
+        }
+    }
+
+    #[test]
+    fn a_stage_takes_what_it_took_in_a_run_of_the_same_kind() {
+        let times = times("dev-cold unit 700.0\ndev-warm unit 123.4\nnonsense\ndev-warm doc NaN\n");
+        assert_eq!(times.seconds("unit"), 123.4);
+        assert_eq!(times.known.len(), 2);
+        assert!(times.knows(["unit"].into_iter()));
+        assert!(!times.knows(["unit", "doc"].into_iter()));
+    }
+
+    #[test]
+    fn a_stage_that_has_not_run_is_guessed_by_processors() {
+        let mut times = times("");
+        let warm = times.seconds("unit");
+        assert!(warm > 0.0);
+        times.cold = true;
+        assert!(times.seconds("unit") > warm);
+        times.guess = 0.25;
+        assert!(times.seconds("fmt") > 0.0 && times.seconds("fmt") < 4.0);
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let known = times("dev-warm unit 123.4\nquick-cold fmt 1.0\n").known;
+        assert_eq!(parse(&text(&known)), known);
+    }
+
+    #[test]
+    fn times_are_said_in_seconds_or_minutes() {
+        assert_eq!(spoken(41.7), "42 s");
+        assert_eq!(spoken(400.0), "7 min");
+    }
+}
