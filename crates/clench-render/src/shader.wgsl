@@ -49,6 +49,9 @@ struct Item {
 @group(2) @binding(1) var cube: texture_cube<f32>;
 @group(2) @binding(2) var picture_sampler: sampler;
 
+// The most parts into which a pixel is cut where it lies on a plane's picture.
+const MOST_PARTS = 8.0;
+
 struct Corner {
     @builtin(position) position: vec4<f32>,
     @location(0) place: vec3<f32>,
@@ -88,10 +91,27 @@ fn shown(color: vec3<f32>) -> vec3<f32> {
     return pow(color, vec3(1.0 / 2.2));
 }
 
+// The mean of a plane's picture under a pixel whose sides lie on it as these two ways. The longer way is cut into parts as long as the other,
+// so that a ground is sharp from the side. Samplers can do this too, but Mesa's visits every texel under a pixel: for minutes at the horizon.
+fn plane_color(at: vec2<f32>, across: vec2<f32>, down: vec2<f32>) -> vec3<f32> {
+    let size = vec2<f32>(textureDimensions(plane));
+    let lengths = vec2(length(across * size), length(down * size));
+    let longer = select(down, across, lengths.x > lengths.y);
+    let long = max(lengths.x, lengths.y);
+    let short = max(min(lengths.x, lengths.y), 1e-6);
+    let parts = clamp(ceil(long / short), 1.0, MOST_PARTS);
+    let level = log2(max(long / parts, short));
+    var sum = vec3(0.0);
+    for (var part = 0.5; part < parts; part += 1.0) {
+        sum += textureSampleLevel(plane, picture_sampler, at + (part / parts - 0.5) * longer, level).rgb;
+    }
+    return sum / parts;
+}
+
 // The color of a texture, in linear numbers.
 fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
     if (kind == 1.0) {
-        return textureSampleGrad(plane, picture_sampler, at.xy, across.xy, down.xy).rgb;
+        return plane_color(at.xy, across.xy, down.xy);
     }
     if (kind == 2.0) {
         return textureSampleGrad(cube, picture_sampler, at, across, down).rgb;

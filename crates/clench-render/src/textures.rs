@@ -31,7 +31,6 @@ impl Textures {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
-            anisotropy_clamp: 8,
             ..wgpu::SamplerDescriptor::default()
         });
         let white = Pixels {

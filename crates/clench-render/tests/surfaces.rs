@@ -116,6 +116,20 @@ fn a_picture_repeats_as_often_as_the_material_says() {
 }
 
 #[test]
+fn a_picture_seen_from_the_side_is_blurred_along_the_line_of_sight_alone() {
+    // Each repetition lacks green on its left. On the plane a pixel is twelve times as long as it is wide, and about as long as the picture.
+    let scene = textured(
+        "texture='four' texrepeat='24 24'",
+        "type='plane' size='2 2 1'/><camera pos='0 -2.5 .2' xyaxes='1 0 0 0 .08 1' fovy='30'",
+    );
+    if let Some(image) = drawn(&scene, Some(View::Camera(0))) {
+        let greens: Vec<u8> = (30..70).map(|x| at(&image, x, 50)[1]).collect();
+        let [least, most] = [greens.iter().min(), greens.iter().max()];
+        assert!(least < Some(&40) && most > Some(&120), "{greens:?}");
+    }
+}
+
+#[test]
 fn each_side_of_a_cube_has_its_picture() {
     // What looks at each side of a box, with the side that it sees: right, left, up, down, front, back are x, −x, y, −y, z, −z.
     let sides = [
