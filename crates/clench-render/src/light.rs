@@ -55,8 +55,6 @@ pub(crate) struct Lighting {
     shadow: Option<Placed>,
     /// From everywhere, from the camera, and the highlights of that.
     head: [[f32; 3]; 3],
-    /// Whether the model has lights; else it is day.
-    own: bool,
 }
 
 impl Lighting {
@@ -82,7 +80,6 @@ impl Lighting {
                 .collect(),
             shadow: casting.map(|index| sight(active[index].0, active[index].1, centre, reach)),
             head: head.map(narrow),
-            own: !visuals.lights.is_empty(),
         }
     }
 }
@@ -170,7 +167,7 @@ impl Uniforms {
                 9.0 * extent,
                 60.0 * extent,
                 3.0 * reach / SHADOW as f32,
-                f32::from(u8::from(lighting.own)),
+                0.0,
             ],
             ambient: with(lighting.head[0], lighting.lamps.len() as f32),
             head: with(lighting.head[1], 0.0),

@@ -4,9 +4,10 @@ use crate::triangles::Vertex;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
     BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device,
-    FragmentState, MultisampleState, PipelineLayoutDescriptor, PrimitiveState, RenderPipeline,
-    RenderPipelineDescriptor, SamplerBindingType, ShaderModule, ShaderStages, TextureFormat,
-    TextureSampleType, TextureViewDimension, VertexBufferLayout, VertexState, VertexStepMode,
+    FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor,
+    PrimitiveState, RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderModule,
+    ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexBufferLayout,
+    VertexState, VertexStepMode,
 };
 
 pub(crate) const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
@@ -35,10 +36,13 @@ struct Way<'a> {
     layouts: &'a [Option<&'a BindGroupLayout>],
     samples: u32,
     writes_depth: bool,
+    constants: &'a [(&'a str, f64)],
 }
 
 impl Passes {
-    pub(crate) fn new(device: &Device) -> Self {
+    /// For models that have lights, or for those where it is day.
+    pub(crate) fn new(device: &Device, own_lights: bool) -> Self {
+        let constants = [("own_lights", f64::from(u8::from(own_lights)))];
         let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
         let scene = scene_layout(device);
         let light = light_layout(device);
@@ -59,6 +63,7 @@ impl Passes {
                 layouts: &all,
                 samples: SAMPLES,
                 writes_depth,
+                constants: &constants,
             };
             pipeline(device, &module, &way)
         };
@@ -69,6 +74,7 @@ impl Passes {
             layouts: &all[..1],
             samples: 1,
             writes_depth: true,
+            constants: &[],
         };
         let shadow = Way {
             vertex: "shadow_corner",
@@ -77,6 +83,7 @@ impl Passes {
             layouts: &all[..1],
             samples: 1,
             writes_depth: true,
+            constants: &[],
         };
         Passes {
             shadow: pipeline(device, &module, &shadow),
@@ -191,7 +198,10 @@ fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline
         fragment: way.fragment.map(|entry| FragmentState {
             module,
             entry_point: Some(entry),
-            compilation_options: Default::default(),
+            compilation_options: PipelineCompilationOptions {
+                constants: way.constants,
+                ..Default::default()
+            },
             targets: way.targets,
         }),
         multiview_mask: None,

@@ -10,7 +10,7 @@ struct View {
     // Towards the sun; in w the size of a texel of its shadow, in the shadow's picture.
     to_sun: vec4<f32>,
     sky: vec4<f32>,
-    // Distances between which things fade into the sky, and how far what is shaded is from what shades it; 1 in w if the model has lights.
+    // Distances between which things fade into the sky, and how far what is shaded is from what shades it.
     fog: vec4<f32>,
     // What all lights of the model give everywhere, the headlight's diffuse light and its highlights.
     ambient: vec4<f32>,
@@ -49,6 +49,8 @@ struct Item {
 @group(2) @binding(1) var cube: texture_cube<f32>;
 @group(2) @binding(2) var picture_sampler: sampler;
 
+// Whether the model has lights. A device that compiles for many pixels at once computes both sides of a condition that it does not know.
+override own_lights: bool;
 // The most parts into which a pixel is cut where it lies on a plane's picture.
 const MOST_PARTS = 8.0;
 
@@ -171,6 +173,8 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
     if (head > 0.0) {
         shine += view.head_specular.rgb * highlight(surface, normal, to_head, to_eye);
     }
+    // Of the one light that casts the shadow, once instead of in every turn.
+    let through = sunlight(place, normal);
     for (var k = 0u; k < u32(view.ambient.w); k++) {
         let light = lights[k];
         var to_light = -light.dir.xyz;
@@ -189,9 +193,7 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
         matte += strength * light.ambient.rgb;
         let facing = dot(normal, to_light);
         if (facing > 0.0 && strength > 0.0) {
-            if (light.diffuse.w > 0.0) {
-                strength *= sunlight(place, normal);
-            }
+            strength *= select(1.0, through, light.diffuse.w > 0.0);
             matte += strength * facing * light.diffuse.rgb;
             shine += strength * light.specular.rgb * highlight(surface, normal, to_light, to_eye);
         }
@@ -210,7 +212,7 @@ fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
     // Whatever way its corners are in order: what is seen is outside.
     normal = select(normal, -normal, dot(normal, to_eye) < 0.0);
     var light = vec3(0.0);
-    if (view.fog.w > 0.0) {
+    if (own_lights) {
         light = lit(item.color.rgb * shown(texel), item.surface, in.place, normal, to_eye);
     } else {
         light = daylight(linear(item.color.rgb) * texel, item.surface, in.place, normal, to_eye);

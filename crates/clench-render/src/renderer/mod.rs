@@ -81,7 +81,7 @@ impl Renderer {
     /// No device that draws, with what to install.
     pub fn new(model: &Arc<Model>) -> Result<Self, RenderError> {
         let gpu = Gpu::open()?;
-        let passes = Passes::new(&gpu.device);
+        let passes = Passes::new(&gpu.device, !model.visuals.lights.is_empty());
         let mut sim = Sim::<f64>::new(Arc::clone(model))?;
         let extent = (FreeCamera::of_all(&mut sim)?.distance / 1.75) as f32;
         let mut corners: Vec<Vertex> = Vec::new();
