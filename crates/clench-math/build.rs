@@ -13,6 +13,9 @@ fn main() {
     println!(
         "cargo::rustc-check-cfg=cfg(lanes, values(\"avx2\", \"avx512\", \"neon\", \"portable\"))"
     );
+    println!(
+        "cargo::rustc-check-cfg=cfg(single, values(\"scalar\", \"avx2\", \"avx512\", \"neon\", \"portable\"))"
+    );
     // Narrowest first.
     let sets: &[&str] = match &*var("CARGO_CFG_TARGET_ARCH").unwrap_or_default() {
         "x86_64" => &["avx2", "avx512"],
@@ -45,6 +48,12 @@ fn main() {
     for set in chosen {
         println!("cargo::rustc-cfg=lanes=\"{set}\"");
     }
+    // Where one set is compiled, one environment in single precision uses it too: its kernels need no scalar form.
+    let single = match chosen {
+        [set] => set,
+        _ => "scalar",
+    };
+    println!("cargo::rustc-cfg=single=\"{single}\"");
 }
 
 /// Returns whether the building processor has an instruction set, as `Avx2::detected` and `Avx512::detected` decide it.

@@ -18,6 +18,16 @@ impl<T: Real> Pose<T> {
         rotation: Mat3::IDENTITY,
     };
 
+    /// The pose of lane `i`.
+    #[inline(always)]
+    pub fn lane(&self, i: usize) -> Pose<T::Scalar> {
+        let [x, y, z] = self.rotation.rows.map(|row| row.lane(i));
+        Pose {
+            position: self.position.lane(i),
+            rotation: Mat3::from_rows(x, y, z),
+        }
+    }
+
     /// The world coordinates of a local point.
     #[inline(always)]
     pub fn point(&self, local: Vec3<T>) -> Vec3<T> {

@@ -30,7 +30,7 @@
 //! }
 //!
 //! let velocity = &[1.0, 0.0, -3.0];
-//! for instructions in Instructions::all_available() {
+//! for instructions in Instructions::all_available::<f64>() {
 //!     let force = f64::in_lanes(instructions, Friction { velocity });
 //!     assert_eq!(force, Some(vec![-0.5, 0.0, 0.5]));
 //! }

@@ -37,6 +37,21 @@ impl<T: Real> Quat<T> {
     pub fn from_f64(q: [f64; 4]) -> Self {
         Quat::new(T::new(q[0]), T::new(q[1]), T::new(q[2]), T::new(q[3]))
     }
+    /// The same quaternion in every lane.
+    #[inline(always)]
+    pub fn splat(q: Quat<T::Scalar>) -> Self {
+        Quat::new(T::splat(q.w), T::splat(q.x), T::splat(q.y), T::splat(q.z))
+    }
+    /// The quaternion of lane `i`.
+    #[inline(always)]
+    pub fn lane(self, i: usize) -> Quat<T::Scalar> {
+        Quat::new(
+            self.w.lane(i),
+            self.x.lane(i),
+            self.y.lane(i),
+            self.z.lane(i),
+        )
+    }
     /// The first four numbers of a slice.
     #[inline(always)]
     pub fn from_slice(q: &[T]) -> Self {

@@ -185,6 +185,11 @@ pub trait Real:
 pub trait Scalar:
     Real<Scalar = Self, Mask = bool, Clock = f64> + PartialOrd + std::fmt::Display
 {
+    /// The number type that one environment is computed in: the scalar itself, or lanes of it, which then all hold the same numbers.
+    /// Its values may exist only where the instructions [`ALONE`](Self::ALONE) are available.
+    type Alone: Real<Scalar = Self>;
+    /// The instructions that [`Alone`](Self::Alone) is made of.
+    const ALONE: Instructions;
     /// The distance from 1 to the next larger number.
     const EPSILON: Self;
     /// Positive infinity.

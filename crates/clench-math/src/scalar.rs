@@ -6,7 +6,7 @@ use crate::real::{Real, Scalar};
 use crate::{Instructions, LaneTask};
 
 macro_rules! scalar {
-    ($t:ident, $bits:ident, $layout:ident) => {
+    ($t:ident, $bits:ident, $layout:ident, $alone:ty, $instructions:expr) => {
         /// How the bits of a number are used.
         pub(crate) mod $layout {
             /// Bits of the fraction.
@@ -141,6 +141,8 @@ macro_rules! scalar {
             }
 
             impl Scalar for $t {
+                type Alone = $alone;
+                const ALONE: Instructions = $instructions;
                 const EPSILON: $t = $t::EPSILON;
                 const INFINITY: $t = $t::INFINITY;
                 const MAX: $t = $t::MAX;
@@ -162,5 +164,5 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f64, u64, double);
-scalar!(f32, u32, single);
+scalar!(f64, u64, double, f64, Instructions::Scalar);
+scalar!(f32, u32, single, lanes::Single, lanes::SINGLE);

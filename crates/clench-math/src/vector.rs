@@ -28,6 +28,16 @@ impl<T: Real> Vec3<T> {
     pub fn from_f64(v: [f64; 3]) -> Self {
         Vec3::new(T::new(v[0]), T::new(v[1]), T::new(v[2]))
     }
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(v: Vec3<T::Scalar>) -> Self {
+        Vec3::new(T::splat(v.x), T::splat(v.y), T::splat(v.z))
+    }
+    /// The vector of lane `i`.
+    #[inline(always)]
+    pub fn lane(self, i: usize) -> Vec3<T::Scalar> {
+        Vec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
+    }
     /// From an array.
     #[inline(always)]
     pub fn from_array(v: [T; 3]) -> Self {

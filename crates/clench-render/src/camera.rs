@@ -1,5 +1,6 @@
 //! From where a picture is taken.
 
+use clench::math::Real;
 use clench::rigid::{Precision, Sim};
 
 /// How far about its middle a plane is looked at, where there is nothing else, m.
@@ -31,7 +32,7 @@ impl FreeCamera {
         let bounds = |moving: bool| {
             let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
             for (g, place) in places.chunks_exact(3).enumerate() {
-                let radius = params.geom_rbound[g].to_f64();
+                let radius = params.geom_rbound[g].lane(0).to_f64();
                 if moving && (model.geoms[g].body == 0 || radius <= 0.0) {
                     continue;
                 }
@@ -95,7 +96,7 @@ impl View {
                 let turn = turn[9 * index..].iter().map(|&x| number(x));
                 let turn: Vec<f32> = turn.take(9).collect();
                 let parallel = sim.model().cameras[index].orthographic;
-                let fovy = sim.params().cam_fovy[index].to_f64();
+                let fovy = sim.params().cam_fovy[index].lane(0).to_f64();
                 Ok(Placed {
                     eye: [0, 1, 2].map(|k| number(eye[3 * index + k])),
                     axes: [0, 1, 2].map(|k| [turn[k], turn[3 + k], turn[6 + k]]),

@@ -121,15 +121,16 @@ macro_rules! declare_inputs {
 }
 crate::state_fields!(declare_inputs);
 
-/// Shows to `visit` what a step must leave within bounds.
+/// Shows to `visit` what a step must compute within bounds.
 #[inline(always)]
-fn each_result<T: Real>(
-    state: &State<T>,
-    ws: &Workspace<T>,
-    mut visit: impl FnMut(&'static str, Bound, &[T]),
-) {
+fn each_computed<T: Real>(ws: &Workspace<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
     visit("qacc", Bound::Near, &ws.qacc);
     visit("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
+}
+
+/// Shows to `visit` what a step must leave within bounds in the state.
+#[inline(always)]
+fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
     visit("qvel", Bound::Near, &state.qvel);
     visit("qpos", Bound::Near, &state.qpos);
     visit("act", Bound::Finite, &state.act);
@@ -225,11 +226,16 @@ pub(crate) fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> 
 }
 
 /// The lanes in which a step or forward went well: accelerations, constraint forces and state within bounds.
-#[kernel]
+#[inline(always)]
 pub(crate) fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::Mask {
+    well_computed(ws) & well_moved(state)
+}
+
+/// The lanes in which accelerations and constraint forces are within bounds.
+#[kernel]
+pub(crate) fn well_computed<T: Real>(ws: &Workspace<T>) -> T::Mask {
     let mut good = !ws.singular & !ws.solver.stats().failed() & ws.collision.excess.le(T::ZERO);
-    each_result(
-        state,
+    each_computed(
         ws,
         #[inline(always)]
         |_, bound, values| good &= within(values, bound),
@@ -237,11 +243,23 @@ pub(crate) fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::M
     good
 }
 
-/// What is wrong with what a step from `time` produced in a lane that is not good.
-pub(crate) fn result_fault<T: Real>(
+/// The lanes in which the state is within bounds.
+#[kernel]
+pub(crate) fn well_moved<T: Real>(state: &State<T>) -> T::Mask {
+    let mut good = T::Mask::splat(true);
+    each_moved(
+        state,
+        #[inline(always)]
+        |_, bound, values| good &= within(values, bound),
+    );
+    good
+}
+
+/// What is wrong with what a step from `time` produced in a lane that is not good. The state can be in lanes, or the first of them.
+pub(crate) fn result_fault<S: Real, T: Real>(
     model: &Model,
     time: f64,
-    state: &State<T>,
+    state: &State<S>,
     ws: &Workspace<T>,
     lane: usize,
 ) -> Fault {
@@ -255,12 +273,14 @@ pub(crate) fn result_fault<T: Real>(
         return Fault::OverBudget { time, what, limit };
     }
     let mut found = None;
-    each_result(state, ws, |field, bound, values| {
-        if found.is_none()
-            && let Some((index, value)) = first_beyond(values, lane, bound)
-        {
-            found = Some((field, index, value));
-        }
+    let mut note = |field, first: Option<(usize, f64)>| {
+        found = found.or(first.map(|(index, value)| (field, index, value)));
+    };
+    each_computed(ws, |field, bound, values| {
+        note(field, first_beyond(values, lane, bound));
+    });
+    each_moved(state, |field, bound, values| {
+        note(field, first_beyond(values, lane, bound));
     });
     // Where every number is within bounds, the solver met one that was not.
     let (field, index, value) = found.unwrap_or(("gap", 0, f64::NAN));

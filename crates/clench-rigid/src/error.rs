@@ -79,8 +79,11 @@ pub enum SimError {
         /// How many there are.
         count: usize,
     },
-    /// An instruction set that the processor lacks.
-    #[error("this processor has no {0:?} instructions")]
+    /// Instructions that the processor lacks, or that this precision was not compiled for.
+    #[error(
+        "this build has no kernels in this precision for {0:?} instructions on this processor; \
+         CLENCH_INSTRUCTIONS=all in the environment of the build compiles all kernels"
+    )]
     Instructions(Instructions),
     /// More memory than there is.
     #[error("there is no memory for {count} rows of {bytes} bytes")]

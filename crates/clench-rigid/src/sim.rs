@@ -1,5 +1,6 @@
 //! A simulation of one environment.
 
+mod alone;
 mod dynamic;
 mod halves;
 mod parameters;
@@ -20,11 +21,12 @@ use crate::model::{Model, Params};
 use crate::options::RigidOptions;
 use crate::output::{Output, Source};
 use crate::profile::{Profile, Stage};
-use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use crate::{Precision, readout};
+use alone::Room;
+use clench_math::{Mask, Real, read_lane};
 use clench_solver::LaneStats;
 use std::sync::Arc;
 
@@ -38,10 +40,14 @@ pub struct Sim<T: Precision = f64> {
     /// What the next step depends on.
     pub state: State<T>,
     model: Arc<Model>,
-    params: Params<T>,
+    params: Params<T::Alone>,
     options: RigidOptions,
     settings: StepSettings,
-    ws: Workspace<T>,
+    ws: Workspace<T::Alone>,
+    /// Room for the state where it is computed in lanes.
+    room: Room<T>,
+    /// Room for other numbers in that type.
+    numbers: Vec<T::Alone>,
     initial: State<T>,
     /// What the present step writes of the state, as it was before.
     last_good: State<T>,
@@ -52,14 +58,15 @@ pub struct Sim<T: Precision = f64> {
     /// The serial number of the constraint that was last added at run time.
     pub(crate) last_serial: u32,
     /// The workspace of inverse dynamics, made when they are first asked for: [`workspace`](Self::workspace) stays as it is.
-    inverse_ws: Option<Box<Workspace<T>>>,
+    inverse_ws: Option<Box<Workspace<T::Alone>>>,
 }
 
 impl<T: Precision> Sim<T> {
     /// A simulation in the model's initial state, with the model's options.
     ///
     /// # Errors
-    /// Options out of range; shapes that may meet and cannot be collided.
+    /// Options out of range; shapes that may meet and cannot be collided; single precision in a program compiled for another
+    /// processor.
     pub fn new(model: Arc<Model>) -> Result<Self, SimError> {
         Sim::with_options(model, RigidOptions::new())
     }
@@ -69,15 +76,18 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_options(model: Arc<Model>, options: RigidOptions) -> Result<Self, SimError> {
+        if !T::ALONE.available() {
+            return Err(SimError::Instructions(T::ALONE));
+        }
         let settings = StepSettings::supported::<T>(&model, options)?;
         let initial = State::new(&model);
         Ok(Sim {
             state: initial.clone(),
-            params: model.params.broadcast(),
+            params: T::params(&model),
             options,
             settings,
             ws: {
-                let mut ws = Workspace::new(&model);
+                let mut ws = T::workspace(&model);
                 ws.sensors.wanted = true;
                 ws
             },
@@ -87,6 +97,8 @@ impl<T: Precision> Sim<T> {
             resets: 0,
             last_serial: 0,
             inverse_ws: None,
+            room: alone::room::<T>(&model),
+            numbers: Vec::new(),
             initial,
             model,
         })
@@ -211,7 +223,10 @@ impl<T: Precision> Sim<T> {
         self.halfway = false;
         self.ws.clock.start();
         self.ws.forget_poses();
-        T::position_stage(&self.model, &self.params, &self.state, &mut self.ws);
+        let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
+        alone::read(&self.state, &mut self.room, |state| {
+            T::position_stage(model, params, state, ws);
+        });
         self.known.note(Extent::Positions, &self.state);
         Ok(())
     }
@@ -260,9 +275,9 @@ impl<T: Precision> Sim<T> {
                 .map_err(|reason| SimError::Contact { index, reason })?;
         }
         self.ws.contacts.clear();
-        self.ws.contacts.extend_from_slice(contacts);
+        self.ws.contacts.extend(contacts.iter().map(Contact::splat));
         self.ws.collision.given = true;
-        self.ws.collision.overflow = false;
+        self.ws.collision.overflow = Mask::splat(false);
         let result = compute(self);
         self.ws.collision.given = false;
         result
@@ -336,12 +351,12 @@ impl<T: Precision> Sim<T> {
         &self.settings
     }
     /// What was computed last, by a step, forward pass or [`refresh`](Self::refresh). After a step, positions and contacts are
-    /// those at its start.
-    pub fn workspace(&self) -> &Workspace<T> {
+    /// those at its start. Numbers are in the type that the environment is computed in, of which lane 0 counts.
+    pub fn workspace(&self) -> &Workspace<T::Alone> {
         &self.ws
     }
     /// The contacts that were found last, by a step, forward pass or [`refresh`](Self::refresh). [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
-    pub fn contacts(&self) -> &[Contact<T>] {
+    pub fn contacts(&self) -> &[Contact<T::Alone>] {
         &self.ws.contacts
     }
     /// How the last solve went.
@@ -354,7 +369,7 @@ impl<T: Precision> Sim<T> {
     }
     /// Whether the last step or forward found more contacts than the options allow, and left some out.
     pub fn contact_overflow(&self) -> bool {
-        self.ws.collision.overflow
+        self.ws.collision.overflow.lane(0)
     }
 
     /// The mass matrix, dense (nv × nv), where bodies are as in [`refresh`](Self::refresh).
@@ -379,20 +394,41 @@ impl<T: Precision> Sim<T> {
         }
         self.check_present()?;
         self.require(output.extent())?;
-        let mut source = Source {
-            model: &self.model,
-            params: &self.params,
-            state: &self.state,
-            ws: &mut self.ws,
-        };
         let mut values = Vec::new();
-        output.read(&mut source, &mut values);
-        Ok(values)
+        self.read(|source| T::read(output, source, &mut values));
+        Ok(values.iter().map(|value| value.lane(0)).collect())
+    }
+
+    /// Shows to `reader` what outputs are read from.
+    pub(crate) fn read<R>(&mut self, reader: impl FnOnce(&mut Source<T::Alone>) -> R) -> R {
+        let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
+        alone::read(&self.state, &mut self.room, |state| {
+            reader(&mut Source {
+                model,
+                params,
+                state,
+                ws,
+            })
+        })
+    }
+
+    /// Lets `compute` change numbers in the type that the environment is computed in.
+    pub(crate) fn change(
+        &mut self,
+        values: &mut [T],
+        compute: impl FnOnce(&Self, &mut [T::Alone]),
+    ) {
+        let mut numbers = std::mem::take(&mut self.numbers);
+        numbers.clear();
+        numbers.extend(values.iter().copied().map(T::Alone::splat));
+        compute(self, &mut numbers);
+        read_lane(&numbers, 0, values);
+        self.numbers = numbers;
     }
 
     /// Computes what the joints of bodies carry, once all is known that a forward pass computes.
     pub(crate) fn update_body_forces(&mut self) {
-        update_body_forces(&self.model, &self.params, &self.state, &mut self.ws);
+        self.read(T::body_forces);
     }
 
     /// Inverse dynamics of the present state, in a workspace of their own, so that what is known stays.
@@ -404,10 +440,15 @@ impl<T: Precision> Sim<T> {
     ) -> Result<(), SimError> {
         self.check_present()?;
         let (model, state) = (&self.model, &self.state);
-        let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(Workspace::new(model)));
-        let given = (qacc, given);
+        let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(T::workspace(model)));
+        let splat = |numbers: &[T]| numbers.iter().copied().map(T::Alone::splat).collect();
+        let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
+        let given = (&qacc[..], given);
         let (params, settings) = (&self.params, &self.settings);
-        T::inverse(model, params, settings, state, given, ws, qfrc_inverse);
+        alone::read(state, &mut self.room, |state| {
+            T::inverse(model, params, settings, state, given, ws, &mut forces);
+        });
+        read_lane(&forces, 0, qfrc_inverse);
         match T::good_results(state, ws) {
             true => Ok(()),
             false => Err(check::result_fault(model, state.time, state, ws, 0).into()),
@@ -429,12 +470,14 @@ impl<T: Precision> Sim<T> {
     /// As [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
         self.check_present()?;
-        let scratch = self.ws.energy_scratch(&self.model);
-        Ok(T::state_energy(
-            &self.model,
-            &self.params,
-            &self.state,
-            scratch,
-        ))
+        let (model, params) = (&self.model, &self.params);
+        let scratch = self.ws.energy_scratch(model);
+        let energy = alone::read(&self.state, &mut self.room, |state| {
+            T::state_energy(model, params, state, scratch)
+        });
+        Ok(Energy {
+            potential: energy.potential.lane(0),
+            kinetic: energy.kinetic.lane(0),
+        })
     }
 }

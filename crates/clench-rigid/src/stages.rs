@@ -3,6 +3,12 @@
 use crate::model::Model;
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 
+/// The same element so many times. Not inlined: workspaces have some two hundred such arrays in every number type.
+#[inline(never)]
+pub(crate) fn filled<X: Copy>(element: X, count: usize) -> Vec<X> {
+    vec![element; count]
+}
+
 /// Poses of everything, and what depends on positions alone.
 #[derive(Clone, Debug, Default)]
 pub struct Positions<T> {
@@ -56,16 +62,16 @@ impl<T: Real> Positions<T> {
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
-        let zeros = |n: usize| vec![T::ZERO; n];
-        let points = |n: usize| vec![Vec3::ZERO; n];
-        let frames = |n: usize| vec![Mat3::IDENTITY; n];
+        let zeros = |n: usize| filled(T::ZERO, n);
+        let points = |n: usize| filled(Vec3::ZERO, n);
+        let frames = |n: usize| filled(Mat3::IDENTITY, n);
         Positions {
             xpos: points(nbody),
-            xquat: vec![Quat::IDENTITY; nbody],
+            xquat: filled(Quat::IDENTITY, nbody),
             xmat: frames(nbody),
             xipos: points(nbody),
             ximat: frames(nbody),
-            jnt_turn: vec![Quat::IDENTITY; nj],
+            jnt_turn: filled(Quat::IDENTITY, nj),
             xanchor: points(nj),
             xaxis: points(nj),
             geom_xpos: points(ng),
@@ -74,9 +80,9 @@ impl<T: Real> Positions<T> {
             site_xmat: frames(ns),
             subtree_com: points(nbody),
             subtree_moment: points(nbody),
-            cdof: vec![Motion::ZERO; nv],
-            cinert: vec![Inertia::ZERO; nbody],
-            crb: vec![Inertia::ZERO; nbody],
+            cdof: filled(Motion::ZERO, nv),
+            cinert: filled(Inertia::ZERO, nbody),
+            crb: filled(Inertia::ZERO, nbody),
             ten_length: zeros(model.tendons.len()),
             ten_jacobian: zeros(model.tendon_dofs.len()),
             actuator_length: zeros(nout),

@@ -11,6 +11,7 @@ use crate::fixed::FixedPoses;
 use crate::profile::{Profile, StepClock};
 use crate::sensor::readings::SensorReadings;
 use crate::sleep::Sleep;
+use crate::stages::filled;
 pub use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real};
 use clench_solver::{Problem, Solver, Threads, TreeFactor, TreeMatrix};
@@ -67,12 +68,12 @@ impl<T: Real> Workspace<T> {
     /// Room for everything that the model needs.
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
-        let zeros = |n: usize| vec![T::ZERO; n];
+        let zeros = |n: usize| filled(T::ZERO, n);
         Workspace {
             position: Positions::new(model),
             velocity: Velocities {
-                cvel: vec![Motion::ZERO; nbody],
-                cdof_dot: vec![Motion::ZERO; nv],
+                cvel: filled(Motion::ZERO, nbody),
+                cdof_dot: filled(Motion::ZERO, nv),
                 ten_velocity: zeros(model.tendons.len()),
                 actuator_velocity: zeros(nout),
             },
@@ -90,8 +91,8 @@ impl<T: Real> Workspace<T> {
                 ten_actuator_force: zeros(model.tendons.len()),
                 ctrl: zeros(model.nu()),
                 act_dot: zeros(model.na),
-                cacc: vec![Motion::ZERO; nbody],
-                cfrc_body: vec![Force::ZERO; nbody],
+                cacc: filled(Motion::ZERO, nbody),
+                cfrc_body: filled(Force::ZERO, nbody),
             },
             contacts: Vec::new(),
             collision: Collision::new(model),

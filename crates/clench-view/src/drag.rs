@@ -6,7 +6,7 @@
 //! centre of mass, with the inverse of the rotational inverse weight in the place of m: τ = I (k θ − 2 √k ω), where θ is the rotation
 //! vector that is left.
 
-use clench::math::{Force, Quat, Scalar, Vec3};
+use clench::math::{Force, Quat, Real, Scalar, Vec3};
 use clench::rigid::{Precision, Sim, Workspace};
 
 /// The spring's rate over mass, s⁻².
@@ -61,7 +61,7 @@ impl Drag {
     }
 
     /// As a frame shows it: the body, the point in the world, where it is drawn to, the force.
-    pub(crate) fn row<T: Precision>(&self, ws: &Workspace<T>) -> [f32; 10] {
+    pub(crate) fn row<T: Real>(&self, ws: &Workspace<T>) -> [f32; 10] {
         let mut row = [self.body as f32; 10];
         let place = wide(at(ws, self.body, self.point)).to_array();
         let numbers = place.iter().chain(&self.target).chain(&self.force);
@@ -113,14 +113,16 @@ impl Turn {
     }
 
     /// The rotation from where the body is to where it shall be, in world axes, rad.
-    fn left<T: Precision>(&self, ws: &Workspace<T>) -> Vec3<f64> {
-        let now = ws.position.xquat[self.body].to_array().map(|x| x.to_f64());
+    fn left<T: Real>(&self, ws: &Workspace<T>) -> Vec3<f64> {
+        let now = ws.position.xquat[self.body]
+            .to_array()
+            .map(|x| x.lane(0).to_f64());
         let from_now = Quat::from_f64(self.target) * Quat::from_f64(now).conjugate();
         from_now.to_rotation_vector()
     }
 
     /// As a frame shows it: the body, its centre of mass, what is left to turn, the torque.
-    pub(crate) fn row<T: Precision>(&self, ws: &Workspace<T>) -> [f32; 10] {
+    pub(crate) fn row<T: Real>(&self, ws: &Workspace<T>) -> [f32; 10] {
         let mut row = [self.body as f32; 10];
         let place = wide(ws.position.xipos[self.body]).to_array();
         let left = self.left(ws).to_array();
@@ -133,15 +135,16 @@ impl Turn {
 }
 
 /// A point of a body in the world.
-fn at<T: Precision>(ws: &Workspace<T>, body: usize, point: [f64; 3]) -> Vec3<T> {
+fn at<T: Real>(ws: &Workspace<T>, body: usize, point: [f64; 3]) -> Vec3<T> {
     let turned = ws.position.xquat[body].rotate(narrow(Vec3::from_array(point)));
     ws.position.xpos[body] + turned
 }
 
-fn wide<T: Scalar>(v: Vec3<T>) -> Vec3<f64> {
-    Vec3::from_array(v.to_array().map(|x| x.to_f64()))
+/// A vector of lane 0.
+fn wide<T: Real>(v: Vec3<T>) -> Vec3<f64> {
+    Vec3::from_array(v.to_array().map(|x| x.lane(0).to_f64()))
 }
 
-fn narrow<T: Scalar>(v: Vec3<f64>) -> Vec3<T> {
+fn narrow<T: Real>(v: Vec3<f64>) -> Vec3<T> {
     Vec3::from_array(v.to_array().map(T::new))
 }

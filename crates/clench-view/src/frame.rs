@@ -7,7 +7,7 @@ use crate::drag::{Drag, Turn};
 use crate::marks::Mark;
 use crate::stages::StageTimes;
 use clench::SimError;
-use clench::math::{Mask, Scalar, Vec3};
+use clench::math::{Mask, Real, Scalar, Vec3};
 use clench::rigid::constraint::ConstraintSource;
 use clench::rigid::dynamics::tendon_path::each_span;
 use clench::rigid::readout::{ContactRow, Push, contact_rows, islands, light_places};
@@ -192,15 +192,15 @@ pub fn encode<T: Precision>(sim: &mut Sim<T>, extras: &FrameExtras) -> Result<Ve
     Ok(bytes)
 }
 
-fn narrow<T: Scalar>(values: &[T], out: &mut Vec<f32>) {
-    out.extend(values.iter().map(|x| x.to_f64() as f32));
+fn narrow<T: Real>(values: &[T], out: &mut Vec<f32>) {
+    out.extend(values.iter().map(|x| x.lane(0).to_f64() as f32));
 }
 
-fn point<T: Scalar>(v: Vec3<T>) -> [f32; 3] {
-    v.to_array().map(|x| x.to_f64() as f32)
+fn point<T: Real>(v: Vec3<T>) -> [f32; 3] {
+    v.to_array().map(|x| x.lane(0).to_f64() as f32)
 }
 
-fn bodies<T: Precision>(ws: &Workspace<T>, out: &mut Vec<f32>) {
+fn bodies<T: Real>(ws: &Workspace<T>, out: &mut Vec<f32>) {
     for (&pos, quat) in ws.position.xpos.iter().zip(&ws.position.xquat) {
         out.extend(point(pos));
         narrow(&quat.to_array(), out);
@@ -257,14 +257,14 @@ fn cameras<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[f32; 12]>, SimError> {
     Ok(both.map(row).collect())
 }
 
-fn constraints<T: Precision>(ws: &Workspace<T>, out: &mut Vec<f32>) {
+fn constraints<T: Real>(ws: &Workspace<T>, out: &mut Vec<f32>) {
     let forces = ws.solver.force();
     for (index, record) in ws.record.blocks.iter().enumerate() {
-        let Some(kind) = kind(record.source).filter(|_| record.active.any()) else {
+        let Some(kind) = kind(record.source).filter(|_| record.active.lane(0)) else {
             continue;
         };
         let rows = &forces[ws.problem.block(index).rows()];
-        let squares = rows.iter().map(|f| f.to_f64() * f.to_f64());
+        let squares = rows.iter().map(|f| f.lane(0).to_f64().powi(2));
         let size = squares.sum::<f64>().sqrt();
         out.extend([kind, record.source.index() as f32, size as f32]);
     }
@@ -310,7 +310,9 @@ const LEAST: f64 = 1e-20;
 fn plots<T: Precision>(s: &Shown<T>, out: &mut Vec<f32>) {
     let stats = s.sim.stats();
     let contacts = s.sim.contacts();
-    let depths = contacts.iter().map(|contact| -contact.dist.to_f64());
+    let depths = contacts
+        .iter()
+        .map(|contact| -contact.dist.lane(0).to_f64());
     let numbers = [
         stats.iterations as f64,
         stats.gap.max(LEAST).log10(),

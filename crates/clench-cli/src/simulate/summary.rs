@@ -2,6 +2,7 @@
 
 use super::quality::Verdict;
 use super::report::Report;
+use clench::math::Real;
 use clench::rigid::batch::Quality;
 use clench::rigid::{Precision, SimError};
 use clench::{Model, Sim};
@@ -57,7 +58,7 @@ impl Summary {
     ) -> Report {
         let steps = self.quality.steps;
         // Not by the clock, which resets turn back.
-        let simulated_time = steps as f64 * sim.params().timestep.to_f64();
+        let simulated_time = steps as f64 * sim.params().timestep.lane(0).to_f64();
         let per_step = |total: usize| total as f64 / steps.max(1) as f64;
         let energy_drift = self.energy_drift(sim);
         let quality = self.quality;
@@ -119,7 +120,7 @@ pub(crate) fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64
 
 /// The deepest penetration among the contacts, m; zero where nothing penetrates.
 pub(crate) fn worst_penetration<T: Precision>(sim: &Sim<T>) -> f64 {
-    (sim.contacts().iter()).fold(0.0, |worst, c| f64::max(worst, -c.dist.to_f64()))
+    (sim.contacts().iter()).fold(0.0, |worst, c| f64::max(worst, -c.dist.lane(0).to_f64()))
 }
 
 /// Nothing in the model adds or removes energy while no constraint acts and nobody applies forces.

@@ -1,8 +1,8 @@
 //! Pairs whose decisions branch too much for lanes: each lane is computed on its own, in scalar code.
 
 use super::placed::Placed;
-use crate::shape::{Solid, lane_of};
-use crate::{ContactPoint, Contacts, MAX_POINTS, Pose, frame_from_normal};
+use crate::shape::Solid;
+use crate::{ContactPoint, Contacts, MAX_POINTS, frame_from_normal};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
@@ -53,7 +53,7 @@ pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
 ) {
     let mut points = Points::new();
     for lane in (0..T::LANES).filter(|lane| wanted.lane(*lane)) {
-        let (pose_a, pose_b) = (lane_of_pose(a.pose, lane), lane_of_pose(b.pose, lane));
+        let (pose_a, pose_b) = (a.pose.lane(lane), b.pose.lane(lane));
         let a = Placed {
             shape: a.shape.lane(lane),
             pose: &pose_a,
@@ -72,15 +72,6 @@ pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
             }
             set_point(out.slot(k), lane, point, &frame);
         }
-    }
-}
-
-fn lane_of_pose<T: Real>(pose: &Pose<T>, lane: usize) -> Pose<T::Scalar> {
-    Pose {
-        position: lane_of(pose.position, lane),
-        rotation: Mat3 {
-            rows: pose.rotation.rows.map(|row| lane_of(row, lane)),
-        },
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::core::Core;
 use super::feature::{EDGE_SINE, Feature};
-use super::solid::{Homogeneous, Solid, about_axes, lane_of, within};
+use super::solid::{Homogeneous, Solid, about_axes, within};
 use crate::hull::FACE_COSINE;
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
@@ -21,7 +21,7 @@ impl<T: Real> Solid<T> for Cuboid<T> {
     #[inline(always)]
     fn lane(&self, lane: usize) -> Self::Alone {
         Cuboid {
-            half_lengths: lane_of(self.half_lengths, lane),
+            half_lengths: self.half_lengths.lane(lane),
         }
     }
 

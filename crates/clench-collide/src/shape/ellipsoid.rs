@@ -2,7 +2,7 @@
 
 use super::core::{Core, Curvature};
 use super::feature::Feature;
-use super::solid::{Homogeneous, Solid, about_axes, lane_of};
+use super::solid::{Homogeneous, Solid, about_axes};
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
 use clench_math::{Real, Scalar, Vec3};
@@ -26,7 +26,7 @@ impl<T: Real> Solid<T> for Ellipsoid<T> {
     #[inline(always)]
     fn lane(&self, lane: usize) -> Self::Alone {
         Ellipsoid {
-            semi_axes: lane_of(self.semi_axes, lane),
+            semi_axes: self.semi_axes.lane(lane),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::core::Core;
 use super::feature::{Feature, MAX_CORNERS, most_level};
-use super::solid::{Solid, lane_of};
+use super::solid::Solid;
 use crate::Hull;
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
@@ -29,7 +29,7 @@ impl<'a, T: Real> Solid<T> for Mesh<'a, T> {
     fn lane(&self, lane: usize) -> Self::Alone {
         Mesh {
             hull: self.hull,
-            extent: lane_of(self.extent, lane),
+            extent: self.extent.lane(lane),
         }
     }
 

@@ -24,7 +24,7 @@ pub(crate) use ellipsoid::EllipsoidCore;
 pub(crate) use feature::{Feature, MAX_CORNERS, most_level};
 pub use mesh::Mesh;
 pub use plane::Plane;
-pub(crate) use solid::{Homogeneous, Solid, lane_of};
+pub(crate) use solid::{Homogeneous, Solid};
 pub use sphere::Sphere;
 pub use terrain::Terrain;
 

@@ -1,6 +1,6 @@
 //! The half-space below a plane.
 
-use super::solid::{Solid, lane_of};
+use super::solid::Solid;
 use crate::ray::line::Line;
 use clench_math::{Mask, Real, Vec3};
 
@@ -16,7 +16,7 @@ impl<T: Real> Solid<T> for Plane<T> {
 
     fn lane(&self, lane: usize) -> Self::Alone {
         Plane {
-            size: lane_of(self.size, lane),
+            size: self.size.lane(lane),
         }
     }
 

@@ -63,9 +63,3 @@ pub(super) fn about_axes(second: Vec3<f64>) -> Vec3<f64> {
 pub(super) fn within<T: Real>(p: Vec3<T>, half: Vec3<T>) -> T::Mask {
     p.x.abs().le(half.x) & p.y.abs().le(half.y) & p.z.abs().le(half.z)
 }
-
-/// A vector of one lane.
-#[inline(always)]
-pub(crate) fn lane_of<T: Real>(v: Vec3<T>, lane: usize) -> Vec3<T::Scalar> {
-    Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane))
-}

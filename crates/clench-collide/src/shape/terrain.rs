@@ -1,7 +1,7 @@
 //! Terrain: a height field on a base.
 
 use super::cuboid::Cuboid;
-use super::solid::{Homogeneous, Solid, lane_of};
+use super::solid::{Homogeneous, Solid};
 use crate::HeightField;
 use crate::ray::line::Line;
 use crate::ray::terrain::height_field;
@@ -23,7 +23,7 @@ impl<'a, T: Real> Solid<T> for Terrain<'a, T> {
     fn lane(&self, lane: usize) -> Self::Alone {
         Terrain {
             field: self.field,
-            size: lane_of(self.size, lane),
+            size: self.size.lane(lane),
         }
     }
 

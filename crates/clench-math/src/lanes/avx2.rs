@@ -5,8 +5,9 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 
 /// AVX and AVX2.
+#[allow(unreachable_pub, reason = "one set can be part of `Scalar::Alone`")]
 #[derive(Clone, Copy)]
-pub(crate) struct Avx2;
+pub struct Avx2;
 
 impl Avx2 {
     /// Whether the processor has all that these lanes use.

@@ -5,8 +5,9 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 
 /// AVX-512 with its doubleword, byte and vector-length extensions: every processor that has it but Knights Landing.
+#[allow(unreachable_pub, reason = "one set can be part of `Scalar::Alone`")]
 #[derive(Clone, Copy)]
-pub(crate) struct Avx512;
+pub struct Avx512;
 
 impl Avx512 {
     /// Whether the processor has all that these lanes use.

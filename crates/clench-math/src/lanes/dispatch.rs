@@ -82,14 +82,20 @@ impl Instructions {
         )
     }
 
-    /// Returns those that are [available](Self::available), narrowest first.
-    pub fn all_available() -> impl DoubleEndedIterator<Item = Instructions> {
-        Self::ALL.into_iter().filter(|i| i.available())
+    /// Returns those that are [available for](Self::available_for) a precision, narrowest first.
+    pub fn all_available<S: Scalar>() -> impl DoubleEndedIterator<Item = Instructions> {
+        Self::ALL.into_iter().filter(|i| i.available_for::<S>())
+    }
+
+    /// Returns whether kernels in the precision `S` were compiled for these instructions, and this processor has them. Where one
+    /// instruction set was compiled, single precision has no scalar kernels.
+    pub fn available_for<S: Scalar>(self) -> bool {
+        self.available() && (self != Instructions::Scalar || S::ALONE == Instructions::Scalar)
     }
 
     /// Returns the widest that are [available](Self::available).
     pub fn widest() -> Instructions {
-        Self::all_available()
+        Self::all_available::<f64>()
             .next_back()
             .unwrap_or(Instructions::Scalar)
     }
@@ -105,6 +111,28 @@ impl Instructions {
         bytes / size_of::<S>()
     }
 }
+
+/// What one environment in single precision is computed in: lanes, all of which hold the same numbers, where one set of them was
+/// compiled. That saves a scalar form of every kernel.
+#[cfg(single = "avx2")]
+pub(crate) type Single = Lanes<f32, 8, Avx2>;
+#[cfg(single = "avx512")]
+pub(crate) type Single = Lanes<f32, 16, Avx512>;
+#[cfg(single = "neon")]
+pub(crate) type Single = Lanes<f32, 4, Neon>;
+#[cfg(single = "portable")]
+pub(crate) type Single = Lanes<f32, 4, Portable>;
+#[cfg(single = "scalar")]
+pub(crate) type Single = f32;
+
+/// The instructions of [`Single`].
+pub(crate) const SINGLE: Instructions = match () {
+    _ if cfg!(single = "avx2") => Instructions::Avx2,
+    _ if cfg!(single = "avx512") => Instructions::Avx512,
+    _ if cfg!(single = "neon") => Instructions::Neon,
+    _ if cfg!(single = "portable") => Instructions::Portable,
+    _ => Instructions::Scalar,
+};
 
 /// Something to be done in lanes whose type is known at run time only.
 pub trait LaneTask<S: Scalar> {
@@ -127,7 +155,7 @@ pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
 }
 
 macro_rules! in_lanes {
-    ($scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
+    ($(#[$has_scalar:meta])* $scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
         /// Runs a task in lanes of these instructions; `None` if they are not available.
         #[inline(always)]
         pub(crate) fn $scalar<K: LaneTask<$scalar>>(
@@ -136,6 +164,7 @@ macro_rules! in_lanes {
         ) -> Option<K::Output> {
             Some(match instructions {
                 _ if !instructions.available() => return None,
+                $(#[$has_scalar])*
                 Instructions::Scalar => task.run::<$scalar>(),
                 #[cfg(lanes = "neon")]
                 Instructions::Neon => task.run::<Lanes<$scalar, $narrow, Neon>>(),
@@ -151,4 +180,7 @@ macro_rules! in_lanes {
     };
 }
 in_lanes!(f64: 2 4 8);
-in_lanes!(f32: 4 8 16);
+in_lanes!(
+    #[cfg(single = "scalar")]
+    f32: 4 8 16
+);

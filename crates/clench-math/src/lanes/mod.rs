@@ -5,8 +5,8 @@
 //!
 //! All `unsafe` of the crate is here, for two reasons. Intrinsics, and functions compiled for an instruction set, must not
 //! run where the processor lacks it: sets other than [`Portable`] have no name outside, and `dispatch` gives lanes of
-//! them to a [`LaneTask`] only after the processor has said that it has them. And lanes are looked at as the plain numbers
-//! that they are.
+//! them to a [`LaneTask`] only after the processor has said that it has them. ([`Scalar::Alone`] can be lanes too; who uses it
+//! asks for [`Scalar::ALONE`] first.) And lanes are looked at as the plain numbers that they are.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;

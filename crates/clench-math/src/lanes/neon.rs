@@ -7,8 +7,9 @@ use std::arch::aarch64::*;
 use std::mem::transmute;
 
 /// Advanced SIMD.
+#[allow(unreachable_pub, reason = "one set can be part of `Scalar::Alone`")]
 #[derive(Clone, Copy)]
-pub(crate) struct Neon;
+pub struct Neon;
 
 macro_rules! registers {
     (

@@ -301,7 +301,7 @@ impl<S: Scalar> LaneTask<S> for Width {
 #[test]
 fn tasks_run_in_the_lanes_asked_for() {
     fn check<S: Scalar>(instructions: Instructions) {
-        let lanes = instructions.available().then(|| instructions.lanes::<S>());
+        let lanes = (instructions.available_for::<S>()).then(|| instructions.lanes::<S>());
         assert_eq!(S::in_lanes(instructions, Width), lanes, "{instructions:?}");
     }
     for instructions in [
@@ -318,7 +318,9 @@ fn tasks_run_in_the_lanes_asked_for() {
     assert_eq!(Instructions::Portable.lanes::<f32>(), 4);
     assert_eq!(Instructions::Avx512.lanes::<f64>(), 8);
     let widest = Instructions::widest();
-    assert!(Instructions::all_available().all(|i| i.lanes::<f64>() <= widest.lanes::<f64>()));
+    assert!(
+        Instructions::all_available::<f64>().all(|i| i.lanes::<f64>() <= widest.lanes::<f64>())
+    );
     // No processor has both.
     assert!(!(Instructions::Neon.available() && Instructions::Avx2.available()));
 }

@@ -25,6 +25,10 @@ impl<S: Scalar + Shared> ParamRows<S> {
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, params: &mut Params<T>) {
         params.write_lane(self.field, lane, self.rows.row(env));
     }
+    /// Copies the row of an environment into every lane.
+    pub fn splat<T: Real<Scalar = S>>(&self, env: usize, params: &mut Params<T>) {
+        params.write_lanes(self.field, self.rows.row(env));
+    }
     /// Bytes that a row takes.
     pub(crate) fn row_bytes(&self) -> usize {
         self.rows.row_bytes()

@@ -337,7 +337,7 @@ impl<S: Precision> Batch<S> {
             };
             self.state.read(env, &mut sim.state)?;
             for own in &self.params {
-                own.read(env, 0, sim.params_mut());
+                own.splat(env, sim.params_mut());
             }
             let energy = sim.energy()?;
             mirror.numbers[2 * env..][..2].copy_from_slice(&[energy.potential, energy.kinetic]);

@@ -57,22 +57,21 @@ impl BatchOptions {
         threads: usize,
     ) -> Result<Instructions, SimError> {
         match self.instructions {
-            Some(chosen) if !chosen.available() => Err(SimError::Instructions(chosen)),
+            Some(chosen) if !chosen.available_for::<S>() => Err(SimError::Instructions(chosen)),
             Some(chosen) => Ok(chosen),
-            None => Ok(fastest::<S>(count, threads)),
+            None => fastest::<S>(count, threads).ok_or(SimError::Instructions(S::ALONE)),
         }
     }
 }
 
-/// The instructions by which `count` environments are done soonest: few environments do not fill wide lanes on all threads.
-fn fastest<S: Scalar>(count: usize, threads: usize) -> Instructions {
+/// The instructions by which `count` environments are done soonest, if there are any: few environments do not fill wide lanes on all
+/// threads.
+fn fastest<S: Scalar>(count: usize, threads: usize) -> Option<Instructions> {
     let time = |instructions: &Instructions| {
         let lanes = instructions.lanes::<S>();
         let rounds = count.div_ceil(lanes).div_ceil(threads);
         rounds * (GROUP_COST + LANE_COST * lanes)
     };
-    let widest_first = Instructions::all_available().rev();
-    widest_first
-        .min_by_key(time)
-        .unwrap_or(Instructions::Scalar)
+    let widest_first = Instructions::all_available::<S>().rev();
+    widest_first.min_by_key(time)
 }

@@ -8,11 +8,14 @@ use crate::dynamics::energy::Energy;
 use crate::ik::{Ik, Search};
 use crate::inverse::{self, Acceleration};
 use crate::model::{Model, Params};
+use crate::output::{Output, Source};
 use crate::pipeline;
+use crate::readout::{self, Push};
+use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::{EnergyScratch, Workspace};
-use clench_math::{Instructions, Scalar};
+use clench_math::{Instructions, Mask, Scalar};
 
 /// A number type of simulations and batches: `f64` or `f32`.
 ///
@@ -23,175 +26,157 @@ pub trait Precision: Lanewise {}
 impl Precision for f64 {}
 impl Precision for f32 {}
 
-/// What a batch needs of a number type; outside this crate only its name is known.
-pub trait Lanewise: Scalar + Shared {
-    /// A thread's scratch in lanes of these instructions; `None` if the processor lacks them. Not generic, so that stepping in
-    /// lanes is compiled with this crate and not with each of its users.
-    fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>>;
-    /// [`pipeline::step`] of one environment, likewise compiled once.
-    fn step(
-        model: &Model,
-        params: &Params<Self>,
-        settings: &StepSettings,
-        state: &mut State<Self>,
-        ws: &mut Workspace<Self>,
-    );
-    /// Returns whether a step can start from the state of one environment.
-    fn good_inputs(state: &State<Self>) -> bool;
-    /// Returns whether a step or forward pass of one environment went well.
-    fn good_results(state: &State<Self>, ws: &Workspace<Self>) -> bool;
-    /// [`pipeline::forward`] of one environment.
-    fn forward(
-        model: &Model,
-        params: &Params<Self>,
-        settings: &StepSettings,
-        state: &State<Self>,
-        ws: &mut Workspace<Self>,
-    );
-    /// A search for positions in one environment.
-    fn ik(model: &Model, params: &Params<Self>, ik: &Ik, search: &mut Search<Self>);
-    /// [`inverse::inverse`] of one environment.
-    fn inverse(
-        model: &Model,
-        params: &Params<Self>,
-        settings: &StepSettings,
-        state: &State<Self>,
-        given: (&[Self], Acceleration),
-        ws: &mut Workspace<Self>,
-        qfrc_inverse: &mut [Self],
-    );
-    /// [`pipeline::rest`] of one environment.
-    fn rest(
-        model: &Model,
-        params: &Params<Self>,
-        settings: &StepSettings,
-        state: &mut State<Self>,
-        ws: &mut Workspace<Self>,
-    ) -> bool;
-    /// [`pipeline::before_forces`] of one environment.
-    fn before_forces(
-        model: &Model,
-        params: &Params<Self>,
-        settings: &StepSettings,
-        state: &State<Self>,
-        ws: &mut Workspace<Self>,
-    );
-    /// [`pipeline::step_from_forces`] of one environment.
-    fn step_from_forces(
-        model: &Model,
-        params: &Params<Self>,
-        settings: &StepSettings,
-        state: &mut State<Self>,
-        ws: &mut Workspace<Self>,
-    );
-    /// [`pipeline::state_energy`] of one environment.
-    fn state_energy(
-        model: &Model,
-        params: &Params<Self>,
-        state: &State<Self>,
-        scratch: &mut EnergyScratch<Self>,
-    ) -> Energy<Self>;
-    /// [`pipeline::position_stage`] of one environment.
-    fn position_stage(
-        model: &Model,
-        params: &Params<Self>,
-        state: &State<Self>,
-        ws: &mut Workspace<Self>,
-    );
-}
+/// The number type that one environment is computed in.
+type Alone<S> = <S as Scalar>::Alone;
 
-macro_rules! lanewise {
-    ($scalar:ident) => {
-        impl Lanewise for $scalar {
-            fn stepper(
-                instructions: Instructions,
-                model: &Model,
-            ) -> Option<Box<dyn Stepper<$scalar>>> {
-                $scalar::in_lanes(instructions, MakeStepper { model })
-            }
-            fn step(
-                model: &Model,
-                params: &Params<$scalar>,
-                settings: &StepSettings,
-                state: &mut State<$scalar>,
-                ws: &mut Workspace<$scalar>,
-            ) {
-                pipeline::step(model, params, settings, state, ws);
-            }
-            fn good_inputs(state: &State<$scalar>) -> bool {
-                check::good_inputs(state, check::has_occasional(state))
-            }
-            fn good_results(state: &State<$scalar>, ws: &Workspace<$scalar>) -> bool {
-                check::good_results(state, ws)
-            }
-            fn forward(
-                model: &Model,
-                params: &Params<$scalar>,
-                settings: &StepSettings,
-                state: &State<$scalar>,
-                ws: &mut Workspace<$scalar>,
-            ) {
-                pipeline::forward(model, params, settings, state, ws);
-            }
-            fn ik(model: &Model, params: &Params<$scalar>, ik: &Ik, search: &mut Search<$scalar>) {
-                search.run(model, params, ik);
-            }
-            fn inverse(
-                model: &Model,
-                params: &Params<$scalar>,
-                settings: &StepSettings,
-                state: &State<$scalar>,
-                given: (&[$scalar], Acceleration),
-                ws: &mut Workspace<$scalar>,
-                qfrc_inverse: &mut [$scalar],
-            ) {
-                inverse::inverse(model, params, settings, state, given, ws, qfrc_inverse);
-            }
-            fn rest(
-                model: &Model,
-                params: &Params<$scalar>,
-                settings: &StepSettings,
-                state: &mut State<$scalar>,
-                ws: &mut Workspace<$scalar>,
-            ) -> bool {
-                pipeline::rest(model, params, settings, state, ws)
-            }
-            fn before_forces(
-                model: &Model,
-                params: &Params<$scalar>,
-                settings: &StepSettings,
-                state: &State<$scalar>,
-                ws: &mut Workspace<$scalar>,
-            ) {
-                pipeline::before_forces(model, params, settings, state, ws);
-            }
-            fn step_from_forces(
-                model: &Model,
-                params: &Params<$scalar>,
-                settings: &StepSettings,
-                state: &mut State<$scalar>,
-                ws: &mut Workspace<$scalar>,
-            ) {
-                pipeline::step_from_forces(model, params, settings, state, ws);
-            }
-            fn state_energy(
-                model: &Model,
-                params: &Params<$scalar>,
-                state: &State<$scalar>,
-                scratch: &mut EnergyScratch<$scalar>,
-            ) -> Energy<$scalar> {
-                pipeline::state_energy(model, params, state, scratch)
-            }
-            fn position_stage(
-                model: &Model,
-                params: &Params<$scalar>,
-                state: &State<$scalar>,
-                ws: &mut Workspace<$scalar>,
-            ) {
-                pipeline::position_stage(model, params, state, ws);
-            }
+/// Declares the functions of [`Lanewise`], each with its body, and compiles them for both precisions.
+macro_rules! compile {
+    ($($(#[$doc:meta])* fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block)*) => {
+        /// What simulations and batches need of a number type; outside this crate only its name is known. None of it is generic, so that
+        /// all kernels are compiled with this crate, and not with each of its users.
+        pub trait Lanewise: Scalar + Shared {
+            $($(#[$doc])* fn $name($($argument: $type),*) $(-> $result)?;)*
+        }
+        impl Lanewise for f64 {
+            $(fn $name($($argument: $type),*) $(-> $result)? $body)*
+        }
+        impl Lanewise for f32 {
+            $(fn $name($($argument: $type),*) $(-> $result)? $body)*
         }
     };
 }
-lanewise!(f64);
-lanewise!(f32);
+
+compile! {
+    /// A thread's scratch in lanes of these instructions; `None` if they are not available.
+    fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>> {
+        Self::in_lanes(instructions, MakeStepper { model })
+    }
+
+    /// The parameters of a model, for one environment.
+    fn params(model: &Model) -> Params<Alone<Self>> {
+        model.params.broadcast()
+    }
+
+    /// Room for what one environment computes.
+    fn workspace(model: &Model) -> Workspace<Alone<Self>> {
+        Workspace::new(model)
+    }
+
+    /// Whether a step can start from the state of one environment.
+    fn good_inputs(state: &State<Self>) -> bool {
+        check::good_inputs(state, check::has_occasional(state))
+    }
+
+    /// Whether a step or forward pass of one environment went well.
+    fn good_results(state: &State<Self>, ws: &Workspace<Alone<Self>>) -> bool {
+        check::well_computed(ws).lane(0) && check::well_moved(state)
+    }
+
+    /// [`pipeline::step`] of one environment.
+    fn step(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        settings: &StepSettings,
+        state: &mut State<Alone<Self>>,
+        ws: &mut Workspace<Alone<Self>>,
+    ) {
+        pipeline::step(model, params, settings, state, ws);
+    }
+
+    /// [`pipeline::forward`] of one environment.
+    fn forward(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        settings: &StepSettings,
+        state: &State<Alone<Self>>,
+        ws: &mut Workspace<Alone<Self>>,
+    ) {
+        pipeline::forward(model, params, settings, state, ws);
+    }
+
+    /// [`pipeline::rest`] of one environment.
+    fn rest(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        settings: &StepSettings,
+        state: &mut State<Alone<Self>>,
+        ws: &mut Workspace<Alone<Self>>,
+    ) -> bool {
+        pipeline::rest(model, params, settings, state, ws)
+    }
+
+    /// [`pipeline::before_forces`] of one environment.
+    fn before_forces(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        settings: &StepSettings,
+        state: &State<Alone<Self>>,
+        ws: &mut Workspace<Alone<Self>>,
+    ) {
+        pipeline::before_forces(model, params, settings, state, ws);
+    }
+
+    /// [`pipeline::step_from_forces`] of one environment.
+    fn step_from_forces(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        settings: &StepSettings,
+        state: &mut State<Alone<Self>>,
+        ws: &mut Workspace<Alone<Self>>,
+    ) {
+        pipeline::step_from_forces(model, params, settings, state, ws);
+    }
+
+    /// [`pipeline::position_stage`] of one environment.
+    fn position_stage(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        state: &State<Alone<Self>>,
+        ws: &mut Workspace<Alone<Self>>,
+    ) {
+        pipeline::position_stage(model, params, state, ws);
+    }
+
+    /// [`pipeline::state_energy`] of one environment.
+    fn state_energy(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        state: &State<Alone<Self>>,
+        scratch: &mut EnergyScratch<Alone<Self>>,
+    ) -> Energy<Alone<Self>> {
+        pipeline::state_energy(model, params, state, scratch)
+    }
+
+    /// An output of one environment, appended to `out`.
+    fn read(output: Output, source: &mut Source<Alone<Self>>, out: &mut Vec<Alone<Self>>) {
+        output.read(source, out);
+    }
+
+    /// What the joints of bodies of one environment carry.
+    fn body_forces(source: &mut Source<Alone<Self>>) {
+        update_body_forces(source.model, source.params, source.state, source.ws);
+    }
+
+    /// What the constraints of one environment push on.
+    fn pushes(source: &Source<Alone<Self>>) -> Vec<Push> {
+        readout::pushes(source, 0)
+    }
+
+    /// A search for positions of one environment.
+    fn ik(model: &Model, params: &Params<Alone<Self>>, ik: &Ik, search: &mut Search<Alone<Self>>) {
+        search.run(model, params, ik);
+    }
+
+    /// [`inverse::inverse`] of one environment.
+    fn inverse(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        settings: &StepSettings,
+        state: &State<Alone<Self>>,
+        given: (&[Alone<Self>], Acceleration),
+        ws: &mut Workspace<Alone<Self>>,
+        qfrc_inverse: &mut [Alone<Self>],
+    ) {
+        inverse::inverse(model, params, settings, state, given, ws, qfrc_inverse);
+    }
+}

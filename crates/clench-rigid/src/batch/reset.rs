@@ -78,7 +78,7 @@ impl<S: Precision> Batch<S> {
         row.copy_row(0, &self.state, env);
         row.read(0, &mut sim.state)?;
         for own in &self.params {
-            own.read(env, 0, sim.params_mut());
+            own.splat(env, sim.params_mut());
         }
         Ok(())
     }

@@ -22,7 +22,7 @@ pub(crate) use placed_shape::shape;
 pub(crate) use select::check_supported;
 pub use select::{Candidate, UnsupportedPair, candidates};
 
-use clench_math::{Mat3, Real, Vec3};
+use clench_math::{Mask, Mat3, Real, Vec3};
 
 /// A contact between two geoms, one for each lane where it is active.
 #[derive(Clone, Copy, Debug)]
@@ -59,6 +59,27 @@ pub struct Contact<T: Real> {
 }
 
 impl<T: Real> Contact<T> {
+    /// The contact of one environment in every lane.
+    pub(crate) fn splat(contact: &Contact<T::Scalar>) -> Self {
+        let [x, y, z] = contact.frame.rows.map(Vec3::splat);
+        Contact {
+            geoms: contact.geoms,
+            active: T::Mask::splat(contact.active),
+            dim: contact.dim,
+            dist: T::splat(contact.dist),
+            pos: Vec3::splat(contact.pos),
+            frame: Mat3::from_rows(x, y, z),
+            includemargin: T::splat(contact.includemargin),
+            friction: contact.friction.map(T::splat),
+            solref: contact.solref.map(T::splat),
+            solreffriction: contact.solreffriction.map(T::splat),
+            solimp: contact.solimp.map(T::splat),
+            adhesion: T::splat(contact.adhesion),
+            surfacevel: contact.surfacevel.map(T::splat),
+            block: contact.block,
+        }
+    }
+
     /// Lanes in which it is a constraint, if any dof is between its bodies.
     #[inline(always)]
     pub fn acts(&self) -> T::Mask {

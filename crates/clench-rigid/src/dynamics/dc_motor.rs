@@ -17,7 +17,7 @@
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
 use crate::model::{BiasKind, ControlInput, Model, Params};
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// Divisors are at least so large (MuJoCo's `mjMINVAL`).
 const MIN_DIVISOR: f64 = 1e-15;
@@ -43,7 +43,7 @@ struct Circuit<T> {
 }
 
 impl<T: Real> Circuit<T> {
-    #[inline(always)]
+    #[kernel]
     fn new(
         model: &Model,
         params: &Params<T>,
@@ -104,7 +104,7 @@ impl<T: Real> Circuit<T> {
 }
 
 /// The rates of the activations of actuator `u`.
-#[inline(always)]
+#[kernel]
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -140,7 +140,7 @@ pub(crate) fn activation_rates<T: Real>(
 }
 
 /// −σ₀ |ω| / g(ω): the rate at which the bristle's deflection decays.
-#[inline(always)]
+#[kernel]
 fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
     let [_, _, _, coulomb, static_, stribeck, ..] = params.actuator_biasprm[u];
     let ratio = velocity / divisor(stribeck);
@@ -150,7 +150,7 @@ fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
 
 /// An activation of a motor a time step later. A current approaches what holds it as an exact filter does, a deflection obeys its
 /// equation exactly at a constant velocity, an integral stays within its bound.
-#[inline(always)]
+#[kernel]
 pub(crate) fn next_activation<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -182,7 +182,7 @@ pub(crate) fn next_activation<T: Real>(
 }
 
 /// The gain of a motor, and the voltage: K, which multiplies the current where that is a state, else K / R, which multiplies the voltage.
-#[inline(always)]
+#[kernel]
 pub(crate) fn gain_and_voltage<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -214,7 +214,7 @@ pub(crate) fn back_emf<T: Real>(
 }
 
 /// ∂force/∂velocity of a motor's gain, and of its back-EMF where its bias is a motor's.
-#[inline(always)]
+#[kernel]
 pub(crate) fn electrical_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -233,7 +233,7 @@ pub(crate) fn electrical_slope<T: Real>(
 }
 
 /// ∂force/∂length of a motor's gain.
-#[inline(always)]
+#[kernel]
 pub(crate) fn electrical_length_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -274,7 +274,7 @@ fn by_voltage<T: Real>(
 }
 
 /// Cogging and friction, which no limit of the motor's torque holds.
-#[inline(always)]
+#[kernel]
 pub(crate) fn mechanical_force<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -304,7 +304,7 @@ pub(crate) fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: us
 }
 
 /// ∂force/∂length of cogging.
-#[inline(always)]
+#[kernel]
 pub(crate) fn cogging_slope<T: Real>(params: &Params<T>, u: usize, length: T) -> T {
     let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];
     amplitude * poles * (poles * length + phase).sin_cos().1

@@ -6,7 +6,7 @@
 //! to `lmax`; FV rises by a parabola from −1, and by another to `fvmax`; FP is a parabola beyond 1 that goes on straight.
 
 use crate::model::Params;
-use clench_math::Real;
+use clench_math::{Real, kernel};
 
 /// Divisors are at least so large (MuJoCo's `mjMINVAL`).
 const MIN_DIVISOR: f64 = 1e-15;
@@ -20,7 +20,7 @@ fn divisor<T: Real>(x: T) -> T {
 ///
 /// `prm` are the time constants of activation and deactivation, and the width over which one passes into the other; Millard et al.
 /// (2013) for the former, MuJoCo's quintic step for the latter.
-#[inline(always)]
+#[kernel]
 pub(crate) fn activation_rate<T: Real>(ctrl: T, act: T, prm: &[T; 10]) -> T {
     let [activation, deactivation, width, ..] = *prm;
     let slowing = T::new(0.5) + T::new(1.5) * act.clamp(T::ZERO, T::ONE);
@@ -57,7 +57,7 @@ pub(crate) struct Muscle<T> {
 
 impl<T: Real> Muscle<T> {
     /// Actuator `u` as a muscle with the parameters of its gain or bias, `prm`, at a length.
-    #[inline(always)]
+    #[kernel]
     pub(crate) fn new(params: &Params<T>, u: usize, prm: &[T; 10], length: T) -> Self {
         let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
         let [shortest, longest] = params.actuator_lengthrange[u];
@@ -120,7 +120,7 @@ impl<T: Real> Muscle<T> {
     }
 
     /// The derivative of FL by L.
-    #[inline(always)]
+    #[kernel]
     fn active_by_length_slope(&self) -> T {
         let (half, l) = (T::new(0.5), self.length);
         let (left, right) = (half * (self.lmin + T::ONE), half * (T::ONE + self.lmax));
@@ -136,7 +136,7 @@ impl<T: Real> Muscle<T> {
     }
 
     /// FL.
-    #[inline(always)]
+    #[kernel]
     fn active_by_length(&self) -> T {
         let (half, l) = (T::new(0.5), self.length);
         let (left, right) = (half * (self.lmin + T::ONE), half * (T::ONE + self.lmax));
@@ -155,7 +155,7 @@ impl<T: Real> Muscle<T> {
     }
 
     /// FV and its derivative by V.
-    #[inline(always)]
+    #[kernel]
     fn by_velocity(&self, velocity: T) -> (T, T) {
         let v = velocity / divisor(self.resting * self.vmax);
         let (two, above) = (T::new(2.0), self.fvmax - T::ONE);

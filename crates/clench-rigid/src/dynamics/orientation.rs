@@ -12,13 +12,13 @@ use super::actuator::{ActuatorInputs, scaling_error};
 use crate::dynamics::activation::next_activation;
 use crate::model::{ControlInput, Model, Params};
 use crate::stages::{Positions, Velocities};
-use clench_math::{Mask, Quat, Real, Vec3};
+use clench_math::{Mask, Quat, Real, Vec3, kernel};
 
 /// How many lengths, moment arms and forces a servo has.
 pub(crate) const OUTPUTS: usize = 3;
 
 /// The torque of servo `u` before any limit.
-#[inline(always)]
+#[kernel]
 pub(crate) fn torque<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -80,7 +80,7 @@ pub(crate) fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces
 }
 
 /// ∂torque/∂angle for small angles from the target, likewise.
-#[inline(always)]
+#[kernel]
 pub(crate) fn length_slope<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -4,7 +4,7 @@ use super::actuator::ActuatorInputs;
 use crate::model::{
     BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Params, Transmission,
 };
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Mask, Real, Vec3, kernel};
 
 /// The controls of an actuator with a controller; what it has no control for is zero.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ pub(crate) struct Setpoints<T> {
 
 impl<T: Real> Setpoints<T> {
     /// Of actuator `u`. A first control whose rate is limited acts from where it was, and on a circle goes the shorter way.
-    #[inline(always)]
+    #[kernel]
     pub(crate) fn new(
         model: &Model,
         params: &Params<T>,
@@ -87,7 +87,7 @@ pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
 /// unchanged.
 ///
 /// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
-#[inline(always)]
+#[kernel]
 pub(crate) fn nearest_setpoint<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -74,6 +74,12 @@ impl<T: Real> Params<T> {
     pub fn write_lane(&mut self, field: ParamField, lane: usize, row: &[T::Scalar]) {
         self.flat_mut(field).write_lane(lane, row);
     }
+    /// Replaces the numbers of a field by as many others, the same in every lane.
+    pub(crate) fn write_lanes(&mut self, field: ParamField, row: &[T::Scalar]) {
+        for lane in 0..T::LANES {
+            self.write_lane(field, lane, row);
+        }
+    }
 }
 
 params! {

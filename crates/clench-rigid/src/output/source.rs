@@ -6,7 +6,7 @@ use crate::workspace::Workspace;
 use clench_math::Real;
 
 /// All that outputs are read from.
-pub(crate) struct Source<'a, T: Real> {
+pub struct Source<'a, T: Real> {
     pub model: &'a Model,
     pub params: &'a Params<T>,
     pub state: &'a State<T>,

@@ -38,8 +38,10 @@ impl<T: Precision> Sim<T> {
     pub fn jacobian(&mut self, anchor: Anchor<T>, jacobian: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, jacobian.len())?;
         self.require(Extent::Positions)?;
-        let point = self.body_point(anchor);
-        point_jacobian(self.model(), &self.workspace().position, &point, jacobian);
+        self.change(jacobian, |sim, jacobian| {
+            let point = sim.body_point(anchor);
+            point_jacobian(sim.model(), &sim.workspace().position, &point, jacobian);
+        });
         Ok(())
     }
 
@@ -50,8 +52,10 @@ impl<T: Precision> Sim<T> {
     pub fn jacobian_rate(&mut self, anchor: Anchor<T>, rate: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, rate.len())?;
         self.require(Extent::Everything)?;
-        let (point, ws) = (self.body_point(anchor), self.workspace());
-        point_jacobian_rate(self.model(), (&ws.position, &ws.velocity), &point, rate);
+        self.change(rate, |sim, rate| {
+            let (point, ws) = (sim.body_point(anchor), sim.workspace());
+            point_jacobian_rate(sim.model(), (&ws.position, &ws.velocity), &point, rate);
+        });
         Ok(())
     }
 
@@ -64,8 +68,10 @@ impl<T: Precision> Sim<T> {
         check_body(self.model(), body)?;
         check_length("jacobian", jacobian.len(), 3 * self.model().nv)?;
         self.require(Extent::Positions)?;
-        let pos = &self.workspace().position;
-        subtree_jacobian(self.model(), self.params(), pos, body, jacobian);
+        self.change(jacobian, |sim, jacobian| {
+            let pos = &sim.workspace().position;
+            subtree_jacobian(sim.model(), sim.params(), pos, body, jacobian);
+        });
         Ok(())
     }
 
@@ -78,7 +84,7 @@ impl<T: Precision> Sim<T> {
         check_object(self.model(), object)?;
         self.require(Extent::Everything)?;
         let velocity = self.frames().velocity(object, &self.workspace().velocity);
-        Ok(along(self.frames(), axes, object, velocity))
+        Ok(along(self.frames(), axes, object, velocity).map(|vector| vector.lane(0)))
     }
 
     /// The acceleration of an object, likewise, as MuJoCo's `mj_objectAcceleration`: what an accelerometer there feels, gravity's
@@ -97,10 +103,10 @@ impl<T: Precision> Sim<T> {
         let ws = self.workspace();
         let cacc = &ws.sensors.bodies.cacc;
         let acceleration = self.frames().acceleration(object, &ws.velocity, cacc);
-        Ok(along(self.frames(), axes, object, acceleration))
+        Ok(along(self.frames(), axes, object, acceleration).map(|vector| vector.lane(0)))
     }
 
-    fn frames(&self) -> Frames<'_, T> {
+    fn frames(&self) -> Frames<'_, T::Alone> {
         Frames {
             model: self.model(),
             params: self.params(),
@@ -116,11 +122,12 @@ impl<T: Precision> Sim<T> {
         check_length("jacobian", length, 6 * self.model().nv)
     }
 
-    pub(super) fn body_point(&self, anchor: Anchor<T>) -> BodyPoint<T> {
+    pub(super) fn body_point(&self, anchor: Anchor<T>) -> BodyPoint<T::Alone> {
         match anchor {
             Anchor::Object(object) => self.frames().point(object),
             Anchor::Point { body, place } => {
-                BodyPoint::new(self.model(), &self.workspace().position, body, place)
+                let pos = &self.workspace().position;
+                BodyPoint::new(self.model(), pos, body, Vec3::splat(place))
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::geometry::{Geoms, RayFilter, RayHit};
 use crate::known::Extent;
 use crate::sim::Sim;
 use clench_collide::{Ray, Separation, distance};
-use clench_math::Vec3;
+use clench_math::{Real, Vec3};
 
 impl<T: Precision> Sim<T> {
     /// The geom that a ray hits first, where geoms are as in [`refresh`](Self::refresh), as MuJoCo's `mj_ray`: planes are hit
@@ -22,12 +22,16 @@ impl<T: Precision> Sim<T> {
         filter: &RayFilter,
     ) -> Result<Option<RayHit<T>>, SimError> {
         self.require(Extent::Positions)?;
-        let line = Ray { origin, direction };
+        let line = Ray {
+            origin: Vec3::splat(origin),
+            direction: Vec3::splat(direction),
+        };
         let (geom, hit) = self.geoms().first_hit(&line, filter);
-        Ok((hit.distance < T::INFINITY).then(|| RayHit {
-            geom: geom.to_f64() as usize,
-            distance: hit.distance,
-            normal: hit.normal,
+        let distance = hit.distance.lane(0);
+        Ok((distance < T::INFINITY).then(|| RayHit {
+            geom: geom.lane(0).to_f64() as usize,
+            distance,
+            normal: hit.normal.lane(0),
         }))
     }
 
@@ -50,11 +54,12 @@ impl<T: Precision> Sim<T> {
         }
         self.require(Extent::Positions)?;
         let geoms = self.geoms();
-        let [a, b] = [geom1, geom2].map(|geom| (geoms.solid(geom), geoms.pose(geom)));
+        let lane = |geom| (geoms.solid(geom).lane(0), geoms.pose(geom).lane(0));
+        let [a, b] = [geom1, geom2].map(lane);
         Ok(distance(&a.0, &a.1, &b.0, &b.1, limit))
     }
 
-    pub(super) fn geoms(&self) -> Geoms<'_, T> {
+    pub(super) fn geoms(&self) -> Geoms<'_, T::Alone> {
         Geoms {
             model: self.model(),
             params: self.params(),

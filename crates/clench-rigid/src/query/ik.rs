@@ -5,6 +5,7 @@ use crate::check::check_values;
 use crate::error::SimError;
 use crate::ik::{Ik, IkSolution, Search};
 use crate::sim::Sim;
+use clench_math::{Real, write_lane};
 
 impl<T: Precision> Sim<T> {
     /// Positions of the joints that bring the tasks of `ik` to their goals, task after task, from those of the present state, or
@@ -24,14 +25,17 @@ impl<T: Precision> Sim<T> {
         }
         self.check_present()?;
         let mut search = Search::new(self.model(), ik);
-        search.state.copy_from(&self.state);
-        if let Some(start) = start {
-            search.state.qpos.copy_from_slice(start);
+        search.state.splat_from(&self.state);
+        for lane in 0..T::Alone::LANES {
+            if let Some(start) = start {
+                write_lane(start, lane, &mut search.state.qpos);
+            }
+            write_lane(goals, lane, &mut search.goals);
         }
-        search.goals.copy_from_slice(goals);
         T::ik(self.model(), self.params(), ik, &mut search);
         let mut found = Vec::new();
         search.write(&mut found);
+        let found = Vec::from_iter(found.iter().map(|number| number.lane(0)));
         Ok(IkSolution::read(&found, self.model().nq))
     }
 }

@@ -9,7 +9,7 @@ use crate::error::{Fault, SimError};
 use crate::known::Extent;
 use crate::place::massless;
 use crate::sim::Sim;
-use clench_math::Vec3;
+use clench_math::{Mask, Real, Vec3};
 
 impl<T: Precision> Sim<T> {
     /// Writes M x to `product` (nv), where bodies are as in [`refresh`](Self::refresh): with accelerations x, the forces along dofs
@@ -21,8 +21,10 @@ impl<T: Precision> Sim<T> {
         check_values("x", x, self.model().nv)?;
         check_length("product", product.len(), x.len())?;
         self.require(Extent::Positions)?;
-        let mass = self.workspace().mass();
-        mass.mul(&self.model().tree, x, product);
+        let x = Vec::from_iter(x.iter().copied().map(T::Alone::splat));
+        self.change(product, |sim, product| {
+            sim.workspace().mass().mul(&sim.model().tree, &x, product);
+        });
         Ok(())
     }
 
@@ -34,11 +36,13 @@ impl<T: Precision> Sim<T> {
         check_values("x", x, self.model().nv)?;
         self.require(Extent::Positions)?;
         let (model, ws) = (self.model(), self.workspace());
-        if ws.singular {
+        if ws.singular.lane(0) {
             let (time, place) = (self.state.time, massless(model, ws, 0));
             return Err(Fault::Singular { time, place }.into());
         }
-        ws.mass_factor().solve(&model.tree, x);
+        self.change(x, |sim, x| {
+            sim.workspace().mass_factor().solve(&sim.model().tree, x);
+        });
         Ok(())
     }
 
@@ -57,9 +61,12 @@ impl<T: Precision> Sim<T> {
         check_body(self.model(), body)?;
         check_length("qfrc", qfrc.len(), self.model().nv)?;
         self.require(Extent::Positions)?;
-        let point = self.body_point(Anchor::Point { body, place });
-        let pos = &self.workspace().position;
-        add_point_forces(self.model(), pos, &point, (force, torque), qfrc);
+        let wrench = (Vec3::splat(force), Vec3::splat(torque));
+        self.change(qfrc, |sim, qfrc| {
+            let point = sim.body_point(Anchor::Point { body, place });
+            let pos = &sim.workspace().position;
+            add_point_forces(sim.model(), pos, &point, wrench, qfrc);
+        });
         Ok(())
     }
 }

@@ -9,7 +9,7 @@ use crate::known::Extent;
 use crate::model::FrameObject;
 use crate::sim::Sim;
 use crate::{Model, Precision};
-use clench_math::{Scalar, Vec3};
+use clench_math::{Real, Scalar, Vec3};
 
 /// Rays that can be cast: whole ones, finite, in the frame of an object that the model has.
 pub(crate) fn check_rays<S: Scalar>(
@@ -54,8 +54,10 @@ impl<T: Precision> Sim<T> {
     ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
         check_rays(self.model(), frame, rays)?;
         self.require(Extent::Positions)?;
+        let rays = Vec::from_iter(rays.iter().copied().map(T::Alone::splat));
         let mut hits = Vec::new();
-        cast(self.geoms(), frame, rays, filter, &mut hits);
+        cast(self.geoms(), frame, &rays, filter, &mut hits);
+        let hits = Vec::from_iter(hits.iter().map(|number| number.lane(0)));
         let hit = |numbers: &[T]| {
             (numbers[0] >= T::ZERO).then(|| RayHit {
                 geom: numbers[0].to_f64() as usize,
@@ -80,8 +82,9 @@ impl<T: Precision> Sim<T> {
     ) -> Result<Vec<T>, SimError> {
         check_places(self.model(), geom, frame, places)?;
         self.require(Extent::Positions)?;
+        let places = Vec::from_iter(places.iter().copied().map(T::Alone::splat));
         let mut heights = Vec::new();
-        sample(self.geoms(), geom, frame, places, &mut heights);
-        Ok(heights)
+        sample(self.geoms(), geom, frame, &places, &mut heights);
+        Ok(heights.iter().map(|height| height.lane(0)).collect())
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::model::{CameraMode, Light, Model};
 use crate::workspace::Workspace;
-use clench_math::{Scalar, Vec3};
+use clench_math::{Real, Scalar, Vec3};
 
 /// Where each light of a model is, m, and the unit vector along which it shines, both in world axes, by the rules of MuJoCo's
-/// `mj_camlight`.
-pub fn light_places<T: Scalar>(model: &Model, ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
+/// `mj_camlight`, for the bodies of lane 0.
+pub fn light_places<T: Real>(model: &Model, ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
     let place = |light: &Light| {
         let (pos, dir) = light_place(light, ws);
         [pos.to_array(), dir.to_array()]
@@ -14,8 +14,8 @@ pub fn light_places<T: Scalar>(model: &Model, ws: &Workspace<T>) -> Vec<[[f64; 3
     model.visuals.lights.iter().map(place).collect()
 }
 
-fn light_place<T: Scalar>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f64>) {
-    let wide = |v: Vec3<T>| Vec3::from_array(v.to_array().map(Scalar::to_f64));
+fn light_place<T: Real>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f64>) {
+    let wide = |v: Vec3<T>| Vec3::from_array(v.to_array().map(|x| x.lane(0).to_f64()));
     let at = |body: usize| wide(ws.position.xpos[body]);
     let com = |body: usize| wide(ws.position.subtree_com[body]);
     let turned = |v: Vec3<f64>| {

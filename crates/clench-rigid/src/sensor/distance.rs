@@ -3,7 +3,7 @@
 use super::reading::Reading;
 use crate::model::{Sensor, SensorKind};
 use clench_collide::{Pose, Separation, Shape, distance};
-use clench_math::{Mat3, Real, Vec3};
+use clench_math::{Real, Vec3};
 use std::ops::Range;
 
 impl<T: Real> Reading<'_, T> {
@@ -59,18 +59,7 @@ impl<T: Real> Reading<'_, T> {
         lane: usize,
     ) -> (Shape<'_, T::Scalar>, Pose<T::Scalar>) {
         let (shape, pose) = (self.geoms().solid(geom), self.geoms().pose(geom));
-        (shape.lane(lane), lane_of(&pose, lane))
-    }
-}
-
-/// A pose in one lane.
-pub(super) fn lane_of<T: Real>(pose: &Pose<T>, lane: usize) -> Pose<T::Scalar> {
-    let vector = |v: Vec3<T>| Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane));
-    Pose {
-        position: vector(pose.position),
-        rotation: Mat3 {
-            rows: pose.rotation.rows.map(vector),
-        },
+        (shape.lane(lane), pose.lane(lane))
     }
 }
 

@@ -1,6 +1,5 @@
 //! How far objects jut out of the volume of a site. It is searched for in each lane alone.
 
-use super::distance::lane_of;
 use super::reading::Reading;
 use crate::model::{FrameObject, Model};
 use clench_collide::{Ascent, Pose, Shape, protrusion, protrusion_of_points};
@@ -30,7 +29,7 @@ impl<T: Real> Reading<'_, T> {
 
     fn site_in_lane(&self, site: usize, lane: usize) -> Placed<'_, T::Scalar> {
         let (shape, pose) = self.solid_volume(site);
-        (shape.lane(lane), lane_of(&pose, lane))
+        (shape.lane(lane), pose.lane(lane))
     }
 
     /// How far a geom juts out. A mesh that is flat has no hull, but corners.

@@ -137,19 +137,18 @@ impl<T: Precision> Sim<T> {
         };
         let target = found.target;
         self.refresh_positions()?;
-        let (anchor1, anchor2) = (
-            self.params.eq_anchor1[equality],
-            self.params.eq_anchor2[equality],
-        );
+        let [anchor1, anchor2] = [&self.params.eq_anchor1, &self.params.eq_anchor2]
+            .map(|anchors| anchors[equality].lane(0));
         match target {
             EqualityTarget::Weld { body1, body2 } => {
-                let quat2 = self.params.eq_quat2[equality];
+                let quat2 = self.params.eq_quat2[equality].lane(0);
                 let (anchor, quat) = self.present_pose([body1, body2], anchor2, quat2);
-                self.params.eq_anchor1[equality] = anchor;
-                self.params.eq_quat1[equality] = quat;
+                self.params.eq_anchor1[equality] = Vec3::splat(anchor);
+                self.params.eq_quat1[equality] = Quat::splat(quat);
             }
             EqualityTarget::Connect { body1, body2 } => {
-                self.params.eq_anchor2[equality] = self.carry([body1, body2], anchor1);
+                let anchor2 = self.carry([body1, body2], anchor1);
+                self.params.eq_anchor2[equality] = Vec3::splat(anchor2);
             }
             _ => {
                 return Err(SimError::CannotHold {
@@ -214,14 +213,14 @@ impl<T: Precision> Sim<T> {
         turn: Quat<T>,
     ) -> (Vec3<T>, Quat<T>) {
         let xquat = &self.ws.position.xquat;
-        let quat = xquat[body1].conjugate() * xquat[body2] * turn;
-        (self.carry([body2, body1], point), quat)
+        let quat = xquat[body1].conjugate() * xquat[body2] * Quat::splat(turn);
+        (self.carry([body2, body1], point), quat.lane(0))
     }
 
     /// A point of one body in the frame of another, where they lie now.
     fn carry(&self, [from, to]: [usize; 2], point: Vec3<T>) -> Vec3<T> {
         let pos = &self.ws.position;
-        let world = pos.xpos[from] + pos.xmat[from] * point;
-        pos.xmat[to].transpose_mul(world - pos.xpos[to])
+        let world = pos.xpos[from] + pos.xmat[from] * Vec3::splat(point);
+        pos.xmat[to].transpose_mul(world - pos.xpos[to]).lane(0)
     }
 }

@@ -20,7 +20,7 @@ impl<T: Precision> Sim<T> {
         let mut row = values.to_vec();
         field.check_row(&self.model, &mut row)?;
         Model::clear_structural_guarantees(&mut self.model, field, &row);
-        self.params.write_lane(field, 0, &row);
+        self.params.write_lanes(field, &row);
         self.params.derive(&self.model, field);
         self.forget();
         Ok(())
@@ -44,12 +44,12 @@ impl<T: Precision> Sim<T> {
     }
 
     /// The model's numbers as this simulation uses them.
-    pub fn params(&self) -> &Params<T> {
+    pub fn params(&self) -> &Params<T::Alone> {
         &self.params
     }
     /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
     /// derived anew, as [`set_param`](Self::set_param) does.
-    pub fn params_mut(&mut self) -> &mut Params<T> {
+    pub fn params_mut(&mut self) -> &mut Params<T::Alone> {
         self.forget();
         Model::forget_same_frames(&mut self.model);
         &mut self.params

@@ -3,6 +3,7 @@
 use super::Sim;
 use crate::Precision;
 use crate::batch::{Quality, StepResults};
+use clench_math::Mask;
 
 impl Quality {
     /// Takes in the last step of a simulation, which must have gone well.
@@ -13,6 +14,6 @@ impl Quality {
             settings: sim.settings(),
             ws: sim.workspace(),
         };
-        self.count(results, 1, true);
+        self.count(results, 1, Mask::splat(true));
     }
 }

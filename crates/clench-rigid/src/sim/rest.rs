@@ -1,6 +1,6 @@
 //! Steps in which everything sleeps as before.
 
-use super::Sim;
+use super::{Sim, alone};
 use crate::Precision;
 
 impl<T: Precision> Sim<T> {
@@ -10,13 +10,13 @@ impl<T: Precision> Sim<T> {
             && !self.halfway
             && self.known.holds_everything()
             && self.state.fits(&self.model);
-        as_left
-            && T::rest(
-                &self.model,
-                &self.params,
-                &self.settings,
-                &mut self.state,
-                &mut self.ws,
-            )
+        if !as_left {
+            return false;
+        }
+        let (model, params, settings) = (&self.model, &self.params, &self.settings);
+        let ws = &mut self.ws;
+        alone::change(&mut self.state, &mut self.room, |state| {
+            T::rest(model, params, settings, state, ws)
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Threads that share the work of a step.
 
-use super::Sim;
+use super::{Sim, alone};
 use crate::Precision;
 use crate::error::SimError;
 use crate::model::{Model, Params};
@@ -48,11 +48,19 @@ impl<T: Precision> Sim<T> {
     /// Does a pass where its parts can be shared.
     pub(super) fn on_threads(
         &mut self,
-        pass: impl FnOnce(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>) + Send,
+        pass: impl FnOnce(
+            &Model,
+            &Params<T::Alone>,
+            &StepSettings,
+            &mut State<T::Alone>,
+            &mut Workspace<T::Alone>,
+        ) + Send,
     ) {
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
-        let (state, ws) = (&mut self.state, &mut self.ws);
+        let ws = &mut self.ws;
         let threads = ws.threads.clone();
-        threads.enter_awake(|| pass(model, params, settings, state, ws));
+        alone::change(&mut self.state, &mut self.room, |state| {
+            threads.enter_awake(|| pass(model, params, settings, state, ws));
+        });
     }
 }

@@ -91,6 +91,26 @@ impl Field {
     }
 }
 
+/// The elements of one environment in every lane.
+fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
+    for (from, to) in from.iter().zip(to) {
+        for part in 0..K::WIDTH {
+            for lane in 0..T::LANES {
+                K::set_cell::<T>(to, part, lane, K::cell::<T::Scalar>(from, part, 0));
+            }
+        }
+    }
+}
+
+/// The elements of the first lane.
+fn first_lane<T: Real, K: Kind>(from: &[K::Of<T>], to: &mut [K::Of<T::Scalar>]) {
+    for (from, to) in from.iter().zip(to) {
+        for part in 0..K::WIDTH {
+            K::set_cell::<T::Scalar>(to, part, 0, K::cell::<T>(from, part, 0));
+        }
+    }
+}
+
 #[inline(never)] // Every field calls it.
 fn zeros<T: Real, K: Kind>(count: usize) -> Vec<K::Of<T>> {
     vec![K::zero::<T>(); count]
@@ -153,6 +173,12 @@ macro_rules! declare_state {
                 self.time = other.time;
                 $($(self.$name.clone_from(&other.$name);)*)*
             }
+
+            /// Takes over the state of one environment, of the same model, in every lane.
+            pub(crate) fn splat_from(&mut self, other: &State<T::Scalar>) {
+                self.time = T::Clock::splat(other.time);
+                $($(splat::<T, kind::$kind>(&other.$name, &mut self.$name);)*)*
+            }
         }
     };
 }
@@ -167,6 +193,12 @@ macro_rules! declare_moving {
             pub(crate) fn copy_moving_from(&mut self, other: &Self) {
                 self.time = other.time;
                 $(self.$name.clone_from(&other.$name);)*
+            }
+
+            /// Writes what a step changed in the first lane to the state of one environment of the same model.
+            pub(crate) fn write_moving(&self, other: &mut State<T::Scalar>) {
+                other.time = self.time.lane(0);
+                $(first_lane::<T, kind::$kind>(&self.$name, &mut other.$name);)*
             }
         }
     };

@@ -131,7 +131,7 @@ fn mend<S: Precision>(batch: &mut Batch<S>, env: usize, state: &State<S>) {
 
 #[test]
 fn poison_stays_where_it_is() {
-    for (i, instructions) in Instructions::all_available().enumerate() {
+    for (i, instructions) in Instructions::all_available::<f64>().enumerate() {
         soak::<f64>(&walker(), instructions, 1 + i % 3, 150);
     }
     soak::<f32>(&walker(), Instructions::widest(), 2, 150);
@@ -139,7 +139,7 @@ fn poison_stays_where_it_is() {
 
 #[test]
 fn poison_stays_where_it_is_among_islands() {
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<f64>() {
         soak::<f64>(&loose_parts(), instructions, 1, 150);
     }
     soak::<f32>(&loose_parts(), Instructions::widest(), 2, 150);
@@ -316,7 +316,7 @@ fn what_failed_does_not_count_as_quality() {
 fn a_switch_is_on_whatever_byte_says_so() {
     let model = model(&everything());
     let envs: Vec<usize> = (0..21).collect();
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<f64>() {
         let end = |on: u8| {
             let options = with(instructions, 1, RigidOptions::new());
             let mut batch = batch::<f64>(&model, &envs, options);

@@ -29,7 +29,7 @@ fn compare<S: Precision>(builder: &ModelBuilder, options: RigidOptions, steps: u
             sim
         })
         .collect();
-    for (i, instructions) in Instructions::all_available().enumerate() {
+    for (i, instructions) in Instructions::all_available::<S>().enumerate() {
         let threads = 1 + i % 3;
         // The neighbours change too: half the environments, in another order.
         for some in [&envs[..], &[17, 3, 8, 1, 0, 12, 5, 9, 4]] {

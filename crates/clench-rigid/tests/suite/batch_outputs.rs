@@ -47,7 +47,7 @@ fn compare<S: Precision>(builder: &ModelBuilder, instructions: Instructions, ste
 
 #[test]
 fn outputs_are_those_of_simulations() {
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<f64>() {
         compare::<f64>(&loose_parts(), instructions, 40);
     }
     for integrator in [Integrator::Euler, Integrator::Rk4] {
@@ -215,7 +215,7 @@ fn applied_forces_and_loops_count_as_external() {
 fn forces_on_bodies_come_and_go() {
     let (model, options) = (model(&loose_parts()), RigidOptions::new());
     let envs: Vec<usize> = (0..11).collect();
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<f64>() {
         let mut batch = batch::<f64>(&model, &envs, with(instructions, 1, options));
         let mut alone: Vec<Sim> = envs.iter().map(|&e| alone(&model, options, e)).collect();
         batch.record(&["cfrc_ext"]).expect("known");

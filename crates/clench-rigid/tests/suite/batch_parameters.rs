@@ -91,7 +91,7 @@ fn scale_all<S: Precision>(builder: &ModelBuilder, instructions: Instructions, s
 fn every_number_can_differ() {
     let mut constraints = everything();
     constraints.options = RigidOptions::new();
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<f64>() {
         scale_all::<f64>(&constraints, instructions, 50);
         scale_all::<f64>(&crate::machines::everything(), instructions, 50);
     }

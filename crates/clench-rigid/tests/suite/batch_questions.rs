@@ -48,7 +48,7 @@ fn pair<S: Precision>(instructions: Instructions, threads: usize) -> (Batch<S>, 
 }
 
 fn each<S: Precision>(check: impl Fn(&mut Batch<S>, &mut [Sim<S>])) {
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<S>() {
         for threads in [1, 3] {
             let (mut batch, mut sims) = pair::<S>(instructions, threads);
             check(&mut batch, &mut sims);

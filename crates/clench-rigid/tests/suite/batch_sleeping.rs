@@ -62,7 +62,7 @@ fn compare<S: Precision>(steps: usize, outputs: &[&str]) {
         asleep > most / 5 && asleep < 9 * most / 10,
         "{asleep} of {most}: nothing to compare"
     );
-    for (i, instructions) in Instructions::all_available().enumerate() {
+    for (i, instructions) in Instructions::all_available::<S>().enumerate() {
         let options = with(instructions, 1 + i % 3, RigidOptions::new());
         let mut batch: Batch<S> = Batch::with_options(model.clone(), ENVS, options).expect("valid");
         batch.record(outputs).expect("there");

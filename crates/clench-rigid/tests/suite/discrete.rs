@@ -191,7 +191,7 @@ fn couplings_in_lanes<S: Precision>(rigid: &RigidOptions) {
     for count in [slack, rubs] {
         assert!((100..ENVS * 40 - 100).contains(&count), "{count}");
     }
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<S>() {
         let options = with(instructions, 1, *rigid);
         let mut batch = Batch::<S>::with_options(Arc::clone(&model), ENVS, options).expect("valid");
         for env in 0..ENVS {

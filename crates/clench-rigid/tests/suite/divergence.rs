@@ -111,7 +111,7 @@ fn begins_anew<S: Precision>(instructions: Instructions, threads: usize) {
 
 #[test]
 fn with_autoreset_an_environment_begins_anew_and_its_neighbours_do_not_notice() {
-    for (i, instructions) in Instructions::all_available().enumerate() {
+    for (i, instructions) in Instructions::all_available::<f64>().enumerate() {
         begins_anew::<f64>(instructions, 1 + i % 3);
     }
     begins_anew::<f32>(Instructions::widest(), 2);

@@ -242,7 +242,7 @@ fn lanes_equal_one_alone<S: Precision>() {
         sim.state
     }));
     let envs = Vec::from_iter(0..ENVS);
-    for (i, instructions) in Instructions::all_available().enumerate() {
+    for (i, instructions) in Instructions::all_available::<S>().enumerate() {
         let how = with(instructions, 1 + i % 3, RigidOptions::new());
         let mut batch = batch::<S>(&model, &envs, how);
         let mut held = vec![Vec::new(); ENVS];

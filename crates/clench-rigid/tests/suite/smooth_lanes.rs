@@ -55,7 +55,7 @@ fn compare<S: Precision>() {
                 sim.state
             })
             .collect();
-        for instructions in Instructions::all_available() {
+        for instructions in Instructions::all_available::<S>() {
             let options = with(instructions, 1, RigidOptions::default());
             let mut batch =
                 Batch::<S>::with_options(model.clone(), ENVS as usize, options).expect("valid");

@@ -3,7 +3,7 @@
 use super::shapes::{self, point, pose};
 use crate::frame::tendon_spans;
 use clench::Model;
-use clench::math::{Quat, Vec3};
+use clench::math::{Quat, Real, Vec3};
 use clench::rigid::model::JointKind;
 use clench::rigid::readout::{Push, contact_rows};
 use clench::rigid::{Precision, Sim};
@@ -125,8 +125,8 @@ pub(crate) fn sensor_names(model: &Model) -> Vec<String> {
 pub(crate) fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let position = &moment.sim.workspace().position;
     let transform = |body: usize| {
-        let at = position.xpos[body].to_array().map(|x| x.to_f64());
-        let turn = position.xquat[body].to_array().map(|x| x.to_f64());
+        let at = position.xpos[body].to_array().map(|x| x.lane(0).to_f64());
+        let turn = position.xquat[body].to_array().map(|x| x.lane(0).to_f64());
         json!({
             "timestamp": time,
             "parent_frame_id": moment.frames[0],
@@ -235,7 +235,9 @@ fn record(names: impl IntoIterator<Item = impl Into<String>>, numbers: Vec<Value
 /// How the last solve went.
 pub(crate) fn solver<T: Precision>(moment: &Moment<T>) -> Value {
     let (stats, contacts) = (moment.sim.stats(), moment.sim.contacts());
-    let depths = contacts.iter().map(|contact| -contact.dist.to_f64());
+    let depths = contacts
+        .iter()
+        .map(|contact| -contact.dist.lane(0).to_f64());
     let numbers = vec![
         json!(stats.iterations),
         json!(stats.gap),
@@ -274,7 +276,7 @@ pub(crate) fn sensors<T: Precision>(moment: &Moment<T>) -> Value {
     let data = &moment.sim.workspace().sensors.data;
     let of = |sensor: &clench::rigid::model::Sensor| {
         let numbers = data[sensor.numbers.clone()].iter();
-        json!(numbers.map(|x| x.to_f64()).collect::<Vec<_>>())
+        json!(numbers.map(|x| x.lane(0).to_f64()).collect::<Vec<_>>())
     };
     record(sensor_names(model), model.sensors.iter().map(of).collect())
 }

@@ -20,7 +20,7 @@ pub fn resume<S: Precision>(plan: &Plan) {
     let mut failures = 0;
     for leg in 0..plan.steps / LEG {
         let saved = left.save().expect("rows of the right shapes");
-        let mut resumed = batch_with::<S>(plan, otherwise(leg));
+        let mut resumed = batch_with::<S>(plan, otherwise::<S>(leg));
         resumed.restore(&saved).expect("a snapshot of such a batch");
         run(&mut left, leg);
         run(&mut resumed, leg);
@@ -54,8 +54,8 @@ pub fn resume<S: Precision>(plan: &Plan) {
 }
 
 /// Options that may change speed and nothing else.
-fn otherwise(leg: usize) -> BatchOptions {
-    let available: Vec<Instructions> = Instructions::all_available().collect();
+fn otherwise<S: Precision>(leg: usize) -> BatchOptions {
+    let available: Vec<Instructions> = Instructions::all_available::<S>().collect();
     BatchOptions {
         threads: Some(1 + leg % 3),
         instructions: Some(available[leg % available.len()]),

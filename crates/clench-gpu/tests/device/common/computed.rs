@@ -1,7 +1,7 @@
 //! What the processor computed, by the names of the device's fields.
 
 use clench_gpu::GpuSolve;
-use clench_math::{Mat3, Motion, Quat, Vec3};
+use clench_math::{Mat3, Motion, Quat, Real, Scalar, Vec3};
 use clench_rigid::Sim;
 use clench_rigid::batch::Precision;
 use std::collections::BTreeMap;
@@ -10,27 +10,14 @@ use std::collections::BTreeMap;
 pub fn computed<S: Precision>(sim: &Sim<S>) -> BTreeMap<&'static str, Vec<f64>> {
     let ws = sim.workspace();
     let (pos, vel, force) = (&ws.position, &ws.velocity, &ws.force);
-    let plain = |x: &[S]| x.iter().map(|x| x.to_f64()).collect::<Vec<f64>>();
-    let vectors = |v: &[Vec3<S>]| {
-        v.iter()
-            .flat_map(|v| v.to_array().map(|x| x.to_f64()))
-            .collect()
-    };
-    let quats = |q: &[Quat<S>]| {
-        q.iter()
-            .flat_map(|q| q.to_array().map(|x| x.to_f64()))
-            .collect()
-    };
-    let matrices = |m: &[Mat3<S>]| {
+    let plain = |x: &[S::Alone]| x.iter().copied().map(first).collect::<Vec<f64>>();
+    let vectors = |v: &[Vec3<S::Alone>]| v.iter().flat_map(|v| v.to_array().map(first)).collect();
+    let quats = |q: &[Quat<S::Alone>]| q.iter().flat_map(|q| q.to_array().map(first)).collect();
+    let matrices = |m: &[Mat3<S::Alone>]| {
         let rows = m.iter().flat_map(|m| m.rows);
-        rows.flat_map(|r| r.to_array().map(|x| x.to_f64()))
-            .collect()
+        rows.flat_map(|r| r.to_array().map(first)).collect()
     };
-    let motions = |m: &[Motion<S>]| {
-        m.iter()
-            .flat_map(|m| m.to_array().map(|x| x.to_f64()))
-            .collect()
-    };
+    let motions = |m: &[Motion<S::Alone>]| m.iter().flat_map(|m| m.to_array().map(first)).collect();
     let mut all = BTreeMap::new();
     all.insert("xpos", vectors(&pos.xpos));
     all.insert("xquat", quats(&pos.xquat));
@@ -79,7 +66,7 @@ fn contact_numbers<S: Precision>(sim: &Sim<S>) -> Vec<f64> {
         let axes = c.frame.rows.into_iter().flat_map(|row| row.to_array());
         place.chain(axes).collect::<Vec<_>>()
     });
-    numbers.map(|x| x.to_f64()).collect()
+    numbers.map(first).collect()
 }
 
 /// What the convex problem holds of each row, in order.
@@ -88,19 +75,19 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
     let nv = ws.problem.nv();
     let (mut aref, mut r, mut jacobian) = (Vec::new(), Vec::new(), Vec::new());
     for block in ws.problem.blocks() {
-        aref.extend(block.aref.iter().map(|x| x.to_f64()));
-        r.extend(block.r.iter().map(|x| x.to_f64()));
+        aref.extend(block.aref.iter().copied().map(first));
+        r.extend(block.r.iter().copied().map(first));
         // A block may move no dof.
         let width = block.dofs.len();
         for row in 0..block.aref.len() {
             let mut dense = vec![0.0; nv];
             for (&dof, j) in block.dofs.iter().zip(&block.jacobian[row * width..]) {
-                dense[dof as usize] = j.to_f64();
+                dense[dof as usize] = first(*j);
             }
             jacobian.extend(dense);
         }
     }
-    let plain = |x: &[S]| x.iter().map(|x| x.to_f64()).collect();
+    let plain = |x: &[S::Alone]| x.iter().copied().map(first).collect();
     vec![
         ("aref", aref),
         ("r", r),
@@ -108,6 +95,11 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
         ("position", plain(&ws.record.pos)),
         ("velocity", plain(&ws.record.vel)),
     ]
+}
+
+/// The number of the one environment of a simulation.
+fn first<T: Real>(x: T) -> f64 {
+    x.lane(0).to_f64()
 }
 
 /// The part of a row that is in use; of contacts, what is not the number of their pair.

@@ -104,7 +104,7 @@ impl TestScalar for f32 {
 
 /// Runs a task in lanes of all instruction sets that the processor has.
 pub fn in_instruction_sets<S: TestScalar>(task: impl LaneTask<S, Output = ()> + Copy) {
-    for instructions in Instructions::all_available() {
+    for instructions in Instructions::all_available::<S>() {
         assert!(S::in_lanes(instructions, task).is_some());
     }
 }

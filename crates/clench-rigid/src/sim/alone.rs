@@ -1,0 +1,48 @@
+//! The state of a simulation in the number type that it is computed in, see [`Scalar::Alone`]: the state itself, or a copy in lanes.
+
+use crate::model::Model;
+use crate::state::State;
+use clench_math::{Real, Scalar};
+use std::any::Any;
+
+/// Room for a copy in lanes, where the state has to be copied.
+pub(super) type Room<S> = Option<Box<State<<S as Scalar>::Alone>>>;
+
+/// Room for the states of a model.
+pub(super) fn room<S: Scalar>(model: &Model) -> Room<S> {
+    (S::Alone::LANES > 1).then(|| Box::new(State::new(model)))
+}
+
+/// Shows a state to `pass`.
+pub(super) fn read<S: Scalar, R>(
+    state: &State<S>,
+    room: &mut Room<S>,
+    pass: impl FnOnce(&State<S::Alone>) -> R,
+) -> R {
+    if let Some(copy) = room {
+        copy.splat_from(state);
+        return pass(copy);
+    }
+    match (state as &dyn Any).downcast_ref() {
+        Some(same) => pass(same),
+        None => unreachable!("lanes have room for a copy"),
+    }
+}
+
+/// Lets `pass` move a state.
+pub(super) fn change<S: Scalar, R>(
+    state: &mut State<S>,
+    room: &mut Room<S>,
+    pass: impl FnOnce(&mut State<S::Alone>) -> R,
+) -> R {
+    if let Some(copy) = room {
+        copy.splat_from(state);
+        let result = pass(copy);
+        copy.write_moving(state);
+        return result;
+    }
+    match (state as &mut dyn Any).downcast_mut() {
+        Some(same) => pass(same),
+        None => unreachable!("lanes have room for a copy"),
+    }
+}
