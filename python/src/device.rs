@@ -1,9 +1,7 @@
 //! What steps a batch: the processor, or a graphics device, as users name it.
 
-use crate::error::sim_error;
 use clench::BatchOptions;
-use clench_gpu::{GpuError, GpuReal};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use std::sync::Arc;
@@ -39,26 +37,62 @@ impl FromPyObject<'_, '_> for Device {
     }
 }
 
+#[cfg(feature = "gpu")]
+mod graphics {
+    use crate::error::sim_error;
+    use clench_gpu::GpuError;
+    pub(crate) use clench_gpu::GpuReal;
+    use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+    use pyo3::prelude::*;
+
+    pub(crate) fn error(error: GpuError) -> PyErr {
+        let text = error.to_string();
+        match error {
+            GpuError::Sim(error) => sim_error(error),
+            GpuError::OutOfMemory { .. } => PyMemoryError::new_err(text),
+            GpuError::NoDevice | GpuError::Unusable { .. } | GpuError::Lost { .. } => {
+                PyRuntimeError::new_err(text)
+            }
+            _ => PyValueError::new_err(text),
+        }
+    }
+}
+
 /// A batch that a graphics device steps, in the precision of its numbers.
-pub(crate) fn batch<S: GpuReal>(
+#[cfg(feature = "gpu")]
+pub(crate) fn batch<S: graphics::GpuReal>(
     model: Arc<clench::Model>,
     count: usize,
     options: BatchOptions,
     name: Option<String>,
 ) -> PyResult<clench::Batch<S>> {
-    clench_gpu::batch(model, count, options, name.as_deref()).map_err(gpu_error)
+    clench_gpu::batch(model, count, options, name.as_deref()).map_err(graphics::error)
 }
 
-fn gpu_error(error: GpuError) -> PyErr {
-    let text = error.to_string();
-    match error {
-        GpuError::Sim(error) => sim_error(error),
-        GpuError::OutOfMemory { .. } => PyMemoryError::new_err(text),
-        GpuError::NoDevice | GpuError::Unusable { .. } | GpuError::Lost { .. } => {
-            PyRuntimeError::new_err(text)
-        }
-        _ => PyValueError::new_err(text),
-    }
+/// Says how to build a package that steps on graphics devices.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn batch<S: clench::Precision>(
+    _: Arc<clench::Model>,
+    _: usize,
+    _: BatchOptions,
+    _: Option<String>,
+) -> PyResult<clench::Batch<S>> {
+    Err(no_devices())
+}
+
+#[cfg(not(feature = "gpu"))]
+fn no_devices() -> PyErr {
+    pyo3::exceptions::PyRuntimeError::new_err(without("graphics devices", "gpu"))
+}
+
+/// What an error says of a part that was not compiled in.
+#[cfg(not(all(feature = "gpu", feature = "render")))]
+pub(crate) fn without(part: &str, feature: &str) -> String {
+    format!(
+        "this package was built without {part}; wheels have them, and from source \
+         `pip install ./python --config-settings=build-args=--features={feature}` adds them: \
+         about two minutes more on two cores"
+    )
 }
 
 /// The graphics devices of this machine that can step batches, cards first.
@@ -67,8 +101,21 @@ fn gpu_error(error: GpuError) -> PyErr {
 /// -------
 /// list of str
 ///     Their names, the first of which ``Batch(..., device="gpu")`` takes; empty where there is none.
+///
+/// Raises
+/// ------
+/// RuntimeError
+///     A package that was built without them, and how to build it with them.
 #[pyfunction]
-pub(crate) fn devices(py: Python<'_>) -> Vec<String> {
-    let all = py.detach(clench_gpu::devices);
-    all.into_iter().map(|device| device.name).collect()
+pub(crate) fn devices(py: Python<'_>) -> PyResult<Vec<String>> {
+    #[cfg(feature = "gpu")]
+    {
+        let all = py.detach(clench_gpu::devices);
+        Ok(all.into_iter().map(|device| device.name).collect())
+    }
+    #[cfg(not(feature = "gpu"))]
+    {
+        let _ = py;
+        Err(no_devices())
+    }
 }

@@ -15,6 +15,8 @@ mod contact;
 mod contacts;
 mod count;
 mod device;
+#[cfg_attr(not(feature = "render"), path = "no_drawing.rs")]
+mod drawing;
 mod element;
 mod error;
 mod field;

@@ -1,21 +1,14 @@
 //! Pictures of simulations as arrays.
 
 use crate::arrays::shaped;
-use crate::batch::{AnyBatch, Batch};
-use crate::busy::lock;
-use crate::error::{classes::ClenchError, sim_error};
-use crate::kind::Kind;
-use crate::model::Model;
-use crate::row_sim::AnySim;
+use crate::batch::Batch;
+use crate::drawing::{Wanted, draw};
 use crate::sim::Sim;
-use crate::viewed::{Target, each_viewed};
+use crate::viewed::Target;
 use crate::viewer::check_env;
-use clench_render::{Image, Picture, RenderError, Renderer, View};
-use clench_view::Viewed;
-use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 /// A camera that belongs to no model, as MuJoCo's free one: it looks at a point from a distance and a direction.
 ///
@@ -32,7 +25,23 @@ use std::sync::{Arc, PoisonError};
 /// fovy : float
 ///     Vertical field of view, degrees.
 #[pyclass(frozen, module = "clench")]
-pub(crate) struct FreeCamera(clench_render::FreeCamera);
+pub(crate) struct FreeCamera {
+    /// list of float : The point in the middle of the picture (3,), m.
+    #[pyo3(get)]
+    pub(crate) lookat: [f64; 3],
+    /// float : How far from it, m.
+    #[pyo3(get)]
+    pub(crate) distance: f64,
+    /// float : Direction of view about the vertical, degrees.
+    #[pyo3(get)]
+    pub(crate) azimuth: f64,
+    /// float : Direction of view above the horizon, degrees.
+    #[pyo3(get)]
+    pub(crate) elevation: f64,
+    /// float : Vertical field of view, degrees.
+    #[pyo3(get)]
+    pub(crate) fovy: f64,
+}
 
 #[pymethods]
 impl FreeCamera {
@@ -48,7 +57,7 @@ impl FreeCamera {
     ) -> PyResult<Self> {
         let array = shaped::<f64>("lookat", lookat, &[3])?;
         let point = array.as_array();
-        let camera = clench_render::FreeCamera {
+        let camera = FreeCamera {
             lookat: [point[0], point[1], point[2]],
             distance,
             azimuth,
@@ -65,128 +74,7 @@ impl FreeCamera {
                 "a camera needs finite numbers, a distance above 0, and a field of view between 0 and 180 degrees",
             ));
         }
-        Ok(FreeCamera(camera))
-    }
-
-    /// list of float : The point in the middle of the picture (3,), m.
-    #[getter]
-    fn lookat(&self) -> [f64; 3] {
-        self.0.lookat
-    }
-    /// float : How far from it, m.
-    #[getter]
-    fn distance(&self) -> f64 {
-        self.0.distance
-    }
-    /// float : Direction of view about the vertical, degrees.
-    #[getter]
-    fn azimuth(&self) -> f64 {
-        self.0.azimuth
-    }
-    /// float : Direction of view above the horizon, degrees.
-    #[getter]
-    fn elevation(&self) -> f64 {
-        self.0.elevation
-    }
-    /// float : Vertical field of view, degrees.
-    #[getter]
-    fn fovy(&self) -> f64 {
-        self.0.fovy
-    }
-}
-
-/// What of a picture is wanted, and how it is asked for.
-struct Wanted {
-    picture: Picture,
-    kind: Channel,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Channel {
-    Colors,
-    Depth,
-    Geoms,
-}
-
-impl Wanted {
-    fn new(
-        model: &clench::Model,
-        (width, height): (u32, u32),
-        camera: Option<&Bound<'_, PyAny>>,
-        kind: &str,
-        groups: Option<Vec<usize>>,
-    ) -> PyResult<Self> {
-        let kind = match kind {
-            "rgb" => Channel::Colors,
-            "depth" => Channel::Depth,
-            "geom" => Channel::Geoms,
-            other => {
-                return Err(PyValueError::new_err(format!(
-                    "kind is {other:?}, but must be \"rgb\", \"depth\" or \"geom\""
-                )));
-            }
-        };
-        let view = camera.map(|camera| match camera.cast::<FreeCamera>() {
-            Ok(free) => Ok(View::Free(free.get().0)),
-            Err(_) => Kind::Camera.find(model, camera).map(View::Camera),
-        });
-        let mut picture = Picture::new(width, height);
-        picture.view = view.transpose()?;
-        picture.colors = kind == Channel::Colors;
-        picture.facts = !picture.colors;
-        if let Some(groups) = groups {
-            picture.groups = groups;
-        }
-        Ok(Wanted { picture, kind })
-    }
-
-    /// Draws an environment.
-    fn draw<'py>(
-        &self,
-        py: Python<'py>,
-        model: &Model,
-        target: &Target,
-        env: usize,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let mut renderer = (model.renderer().lock()).unwrap_or_else(PoisonError::into_inner);
-        if renderer.is_none() {
-            let made = py.detach(|| Renderer::new(model.inner()));
-            *renderer = Some(made.map_err(render_error)?);
-        }
-        let Some(renderer) = &mut *renderer else {
-            return Err(ClenchError::new_err("nothing draws"));
-        };
-        let drawn = each_viewed!(target, viewed => py.detach(|| {
-            viewed.ask(env, |sim| renderer.draw(sim, &self.picture))
-        }));
-        self.array(py, drawn.map_err(sim_error)?.map_err(render_error)?)
-    }
-
-    fn array<'py>(&self, py: Python<'py>, image: Image) -> PyResult<Bound<'py, PyAny>> {
-        let (height, width) = (image.height, image.width);
-        Ok(match self.kind {
-            Channel::Colors => PyArray1::from_vec(py, image.rgb)
-                .reshape([height, width, 3])?
-                .into_any(),
-            Channel::Depth => PyArray1::from_vec(py, image.depth)
-                .reshape([height, width])?
-                .into_any(),
-            Channel::Geoms => PyArray1::from_vec(py, image.geoms)
-                .reshape([height, width])?
-                .into_any(),
-        })
-    }
-}
-
-fn render_error(error: RenderError) -> PyErr {
-    match error {
-        RenderError::Sim(error) => sim_error(error),
-        RenderError::Size(..) | RenderError::NoCamera(..) => {
-            PyValueError::new_err(error.to_string())
-        }
-        RenderError::NoDevice(_) | RenderError::Failed(..) => {
-            ClenchError::new_err(error.to_string())
-        }
+        Ok(camera)
     }
 }
 
@@ -216,7 +104,7 @@ impl Sim {
     /// Raises
     /// ------
     /// ClenchError
-    ///     No device that draws, and what to install.
+    ///     No device that draws, and what to install; a package that was built without pictures, and how to build it with them.
     /// ValueError
     ///     A size that no picture can have; a name that no camera has.
     #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None))]
@@ -229,9 +117,14 @@ impl Sim {
         kind: &str,
         groups: Option<Vec<usize>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let wanted = Wanted::new(self.described(), (width, height), camera, kind, groups)?;
+        let wanted = Wanted {
+            size: (width, height),
+            camera,
+            kind,
+            groups,
+        };
         let target = Target::Sim(Arc::clone(self.shared()));
-        wanted.draw(py, self.py_model().get(), &target, 0)
+        draw(py, self.py_model().get(), (&target, 0), wanted)
     }
 }
 
@@ -269,8 +162,13 @@ impl Batch {
         groups: Option<Vec<usize>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_env(env, self.count())?;
-        let wanted = Wanted::new(self.described(), (width, height), camera, kind, groups)?;
+        let wanted = Wanted {
+            size: (width, height),
+            camera,
+            kind,
+            groups,
+        };
         let target = Target::Batch(Arc::clone(self.shared()));
-        wanted.draw(py, self.py_model().get(), &target, env)
+        draw(py, self.py_model().get(), (&target, env), wanted)
     }
 }

@@ -47,6 +47,7 @@ pub(crate) fn build() -> Result<(), String> {
 /// The crates that the module is made of, ours left out.
 fn parts() -> Result<Vec<Part>, String> {
     let mut tree = cargo(&["tree", "--locked", "--package", "clench-python"]);
+    tree.args(["--features", "gpu,render"]);
     tree.args(["--edges", "normal,no-proc-macro", "--prefix", "none"]);
     tree.args(["--format", "{p}\t{l}"]);
     let done = tree.output().map_err(|e| format!("cargo tree: {e}"))?;

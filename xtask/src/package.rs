@@ -71,7 +71,7 @@ pub(crate) fn wheel() -> Result<(), String> {
 /// Tells pip how the package is to be compiled, and where.
 fn compile_with(pip: &mut Command, profile: Profile) {
     pip.arg(format!(
-        "--config-settings=build-args=--profile={}",
+        "--config-settings=build-args=--profile={} --features=gpu,render",
         profile.name()
     ));
     profile.choose_instructions(pip);

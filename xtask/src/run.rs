@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The parts of the program that are left out by default; checks and tests have them.
-pub(crate) const ALL_FEATURES: &str = "clench-cli/gpu,clench-cli/render";
+pub(crate) const ALL_FEATURES: &str =
+    "clench-cli/gpu,clench-cli/render,clench-python/gpu,clench-python/render";
 
 /// The environment variable that chooses instruction sets; see the build script of clench-math.
 const INSTRUCTIONS: &str = "CLENCH_INSTRUCTIONS";

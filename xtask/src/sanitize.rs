@@ -49,7 +49,7 @@ fn folder() -> PathBuf {
 fn sanitize_python(args: &[String]) -> Result<(), String> {
     python::prepare()?;
     let mut build = instrumented("build")?;
-    build.args(["--package", "clench-python"]);
+    build.args(["--package", "clench-python", "--features", "gpu,render"]);
     run(build)?;
     let compiled = folder().join(host()?).join("debug/libclench_python.so");
     let package = folder().join("python/clench");

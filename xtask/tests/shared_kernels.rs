@@ -20,7 +20,8 @@ fn what_draws_has_the_features_in_the_python_package_that_it_has_in_tests() {
     assert!(package.len() > 100, "{package:?}");
     let mut tests = tree(&["--prefix", "none", "--edges", "normal,build,dev"]);
     tests.args(["--format", "{p} {f}", "--workspace"]);
-    tests.args(["--features", "clench-cli/gpu,clench-cli/render"]);
+    let features = "clench-cli/gpu,clench-cli/render,clench-python/gpu,clench-python/render";
+    tests.args(["--features", features]);
     let tests = output(tests);
     let tests: BTreeSet<&str> = (tests.lines())
         .map(|line| line.trim_end_matches(" (*)").trim_end())
@@ -43,6 +44,10 @@ fn below(top: &str, package: &str) -> BTreeSet<String> {
         "depth",
     ]);
     tree.args(["--format", " {p} {f}", "--package", package]);
+    if package == "clench-python" {
+        // As its tests have it.
+        tree.args(["--features", "gpu,render"]);
+    }
     let mut inside = None;
     let mut found = BTreeSet::new();
     for line in output(tree).lines() {

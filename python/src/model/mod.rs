@@ -4,13 +4,13 @@ mod counts;
 mod elements;
 
 use crate::count::Count;
+use crate::drawing::Renderer;
 use crate::error::{load_error, sim_error};
 use crate::fields;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
 use clench::SaveModel;
 use clench::rigid::model::{Integrator, ParamField};
-use clench_render::Renderer;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -60,6 +60,7 @@ impl Model {
     }
 
     /// What draws pictures of it; none before the first.
+    #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing draws"))]
     pub(crate) fn renderer(&self) -> &Mutex<Option<Renderer>> {
         &self.2
     }

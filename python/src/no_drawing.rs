@@ -1,0 +1,29 @@
+//! What stands for `drawing` in a package that is built without pictures.
+
+use crate::error::classes::ClenchError;
+use crate::model::Model;
+use crate::viewed::Target;
+use pyo3::prelude::*;
+
+/// Nothing draws.
+pub(crate) enum Renderer {}
+
+/// What of a picture is wanted, as users say it.
+#[expect(dead_code, reason = "nothing draws")]
+pub(crate) struct Wanted<'a, 'py> {
+    pub(crate) size: (u32, u32),
+    pub(crate) camera: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) kind: &'a str,
+    pub(crate) groups: Option<Vec<usize>>,
+}
+
+/// Says how to build a package that draws.
+pub(crate) fn draw<'py>(
+    _: Python<'py>,
+    _: &Model,
+    _: (&Target, usize),
+    _: Wanted<'_, 'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let text = crate::device::without("pictures", "render");
+    Err(ClenchError::new_err(text))
+}
