@@ -95,7 +95,7 @@ pub(crate) fn read(
         return Err("the file is empty".to_owned());
     }
     let found = match format {
-        Format::Stl => stl::read(bytes),
+        Format::Stl => stl::read(&bytes),
         Format::Obj => obj::read(&bytes),
         Format::Msh => msh::read(&bytes),
         Format::Collada => collada::read(&bytes),

@@ -1,33 +1,33 @@
-//! STL, binary or text. Corners with the same bits are one vertex.
+//! STL, binary and text. Corners with the same bits are one vertex. Normals are not used: many a file has none that are right.
 
-use super::triangles::{Triangles, points};
-use std::io::Cursor;
+use super::triangles::{Triangles, floats};
+use clench_math::Vec3;
+use std::collections::HashMap;
+use std::iter::Enumerate;
+use std::str::{Lines, SplitAsciiWhitespace};
 
 /// What a binary file begins with: 80 bytes of any content, then the number of triangles.
 const HEADER: usize = 84;
 /// A triangle: normal, three corners, two bytes of any content.
 const TRIANGLE: usize = 50;
+/// The normal, three numbers.
+const NORMAL: usize = 12;
+/// Three corners of three numbers.
+const CORNERS: usize = 36;
 
-pub(super) fn read(mut bytes: Vec<u8>) -> Result<Triangles, String> {
-    if is_binary(&bytes)? {
-        // Many a binary file begins with "solid", as text files do: only its length tells.
-        bytes[..80].fill(0);
+pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
+    let mut mesh = Indexed::default();
+    match is_binary(bytes)? {
+        true => read_binary(&bytes[HEADER..], &mut mesh)?,
+        false => read_text(&String::from_utf8_lossy(bytes), &mut mesh)?,
     }
-    let mesh = stl_io::read_stl(&mut Cursor::new(bytes))
-        .map_err(|error| format!("not a valid STL file: {error}"))?;
-    if mesh.faces.is_empty() {
-        return Err("the STL file has no triangles".to_owned());
+    match mesh.triangles.faces.is_empty() {
+        true => Err("the STL file has no triangles".to_owned()),
+        false => Ok(mesh.triangles),
     }
-    Ok(Triangles {
-        vertices: points(mesh.vertices.iter().flat_map(|vertex| vertex.0)),
-        faces: (mesh.faces.iter())
-            .map(|face| face.vertices.map(|v| v as u32))
-            .collect(),
-        ..Triangles::default()
-    })
 }
 
-/// Whether the bytes are a binary file.
+/// Whether the bytes are a binary file. Many a binary file begins with "solid", as text files do: its length tells.
 ///
 /// # Errors
 /// Bytes that are neither text nor as long as the number of triangles that they claim says.
@@ -40,7 +40,8 @@ fn is_binary(bytes: &[u8]) -> Result<bool, String> {
     if bytes.len() >= HEADER && bytes.len() == expected {
         return Ok(true);
     }
-    if bytes.trim_ascii_start().starts_with(b"solid") && !bytes.contains(&0) {
+    let start = bytes.trim_ascii_start().get(..5);
+    if start.is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) && !bytes.contains(&0) {
         return Ok(false);
     }
     Err(match bytes.len() < HEADER {
@@ -50,4 +51,124 @@ fn is_binary(bytes: &[u8]) -> Result<bool, String> {
             bytes.len()
         ),
     })
+}
+
+/// Triangles whose equal corners are one vertex.
+#[derive(Default)]
+struct Indexed {
+    triangles: Triangles,
+    vertices: HashMap<[u32; 3], u32>,
+}
+
+impl Indexed {
+    /// Adds a triangle.
+    ///
+    /// # Errors
+    /// More vertices than can be counted.
+    fn push(&mut self, corners: [[f32; 3]; 3]) -> Result<(), String> {
+        let mut face = [0; 3];
+        for (index, corner) in face.iter_mut().zip(corners) {
+            let vertices = &mut self.triangles.vertices;
+            let next = u32::try_from(vertices.len()).map_err(|_| "too many vertices")?;
+            *index = *self
+                .vertices
+                .entry(corner.map(f32::to_bits))
+                .or_insert(next);
+            if *index == next {
+                vertices.push(Vec3::from_array(corner.map(f64::from)));
+            }
+        }
+        self.triangles.faces.push(face);
+        Ok(())
+    }
+}
+
+fn read_binary(bytes: &[u8], mesh: &mut Indexed) -> Result<(), String> {
+    for (number, triangle) in bytes.chunks_exact(TRIANGLE).enumerate() {
+        let numbers = floats(&triangle[NORMAL..NORMAL + CORNERS]);
+        let mut corners = [[0.0; 3]; 3];
+        let coordinates = corners.as_flattened_mut().iter_mut();
+        coordinates.zip(numbers).for_each(|(to, x)| *to = x);
+        if !corners.as_flattened().iter().all(|x| x.is_finite()) {
+            return Err(format!("triangle {number}: a coordinate is not finite"));
+        }
+        (mesh.push(corners)).map_err(|error| format!("triangle {number}: {error}"))?;
+    }
+    Ok(())
+}
+
+/// Reads all solids of a text; small letters and capitals are the same.
+fn read_text(text: &str, mesh: &mut Indexed) -> Result<(), String> {
+    let mut lines = Text {
+        lines: text.lines().enumerate(),
+        number: 0,
+    };
+    while let Some((word, _)) = lines.next() {
+        lines.expect(word, "solid")?;
+        loop {
+            let (word, _) = lines.need("facet or endsolid")?;
+            if word.eq_ignore_ascii_case("endsolid") {
+                break;
+            }
+            lines.expect(word, "facet")?;
+            lines.take("outer")?;
+            let corners = [lines.vertex()?, lines.vertex()?, lines.vertex()?];
+            (mesh.push(corners)).map_err(|error| lines.error(&error))?;
+            lines.take("endloop")?;
+            lines.take("endfacet")?;
+        }
+    }
+    Ok(())
+}
+
+/// The lines of a text that are not empty.
+struct Text<'a> {
+    lines: Enumerate<Lines<'a>>,
+    /// Of the last one, from 1 on.
+    number: usize,
+}
+
+impl<'a> Text<'a> {
+    /// The first word of the next line and those after it.
+    fn next(&mut self) -> Option<(&'a str, SplitAsciiWhitespace<'a>)> {
+        self.lines.by_ref().find_map(|(index, line)| {
+            self.number = index + 1;
+            let mut words = line.split_ascii_whitespace();
+            Some((words.next()?, words))
+        })
+    }
+    fn need(&mut self, what: &str) -> Result<(&'a str, SplitAsciiWhitespace<'a>), String> {
+        let next = self.next();
+        next.ok_or_else(|| self.error(&format!("the file ends where {what} should follow")))
+    }
+    /// The words after `keyword`, with which the next line begins.
+    fn take(&mut self, keyword: &str) -> Result<SplitAsciiWhitespace<'a>, String> {
+        let (word, rest) = self.need(keyword)?;
+        self.expect(word, keyword)?;
+        Ok(rest)
+    }
+    fn vertex(&mut self) -> Result<[f32; 3], String> {
+        let mut words = self.take("vertex")?;
+        let mut corner = [0.0; 3];
+        for coordinate in &mut corner {
+            let word = words.next();
+            let word = word.ok_or_else(|| self.error("a vertex has three coordinates"))?;
+            let number = word.parse().ok().filter(|x: &f32| x.is_finite());
+            let wrong = || self.error(&format!("\"{word}\" is not a finite number"));
+            *coordinate = number.ok_or_else(wrong)?;
+        }
+        match words.next() {
+            None => Ok(corner),
+            Some(_) => Err(self.error("a vertex has three coordinates")),
+        }
+    }
+    fn expect(&self, word: &str, keyword: &str) -> Result<(), String> {
+        match word.eq_ignore_ascii_case(keyword) {
+            true => Ok(()),
+            false => Err(self.error(&format!("\"{word}\" where {keyword} should be"))),
+        }
+    }
+    fn error(&self, what: &str) -> String {
+        format!("not a valid STL file: line {}: {what}", self.number)
+    }
 }

@@ -25,12 +25,61 @@ fn broken_files_are_refused_with_their_names() {
         ("short.stl", stl[..90].to_vec(), "bytes"),
         ("cut.stl", stl[..stl.len() - 1].to_vec(), "bytes"),
         ("many.stl", many, "bytes"),
-        ("nan.stl", with_f32(96, f32::NAN), "not finite"),
-        ("infinite.stl", with_f32(96, f32::INFINITY), "not finite"),
+        (
+            "nan.stl",
+            with_f32(96, f32::NAN),
+            "triangle 0: a coordinate is not finite",
+        ),
+        (
+            "infinite.stl",
+            with_f32(146, f32::INFINITY),
+            "triangle 1: a coordinate is not finite",
+        ),
         (
             "words.stl",
             b"solid x\nfacet normal 0 0 0\nouter loop\nvertex 1 2 up\n".to_vec(),
-            "STL",
+            "not a valid STL file: line 4: \"up\" is not a finite number",
+        ),
+        (
+            "two.stl",
+            b"solid\nfacet\nouter loop\nvertex 1 2\n".to_vec(),
+            "line 4: a vertex has three coordinates",
+        ),
+        (
+            "four.stl",
+            b"solid\nfacet\nouter loop\nvertex 1 2 3 4\n".to_vec(),
+            "line 4: a vertex has three coordinates",
+        ),
+        (
+            "far.stl",
+            text_stl()
+                .replacen("vertex 0 0 1", "vertex 0 1e99 1", 1)
+                .into_bytes(),
+            "line 5: \"1e99\" is not a finite number",
+        ),
+        (
+            "square.stl",
+            text_stl()
+                .replacen("endloop", "vertex 0 0 0\nendloop", 1)
+                .into_bytes(),
+            "line 7: \"vertex\" where endloop should be",
+        ),
+        (
+            "open.stl",
+            text_stl()
+                .replacen("endsolid cube\n", "\n\n", 1)
+                .into_bytes(),
+            "line 87: the file ends where facet or endsolid should follow",
+        ),
+        (
+            "second.stl",
+            (text_stl() + "solid lid\nfacets\n").into_bytes(),
+            "line 88: \"facets\" where facet should be",
+        ),
+        (
+            "after.stl",
+            (text_stl() + "and more\n").into_bytes(),
+            "line 87: \"and\" where solid should be",
         ),
         (
             "none.stl",

@@ -8,6 +8,7 @@ fn every_format_reads_the_same_cube() {
     let folder = Folder::new("formats");
     folder.write("parts/cube.stl", binary_stl());
     folder.write("parts/text.STL", text_stl());
+    folder.write("parts/two.stl", text_stl_of_two());
     folder.write("parts/deep/cube.obj", obj());
     folder.write("parts/cube.msh", msh());
     folder.write("parts/cube.bin", msh());
@@ -15,6 +16,7 @@ fn every_format_reads_the_same_cube() {
         for source in [
             "file='cube.stl'",
             "file='text.STL'",
+            "file='two.stl'",
             r"file='deep\cube.obj'",
             "file='cube.msh'",
             "file='cube.bin' content_type='model/vnd.mujoco.msh'",

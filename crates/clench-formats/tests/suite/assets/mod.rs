@@ -101,6 +101,18 @@ pub fn text_stl() -> String {
     text + "endsolid cube\n"
 }
 
+/// The same in two solids of six triangles, in capitals and without names.
+pub fn text_stl_of_two() -> String {
+    const LINES_OF_A_TRIANGLE: usize = 7;
+    let text = text_stl().to_uppercase().replace(" CUBE", "");
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines.splice(
+        1 + 6 * LINES_OF_A_TRIANGLE..1 + 6 * LINES_OF_A_TRIANGLE,
+        ["ENDSOLID", "", "SOLID"],
+    );
+    lines.join("\r\n")
+}
+
 pub fn obj() -> String {
     let mut text = "# a cube\nmtllib none.mtl\no cube\n".to_owned();
     for [x, y, z] in CORNERS {
