@@ -149,9 +149,21 @@ def test_time_limits_and_help():
         assert done.returncode == 0 and "--" in done.stdout
 
 
-def test_a_program_without_a_device_says_how_to_get_one():
-    done = program.run("simulate", program.ROOT / "models/rolling_sphere.xml", "--envs", 2, "--device", "gpu")
-    assert done.returncode == 2 and "--features gpu" in done.stderr
+@pytest.mark.parametrize(
+    "command, feature",
+    [
+        (["render", "MODEL", "--out", "picture.png"], "render"),
+        (["devices"], "gpu"),
+        (["simulate", "MODEL", "--envs", 2, "--device", "gpu"], "gpu"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else value[0],
+)
+def test_what_was_left_out_of_the_program_says_how_to_get_it(command, feature):
+    model = program.ROOT / "models/pendulum.xml"
+    done = program.run(*(model if word == "MODEL" else word for word in command))
+    assert done.returncode == 2
+    assert f"`cargo run --release --features {feature} -- ...`" in done.stderr
+    assert f"  {command[0]} " in program.run("--help").stdout
 
 
 def test_a_line_search_cut_short_is_no_success():

@@ -123,12 +123,25 @@ fn on_device(
     Ok(code.map_or(ExitCode::SUCCESS, ExitCode::from))
 }
 
-/// Says how to get a program that can.
+/// Lists the graphics devices of this machine.
+#[cfg(feature = "gpu")]
+pub(crate) fn list_devices() -> Result<()> {
+    gpu::list()
+}
+
 #[cfg(not(feature = "gpu"))]
 fn on_device(_: &Arguments, _: &Run, _: usize, _: clench::RigidOptions) -> Result<ExitCode> {
-    bail!(
-        "--device gpu: this program was built without it; build with `cargo run --release --features gpu --`"
-    )
+    Err(no_devices())
+}
+
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn list_devices() -> Result<()> {
+    Err(no_devices())
+}
+
+#[cfg(not(feature = "gpu"))]
+fn no_devices() -> anyhow::Error {
+    crate::without("gpu", "steps batches on graphics devices")
 }
 
 fn print(arguments: &Arguments, report: &(impl Serialize + ToString)) -> Result<()> {

@@ -1,49 +1,16 @@
-//! `clench render`: pictures and films of a model, without a window.
+//! Drawing pictures and films.
 
-use crate::limits::{MemoryArguments, steps_in};
+use super::Arguments;
+use crate::limits::steps_in;
 use crate::message::tell;
-use crate::options::ModelArguments;
 use crate::replacement::{Replacement, require_other};
-use crate::simulate::StartArguments;
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use clap::Args;
 use clench::{Model, Sim};
 use clench_render::{Image, Picture, Renderer, View};
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
-
-/// Draws a model without a window: a picture (`.png`) of its initial state, or a film (`.gif`, or `.mp4` by the program ffmpeg) of its
-/// motion. Cameras of the file are honoured; without one all that moves is seen.
-#[derive(Args)]
-pub(crate) struct Arguments {
-    /// Where to: `.png`, `.gif` or `.mp4`
-    #[arg(long, value_name = "OUT")]
-    out: PathBuf,
-    /// Pixels in a row
-    #[arg(long, default_value_t = 640, value_name = "PIXELS")]
-    width: u32,
-    /// Rows of pixels
-    #[arg(long, default_value_t = 480, value_name = "PIXELS")]
-    height: u32,
-    /// A camera of the model, by name or index
-    #[arg(long, value_name = "C")]
-    camera: Option<String>,
-    /// Seconds to simulate before a picture is taken, or for which a film lasts [default: 0, or 2 of a film]
-    #[arg(long, value_name = "SECONDS")]
-    time: Option<f64>,
-
-    #[command(flatten)]
-    start: StartArguments,
-
-    #[command(flatten)]
-    memory: MemoryArguments,
-
-    // Last, because its heading in the help holds for all that follows.
-    #[command(flatten)]
-    model: ModelArguments,
-}
 
 /// Draws what is asked for.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
