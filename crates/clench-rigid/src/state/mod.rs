@@ -112,6 +112,12 @@ fn first_lane<T: Real, K: Kind>(from: &[K::Of<T>], to: &mut [K::Of<T::Scalar>]) 
 }
 
 #[inline(never)] // Every field calls it.
+fn copy<X: Copy>(from: &[X], to: &mut Vec<X>) {
+    to.clear();
+    to.extend_from_slice(from);
+}
+
+#[inline(never)] // Every field calls it.
 fn zeros<T: Real, K: Kind>(count: usize) -> Vec<K::Of<T>> {
     vec![K::zero::<T>(); count]
 }
@@ -171,7 +177,7 @@ macro_rules! declare_state {
             /// Takes over another state of the same model, without allocating.
             pub fn copy_from(&mut self, other: &Self) {
                 self.time = other.time;
-                $($(self.$name.clone_from(&other.$name);)*)*
+                $($(copy(&other.$name, &mut self.$name);)*)*
             }
 
             /// Takes over the state of one environment, of the same model, in every lane.
