@@ -2,8 +2,8 @@
 
 use clench::Model;
 use clench::rigid::model::{Appearance, TextureKind};
+use clench::rigid::readout::TendonLine;
 use clench::rigid::{Precision, Sim};
-use clench_view::frame::tendon_spans;
 use clench_view::surfaces::texture;
 
 /// Numbers of one thing that is drawn; see the shader.
@@ -91,16 +91,14 @@ fn poses_of<T: Precision>(
 /// Straight parts of tendons now, for a cylinder along z of radius 1 and half the length 1.
 pub(crate) fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, clench::SimError> {
     sim.refresh()?;
-    let mut spans = Vec::new();
-    tendon_spans(sim, &mut spans);
     let model = sim.model();
-    let item = |row: &[f32]| {
-        let tendon = row[0] as usize;
+    let item = |TendonLine { tendon, ends }| {
+        let [from, to] = ends;
         let mut item = item_of(model, model.visuals.tendons[tendon]);
         // Pictures do not lie on strings.
         item.texture = [0.0; 4];
         let radius = model.visuals.tendon_width[tendon] as f32;
-        let along = [0, 1, 2].map(|k| 0.5 * (row[4 + k] - row[1 + k]));
+        let along = [0, 1, 2].map(|k| 0.5 * (to[k] - from[k]));
         let half = along.iter().map(|x| x * x).sum::<f32>().sqrt();
         let ahead = along.map(|x| x / half.max(1e-9));
         // Any direction that is not along the tendon.
@@ -121,7 +119,7 @@ pub(crate) fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, cl
         let side = side.map(|x| x / length);
         let column =
             |v: [f32; 3], scale: f32, w: f32| [scale * v[0], scale * v[1], scale * v[2], w];
-        let middle = [0, 1, 2].map(|k| 0.5 * (row[4 + k] + row[1 + k]));
+        let middle = [0, 1, 2].map(|k| 0.5 * (to[k] + from[k]));
         item.pose = [
             column(side, radius, 0.0),
             column(cross(ahead, side), radius, 0.0),
@@ -130,5 +128,5 @@ pub(crate) fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, cl
         ];
         item
     };
-    Ok(spans.chunks_exact(7).map(item).collect())
+    Ok(sim.tendon_lines().into_iter().map(item).collect())
 }

@@ -4,10 +4,13 @@
 mod blocks;
 mod light;
 mod push;
+mod tendon;
 
 pub use light::light_places;
 pub use push::Push;
 pub(crate) use push::pushes;
+pub use tendon::TendonLine;
+pub(crate) use tendon::tendon_lines;
 
 use crate::constraint::ConstraintSource;
 use crate::contact::Contact;

@@ -9,7 +9,6 @@ use crate::stages::StageTimes;
 use clench::SimError;
 use clench::math::{Mask, Real, Scalar, Vec3};
 use clench::rigid::constraint::ConstraintSource;
-use clench::rigid::dynamics::tendon_path::each_span;
 use clench::rigid::readout::{ContactRow, Push, contact_rows, islands, light_places};
 use clench::rigid::{Precision, Sim, Workspace};
 use std::time::Duration;
@@ -126,7 +125,7 @@ sections! {
     /// Lights: position, and the direction along which each shines.
     lights: 6 => out.extend(light_places(s.sim.model(), s.sim.workspace()).as_flattened().as_flattened().iter().map(|&x| x as f32));
     /// Straight parts of tendons: the tendon, both ends.
-    spans: 7 => tendon_spans(s.sim, out);
+    spans: 7 => tendon_lines(s.sim, out);
     /// Position coordinates of the state.
     qpos: 1 => narrow(&s.sim.state.qpos, out);
     /// Velocities of the state.
@@ -271,36 +270,10 @@ fn constraints<T: Real>(ws: &Workspace<T>, out: &mut Vec<f32>) {
 }
 
 /// Appends the straight parts of all tendons where a simulation computed them last: the tendon, both ends.
-pub fn tendon_spans<T: Precision>(sim: &Sim<T>, out: &mut Vec<f32>) {
-    let model = sim.model();
-    for (t, tendon) in model.tendons.iter().enumerate() {
-        if !tendon.is_spatial() {
-            continue;
-        }
-        // Where a string lies on a geom, a chord stands for its arc.
-        let mut last: Option<([f32; 3], usize)> = None;
-        each_span(
-            model,
-            sim.params(),
-            &sim.workspace().position,
-            tendon,
-            |span| {
-                if span.pull.norm_squared().lane(0).to_f64() == 0.0 {
-                    return;
-                }
-                let [from, to] = span.points.map(point);
-                if let Some((end, body)) = last
-                    && end != from
-                    && body == span.bodies[0]
-                {
-                    out.push(t as f32);
-                    out.extend(end.into_iter().chain(from));
-                }
-                out.push(t as f32);
-                out.extend(from.into_iter().chain(to));
-                last = Some((to, span.bodies[1]));
-            },
-        );
+fn tendon_lines<T: Precision>(sim: &Sim<T>, out: &mut Vec<f32>) {
+    for line in sim.tendon_lines() {
+        out.push(line.tendon as f32);
+        out.extend(line.ends.as_flattened());
     }
 }
 

@@ -10,7 +10,7 @@ use crate::inverse::{self, Acceleration};
 use crate::model::{Model, Params};
 use crate::output::{Output, Source};
 use crate::pipeline;
-use crate::readout::{self, Push};
+use crate::readout::{self, Push, TendonLine};
 use crate::sensor::bodies::update as update_body_forces;
 use crate::settings::StepSettings;
 use crate::state::State;
@@ -160,6 +160,15 @@ compile! {
     /// What the constraints of one environment push on.
     fn pushes(source: &Source<Alone<Self>>) -> Vec<Push> {
         readout::pushes(source, 0)
+    }
+
+    /// Where the tendons of one environment run.
+    fn tendon_lines(
+        model: &Model,
+        params: &Params<Alone<Self>>,
+        ws: &Workspace<Alone<Self>>,
+    ) -> Vec<TendonLine> {
+        readout::tendon_lines(model, params, &ws.position)
     }
 
     /// A search for positions of one environment.

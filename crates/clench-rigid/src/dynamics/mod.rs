@@ -52,7 +52,7 @@ pub(crate) mod smooth;
 pub(crate) mod spring;
 pub(crate) mod tendon;
 pub(crate) mod tendon_armature;
-pub mod tendon_path;
+pub(crate) mod tendon_path;
 pub(crate) mod transmission;
 pub(crate) mod velocity;
 pub mod wrap;

@@ -17,7 +17,7 @@ const MIN_DISTANCE: f64 = 1e-15;
 
 /// A straight part of a tendon between two bodies.
 #[derive(Clone, Copy, Debug)]
-pub struct Span<T> {
+pub(crate) struct Span<T> {
     /// The bodies that its ends move with.
     pub bodies: [usize; 2],
     /// Its ends, in the world.
@@ -29,7 +29,7 @@ pub struct Span<T> {
 
 /// Shows the spans of a spatial tendon whose bodies differ, and returns its length.
 #[inline(always)]
-pub fn each_span<T: Real>(
+pub(crate) fn each_span<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

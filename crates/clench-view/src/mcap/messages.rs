@@ -1,11 +1,10 @@
 //! The messages of a moment.
 
 use super::shapes::{self, point, pose};
-use crate::frame::tendon_spans;
 use clench::Model;
 use clench::math::{Quat, Real, Vec3};
 use clench::rigid::model::JointKind;
-use clench::rigid::readout::{Push, contact_rows};
+use clench::rigid::readout::{Push, TendonLine, contact_rows};
 use clench::rigid::{Precision, Sim};
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
@@ -207,22 +206,19 @@ pub(crate) fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
 /// Straight parts of tendons.
 pub(crate) fn tendons<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let model = moment.sim.model();
-    let mut spans = Vec::new();
-    tendon_spans(moment.sim, &mut spans);
-    let line = |row: &[f32]| {
-        let tendon = row[0] as usize;
-        let end = |k: usize| point([row[k], row[k + 1], row[k + 2]].map(f64::from));
+    let line = |TendonLine { tendon, ends }| {
+        let [from, to] = ends.map(|end| point(end.map(f64::from)));
         json!({
             "type": 2,
             "pose": pose([0.0; 3], [1.0, 0.0, 0.0, 0.0]),
             "thickness": 2.0 * model.visuals.tendon_width[tendon],
             "scale_invariant": false,
-            "points": [end(1), end(4)],
+            "points": [from, to],
             "color": shapes::color(model.visuals.rgba(model.visuals.tendons[tendon])),
             "colors": [], "indices": [],
         })
     };
-    let lines = spans.chunks_exact(7).map(line).collect();
+    let lines = moment.sim.tendon_lines().into_iter().map(line).collect();
     let things = Map::from_iter([("lines".to_owned(), Value::Array(lines))]);
     update(vec![entity(time, &moment.frames[0], "tendons", things)])
 }
