@@ -6,3 +6,4 @@
 pub mod limits;
 pub mod npy;
 pub mod protocol;
+mod zip;

@@ -11,9 +11,6 @@ pub const MAX_DEFAULT_STEPS: f64 = 1e6;
 const MAX_STEPS: f64 = 1e15;
 /// The longest header of an `.npy` file, in bytes: as long as NumPy itself reads one.
 pub const MAX_NPY_HEADER: usize = 10_000;
-/// The most brackets within each other in such a header. An array of plain numbers has two, and reading takes time that is
-/// exponential in them.
-pub const MAX_NPY_NESTING: usize = 4;
 
 /// Bytes in a gigabyte.
 const GIGABYTE: f64 = 1e9;

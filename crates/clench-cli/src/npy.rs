@@ -1,15 +1,15 @@
 //! NumPy files: arrays in, archives of arrays out.
 
-use crate::limits::{MAX_NPY_HEADER, MAX_NPY_NESTING, MemoryLimit};
+use crate::limits::{MAX_NPY_HEADER, MemoryLimit};
+use crate::zip::Archive;
 use anyhow::{Context, Result, bail, ensure};
-use npyz::{DType, NpyFile, TypeChar, WriterBuilder};
-use std::cell::RefCell;
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Cursor, Read, Seek, SeekFrom, Write};
+use std::io::{BufReader, BufWriter, ErrorKind, Read};
+use std::iter;
 use std::path::Path;
-use std::rc::Rc;
-use zip::ZipWriter;
-use zip::write::SimpleFileOptions;
+
+/// What a file begins with, before its version.
+const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// An (N, width) array of numbers.
 pub struct Rows {
@@ -40,34 +40,29 @@ pub fn read_rows(flag: &str, path: &Path, width: usize, limit: MemoryLimit) -> R
 
 fn read(path: &Path, width: usize, limit: MemoryLimit) -> Result<Rows> {
     let mut file = BufReader::new(File::open(path)?);
-    let header = read_header(&mut file)?;
-    let file = NpyFile::new(Cursor::new(header).chain(file))?;
-    let shape = file.shape().to_vec();
+    let text = read_header(&mut file)?;
+    let Header {
+        descr,
+        by_columns,
+        shape,
+    } = Header::parse(&text)?;
     ensure!(
         shape.len() == 2 && shape[1] == width as u64,
         "an array of shape (N, {width}) is needed, this one has shape {shape:?}"
     );
     ensure!(
-        file.order() == npyz::Order::C,
+        !by_columns,
         "the array is stored column by column; save it with numpy.ascontiguousarray"
     );
     let count = shape[0].saturating_mul(shape[1]);
     limit.admit(format_args!("{count} numbers"), count, size_of::<f64>())?;
-    let DType::Plain(kind) = file.dtype() else {
-        bail!(
-            "an array of plain numbers is needed, this one holds {}",
-            file.dtype().descr()
-        )
+    let values = match unquoted(descr) {
+        Some("<f8") => numbers(file, count, f64::from_le_bytes)?,
+        Some(">f8") => numbers(file, count, f64::from_be_bytes)?,
+        Some("<f4") => numbers(file, count, |bytes| f32::from_le_bytes(bytes).into())?,
+        Some(">f4") => numbers(file, count, |bytes| f32::from_be_bytes(bytes).into())?,
+        _ => bail!("numbers of type float64 or float32 are needed, this array holds {descr}"),
     };
-    let values: Vec<f64> = match (kind.type_char(), kind.size_field()) {
-        (TypeChar::Float, 8) => numbers::<f64>(file)?,
-        (TypeChar::Float, 4) => numbers::<f32>(file)?,
-        _ => bail!("numbers of type float64 or float32 are needed, this array holds {kind}"),
-    };
-    ensure!(
-        shape[0].checked_mul(shape[1]) == Some(values.len() as u64),
-        "the file does not hold as many numbers as its shape {shape:?} says"
-    );
     if let Some(bad) = values.iter().position(|v| !v.is_finite()) {
         bail!(
             "row {}, column {}: {} is not a finite number",
@@ -84,22 +79,27 @@ fn read(path: &Path, width: usize, limit: MemoryLimit) -> Result<Rows> {
     })
 }
 
-/// The bytes before the numbers, if they are few and simple enough to be read on.
-fn read_header(file: &mut impl Read) -> Result<Vec<u8>> {
-    /// Magic string and version; the length of the text follows in two bytes, from version 2 on in four.
-    const START: usize = 8;
-    let mut header = vec![0; START];
+/// The text before the numbers, which says what they are.
+fn read_header(file: &mut impl Read) -> Result<String> {
     let cut = "the file is no NumPy array: it ends before its header does";
-    file.read_exact(&mut header).context(cut)?;
+    let mut start = [0; MAGIC.len() + 2];
+    file.read_exact(&mut start).context(cut)?;
+    let (magic, version) = start.split_at(MAGIC.len());
     ensure!(
-        header.starts_with(b"\x93NUMPY"),
+        magic == MAGIC,
         "the file is no NumPy array: its first bytes are others"
     );
-    let wide = header[6] > 1;
     let mut length = [0; 4];
-    let digits = &mut length[..if wide { 4 } else { 2 }];
+    let digits = match version {
+        [1, 0] => &mut length[..2],
+        [2 | 3, 0] => &mut length[..],
+        _ => bail!(
+            "version {}.{} of the format is not known",
+            version[0],
+            version[1]
+        ),
+    };
     file.read_exact(digits).context(cut)?;
-    header.extend_from_slice(digits);
     let length = u32::from_le_bytes(length) as usize;
     ensure!(
         length <= MAX_NPY_HEADER,
@@ -107,135 +107,255 @@ fn read_header(file: &mut impl Read) -> Result<Vec<u8>> {
     );
     let mut text = vec![0; length];
     file.read_exact(&mut text).context(cut)?;
-    let mut depth = 0_usize;
-    for &byte in &text {
-        match byte {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        ensure!(
-            depth <= MAX_NPY_NESTING,
-            "its header has brackets within each other more than {MAX_NPY_NESTING} deep"
-        );
-    }
-    header.append(&mut text);
-    Ok(header)
+    Ok(String::from_utf8_lossy(&text).into_owned())
 }
 
-/// All numbers of a file. Room is made as they come, not for what the header promises.
-fn numbers<T: npyz::Deserialize + Into<f64>>(file: NpyFile<impl Read>) -> Result<Vec<f64>> {
+/// What the header says, which is a dictionary as Python writes one.
+struct Header<'a> {
+    /// The type of the numbers, as it is written.
+    descr: &'a str,
+    /// Whether the first index is the fastest.
+    by_columns: bool,
+    shape: Vec<u64>,
+}
+
+impl<'a> Header<'a> {
+    fn parse(text: &'a str) -> Result<Self> {
+        let (mut descr, mut by_columns, mut shape) = (None, None, None);
+        let pairs = between(text, '{', '}').context("its header is no dictionary in brackets")?;
+        for pair in parts(pairs) {
+            let (key, value) = (pair.split_once(':')).with_context(|| {
+                format!("its header has {pair} where a key and a value should be")
+            })?;
+            let value = value.trim();
+            match (unquoted(key), value) {
+                (Some("descr"), _) => descr = Some(value),
+                (Some("fortran_order"), "False") => by_columns = Some(false),
+                (Some("fortran_order"), "True") => by_columns = Some(true),
+                (Some("shape"), _) => shape = Some(lengths(value)?),
+                _ => bail!("its header has {pair}, which means nothing in an array"),
+            }
+        }
+        Ok(Header {
+            descr: descr.context("its header lacks the type of the numbers, 'descr'")?,
+            by_columns: by_columns.context("its header lacks their order, 'fortran_order'")?,
+            shape: shape.context("its header lacks their 'shape'")?,
+        })
+    }
+}
+
+/// What stands between two brackets around it all.
+fn between(text: &str, open: char, close: char) -> Option<&str> {
+    text.trim().strip_prefix(open)?.strip_suffix(close)
+}
+
+fn unquoted(text: &str) -> Option<&str> {
+    between(text, '\'', '\'').or_else(|| between(text, '"', '"'))
+}
+
+/// The lengths of a shape.
+fn lengths(tuple: &str) -> Result<Vec<u64>> {
+    let lengths = between(tuple, '(', ')').and_then(|inside| {
+        let lengths = parts(inside).into_iter().map(str::parse);
+        lengths.collect::<Result<_, _>>().ok()
+    });
+    lengths.with_context(|| format!("its shape {tuple} is not whole numbers in brackets"))
+}
+
+/// What stands between commas that are outside of all brackets and quotes. The last comma may end the text.
+fn parts(text: &str) -> Vec<&str> {
+    let (mut parts, mut start) = (Vec::new(), 0);
+    let (mut depth, mut quote) = (0_usize, None);
+    for (at, c) in text.char_indices() {
+        match c {
+            _ if quote == Some(c) => quote = None,
+            _ if quote.is_some() => {}
+            '\'' | '"' => quote = Some(c),
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth = depth.saturating_sub(1),
+            ',' if depth == 0 => {
+                parts.push(text[start..at].trim());
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    let rest = text[start..].trim();
+    parts.extend((!rest.is_empty()).then_some(rest));
+    parts
+}
+
+/// So many numbers of a file. Room is made as they come, not for what the header promises.
+fn numbers<const N: usize>(
+    mut file: impl Read,
+    count: u64,
+    number: impl Fn([u8; N]) -> f64,
+) -> Result<Vec<f64>> {
     let mut values = Vec::new();
-    for value in file.data::<T>()? {
-        values.push(value?.into());
+    for found in 0..count {
+        let mut bytes = [0; N];
+        match file.read_exact(&mut bytes) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                bail!("the file holds {found} numbers, fewer than the {count} of its shape")
+            }
+            read => read?,
+        }
+        values.push(number(bytes));
     }
     Ok(values)
 }
 
-/// Where an archive goes, up to the first error. That one is kept, and what comes later is dropped: a `ZipWriter` that is let
-/// go writes what is still missing, and prints if it cannot.
-struct Sink {
-    file: BufWriter<File>,
-    error: Rc<RefCell<Option<io::Error>>>,
-    /// Where it would stand without the error.
-    position: u64,
-    end: u64,
+/// Numbers that arrays of archives are made of, in 64 bits.
+pub trait Number: Copy {
+    /// NumPy's name of the type.
+    const DESCR: &'static str;
+    /// The number as it stands in the file.
+    fn to_bytes(self) -> [u8; 8];
 }
 
-impl Sink {
-    /// Does something with the file, if nothing went wrong yet.
-    fn attempt<R>(&mut self, work: impl FnOnce(&mut BufWriter<File>) -> io::Result<R>) {
-        let mut error = self.error.borrow_mut();
-        if error.is_none() {
-            *error = work(&mut self.file).err();
-        }
+impl Number for f64 {
+    const DESCR: &'static str = "<f8";
+    fn to_bytes(self) -> [u8; 8] {
+        self.to_le_bytes()
     }
 }
 
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.attempt(|file| file.write_all(bytes));
-        self.position += bytes.len() as u64;
-        self.end = self.end.max(self.position);
-        Ok(bytes.len())
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        self.attempt(|file| file.flush());
-        Ok(())
-    }
-}
-
-impl Seek for Sink {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let position = match to {
-            SeekFrom::Start(position) => Some(position),
-            SeekFrom::Current(offset) => self.position.checked_add_signed(offset),
-            SeekFrom::End(offset) => self.end.checked_add_signed(offset),
-        };
-        self.position = position.ok_or(io::ErrorKind::InvalidInput)?;
-        let position = SeekFrom::Start(self.position);
-        self.attempt(|file| file.seek(position));
-        Ok(self.position)
+impl Number for i64 {
+    const DESCR: &'static str = "<i8";
+    fn to_bytes(self) -> [u8; 8] {
+        self.to_le_bytes()
     }
 }
 
 /// An uncompressed zip archive of `.npy` files: what NumPy calls an `.npz`.
-pub struct Npz {
-    zip: ZipWriter<Sink>,
-    error: Rc<RefCell<Option<io::Error>>>,
-}
+pub struct Npz(Archive<BufWriter<File>>);
 
 impl Npz {
     /// An empty archive in this file, which is empty too.
     pub fn new(file: File) -> Self {
-        let error = Rc::default();
-        let sink = Sink {
-            file: BufWriter::new(file),
-            error: Rc::clone(&error),
-            position: 0,
-            end: 0,
-        };
-        Npz {
-            zip: ZipWriter::new(sink),
-            error,
-        }
+        Npz(Archive::new(BufWriter::new(file)))
     }
 
-    /// The first error that writing met.
-    fn check(&self) -> Result<()> {
-        let Some(error) = self.error.take() else {
-            return Ok(());
-        };
-        // What is still to come is dropped as before.
-        self.error.replace(Some(error.kind().into()));
-        Err(error.into())
-    }
-
-    /// Adds an array of this shape.
-    pub fn array<T: npyz::AutoSerialize>(
+    /// Adds an array of this shape. The values are gone through twice.
+    ///
+    /// # Errors
+    /// A file that takes no more.
+    pub fn array<T: Number>(
         &mut self,
         name: &str,
         shape: &[usize],
-        values: impl IntoIterator<Item = T>,
+        mut values: impl Iterator<Item = T> + Clone,
     ) -> Result<()> {
-        let options = SimpleFileOptions::default()
-            .compression_method(zip::CompressionMethod::Stored)
-            .large_file(true);
-        self.zip.start_file(format!("{name}.npy"), options)?;
-        let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
-        let mut writer = (npyz::WriteOptions::new().default_dtype())
-            .shape(&shape)
-            .writer(&mut self.zip)
-            .begin_nd()?;
-        writer.extend(values)?;
-        writer.finish()?;
-        self.check()
+        /// Numbers that are written together.
+        const TOGETHER: usize = 8192;
+        let pieces = iter::from_fn(move || {
+            let mut piece = Vec::new();
+            for value in values.by_ref().take(TOGETHER) {
+                piece.extend_from_slice(&value.to_bytes());
+            }
+            (!piece.is_empty()).then_some(piece)
+        });
+        let header = header(T::DESCR, shape);
+        Ok((self.0).add(&format!("{name}.npy"), iter::once(header).chain(pieces))?)
     }
 
     /// Ends the archive.
+    ///
+    /// # Errors
+    /// A file that takes no more.
     pub fn finish(self) -> Result<()> {
-        let Npz { zip, error } = self;
-        zip.finish()?.flush()?;
-        error.take().map_or(Ok(()), |error| Err(error.into()))
+        Ok(self.0.finish()?)
+    }
+}
+
+/// What stands before the numbers of an array, row after row, of this type and shape.
+fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
+    /// Numbers begin at a multiple of it.
+    const ALIGNMENT: usize = 64;
+    const VERSION: [u8; 2] = [1, 0];
+    let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({shape}), }}");
+    let before = MAGIC.len() + VERSION.len() + size_of::<u16>();
+    let whole = (before + text.len() + 1).next_multiple_of(ALIGNMENT);
+    let length = whole - before;
+    // Spaces, and the end of the line.
+    text = format!("{text:<0$}\n", length - 1);
+    [
+        MAGIC,
+        &VERSION,
+        &(length as u16).to_le_bytes(),
+        text.as_bytes(),
+    ]
+    .concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_are_read_as_python_reads_them() {
+        for (text, descr, by_columns, shape) in [
+            (
+                "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }  \n",
+                "'<f8'",
+                false,
+                &[2, 3][..],
+            ),
+            (
+                "{\"shape\":(7,),\"fortran_order\":True,\"descr\":\">f4\"}",
+                "\">f4\"",
+                true,
+                &[7],
+            ),
+            (
+                "{'descr': [('a,}', '<i4', (2,)), ('b', '<f8')], 'fortran_order': False, 'shape': ()}",
+                "[('a,}', '<i4', (2,)), ('b', '<f8')]",
+                false,
+                &[],
+            ),
+        ] {
+            let header = Header::parse(text).unwrap();
+            assert_eq!(header.descr, descr);
+            assert_eq!(header.by_columns, by_columns);
+            assert_eq!(header.shape, shape);
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_header_is_said() {
+        for (text, complaint) in [
+            ("", "no dictionary"),
+            ("{'descr': '<f8'", "no dictionary"),
+            ("{'descr': '<f8', 'shape': (1,)}", "'fortran_order'"),
+            ("{'descr': '<f8', 'fortran_order': False}", "'shape'"),
+            ("{'fortran_order': False, 'shape': (1,)}", "'descr'"),
+            ("{'descr', 'shape': (1,)}", "'descr' where a key"),
+            ("{'fortran_order': 1}", "'fortran_order': 1"),
+            ("{'order': 'C'}", "'order': 'C'"),
+            ("{'shape': 3}", "shape 3 "),
+            ("{'shape': (-1,)}", "shape (-1,) "),
+            ("{'shape': (1,,2)}", "shape (1,,2) "),
+            (
+                "{'shape': (18446744073709551616,)}",
+                "shape (18446744073709551616,) ",
+            ),
+        ] {
+            let error = Header::parse(text).err().expect(text).to_string();
+            assert!(error.contains(complaint), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        for shape in [&[][..], &[5], &[0, 3], &[1000, 10_000, 100_000]] {
+            let bytes = header("<i8", shape);
+            assert_eq!(bytes.len() % 64, 0);
+            let text = read_header(&mut &bytes[..]).unwrap();
+            let found = Header::parse(&text).unwrap();
+            let shape: Vec<u64> = shape.iter().map(|&length: &usize| length as u64).collect();
+            assert_eq!(found.shape, shape);
+            assert_eq!((found.descr, found.by_columns), ("'<i8'", false));
+        }
     }
 }

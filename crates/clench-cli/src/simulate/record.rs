@@ -119,7 +119,7 @@ impl Column {
     }
 
     /// The numbers environment by environment, where they came step by step, of `rows` steps and `envs` environments.
-    fn by_env(&self, rows: usize, envs: usize) -> impl Iterator<Item = f64> {
+    fn by_env(&self, rows: usize, envs: usize) -> impl Iterator<Item = f64> + Clone {
         let width = self.width();
         (0..envs * rows * width).map(move |i| {
             let (row, number) = (i / width, i % width);
