@@ -5,19 +5,17 @@
 //! frame. Chunks are written whole, so a file that was cut off can be read up to the last of them.
 
 mod channels;
+mod file;
 mod messages;
 mod shapes;
 
-use ::mcap::records::MessageHeader;
-use ::mcap::write::NoSeek;
-use ::mcap::{McapError, WriteOptions, Writer};
 use channels::{Channel, channels};
 use clench::rigid::{Precision, Sim};
 use clench::{Model, SimError};
+use file::{McapFile, Stream};
 use messages::{Moment, frame_names};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
 /// What has been recorded reaches the file after so long at the latest.
@@ -30,22 +28,14 @@ pub enum McapRecordError {
     #[error(transparent)]
     Sim(#[from] SimError),
     /// The file takes no more.
-    #[error("{}", said(.0))]
-    File(#[from] McapError),
-}
-
-/// What a file said: the system's own words, where there are any.
-fn said(error: &McapError) -> String {
-    match error {
-        McapError::Io(error) => error.to_string(),
-        error => error.to_string(),
-    }
+    #[error(transparent)]
+    File(#[from] io::Error),
 }
 
 /// Writes what happens in a simulation to a file, moment by moment.
 pub struct McapRecorder<W: Write> {
-    writer: Writer<NoSeek<W>>,
-    channels: Vec<(Channel, u16)>,
+    file: McapFile<W>,
+    channels: Vec<Channel>,
     frames: Vec<String>,
     /// How many moments there are.
     moments: usize,
@@ -60,21 +50,17 @@ impl<W: Write> McapRecorder<W> {
     /// # Errors
     /// A file that takes nothing.
     pub fn new(to: W, model: &Model) -> Result<Self, McapRecordError> {
-        let mut writer = WriteOptions::new()
-            .compression(None)
-            .library(concat!("clench ", env!("CARGO_PKG_VERSION")))
-            .disable_seeking(true)
-            .create(NoSeek::new(to))?;
-        let mut ids = Vec::new();
-        for channel in channels(model) {
-            let schema = serde_json::to_vec(&channel.schema).unwrap_or_default();
-            let schema = writer.add_schema(channel.schema_name, "jsonschema", &schema)?;
-            let id = writer.add_channel(schema, channel.topic, "json", &BTreeMap::new())?;
-            ids.push((channel, id));
-        }
+        let channels = channels(model);
+        let stream = |channel: &Channel| Stream {
+            topic: channel.topic,
+            schema_name: channel.schema_name,
+            schema: serde_json::to_vec(&channel.schema).unwrap_or_default(),
+        };
+        let streams: Vec<Stream> = channels.iter().map(stream).collect();
+        let library = concat!("clench ", env!("CARGO_PKG_VERSION"));
         Ok(McapRecorder {
-            writer,
-            channels: ids,
+            file: McapFile::new(to, library, &streams)?,
+            channels,
             frames: frame_names(model),
             moments: 0,
             flushed: Instant::now(),
@@ -107,23 +93,18 @@ impl<W: Write> McapRecorder<W> {
             scale: self.scale,
         };
         let nanoseconds = (1e9 * moment.sim.state.time).round() as u64;
-        for (channel, id) in &self.channels {
+        for (id, channel) in (0..).zip(&self.channels) {
             if channel.once && self.moments > 0 {
                 continue;
             }
             let message = channel.message.message(&moment, &time(nanoseconds));
-            let header = MessageHeader {
-                channel_id: *id,
-                sequence: self.moments as u32,
-                log_time: nanoseconds,
-                publish_time: nanoseconds,
-            };
             let bytes = serde_json::to_vec(&message).unwrap_or_default();
-            self.writer.write_to_known_channel(&header, &bytes)?;
+            let sequence = self.moments as u32;
+            self.file.message(id, sequence, nanoseconds, &bytes)?;
         }
         self.moments += 1;
         if self.flushed.elapsed() >= FLUSH {
-            self.writer.flush()?;
+            self.file.flush()?;
             self.flushed = Instant::now();
         }
         Ok(())
@@ -134,8 +115,7 @@ impl<W: Write> McapRecorder<W> {
     /// # Errors
     /// A file that takes no more.
     pub fn finish(mut self) -> Result<(), McapRecordError> {
-        self.writer.finish()?;
-        Ok(())
+        Ok(self.file.finish()?)
     }
 }
 
