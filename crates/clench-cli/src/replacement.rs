@@ -1,16 +1,17 @@
 //! Files that take the place of others when they are whole, and not before.
 
 use anyhow::{Context, Result, ensure};
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use tempfile::{Builder, NamedTempFile};
+use std::process;
 
 /// A file in the making. What stands at its path stays there until [`finish`](Self::finish), whatever happens in between; if
 /// it is never called nothing is left.
 pub(crate) enum Replacement {
     /// A temporary file beside the path, which it takes in the end.
-    Beside { file: NamedTempFile, path: PathBuf },
+    Beside { part: Part, path: PathBuf },
     /// What is no file on a disk, such as a pipe, has no contents that could be kept, and cannot be replaced.
     Direct(File),
 }
@@ -43,20 +44,17 @@ impl Replacement {
         } else {
             folder
         };
-        let prefix = format!(".{}.", name.to_string_lossy());
-        let mut builder = Builder::new();
-        builder.prefix(&prefix).suffix(".part");
-        let file = readable(&mut builder).tempfile_in(folder)?;
+        let part = Part::create(folder, name)?;
         if let Some(permissions) = old {
-            file.as_file().set_permissions(permissions)?;
+            part.file.set_permissions(permissions)?;
         }
-        Ok(Replacement::Beside { file, path })
+        Ok(Replacement::Beside { part, path })
     }
 
     /// What to write to.
     pub(crate) fn file(&self) -> io::Result<File> {
         match self {
-            Replacement::Beside { file, .. } => file.as_file().try_clone(),
+            Replacement::Beside { part, .. } => part.file.try_clone(),
             Replacement::Direct(file) => file.try_clone(),
         }
     }
@@ -65,7 +63,7 @@ impl Replacement {
     #[cfg(feature = "render")]
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {
-            Replacement::Beside { file, .. } => Some(file.path()),
+            Replacement::Beside { part, .. } => Some(&part.path),
             Replacement::Direct(_) => None,
         }
     }
@@ -77,26 +75,49 @@ impl Replacement {
     pub(crate) fn finish(self) -> io::Result<()> {
         match self {
             Replacement::Direct(_) => Ok(()),
-            Replacement::Beside { file, path } => {
-                file.as_file().sync_all()?;
-                file.persist(path)?;
-                Ok(())
+            Replacement::Beside { part, path } => {
+                part.file.sync_all()?;
+                part.rename(&path)
             }
         }
     }
 }
 
-/// Permissions of ordinary files, where temporary ones are their owner's alone.
-#[cfg(unix)]
-fn readable<'a, 'b, 'c>(builder: &'a mut Builder<'b, 'c>) -> &'a mut Builder<'b, 'c> {
-    use std::os::unix::fs::PermissionsExt;
-    // The process's mask takes away from this.
-    builder.permissions(fs::Permissions::from_mode(0o666))
+/// A file that goes away with this.
+pub(crate) struct Part {
+    file: File,
+    /// Empty once there is nothing to remove.
+    path: PathBuf,
 }
 
-#[cfg(not(unix))]
-fn readable<'a, 'b, 'c>(builder: &'a mut Builder<'b, 'c>) -> &'a mut Builder<'b, 'c> {
-    builder
+impl Part {
+    /// An empty file of a name that no other has, with the permissions of ordinary files.
+    fn create(folder: &Path, name: &OsStr) -> io::Result<Self> {
+        let (name, process) = (name.to_string_lossy(), process::id());
+        let mut attempt = 0_u32;
+        loop {
+            let path = folder.join(format!(".{name}.{process}-{attempt}.part"));
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                // That of another record, or of a program that was killed.
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => attempt += 1,
+                opened => return opened.map(|file| Part { file, path }),
+            }
+        }
+    }
+
+    /// Gives it another name, at which it stays.
+    fn rename(mut self, path: &Path) -> io::Result<()> {
+        fs::rename(&self.path, path)?;
+        self.path.clear();
+        Ok(())
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        // Where it cannot be removed it stays, under a name that tells what it is.
+        let _ = fs::remove_file(&self.path);
+    }
 }
 
 /// Refuses an output that is one of the inputs, be it through links; each path with what gives it.

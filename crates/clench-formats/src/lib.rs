@@ -10,6 +10,7 @@
 #![deny(unreachable_pub)]
 
 mod attributes;
+pub mod base64;
 mod document;
 mod elevation;
 mod error;

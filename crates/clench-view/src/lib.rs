@@ -13,6 +13,7 @@ pub mod command;
 pub mod delta;
 mod drag;
 pub mod frame;
+mod handshake;
 mod http;
 pub mod interaction;
 pub mod marks;

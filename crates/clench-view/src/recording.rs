@@ -4,8 +4,8 @@ use crate::frame::{FrameExtras, MAGIC, SECTIONS, encode};
 use crate::marks::Marks;
 use crate::{Page, Scene};
 use clench::SimError;
+use clench::formats::base64;
 use clench::rigid::{Precision, Sim};
-use data_encoding::BASE64;
 use serde_json::{Value, json};
 
 /// What happened in a simulation, moment by moment.
@@ -83,7 +83,7 @@ impl Recording {
         };
         let frame = encode(sim, &extras)?;
         marks.shown();
-        let frame = BASE64.encode(&frame);
+        let frame = base64::encode(&frame);
         if self.bytes + frame.len() > self.limit {
             return Err(RecordError::Full(self.frames.len(), self.limit / 1_000_000));
         }
@@ -141,7 +141,7 @@ impl Recording {
 /// The time of a frame, if it is one.
 fn time(frame: &str) -> Option<f64> {
     // Sixteen bytes are the first of these letters.
-    let head = BASE64.decode(frame.get(..24)?.as_bytes()).ok()?;
+    let head = base64::decode(frame.get(..24)?).ok()?;
     let time = head.get(8..16)?.try_into().ok()?;
     head.starts_with(&MAGIC).then_some(f64::from_le_bytes(time))
 }

@@ -5,11 +5,11 @@ use crate::stages::STAGES;
 use crate::surfaces;
 use clench::Model;
 use clench::collide::ShapeKind;
+use clench::formats::base64;
 use clench::math::{Quat, Vec3};
 use clench::rigid::model::{
     Appearance, Joint, JointKind, Light, LightKind, Mesh, Texture, TextureKind, Visuals,
 };
-use data_encoding::BASE64;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -346,7 +346,7 @@ fn texcoords(mesh: &Mesh) -> Option<String> {
 
 /// Numbers of four bytes each, in base 64.
 fn packed(numbers: impl Iterator<Item = [u8; 4]>) -> String {
-    BASE64.encode(&numbers.flatten().collect::<Vec<u8>>())
+    base64::encode(&numbers.flatten().collect::<Vec<u8>>())
 }
 
 fn materials(visuals: &Visuals) -> Vec<Value> {
@@ -375,7 +375,7 @@ fn textures(model: &Model) -> Vec<Value> {
                 TextureKind::Cube => "cube",
                 TextureKind::Sky => "sky",
             },
-            "png": if shown { BASE64.encode(&surfaces::png(texture)) } else { String::new() },
+            "png": if shown { base64::encode(&surfaces::png(texture)) } else { String::new() },
         })
     };
     visuals.textures.iter().enumerate().map(texture).collect()

@@ -1,10 +1,10 @@
 //! Listens, lets browsers in, and hands each the newest frame.
 
 use crate::command::Command;
+use crate::handshake::accept_key;
 use crate::http::{self, CROWDED, Request};
 use crate::shared::{HEARTBEAT, News, Shared};
 use crate::{Page, Scene, socket};
-use data_encoding::HEXLOWER;
 use serde_json::json;
 use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -15,7 +15,6 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
-use tungstenite::handshake::derive_accept_key;
 use tungstenite::{Bytes, Utf8Bytes};
 
 /// The most connections at a time.
@@ -59,9 +58,9 @@ fn token(given: Option<&str>) -> Result<String, ServeError> {
         }
         return Ok(token.to_owned());
     }
-    let mut random = [0; 16];
+    let mut random = [0_u8; 16];
     getrandom::fill(&mut random).map_err(|error| ServeError::System(error.to_string()))?;
-    Ok(HEXLOWER.encode(&random))
+    Ok(random.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 /// A server that cannot start.
@@ -242,7 +241,7 @@ impl Guest {
             Err(refusal) => http::send_refusal(&mut stream, &refusal),
             Ok(Request::Page) => http::send_page(&mut stream, shared.page.html()),
             Ok(Request::Socket(key)) => {
-                let accept = derive_accept_key(key.as_bytes());
+                let accept = accept_key(&key);
                 let reply = format!(
                     "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
                      Sec-WebSocket-Accept: {accept}\r\n\r\n"

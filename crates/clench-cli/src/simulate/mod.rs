@@ -10,6 +10,7 @@ mod energy;
 pub(crate) mod gpu;
 mod messages;
 mod page;
+mod progress;
 mod quality;
 mod record;
 mod report;

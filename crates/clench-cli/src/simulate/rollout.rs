@@ -1,6 +1,7 @@
 //! The loop that takes a batch through a run, wherever it is stepped.
 
 use super::energy::next_steps;
+use super::progress::Progress;
 use super::record::BatchRecorder;
 use super::run::Run;
 use super::start::narrow;
@@ -55,7 +56,7 @@ impl<'a, S: Precision> Rollout<'a, S> {
         mut call: impl FnMut(&mut Batch<S>, Range<usize>, Controls<S>) -> Result<usize>,
     ) -> Result<Taken> {
         let (run, nu) = (self.run, self.run.model.nu());
-        let progress = run.progress();
+        let mut progress = Progress::new(run.steps);
         let (mut steps, mut running) = (0, batch.count());
         while steps < run.steps && running > 0 && run.interrupt.signal().is_none() {
             let range = next_steps(steps, run.steps, self.every, self.most);
@@ -71,9 +72,9 @@ impl<'a, S: Precision> Rollout<'a, S> {
                 let last = ctrl.map_or(held, |rows| &rows[rows.len() - nu..]);
                 recorder.after_steps(steps, batch, last);
             }
-            progress.set_position(steps as u64);
+            progress.reach(steps);
         }
-        progress.finish_and_clear();
+        drop(progress);
         let recorded_rows = self.write();
         Ok(Taken {
             steps,

@@ -3,6 +3,7 @@
 use super::arguments::Arguments;
 use super::energy::{EnergyAccount, STEPS_BETWEEN_CHECKS};
 use super::page::RunRecorder;
+use super::progress::Progress;
 use super::quality::verdict;
 use super::report::{Report, pairs, stages};
 use super::run::Run;
@@ -27,7 +28,7 @@ pub(crate) fn run<T: Precision>(
         .transpose()?;
     let mut summary = Summary::new(&mut sim)?;
     let mut account = EnergyAccount::open(&run.model, [energy(&mut sim)?]);
-    let progress = run.progress();
+    let mut progress = Progress::new(run.steps);
     let mut spent = Duration::ZERO;
     for step in 0..run.steps {
         if run.interrupt.signal().is_some() {
@@ -44,7 +45,6 @@ pub(crate) fn run<T: Precision>(
         spent += start.elapsed();
         sim.run_clocks(false);
         if let Err(error) = result {
-            progress.abandon();
             summary.failed(step, &error);
             break;
         }
@@ -55,12 +55,12 @@ pub(crate) fn run<T: Precision>(
         if let Some(recorder) = &mut recorder {
             recorder.after_steps(step + 1, &mut sim)?;
         }
-        progress.inc(1);
+        progress.reach(step + 1);
     }
     if let Some(account) = &mut account {
         account.check(0, energy(&mut sim)?);
     }
-    progress.finish_and_clear();
+    drop(progress);
     let recorded = recorder.map(RunRecorder::write).transpose();
     sim.run_clocks(false);
     let verdict = verdict(&run.model, summary.quality(), account.as_ref());

@@ -31,7 +31,7 @@ fn text(buffers: &str, node: &str) -> String {
 
 /// The numbers in the text, in base 64.
 fn embedded(node: &str) -> String {
-    let encoded = data_encoding::BASE64.encode(&numbers());
+    let encoded = clench_formats::base64::encode(&numbers());
     let uri =
         format!(r#"{{"uri": "data:application/octet-stream;base64,{encoded}", "byteLength": 84}}"#);
     text(&uri, node)

@@ -1,9 +1,9 @@
 //! The numbers of a glTF file, in bytes that come with it, in its text, or in files beside it.
 
 use super::json::{Accessor, Primitive, Root};
+use crate::base64;
 use crate::mesh::Beside;
 use clench_math::Vec3;
-use data_encoding::BASE64;
 use std::borrow::Cow;
 
 /// Codes of the types of numbers.
@@ -134,8 +134,7 @@ fn fetch(uri: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
     };
     let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
     let encoded = encoded.ok_or("a data URI that is not in base 64")?;
-    let decoded = BASE64.decode(encoded.as_bytes());
-    decoded.map_err(|error| format!("not in base 64: {error}"))
+    base64::decode(encoded).map_err(|error| format!("not in base 64: {error}"))
 }
 
 /// A file name, in which `%20` stands for a space.

@@ -1,0 +1,96 @@
+//! How far a run is: a line on standard error, if that is a terminal.
+
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+/// The line appears after so long, and changes as often.
+const PERIOD: Duration = Duration::from_millis(500);
+/// Letters of the bar.
+const BAR: usize = 20;
+
+/// A line that is written anew as a run goes on, and goes away with this.
+pub(super) struct Progress {
+    total: usize,
+    start: Instant,
+    shown: Instant,
+    /// Letters that are on the terminal.
+    letters: usize,
+    terminal: bool,
+}
+
+impl Progress {
+    /// Nothing of so many steps is done.
+    pub(super) fn new(total: usize) -> Self {
+        let start = Instant::now();
+        Progress {
+            total,
+            start,
+            shown: start,
+            letters: 0,
+            terminal: io::stderr().is_terminal(),
+        }
+    }
+
+    /// So many steps are done.
+    pub(super) fn reach(&mut self, steps: usize) {
+        if self.terminal && self.shown.elapsed() >= PERIOD {
+            self.shown = Instant::now();
+            self.show(&line(self.start.elapsed(), steps, self.total));
+        }
+    }
+
+    /// Writes a line over the last one. Spaces cover what it leaves of that: not every terminal knows commands.
+    fn show(&mut self, line: &str) {
+        let covered = self.letters;
+        self.letters = line.len();
+        // That it cannot be written is no reason to stop.
+        let _ = write!(io::stderr(), "\r{line:<covered$}");
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if self.letters > 0 {
+            self.show("");
+            self.show("");
+        }
+    }
+}
+
+/// What is told of a run that has taken so many steps in this time.
+fn line(elapsed: Duration, steps: usize, total: usize) -> String {
+    let seconds = elapsed.as_secs_f64();
+    let share = steps as f64 / total.max(1) as f64;
+    let bar = "#".repeat((share * BAR as f64) as usize);
+    let left = Duration::try_from_secs_f64(seconds / share - seconds);
+    let left = left.map_or("?".to_owned(), clock);
+    let speed = steps as f64 / seconds;
+    let elapsed = clock(elapsed);
+    format!("{elapsed} [{bar:<BAR$}] {steps}/{total} steps, {speed:.0}/s, {left} left")
+}
+
+/// Hours, minutes and seconds.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    let [hours, minutes, seconds] = [seconds / 3600, seconds / 60 % 60, seconds % 60];
+    format!("{hours:02}:{minutes:02}:{seconds:02}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_tells_how_far_a_run_is() {
+        let after = |seconds, steps, total| line(Duration::from_secs(seconds), steps, total);
+        assert_eq!(
+            after(90, 250, 1000),
+            "00:01:30 [#####               ] 250/1000 steps, 3/s, 00:04:30 left"
+        );
+        assert_eq!(
+            after(3600, 10, 10),
+            "01:00:00 [####################] 10/10 steps, 0/s, 00:00:00 left"
+        );
+        assert!(after(1, 0, 10).ends_with("0/s, ? left"));
+    }
+}
