@@ -3,9 +3,9 @@
 use crate::batch::AnyBatch;
 use crate::busy::lock;
 use crate::error::{classes::ClenchError, sim_error};
+use crate::free_camera::FreeCamera;
 use crate::kind::Kind;
 use crate::model::Model;
-use crate::picture::FreeCamera;
 use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
 pub(crate) use clench_render::Renderer;

@@ -21,6 +21,7 @@ mod element;
 mod error;
 mod field;
 mod fields;
+mod free_camera;
 mod ik;
 mod ik_targets;
 mod inertia_queries;
@@ -75,6 +76,8 @@ mod _core {
     #[pymodule_export]
     use crate::element::Element;
     #[pymodule_export]
+    use crate::free_camera::FreeCamera;
+    #[pymodule_export]
     use crate::ik::IkResult;
     #[pymodule_export]
     use crate::ik_targets::{ComTarget, FrameTarget, PostureTarget};
@@ -82,8 +85,6 @@ mod _core {
     use crate::model::Model;
     #[pymodule_export]
     use crate::options::RigidOptions;
-    #[pymodule_export]
-    use crate::picture::FreeCamera;
     #[pymodule_export]
     use crate::queries::{RayHit, Separation};
     #[pymodule_export]
