@@ -80,7 +80,7 @@ fn minimise(
     settings: &Settings,
 ) -> Result<(Problem<f64>, Solver<f64>), ProblemError> {
     let problem = Problem::from_arrays(mass, acceleration, blocks)?;
-    let mut solver = Solver::new(problem.tree());
+    let mut solver = Solver::compiled(problem.tree());
     solver.solve(&problem, settings, None)?;
     Ok((problem, solver))
 }

@@ -1,7 +1,7 @@
 //! How far apart two shapes are.
 
 use crate::{Contacts, Pose, Shape, Terrain, collide, supported};
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Mat3, Scalar, Vec3};
 
 /// The shortest way between two shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +42,46 @@ pub fn distance<S: Scalar>(
     pose_b: &Pose<S>,
     limit: S,
 ) -> Option<Separation<S>> {
+    let found = find(
+        &double_shape(a),
+        &double_pose(pose_a),
+        &double_shape(b),
+        &double_pose(pose_b),
+        limit.to_f64(),
+    )?;
+    Some(Separation {
+        distance: S::new(found.distance),
+        normal: Vec3::from_f64(found.normal.to_array()),
+        points: found.points.map(|point| Vec3::from_f64(point.to_array())),
+    })
+}
+
+fn double_vector<S: Scalar>(v: Vec3<S>) -> Vec3<f64> {
+    Vec3::from_array(v.to_array().map(S::to_f64))
+}
+
+fn double_shape<'a, S: Scalar>(shape: &Shape<'a, S>) -> Shape<'a, f64> {
+    shape.resized(double_vector(shape.size()))
+}
+
+fn double_pose<S: Scalar>(pose: &Pose<S>) -> Pose<f64> {
+    let [x, y, z] = pose.rotation.rows.map(double_vector);
+    Pose {
+        position: double_vector(pose.position),
+        rotation: Mat3::from_rows(x, y, z),
+    }
+}
+
+/// The search, which is compiled once: in double precision.
+fn find(
+    a: &Shape<f64>,
+    pose_a: &Pose<f64>,
+    b: &Shape<f64>,
+    pose_b: &Pose<f64>,
+    limit: f64,
+) -> Option<Separation<f64>> {
     if a.kind() > b.kind() {
-        let found = distance(b, pose_b, a, pose_a, limit)?;
+        let found = find(b, pose_b, a, pose_a, limit)?;
         let [second, first] = found.points;
         return Some(Separation {
             normal: -found.normal,
@@ -55,22 +93,22 @@ pub fn distance<S: Scalar>(
         return None;
     }
     let mut contacts = Contacts::new();
-    let mut reach = Real::max(limit, S::ZERO);
+    let mut reach = limit.max(0.0);
     if let Shape::HeightField(Terrain {
         field: Some(field), ..
     }) = a
     {
         // Near cells first. No point of the field is further away than the sum.
         let size = b.bounding_radius();
-        let furthest = S::new(field.radius()) + size + (pose_b.position - pose_a.position).norm();
-        let most = Real::min(reach, furthest);
-        reach = Real::max(size, furthest * S::new(MIN_SEARCH_SHARE));
+        let furthest = field.radius() + size + (pose_b.position - pose_a.position).norm();
+        let most = reach.min(furthest);
+        reach = size.max(furthest * MIN_SEARCH_SHARE);
         while reach < most {
             collide(a, pose_a, b, pose_b, reach, &mut contacts);
             if !contacts.as_slice().is_empty() {
                 break;
             }
-            reach *= S::new(4.0);
+            reach *= 4.0;
         }
         reach = most;
     }
@@ -84,10 +122,8 @@ pub fn distance<S: Scalar>(
             best = point;
         }
     }
-    let (normal, half) = (best.frame.rows[0], best.distance * S::new(0.5));
-    let finite = (best.position.norm_squared() + best.distance)
-        .to_f64()
-        .is_finite();
+    let (normal, half) = (best.frame.rows[0], 0.5 * best.distance);
+    let finite = (best.position.norm_squared() + best.distance).is_finite();
     (finite && best.distance <= limit).then(|| Separation {
         distance: best.distance,
         normal,

@@ -24,6 +24,7 @@
 #![deny(unreachable_pub)]
 
 mod broad;
+mod compiled;
 mod contact;
 mod distance;
 mod frame;
@@ -36,6 +37,7 @@ mod ray;
 mod shape;
 
 pub use broad::{Bound, BroadPhase, Mobility, allowance, near};
+pub use compiled::{Collide, compiled_collide};
 pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
 pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};

@@ -45,6 +45,7 @@ extern crate self as clench_math;
 
 mod array;
 mod cast;
+mod compiled;
 mod eigen;
 mod elementary;
 #[allow(unsafe_code, reason = "registers, and code for one instruction set")]
@@ -72,6 +73,7 @@ pub use cast::{broadcast, cast, read_lane, write_lane};
 /// ```
 ///
 pub use clench_kernel::kernel;
+pub use compiled::{CompiledKernels, KernelTable};
 pub use eigen::{principal_axes, rough_principal_axes};
 pub use lanes::{Instructions, LaneMask, LaneTask, Lanes, Portable};
 pub use matrix::Mat3;

@@ -61,7 +61,7 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
     mass_matrix(model, params, pos, mass);
     ws.clock.lap(Stage::Inertia as usize);
     ws.singular = !if ws.articulated.is_empty() {
-        factor.factor(&model.tree, mass)
+        ws.solver.factor(factor, &model.tree, mass)
     } else {
         articulated_factor(model, params, pos, |_| T::ZERO, &mut ws.articulated, factor)
     };

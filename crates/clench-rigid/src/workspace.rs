@@ -98,7 +98,7 @@ impl<T: Real> Workspace<T> {
             collision: Collision::new(model),
             problem: Problem::new(model.tree.clone()),
             record: ConstraintRecord::default(),
-            solver: Solver::new(&model.tree),
+            solver: Solver::compiled(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
             read: true,

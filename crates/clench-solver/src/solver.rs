@@ -1,4 +1,6 @@
 //! The solver: which parts of a problem are solved together, and where the results lie.
+//!
+//! Solves are compiled with this crate: a crate that steps simulations calls them, and does not compile them anew.
 
 use crate::check::check_length;
 use crate::descent::SolverState;
@@ -6,8 +8,12 @@ use crate::islands::{Islands, Job};
 use crate::results::Results;
 use crate::stopwatch::SolveClock;
 use crate::workspace::Workspace;
-use crate::{Cost, Problem, ProblemError, Settings, SolveStats, Switch, Threads, Tree};
-use clench_math::Real;
+use crate::{
+    Cost, Problem, ProblemError, Settings, SolveStats, Switch, Threads, Tree, TreeFactor,
+    TreeMatrix,
+};
+use clench_math::{CompiledKernels, KernelTable, Real};
+use std::sync::LazyLock;
 
 /// Solves [`Problem`]s; keeps its memory between solves.
 ///
@@ -17,11 +23,25 @@ pub struct Solver<T: Real> {
     results: Results<T>,
     whole: Workspace<T>,
     islands: Islands<T>,
+    kernels: SolverKernels<T>,
 }
 
 impl<T: Real> Solver<T> {
-    /// A solver, with memory for the results of problems over `tree`.
+    /// A solver, with memory for the results of problems over `tree`. The crate that calls this compiles the solver for `T`.
     pub fn new(tree: &Tree) -> Self {
+        Self::with_kernels(tree, SolverKernels::of_caller())
+    }
+
+    /// The same in a number type that [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) gives to tasks: this crate has compiled the
+    /// solver for it.
+    ///
+    /// # Panics
+    /// Where `T` is another type.
+    pub fn compiled(tree: &Tree) -> Self {
+        Self::with_kernels(tree, SolverKernels::of_this_crate())
+    }
+
+    fn with_kernels(tree: &Tree, kernels: SolverKernels<T>) -> Self {
         let zeros = vec![T::ZERO; tree.nv()];
         Solver {
             results: Results {
@@ -31,6 +51,7 @@ impl<T: Real> Solver<T> {
             },
             whole: Workspace::default(),
             islands: Islands::default(),
+            kernels,
         }
     }
 
@@ -50,6 +71,16 @@ impl<T: Real> Solver<T> {
         settings: &Settings,
         warmstart: Option<&[T]>,
     ) -> Result<&SolveStats<T>, ProblemError> {
+        (self.kernels.solve)(self, problem, settings, warmstart)?;
+        Ok(&self.results.stats)
+    }
+
+    fn run(
+        &mut self,
+        problem: &Problem<T>,
+        settings: &Settings,
+        warmstart: Option<&[T]>,
+    ) -> Result<(), ProblemError> {
         problem.check_sizes()?;
         if let Some(warm) = warmstart {
             check_length("warmstart", warm.len(), problem.nv())?;
@@ -72,7 +103,7 @@ impl<T: Real> Solver<T> {
             self.whole.run(problem, settings, warmstart);
             self.results.set(&self.whole);
         }
-        Ok(&self.results.stats)
+        Ok(())
     }
 
     /// The constraint forces at an acceleration (length nv) that is known, whatever the unconstrained one: what
@@ -82,6 +113,20 @@ impl<T: Real> Solver<T> {
     /// # Errors
     /// An acceleration of the wrong length, or arrays or blocks of the problem that have impossible sizes.
     pub fn evaluate(&mut self, problem: &Problem<T>, qacc: &[T]) -> Result<(), ProblemError> {
+        (self.kernels.evaluate)(self, problem, qacc)
+    }
+
+    /// As [`TreeFactor::factor`], by the code that this solver runs.
+    pub fn factor(
+        &self,
+        factor: &mut TreeFactor<T>,
+        tree: &Tree,
+        matrix: &TreeMatrix<T>,
+    ) -> T::Mask {
+        (self.kernels.factor)(factor, tree, matrix)
+    }
+
+    fn run_evaluation(&mut self, problem: &Problem<T>, qacc: &[T]) -> Result<(), ProblemError> {
         problem.check_sizes()?;
         check_length("qacc", qacc.len(), problem.nv())?;
         self.whole.evaluate(problem, qacc);
@@ -119,4 +164,49 @@ impl<T: Real> Solver<T> {
     pub fn stats(&self) -> &SolveStats<T> {
         &self.results.stats
     }
+}
+
+type Solve<T> =
+    fn(&mut Solver<T>, &Problem<T>, &Settings, Option<&[T]>) -> Result<(), ProblemError>;
+type Evaluate<T> = fn(&mut Solver<T>, &Problem<T>, &[T]) -> Result<(), ProblemError>;
+type Factor<T> = fn(&mut TreeFactor<T>, &Tree, &TreeMatrix<T>) -> <T as Real>::Mask;
+
+/// What a [`Solver`] runs.
+#[derive(Clone, Copy, Debug)]
+struct SolverKernels<T: Real> {
+    solve: Solve<T>,
+    evaluate: Evaluate<T>,
+    factor: Factor<T>,
+}
+
+impl<T: Real> SolverKernels<T> {
+    /// Those of the caller's crate.
+    fn of_caller() -> Self {
+        SolverKernels {
+            solve: Solver::run,
+            evaluate: Solver::run_evaluation,
+            factor: TreeFactor::factor,
+        }
+    }
+
+    /// Those of this crate.
+    fn of_this_crate() -> Self {
+        compiled().table::<SolverTable, T>()
+    }
+}
+
+struct SolverTable;
+
+impl KernelTable for SolverTable {
+    type Of<T: Real> = SolverKernels<T>;
+    fn of<T: Real>() -> SolverKernels<T> {
+        SolverKernels::of_caller()
+    }
+}
+
+/// Not generic, so that it is compiled here.
+#[inline(never)]
+fn compiled() -> &'static CompiledKernels {
+    static COMPILED: LazyLock<CompiledKernels> = LazyLock::new(CompiledKernels::new::<SolverTable>);
+    &COMPILED
 }

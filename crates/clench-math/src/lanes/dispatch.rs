@@ -1,11 +1,12 @@
 //! Which instructions the processor has, and running a task in lanes of them.
 
+#[cfg(any(lanes = "avx2", lanes = "avx512", lanes = "neon", lanes = "portable"))]
 use super::Lanes;
 #[cfg(lanes = "portable")]
 use super::Portable;
 #[cfg(lanes = "neon")]
 use super::neon::Neon;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(lanes = "avx2", lanes = "avx512"))]
 use super::registers::Registers;
 #[cfg(target_arch = "x86_64")]
 use super::{avx2::Avx2, avx512::Avx512};
@@ -142,13 +143,15 @@ pub trait LaneTask<S: Scalar> {
     fn run<T: Real<Scalar = S>>(self) -> Self::Output;
 }
 
-/// Runs a closure compiled for the widest instructions that this processor has.
+/// Runs a closure compiled for the widest of the instructions that lanes are compiled for and this processor has.
 #[inline(always)]
 pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(lanes = "avx512")]
     if Avx512::detected() {
         return <Avx512 as Registers<f64, 8>>::vectorize(kernel);
-    } else if Avx2::detected() {
+    }
+    #[cfg(lanes = "avx2")]
+    if Avx2::detected() {
         return <Avx2 as Registers<f64, 4>>::vectorize(kernel);
     }
     kernel()

@@ -71,7 +71,7 @@ impl<'a, S: Shared> Cells<'a, S> {
 
 impl<C: Shared> Cells<'_, C> {
     /// Copies the row of an environment into lane `lane` of as many elements.
-    #[inline(always)]
+    #[inline(never)]
     pub fn read<K: Kind<Cell<T::Scalar> = C>, T: Real>(
         &self,
         env: usize,
@@ -86,7 +86,7 @@ impl<C: Shared> Cells<'_, C> {
     }
 
     /// Copies lane `lane` of elements, as many as a row has, into the row of an environment.
-    #[inline(always)]
+    #[inline(never)]
     pub fn write<K: Kind<Cell<T::Scalar> = C>, T: Real>(
         &self,
         env: usize,

@@ -6,7 +6,9 @@ use super::separating_axes::SeparatingAxes;
 use super::{Candidate, contact_range};
 use crate::model::{Model, Params};
 use crate::stages::Positions;
-use clench_collide::{ContactPoint, Contacts, SeparatingAxis, collide_again, multiccd_matters};
+use clench_collide::{
+    Collide, ContactPoint, Contacts, SeparatingAxis, compiled_collide, multiccd_matters,
+};
 use clench_math::{Mask, Real, kernel};
 
 /// Pairs to look at, and the points found.
@@ -19,6 +21,7 @@ pub(super) struct PairFinder<T: Real> {
     /// The points of the pair at hand.
     scratch: Contacts<T>,
     clock: PairClock,
+    collide: Collide<T>,
 }
 
 /// A candidate that is near, and the direction in which it was apart when a step last looked, with its place in the table of these.
@@ -37,6 +40,7 @@ impl<T: Real> Default for PairFinder<T> {
             points: Vec::new(),
             scratch: Contacts::new(),
             clock: PairClock::default(),
+            collide: compiled_collide(),
         }
     }
 }
@@ -79,10 +83,20 @@ impl<T: Real> PairFinder<T> {
         candidates: &[Candidate],
     ) {
         self.clock.start();
-        let points = &mut self.scratch;
+        let (points, collide) = (&mut self.scratch, self.collide);
         for pair in &mut self.pairs {
             let candidate = &candidates[pair.candidate as usize];
-            narrow_phase(model, params, pos, candidate, &mut pair.axis, points);
+            let [a, b] = candidate.geoms.map(|geom| geom as usize);
+            let (_, margin) = contact_range(model, params, candidate);
+            collide(
+                &shape(model, params, a),
+                &pose(pos, a),
+                &shape(model, params, b),
+                &pose(pos, b),
+                margin,
+                &mut pair.axis,
+                points,
+            );
             self.clock.lap(candidate.kinds, T::LANES, || {
                 let none = T::Mask::splat(false);
                 let any = |lanes, point: &ContactPoint<T>| lanes | point.active;
@@ -116,21 +130,4 @@ impl<T: Real> PairFinder<T> {
             (candidate, points)
         })
     }
-}
-
-/// The points of one candidate.
-#[inline(always)]
-fn narrow_phase<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    pos: &Positions<T>,
-    candidate: &Candidate,
-    axis: &mut SeparatingAxis<T>,
-    points: &mut Contacts<T>,
-) {
-    let [a, b] = [candidate.geoms[0] as usize, candidate.geoms[1] as usize];
-    let (shape_a, shape_b) = (shape(model, params, a), shape(model, params, b));
-    let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
-    let (_, range) = contact_range(model, params, candidate);
-    collide_again(&shape_a, &pose_a, &shape_b, &pose_b, range, axis, points);
 }

@@ -34,9 +34,11 @@ pub(crate) fn enter_metric<T: Real>(
     let stages = (&ws.position, &ws.velocity, &ws.force);
     let mass = &mut ws.problem.mass;
     add_metric(model, params, state, stages, &mut ws.metric, mass);
-    ws.singular |= !ws.problem.factor_mass();
+    ws.singular |= !ws
+        .solver
+        .factor(&mut ws.problem.mass_factor, &model.tree, &ws.problem.mass);
     if settings.flags.diagexact || settings.solver.noslip_iterations > 0 {
-        ws.singular |= !ws.metric.factor_backbone(&model.tree);
+        ws.singular |= !ws.metric.factor_backbone(&model.tree, &ws.solver);
     }
     add_scaled(&mut ws.problem.qacc_smooth, &ws.metric.shift, T::ONE);
 }

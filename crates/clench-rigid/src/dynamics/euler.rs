@@ -73,7 +73,7 @@ fn damped_acceleration<T: Real>(
     let positive = if ws.articulated.is_empty() {
         damped_inertia(model, params, qvel, ws);
         let Integration { matrix, factor, .. } = &mut ws.integration;
-        factor.factor(tree, matrix)
+        ws.solver.factor(factor, tree, matrix)
     } else {
         let factor = &mut ws.integration.factor;
         let (pos, bodies) = (&ws.position, &mut ws.articulated);

@@ -27,7 +27,7 @@ pub fn implicit_fast<T: Real>(
 ) {
     symmetric_inertia(model, params, state, ws);
     let Integration { matrix, factor, .. } = &mut ws.integration;
-    ws.singular |= !factor.factor(&model.tree, matrix);
+    ws.singular |= !ws.solver.factor(factor, &model.tree, matrix);
     solve_implicit(&model.tree, ws);
     let Workspace {
         position: pos,

@@ -29,7 +29,7 @@ use crate::model::{Integrator, Model, Params};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Mask, Real, Vec3, kernel};
-use clench_solver::{Tree, TreeFactor, TreeMatrix};
+use clench_solver::{Solver, Tree, TreeFactor, TreeMatrix};
 
 /// What the forces of a term act along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,10 +137,10 @@ impl<T: Real> Metric<T> {
     }
 
     /// Factors that matrix. False in lanes where it is not positive definite.
-    pub(crate) fn factor_backbone(&mut self, tree: &Tree) -> T::Mask {
+    pub(crate) fn factor_backbone(&mut self, tree: &Tree, solver: &Solver<T>) -> T::Mask {
         match self.backbone.values.is_empty() {
             true => T::Mask::splat(true),
-            false => self.backbone_factor.factor(tree, &self.backbone),
+            false => solver.factor(&mut self.backbone_factor, tree, &self.backbone),
         }
     }
 
