@@ -7,7 +7,7 @@ fn main() {
     // The folder is always there; cargo looks into it for what is new.
     let folder = Path::new("../../web/dist");
     println!("cargo::rerun-if-changed={}", folder.display());
-    let page = fs::read_to_string(folder.join("index.html")).unwrap_or_default();
+    let page = fs::read(folder.join("index.html.gz")).unwrap_or_default();
     let out = env::var_os("OUT_DIR").expect("cargo sets it");
-    fs::write(Path::new(&out).join("page.html"), page).expect("the folder of a build script");
+    fs::write(Path::new(&out).join("page.html.gz"), page).expect("the folder of a build script");
 }

@@ -3,12 +3,14 @@
 //! It is built from `web/` by Node and embedded when this crate is compiled, if it was there by then. In a checkout where it
 //! was not, it is built when it is first needed.
 
+use flate2::read::GzDecoder;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{fs, io};
 
-/// The page that was there when this crate was compiled; empty if none was.
-const EMBEDDED: &str = include_str!(concat!(env!("OUT_DIR"), "/page.html"));
+/// The page that was there when this crate was compiled, by gzip; empty if none was.
+const EMBEDDED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/page.html.gz"));
 /// The folder of its source.
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web");
 
@@ -42,6 +44,9 @@ pub enum PageError {
         "the viewer's page was built by another version: build it with `npm ci && npm run build` in web/ and compile again"
     )]
     Version,
+    /// The embedded page cannot be decompressed.
+    #[error("the viewer's page in this program is damaged ({0}): compile it again")]
+    Damaged(io::Error),
     /// What was built cannot be read.
     #[error("{0}: {1}")]
     Unreadable(PathBuf, io::Error),
@@ -54,7 +59,9 @@ impl Page {
     /// That there is none, and what to do about it.
     pub fn find(tell: impl Fn(&str)) -> Result<Self, PageError> {
         if !EMBEDDED.is_empty() {
-            return Page::of(EMBEDDED);
+            let mut text = String::new();
+            let read = GzDecoder::new(EMBEDDED).read_to_string(&mut text);
+            return Page::of(read.map(|_| text).map_err(PageError::Damaged)?);
         }
         let source = Path::new(SOURCE);
         if !source.join("package.json").is_file() {
