@@ -9,7 +9,7 @@ mod collada;
 mod ears;
 mod gltf;
 mod msh;
-mod obj;
+pub(crate) mod obj;
 mod stl;
 mod triangles;
 
@@ -64,6 +64,14 @@ impl Format {
     }
 }
 
+/// Which objects and groups of an OBJ file count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Objects {
+    /// The first that has faces, as in MuJoCo.
+    First,
+    All,
+}
+
 /// The folder of a mesh file, in which files are that it names.
 pub(crate) struct Beside<'a> {
     pub directory: &'a Path,
@@ -89,6 +97,7 @@ impl Beside<'_> {
 pub(crate) fn read(
     bytes: Vec<u8>,
     format: Format,
+    objects: Objects,
     beside: &mut Beside,
 ) -> Result<Triangles, String> {
     if bytes.is_empty() {
@@ -96,7 +105,7 @@ pub(crate) fn read(
     }
     let found = match format {
         Format::Stl => stl::read(&bytes),
-        Format::Obj => obj::read(&bytes),
+        Format::Obj => obj::read(&bytes, objects),
         Format::Msh => msh::read(&bytes),
         Format::Collada => collada::read(&bytes),
         Format::Gltf => gltf::read(&bytes, beside),

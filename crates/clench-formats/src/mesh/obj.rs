@@ -1,24 +1,25 @@
 //! OBJ: the lines that matter to a shape, read as MuJoCo reads them.
 //!
-//! All vertices of the file count towards the hull, but only the faces of its first object or group.
+//! All vertices of the file count towards the hull.
 
+use super::Objects;
 use super::ears::triangulate;
 use super::triangles::Triangles;
 use clench_math::Vec3;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
+pub(super) fn read(bytes: &[u8], objects: Objects) -> Result<Triangles, String> {
     let text = String::from_utf8_lossy(bytes);
     let mut vertices = Vec::new();
     let mut texcoords = Vec::new();
     let mut polygons: Vec<Polygon> = Vec::new();
-    let mut first_object = true;
+    let mut counts = true;
     for (index, line) in text.lines().enumerate() {
         let number = index + 1;
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => vertices.push(vertex(words, number)?),
             Some("vt") => texcoords.push(texcoord(words, number)?),
-            Some("f") if first_object => {
+            Some("f") if counts => {
                 let corners = words
                     .map(|word| corner(word, [vertices.len(), texcoords.len()], number))
                     .collect::<Result<Vec<Corner>, String>>()?;
@@ -27,7 +28,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
                     polygons.push(Polygon { number, corners });
                 }
             }
-            Some("o" | "g") if !polygons.is_empty() => first_object = false,
+            Some("o" | "g") if !polygons.is_empty() => counts = objects == Objects::All,
             _ => {}
         }
     }
@@ -35,6 +36,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
         return Err("not an OBJ file, or one without vertices".to_owned());
     }
     triangles(vertices, texcoords, &polygons)
+}
+
+/// The number of faces of objects and groups after the first.
+pub(crate) fn further_faces(bytes: &[u8]) -> usize {
+    let text = String::from_utf8_lossy(bytes);
+    let tags = text
+        .lines()
+        .filter_map(|line| line.split_ascii_whitespace().next());
+    let further = tags
+        .skip_while(|tag| *tag != "f")
+        .skip_while(|tag| !matches!(*tag, "o" | "g"));
+    further.filter(|tag| *tag == "f").count()
 }
 
 /// A face of the file, and the line it is in.

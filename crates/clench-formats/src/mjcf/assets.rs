@@ -21,7 +21,8 @@ pub(crate) fn read(
         match element.tag.as_str() {
             "mesh" => {
                 let draft = source.classes.of(element)?.mesh.clone();
-                let mesh = draft.finish(element, &source.files, spending)?;
+                let notes = &mut builder.notes;
+                let mesh = draft.finish(element, &source.files, notes, spending)?;
                 builder.meshes.push(mesh);
             }
             "hfield" => {

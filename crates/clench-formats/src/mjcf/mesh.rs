@@ -3,7 +3,7 @@
 use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
-use crate::mesh::{self, Beside, Format, Triangles, builtin};
+use crate::mesh::{self, Beside, Format, Objects, Triangles, builtin, obj};
 use crate::spending::Spending;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{MeshInertia, MeshSpec};
@@ -34,11 +34,12 @@ impl MeshDraft {
         Ok(())
     }
 
-    /// The mesh, with what only an element itself can say.
+    /// The mesh, with what only an element itself can say. Notes tell of faces that do not count.
     pub(super) fn finish(
         mut self,
         element: &Element,
         files: &Files,
+        notes: &mut Vec<String>,
         spending: &mut Spending,
     ) -> Result<MeshSpec, LoadError> {
         self.read(element)?;
@@ -59,7 +60,7 @@ impl MeshDraft {
                 make(element, builtin, spending)?
             }
             None => {
-                let found = read_or_written(element, files, &mut mesh.name, spending)?;
+                let found = read_or_written(element, files, &mut mesh.name, notes, spending)?;
                 let taken = spending.bytes(mesh::cost(&found));
                 taken.map_err(|excess| element.error(excess))?;
                 found
@@ -101,6 +102,7 @@ fn read_or_written(
     element: &Element,
     files: &Files,
     name: &mut String,
+    notes: &mut Vec<String>,
     spending: &mut Spending,
 ) -> Result<Triangles, LoadError> {
     let written = Triangles {
@@ -129,7 +131,19 @@ fn read_or_written(
         directory: &directory,
         spending,
     };
-    let found = file.parse(element, |bytes| mesh::read(bytes, format, &mut beside))?;
+    let mut further = 0;
+    let found = file.parse(element, |bytes| {
+        if format == Format::Obj {
+            further = obj::further_faces(&bytes);
+        }
+        mesh::read(bytes, format, Objects::First, &mut beside)
+    })?;
+    if further > 0 {
+        let note = format!(
+            "of an OBJ file the first object or group counts, as in MuJoCo: {further} faces of others are left out"
+        );
+        notes.push(element.error(note).to_string());
+    }
     merge(found, written, element)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::LoadError;
 use crate::document::Element;
-use crate::mesh::{self, Beside, Format};
+use crate::mesh::{self, Beside, Format, Objects};
 use crate::mjcf::compiler::CompilerOptions;
 use crate::mjcf::files::{Content, slashes};
 use crate::spending::Spending;
@@ -53,7 +53,7 @@ impl<'a> Meshes<'a> {
         element: &Element,
         spending: &mut Spending,
     ) -> Result<String, LoadError> {
-        let written = slashes(element.required_text("filename")?);
+        let written = decoded(slashes(element.required_text("filename")?));
         let scale: [f64; 3] = element.numbers("scale")?.unwrap_or([1.0; 3]);
         let path = self.find(&written).map_err(|why| element.error(why))?;
         let key = (path.clone(), scale.map(f64::to_bits));
@@ -71,7 +71,9 @@ impl<'a> Meshes<'a> {
             directory: &directory,
             spending,
         };
-        let triangles = file.parse(element, |bytes| mesh::read(bytes, format, &mut beside))?;
+        let triangles = file.parse(element, |bytes| {
+            mesh::read(bytes, format, Objects::All, &mut beside)
+        })?;
         spending
             .bytes(mesh::cost(&triangles))
             .map_err(|excess| element.error(excess))?;
@@ -140,6 +142,23 @@ impl<'a> Meshes<'a> {
             )
         })
     }
+}
+
+/// The text of a URI: each `%` with two hexadecimal digits stands for a byte. Other texts, and those that would not be UTF-8, are kept.
+fn decoded(written: String) -> String {
+    if !written.contains("://") {
+        return written;
+    }
+    let mut bytes = Vec::with_capacity(written.len());
+    let mut rest = written.as_bytes();
+    while let [first, after @ ..] = rest {
+        let digit = |at: usize| char::from(*after.get(at)?).to_digit(16);
+        let escaped = (digit(0).zip(digit(1))).filter(|_| *first == b'%');
+        let (byte, used) = escaped.map_or((*first, 0), |(a, b)| ((16 * a + b) as u8, 2));
+        bytes.push(byte);
+        rest = &after[used..];
+    }
+    String::from_utf8(bytes).unwrap_or(written)
 }
 
 /// The first of some places where there is a file.

@@ -29,6 +29,22 @@ fn every_format_reads_the_same_cube() {
 }
 
 #[test]
+fn a_note_tells_of_the_faces_of_further_objects() {
+    let folder = Folder::new("objects");
+    let further = "g rest\nf 1 2 3\nf 1 2 4\n";
+    folder.write("parts/cube.obj", [obj(), further.into()].concat());
+    let model = folder.load_mesh("file='cube.obj'").unwrap();
+    assert_cube(&model);
+    let [note] = &model.notes[..] else {
+        panic!("{:?}", model.notes);
+    };
+    assert!(
+        note.contains("model.xml:") && note.contains("2 faces"),
+        "{note}"
+    );
+}
+
+#[test]
 fn names_and_places_of_files_follow_mujoco() {
     let folder = Folder::new("places");
     folder.write("parts/cube.stl", binary_stl());

@@ -64,6 +64,38 @@ fn meshes_of_packages_are_found_around_the_model_and_on_the_path() {
 }
 
 #[test]
+fn escapes_of_uris_are_decoded() {
+    let folder = Folder::new("urdf-escapes");
+    folder.write("parts/a part.obj", tetrahedron(1.0));
+    let here = folder.0.display();
+    let path = folder.0.join("model.urdf");
+    for file in [
+        "package://parts/a%20part.obj".to_owned(),
+        format!("file://{here}/parts/a%20part.obj"),
+    ] {
+        folder.write("model.urdf", with_meshes(&[&format!("filename='{file}'")]));
+        assert_eq!(load(&path).unwrap().meshes[0].name, "a part", "{file}");
+    }
+    // No URI, and no escapes.
+    folder.write("parts/a%20%zz%.obj", tetrahedron(1.0));
+    for file in ["parts/a%20%zz%.obj", "package://parts/a%2520%zz%.obj"] {
+        folder.write("model.urdf", with_meshes(&[&format!("filename='{file}'")]));
+        assert_eq!(load(&path).unwrap().meshes[0].name, "a%20%zz%", "{file}");
+    }
+}
+
+#[test]
+fn every_object_and_group_counts() {
+    let folder = Folder::new("urdf-objects");
+    let [first, second] = [1.0, 2.0].map(tetrahedron);
+    folder.write("part.obj", format!("o a\n{first}g b\n{second}"));
+    folder.write("model.urdf", with_meshes(&["filename='part.obj'"]));
+    let model = load(folder.0.join("model.urdf")).unwrap();
+    assert_eq!(model.meshes[0].faces.len(), 8);
+    assert!(model.notes.is_empty());
+}
+
+#[test]
 fn a_mesh_is_read_once_for_each_scale() {
     let folder = Folder::new("urdf-scales");
     folder.write("part.obj", tetrahedron(1.0));
