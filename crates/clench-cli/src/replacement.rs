@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use std::ffi::OsStr;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -83,7 +83,8 @@ impl Replacement {
     }
 }
 
-/// A file that goes away with this.
+/// A file that goes away with this, or when the next one is made for its path if the program is killed: it is locked as long as its
+/// program runs.
 pub(crate) struct Part {
     file: File,
     /// Empty once there is nothing to remove.
@@ -93,14 +94,22 @@ pub(crate) struct Part {
 impl Part {
     /// An empty file of a name that no other has, with the permissions of ordinary files.
     fn create(folder: &Path, name: &OsStr) -> io::Result<Self> {
-        let (name, process) = (name.to_string_lossy(), process::id());
+        let start = format!(".{}.", name.to_string_lossy());
+        remove_abandoned(folder, &start);
+        let process = process::id();
         let mut attempt = 0_u32;
         loop {
-            let path = folder.join(format!(".{name}.{process}-{attempt}.part"));
+            let path = folder.join(format!("{start}{process}-{attempt}{PART}"));
             match OpenOptions::new().write(true).create_new(true).open(&path) {
-                // That of another record, or of a program that was killed.
+                // Another program may have taken it for abandoned before it was locked.
+                Ok(file) => match file.try_lock() {
+                    Err(TryLockError::WouldBlock) => attempt += 1,
+                    // There are disks that know no locks.
+                    _ if path.exists() => return Ok(Part { file, path }),
+                    _ => attempt += 1,
+                },
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => attempt += 1,
-                opened => return opened.map(|file| Part { file, path }),
+                Err(error) => return Err(error),
             }
         }
     }
@@ -117,6 +126,22 @@ impl Drop for Part {
     fn drop(&mut self) {
         // Where it cannot be removed it stays, under a name that tells what it is.
         let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// What the names of parts end with.
+const PART: &str = ".part";
+
+/// Removes parts whose names start so and whose programs were killed: nobody locks them.
+fn remove_abandoned(folder: &Path, start: &str) {
+    // What cannot be looked at or removed stays.
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_part = name.starts_with(start) && name.ends_with(PART);
+        if is_part && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Drawing pictures and films.
 
 use super::Arguments;
+use crate::interrupt::Interrupt;
 use crate::limits::steps_in;
 use crate::message::tell;
 use crate::replacement::{Replacement, require_other};
@@ -50,7 +51,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         "--time: {time} is not between 0 and 3600 s"
     );
     steps_in(time, sim.params().timestep)?;
-    let mut motion = Motion { sim, steps: 0 };
+    let mut motion = Motion {
+        sim,
+        steps: 0,
+        interrupt: Interrupt::listen()?,
+    };
     let file = Replacement::begin(&arguments.out).with_context(|| context(&arguments.out))?;
     let mut renderer = Renderer::new(&model)?;
     let mut camera = Camera {
@@ -100,15 +105,22 @@ impl Camera<'_> {
 struct Motion {
     sim: Sim<f64>,
     steps: usize,
+    interrupt: Interrupt,
 }
 
 impl Motion {
     /// Steps until so many seconds have passed since the start.
+    ///
+    /// # Errors
+    /// A step that cannot be made, or a signal that asks the program to end.
     fn advance(&mut self, time: f64) -> Result<()> {
         let steps = steps_in(time, self.sim.params().timestep)?;
         while self.steps < steps {
             self.sim.step()?;
             self.steps += 1;
+            if let Some(signal) = self.interrupt.signal() {
+                bail!("ended by {}", signal.name);
+            }
         }
         Ok(())
     }

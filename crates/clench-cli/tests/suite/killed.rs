@@ -3,7 +3,7 @@
 //! The short form is an ordinary test; `cargo xtask soak --only recordings` runs the long one.
 
 use crate::program::{folder, model, simulation};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Stdio};
@@ -75,6 +75,10 @@ fn kill(times: u32, steps: u64) {
         "{times} runs of {whole:?} killed: {kept} times the old record is there, {replaced} times the new one"
     );
     assert!(kept > 0, "none was ended before its end");
+    record_all(&path, OLD);
+    let files = fs::read_dir(folder.path()).expect("the folder is there");
+    let names = Vec::from_iter(files.map(|file| file.expect("it can be read").file_name()));
+    assert_eq!(names, ["run.npz"], "a killed run left something");
 }
 
 #[test]
