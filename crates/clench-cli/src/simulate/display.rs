@@ -1,4 +1,4 @@
-//! The figures of a run for people.
+//! The figures of a run for people: the same lines in the same order, whatever the model. A batch has three more.
 
 use super::report::{BatchReport, PairReport, Report, StageReport};
 use crate::table::Table;
@@ -6,19 +6,20 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        if let Some(batch) = &self.batch {
-            let lanes = format!("{} side by side ({})", batch.lanes, self.instructions);
-            let threads = match self.threads {
-                1 => "1 thread".into(),
-                n => format!("{n} threads"),
-            };
-            let envs = self.envs;
-            line(
-                f,
-                "environments",
-                format_args!("{envs}, {lanes} on {threads}"),
-            )?;
-        }
+        let lanes = match &self.batch {
+            Some(batch) => format!(", {} side by side ({})", batch.lanes, self.instructions),
+            None => String::new(),
+        };
+        let threads = match self.threads {
+            1 => "1 thread".into(),
+            n => format!("{n} threads"),
+        };
+        let envs = self.envs;
+        line(
+            f,
+            "environments",
+            format_args!("{envs}{lanes} on {threads}"),
+        )?;
         let (time, steps) = (self.simulated_time, self.steps);
         let (speed, factor) = (self.steps_per_second, self.real_time_factor);
         let contacts = (self.contacts_mean, self.contacts_max);
@@ -52,38 +53,38 @@ impl Display for Report {
             "worst penetration",
             format_args!("{:.3} mm", 1e3 * self.penetration_max),
         )?;
-        if let Some(drift) = self.energy_drift {
-            line(f, "energy drift", format_args!("{drift:.1e} J"))?;
+        match self.energy_drift {
+            Some(drift) => line(f, "energy drift", format_args!("{drift:.1e} J"))?,
+            None => line(
+                f,
+                "energy drift",
+                "none to tell: the model adds or removes energy",
+            )?,
         }
         if let Some(batch) = &self.batch {
             batch.fmt(f)?;
         }
-        if self.unconverged_steps > 0 {
-            let steps = self.unconverged_steps;
-            line(
-                f,
-                "not converged",
-                format_args!("{steps} steps stopped at the iteration limit"),
-            )?;
-        }
-        if self.overflow_steps > 0 {
-            let steps = self.overflow_steps;
-            line(
-                f,
-                "contacts left out",
-                format_args!("in {steps} steps, by --max-contacts"),
-            )?;
-        }
-        if self.resets > 0 {
-            let resets = self.resets;
-            line(
-                f,
-                "diverged",
-                format_args!("{resets} times, and started over by --autoreset"),
-            )?;
-        }
-        if let Some(rows) = self.recorded_rows {
-            line(f, "recorded", format_args!("{rows} rows"))?;
+        line(
+            f,
+            "not converged",
+            format_args!(
+                "{} steps stopped at the iteration limit",
+                self.unconverged_steps
+            ),
+        )?;
+        line(
+            f,
+            "contacts left out",
+            format_args!("in {} steps, by --max-contacts", self.overflow_steps),
+        )?;
+        line(
+            f,
+            "diverged",
+            format_args!("{} times, and started over by --autoreset", self.resets),
+        )?;
+        match self.recorded_rows {
+            Some(rows) => line(f, "recorded", format_args!("{rows} rows"))?,
+            None => line(f, "recorded", "nothing")?,
         }
         line(f, "quality", self.quality)?;
         line(f, "status", self.status)?;
@@ -120,10 +121,11 @@ impl Display for BatchReport {
                 kilobytes(self.scratch_bytes_per_thread)
             ),
         )?;
-        if self.failed_envs > 0 {
-            let failed = self.failed_envs;
-            line(f, "failed", format_args!("{failed} environments"))?;
-        }
+        line(
+            f,
+            "failed",
+            format_args!("{} environments", self.failed_envs),
+        )?;
         for failure in &self.failures {
             writeln!(f, "    environment {}: {}", failure.env, failure.reason)?;
         }

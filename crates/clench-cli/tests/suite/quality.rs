@@ -148,3 +148,26 @@ fn a_batch_that_failed_says_when() {
         "{text}"
     );
 }
+
+#[test]
+fn the_report_has_the_same_lines_whatever_the_model() {
+    let folder = folder();
+    let names = |name: &str, words: &str, paths: &[(&str, &Path)]| {
+        let done = simulate(&model(name), &format!("--steps 3 {words}"), paths);
+        assert_eq!(code(&done), 0, "{}", errors(&done));
+        let text = String::from_utf8(done.stdout).unwrap();
+        let name = |line: &str| line.get(2..22).map(|name| name.trim_end().to_owned());
+        let names = Vec::from_iter(text.lines().filter_map(name));
+        assert!(names.len() >= 12, "{text}");
+        names
+    };
+    // Energy of the pendulum is conserved but for damping; actuators of the humanoid add to it.
+    let record = folder.path().join("run.npz");
+    let recorded = names("pendulum", "", &[("--record", &record)]);
+    assert_eq!(names("pendulum", "", &[]), recorded);
+    assert_eq!(names("humanoid", "", &[]), recorded);
+    assert_eq!(
+        names("pendulum", "--envs 2", &[]),
+        names("humanoid", "--envs 3 --precision 32", &[])
+    );
+}
