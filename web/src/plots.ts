@@ -5,6 +5,7 @@ import "uplot/dist/uPlot.min.css";
 import { choice, element } from "./elements.ts";
 import { PLOTS, type Frame } from "./frame.ts";
 import { nameOf, type Scene } from "./scene.ts";
+import { tickTexts } from "./ticks.ts";
 
 /** Moments in a plot. */
 const ROOM = 600;
@@ -42,6 +43,11 @@ function sources(scene: Scene): Source[] {
     }
   });
   return all;
+}
+
+/** Pixels that the texts of a vertical axis take, with the gaps around them. */
+function room(texts: string[] | null): number {
+  return 16 + 6 * Math.max(3, ...(texts ?? []).map((text) => text.length));
 }
 
 class Plot {
@@ -91,7 +97,7 @@ class Plot {
         scales: { x: { time: false }, y: parts.length > 0 ? { range: (_, __, most) => [0, most] } : {} },
         axes: [
           { size: 22, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
-          { size: 46, values: (_, ticks) => ticks.map(tick), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
+          { size: (_, texts) => room(texts), values: (_, ticks) => tickTexts(ticks), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
         ],
         series: [{}, ...(parts.length > 0 ? stacked : [line])],
       },
@@ -131,12 +137,6 @@ class Plot {
   get last(): number[] {
     return this.values.map((row) => row.at(-1) ?? NaN);
   }
-}
-
-/** A number of an axis, as short as it can be. */
-function tick(value: number): string {
-  const rounded = Number(value.toPrecision(4));
-  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : `${rounded}`;
 }
 
 export class Plots {

@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
+import { tickTexts } from "../src/ticks.ts";
 import { PICTURES, PROGRAM, ROOT, browser, open, skip, started, until, view } from "./browser.ts";
 
 /** What the page last drew, as its console sees it. */
@@ -69,6 +70,15 @@ function topBody(page: Page): Promise<{ body: number; x: number; y: number }> {
     return { body: top, x: ((x / w + 1) / 2) * innerWidth, y: ((1 - y / w) / 2) * innerHeight };
   });
 }
+
+test("ticks of plots differ from their neighbours", () => {
+  assert.deepEqual(tickTexts([0, 2.5, 5]), ["0", "2.5", "5"]);
+  assert.deepEqual(tickTexts([1.222e-4, 1.2222e-4, 1.2224e-4]), ["1.222e-4", "1.2222e-4", "1.2224e-4"]);
+  assert.deepEqual(tickTexts([1000, 1000.25, 1000.5]), ["1000", "1000.25", "1000.5"]);
+  assert.deepEqual(tickTexts([-1.000002, -1.000001, -1]), ["-1.000002", "+1e-6", "+2e-6"]);
+  assert.deepEqual(tickTexts([7]), ["7"]);
+  assert.deepEqual(tickTexts([]), []);
+});
 
 test("the humanoid is seen where it stands", { skip }, async () => {
   const program = await view("models/humanoid.xml", "--keyframe", "standing", "--paused");

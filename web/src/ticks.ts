@@ -1,0 +1,23 @@
+// The numbers along the axis of a plot.
+
+/** From how many digits on ticks are told as differences from the first. */
+const MANY_DIGITS = 6;
+
+/** Texts for ascending ticks at equal distances, each as short as it can be, and different from its neighbours. */
+export function tickTexts(ticks: number[]): string[] {
+  const step = ticks.length > 1 ? (ticks[ticks.length - 1] - ticks[0]) / (ticks.length - 1) : 0;
+  const most = Math.max(...ticks.map(Math.abs));
+  if (!(step > 0)) return ticks.map((value) => short(value, most / 1e3));
+  if (most / step < 10 ** (MANY_DIGITS - 1)) return ticks.map((value) => short(value, step));
+  const rest = ticks.map((value) => `+${short(value - ticks[0], step)}`);
+  return [short(ticks[0], step), ...rest.slice(1)];
+}
+
+/** A number with the digits that tell it from another at this distance: some ticks are two and a half of a unit apart. */
+function short(value: number, distance: number): string {
+  if (Math.abs(value) <= 1e-3 * distance) return "0";
+  const last = Math.floor(Math.log10(distance)) - 1;
+  const first = Math.floor(Math.log10(Math.abs(value)));
+  const rounded = Number(value.toPrecision(Math.min(17, Math.max(1, first - last + 1))));
+  return first < -3 || first > 5 ? rounded.toExponential() : `${rounded}`;
+}
