@@ -102,7 +102,7 @@ fn has_kernels(profile: Profile) -> bool {
         entry
             .file_name()
             .to_string_lossy()
-            .starts_with("clench-rigid-")
+            .starts_with("clench-dynamics-")
     })
 }
 

@@ -1,4 +1,4 @@
-//! All packages are built of the same `clench-rigid`, which takes most of the time of a build: with other features of anything below it,
+//! All packages are built of the same `clench-dynamics`, which takes most of the time of a build: with other features of anything below it,
 //! it would be compiled once for each.
 
 use std::collections::BTreeSet;
@@ -6,10 +6,10 @@ use std::process::Command;
 
 #[test]
 fn what_the_kernels_are_built_of_has_the_same_features_in_all_packages() {
-    let program = below("clench-rigid ", "clench-cli");
+    let program = below("clench-dynamics ", "clench-cli");
     assert!(program.len() > 10, "{program:?}");
     for package in ["clench-python", "clench-gpu", "clench-formats"] {
-        assert_eq!(program, below("clench-rigid ", package), "{package}");
+        assert_eq!(program, below("clench-dynamics ", package), "{package}");
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::LoadError;
 use crate::spending::Spending;
 use crate::tolerant;
-use clench_rigid::builder::Origin;
+use clench_builder::Origin;
 use roxmltree::{Document, Node};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! What can be wrong with a model file, and where.
 
-use clench_rigid::builder::{BuildError, Origin, shorten};
+use clench_builder::{BuildError, Origin, shorten};
 use std::sync::Arc;
 
 /// A model file that cannot be loaded: the file, the line, the element, and what is wrong with it.

@@ -26,8 +26,8 @@ pub use error::LoadError;
 pub use loader::Loader;
 pub use mjcf::{SaveError, SaveModel, Support, supported};
 
-use clench_rigid::builder::ModelBuilder;
-use clench_rigid::{Budget, Model};
+use clench_builder::ModelBuilder;
+use clench_dynamics::{Budget, Model};
 use std::path::Path;
 
 /// Loads a model file, within the usual [`Budget`].

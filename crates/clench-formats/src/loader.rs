@@ -3,8 +3,8 @@
 use crate::document;
 use crate::spending::{Memory, Spending, memory_name};
 use crate::{LoadError, mjcf, urdf};
-use clench_rigid::builder::ModelBuilder;
-use clench_rigid::{Budget, Model};
+use clench_builder::ModelBuilder;
+use clench_dynamics::{Budget, Model};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! A model's files, on disk or in memory, and what they have asked for so far, held against their budget.
 
-use clench_rigid::Budget;
-use clench_rigid::budget::RAISE;
+use clench_dynamics::Budget;
+use clench_dynamics::budget::RAISE;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Read};

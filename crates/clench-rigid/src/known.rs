@@ -1,6 +1,6 @@
 //! Whether what the workspace holds was computed from the present state, or is stale.
 
-use crate::state::State;
+use clench_dynamics::state::State;
 use clench_math::{Quat, Scalar, Vec3};
 
 /// How far the computation from a state has come.

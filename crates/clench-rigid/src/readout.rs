@@ -12,12 +12,11 @@ pub(crate) use push::pushes;
 pub use tendon::TendonLine;
 pub(crate) use tendon::tendon_lines;
 
-use crate::constraint::ConstraintSource;
-use crate::contact::Contact;
-use crate::model::Model;
 use crate::output::of_contact;
-use crate::workspace::Workspace;
 use blocks::active_blocks;
+use clench_dynamics::constraint::ConstraintSource;
+use clench_dynamics::contact::Contact;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar};
 use clench_solver::{Block, Cost, Partition};
 use std::array::from_fn;
@@ -174,47 +173,6 @@ pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> 
         }
     };
     found.map(row).collect()
-}
-
-impl ConstraintSource {
-    /// Kind of constraint, as MuJoCo groups them; "dynamic" are those that were added at run time.
-    pub fn kind(self) -> &'static str {
-        match self {
-            ConstraintSource::Equality(_) => "equality",
-            ConstraintSource::Dynamic { .. } => "dynamic",
-            ConstraintSource::DofFriction(_) => "friction_dof",
-            ConstraintSource::TendonFriction(_) => "friction_tendon",
-            ConstraintSource::JointLimit(_) => "limit_joint",
-            ConstraintSource::TendonLimit(_) => "limit_tendon",
-            ConstraintSource::Contact(_) => "contact",
-        }
-    }
-
-    /// Number of the source among those of its kind.
-    pub fn index(self) -> usize {
-        match self {
-            ConstraintSource::Equality(i)
-            | ConstraintSource::Dynamic { slot: i, .. }
-            | ConstraintSource::DofFriction(i)
-            | ConstraintSource::TendonFriction(i)
-            | ConstraintSource::JointLimit(i)
-            | ConstraintSource::TendonLimit(i)
-            | ConstraintSource::Contact(i) => i,
-        }
-    }
-
-    /// Name of the source, of the joint for a dof; empty where it has none and for contacts and what was added at run time.
-    pub fn name(self, model: &Model) -> &str {
-        match self {
-            ConstraintSource::Equality(i) => &model.equalities[i].name,
-            ConstraintSource::DofFriction(i) => &model.joints[model.dofs[i].joint].name,
-            ConstraintSource::TendonFriction(i) | ConstraintSource::TendonLimit(i) => {
-                &model.tendons[i].name
-            }
-            ConstraintSource::JointLimit(i) => &model.joints[i].name,
-            ConstraintSource::Dynamic { .. } | ConstraintSource::Contact(_) => "",
-        }
-    }
 }
 
 /// Which island each tree belongs to in lane `lane` (ntree), named by its lowest tree; none where no constraint acts.

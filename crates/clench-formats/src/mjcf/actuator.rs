@@ -10,9 +10,9 @@ use super::inputs;
 use super::shortcut::{self, ActuatorParams, Shortcut};
 use super::transmission;
 use crate::LoadError;
-use clench_rigid::builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
-use clench_rigid::model::Interpolation;
-use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+use clench_builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
+use clench_dynamics::model::Interpolation;
+use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
 /// Overwrites what the element says of past values; fewer samples than none are none, as in MuJoCo.
 pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Result<(), LoadError> {

@@ -3,8 +3,8 @@
 use super::document::Element;
 use super::sections::entries;
 use crate::LoadError;
-use clench_rigid::builder::{AppearanceSpec, MaterialSpec};
-use clench_rigid::model::Material;
+use clench_builder::{AppearanceSpec, MaterialSpec};
+use clench_dynamics::model::Material;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use super::source::Sources;
 use super::{hfield, schema};
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::ModelBuilder;
+use clench_builder::ModelBuilder;
 use std::collections::BTreeSet;
 
 /// Reads the meshes and height fields.

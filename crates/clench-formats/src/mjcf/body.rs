@@ -11,12 +11,12 @@ use super::source::Sources;
 use super::stretch::Stretch;
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_math::{Mat3, Quat, Vec3};
-use clench_rigid::builder::{
+use clench_builder::{
     BodySpec, CameraSpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,
     SiteSpec,
 };
-use clench_rigid::model::SleepPolicy;
+use clench_dynamics::model::SleepPolicy;
+use clench_math::{Mat3, Quat, Vec3};
 use std::sync::Arc;
 
 /// Reads the body tree into a list of bodies, parents before children.

@@ -4,8 +4,8 @@ use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::{Orientation, Pose};
 use crate::LoadError;
+use clench_builder::{CameraLens, CameraSpec, CameraTracking};
 use clench_math::Vec3;
-use clench_rigid::builder::{CameraLens, CameraSpec, CameraTracking};
 use std::sync::Arc;
 
 /// A camera as it is written, or as a default class has it.

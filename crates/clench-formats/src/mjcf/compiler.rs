@@ -2,8 +2,8 @@
 
 use super::document::Element;
 use crate::LoadError;
+use clench_builder::{CompilerSpec, InertiaFromGeom, LengthRangeMode, LengthRangeSpec};
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{CompilerSpec, InertiaFromGeom, LengthRangeMode, LengthRangeSpec};
 
 /// What becomes of options of attached models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::document::Element;
 use super::geom::read_condim;
 use crate::LoadError;
-use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, ExcludeSpec, PairSpec};
+use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, ExcludeSpec, PairSpec};
 
 /// What a pair of a file starts as. Files do not mix the parameters of the geoms, they have defaults of their own.
 pub(crate) fn default_pair() -> PairSpec {

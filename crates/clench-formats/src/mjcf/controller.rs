@@ -4,7 +4,7 @@ use super::document::Element;
 use super::inputs::read_inputs;
 use super::shortcut::{ActuatorParams, not_negative};
 use crate::LoadError;
-use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
 /// `pid`: force = kp (position − length) + kv (velocity − its velocity) + ki ∫error + feedforward.
 pub(crate) fn read_pid(

@@ -5,8 +5,8 @@ use super::schema;
 use super::sections::entries;
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::UserWidths;
-use clench_rigid::model::{Custom, TupleEntry};
+use clench_builder::UserWidths;
+use clench_dynamics::model::{Custom, TupleEntry};
 
 /// Kinds of elements that a tuple may list.
 const KINDS: &str = "body xbody joint geom site camera light flex mesh skin hfield texture material pair exclude equality tendon \

@@ -18,7 +18,7 @@ use super::site::SiteDraft;
 use super::tendon;
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::{JointSpec, MaterialSpec, PairSpec, TendonSpec};
+use clench_builder::{JointSpec, MaterialSpec, PairSpec, TendonSpec};
 use std::collections::HashMap;
 
 /// One class: what each kind of element starts as.

@@ -5,12 +5,10 @@ use super::rules::rule::{NONE, Rule, section};
 use super::write::names::{SaveError, body_name, label, named};
 use super::write::xml::{Tag, Xml};
 use crate::LoadError;
+use clench_builder::{ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind, EqualitySpec};
+use clench_dynamics::Model;
+use clench_dynamics::model::{Equality, EqualityTarget};
 use clench_math::{Quat, Vec3};
-use clench_rigid::Model;
-use clench_rigid::builder::{
-    ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind, EqualitySpec,
-};
-use clench_rigid::model::{Equality, EqualityTarget};
 
 /// What the section and its elements may have.
 pub(super) const RULES: &[Rule] = &[

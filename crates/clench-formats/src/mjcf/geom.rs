@@ -6,9 +6,9 @@ use super::document::Element;
 use super::orientation::{Orientation, Pose, segment};
 use super::stretch::{Deformation, Stretch};
 use crate::LoadError;
+use clench_builder::{GeomMass, GeomSpec};
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
-use clench_rigid::builder::{GeomMass, GeomSpec};
 
 const KINDS: [(&str, Option<ShapeKind>); 9] = [
     ("plane", Some(ShapeKind::Plane)),

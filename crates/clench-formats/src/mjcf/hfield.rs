@@ -5,7 +5,7 @@ use super::files::Files;
 use crate::LoadError;
 use crate::elevation::{Elevation, HEIGHT, read_grid, read_png};
 use crate::spending::Spending;
-use clench_rigid::builder::HeightFieldSpec;
+use clench_builder::HeightFieldSpec;
 
 pub(crate) fn read(
     element: &Element,

@@ -2,7 +2,7 @@
 
 use super::document::Element;
 use crate::LoadError;
-use clench_rigid::model::{ControlInput, GainKind};
+use clench_dynamics::model::{ControlInput, GainKind};
 
 /// The inputs that an actuator names, in the order in which they must be named.
 const INPUTS: [(&str, &[ControlInput]); 7] = [

@@ -4,8 +4,8 @@ use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::Pose;
 use crate::LoadError;
-use clench_rigid::builder::JointSpec;
-use clench_rigid::model::JointKind;
+use clench_builder::JointSpec;
+use clench_dynamics::model::JointKind;
 
 /// Overwrites what the element gives; angles stay in the file's unit until [`finish`].
 pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadError> {

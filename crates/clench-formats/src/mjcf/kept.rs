@@ -2,7 +2,7 @@
 
 use super::document::Element;
 use super::sections::entries;
-use clench_rigid::builder::BodySpec;
+use clench_builder::BodySpec;
 use std::collections::HashSet;
 
 /// Keeps the bodies that cameras and lights look at, that skins hang on, and that belong to a user's tuples.

@@ -2,7 +2,7 @@
 
 use super::document::Element;
 use crate::LoadError;
-use clench_rigid::builder::KeyframeSpec;
+use clench_builder::KeyframeSpec;
 
 /// The state that a `<key>` describes; lengths are checked against the model when it is built.
 pub(crate) fn read(element: &Element) -> Result<KeyframeSpec, LoadError> {

@@ -4,9 +4,9 @@ use super::camera::{Mode, tracking};
 use super::document::Element;
 use super::orientation::Pose;
 use crate::LoadError;
+use clench_builder::LightSpec;
+use clench_dynamics::model::{Headlight, LightKind, LightProperties};
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::LightSpec;
-use clench_rigid::model::{Headlight, LightKind, LightProperties};
 
 /// A light as it is written, or as a default class has it.
 #[derive(Clone, Debug)]

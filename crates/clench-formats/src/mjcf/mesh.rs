@@ -5,8 +5,8 @@ use super::files::Files;
 use crate::LoadError;
 use crate::mesh::{self, Beside, Format, Objects, Triangles, builtin, obj};
 use crate::spending::Spending;
+use clench_builder::{MeshInertia, MeshSpec};
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{MeshInertia, MeshSpec};
 
 /// A mesh as it is written, or as a default class has it.
 #[derive(Clone, Debug, Default)]

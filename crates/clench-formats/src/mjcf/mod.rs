@@ -53,7 +53,7 @@ use crate::LoadError;
 use crate::document::{self, Element};
 use crate::spending::Spending;
 use body::BodyReader;
-use clench_rigid::builder::ModelBuilder;
+use clench_builder::ModelBuilder;
 use compose::Composed;
 use include::Includes;
 use option::OptionReader;

@@ -5,9 +5,9 @@
 
 use super::document::Element;
 use crate::LoadError;
-use clench_rigid::builder::{ContactOverride, DEFAULT_SOLIMP, DEFAULT_SOLREF, ModelBuilder};
-use clench_rigid::model::{Flags, Integrator};
-use clench_rigid::options::{Mjcf, OptionValue, RigidOption, RigidOptions};
+use clench_builder::{ContactOverride, DEFAULT_SOLIMP, DEFAULT_SOLREF, ModelBuilder};
+use clench_dynamics::model::{Flags, Integrator};
+use clench_dynamics::options::{Mjcf, OptionValue, RigidOption, RigidOptions};
 use clench_solver::Switch;
 
 /// What MJCF means where it is silent: 100 iterations and time constants as they are written.

@@ -7,8 +7,8 @@ use super::shortcut::Shortcut;
 use super::source::Sources;
 use super::{contact, equality, keyframe, sensor, tendon};
 use crate::LoadError;
-use clench_rigid::builder::{ActuatorSpec, ModelBuilder, TendonSpec};
-use clench_rigid::model::SensorKind;
+use clench_builder::{ActuatorSpec, ModelBuilder, TendonSpec};
+use clench_dynamics::model::SensorKind;
 
 /// Reads contacts, equalities, tendons, actuators, sensors and keyframes.
 pub(crate) fn read(

@@ -8,7 +8,7 @@ use super::rules::rules;
 use super::sensor;
 use crate::LoadError;
 use crate::mjcf::rules::Rule;
-use clench_rigid::model::SensorKind;
+use clench_dynamics::model::SensorKind;
 
 /// Attributes that an element has in the model, but not in a default class.
 const NOT_IN_DEFAULTS: &[&str] = &[

@@ -4,11 +4,11 @@ use super::actuator::read_history;
 use super::document::Element;
 use crate::LoadError;
 use crate::mjcf::rules::{NONE, Rule};
-use clench_rigid::builder::{
+use clench_builder::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, HistorySpec, SensorSpec,
     SensorSubject,
 };
-use clench_rigid::model::{
+use clench_dynamics::model::{
     Attachment, ContactField, ContactReduction, RayField, SensorData, SensorKind,
 };
 use std::sync::Arc;

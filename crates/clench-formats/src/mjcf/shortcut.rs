@@ -4,8 +4,8 @@
 use super::document::Element;
 use super::inputs::{Inputs, read_inputs};
 use crate::LoadError;
-use clench_rigid::builder::{ActuatorSpec, TransmissionSpec};
-use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
+use clench_builder::{ActuatorSpec, TransmissionSpec};
+use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
 /// Which element an actuator is written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,9 +7,9 @@ use super::geom::{known_kind, place_segment, read_kind};
 use super::orientation::{Orientation, Pose};
 use super::stretch::Deformation;
 use crate::LoadError;
+use clench_builder::{AppearanceSpec, SiteSpec};
 use clench_collide::ShapeKind;
 use clench_math::Vec3;
-use clench_rigid::builder::{AppearanceSpec, SiteSpec};
 use std::sync::Arc;
 
 /// A site as it is written, or as a default class has it.

@@ -8,7 +8,7 @@ use super::files::Files;
 use super::sections::sections;
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::CompilerSpec;
+use clench_builder::CompilerSpec;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 use super::rules::rules;
 use super::sensor;
 use crate::mjcf::rules::Rule;
-use clench_rigid::model::SensorKind;
+use clench_dynamics::model::SensorKind;
 use std::borrow::Cow;
 
 /// What the reader does with an MJCF element.

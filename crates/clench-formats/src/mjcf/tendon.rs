@@ -3,7 +3,7 @@
 use super::appearance::read_appearance;
 use super::document::Element;
 use crate::LoadError;
-use clench_rigid::builder::{TendonSpec, WrapSpec};
+use clench_builder::{TendonSpec, WrapSpec};
 
 /// Overwrites what the element gives of the attributes that default classes also have.
 pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<(), LoadError> {

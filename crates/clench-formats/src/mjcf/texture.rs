@@ -5,7 +5,7 @@ use super::files::{Content, Files};
 use crate::LoadError;
 use crate::image::Image;
 use crate::spending::Spending;
-use clench_rigid::model::{
+use clench_dynamics::model::{
     Pattern, Pixels, Texture, TextureKind, TextureMark, TexturePattern, TexturePicture,
 };
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use super::document::Element;
 use crate::LoadError;
-use clench_rigid::builder::TransmissionSpec;
+use clench_builder::TransmissionSpec;
 
 /// Attributes that name a target; an actuator has one.
 const TARGETS: &[&str] = &[

@@ -7,8 +7,8 @@ use super::source::Sources;
 use super::{light, schema, texture};
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_rigid::builder::{MaterialSpec, ModelBuilder};
-use clench_rigid::model::{Material, Texture};
+use clench_builder::{MaterialSpec, ModelBuilder};
+use clench_dynamics::model::{Material, Texture};
 use std::collections::BTreeSet;
 
 /// Reads the materials and textures.

@@ -6,9 +6,9 @@ use crate::LoadError;
 use crate::document::Element;
 use crate::mjcf::orientation::Pose;
 use crate::spending::Spending;
+use clench_builder::{GeomMass, GeomSpec};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{GeomMass, GeomSpec};
 use std::collections::{HashMap, HashSet};
 
 /// What only shows is in this group, as in MuJoCo.

@@ -6,9 +6,9 @@ use super::tree::Tree;
 use crate::LoadError;
 use crate::document::Element;
 use crate::spending::Spending;
+use clench_builder::{EqualityKind, EqualitySpec, JointSpec, ModelBuilder};
+use clench_dynamics::model::JointKind;
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{EqualityKind, EqualitySpec, JointSpec, ModelBuilder};
-use clench_rigid::model::JointKind;
 use std::collections::HashMap;
 
 /// Kinds of URDF joints. `spherical` is no word of URDF, but of MuJoCo's and Bullet's readers.

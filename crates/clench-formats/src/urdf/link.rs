@@ -6,8 +6,8 @@ use super::tree::Link;
 use crate::LoadError;
 use crate::document::Element;
 use crate::spending::Spending;
+use clench_builder::{BodySpec, InertiaSpec, InertialSpec, ModelBuilder};
 use clench_math::{Mat3, Quat, Vec3};
-use clench_rigid::builder::{BodySpec, InertiaSpec, InertialSpec, ModelBuilder};
 
 /// Reads a link into the world or the next body.
 ///

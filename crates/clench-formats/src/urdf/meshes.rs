@@ -6,8 +6,8 @@ use crate::mesh::{self, Beside, Format, Objects};
 use crate::mjcf::compiler::CompilerOptions;
 use crate::mjcf::files::{Content, slashes};
 use crate::spending::Spending;
+use clench_builder::MeshSpec;
 use clench_math::Vec3;
-use clench_rigid::builder::MeshSpec;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 

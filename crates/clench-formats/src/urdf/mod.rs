@@ -17,7 +17,7 @@ mod tree;
 use crate::LoadError;
 use crate::document::Element;
 use crate::spending::Spending;
-use clench_rigid::builder::ModelBuilder;
+use clench_builder::ModelBuilder;
 use geometry::{GeomReader, Materials};
 use meshes::Meshes;
 use std::path::{Path, PathBuf};

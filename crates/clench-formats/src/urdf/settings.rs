@@ -5,7 +5,7 @@ use crate::document::Element;
 use crate::mjcf::compiler::{self, CompilerOptions};
 use crate::mjcf::option::OptionReader;
 use crate::mjcf::{keyframe, schema};
-use clench_rigid::builder::{CompilerSpec, ModelBuilder};
+use clench_builder::{CompilerSpec, ModelBuilder};
 
 /// Sections of MJCF that may stand in `<mujoco>`.
 const SECTIONS: [&str; 3] = ["compiler", "option", "size"];

@@ -4,20 +4,19 @@ use super::cells::Cells;
 use super::env_rows::EnvRows;
 use super::group::Group;
 use super::shared::Shared;
-use crate::dynamics::frames::{Axes, Frames, along};
-use crate::dynamics::jacobian::{point_jacobian, subtree_jacobian};
-use crate::dynamics::velocity::velocities;
-use crate::geometry::{Geoms, RayFilter};
 use crate::ik::{Ik, Search};
-use crate::inverse::Acceleration;
-use crate::inverse::inverse;
-use crate::model::{FrameObject, Model, Params};
-use crate::pipeline::{forward, position_stage};
 use crate::query::{cast, sample};
+use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
-use crate::settings::StepSettings;
-use crate::state::State;
-use crate::workspace::Workspace;
+use clench_dynamics::Step;
+use clench_dynamics::dynamics::frames::{Axes, Frames, along};
+use clench_dynamics::dynamics::jacobian::{point_jacobian, subtree_jacobian};
+use clench_dynamics::geometry::{Geoms, RayFilter};
+use clench_dynamics::inverse::Acceleration;
+use clench_dynamics::model::{FrameObject, Model, Params};
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, Vec3, write_lane};
 
 /// Numbers of a question.
@@ -124,24 +123,31 @@ impl<S: Scalar + Shared> Asking<'_, S> {
         if let Question::Inverse(kind) = self.question {
             out.resize(self.model.nv, T::ZERO);
             let given = (&given[..], kind);
-            inverse(self.model, params, self.settings, state, given, ws, out);
-            return crate::check::good_results(state, ws);
+            (Step::compiled().inverse)(self.model, params, self.settings, state, given, ws, out);
+            return clench_dynamics::check::good_results(state, ws);
         }
         match self.question {
             Question::Acceleration(..) => {
                 ws.forget_poses();
-                forward(self.model, params, self.settings, state, ws);
+                (Step::compiled().forward)(
+                    self.model,
+                    params,
+                    self.settings,
+                    state,
+                    ws,
+                    sensor::evaluate,
+                );
                 update_body_forces(self.model, params, state, ws);
             }
-            _ => position_stage(self.model, params, state, ws),
+            _ => (Step::compiled().position_stage)(self.model, params, state, ws),
         }
         if let Question::Velocity(..) = self.question {
-            velocities(self.model, &ws.position, &state.qvel, &mut ws.velocity);
+            (Step::compiled().velocities)(self.model, &ws.position, &state.qvel, &mut ws.velocity);
         }
         self.write_answer(params, ws, given, out);
         match self.question {
             Question::Acceleration(..) => {
-                crate::check::good_results(state, ws) & !ws.collision.overflow
+                clench_dynamics::check::good_results(state, ws) & !ws.collision.overflow
             }
             Question::SolveMass => !ws.singular,
             _ => everywhere,
@@ -184,11 +190,11 @@ impl<S: Scalar + Shared> Asking<'_, S> {
             }
             Question::MulMass => {
                 out.resize(model.nv, T::ZERO);
-                ws.mass().mul(&model.tree, given, out);
+                (Step::compiled().mul)(ws.mass(), &model.tree, given, out);
             }
             Question::SolveMass => {
                 out.extend_from_slice(given);
-                ws.mass_factor().solve(&model.tree, out);
+                (Step::compiled().solve)(ws.mass_factor(), &model.tree, out);
             }
             Question::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
             Question::Heights { geom, frame } => sample(geoms, geom, frame, given, out),

@@ -8,15 +8,15 @@ use super::cells::Cells;
 use super::env_rows::EnvRows;
 use super::run::for_each_group;
 use super::{Batch, Precision, Rows};
-use crate::check::{check_length, check_values};
-use crate::error::SimError;
-use crate::geometry::RayFilter;
 use crate::ik::{Ik, IkSolution};
-use crate::inverse::Acceleration;
-use crate::model::FrameObject;
 use crate::query::{
     HIT, RAY, check_acceleration, check_body, check_object, check_places, check_rays,
 };
+use clench_dynamics::check::{check_length, check_values};
+use clench_dynamics::error::SimError;
+use clench_dynamics::geometry::RayFilter;
+use clench_dynamics::inverse::Acceleration;
+use clench_dynamics::model::FrameObject;
 
 impl<S: Precision> Batch<S> {
     /// The Jacobian of an object in each environment (n, 6 × nv), see [`Sim::jacobian`](crate::Sim::jacobian), in the present

@@ -2,10 +2,10 @@
 
 use super::answer::{Given, Question};
 use super::{Batch, Precision, Rows};
-use crate::dynamics::frames::Axes;
-use crate::error::SimError;
-use crate::model::FrameObject;
 use crate::query::check_object;
+use clench_dynamics::dynamics::frames::Axes;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::FrameObject;
 
 impl<S: Precision> Batch<S> {
     /// The velocity of an object in each environment (n, 6), linear and then angular, in the present states, see

@@ -1,9 +1,9 @@
 //! What a batch asks of a device that steps its environments in memory of its own, such as a graphics card: fields of the state
 //! go up, steps are done there, states and outputs come down. `on_device.rs` keeps both sides alike.
 
-use crate::error::SimError;
-use crate::model::Model;
 use crate::output::Output;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::Model;
 
 /// A device that steps all environments of a batch in memory of its own.
 ///

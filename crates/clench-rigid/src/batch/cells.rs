@@ -6,7 +6,7 @@
 
 use super::Rows;
 use super::shared::Shared;
-use crate::state::kind::Kind;
+use clench_dynamics::state::kind::Kind;
 use clench_math::{Real, Scalar};
 
 /// The rows of a table, shared by threads for the time of a call.

@@ -1,6 +1,6 @@
 //! How unlike the environments of a group are: what lanes lose.
 
-use crate::workspace::Workspace;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar};
 use std::ops::AddAssign;
 use std::slice::from_ref;

@@ -1,9 +1,9 @@
 //! Constraints at run time in environments of a batch: each as a simulation of that environment does it.
 
 use super::{Batch, Precision};
-use crate::check::check_length;
-use crate::error::SimError;
 use crate::sim::{DynamicConstraint, Sim};
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::SimError;
 use clench_math::Vec3;
 
 impl<S: Precision> Batch<S> {
@@ -44,7 +44,7 @@ impl<S: Precision> Batch<S> {
         envs: &[usize],
         constraints: &[DynamicConstraint],
     ) -> Result<(), SimError> {
-        crate::check::check_length("constraints", constraints.len(), envs.len())?;
+        clench_dynamics::check::check_length("constraints", constraints.len(), envs.len())?;
         self.change(envs, |k, sim| sim.remove(constraints[k]))
             .map(drop)
     }

@@ -3,7 +3,7 @@
 use super::Rows;
 use super::shared::Shared;
 use super::state_rows::{Inputs, MovingRows};
-use crate::model::{ParamField, Params};
+use clench_dynamics::model::{ParamField, Params};
 use clench_math::{Real, Scalar};
 
 /// What users see of environments.

@@ -3,11 +3,11 @@
 use super::backend::{Backend, Outcome};
 use super::env_rows::ParamRows;
 use super::precision::Precision;
-use crate::error::SimError;
-use crate::model::{Model, ParamField};
 use crate::output::Output;
 use crate::sim::Sim;
-use crate::state::FIELDS;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::{Model, ParamField};
+use clench_dynamics::state::FIELDS;
 
 /// A device, and what it holds of the rows on this side.
 pub(super) struct Mirror<S: Precision> {

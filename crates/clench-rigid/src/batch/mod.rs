@@ -51,11 +51,11 @@ pub use summary::Summary;
 pub use targets::Controls;
 use targets::{OutputRows, row_bytes};
 
-use crate::error::{Fault, SimError, no_such};
-use crate::model::Model;
-use crate::profile::Profile;
-use crate::settings::StepSettings;
-use crate::state::State;
+use clench_dynamics::error::{Fault, SimError, no_such};
+use clench_dynamics::model::Model;
+use clench_dynamics::profile::Profile;
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::state::State;
 use clench_solver::Threads;
 use recorded_states::RecordedStates;
 use rows::{per_env, try_reserve};

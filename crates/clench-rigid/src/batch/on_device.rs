@@ -7,12 +7,12 @@ use super::mirror::Mirror;
 use super::rows::per_env;
 use super::targets::OutputRows;
 use super::{Batch, BatchOptions, Controls, EnvStatus, Precision, StateRows, Summary};
-use crate::check::{beyond_bounds, input_fault};
-use crate::error::{Fault, SimError};
-use crate::model::{Model, Sensor, SensorKind};
 use crate::output::Output;
-use crate::place::joint_of;
-use crate::state::FIELDS;
+use clench_dynamics::check::{beyond_bounds, input_fault};
+use clench_dynamics::error::{Fault, SimError};
+use clench_dynamics::model::{Model, Sensor, SensorKind};
+use clench_dynamics::place::joint_of;
+use clench_dynamics::state::FIELDS;
 use std::mem::{swap, take};
 use std::sync::Arc;
 

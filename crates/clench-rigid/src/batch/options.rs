@@ -1,7 +1,7 @@
 //! How a batch is stepped.
 
-use crate::error::SimError;
-use crate::options::RigidOptions;
+use clench_dynamics::error::SimError;
+use clench_dynamics::options::RigidOptions;
 use clench_math::{Instructions, Scalar};
 use clench_solver::Threads;
 use std::thread::available_parallelism;

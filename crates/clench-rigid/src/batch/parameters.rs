@@ -2,11 +2,11 @@
 
 use super::env_rows::ParamRows;
 use super::{Batch, Precision, Rows};
-use crate::check::check_length;
-use crate::error::SimError;
-use crate::model::{Model, ParamField};
-use crate::options::RigidOptions;
-use crate::settings::StepSettings;
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::{Model, ParamField};
+use clench_dynamics::options::RigidOptions;
+use clench_dynamics::settings::StepSettings;
 
 impl<S: Precision> Batch<S> {
     /// Gives environments numbers of their own in place of the model's. `field` is a field of

@@ -3,18 +3,19 @@
 use super::job::Stepper;
 use super::shared::Shared;
 use super::stepper::MakeStepper;
-use crate::check;
-use crate::dynamics::energy::Energy;
 use crate::ik::{Ik, Search};
-use crate::inverse::{self, Acceleration};
-use crate::model::{Model, Params};
 use crate::output::{Output, Source};
-use crate::pipeline;
 use crate::readout::{self, Push, TendonLine};
+use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
-use crate::settings::StepSettings;
-use crate::state::State;
-use crate::workspace::{EnergyScratch, Workspace};
+use clench_dynamics::Step;
+use clench_dynamics::check;
+use clench_dynamics::dynamics::energy::Energy;
+use clench_dynamics::inverse::Acceleration;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::{EnergyScratch, Workspace};
 use clench_math::{Instructions, Mask, Scalar};
 
 /// A number type of simulations and batches: `f64` or `f32`.
@@ -59,7 +60,7 @@ compile! {
 
     /// Room for what one environment computes.
     fn workspace(model: &Model) -> Workspace<Alone<Self>> {
-        Workspace::new(model)
+        (Step::compiled().workspace)(model)
     }
 
     /// Whether a step can start from the state of one environment.
@@ -72,7 +73,7 @@ compile! {
         check::well_computed(ws).lane(0) && check::well_moved(state)
     }
 
-    /// [`pipeline::step`] of one environment.
+    /// [`pipeline::step`](clench_dynamics::pipeline::step) of one environment.
     fn step(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -80,10 +81,10 @@ compile! {
         state: &mut State<Alone<Self>>,
         ws: &mut Workspace<Alone<Self>>,
     ) {
-        pipeline::step(model, params, settings, state, ws);
+        (Step::compiled().step)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// [`pipeline::forward`] of one environment.
+    /// [`pipeline::forward`](clench_dynamics::pipeline::forward) of one environment.
     fn forward(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -91,10 +92,10 @@ compile! {
         state: &State<Alone<Self>>,
         ws: &mut Workspace<Alone<Self>>,
     ) {
-        pipeline::forward(model, params, settings, state, ws);
+        (Step::compiled().forward)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// [`pipeline::rest`] of one environment.
+    /// [`pipeline::rest`](clench_dynamics::pipeline::rest) of one environment.
     fn rest(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -102,10 +103,10 @@ compile! {
         state: &mut State<Alone<Self>>,
         ws: &mut Workspace<Alone<Self>>,
     ) -> bool {
-        pipeline::rest(model, params, settings, state, ws)
+        (Step::compiled().rest)(model, params, settings, state, ws, sensor::evaluate)
     }
 
-    /// [`pipeline::before_forces`] of one environment.
+    /// [`pipeline::before_forces`](clench_dynamics::pipeline::before_forces) of one environment.
     fn before_forces(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -113,10 +114,10 @@ compile! {
         state: &State<Alone<Self>>,
         ws: &mut Workspace<Alone<Self>>,
     ) {
-        pipeline::before_forces(model, params, settings, state, ws);
+        (Step::compiled().before_forces)(model, params, settings, state, ws);
     }
 
-    /// [`pipeline::step_from_forces`] of one environment.
+    /// [`pipeline::step_from_forces`](clench_dynamics::pipeline::step_from_forces) of one environment.
     fn step_from_forces(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -124,27 +125,27 @@ compile! {
         state: &mut State<Alone<Self>>,
         ws: &mut Workspace<Alone<Self>>,
     ) {
-        pipeline::step_from_forces(model, params, settings, state, ws);
+        (Step::compiled().step_from_forces)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// [`pipeline::position_stage`] of one environment.
+    /// [`pipeline::position_stage`](clench_dynamics::pipeline::position_stage) of one environment.
     fn position_stage(
         model: &Model,
         params: &Params<Alone<Self>>,
         state: &State<Alone<Self>>,
         ws: &mut Workspace<Alone<Self>>,
     ) {
-        pipeline::position_stage(model, params, state, ws);
+        (Step::compiled().position_stage)(model, params, state, ws);
     }
 
-    /// [`pipeline::state_energy`] of one environment.
+    /// [`pipeline::state_energy`](clench_dynamics::pipeline::state_energy) of one environment.
     fn state_energy(
         model: &Model,
         params: &Params<Alone<Self>>,
         state: &State<Alone<Self>>,
         scratch: &mut EnergyScratch<Alone<Self>>,
     ) -> Energy<Alone<Self>> {
-        pipeline::state_energy(model, params, state, scratch)
+        (Step::compiled().state_energy)(model, params, state, scratch)
     }
 
     /// An output of one environment, appended to `out`.
@@ -176,7 +177,7 @@ compile! {
         search.run(model, params, ik);
     }
 
-    /// [`inverse::inverse`] of one environment.
+    /// [`inverse`](clench_dynamics::inverse::inverse) of one environment.
     fn inverse(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -186,6 +187,6 @@ compile! {
         ws: &mut Workspace<Alone<Self>>,
         qfrc_inverse: &mut [Alone<Self>],
     ) {
-        inverse::inverse(model, params, settings, state, given, ws, qfrc_inverse);
+        (Step::compiled().inverse)(model, params, settings, state, given, ws, qfrc_inverse);
     }
 }

@@ -11,13 +11,13 @@
 //! The stiffness is that of the model as written. Where a time step is too long for it, a step is softer than that
 //! (`refsafe`), and what comes of it is not what the model asks for.
 
-use crate::constraint::dynamic::softness;
-use crate::constraint::{BlockRecord, ConstraintSource, Softness};
-use crate::contact::Contact;
-use crate::model::{Model, Params};
-use crate::settings::StepSettings;
-use crate::workspace::Workspace;
 use clench_collide::ShapeKind;
+use clench_dynamics::constraint::dynamic::softness;
+use clench_dynamics::constraint::{BlockRecord, ConstraintSource, Softness};
+use clench_dynamics::contact::Contact;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 use clench_solver::{Cost, Status};
 use std::f64::consts::E;

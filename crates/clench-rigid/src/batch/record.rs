@@ -5,9 +5,9 @@ use super::recorded_states::RecordedStates;
 use super::rows::try_reserve;
 use super::targets::{Controls, OutputRows};
 use super::{Batch, EnvStatus, Precision, Rows, Summary};
-use crate::check::check_length;
-use crate::error::SimError;
 use crate::output::Output;
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::SimError;
 use std::mem::{replace, swap};
 
 /// So many steps of environments are done before a rollout asks whether to go on: a fraction of a second.

@@ -3,10 +3,10 @@
 use super::cells::Cells;
 use super::shared::Shared;
 use super::{Rows, StateRows};
-use crate::error::SimError;
-use crate::model::Model;
-use crate::state::State;
-use crate::state::kind::{Number, Quaternion, Vector};
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::Model;
+use clench_dynamics::state::State;
+use clench_dynamics::state::kind::{Number, Quaternion, Vector};
 use clench_math::{Real, Scalar};
 
 /// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while

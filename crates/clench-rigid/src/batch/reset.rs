@@ -1,9 +1,9 @@
 //! Environments one by one: reset, revived, taken out as a simulation.
 
 use super::{Batch, EnvStatus, Precision, StateRows};
-use crate::check::check_length;
-use crate::error::{SimError, no_such};
 use crate::sim::Sim;
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::{SimError, no_such};
 use std::sync::Arc;
 
 impl<S: Precision> Batch<S> {

@@ -1,6 +1,6 @@
 //! What users see of a batch: plain rows, one an environment, that never move.
 
-use crate::error::SimError;
+use clench_dynamics::error::SimError;
 use std::fmt;
 use std::hint::black_box;
 

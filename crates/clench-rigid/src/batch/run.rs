@@ -6,8 +6,8 @@ use super::recorded_states::RecordedStates;
 use super::summary::Summary;
 use super::targets::{OutputRows, targets};
 use super::{Batch, EnvStatus, Precision};
-use crate::check::check_length;
-use crate::error::SimError;
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::SimError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 

@@ -1,7 +1,7 @@
 //! Saving and restoring environments.
 
 use super::{Batch, EnvStatus, Precision, StateRows};
-use crate::error::SimError;
+use clench_dynamics::error::SimError;
 
 /// The states of some environments of a batch, and whether they run.
 #[derive(Debug)]

@@ -4,12 +4,12 @@ use super::Rows;
 use super::cells::Cells;
 use super::rows::try_reserve;
 use super::shared::Shared;
-use crate::check::check_length;
-use crate::error::{SimError, no_such};
-use crate::model::Model;
-use crate::sleep::AWAKE;
-use crate::state::kind::{self, Kind};
-use crate::state::{FIELDS, State};
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::{SimError, no_such};
+use clench_dynamics::model::Model;
+use clench_dynamics::sleep::AWAKE;
+use clench_dynamics::state::kind::{self, Kind};
+use clench_dynamics::state::{FIELDS, State};
 use clench_math::{Clock, Real, Scalar};
 
 /// What a row holds of a kind of element.
@@ -187,7 +187,7 @@ macro_rules! declare_rows {
         }
     };
 }
-crate::state_fields!(declare_rows);
+clench_dynamics::state_fields!(declare_rows);
 
 impl<S: Scalar + Shared> StateRows<S> {
     /// How many states there are.

@@ -7,15 +7,16 @@ use super::job::{Job, Pass, StepTotals, Stepper};
 use super::quality::StepResults;
 use super::shared::Shared;
 use super::state_rows::clear_occasional;
-use crate::error::Fault;
-use crate::model::{Model, Params};
-use crate::options::MaxContacts;
 use crate::output::{Output, Source};
-use crate::profile::{Profile, Stage};
-use crate::state::State;
-use crate::state::kind::Number;
-use crate::workspace::Workspace;
-use crate::{check, pipeline};
+use crate::sensor;
+use clench_dynamics::error::Fault;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::options::MaxContacts;
+use clench_dynamics::profile::{Profile, Stage};
+use clench_dynamics::state::State;
+use clench_dynamics::state::kind::Number;
+use clench_dynamics::workspace::Workspace;
+use clench_dynamics::{Step, check};
 use clench_math::{Clock, LaneTask, Mask, Real, Scalar, write_lane};
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -32,6 +33,7 @@ impl<S: Scalar + Shared> LaneTask<S> for MakeStepper<'_> {
 }
 
 pub(super) struct LaneStepper<T: Real> {
+    compiled: Step<T>,
     state: State<T>,
     /// The model's initial state.
     initial: State<T>,
@@ -62,11 +64,13 @@ where
     T::Scalar: Shared,
 {
     fn new(model: &Model) -> Self {
+        let compiled = Step::compiled();
         LaneStepper {
+            compiled,
             state: State::new(model),
             initial: State::new(model),
             params: model.params.broadcast(),
-            ws: Workspace::new(model),
+            ws: (compiled.workspace)(model),
             has_occasional: false,
             output: Vec::new(),
             restarts: Vec::new(),
@@ -191,9 +195,9 @@ where
         let time = self.state.time;
         let (state, params, ws) = (&mut self.state, &self.params, &mut self.ws);
         if job.pass == Pass::Step {
-            pipeline::step(model, params, settings, state, ws);
+            (self.compiled.step)(model, params, settings, state, ws, sensor::evaluate);
         } else {
-            pipeline::forward(model, params, settings, state, ws);
+            (self.compiled.forward)(model, params, settings, state, ws, sensor::evaluate);
         }
         let overflow = ws.collision.overflow;
         let within = check::good_results(state, ws);

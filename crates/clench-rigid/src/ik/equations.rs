@@ -1,10 +1,10 @@
 //! The linear equations of an iteration: (A + μ I) δ = g, with A = Σ JᵀW²J and g = Σ JᵀW²e over the tasks.
 
 use super::{Ik, IkTarget, IkTask};
-use crate::dynamics::frames::Frames;
-use crate::dynamics::integrate::differentiate_positions;
-use crate::dynamics::jacobian::{point_jacobian, subtree_jacobian};
-use crate::model::Model;
+use clench_dynamics::dynamics::frames::Frames;
+use clench_dynamics::dynamics::integrate::differentiate_positions;
+use clench_dynamics::dynamics::jacobian::{point_jacobian, subtree_jacobian};
+use clench_dynamics::model::Model;
 use clench_math::{Quat, Real, Vec3, kernel};
 
 /// A, g, and what they say of the present place. `n` is the number of dofs that are solved for.

@@ -2,7 +2,7 @@
 //! more evenly than random ones and are the same in every run.
 
 use super::Ik;
-use crate::model::{JointKind, Model, Params};
+use clench_dynamics::model::{JointKind, Model, Params};
 use clench_math::Real;
 use std::f64::consts::PI;
 

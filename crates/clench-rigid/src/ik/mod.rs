@@ -19,10 +19,10 @@ mod search;
 
 pub(crate) use search::Search;
 
-use crate::check::check_length;
-use crate::error::SimError;
-use crate::model::{FrameObject, Model};
 use crate::query::{check_body, check_object};
+use clench_dynamics::check::check_length;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::{FrameObject, Model};
 
 /// What is brought to a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

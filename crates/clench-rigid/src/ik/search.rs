@@ -14,13 +14,12 @@
 use super::equations::{Equations, Scratch};
 use super::halton::sample_posture;
 use super::{Ik, IkSolution, IkStatus, IkTarget};
-use crate::dynamics::com::com_positions;
-use crate::dynamics::frames::Frames;
-use crate::dynamics::integrate::integrate_positions;
-use crate::dynamics::kinematics::{Computed, kinematics};
-use crate::model::{JointKind, Model, Params};
-use crate::stages::Positions;
-use crate::state::State;
+use clench_dynamics::Step;
+use clench_dynamics::dynamics::frames::Frames;
+use clench_dynamics::dynamics::kinematics::Computed;
+use clench_dynamics::model::{JointKind, Model, Params};
+use clench_dynamics::stages::Positions;
+use clench_dynamics::state::State;
 use clench_math::{Mask, Quat, Real, Scalar, kernel};
 use std::ops::Range;
 
@@ -41,6 +40,7 @@ const FAILURES: f64 = 12.0;
 /// Memory of a search.
 #[derive(Debug)]
 pub struct Search<T: Real> {
+    compiled: Step<T>,
     /// The positions that the search has reached; mocap poses are read as well.
     pub state: State<T>,
     /// Goals, task after task.
@@ -75,6 +75,7 @@ impl<T: Real> Search<T> {
         let n = ik.dofs.len();
         let here = Equations::new(ik);
         Search {
+            compiled: Step::compiled(),
             state: State::new(model),
             goals: vec![T::ZERO; ik.goal_len(model)],
             iterations: T::ZERO,
@@ -212,7 +213,7 @@ impl<T: Real> Search<T> {
             promised += T::new(0.5) * step * slope;
         }
         self.state.qpos.copy_from_slice(&self.qpos);
-        integrate_positions(model, &mut self.state.qpos, &self.velocity, T::ONE);
+        (self.compiled.integrate_positions)(model, &mut self.state.qpos, &self.velocity, T::ONE);
         if ik.options.limits {
             project(model, params, ik, &mut self.state.qpos);
         }
@@ -225,8 +226,7 @@ impl<T: Real> Search<T> {
     fn evaluate(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
         let pos = &mut self.position;
         let all = std::slice::from_ref(&self.all);
-        kinematics(model, params, &self.state, Computed::all(all), pos);
-        com_positions(model, params, all, pos);
+        (self.compiled.body_poses)(model, params, &self.state, Computed::all(all), pos);
         let frames = Frames { model, params, pos };
         let goals = (ik, &self.goals[..]);
         (self.there).build(frames, &self.state.qpos, goals, &mut self.scratch);

@@ -5,10 +5,10 @@
 
 use super::source::Source;
 use super::tendon_forces::each_pull;
-use crate::constraint::{ConstraintSource, HeldFrames, weld_torque};
-use crate::contact::Contact;
-use crate::model::EqualityTarget;
-use crate::workspace::Workspace;
+use clench_dynamics::constraint::{ConstraintSource, HeldFrames, weld_torque};
+use clench_dynamics::contact::Contact;
+use clench_dynamics::model::EqualityTarget;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Real, Vec3, kernel};
 
 /// A force and a couple in world axes, and where the force acts.

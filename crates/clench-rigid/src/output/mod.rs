@@ -6,19 +6,19 @@ pub(crate) mod forces;
 pub(crate) mod source;
 mod tendon_forces;
 
-use crate::sensor::readings::BodyForces;
+use clench_dynamics::readings::BodyForces;
 pub(crate) use forces::{each_joint_of_bodies, of_contact};
 pub(crate) use source::Source;
 
-use crate::dynamics::camera::camera_pose;
-use crate::dynamics::frames::Frames;
-use crate::dynamics::jacobian::point_jacobian;
-use crate::error::SimError;
 use crate::known::Extent;
-use crate::model::{FrameObject, Model, RowPattern};
-use crate::pipeline::state_energy;
 use crate::sensor::bodies::update as update_body_forces;
-use crate::workspace::Workspace;
+use clench_dynamics::Step;
+use clench_dynamics::dynamics::camera::camera_pose;
+use clench_dynamics::dynamics::frames::Frames;
+use clench_dynamics::dynamics::jacobian::point_jacobian;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::{FrameObject, Model, RowPattern};
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 
 macro_rules! outputs {
@@ -263,12 +263,13 @@ fn driving_power<T: Real>(ws: &Workspace<T>) -> T {
 }
 
 fn count_contacts<T: Real>(ws: &Workspace<T>) -> T {
-    let one = |contact: &crate::contact::Contact<T>| T::select(contact.active, T::ONE, T::ZERO);
+    let one =
+        |contact: &clench_dynamics::contact::Contact<T>| T::select(contact.active, T::ONE, T::ZERO);
     ws.contacts.iter().map(one).fold(T::ZERO, |a, b| a + b)
 }
 
 fn read_energy<T: Real>(s: &mut Source<T>, out: &mut Vec<T>) {
     let scratch = s.ws.energy_scratch(s.model);
-    let energy = state_energy(s.model, s.params, s.state, scratch);
+    let energy = (Step::compiled().state_energy)(s.model, s.params, s.state, scratch);
     out.extend([energy.potential, energy.kinetic]);
 }

@@ -1,8 +1,8 @@
 //! All that outputs are read from.
 
-use crate::model::{Model, Params};
-use crate::state::State;
-use crate::workspace::Workspace;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
 use clench_math::Real;
 
 /// All that outputs are read from.

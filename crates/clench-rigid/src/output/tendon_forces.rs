@@ -5,12 +5,12 @@
 //! the constraints.
 
 use super::source::Source;
-use crate::constraint::{ConstraintSource, equality_slope};
-use crate::dynamics::reflected::{tendon_armature, tendon_damper};
-use crate::dynamics::spring::{tendon_spring, tendon_stretch};
-use crate::dynamics::tendon::gradient;
-use crate::dynamics::tendon_path::{Span, bias_acceleration, each_span};
-use crate::model::{EqualityTarget, Transmission};
+use clench_dynamics::constraint::{ConstraintSource, equality_slope};
+use clench_dynamics::dynamics::reflected::{tendon_armature, tendon_damper};
+use clench_dynamics::dynamics::spring::{tendon_spring, tendon_stretch};
+use clench_dynamics::dynamics::tendon::gradient;
+use clench_dynamics::dynamics::tendon_path::{Span, bias_acceleration, each_span};
+use clench_dynamics::model::{EqualityTarget, Transmission};
 use clench_math::{Mask, Real, kernel};
 
 /// Shows every span of every spatial tendon, with the force of the tendon.

@@ -1,9 +1,9 @@
 //! What many rays hit, and heights of terrain at many places, of an environment in lanes.
 
-use crate::dynamics::frames::Frames;
-use crate::geometry::{Geoms, RayFilter};
-use crate::model::FrameObject;
 use clench_collide::Ray;
+use clench_dynamics::dynamics::frames::Frames;
+use clench_dynamics::geometry::{Geoms, RayFilter};
+use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar, Vec3, kernel};
 
 /// Numbers of a ray: its origin, its direction.

@@ -5,14 +5,14 @@
 
 use super::{check_body, check_object};
 use crate::Precision;
-use crate::check::check_length;
-use crate::dynamics::chains::BodyPoint;
-use crate::dynamics::frames::{Axes, Frames, along};
-use crate::dynamics::jacobian::{point_jacobian, point_jacobian_rate, subtree_jacobian};
-use crate::error::SimError;
 use crate::known::Extent;
-use crate::model::FrameObject;
 use crate::sim::Sim;
+use clench_dynamics::check::check_length;
+use clench_dynamics::dynamics::chains::BodyPoint;
+use clench_dynamics::dynamics::frames::{Axes, Frames, along};
+use clench_dynamics::dynamics::jacobian::{point_jacobian, point_jacobian_rate, subtree_jacobian};
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::FrameObject;
 use clench_math::Vec3;
 
 /// A point that moves with a body.

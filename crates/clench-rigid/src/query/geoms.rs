@@ -1,11 +1,11 @@
 //! Questions about where geoms are: what a ray hits, and how far apart two geoms are.
 
 use crate::Precision;
-use crate::error::{SimError, no_such};
-use crate::geometry::{Geoms, RayFilter, RayHit};
 use crate::known::Extent;
 use crate::sim::Sim;
 use clench_collide::{Ray, Separation, distance};
+use clench_dynamics::error::{SimError, no_such};
+use clench_dynamics::geometry::{Geoms, RayFilter, RayHit};
 use clench_math::{Real, Vec3};
 
 impl<T: Precision> Sim<T> {

@@ -1,10 +1,10 @@
 //! Inverse kinematics of a simulation.
 
 use crate::Precision;
-use crate::check::check_values;
-use crate::error::SimError;
 use crate::ik::{Ik, IkSolution, Search};
 use crate::sim::Sim;
+use clench_dynamics::check::check_values;
+use clench_dynamics::error::SimError;
 use clench_math::{Real, write_lane};
 
 impl<T: Precision> Sim<T> {

@@ -3,12 +3,13 @@
 use super::check_body;
 use super::frames::Anchor;
 use crate::Precision;
-use crate::check::{check_length, check_values};
-use crate::dynamics::jacobian::add_point_forces;
-use crate::error::{Fault, SimError};
 use crate::known::Extent;
-use crate::place::massless;
 use crate::sim::Sim;
+use clench_dynamics::Step;
+use clench_dynamics::check::{check_length, check_values};
+use clench_dynamics::dynamics::jacobian::add_point_forces;
+use clench_dynamics::error::{Fault, SimError};
+use clench_dynamics::place::massless;
 use clench_math::{Mask, Real, Vec3};
 
 impl<T: Precision> Sim<T> {
@@ -23,7 +24,8 @@ impl<T: Precision> Sim<T> {
         self.require(Extent::Positions)?;
         let x = Vec::from_iter(x.iter().copied().map(T::Alone::splat));
         self.change(product, |sim, product| {
-            sim.workspace().mass().mul(&sim.model().tree, &x, product);
+            let mass = sim.workspace().mass();
+            (Step::compiled().mul)(mass, &sim.model().tree, &x, product);
         });
         Ok(())
     }
@@ -41,7 +43,8 @@ impl<T: Precision> Sim<T> {
             return Err(Fault::Singular { time, place }.into());
         }
         self.change(x, |sim, x| {
-            sim.workspace().mass_factor().solve(&sim.model().tree, x);
+            let factor = sim.workspace().mass_factor();
+            (Step::compiled().solve)(factor, &sim.model().tree, x);
         });
         Ok(())
     }

@@ -1,11 +1,11 @@
 //! Inverse dynamics of a simulation.
 
-use crate::check::{check_length, check_values};
-use crate::error::SimError;
-use crate::inverse::Acceleration;
-use crate::model::Integrator;
 use crate::sim::Sim;
 use crate::{Model, Precision};
+use clench_dynamics::check::{check_length, check_values};
+use clench_dynamics::error::SimError;
+use clench_dynamics::inverse::Acceleration;
+use clench_dynamics::model::Integrator;
 
 /// An acceleration of this kind, of which inverse dynamics know what to make.
 pub(crate) fn check_acceleration(model: &Model, given: Acceleration) -> Result<(), SimError> {

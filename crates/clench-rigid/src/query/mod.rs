@@ -15,8 +15,8 @@ pub use frames::Anchor;
 pub(crate) use inverse::check_acceleration;
 pub(crate) use scan::{check_places, check_rays};
 
-use crate::error::{SimError, no_such};
-use crate::model::{FrameObject, Model};
+use clench_dynamics::error::{SimError, no_such};
+use clench_dynamics::model::{FrameObject, Model};
 
 /// An object that the model has.
 pub(crate) fn check_object(model: &Model, object: FrameObject) -> Result<(), SimError> {

@@ -2,13 +2,13 @@
 
 use super::cast::{HIT, RAY, cast, sample};
 use super::check_object;
-use crate::check::{check_count, check_values};
-use crate::error::{SimError, no_such};
-use crate::geometry::{RayFilter, RayHit};
 use crate::known::Extent;
-use crate::model::FrameObject;
 use crate::sim::Sim;
 use crate::{Model, Precision};
+use clench_dynamics::check::{check_count, check_values};
+use clench_dynamics::error::{SimError, no_such};
+use clench_dynamics::geometry::{RayFilter, RayHit};
+use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar, Vec3};
 
 /// Rays that can be cast: whole ones, finite, in the frame of an object that the model has.

@@ -1,6 +1,6 @@
 //! The constraints of a lane.
 
-use crate::workspace::Workspace;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real};
 use clench_solver::Block;
 

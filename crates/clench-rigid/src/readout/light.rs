@@ -1,7 +1,7 @@
 //! Where lights are.
 
-use crate::model::{CameraMode, Light, Model};
-use crate::workspace::Workspace;
+use clench_dynamics::model::{CameraMode, Light, Model};
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Real, Scalar, Vec3};
 
 /// Where each light of a model is, m, and the unit vector along which it shines, both in world axes, by the rules of MuJoCo's

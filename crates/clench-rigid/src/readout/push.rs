@@ -5,9 +5,9 @@
 //! place of its own and is left out.
 
 use super::blocks::active_blocks;
-use crate::constraint::ConstraintSource;
-use crate::model::{EqualityTarget, JointKind};
 use crate::output::{Source, each_joint_of_bodies};
+use clench_dynamics::constraint::ConstraintSource;
+use clench_dynamics::model::{EqualityTarget, JointKind};
 use clench_math::{Real, Scalar, Vec3};
 use clench_solver::Block;
 

@@ -1,8 +1,8 @@
 //! Where tendons run, for pictures.
 
-use crate::dynamics::tendon_path::each_span;
-use crate::model::{Model, Params};
-use crate::stages::Positions;
+use clench_dynamics::dynamics::tendon_path::each_span;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::stages::Positions;
 use clench_math::{Real, Scalar, Vec3};
 
 /// A straight part of a tendon.

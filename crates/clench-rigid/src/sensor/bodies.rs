@@ -4,11 +4,11 @@
 //! I a + v ×* I v, of which what acts from outside is one part; the joints to its parent and children carry the rest.
 
 use super::reading::Reading;
-use crate::model::{Model, Params};
 use crate::output::forces::external_forces;
 use crate::output::source::Source;
-use crate::state::State;
-use crate::workspace::Workspace;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Motion, Real, Vec3, kernel};
 
 /// Computes accelerations and forces from the last forward pass.

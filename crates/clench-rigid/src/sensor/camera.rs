@@ -4,8 +4,8 @@
 //! right and f_y y / −z above the optical axis. With a field of view φ and a picture of h pixels, f = ½ h / tan(½ φ).
 
 use super::reading::Reading;
-use crate::dynamics::camera::camera_pose;
 use clench_collide::Ray;
+use clench_dynamics::dynamics::camera::camera_pose;
 use clench_math::{Real, Vec3, kernel};
 
 /// A point nearer to the camera's plane than this (m, MuJoCo's `mjMINVAL`) is seen as if it were so far away.

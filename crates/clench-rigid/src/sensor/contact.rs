@@ -6,9 +6,9 @@
 //! the torque and the velocities.
 
 use super::reading::Reading;
-use crate::contact::Contact;
-use crate::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
 use crate::output::forces::of_contact;
+use clench_dynamics::contact::Contact;
+use clench_dynamics::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 
 /// The most numbers that are told of a contact.

@@ -1,8 +1,8 @@
 //! The smallest distance of two sets of geoms. Distances are searched for in each lane alone.
 
 use super::reading::Reading;
-use crate::model::{Sensor, SensorKind};
 use clench_collide::{Pose, Separation, Shape, distance};
+use clench_dynamics::model::{Sensor, SensorKind};
 use clench_math::{Real, Vec3};
 use std::ops::Range;
 

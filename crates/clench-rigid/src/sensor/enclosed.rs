@@ -1,8 +1,8 @@
 //! How far objects jut out of the volume of a site. It is searched for in each lane alone.
 
 use super::reading::Reading;
-use crate::model::{FrameObject, Model};
 use clench_collide::{Ascent, Pose, Shape, protrusion, protrusion_of_points};
+use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar};
 
 /// A shape, and where it is.
@@ -19,7 +19,7 @@ impl<T: Real> Reading<'_, T> {
             if let FrameObject::Site(inner) = object {
                 most = self.of_shape(&self.site_in_lane(inner, lane), &volume);
             }
-            for geom in geoms_of(self.model, object) {
+            for geom in object.enclosed_geoms(self.model) {
                 most = Real::max(most, self.of_geom(geom, lane, &volume));
             }
             out.set_lane(lane, most);
@@ -61,19 +61,4 @@ impl<T: Real> Reading<'_, T> {
             tolerance: self.settings.ccd_tolerance,
         }
     }
-}
-
-/// The geoms that must be enclosed, with an object: itself, those of a body, or those of a body and all below it.
-pub(crate) fn geoms_of(model: &Model, object: FrameObject) -> impl Iterator<Item = usize> {
-    let bodies = match object {
-        FrameObject::Inertial(body) => body..body + 1,
-        FrameObject::Body(body) => model.subtree(body),
-        FrameObject::Geom(_) | FrameObject::Site(_) | FrameObject::Camera(_) => 0..0,
-    };
-    let own = match object {
-        FrameObject::Geom(geom) => Some(geom),
-        _ => None,
-    };
-    let geoms = bodies.flat_map(|body| model.bodies[body].geoms.clone());
-    geoms.chain(own)
 }

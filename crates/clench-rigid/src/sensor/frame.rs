@@ -4,7 +4,7 @@
 //! velocity Rᵀ(ω' − ω) and the linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
 use super::reading::Reading;
-use crate::model::{FrameObject, SensorKind};
+use clench_dynamics::model::{FrameObject, SensorKind};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {

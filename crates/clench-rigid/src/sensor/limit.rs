@@ -1,7 +1,7 @@
 //! Limits of joints and tendons as constraints.
 
 use super::reading::Reading;
-use crate::constraint::ConstraintSource;
+use clench_dynamics::constraint::ConstraintSource;
 use clench_math::{Mask, Real, kernel};
 
 /// The row of a limit; zero where it does not act.

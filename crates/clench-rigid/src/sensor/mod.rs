@@ -12,17 +12,16 @@ mod frame;
 mod limit;
 mod ray;
 mod reading;
-pub(crate) mod readings;
 pub(crate) mod tactile;
 mod volume;
 
-use crate::model::{Model, Params, Sensor, SensorData, SensorKind};
-use crate::settings::StepSettings;
-use crate::state::State;
-use crate::workspace::Workspace;
+use clench_dynamics::model::{Model, Params, Sensor, SensorData, SensorKind};
+use clench_dynamics::readings::is_needed;
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 use reading::Reading;
-pub use readings::SensorReadings;
 
 /// Evaluates all sensors of the model, if anybody wants them, or will.
 #[kernel]
@@ -38,7 +37,7 @@ pub(crate) fn evaluate<T: Real>(
         return;
     }
     let mut data = std::mem::take(&mut ws.sensors.data);
-    let needs_bodies = |sensor: &Sensor| readings::is_needed(sensor.kind);
+    let needs_bodies = |sensor: &Sensor| is_needed(sensor.kind);
     if model.sensors.iter().any(needs_bodies) {
         bodies::update(model, params, state, ws);
     }

@@ -1,10 +1,10 @@
 //! Rangefinders: the nearest geom along rays from a site or a camera, geoms of its own body and invisible ones left out.
 
 use super::reading::Reading;
-use crate::dynamics::camera::camera_pose;
-use crate::geometry::RayFilter;
-use crate::model::{RayField, RaySource};
 use clench_collide::Ray;
+use clench_dynamics::dynamics::camera::camera_pose;
+use clench_dynamics::geometry::RayFilter;
+use clench_dynamics::model::{RayField, RaySource};
 use clench_math::{Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {

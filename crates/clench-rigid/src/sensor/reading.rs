@@ -1,13 +1,15 @@
 //! All that sensors are read from.
 
-use crate::constraint::ConstraintSource;
-use crate::dynamics::energy::energy;
-use crate::dynamics::frames::Frames;
-use crate::geometry::Geoms;
-use crate::model::{FrameObject, Model, Params, Sensor, SensorKind, SensorTarget, Transmission};
-use crate::settings::StepSettings;
-use crate::state::State;
-use crate::workspace::Workspace;
+use clench_dynamics::Step;
+use clench_dynamics::constraint::ConstraintSource;
+use clench_dynamics::dynamics::frames::Frames;
+use clench_dynamics::geometry::Geoms;
+use clench_dynamics::model::{
+    FrameObject, Model, Params, Sensor, SensorKind, SensorTarget, Transmission,
+};
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
 
 /// All that sensors are read from.
@@ -66,7 +68,7 @@ impl<'a, T: Real> Reading<'a, T> {
 
     fn read_whole(&self, kind: SensorKind, out: &mut [T]) {
         let (pos, mass, state) = (&self.ws.position, self.ws.mass(), self.state);
-        let energy = || energy(self.model, self.params, pos, mass, state);
+        let energy = || (Step::compiled().energy)(self.model, self.params, pos, mass, state);
         match kind {
             SensorKind::PotentialEnergy => out[0] = energy().potential,
             SensorKind::KineticEnergy => out[0] = energy().kinetic,

@@ -6,9 +6,6 @@ use super::reading::Reading;
 use clench_collide::ShapeKind;
 use clench_math::{Mask, Real, Vec3, kernel};
 
-/// Numbers of a vertex: depth, and speeds along two tangents.
-pub(crate) const CHANNELS: usize = 3;
-
 impl<T: Real> Reading<'_, T> {
     /// All depths, then all speeds along first tangents, then along second ones. Meshes and terrain that are touched tell nothing.
     #[kernel]

@@ -1,9 +1,9 @@
 //! Volumes of sites: what touches there, and what is inside.
 
 use super::reading::Reading;
-use crate::model;
 use crate::output::forces::of_contact;
 use clench_collide::{Mesh, Pose, Ray, Shape, ray};
+use clench_dynamics::model;
 use clench_math::{Mask, Mat3, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {

@@ -1,7 +1,8 @@
 //! The state of a simulation in the number type that it is computed in, see [`Scalar::Alone`]: the state itself, or a copy in lanes.
 
-use crate::model::Model;
-use crate::state::State;
+use clench_dynamics::Step;
+use clench_dynamics::model::Model;
+use clench_dynamics::state::State;
 use clench_math::{Real, Scalar};
 use std::any::Any;
 
@@ -20,7 +21,7 @@ pub(super) fn read<S: Scalar, R>(
     pass: impl FnOnce(&State<S::Alone>) -> R,
 ) -> R {
     if let Some(copy) = room {
-        copy.splat_from(state);
+        (Step::compiled().splat_state)(copy, state);
         return pass(copy);
     }
     match (state as &dyn Any).downcast_ref() {
@@ -36,7 +37,7 @@ pub(super) fn change<S: Scalar, R>(
     pass: impl FnOnce(&mut State<S::Alone>) -> R,
 ) -> R {
     if let Some(copy) = room {
-        copy.splat_from(state);
+        (Step::compiled().splat_state)(copy, state);
         let result = pass(copy);
         copy.write_moving(state);
         return result;

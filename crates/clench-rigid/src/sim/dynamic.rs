@@ -2,11 +2,11 @@
 
 use super::Sim;
 use crate::Precision;
-use crate::constraint::dynamic::{CONNECT, WELD, tied};
-use crate::error::{SimError, no_such};
-use crate::model::{EqualityTarget, Model};
-use crate::sleep::wake_in_state;
-use crate::state::State;
+use clench_dynamics::constraint::dynamic::{CONNECT, WELD, tied};
+use clench_dynamics::error::{SimError, no_such};
+use clench_dynamics::model::{EqualityTarget, Model};
+use clench_dynamics::sleep::wake_in_state;
+use clench_dynamics::state::State;
 use clench_math::{Quat, Vec3};
 
 /// Serial numbers begin anew after as many: single precision holds them exactly.

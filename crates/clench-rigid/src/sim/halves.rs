@@ -2,9 +2,9 @@
 
 use super::Sim;
 use crate::Precision;
-use crate::error::SimError;
 use crate::known::Extent;
-use crate::profile::Stage;
+use clench_dynamics::error::SimError;
+use clench_dynamics::profile::Stage;
 
 impl<T: Precision> Sim<T> {
     /// The first half of a step: all that depends on positions and velocities alone, which can then be read. What follows from controls

@@ -2,10 +2,10 @@
 
 use super::Sim;
 use crate::Precision;
-use crate::error::SimError;
-use crate::model::{Model, ParamField, Params};
-use crate::options::RigidOptions;
-use crate::settings::StepSettings;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::{Model, ParamField, Params};
+use clench_dynamics::options::RigidOptions;
+use clench_dynamics::settings::StepSettings;
 
 impl<T: Precision> Sim<T> {
     /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from

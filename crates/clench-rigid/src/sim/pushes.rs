@@ -2,8 +2,8 @@
 
 use super::Sim;
 use crate::Precision;
-use crate::error::SimError;
 use crate::readout::{Push, TendonLine};
+use clench_dynamics::error::SimError;
 
 impl<T: Precision> Sim<T> {
     /// What constraints but contacts pushed on in the last step or forward; what is not known is computed, as

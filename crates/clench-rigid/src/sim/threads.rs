@@ -2,11 +2,11 @@
 
 use super::{Sim, alone};
 use crate::Precision;
-use crate::error::SimError;
-use crate::model::{Model, Params};
-use crate::settings::StepSettings;
-use crate::state::State;
-use crate::workspace::Workspace;
+use clench_dynamics::error::SimError;
+use clench_dynamics::model::{Model, Params};
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
 use clench_solver::Threads;
 
 /// More threads are taken for a mistake.

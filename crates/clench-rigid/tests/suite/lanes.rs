@@ -1,10 +1,11 @@
 //! Environments that share a register move as if each were alone, to the bit.
 
 use crate::scenes::{Numbers, loose_parts};
+use clench_dynamics::Step;
 use clench_math::{Instructions, LaneTask, Mask, Real, Scalar};
 use clench_rigid::model::Integrator;
 use clench_rigid::options::{FrictionCone, RigidOptions};
-use clench_rigid::{Model, Sim, State, StepSettings, Workspace, pipeline};
+use clench_rigid::{Model, Sim, State, StepSettings};
 use clench_solver::ConstraintSolver;
 use std::sync::Arc;
 
@@ -51,6 +52,7 @@ fn in_lanes<T: Real<Scalar = f64>>(
     steps: usize,
 ) -> bool {
     let count = T::LANES;
+    let compiled = Step::<T>::compiled();
     let mut builder = loose_parts();
     builder.physics.integrator = integrator;
     let model = crate::scenes::model(&builder);
@@ -59,7 +61,7 @@ fn in_lanes<T: Real<Scalar = f64>>(
 
     let settings = StepSettings::new::<T>(&model, options).expect("valid");
     let params = model.params.broadcast::<T>();
-    let (mut state, mut ws) = (State::<T>::new(&model), Workspace::<T>::new(&model));
+    let (mut state, mut ws) = (State::<T>::new(&model), (compiled.workspace)(&model));
     for (lane, sim) in alone.iter().enumerate() {
         for (to, &from) in state.qvel.iter_mut().zip(&sim.state.qvel) {
             to.set_lane(lane, from);
@@ -68,7 +70,14 @@ fn in_lanes<T: Real<Scalar = f64>>(
     }
     let (mut contacts, mut overflow) = (vec![0; count], false);
     for step in 0..steps {
-        pipeline::step(&model, &params, &settings, &mut state, &mut ws);
+        (compiled.step)(
+            &model,
+            &params,
+            &settings,
+            &mut state,
+            &mut ws,
+            |_, _, _, _, _| (),
+        );
         for (lane, sim) in alone.iter_mut().enumerate() {
             sim.step().expect("finite");
             let same = |what: &str, wide: &[T], narrow: &[f64]| {

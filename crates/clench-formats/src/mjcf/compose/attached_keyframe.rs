@@ -1,6 +1,6 @@
 //! What is kept of the keyframe of an attached model until the whole model is known.
 
-use clench_rigid::builder::KeyframeSpec;
+use clench_builder::KeyframeSpec;
 
 /// A keyframe in parts.
 #[derive(Clone, Debug)]

@@ -16,7 +16,7 @@ use crate::mjcf::appearance::Palette;
 use crate::mjcf::body::{self, BodyReader};
 use crate::mjcf::sections::{entries, sections};
 use crate::mjcf::{keyframe, relations};
-use clench_rigid::builder::{BuildError, KeyframeElement, KeyframePart, KeyframeSpec};
+use clench_builder::{BuildError, KeyframeElement, KeyframePart, KeyframeSpec};
 use std::collections::HashMap;
 
 /// Cuts the keyframes of a model that will be attached, and numbers its elements. Those of models that it attaches itself follow.

@@ -3,10 +3,8 @@
 use super::{Along, Coordinate, Frames, located};
 use crate::LoadError;
 use crate::mjcf::shortcut::Shortcut;
-use clench_rigid::builder::{
-    ActuatorSpec, BuildError, ModelBuilder, SensorSubject, TransmissionSpec,
-};
-use clench_rigid::model::{Attachment, BiasKind, ControlInput, DynamicsKind, GainKind};
+use clench_builder::{ActuatorSpec, BuildError, ModelBuilder, SensorSubject, TransmissionSpec};
+use clench_dynamics::model::{Attachment, BiasKind, ControlInput, DynamicsKind, GainKind};
 use std::collections::BTreeMap;
 
 /// The factors of the controls and the activations of an actuator, in their order.

@@ -2,13 +2,13 @@
 
 use super::{Coordinate, Scale};
 use crate::mjcf::stretch::{Deformation, Stretch, nearly_equal};
-use clench_collide::ShapeKind;
-use clench_math::{Mat3, Vec3};
-use clench_rigid::builder::{
+use clench_builder::{
     CameraLens, CameraSpec, GeomMass, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,
     SiteSpec,
 };
-use clench_rigid::model::JointKind;
+use clench_collide::ShapeKind;
+use clench_dynamics::model::JointKind;
+use clench_math::{Mat3, Vec3};
 
 impl Coordinate {
     /// What the coordinate of a joint measures; a free joint has both.

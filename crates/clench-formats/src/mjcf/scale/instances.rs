@@ -4,11 +4,9 @@ use super::{FrameId, Frames, located};
 use crate::LoadError;
 use crate::mjcf::stretch::Stretch;
 use crate::spending::Spending;
+use clench_builder::{GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder};
 use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
-use clench_rigid::builder::{
-    GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder,
-};
 use std::collections::{HashMap, HashSet};
 
 impl Frames {

@@ -3,9 +3,9 @@
 use super::actuators::States;
 use super::{FrameId, Frames, PlacedJoint};
 use crate::mjcf::stretch::Stretch;
+use clench_builder::{KeyframeElement, KeyframePart, KeyframeSpec, ModelBuilder};
+use clench_dynamics::model::JointKind;
 use clench_math::Vec3;
-use clench_rigid::builder::{KeyframeElement, KeyframePart, KeyframeSpec, ModelBuilder};
-use clench_rigid::model::JointKind;
 
 impl Frames {
     /// Scales what keyframes say of positions, velocities, springs, controls and activations, whether of the whole model or, where

@@ -21,9 +21,9 @@ use super::shortcut::Shortcut;
 use super::stretch::Stretch;
 use crate::LoadError;
 use crate::spending::Spending;
+use clench_builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origin};
+use clench_dynamics::model::JointKind;
 use clench_math::Vec3;
-use clench_rigid::builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origin};
-use clench_rigid::model::JointKind;
 use std::collections::BTreeMap;
 
 /// The factors by which the frames around an element multiply its numbers.

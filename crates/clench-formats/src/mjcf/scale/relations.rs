@@ -3,11 +3,11 @@
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::LoadError;
 use crate::mjcf::stretch::Stretch;
-use clench_rigid::builder::{
+use clench_builder::{
     ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
     SensorSpec, SensorSubject, TendonSpec, WrapSpec,
 };
-use clench_rigid::model::{Attachment, JointKind, SensorDimension};
+use clench_dynamics::model::{Attachment, JointKind, SensorDimension};
 use std::collections::BTreeMap;
 
 impl Frames {

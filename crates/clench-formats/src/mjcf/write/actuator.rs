@@ -2,8 +2,8 @@
 
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
-use clench_rigid::Model;
-use clench_rigid::model::{
+use clench_dynamics::Model;
+use clench_dynamics::model::{
     Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Interpolation, Transmission,
 };
 

@@ -2,10 +2,10 @@
 
 use super::names::SaveError;
 use super::xml::Xml;
+use clench_builder::{MeshInertia, MeshSpec};
+use clench_dynamics::Model;
+use clench_dynamics::model::HeightField;
 use clench_math::Vec3;
-use clench_rigid::Model;
-use clench_rigid::builder::{MeshInertia, MeshSpec};
-use clench_rigid::model::HeightField;
 
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     for mesh in &model.meshes {

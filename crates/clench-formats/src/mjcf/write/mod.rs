@@ -18,8 +18,8 @@ pub(super) mod xml;
 mod tests;
 
 use super::equality;
-use clench_rigid::Model;
-use clench_rigid::model::{Custom, Keyframe, TupleEntry};
+use clench_dynamics::Model;
+use clench_dynamics::model::{Custom, Keyframe, TupleEntry};
 pub use names::SaveError;
 use xml::Xml;
 

@@ -1,7 +1,7 @@
 //! What elements are called in a file, and what of a model a file cannot say.
 
-use clench_rigid::Model;
-use clench_rigid::model::Body;
+use clench_dynamics::Model;
+use clench_dynamics::model::Body;
 
 /// What of a model MJCF cannot say.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -3,9 +3,9 @@
 use super::names::SaveError;
 use super::xml::{Tag, Xml};
 use crate::mjcf::option::format_defaults;
-use clench_rigid::Model;
-use clench_rigid::model::{Flags, Integrator};
-use clench_rigid::options::{Mjcf, OptionValue, RigidOption};
+use clench_dynamics::Model;
+use clench_dynamics::model::{Flags, Integrator};
+use clench_dynamics::options::{Mjcf, OptionValue, RigidOption};
 use std::collections::BTreeSet;
 
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {

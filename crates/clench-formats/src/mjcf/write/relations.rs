@@ -2,9 +2,9 @@
 
 use super::names::{SaveError, body_name, label, named};
 use super::xml::Xml;
-use clench_rigid::Model;
-use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use clench_rigid::model::{Pair, Tendon, Wrap};
+use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use clench_dynamics::Model;
+use clench_dynamics::model::{Pair, Tendon, Wrap};
 
 /// Pairs that collide whatever their masks say, and bodies that never collide.
 pub(super) fn write_contacts(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {

@@ -3,8 +3,8 @@
 use super::actuator::write_history;
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
-use clench_rigid::Model;
-use clench_rigid::model::{
+use clench_dynamics::Model;
+use clench_dynamics::model::{
     Attachment, ContactQuery, ContactReduction, ContactSide, FrameObject, RaySource, Sensor,
     SensorData, SensorTarget,
 };

@@ -2,10 +2,10 @@
 
 use super::SaveModel;
 use crate::{Loader, load_str};
-use clench_math::Vec3;
-use clench_rigid::model::{
+use clench_dynamics::model::{
     Body, Geom, HeightField, Joint, Mesh, ParamField, Sensor, SensorKind, SensorTarget,
 };
+use clench_math::Vec3;
 use clench_rigid::{Model, Sim};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -3,13 +3,13 @@
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
 use crate::document::MAX_DEPTH;
+use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, surfacevel_in_frame};
 use clench_collide::ShapeKind;
-use clench_math::{Quat, Vec3};
-use clench_rigid::Model;
-use clench_rigid::builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, surfacevel_in_frame};
-use clench_rigid::model::{
+use clench_dynamics::Model;
+use clench_dynamics::model::{
     Appearance, Body, Camera, CameraMode, Dof, Geom, Joint, JointKind, Site, SleepPolicy, Visuals,
 };
+use clench_math::{Quat, Vec3};
 
 const NO_TURN: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 

@@ -1,0 +1,168 @@
+//! From a description to a model.
+
+use super::model_builder::ModelBuilder;
+use super::placed::Assets;
+use super::resolve::AllNames;
+use super::{
+    BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, actuators, bodies, budget, cameras, check, contacts,
+    equalities, fuse, invweight0, keyframes, length_range, lights, sensors, sleep, tendons,
+    user_numbers,
+};
+use clench_dynamics::dynamics::kinematics;
+use clench_dynamics::model::{Model, Params, RowPattern, SameFrames, Visuals};
+use clench_dynamics::stages::Positions;
+use clench_dynamics::{State, Step};
+use clench_math::Vec3;
+use clench_solver::Tree;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+impl ModelBuilder {
+    /// Checks the description and turns it into a model, by the rules of MuJoCo's compiler: bodies are numbered depth
+    /// first, meshes come to stand about their centres of mass, masses come from geoms where they are not given, ranges become limits, and the inverse inertias that
+    /// scale constraints are computed in the initial configuration.
+    ///
+    /// # Errors
+    /// The first thing found that cannot be: names that are taken or lead nowhere, numbers that are not finite, sizes,
+    /// masses and inertias that no body has, joints where none can be, ranges that do not rise, vectors of the wrong
+    /// length. The error names the element and, if it came from a file, its place.
+    pub fn build(&self) -> Result<Model, BuildError> {
+        if self.bodies.is_empty() {
+            return Err(BuildError::new(
+                "model",
+                "has no body; the first is the world",
+            ));
+        }
+        check::check(self)?;
+        let assets = Assets::new(self)?;
+        if !self.compiler.fusestatic {
+            return self.assemble(assets);
+        }
+        AllNames::new(self, &bodies::depth_first(&self.bodies)?)?;
+        let fused = ModelBuilder {
+            bodies: fuse::fuse(self, &assets)?,
+            ..self.clone()
+        };
+        fused.assemble(assets)
+    }
+
+    /// The model of a description that was checked, with its own bodies.
+    fn assemble(&self, assets: Assets) -> Result<Model, BuildError> {
+        let order = bodies::depth_first(&self.bodies)?;
+        let names = AllNames::new(self, &order)?;
+        let mut model = self.empty_model();
+        let palette = Arc::clone(&assets.palette);
+        model.visuals = palette.visuals();
+
+        bodies::add_all(self, &order, &assets, &mut model)?;
+        model.same_frames = SameFrames::of(&model.params);
+        assets.keep(self, &mut model);
+        invweight0::require_inertia(&model, &order)?;
+        invweight0::masses(self, &mut model);
+        budget::matrices(self, &model)?;
+        model.tree = Arc::new(tree(&model)?);
+        contacts::add_all(self, &names, &mut model)?;
+        tendons::add_all(self, &names, &palette, &mut model)?;
+        actuators::add_all(self, &names, &mut model)?;
+        cameras::aim_all(self, &order, &names, &mut model)?;
+        lights::aim_all(self, &order, &names, &mut model)?;
+        sensors::add_all(self, &names, &mut model)?;
+        user_numbers::pad(self, &mut model)?;
+        sleep::add_trees(self, &order, &mut model)?;
+
+        let mut pose0 = pose(&model, &model.params.qpos0);
+        let rest = |model: &Model| pose(model, &model.params.qpos_spring);
+        tendons::lengths(self, &pose0, rest, &mut model);
+        cameras::set_initial_frames(&pose0, &mut model);
+        lights::set_initial_places(&pose0, &mut model);
+        sleep::dof_lengths(&pose0, &mut model);
+        equalities::add_all(self, &names, &pose0, &mut model)?;
+        budget::equalities(self, &model)?;
+        let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
+        let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
+        invweight0::derive(self, &order, &springdampers, &mut pose0, &mut model)?;
+        length_range::find_all(self, &mut model)?;
+        budget::keyframes(self, &model)?;
+        keyframes::add_all(self, &mut model)?;
+        sleep::begin_asleep(&mut model)?;
+        Ok(model)
+    }
+
+    /// A model without any element.
+    fn empty_model(&self) -> Model {
+        let physics = &self.physics;
+        let contacts = physics.contact_override.unwrap_or_default();
+        Model {
+            name: self.name.clone(),
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            dofs: Vec::new(),
+            geoms: Vec::new(),
+            sites: Vec::new(),
+            cameras: Vec::new(),
+            tendons: Vec::new(),
+            tendon_dofs: RowPattern::default(),
+            actuators: Vec::new(),
+            actuator_dofs: RowPattern::default(),
+            sensors: Vec::new(),
+            equalities: Vec::new(),
+            max_dynamic_constraints: DEFAULT_DYNAMIC_CONSTRAINTS,
+            pairs: Vec::new(),
+            excludes: HashSet::new(),
+            keyframes: Vec::new(),
+            meshes: Vec::new(),
+            height_fields: Vec::new(),
+            nq: 0,
+            nv: 0,
+            na: 0,
+            nplastic: 0,
+            nhistory: 0,
+            nmocap: 0,
+            tree: Arc::default(),
+            trees: Vec::new(),
+            tendon_ties: Vec::new(),
+            tree_asleep0: Vec::new(),
+            integrator: physics.integrator,
+            flags: physics.flags,
+            override_contacts: physics.contact_override.is_some(),
+            options: self.options,
+            budget: self.budget,
+            params: Params {
+                timestep: physics.timestep,
+                gravity: Vec3::from_array(physics.gravity),
+                wind: Vec3::from_array(physics.wind),
+                magnetic: Vec3::from_array(physics.magnetic),
+                density: physics.density,
+                viscosity: physics.viscosity,
+                sleep_tolerance: physics.sleep_tolerance,
+                override_margin: contacts.margin,
+                override_solref: contacts.solref,
+                override_solimp: contacts.solimp,
+                override_friction: contacts.friction,
+                ..Params::default()
+            },
+            same_frames: SameFrames::default(),
+            notes: self.notes.clone(),
+            left_out: self.left_out.clone(),
+            custom: self.custom.clone(),
+            visuals: Visuals::default(),
+        }
+    }
+}
+
+fn tree(model: &Model) -> Result<Tree, BuildError> {
+    let parents: Vec<_> = model.dofs.iter().map(|dof| dof.parent).collect();
+    Tree::new(&parents).map_err(|e| BuildError::new("model", e.to_string()))
+}
+
+/// Poses, and all that depends on them alone, at `qpos`.
+fn pose(model: &Model, qpos: &[f64]) -> Positions<f64> {
+    let (params, mut state) = (&model.params, State::new(model));
+    state.qpos.copy_from_slice(qpos);
+    let mut pos = Positions::new(model);
+    let all = 0..model.nbody();
+    let parts = std::slice::from_ref(&all);
+    let all = kinematics::Computed::all(parts);
+    (Step::compiled().poses)(model, params, &state, all, &mut pos);
+    pos
+}

@@ -1,0 +1,108 @@
+//! Cameras: what an author says of them, what they are aimed at, and their frames at qpos0.
+
+use super::BuildError;
+use super::camera_spec::{CameraLens, CameraSpec, CameraTracking};
+use super::geoms::{Moved, place};
+use super::model_builder::ModelBuilder;
+use super::resolve::AllNames;
+use clench_dynamics::dynamics::camera::fixed_pose;
+use clench_dynamics::model::{Camera, CameraMode, Model};
+use clench_dynamics::stages::Positions;
+use std::sync::Arc;
+
+/// MuJoCo's focal lengths of a camera that has a field of view instead, m.
+const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];
+
+/// Adds a camera of body `b`, not yet aimed at anything.
+pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) {
+    let (fovy, sensorsize, intrinsic) = match spec.lens {
+        CameraLens::FieldOfView(fovy) => (fovy, [0.0; 2], UNUSED_INTRINSIC),
+        CameraLens::Intrinsic {
+            sensorsize,
+            focal,
+            principal,
+        } => {
+            // In single precision, as by MuJoCo's compiler: the picture of an orthographic camera is so many metres high.
+            let half_angle = (0.5 * sensorsize[1] as f32).atan2(focal[1] as f32);
+            let numbers = [focal[0], focal[1], principal[0], principal[1]];
+            let fovy = 2.0 * f64::from(half_angle).to_degrees();
+            (fovy, sensorsize, numbers)
+        }
+    };
+    model.cameras.push(Camera {
+        name: spec.name.clone(),
+        body: b,
+        mode: CameraMode::Fixed,
+        orthographic: spec.orthographic,
+        resolution: spec.resolution,
+        intrinsic: matches!(spec.lens, CameraLens::Intrinsic { .. }),
+        user: Arc::clone(&spec.user),
+    });
+    let (pos, quat) = place(moved, spec.pos, spec.quat);
+    let p = &mut model.params;
+    p.cam_pos.push(pos);
+    p.cam_quat.push(quat);
+    p.cam_fovy.push(fovy);
+    p.cam_sensorsize.push(sensorsize);
+    p.cam_intrinsic.push(intrinsic);
+}
+
+/// Resolves what cameras follow and are turned towards.
+///
+/// # Errors
+/// A body that is not there.
+pub(super) fn aim_all(
+    builder: &ModelBuilder,
+    order: &[usize],
+    names: &AllNames,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let specs = order.iter().flat_map(|&b| &builder.bodies[b].cameras);
+    for (camera, spec) in model.cameras.iter_mut().zip(specs) {
+        camera.mode = mode(&spec.tracking, |name| names.bodies.find(name, spec))?;
+    }
+    Ok(())
+}
+
+/// How a camera or light follows bodies, which `find` finds by their names.
+///
+/// # Errors
+/// A body that is not there.
+pub(super) fn mode(
+    tracking: &CameraTracking,
+    find: impl Fn(&str) -> Result<usize, BuildError>,
+) -> Result<CameraMode, BuildError> {
+    let named = |name: &String| match name.is_empty() {
+        true => Ok(None),
+        false => find(name).map(Some),
+    };
+    let target = |name: &String, mode: fn(usize) -> CameraMode| {
+        named(name).map(|body| body.map_or(CameraMode::Fixed, mode))
+    };
+    Ok(match tracking {
+        CameraTracking::Fixed => CameraMode::Fixed,
+        CameraTracking::Track => CameraMode::Track,
+        CameraTracking::TrackCom(name) => CameraMode::TrackCom(named(name)?),
+        CameraTracking::TargetBody(name) => target(name, CameraMode::TargetBody)?,
+        CameraTracking::TargetBodyCom(name) => target(name, CameraMode::TargetBodyCom)?,
+    })
+}
+
+/// Notes the frames in the initial configuration, which cameras that track keep.
+pub(super) fn set_initial_frames(pose0: &Positions<f64>, model: &mut Model) {
+    for (c, camera) in model.cameras.iter().enumerate() {
+        let (pos, mat) = fixed_pose(model, &model.params, pose0, c);
+        let p = &mut model.params;
+        p.cam_pos0.push(pos - pose0.xpos[camera.body]);
+        let from = match camera.mode {
+            CameraMode::TrackCom(Some(body)) => body,
+            _ => camera.body,
+        };
+        p.cam_poscom0.push(pos - pose0.subtree_com[from]);
+        let mut rows = [0.0; 9];
+        for (to, row) in rows.chunks_exact_mut(3).zip(mat.rows) {
+            row.write(to);
+        }
+        p.cam_mat0.push(rows);
+    }
+}

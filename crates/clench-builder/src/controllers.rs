@@ -1,0 +1,225 @@
+//! What actuators are controlled by, and the activations that controllers and motors need: MuJoCo's rules for gains of the kinds
+//! `pid`, `dcmotor` and `so3`.
+
+use super::element::Element;
+use super::{ActuatorSpec, BuildError};
+use clench_dynamics::model::{BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind};
+
+/// The controls of an actuator, and the activations that have a meaning of their own.
+pub(super) struct Controller {
+    /// What each control is.
+    pub inputs: Vec<ControlInput>,
+    /// Which activations there are.
+    pub states: ControllerStates,
+    /// How many.
+    pub count: usize,
+}
+
+/// What an actuator is controlled by; its activations start at `first`.
+///
+/// # Errors
+/// Kinds that do not go together, inputs that the gain does not know, parameters without the inputs that they need.
+pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    if spec.dynamics == DynamicsKind::Pid && spec.gain != GainKind::Pid {
+        return Err(spec.error("dynamics of the kind pid need a gain of that kind"));
+    }
+    let motor = [
+        spec.dynamics == DynamicsKind::DcMotor,
+        spec.gain == GainKind::DcMotor,
+        spec.bias == BiasKind::DcMotor,
+    ];
+    match spec.gain {
+        GainKind::Pid => pid(spec, first),
+        GainKind::So3 => orientation_servo(spec),
+        _ if spec.bias == BiasKind::So3 => {
+            Err(spec.error("so3 must be the kind of gain and bias, or of none of them"))
+        }
+        _ if motor != [false; 3] => parts_of_motor(spec, first),
+        _ => Ok(Controller {
+            inputs: vec![ControlInput::Command],
+            states: ControllerStates::default(),
+            count: 0,
+        }),
+    }
+}
+
+fn orientation_servo(spec: &ActuatorSpec) -> Result<Controller, BuildError> {
+    let (vector, quaternion) = (
+        vec![ControlInput::RotationVector; 3],
+        vec![ControlInput::Quaternion; 4],
+    );
+    let inputs = spec.inputs.clone().unwrap_or_else(|| vector.clone());
+    let integrates = spec.dynamics == DynamicsKind::Integrator;
+    if spec.bias != BiasKind::So3 {
+        return Err(spec.error("so3 must be the kind of gain and bias, or of none of them"));
+    }
+    if !integrates && spec.dynamics != DynamicsKind::None {
+        return Err(spec.error("a gain of the kind so3 needs an integrator, or no dynamics"));
+    }
+    if spec.gainprm[0] != -spec.biasprm[1] {
+        return Err(spec.error("a gain of the kind so3 needs gainprm[0] = -biasprm[1]"));
+    }
+    if inputs != vector && (inputs != quaternion || integrates) {
+        return Err(spec.error(match integrates {
+            true => "an orientation servo that integrates is controlled by a rotation vector (expmap)",
+            false => "an orientation servo is controlled by a rotation vector (expmap) or a quaternion (quat)",
+        }));
+    }
+    Ok(Controller {
+        inputs,
+        states: ControllerStates::default(),
+        count: 0,
+    })
+}
+
+/// Numbers activations in the order in which they are asked for.
+struct Numbering {
+    first: usize,
+    count: usize,
+}
+
+impl Numbering {
+    fn next_if(&mut self, wanted: bool) -> Option<usize> {
+        let number = self.first + self.count;
+        self.count += usize::from(wanted);
+        wanted.then_some(number)
+    }
+}
+
+fn pid(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    use ControlInput::{Feedforward, Position, Velocity};
+    let ki = spec.gainprm[0];
+    let [imax, slewmax, ..] = spec.dynprm;
+    let stateful = spec.dynamics == DynamicsKind::Pid;
+    if spec.bias != BiasKind::Affine {
+        return Err(spec.error("a gain of the kind pid needs an affine bias"));
+    }
+    if !stateful && spec.dynamics != DynamicsKind::None {
+        return Err(spec.error("a gain of the kind pid needs dynamics of that kind, or none"));
+    }
+    if !stateful && ki != 0.0 {
+        return Err(spec.error("ki (gainprm[0]) needs dynamics of the kind pid"));
+    }
+    let inputs = inputs(
+        spec,
+        &[Position, Velocity],
+        &[Position, Velocity, Feedforward],
+    )?;
+    let mut numbers = Numbering { first, count: 0 };
+    let mut states = ControllerStates::default();
+    if stateful {
+        spec.require_not_negative("imax (dynprm[0])", &[imax])?;
+        spec.require_not_negative("slewmax (dynprm[1])", &[slewmax])?;
+        if !inputs.contains(&Position) {
+            return Err(spec.error("ki and slewmax of a pid need the input pos"));
+        }
+        states.slew = numbers.next_if(slewmax > 0.0);
+        states.integral = numbers.next_if(ki > 0.0);
+        if numbers.count == 0 {
+            return Err(spec.error("dynamics of the kind pid need a positive ki or slewmax"));
+        }
+    }
+    Ok(Controller {
+        inputs,
+        states,
+        count: numbers.count,
+    })
+}
+
+/// A motor, or what a `general` of its class leaves of it: its dynamics, gain and bias each do their part, as in MuJoCo, which asks that
+/// there are as many activations as the motor's parameters speak of. A motor's bias needs its gain here, for what MuJoCo makes of the
+/// derivatives of another gain's force where a range limits it is not known.
+fn parts_of_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    if spec.bias == BiasKind::DcMotor && spec.gain != GainKind::DcMotor {
+        return Err(spec.error("a bias of the kind dcmotor needs a gain of that kind"));
+    }
+    let controller = match spec.gain {
+        GainKind::DcMotor => dc_motor(spec, first)?,
+        _ => Controller {
+            inputs: vec![ControlInput::Command],
+            ..motor_states(spec, first)
+        },
+    };
+    if spec.dynamics == DynamicsKind::DcMotor && !spec.actearly {
+        return Err(spec.error("actearly cannot be false for a dcmotor"));
+    }
+    let states = controller.states;
+    if spec.gain != GainKind::DcMotor && (states.slew.is_some() || states.integral.is_some()) {
+        return Err(spec.error("a controller of a dcmotor needs a gain of that kind"));
+    }
+    let count = match spec.dynamics {
+        DynamicsKind::None => 0,
+        DynamicsKind::DcMotor => controller.count,
+        DynamicsKind::User => spec.actdim.unwrap_or(1),
+        _ => 1,
+    };
+    if count != controller.count {
+        return Err(spec.error(format!(
+            "its dynamics have {count} activations, but its parameters are those of a dcmotor with {}",
+            controller.count
+        )));
+    }
+    Ok(controller)
+}
+
+fn dc_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
+    use ControlInput::{Feedforward, Position, Velocity, Voltage};
+    let [_, constant, _, _, kp, ki, kd, ..] = spec.gainprm;
+    let slewmax = spec.dynprm[7];
+    let inputs = inputs(
+        spec,
+        &[Voltage],
+        &[Position, Velocity, Feedforward, Voltage],
+    )?;
+    let controlled = inputs.iter().any(|&input| input != Voltage);
+    if controlled && constant <= 0.0 {
+        return Err(spec.error("a controller of a dcmotor needs a positive motor constant"));
+    }
+    let gains = [kp, ki, kd].iter().any(|&gain| gain != 0.0);
+    if !controlled && (gains || slewmax > 0.0) {
+        return Err(spec.error("a controller of a dcmotor needs an input pos, vel or ff"));
+    }
+    if ki > 0.0 && !inputs.contains(&Position) {
+        return Err(spec.error("ki of a dcmotor needs the input pos"));
+    }
+    Ok(Controller {
+        inputs,
+        ..motor_states(spec, first)
+    })
+}
+
+/// The activations that the parameters of a motor speak of, without its inputs.
+fn motor_states(spec: &ActuatorSpec, first: usize) -> Controller {
+    let [te, _, thermal, _, _, bristle, _, slewmax, ..] = spec.dynprm;
+    let mut numbers = Numbering { first, count: 0 };
+    let states = ControllerStates {
+        slew: numbers.next_if(slewmax > 0.0),
+        integral: numbers.next_if(spec.gainprm[5] > 0.0),
+        temperature: numbers.next_if(thermal > 0.0),
+        bristle: numbers.next_if(bristle > 0.0),
+        current: numbers.next_if(te > 0.0),
+    };
+    Controller {
+        inputs: Vec::new(),
+        states,
+        count: numbers.count,
+    }
+}
+
+/// The inputs that the author names, or the usual ones.
+fn inputs(
+    spec: &ActuatorSpec,
+    usual: &[ControlInput],
+    known: &[ControlInput],
+) -> Result<Vec<ControlInput>, BuildError> {
+    let Some(given) = &spec.inputs else {
+        return Ok(usual.to_vec());
+    };
+    let rises = given.windows(2).all(|pair| pair[0] < pair[1]);
+    if !rises || given.iter().any(|input| !known.contains(input)) {
+        return Err(spec.error(format!(
+            "its inputs must be of {known:?}, in this order, but are {given:?}"
+        )));
+    }
+    Ok(given.clone())
+}

@@ -1,0 +1,114 @@
+//! Geoms and sites.
+
+use super::added_mass::AddedMass;
+use super::element::Element;
+use super::placed::Assets;
+use super::{BuildError, GeomSpec, SiteSpec};
+use clench_collide::ShapeKind;
+use clench_dynamics::dynamics::ellipsoid::semi_axes;
+use clench_dynamics::model::{Geom, Model, Site};
+use clench_math::{Quat, Vec3};
+use std::sync::Arc;
+
+/// Where a body's frame was moved, its geoms and sites follow: their pose in the model's frame, of unit quaternion.
+pub(super) type Moved = Option<(Vec3<f64>, Quat<f64>)>;
+
+pub(super) fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>) {
+    let quat = quat.normalize();
+    match moved {
+        None => (pos, quat),
+        Some((origin, turn)) => (origin + turn.rotate(pos), (turn * quat).normalize()),
+    }
+}
+
+/// Adds a geom of body `b`.
+///
+/// # Errors
+/// What a geom cannot take from its asset; a plane that would move.
+pub(super) fn add_geom(
+    spec: &GeomSpec,
+    b: usize,
+    moved: Moved,
+    assets: &Assets,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let placed = assets.place(spec)?;
+    let weld = &model.bodies[model.bodies[b].weld];
+    if spec.kind == ShapeKind::Plane && !weld.joints.is_empty() {
+        return Err(spec.error("a plane can only stand on a body that no joint moves"));
+    }
+    let flat = matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField);
+    let fluid_ellipsoid = spec.fluid_ellipsoid && !flat;
+    model.bodies[b].fluid_ellipsoids |= fluid_ellipsoid;
+    model.geoms.push(Geom {
+        name: spec.name.clone(),
+        kind: spec.kind,
+        mesh: placed.mesh.map(|(index, _)| index),
+        height_field: placed.height_field,
+        body: b,
+        contype: spec.contype,
+        conaffinity: spec.conaffinity,
+        condim: spec.condim,
+        priority: spec.priority,
+        group: spec.group,
+        visible: spec.visible,
+        fluid_ellipsoid,
+        user: Arc::clone(&spec.user),
+        origin: spec.origin.clone(),
+    });
+    let appearance = assets.palette.resolve(&spec.appearance);
+    model.visuals.geoms.push(appearance);
+    let (pos, quat) = place(moved, placed.pos, placed.quat);
+    let p = &mut model.params;
+    p.geom_pos.push(pos);
+    p.geom_quat.push(quat);
+    p.geom_size.push(placed.size);
+    p.geom_rbound.push(placed.rbound);
+    p.geom_friction.push(spec.friction);
+    p.geom_margin.push(spec.margin);
+    p.geom_gap.push(spec.gap);
+    p.geom_surfacevel.push(placed.surfacevel);
+    p.geom_adhesion.push(spec.adhesion);
+    let added = if fluid_ellipsoid {
+        AddedMass::of_ellipsoid(semi_axes(spec.kind, placed.size))
+    } else {
+        AddedMass::default()
+    };
+    p.geom_fluidcoef.push(spec.fluidcoef);
+    p.geom_virtualmass.push(added.mass);
+    p.geom_virtualinertia.push(added.inertia);
+    p.geom_solmix.push(spec.solmix);
+    p.geom_solref.push(spec.solref);
+    p.geom_solimp.push(spec.solimp);
+    Ok(())
+}
+
+/// Adds a site of body `b`.
+///
+/// # Errors
+/// A mesh that is not there.
+pub(super) fn add_site(
+    spec: &SiteSpec,
+    b: usize,
+    moved: Moved,
+    assets: &Assets,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let mesh = assets.mesh_of_site(spec)?;
+    let appearance = assets.palette.resolve(&spec.appearance);
+    model.visuals.sites.push(appearance);
+    model.sites.push(Site {
+        name: spec.name.clone(),
+        body: b,
+        kind: spec.kind,
+        group: spec.group,
+        mesh: mesh.map(|(index, _)| index),
+        user: Arc::clone(&spec.user),
+    });
+    let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.reach());
+    model.params.site_size.push(size);
+    let (pos, quat) = place(moved, spec.pos, spec.quat);
+    model.params.site_pos.push(pos);
+    model.params.site_quat.push(quat);
+    Ok(())
+}

@@ -1,0 +1,46 @@
+//! Buffers of past values: what actuators and sensors keep, so that it can arrive late.
+
+use super::BuildError;
+use super::element::Element;
+use super::elements::HistorySpec;
+use super::model_builder::ModelBuilder;
+use clench_dynamics::budget::RAISE;
+use clench_dynamics::model::{History, Model};
+
+/// Makes room for the past values of an element, `width` numbers a sample, if it keeps any.
+///
+/// # Errors
+/// A delay without samples, or that is negative; samples of nothing, or more of them than the budget has.
+pub(super) fn add(
+    builder: &ModelBuilder,
+    element: &impl Element,
+    spec: HistorySpec,
+    width: usize,
+    model: &mut Model,
+) -> Result<Option<History>, BuildError> {
+    element.require_not_negative("delay", &[spec.delay])?;
+    if spec.delay > 0.0 && spec.nsample == 0 {
+        return Err(element.error("a delay needs past values (nsample)"));
+    }
+    if spec.nsample == 0 {
+        return Ok(None);
+    }
+    if width == 0 {
+        return Err(element.error("nsample needs values to keep, and it has none"));
+    }
+    let most = builder.budget.matrix;
+    let numbers = (spec.nsample as u64).saturating_mul(width as u64 + 1);
+    if numbers.saturating_add(model.nhistory as u64) > most {
+        return Err(element.error(format!(
+            "with it there are more than {most} past numbers; {RAISE}"
+        )));
+    }
+    let history = History {
+        start: model.nhistory,
+        samples: spec.nsample,
+        width,
+        interpolation: spec.interp,
+    };
+    model.nhistory += history.size();
+    Ok(Some(history))
+}

@@ -1,0 +1,85 @@
+//! Lights: checked, placed and turned towards what they follow.
+
+use super::cameras;
+use super::element::Element;
+use super::geoms::{Moved, place};
+use super::model_builder::ModelBuilder;
+use super::resolve::AllNames;
+use super::{BuildError, LightSpec};
+use clench_dynamics::model::{CameraMode, Light, LightProperties, Model};
+use clench_dynamics::stages::Positions;
+use clench_math::{Quat, Vec3};
+
+/// Checks the numbers of a light.
+///
+/// # Errors
+/// Numbers that are not finite; a direction that is none.
+pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
+    let LightProperties {
+        attenuation,
+        cutoff,
+        exponent,
+        ambient,
+        diffuse,
+        specular,
+        ..
+    } = light.properties;
+    light.require_finite("pos", &light.pos.to_array())?;
+    light.require_finite("dir", &light.dir.to_array())?;
+    light.require_finite("attenuation", &attenuation)?;
+    light.require_finite("cutoff and exponent", &[cutoff, exponent])?;
+    light.require_finite("colour", [ambient, diffuse, specular].as_flattened())?;
+    match light.dir.norm() > 0.0 {
+        true => Ok(()),
+        false => Err(light.error("dir is no direction: it is zero")),
+    }
+}
+
+/// Adds a light of body `b`, not yet aimed at anything.
+pub(super) fn add(spec: &LightSpec, b: usize, moved: Moved, model: &mut Model) {
+    let (pos, turn) = place(moved, spec.pos, Quat::IDENTITY);
+    let dir = turn.rotate(spec.dir.normalize().0);
+    model.visuals.lights.push(Light {
+        name: spec.name.clone(),
+        body: b,
+        mode: CameraMode::Fixed,
+        pos,
+        dir,
+        pos0: Vec3::ZERO,
+        poscom0: Vec3::ZERO,
+        dir0: dir,
+        properties: spec.properties,
+    });
+}
+
+/// Resolves what lights follow and are turned towards.
+///
+/// # Errors
+/// A body that is not there.
+pub(super) fn aim_all(
+    builder: &ModelBuilder,
+    order: &[usize],
+    names: &AllNames,
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    let specs = order.iter().flat_map(|&b| &builder.bodies[b].lights);
+    for (light, spec) in model.visuals.lights.iter_mut().zip(specs) {
+        light.mode = cameras::mode(&spec.tracking, |name| names.bodies.find(name, spec))?;
+    }
+    Ok(())
+}
+
+/// Notes the places in the initial configuration, which lights that track keep.
+pub(super) fn set_initial_places(pose0: &Positions<f64>, model: &mut Model) {
+    for light in &mut model.visuals.lights {
+        let turn = pose0.xmat[light.body];
+        let pos = pose0.xpos[light.body] + turn * light.pos;
+        let from = match light.mode {
+            CameraMode::TrackCom(Some(body)) => body,
+            _ => light.body,
+        };
+        light.pos0 = pos - pose0.xpos[light.body];
+        light.poscom0 = pos - pose0.subtree_com[from];
+        light.dir0 = turn * light.dir;
+    }
+}

@@ -1,0 +1,99 @@
+//! A model as its author wrote it.
+
+use super::appearance::MaterialSpec;
+use super::elements::BodySpec;
+use super::physics::{CompilerSpec, PhysicsSpec, UserWidths};
+use super::relations::{
+    ActuatorSpec, EqualitySpec, ExcludeSpec, KeyframeSpec, PairSpec, TendonSpec,
+};
+use super::sensor_specs::SensorSpec;
+use super::{HeightFieldSpec, MeshSpec};
+use clench_dynamics::Budget;
+use clench_dynamics::model::{Custom, Headlight, Texture};
+use clench_dynamics::options::RigidOptions;
+
+/// A model as its author wrote it.
+#[derive(Clone, Debug)]
+pub struct ModelBuilder {
+    /// Name of the model.
+    pub name: String,
+    /// How to derive what was not said: inertia from geoms, limits from ranges, total mass.
+    pub compiler: CompilerSpec,
+    /// Time step, gravity, medium, integrator and feature flags.
+    pub physics: PhysicsSpec,
+    /// Solver options that the source sets; they rank below a user's and above the design's defaults.
+    pub options: RigidOptions,
+    /// What building the model, and each of its steps, may ask for.
+    pub budget: Budget,
+    /// Bodies in order of appearance, parents before children; the first is the world.
+    pub bodies: Vec<BodySpec>,
+    /// Meshes that geoms refer to.
+    pub meshes: Vec<MeshSpec>,
+    /// Height fields that geoms refer to.
+    pub height_fields: Vec<HeightFieldSpec>,
+    /// Surfaces that elements refer to by name.
+    pub materials: Vec<MaterialSpec>,
+    /// Pictures that materials refer to by name.
+    pub textures: Vec<Texture>,
+    /// The light that goes with the camera.
+    pub headlight: Headlight,
+    /// Tendons.
+    pub tendons: Vec<TendonSpec>,
+    /// Actuators.
+    pub actuators: Vec<ActuatorSpec>,
+    /// Sensors.
+    pub sensors: Vec<SensorSpec>,
+    /// Equality constraints.
+    pub equalities: Vec<EqualitySpec>,
+    /// Geom pairs that collide whatever their masks say.
+    pub pairs: Vec<PairSpec>,
+    /// Body pairs that never collide.
+    pub excludes: Vec<ExcludeSpec>,
+    /// Stored states.
+    pub keyframes: Vec<KeyframeSpec>,
+    /// Things worth telling the user once, such as a solver that was replaced.
+    pub notes: Vec<String>,
+    /// What was left out of the file because it is not supported yet, each with its place.
+    pub left_out: Vec<String>,
+    /// The user's own data.
+    pub custom: Custom,
+    /// How many numbers of the user's own elements have.
+    pub user_widths: UserWidths,
+}
+
+/// A world without anything in it.
+impl Default for ModelBuilder {
+    fn default() -> Self {
+        ModelBuilder {
+            name: String::new(),
+            compiler: CompilerSpec::default(),
+            physics: PhysicsSpec::default(),
+            options: RigidOptions::default(),
+            budget: Budget::default(),
+            bodies: vec![BodySpec::new("world")],
+            meshes: Vec::new(),
+            height_fields: Vec::new(),
+            materials: Vec::new(),
+            textures: Vec::new(),
+            headlight: Headlight::default(),
+            tendons: Vec::new(),
+            actuators: Vec::new(),
+            sensors: Vec::new(),
+            equalities: Vec::new(),
+            pairs: Vec::new(),
+            excludes: Vec::new(),
+            keyframes: Vec::new(),
+            notes: Vec::new(),
+            left_out: Vec::new(),
+            custom: Custom::default(),
+            user_widths: UserWidths::default(),
+        }
+    }
+}
+
+impl ModelBuilder {
+    /// The settings that decide about the inertia and the frame of a body.
+    pub(super) fn settings_of<'a>(&'a self, body: &'a BodySpec) -> &'a CompilerSpec {
+        body.compiler.as_deref().unwrap_or(&self.compiler)
+    }
+}

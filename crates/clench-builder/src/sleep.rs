@@ -1,0 +1,208 @@
+//! Kinematic trees: which may sleep, how fast their dofs are, and which begin asleep.
+
+use super::check::describe;
+use super::element::Element;
+use super::model_builder::ModelBuilder;
+use super::{BodySpec, BuildError};
+use clench_dynamics::contact::check_supported;
+use clench_dynamics::model::{JointKind, KinematicTree, Model, SleepPolicy, Transmission};
+use clench_dynamics::options::RigidOptions;
+use clench_dynamics::settings::StepSettings;
+use clench_dynamics::sleep::{AWAKE, READY};
+use clench_dynamics::stages::Positions;
+use clench_dynamics::state::State;
+use clench_dynamics::workspace::Workspace;
+use clench_dynamics::{pipeline, sleep};
+
+/// The least size of a body, m (as in MuJoCo).
+const MIN_SIZE: f64 = 1e-5;
+
+/// Finds the trees, and decides which may sleep.
+///
+/// # Errors
+/// A policy for a body that is no root of a tree; one that lets a tree sleep which a tendon moves beside another.
+pub(super) fn add_trees(
+    builder: &ModelBuilder,
+    order: &[usize],
+    model: &mut Model,
+) -> Result<(), BuildError> {
+    find_trees(model);
+    for (b, &old) in order.iter().enumerate() {
+        let spec = &builder.bodies[old];
+        if spec.sleep == SleepPolicy::Auto {
+            continue;
+        }
+        let Some(tree) = tree_of_root(model, b) else {
+            return Err(not_a_root(spec));
+        };
+        model.trees[tree].sleep = spec.sleep;
+    }
+    let mut driven = Vec::new();
+    for actuator in &model.actuators {
+        // Of two sites only the first counts, as in MuJoCo.
+        let body = match actuator.transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) | Transmission::Rotation(j) => {
+                model.joints[j].body
+            }
+            Transmission::Site(site)
+            | Transmission::SiteInFrame([site, _])
+            | Transmission::RotationInFrame([site, _])
+            | Transmission::SliderCrank([site, _]) => model.sites[site].body,
+            Transmission::Body(body) => body,
+            Transmission::Tendon(tendon) => {
+                driven.extend(model.trees_of(model.tendon_dofs.dofs(tendon)));
+                continue;
+            }
+        };
+        driven.extend(model.tree_of_body(body));
+    }
+    for tree in driven {
+        keep_awake(&mut model.trees[tree]);
+    }
+    for (t, spec) in builder.tendons.iter().enumerate() {
+        let trees = model.trees_of(model.tendon_dofs.dofs(t));
+        model
+            .tendon_ties
+            .push(<[usize; 2]>::try_from(&trees[..]).ok());
+        let p = &model.params;
+        let linear = [p.tendon_stiffness[t], p.tendon_damping[t]];
+        let others = p.tendon_stiffnesspoly[t]
+            .into_iter()
+            .chain(p.tendon_dampingpoly[t]);
+        let pulls = linear.into_iter().chain(others).any(|number| number != 0.0);
+        if trees.len() < 2 || (trees.len() == 2 && !pulls) {
+            continue;
+        }
+        for tree in trees {
+            if let SleepPolicy::Allowed | SleepPolicy::Init = model.trees[tree].sleep {
+                return Err(spec.error(
+                    "pulls on several trees, of which one that may sleep would not notice",
+                ));
+            }
+            keep_awake(&mut model.trees[tree]);
+        }
+    }
+    for tree in &mut model.trees {
+        if tree.sleep == SleepPolicy::Auto {
+            tree.sleep = SleepPolicy::Allowed;
+        }
+    }
+    Ok(())
+}
+
+/// What acts on a tree unseen keeps it awake, if its author did not say otherwise.
+fn keep_awake(tree: &mut KinematicTree) {
+    if tree.sleep == SleepPolicy::Auto {
+        tree.sleep = SleepPolicy::Never;
+    }
+}
+
+fn find_trees(model: &mut Model) {
+    model.trees = Vec::with_capacity(model.tree.ntree());
+    for (b, body) in model.bodies.iter().enumerate() {
+        let Some(tree) = model.tree_of_body(b) else {
+            continue;
+        };
+        if tree == model.trees.len() {
+            model.trees.push(KinematicTree {
+                bodies: b..b,
+                qpos: model.joints[body.joints.start].qpos..0,
+                dofs: body.dofs.start..0,
+                mocap: model.bodies[body.root].mocap,
+                sleep: SleepPolicy::Auto,
+            });
+        }
+        let last = model.joints[..body.joints.end].last();
+        let tree = &mut model.trees[tree];
+        tree.bodies.end = b + 1;
+        if let Some(joint) = last {
+            tree.qpos.end = joint.qpos + joint.kind.nq();
+            tree.dofs.end = joint.dof + joint.kind.nv();
+        }
+    }
+}
+
+/// The tree of which a body is the root.
+fn tree_of_root(model: &Model, body: usize) -> Option<usize> {
+    let tree = model.tree_of_body(body)?;
+    (model.trees[tree].bodies.start == body).then_some(tree)
+}
+
+fn not_a_root(spec: &BodySpec) -> BuildError {
+    spec.error("has a sleep policy, which only the moving root of a tree can have")
+}
+
+/// The size of bodies at qpos0: how far joints and geoms lie from their centres of mass. It makes lengths of angles.
+pub(super) fn dof_lengths(pose0: &Positions<f64>, model: &mut Model) {
+    let mut sizes = vec![0.0f64; model.nbody()];
+    for (j, joint) in model.joints.iter().enumerate() {
+        for body in [joint.body, model.bodies[joint.body].parent] {
+            let distance = (pose0.xipos[body] - pose0.xanchor[j]).norm();
+            sizes[body] = sizes[body].max(distance);
+        }
+    }
+    for (g, geom) in model.geoms.iter().enumerate() {
+        let radius = model.params.geom_rbound[g];
+        if radius > 0.0 {
+            let distance = (pose0.xipos[geom.body] - pose0.geom_xpos[g]).norm();
+            sizes[geom.body] = sizes[geom.body].max(radius + distance);
+        }
+    }
+    let lengths = model.dofs.iter().enumerate().map(|(i, dof)| {
+        let joint = &model.joints[dof.joint];
+        match joint.kind {
+            JointKind::Slide => 1.0,
+            JointKind::Free if i < joint.dof + 3 => 1.0,
+            _ => sizes[dof.body].max(MIN_SIZE),
+        }
+    });
+    model.params.dof_length = lengths.collect();
+}
+
+/// Puts the trees to sleep that begin asleep. Islands sleep as a whole: where one tree of an island begins awake, all do, and
+/// a note says so.
+///
+/// # Errors
+/// Options that are out of range.
+pub(super) fn begin_asleep(model: &mut Model) -> Result<(), BuildError> {
+    if !model.flags.sleep {
+        return Ok(());
+    }
+    model.tree_asleep0 = vec![AWAKE; model.ntree()];
+    let begins_asleep = |tree: &KinematicTree| tree.sleep == SleepPolicy::Init;
+    if !model.trees.iter().any(begins_asleep) {
+        return Ok(());
+    }
+    let settings = StepSettings::new::<f64>(model, RigidOptions::new())
+        .map_err(|wrong| BuildError::new("model", wrong.to_string()))?;
+    if settings.flags.constraint && settings.flags.contact && check_supported(model).is_err() {
+        // No simulation can be made of it.
+        return Ok(());
+    }
+    let (mut state, mut ws) = (State::new(model), Workspace::new(model));
+    pipeline::forward(
+        model,
+        &model.params,
+        &settings,
+        &state,
+        &mut ws,
+        |_, _, _, _, _| (),
+    );
+    for (tree, counter) in model.trees.iter().zip(&mut state.tree_asleep) {
+        *counter = if begins_asleep(tree) { READY } else { AWAKE };
+    }
+    ws.sleep.begin(model, &state);
+    sleep::fall_asleep(model, &model.params, &settings, &mut state, &mut ws);
+    for (t, tree) in model.trees.iter().enumerate() {
+        let counter = ws.sleep.counters()[t];
+        let restless = begins_asleep(tree) && counter < 0.0;
+        model.tree_asleep0[t] = if restless { AWAKE } else { counter };
+        if restless {
+            let root = tree.bodies.start;
+            let name = describe(&model.bodies[root].name, root);
+            let why = "something that it touches or that is coupled to it does not begin asleep";
+            model.notes.push(format!("{name} begins awake: {why}"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,95 @@
+//! The user's own numbers, of which all elements of a kind have as many, as in MuJoCo.
+
+use super::BuildError;
+use super::element::Element;
+use super::model_builder::ModelBuilder;
+use super::physics::UserWidths;
+use clench_dynamics::budget::RAISE;
+use clench_dynamics::model::Model;
+use std::sync::Arc;
+
+/// The widths of a description, none of them open.
+///
+/// # Errors
+/// An element with more numbers than the description says that there are.
+fn resolve(builder: &ModelBuilder) -> Result<UserWidths, BuildError> {
+    let given = builder.user_widths;
+    let bodies = || builder.bodies.iter();
+    let joints = bodies().flat_map(|body| &body.joints);
+    let geoms = bodies().flat_map(|body| &body.geoms);
+    let sites = bodies().flat_map(|body| &body.sites);
+    let cameras = bodies().flat_map(|body| &body.cameras);
+    let (tendons, actuators) = (builder.tendons.iter(), builder.actuators.iter());
+    let sensors = builder.sensors.iter();
+    Ok(UserWidths {
+        body: width(given.body, bodies().map(|e| (e, &e.user)))?,
+        joint: width(given.joint, joints.map(|e| (e, &e.user)))?,
+        geom: width(given.geom, geoms.map(|e| (e, &e.user)))?,
+        site: width(given.site, sites.map(|e| (e, &e.user)))?,
+        camera: width(given.camera, cameras.map(|e| (e, &e.user)))?,
+        tendon: width(given.tendon, tendons.map(|e| (e, &e.user)))?,
+        actuator: width(given.actuator, actuators.map(|e| (e, &e.user)))?,
+        sensor: width(given.sensor, sensors.map(|e| (e, &e.user)))?,
+    })
+}
+
+fn width<'a, E: Element + 'a>(
+    given: Option<usize>,
+    elements: impl Iterator<Item = (&'a E, &'a Arc<[f64]>)>,
+) -> Result<Option<usize>, BuildError> {
+    let mut most = 0;
+    for (element, user) in elements {
+        let count = user.len();
+        match given {
+            Some(width) if count > width => {
+                return Err(element.error(format!(
+                    "user has {count} numbers, more than the {width} of every {}",
+                    E::KIND
+                )));
+            }
+            _ => most = most.max(count),
+        }
+    }
+    Ok(Some(given.unwrap_or(most)))
+}
+
+/// Gives all elements of a kind as many numbers, with zeros at the end.
+///
+/// # Errors
+/// An element with more than that, or more memory for all than the budget has.
+pub(super) fn pad(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
+    let widths = resolve(builder)?;
+    let mut left = builder.budget.bytes;
+    let mut pad = |width: Option<usize>, rows: Vec<&mut Arc<[f64]>>| {
+        let width = width.unwrap_or(0);
+        let bytes = (8 * rows.len() as u64).saturating_mul(width as u64);
+        left = left.checked_sub(bytes).ok_or_else(|| {
+            let message = format!(
+                "its users' numbers would take more than {} bytes; {RAISE}",
+                builder.budget.bytes
+            );
+            BuildError::new("model", message)
+        })?;
+        rows.into_iter().for_each(|row| pad_row(row, width));
+        Ok(())
+    };
+    pad(widths.body, rows(&mut model.bodies, |e| &mut e.user))?;
+    pad(widths.joint, rows(&mut model.joints, |e| &mut e.user))?;
+    pad(widths.geom, rows(&mut model.geoms, |e| &mut e.user))?;
+    pad(widths.site, rows(&mut model.sites, |e| &mut e.user))?;
+    pad(widths.camera, rows(&mut model.cameras, |e| &mut e.user))?;
+    pad(widths.tendon, rows(&mut model.tendons, |e| &mut e.user))?;
+    pad(widths.actuator, rows(&mut model.actuators, |e| &mut e.user))?;
+    pad(widths.sensor, rows(&mut model.sensors, |e| &mut e.user))
+}
+
+fn rows<E>(elements: &mut [E], row: fn(&mut E) -> &mut Arc<[f64]>) -> Vec<&mut Arc<[f64]>> {
+    elements.iter_mut().map(row).collect()
+}
+
+fn pad_row(row: &mut Arc<[f64]>, width: usize) {
+    if row.len() < width {
+        let zeros = std::iter::repeat(0.0);
+        *row = row.iter().copied().chain(zeros).take(width).collect();
+    }
+}

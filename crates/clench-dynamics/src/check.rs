@@ -1,0 +1,346 @@
+//! Checks of what users hand in and of what a step produced. The usual case, that all is well in every lane, is told by a
+//! mask; which number is wrong is looked for only where one is.
+
+use crate::contact::{Contact, Excess};
+use crate::error::{Fault, SimError};
+use crate::model::Model;
+use crate::place::{joint_of, massless};
+use crate::state::kind::{self, Kind};
+use crate::state::{FIELDS, State};
+use crate::workspace::Workspace;
+use clench_math::{Clock, Mask, Mat3, Real, Scalar, kernel};
+use clench_solver::Status;
+
+/// Positions, velocities and accelerations beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
+const MAX_VALUE: f64 = 1e10;
+
+/// How large the numbers of a field may be.
+#[derive(Clone, Copy)]
+enum Bound {
+    /// At most [`MAX_VALUE`].
+    Near,
+    /// Finite.
+    Finite,
+}
+
+impl Bound {
+    #[inline(always)]
+    fn of<T: Real>(self) -> T {
+        match self {
+            Bound::Near => T::new(MAX_VALUE),
+            Bound::Finite => T::splat(T::Scalar::MAX),
+        }
+    }
+}
+
+/// The right length and only finite numbers.
+pub fn check_values<T: Scalar>(
+    field: &'static str,
+    values: &[T],
+    expected: usize,
+) -> Result<(), SimError> {
+    check_length(field, values.len(), expected)?;
+    match first_beyond(values, 0, Bound::Finite) {
+        None => Ok(()),
+        Some((index, value)) => Err(SimError::Fault(Fault::NotFinite {
+            field,
+            index,
+            value,
+        })),
+    }
+}
+
+/// Refuses an input of another length than the model needs.
+///
+/// # Errors
+/// A length that is not `expected`.
+pub fn check_length(field: &'static str, found: usize, expected: usize) -> Result<(), SimError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(SimError::WrongLength {
+        field,
+        found,
+        expected,
+    })
+}
+
+/// So many numbers as make up whole parts of `each`.
+pub fn check_count(field: &'static str, found: usize, each: usize) -> Result<(), SimError> {
+    check_length(field, found, found / each * each)
+}
+
+/// The first number of a lane that is beyond a bound, or none at all.
+fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usize, f64)> {
+    let value = |i: usize| values[i].lane(lane);
+    let most = bound.of::<T::Scalar>();
+    let index = (0..values.len()).find(|&i| !value(i).abs().le(most))?;
+    Some((index, value(index).to_f64()))
+}
+
+/// A state of the model's lengths.
+pub fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimError> {
+    if s.fits(model) {
+        return Ok(());
+    }
+    for (field, found) in FIELDS.iter().zip(s.lengths()) {
+        check_length(field.name, found, field.numbers(model))?;
+    }
+    Ok(())
+}
+
+macro_rules! declare_inputs {
+    ($($group:ident { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* })*) => {
+        /// Whether some numbers of a field of the state are beyond its bound.
+        pub fn beyond_bounds<T: Scalar>(field: &str, values: &[T]) -> bool {
+            $($(if field == stringify!($name) {
+                return first_beyond(values, 0, Bound::$bound).is_some();
+            })*)*
+            false
+        }
+
+        /// Shows every number of a state but its time to `visit`, of the groups that are wanted: field, its bound, index of the first
+        /// number in the field, numbers.
+        #[inline(always)]
+        fn each_input<T: Real>(
+            s: &State<T>,
+            wanted: impl Fn(&'static str) -> bool,
+            mut visit: impl FnMut(&'static str, Bound, usize, &[T]),
+        ) {
+            $(if wanted(stringify!($group)) {
+                $(kind::$kind::numbers::<T>(
+                    &s.$name,
+                    #[inline(always)]
+                    |start, numbers| visit(stringify!($name), Bound::$bound, start, numbers),
+                );)*
+            })*
+        }
+    };
+}
+crate::state_fields!(declare_inputs);
+
+/// Shows to `visit` what a step must compute within bounds.
+#[inline(always)]
+fn each_computed<T: Real>(ws: &Workspace<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
+    visit("qacc", Bound::Near, &ws.qacc);
+    visit("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
+}
+
+/// Shows to `visit` what a step must leave within bounds in the state.
+#[inline(always)]
+fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
+    visit("qvel", Bound::Near, &state.qvel);
+    visit("qpos", Bound::Near, &state.qpos);
+    visit("act", Bound::Finite, &state.act);
+}
+
+/// The lanes in which all numbers are within a bound.
+#[inline(always)]
+fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
+    let most = bound.of();
+    let mut mask = T::Mask::splat(true);
+    for x in values {
+        mask &= x.abs().le(most);
+    }
+    mask
+}
+
+/// The group of fields that are mostly zero.
+const OCCASIONAL: &str = "occasional";
+
+/// Whether an occasional input is anything but zero.
+pub fn has_occasional<S: Scalar>(s: &State<S>) -> bool {
+    let mut bits = 0;
+    each_input(
+        s,
+        |group| group == OCCASIONAL,
+        #[inline(always)]
+        |_, _, _, numbers| {
+            for x in numbers {
+                bits |= x.to_f64().to_bits();
+            }
+        },
+    );
+    bits != 0
+}
+
+/// Whether all occasional inputs are as `wanted`, which is shown some numbers at a time.
+#[inline(always)]
+pub(crate) fn are_occasional<T: Real>(s: &State<T>, wanted: impl Fn(&[T]) -> bool) -> bool {
+    let mut all = true;
+    each_input(
+        s,
+        |group| group == OCCASIONAL,
+        #[inline(always)]
+        |_, _, _, numbers| all &= wanted(numbers),
+    );
+    all
+}
+
+/// The lanes whose state a step can start from. Where `occasional` is false, all [occasional inputs](has_occasional) are zero.
+#[kernel]
+pub fn good_inputs<T: Real>(s: &State<T>, occasional: bool) -> T::Mask {
+    let mut good = T::Mask::splat(true);
+    for lane in 0..T::LANES {
+        good.set_lane(lane, s.time.lane(lane).is_finite());
+    }
+    each_input(
+        s,
+        |group| occasional || group != OCCASIONAL,
+        #[inline(always)]
+        |_, bound, _, values| good &= within(values, bound),
+    );
+    good
+}
+
+/// What is wrong with the state of a lane that is not good.
+pub fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> Fault {
+    let time = s.time.lane(lane);
+    let mut found = (!time.is_finite()).then_some(("time", 0, time));
+    let every_group = |_| true;
+    each_input(s, every_group, |field, bound, start, values| {
+        if found.is_none()
+            && let Some((i, value)) = first_beyond(values, lane, bound)
+        {
+            found = Some((field, start + i, value));
+        }
+    });
+    let (field, index, value) = found.unwrap_or(("time", 0, time));
+    if value.is_finite() {
+        let place = joint_of(model, field, index);
+        return Fault::Diverged {
+            time,
+            field,
+            index,
+            value,
+            place,
+        };
+    }
+    Fault::NotFinite {
+        field,
+        index,
+        value,
+    }
+}
+
+/// The lanes in which a step or forward went well: accelerations, constraint forces and state within bounds.
+#[inline(always)]
+pub fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::Mask {
+    well_computed(ws) & well_moved(state)
+}
+
+/// The lanes in which accelerations and constraint forces are within bounds.
+#[kernel]
+pub fn well_computed<T: Real>(ws: &Workspace<T>) -> T::Mask {
+    let mut good = !ws.singular & !ws.solver.stats().failed() & ws.collision.excess.le(T::ZERO);
+    each_computed(
+        ws,
+        #[inline(always)]
+        |_, bound, values| good &= within(values, bound),
+    );
+    good
+}
+
+/// The lanes in which the state is within bounds.
+#[kernel]
+pub fn well_moved<T: Real>(state: &State<T>) -> T::Mask {
+    let mut good = T::Mask::splat(true);
+    each_moved(
+        state,
+        #[inline(always)]
+        |_, bound, values| good &= within(values, bound),
+    );
+    good
+}
+
+/// What is wrong with what a step from `time` produced in a lane that is not good. The state can be in lanes, or the first of them.
+pub fn result_fault<S: Real, T: Real>(
+    model: &Model,
+    time: f64,
+    state: &State<S>,
+    ws: &Workspace<T>,
+    lane: usize,
+) -> Fault {
+    if ws.singular.lane(lane) {
+        let place = massless(model, ws, lane);
+        return Fault::Singular { time, place };
+    }
+    let excess = ws.collision.excess.lane(lane).to_f64();
+    if excess > 0.0 || ws.solver.stats().status(lane) == Status::TooLarge {
+        let (what, limit) = Excess::from_code(excess).describe(&model.budget);
+        return Fault::OverBudget { time, what, limit };
+    }
+    let mut found = None;
+    let mut note = |field, first: Option<(usize, f64)>| {
+        found = found.or(first.map(|(index, value)| (field, index, value)));
+    };
+    each_computed(ws, |field, bound, values| {
+        note(field, first_beyond(values, lane, bound));
+    });
+    each_moved(state, |field, bound, values| {
+        note(field, first_beyond(values, lane, bound));
+    });
+    // Where every number is within bounds, the solver met one that was not.
+    let (field, index, value) = found.unwrap_or(("gap", 0, f64::NAN));
+    Fault::Diverged {
+        time,
+        field,
+        index,
+        value,
+        place: joint_of(model, field, index),
+    }
+}
+
+/// A contact that a user hands in.
+pub fn check_contact<T: Scalar>(model: &Model, contact: &Contact<T>) -> Result<(), &'static str> {
+    if contact.geoms.iter().any(|&g| g >= model.geoms.len()) {
+        return Err("it names a geom that the model does not have");
+    }
+    if contact.geoms[0] == contact.geoms[1] {
+        return Err("both of its geoms are the same");
+    }
+    if !matches!(contact.dim, 1 | 3 | 4 | 6) {
+        return Err("its dimension is not 1, 3, 4 or 6");
+    }
+    if contact.dim > 1 && !contact.friction.iter().all(|&mu| mu > T::ZERO) {
+        return Err("a friction coefficient is not positive");
+    }
+    let finite = [contact.dist, contact.includemargin, contact.adhesion]
+        .into_iter()
+        .chain(contact.pos.to_array())
+        .chain(contact.frame.rows.into_iter().flat_map(|r| r.to_array()))
+        .chain(contact.friction)
+        .chain(contact.solref)
+        .chain(contact.solreffriction)
+        .chain(contact.solimp)
+        .chain(contact.surfacevel)
+        .all(|x| x.is_finite());
+    if !finite {
+        return Err("it holds a number that is not finite");
+    }
+    check_frame(&contact.frame)
+}
+
+/// By how much the products of a given frame's axes may differ from those of unit vectors at right angles: enough for frames
+/// that were computed in single precision or printed with six digits.
+const FRAME_ERROR: f64 = 1e-5;
+
+/// Three unit vectors at right angles to each other, right-handed.
+fn check_frame<T: Scalar>(frame: &Mat3<T>) -> Result<(), &'static str> {
+    let [normal, first, second] = frame.rows;
+    let near =
+        |product: T, expected: f64| (product - T::new(expected)).abs() <= T::new(FRAME_ERROR);
+    let units = frame.rows.iter().all(|axis| near(axis.norm_squared(), 1.0));
+    let across = near(normal.dot(first), 0.0)
+        && near(normal.dot(second), 0.0)
+        && near(first.dot(second), 0.0);
+    if !(units && across) {
+        return Err("the axes of its frame are not orthonormal");
+    }
+    if normal.cross(first).dot(second) < T::ZERO {
+        return Err("the axes of its frame are not right-handed");
+    }
+    Ok(())
+}

@@ -1,0 +1,114 @@
+//! Constraints that are added at run time: connects and welds between any two bodies, such as what a suction gripper holds.
+//!
+//! The model says how many slots for them a state has. What a slot holds are fields of the state, so lanes
+//! may tie different bodies in the same slot. A slot then becomes a block for each pair of bodies that any lane ties, active in the
+//! lanes that tie this pair, as contacts of different geoms become different blocks: in a lane, at most one block of a slot acts.
+//! All are as soft as MuJoCo's equalities are by default.
+
+use super::assembly::{Assembly, ConstraintSource};
+use super::context::ConstraintContext;
+use super::held::{Held, HeldFrames};
+use super::softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use super::{connect, weld};
+use crate::model::Model;
+use crate::state::State;
+use clench_math::{Mask, Real, Scalar, kernel};
+
+/// `dynamic_kind` of a connect.
+pub const CONNECT: f64 = 1.0;
+/// `dynamic_kind` of a weld.
+pub const WELD: f64 = 2.0;
+
+/// What a slot holds in some lanes.
+pub(crate) struct Tie<T: Real> {
+    pub bodies: [usize; 2],
+    /// Whether it is a weld, else a connect.
+    pub weld: bool,
+    pub lanes: T::Mask,
+}
+
+/// Shows what a slot ties, each pair of bodies once, with the lanes that tie it.
+#[inline(always)]
+pub(crate) fn each_tie<T: Real>(
+    model: &Model,
+    state: &State<T>,
+    slot: usize,
+    mut show: impl FnMut(Tie<T>),
+) {
+    let kinds = state.dynamic_kind[slot];
+    if !kinds.gt(T::ZERO).any() {
+        return;
+    }
+    let (body1, body2) = (state.dynamic_body1[slot], state.dynamic_body2[slot]);
+    let mut shown = T::Mask::splat(false);
+    for lane in 0..T::LANES {
+        if shown.lane(lane) {
+            continue;
+        }
+        let Some((weld, bodies)) = tied(model, state, slot, lane) else {
+            continue;
+        };
+        let same = |numbers: T| numbers.eq(T::splat(numbers.lane(lane)));
+        let lanes = same(kinds) & same(body1) & same(body2);
+        shown |= lanes;
+        show(Tie {
+            bodies,
+            weld,
+            lanes,
+        });
+    }
+}
+
+/// Whether a slot holds a weld in a lane, and between which bodies; none where it holds nothing, or names no two bodies of the model.
+pub fn tied<T: Real>(
+    model: &Model,
+    state: &State<T>,
+    slot: usize,
+    lane: usize,
+) -> Option<(bool, [usize; 2])> {
+    let number = |x: T| x.lane(lane).to_f64();
+    let kind = number(state.dynamic_kind[slot]);
+    if kind != CONNECT && kind != WELD {
+        return None;
+    }
+    let body = |x: T| (0..model.nbody()).find(|&body| number(x) == body as f64);
+    let bodies = [
+        body(state.dynamic_body1[slot])?,
+        body(state.dynamic_body2[slot])?,
+    ];
+    (bodies[0] != bodies[1]).then_some((kind == WELD, bodies))
+}
+
+/// The reference dynamics and impedance of all of them.
+pub fn softness<T: Real>() -> ([T; 2], [T; 5]) {
+    (DEFAULT_SOLREF.map(T::new), DEFAULT_SOLIMP.map(T::new))
+}
+
+/// Appends what the slots hold, in their order.
+#[kernel]
+pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
+    let (solref, solimp) = softness();
+    for slot in 0..context.state.dynamic_kind.len() {
+        each_tie(context.model, context.state, slot, |tie| {
+            let mut active = tie.lanes;
+            if context.settings.flags.sleep {
+                active &= context.sleep.is_either_awake(tie.bodies);
+            }
+            if !active.any() {
+                return;
+            }
+            let (bodies, weld) = (tie.bodies, tie.weld);
+            let held = Held {
+                frames: HeldFrames::of_slot(context.state, slot, bodies),
+                source: ConstraintSource::Dynamic { slot, bodies, weld },
+                active,
+                solref,
+                solimp,
+            };
+            match weld {
+                true => weld::push(context, out, &held),
+                false => connect::push(context, out, &held),
+            }
+        });
+    }
+}

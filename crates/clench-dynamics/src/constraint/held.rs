@@ -1,0 +1,97 @@
+//! What connects and welds hold: a frame on each of two bodies, whether they come from the file or were added at run time.
+
+use super::assembly::{BlockRecord, ConstraintSource};
+use super::context::ConstraintContext;
+use super::softness::Softness;
+use crate::model::Params;
+use crate::stages::Positions;
+use crate::state::State;
+use clench_math::{Quat, Real, Vec3};
+
+/// Two frames, one on each of two bodies.
+pub struct HeldFrames<T> {
+    /// The bodies.
+    pub bodies: [usize; 2],
+    /// The origin of each in its body's frame.
+    pub anchors: [Vec3<T>; 2],
+    /// How each is turned in its body's frame; connects do not ask.
+    pub quats: [Quat<T>; 2],
+    /// A length that scales rotations of a weld.
+    pub torquescale: T,
+}
+
+impl<T: Real> HeldFrames<T> {
+    /// The frames that an equality of the model holds.
+    #[inline(always)]
+    pub fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
+        HeldFrames {
+            bodies,
+            anchors: [params.eq_anchor1[equality], params.eq_anchor2[equality]],
+            quats: [params.eq_quat1[equality], params.eq_quat2[equality]],
+            torquescale: params.eq_torquescale[equality],
+        }
+    }
+
+    /// The frames that a constraint holds which was added at run time.
+    #[inline(always)]
+    pub fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
+        HeldFrames {
+            bodies,
+            anchors: [state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]],
+            quats: [state.dynamic_quat[slot], Quat::IDENTITY],
+            torquescale: T::ONE,
+        }
+    }
+
+    /// The origins in world coordinates.
+    #[inline(always)]
+    pub fn points(&self, pos: &Positions<T>) -> [Vec3<T>; 2] {
+        let [body1, body2] = self.bodies;
+        [
+            pos.xpos[body1] + pos.xmat[body1] * self.anchors[0],
+            pos.xpos[body2] + pos.xmat[body2] * self.anchors[1],
+        ]
+    }
+}
+
+/// Frames that are held together, how softly, and in which lanes.
+pub(super) struct Held<T: Real> {
+    pub frames: HeldFrames<T>,
+    pub source: ConstraintSource,
+    pub active: T::Mask,
+    pub solref: [T; 2],
+    pub solimp: [T; 5],
+}
+
+impl<T: Real> Held<T> {
+    /// What an equality of the model holds.
+    #[inline(always)]
+    pub(super) fn by_equality(
+        context: &ConstraintContext<T>,
+        equality: usize,
+        bodies: [usize; 2],
+    ) -> Self {
+        Held {
+            frames: HeldFrames::of_equality(context.params, equality, bodies),
+            source: ConstraintSource::Equality(equality),
+            active: context.active_equality(equality),
+            solref: context.params.eq_solref[equality],
+            solimp: context.params.eq_solimp[equality],
+        }
+    }
+
+    /// How soft it is at a violation of this size, and the record of its block.
+    #[inline(always)]
+    pub(super) fn soften(
+        &self,
+        context: &ConstraintContext<T>,
+        violation: T,
+    ) -> (Softness<T>, BlockRecord<T>) {
+        context.soften(
+            self.source,
+            self.active,
+            (self.solref, self.solimp),
+            violation,
+        )
+    }
+}

@@ -1,0 +1,189 @@
+//! The constraint stage: every active constraint becomes a block of the convex problem, which is solved once.
+//!
+//! One file a kind of constraint, each with its derivation; `softness` turns their parameters into R and aref. Blocks
+//! stand in MuJoCo's order: equalities, dry friction, limits, contacts. What was added at run time comes after the equalities.
+
+mod active;
+pub(crate) mod assembly;
+mod connect;
+mod contact;
+mod context;
+mod coordinate;
+pub mod dynamic;
+mod exact;
+mod friction;
+mod held;
+mod implicit;
+mod joint_equality;
+mod limit;
+mod row;
+pub mod softness;
+mod weld;
+
+pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
+use context::ConstraintContext;
+pub use held::HeldFrames;
+pub use joint_equality::equality_slope;
+pub use softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF, Softness, impedance};
+pub use weld::weld_torque;
+
+use crate::contact::Contact;
+use crate::dynamics::discrete::{append_couplings, couple_smooth, spin_freely, subtract_couplings};
+use crate::model::{EqualityTarget, Model, Params};
+use crate::profile::Stage;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use assembly::Assembly;
+use clench_math::{Mask, Real, kernel};
+use coordinate::Coordinate;
+use exact::ExactDiagonal;
+use held::Held;
+use implicit::ImplicitRows;
+
+/// Turns the constraints of a configuration into blocks, solves the problem, and leaves the acceleration in `ws.qacc`
+/// and the constraint forces along dofs in `ws.qfrc_constraint`.
+///
+/// Reads poses and velocities of the workspace, its contacts, and the problem's factored mass and unconstrained
+/// acceleration.
+pub fn constraint_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let in_metric = ws.metric.acts();
+    if in_metric {
+        couple_smooth(model, &settings.solver, ws);
+    }
+    assemble(model, params, settings, state, ws);
+    if in_metric {
+        append_couplings(model, &settings.solver, ws);
+    }
+    ws.clock.lap(Stage::Assembly as usize);
+    let warmstart = Some(&state.qacc_warmstart[..]);
+    (ws.solver.solve(&ws.problem, &settings.solver, warmstart))
+        .expect("the arrays of a state and a workspace have the model's lengths");
+    ws.qacc.copy_from_slice(ws.solver.qacc());
+    ws.qfrc_constraint
+        .copy_from_slice(ws.solver.qfrc_constraint());
+    if in_metric {
+        let (problem, qfrc) = (&ws.problem, &mut ws.qfrc_constraint);
+        subtract_couplings(problem, &ws.record, ws.solver.force(), qfrc);
+        spin_freely(model, params, &state.qvel, ws);
+    }
+    ws.clock.lap(Stage::Solve as usize);
+}
+
+/// Replaces the problem's blocks by those of the configuration.
+#[kernel]
+pub fn assemble<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.problem.clear_constraints();
+    ws.record.clear();
+    if !settings.flags.constraint {
+        return;
+    }
+    let context = ConstraintContext {
+        model,
+        params,
+        settings,
+        state,
+        position: &ws.position,
+        velocity: &ws.velocity,
+        sleep: &ws.sleep,
+        min_timeconst: min_timeconst(params, settings, ws.metric.acts()),
+        impratio: T::new(settings.impratio),
+        metric: ws.metric.acts().then_some(&ws.metric),
+    };
+    // Rows are appended to the problem while the factor of its mass is read.
+    let factor = std::mem::take(&mut ws.problem.mass_factor);
+    let exact = settings.flags.diagexact.then(|| ExactDiagonal {
+        tree: &model.tree,
+        factor: ws.metric.backbone_factor().unwrap_or(&factor),
+        impratio: context.impratio,
+        scratch: &mut ws.integration.qacc,
+    });
+    let mut out = Assembly {
+        problem: &mut ws.problem,
+        record: &mut ws.record,
+        qvel: &state.qvel,
+        dof_invweight0: &params.dof_invweight0,
+        exact,
+        implicit: context.metric.map(|metric| ImplicitRows {
+            tree: &model.tree,
+            metric,
+            timestep: params.timestep,
+            impratio: context.impratio,
+        }),
+    };
+    if settings.flags.equality {
+        push_equalities(&context, &mut out);
+        dynamic::push_all(&context, &mut out);
+    }
+    if settings.flags.frictionloss {
+        friction::push_all(&context, &mut out);
+    }
+    if settings.enable_joint_limit {
+        limit::push_joints(&context, &mut out);
+    }
+    if settings.flags.limit {
+        limit::push_tendons(&context, &mut out);
+    }
+    if settings.flags.contact {
+        push_contacts(&context, &mut out, &mut ws.contacts);
+    }
+    ws.problem.mass_factor = factor;
+}
+
+#[inline(always)]
+fn min_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings, in_metric: bool) -> T {
+    let floor = T::new(settings.constraint_timeconst);
+    // Steps that take constraints at their end are stable with any.
+    if settings.flags.refsafe && !in_metric {
+        floor.max(params.timestep * T::new(2.0))
+    } else {
+        floor
+    }
+}
+
+#[kernel]
+fn push_equalities<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
+    for (i, equality) in context.model.equalities.iter().enumerate() {
+        if !context.active_equality(i).any() {
+            continue;
+        }
+        match equality.target {
+            EqualityTarget::Connect { body1, body2 } => {
+                connect::push(context, out, &Held::by_equality(context, i, [body1, body2]));
+            }
+            EqualityTarget::Weld { body1, body2 } => {
+                weld::push(context, out, &Held::by_equality(context, i, [body1, body2]));
+            }
+            EqualityTarget::Joint { joint1, joint2 } => {
+                let leader = joint2.map(Coordinate::Joint);
+                joint_equality::push(context, out, i, Coordinate::Joint(joint1), leader);
+            }
+            EqualityTarget::Tendon { tendon1, tendon2 } => {
+                let leader = tendon2.map(Coordinate::Tendon);
+                joint_equality::push(context, out, i, Coordinate::Tendon(tendon1), leader);
+            }
+        }
+    }
+}
+
+fn push_contacts<T: Real>(
+    context: &ConstraintContext<T>,
+    out: &mut Assembly<T>,
+    contacts: &mut [Contact<T>],
+) {
+    for (i, contact) in contacts.iter_mut().enumerate() {
+        contact::push(context, out, i, contact);
+    }
+}

@@ -1,0 +1,139 @@
+//! What the detection of contacts keeps between steps, and how much it may find.
+
+use super::Candidate;
+use super::body_pairs::BodyPairs;
+use super::bounding_sphere::BoundingSphere;
+use super::dynamic_broad_phase::DynamicBroadPhase;
+use super::pair_clock::PairClock;
+use super::pair_finder::PairFinder;
+use super::select::listed_candidates;
+use super::separating_axes::SeparatingAxes;
+use crate::Budget;
+use crate::model::Model;
+use crate::options::MaxContacts;
+use clench_math::{Mask, Real};
+
+/// What a step can find more of than the model's budget allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Excess {
+    /// Pairs of geoms whose bounds meet.
+    Pairs = 1,
+    /// Contacts.
+    Contacts,
+    /// Numbers in the Jacobian of the contacts.
+    Jacobian,
+    /// Numbers in the factor of an island's Hessian, or in the matrix of `noslip`.
+    Factor,
+}
+
+impl Excess {
+    /// The excess of a code; `Factor` where it is none of the others.
+    pub fn from_code(code: f64) -> Excess {
+        let others = [Excess::Pairs, Excess::Contacts, Excess::Jacobian];
+        let found = others.into_iter().find(|&one| f64::from(one as u8) == code);
+        found.unwrap_or(Excess::Factor)
+    }
+
+    /// What there is too much of, and how much there may be.
+    pub fn describe(self, budget: &Budget) -> (&'static str, u64) {
+        match self {
+            Excess::Pairs => ("pairs of geoms whose bounds meet", budget.pairs()),
+            Excess::Contacts => ("contacts", budget.contacts),
+            Excess::Jacobian => ("numbers in the Jacobian of the contacts", budget.matrix),
+            Excess::Factor => (
+                "numbers in the factor of the Hessian of an island",
+                budget.matrix,
+            ),
+        }
+    }
+}
+
+/// What detection keeps between steps.
+#[derive(Clone, Debug)]
+pub struct Collision<T: Real> {
+    /// The workspace's contacts were given by the user: detection leaves them alone.
+    pub given: bool,
+    /// Lanes in which the last step found more contacts than the options allow.
+    pub overflow: T::Mask,
+    /// What the last step found more of than the model's budget allows, as the code of an [`Excess`], or 0. Lanes with an excess have
+    /// no contacts.
+    pub excess: T,
+    /// Pairs to look at, in canonical order.
+    pub(super) candidates: Vec<Candidate>,
+    /// The same by the bodies of their geoms, where they are listed once.
+    pub(super) body_pairs: BodyPairs<T>,
+    /// Those of them that may touch now.
+    pub(super) near: Vec<u32>,
+    /// Finds the candidates of a large model anew each step; those of a small one never change.
+    pub(super) broad_phase: Option<Box<DynamicBroadPhase<T>>>,
+    pub(super) spheres: Vec<BoundingSphere<T>>,
+    pub(super) axes: SeparatingAxes<T>,
+    /// Times the narrow phase by kinds of pair.
+    pub(crate) clock: PairClock,
+    /// Look at the pairs that are near, several where threads share them.
+    pub(super) finders: Vec<PairFinder<T>>,
+    /// How many contacts each lane has.
+    pub(super) contact_count: T,
+    /// How many numbers the Jacobian of the contacts has.
+    pub(super) jacobian_size: T,
+}
+
+impl<T: Real> Collision<T> {
+    /// Prepares detection for a model.
+    pub fn new(model: &Model) -> Self {
+        let listed = listed_candidates(model);
+        let broad_phase = listed
+            .is_none()
+            .then(|| Box::new(DynamicBroadPhase::new(model)));
+        let candidates = listed.unwrap_or_default();
+        Collision {
+            given: false,
+            overflow: T::Mask::splat(false),
+            excess: T::ZERO,
+            body_pairs: BodyPairs::new(model, &candidates),
+            candidates,
+            broad_phase,
+            near: Vec::new(),
+            spheres: Vec::new(),
+            axes: SeparatingAxes::default(),
+            clock: PairClock::default(),
+            finders: Vec::new(),
+            contact_count: T::ZERO,
+            jacobian_size: T::ZERO,
+        }
+    }
+
+    /// Counts a new contact, whose Jacobian has `numbers`, in the lanes where it is active. Returns those that have room for it.
+    #[inline(always)]
+    pub(super) fn count_within_limit(
+        &mut self,
+        active: T::Mask,
+        most: MaxContacts,
+        numbers: usize,
+        budget: &Budget,
+    ) -> T::Mask {
+        let full = match most {
+            MaxContacts::Limit(most) => self.contact_count.ge(T::new(most as f64)),
+            MaxContacts::Auto => T::Mask::splat(false),
+        };
+        self.overflow |= active & full;
+        let active = active & !full & self.excess.le(T::ZERO);
+        self.contact_count += T::select(active, T::ONE, T::ZERO);
+        self.jacobian_size += T::select(active, T::new(numbers as f64), T::ZERO);
+        self.record_excess(
+            self.contact_count.gt(T::new(budget.contacts as f64)),
+            Excess::Contacts,
+        );
+        self.record_excess(
+            self.jacobian_size.gt(T::new(budget.matrix as f64)),
+            Excess::Jacobian,
+        );
+        active
+    }
+
+    /// Records in some lanes what they have too much of.
+    #[inline(always)]
+    pub(super) fn record_excess(&mut self, lanes: T::Mask, excess: Excess) {
+        self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);
+    }
+}

@@ -1,0 +1,89 @@
+//! From geoms to contacts: which pairs may touch, where they do, and with what parameters. The constraint that a
+//! contact becomes is `constraint::contact`.
+
+mod body_pairs;
+mod bounding_sphere;
+pub(crate) mod collision;
+mod detect;
+mod dynamic_broad_phase;
+mod mix;
+pub(crate) mod pair_clock;
+mod pair_finder;
+mod placed_shape;
+mod select;
+mod separating_axes;
+mod surface;
+
+pub use collision::{Collision, Excess};
+pub use detect::detect;
+pub use mix::mixed_params;
+pub use mix::{ContactParams, contact_params, contact_range};
+pub use placed_shape::shape;
+pub use select::check_supported;
+pub use select::{Candidate, UnsupportedPair, candidates};
+
+use clench_math::{Mask, Mat3, Real, Vec3};
+
+/// A contact between two geoms, one for each lane where it is active.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact<T: Real> {
+    /// The geoms; the normal points from the first to the second.
+    pub geoms: [usize; 2],
+    /// Lanes that have this contact.
+    pub active: T::Mask,
+    /// Dimensions: 1, 3, 4 or 6.
+    pub dim: usize,
+    /// Signed distance, negative in penetration, m.
+    pub dist: T,
+    /// Midpoint between the surfaces, m.
+    pub pos: Vec3<T>,
+    /// Rows: normal, first tangent, second tangent.
+    pub frame: Mat3<T>,
+    /// The constraint exists where `dist < includemargin` (the margins of both geoms), m.
+    pub includemargin: T,
+    /// Two slides, spin, two rolls.
+    pub friction: [T; 5],
+    /// Reference dynamics.
+    pub solref: [T; 2],
+    /// Reference dynamics of the friction dimensions; both zero: as `solref`.
+    pub solreffriction: [T; 2],
+    /// Impedance.
+    pub solimp: [T; 5],
+    /// Force with which it holds on, N: the bodies are pulled together by it, so that the constraint can pull as much. Where it is not
+    /// zero, the contact acts, without friction, within the gap too.
+    pub adhesion: T,
+    /// Velocity of the second surface less that of the first along the tangents, m/s, and about the normal, rad/s.
+    pub surfacevel: [T; 3],
+    /// Its block in the problem, if it became a constraint.
+    pub block: Option<usize>,
+}
+
+impl<T: Real> Contact<T> {
+    /// The contact of one environment in every lane.
+    pub fn splat(contact: &Contact<T::Scalar>) -> Self {
+        let [x, y, z] = contact.frame.rows.map(Vec3::splat);
+        Contact {
+            geoms: contact.geoms,
+            active: T::Mask::splat(contact.active),
+            dim: contact.dim,
+            dist: T::splat(contact.dist),
+            pos: Vec3::splat(contact.pos),
+            frame: Mat3::from_rows(x, y, z),
+            includemargin: T::splat(contact.includemargin),
+            friction: contact.friction.map(T::splat),
+            solref: contact.solref.map(T::splat),
+            solreffriction: contact.solreffriction.map(T::splat),
+            solimp: contact.solimp.map(T::splat),
+            adhesion: T::splat(contact.adhesion),
+            surfacevel: contact.surfacevel.map(T::splat),
+            block: contact.block,
+        }
+    }
+
+    /// Lanes in which it is a constraint, if any dof is between its bodies.
+    #[inline(always)]
+    pub fn acts(&self) -> T::Mask {
+        let adheres = !self.adhesion.eq(T::ZERO);
+        self.active & (self.dist.lt(self.includemargin) | adheres)
+    }
+}

@@ -1,0 +1,215 @@
+//! Which geom pairs may collide, decided once for a model by MuJoCo 4.0's rules.
+//!
+//! A pair of bodies is out when both are welded together, when neither can move, when one is the parent of the other
+//! (after welding; the world does not count as a parent, and the flag `filterparent` can be off), or when it is
+//! excluded. Of the bodies left, two geoms collide when the type bits of one meet the affinity bits of the other.
+//! Explicit pairs always collide, once, with their own parameters.
+//!
+//! Candidates stand in the order in which MuJoCo lists contacts: by body pair, explicit pairs first, then by geoms.
+
+use crate::Model;
+use crate::model::Geom;
+use clench_collide::{ShapeKind, supported};
+
+/// Two geoms that may collide, the one of smaller shape kind first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Candidate {
+    /// The geoms.
+    pub geoms: [u32; 2],
+    /// Their shapes.
+    pub kinds: [ShapeKind; 2],
+    /// The explicit pair, if it is one.
+    pub pair: Option<u32>,
+}
+
+/// Two geoms that may collide but whose shapes cannot.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}geoms {first} and {second} may collide, but {kinds} is not supported")]
+pub struct UnsupportedPair {
+    place: String,
+    first: String,
+    second: String,
+    kinds: String,
+}
+
+/// With more pairs than these the broad phase looks for them in each step: a list grows with the square of the geoms.
+const MAX_LISTED_PAIRS: usize = 1 << 13;
+/// So it does with more geoms than these that stand still: a tree over them finds the few that are near.
+const MAX_LISTED_STATICS: usize = 128;
+/// So it does, without counting the pairs, with more geoms than these.
+const MAX_COUNTED_GEOMS: usize = 1 << 10;
+
+/// All candidates of a model in which a list of them, compared in each step, is the fastest.
+pub(super) fn listed_candidates(model: &Model) -> Option<Vec<Candidate>> {
+    let stands = |geom: &Geom| model.bodies[model.bodies[geom.body].weld].dofs.is_empty();
+    let roles = model.geoms.iter().zip(meet_any(model));
+    let (mut all, mut statics) = (0, 0);
+    for (geom, _) in roles.filter(|&(_, meets)| meets) {
+        all += 1;
+        statics += usize::from(stands(geom));
+    }
+    let few = all <= MAX_COUNTED_GEOMS && statics <= MAX_LISTED_STATICS;
+    few.then(|| candidates_up_to(model, MAX_LISTED_PAIRS))?
+}
+
+/// All candidates of a model, in canonical order.
+pub fn candidates(model: &Model) -> Vec<Candidate> {
+    candidates_up_to(model, usize::MAX).unwrap_or_default()
+}
+
+/// All candidates, in canonical order; nothing where they are more than `most`.
+fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
+    let meets = meet_any(model);
+    let collides = |&body: &usize| model.bodies[body].geoms.clone().any(|g| meets[g]);
+    let bodies = Vec::from_iter((0..model.nbody()).filter(collides));
+    let explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
+    let mut found = Vec::from_iter(explicit);
+    for (index, &body1) in bodies.iter().enumerate() {
+        for &body2 in &bodies[index + 1..] {
+            if !bodies_may_collide(model, body1, body2) {
+                continue;
+            }
+            for g1 in model.bodies[body1].geoms.clone() {
+                for g2 in model.bodies[body2].geoms.clone() {
+                    if masks_meet(model, g1, g2) && !is_explicit(model, g1, g2) {
+                        found.push(Candidate::new(model, [g1, g2], None));
+                    }
+                }
+            }
+            if found.len() > most {
+                return None;
+            }
+        }
+    }
+    found.sort_by_key(|c| c.order(model));
+    Some(found)
+}
+
+/// Whether each geom's type and affinity bits meet those of any geom, its own among them. A geom that is only drawn meets none.
+pub(super) fn meet_any(model: &Model) -> Vec<bool> {
+    let (mut contypes, mut conaffinities) = (0, 0);
+    for geom in &model.geoms {
+        contypes |= geom.contype;
+        conaffinities |= geom.conaffinity;
+    }
+    let meets = |geom: &Geom| geom.contype & conaffinities != 0 || geom.conaffinity & contypes != 0;
+    model.geoms.iter().map(meets).collect()
+}
+
+/// The candidate of explicit pair `pair`.
+pub(super) fn explicit(model: &Model, pair: u32) -> Candidate {
+    Candidate::new(model, model.pairs[pair as usize].geoms, Some(pair))
+}
+
+/// Whether two geoms that are no explicit pair may collide.
+pub(super) fn geoms_may_collide(model: &Model, g1: usize, g2: usize) -> bool {
+    masks_meet(model, g1, g2)
+        && bodies_may_collide(model, model.geoms[g1].body, model.geoms[g2].body)
+        && !is_explicit(model, g1, g2)
+}
+
+/// Refuses a model in which shapes may meet that the narrow phase does not know.
+///
+/// # Errors
+/// The first such pair.
+pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
+    let unsupported = |c: &Candidate| !supported(c.kinds[0], c.kinds[1]);
+    let mut explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
+    let found = explicit.find(unsupported);
+    let Some(candidate) = found.or_else(|| find_unsupported(model)) else {
+        return Ok(());
+    };
+    let geoms = candidate.geoms.map(|g| g as usize);
+    let name = |g: usize| match model.geoms[g].name.as_str() {
+        "" => format!("{g}"),
+        name => format!("\"{name}\""),
+    };
+    let [a, b] = geoms.map(|g| &model.geoms[g]);
+    let place = match b.origin.as_ref().or(a.origin.as_ref()) {
+        Some(origin) => format!("{origin}: "),
+        None => String::new(),
+    };
+    Err(UnsupportedPair {
+        place,
+        first: name(geoms[0]),
+        second: name(geoms[1]),
+        kinds: format!("{:?} against {:?}", a.kind, b.kind).to_lowercase(),
+    })
+}
+
+/// Two geoms that may collide, no explicit pair, of kinds that the narrow phase does not know. Those are few, so few geoms are compared.
+fn find_unsupported(model: &Model) -> Option<Candidate> {
+    let mut kinds: Vec<(ShapeKind, Vec<usize>)> = Vec::new();
+    for (g, geom) in model.geoms.iter().enumerate() {
+        match kinds.iter_mut().find(|(kind, _)| *kind == geom.kind) {
+            Some((_, geoms)) => geoms.push(g),
+            None => kinds.push((geom.kind, vec![g])),
+        }
+    }
+    kinds.sort_by_key(|&(kind, _)| kind);
+    for (i, (kind1, geoms1)) in kinds.iter().enumerate() {
+        for (kind2, geoms2) in &kinds[i..] {
+            if supported(*kind1, *kind2) {
+                continue;
+            }
+            for &g1 in geoms1 {
+                let mut others = geoms2.iter().copied();
+                if let Some(g2) = others.find(|&g2| geoms_may_collide(model, g1, g2)) {
+                    return Some(Candidate::new(model, [g1.min(g2), g1.max(g2)], None));
+                }
+            }
+        }
+    }
+    None
+}
+
+impl Candidate {
+    /// A candidate of two geoms in either order; the order is kept between equal kinds.
+    pub(super) fn new(model: &Model, geoms: [usize; 2], pair: Option<u32>) -> Self {
+        let [g1, g2] = geoms;
+        let swap = model.geoms[g1].kind > model.geoms[g2].kind;
+        let geoms = if swap { [g2, g1] } else { [g1, g2] };
+        Candidate {
+            geoms: geoms.map(|g| g as u32),
+            kinds: geoms.map(|g| model.geoms[g].kind),
+            pair,
+        }
+    }
+
+    /// Sorting by this gives the canonical order.
+    pub(super) fn order(&self, model: &Model) -> (usize, usize, u32, [u32; 2]) {
+        let [a, b] = self.geoms.map(|g| model.geoms[g as usize].body);
+        (
+            a.min(b),
+            a.max(b),
+            self.pair.unwrap_or(u32::MAX),
+            self.geoms,
+        )
+    }
+}
+
+fn masks_meet(model: &Model, g1: usize, g2: usize) -> bool {
+    let (a, b) = (&model.geoms[g1], &model.geoms[g2]);
+    a.contype & b.conaffinity != 0 || b.contype & a.conaffinity != 0
+}
+
+fn is_explicit(model: &Model, g1: usize, g2: usize) -> bool {
+    let same = |geoms: [usize; 2]| geoms == [g1, g2] || geoms == [g2, g1];
+    model.pairs.iter().any(|pair| same(pair.geoms))
+}
+
+fn bodies_may_collide(model: &Model, body1: usize, body2: usize) -> bool {
+    let weld = |body: usize| model.bodies[body].weld;
+    let (weld1, weld2) = (weld(body1), weld(body2));
+    let moves = |body: usize| !model.bodies[body].dofs.is_empty();
+    if weld1 == weld2 || !(moves(weld1) || moves(weld2)) {
+        return false;
+    }
+    let parent = |body: usize| weld(model.bodies[body].parent);
+    let related = weld1 == parent(weld2) || weld2 == parent(weld1);
+    if model.flags.filterparent && weld1 != 0 && weld2 != 0 && related {
+        return false;
+    }
+    let key = (body1.min(body2) as u32, body1.max(body2) as u32);
+    !model.excludes.contains(&key)
+}

@@ -1,0 +1,114 @@
+//! Orientation servos: a torque that turns a ball joint, or a site in the frame of another, to a commanded orientation by the shortest
+//! way (MuJoCo manual, XML reference, `actuator/orientation`).
+//!
+//! ```text
+//! τ = kp log(q⁻¹ target) + c − kv ω        kp = gainprm[0],  c = biasprm[0],  −kv = biasprm[2]
+//! ```
+//!
+//! in the frame of what is turned. The servo has three lengths, the rotation vector of q, and three moment arms, each with a force of its
+//! own. Its target is a rotation vector, of three controls or of three activations that integrate them, or a quaternion of four controls.
+
+use super::actuator::{ActuatorInputs, scaling_error};
+use crate::dynamics::activation::next_activation;
+use crate::model::{ControlInput, Model, Params};
+use crate::stages::{Positions, Velocities};
+use clench_math::{Mask, Quat, Real, Vec3, kernel};
+
+/// How many lengths, moment arms and forces a servo has.
+pub const OUTPUTS: usize = 3;
+
+/// The torque of servo `u` before any limit.
+#[kernel]
+pub fn torque<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    act_dot: &[T],
+    u: usize,
+    (pos, vel): (&Positions<T>, &Velocities<T>),
+) -> Vec3<T> {
+    let outputs = model.actuators[u].outputs.clone();
+    let now = Quat::from_rotation_vector(Vec3::from_slice(&pos.actuator_length[outputs.clone()]));
+    let velocity = Vec3::from_slice(&vel.actuator_velocity[outputs]);
+    let error = target(model, params, given, act_dot, u).difference(now);
+    let [constant, _, damping, ..] = params.actuator_biasprm[u];
+    let constant = Vec3::new(constant, constant, constant);
+    error * params.actuator_gainprm[u][0] + constant + velocity * damping
+}
+
+/// The orientation that servo `u` goes for.
+#[inline(always)]
+fn target<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    given: ActuatorInputs<'_, T>,
+    act_dot: &[T],
+    u: usize,
+) -> Quat<T> {
+    let actuator = &model.actuators[u];
+    let controls = &given.ctrl[actuator.controls.clone()];
+    if actuator.inputs[0] == ControlInput::Quaternion {
+        return Quat::from_slice(controls).normalize();
+    }
+    if actuator.acts.is_empty() {
+        return Quat::from_rotation_vector(Vec3::from_slice(controls));
+    }
+    let mut vector = [T::ZERO; OUTPUTS];
+    for (a, part) in actuator.acts.clone().zip(&mut vector) {
+        *part = match actuator.actearly {
+            true => next_activation(model, params, u, a, (given.act[a], act_dot[a]), T::ZERO),
+            false => given.act[a],
+        };
+    }
+    Quat::from_rotation_vector(Vec3::from_array(vector))
+}
+
+/// Holds the norm of a torque within a range from zero, and its direction.
+#[inline(always)]
+pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
+    let norm = Vec3::from_slice(torque).norm();
+    let over = norm.gt(range[1]);
+    let share = T::select(over, range[1] / T::select(over, norm, T::ONE), T::ONE);
+    torque.iter_mut().for_each(|part| *part *= share);
+}
+
+/// ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
+#[inline(always)]
+pub fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
+    let slope = params.actuator_biasprm[u][2];
+    T::select(is_held(model, params, u, forces), T::ZERO, slope)
+}
+
+/// ∂torque/∂angle for small angles from the target, likewise.
+#[kernel]
+pub fn length_slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
+    let slope = -params.actuator_gainprm[u][0];
+    T::select(is_held(model, params, u, forces), T::ZERO, slope)
+}
+
+/// Lanes in which the limit holds the torque.
+#[inline(always)]
+fn is_held<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T::Mask {
+    let actuator = &model.actuators[u];
+    if !actuator.forcelimited {
+        return T::Mask::splat(false);
+    }
+    let norm = Vec3::from_slice(&forces[actuator.outputs.clone()]).norm();
+    // In MuJoCo rounding decides whether a torque that was scaled to its limit is there.
+    norm.ge(params.actuator_forcerange[u][1] * (T::ONE - scaling_error()))
+}
+
+/// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.
+#[inline(always)]
+pub fn shorten<T: Real>(vector: &mut [T]) {
+    let angle = Vec3::from_slice(vector).norm();
+    let over = angle.gt(T::new(std::f64::consts::PI));
+    if !over.any() {
+        return;
+    }
+    let turn = T::new(std::f64::consts::TAU);
+    let angle = T::select(over, angle, T::ONE);
+    let rest = angle - turn * (angle / turn + T::new(0.5)).floor();
+    let share = T::select(over, rest / angle, T::ONE);
+    vector.iter_mut().for_each(|part| *part *= share);
+}

@@ -1,0 +1,116 @@
+//! What controllers are asked for: the controls of an actuator by what they mean, moved no faster than the first may move.
+
+use super::actuator::ActuatorInputs;
+use crate::model::{
+    BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Params, Transmission,
+};
+use clench_math::{Mask, Real, Vec3, kernel};
+
+/// The controls of an actuator with a controller; what it has no control for is zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Setpoints<T> {
+    /// Position.
+    pub position: T,
+    /// Velocity.
+    pub velocity: T,
+    /// Force, or torque, that is added.
+    pub feedforward: T,
+    /// Voltage at the terminals of a motor, beside what its controller puts there.
+    pub voltage: T,
+    /// The first control as it acts: what the activation that limits its rate goes to.
+    pub first: T,
+}
+
+impl<T: Real> Setpoints<T> {
+    /// Of actuator `u`. A first control whose rate is limited acts from where it was, and on a circle goes the shorter way.
+    #[kernel]
+    pub fn new(model: &Model, params: &Params<T>, given: ActuatorInputs<'_, T>, u: usize) -> Self {
+        let actuator = &model.actuators[u];
+        let mut setpoints = Setpoints {
+            position: T::ZERO,
+            velocity: T::ZERO,
+            feedforward: T::ZERO,
+            voltage: T::ZERO,
+            first: T::ZERO,
+        };
+        for (k, input) in actuator.inputs.iter().enumerate() {
+            let mut value = given.ctrl[actuator.controls.start + k];
+            if k == 0 {
+                if let Some(a) = actuator.states.slew {
+                    let rate = match actuator.dynamics {
+                        DynamicsKind::Pid => params.actuator_dynprm[u][1],
+                        _ => params.actuator_dynprm[u][7],
+                    };
+                    let (before, step) = (given.act[a], rate * params.timestep);
+                    value = nearest_setpoint(model, params, u, value, before);
+                    value = value.clamp(before - step, before + step);
+                }
+                setpoints.first = value;
+            }
+            match input {
+                ControlInput::Position => setpoints.position = value,
+                ControlInput::Velocity => setpoints.velocity = value,
+                ControlInput::Feedforward => setpoints.feedforward = value,
+                ControlInput::Voltage => setpoints.voltage = value,
+                // Of orientation servos and plain gains, which have no controller.
+                ControlInput::Command | ControlInput::RotationVector | ControlInput::Quaternion => {
+                }
+            }
+        }
+        setpoints
+    }
+
+    /// The rate of the activation that holds the first control.
+    #[inline(always)]
+    pub(crate) fn slew_rate(&self, params: &Params<T>, before: T) -> T {
+        (self.first - before) / params.timestep
+    }
+}
+
+/// The rate of an integral of an error; where the integral has reached its bound, a positive one, it only goes back.
+#[inline(always)]
+pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
+    let bounded = bound.gt(T::ZERO);
+    let high = bounded & integral.ge(bound);
+    let low = bounded & !high & integral.le(-bound);
+    let from_low = T::select(low, error.max(T::ZERO), error);
+    T::select(high, error.min(T::ZERO), from_low)
+}
+
+/// The setpoint of a servo on a ball joint, or on the rotation of a site in the frame of another, moved by whole turns to the one
+/// nearest to `near`; other inputs pass
+/// unchanged.
+///
+/// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
+#[kernel]
+pub(crate) fn nearest_setpoint<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    input: T,
+    near: T,
+) -> T {
+    let actuator = &model.actuators[u];
+    let gear = &params.actuator_gear[u];
+    let (rotates, axis) = match actuator.transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => {
+            let on_ball = model.joints[j].kind == JointKind::Ball;
+            (T::Mask::splat(on_ball), &gear[..3])
+        }
+        Transmission::SiteInFrame(_) => (Vec3::from_slice(gear).norm().eq(T::ZERO), &gear[3..]),
+        _ => (T::Mask::splat(false), &gear[..3]),
+    };
+    let pid = actuator.gain == GainKind::Pid;
+    let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
+    if !rotates.any() || !(pid || fixed) {
+        return input;
+    }
+    let turn = Vec3::from_slice(axis).norm() * T::new(std::f64::consts::TAU);
+    let pulls_back = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]);
+    let wraps = rotates & (pulls_back | T::Mask::splat(pid)) & turn.gt(T::ZERO);
+    if !wraps.any() {
+        return input;
+    }
+    let turns = (input - near) / T::select(wraps, turn, T::ONE) + T::new(0.5);
+    T::select(wraps, input - turn * turns.floor(), input)
+}

@@ -1,0 +1,92 @@
+//! Springs: how far each is from rest. Force and energy both follow from that.
+
+use crate::dynamics::polynomial::Polynomial;
+use crate::model::{JointKind, Model, Params};
+use crate::state::State;
+use clench_math::{Quat, Real, Vec3};
+
+/// How far a joint is from its spring's rest position.
+pub(crate) enum JointStretch<T> {
+    /// A distance or an angle, on the joint's only dof.
+    Scalar(T),
+    /// A rotation vector in the child's frame.
+    Rotation(Vec3<T>),
+    /// A displacement in the world's frame and a rotation vector in the child's.
+    Pose(Vec3<T>, Vec3<T>),
+}
+
+/// The force law of joint `j`'s spring.
+#[inline(always)]
+pub(crate) fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<T> {
+    Polynomial::new(params.jnt_stiffness[j], params.jnt_stiffnesspoly[j])
+}
+
+/// The stretch of joint `j` in a state; `None` where no lane has a spring there.
+#[inline(always)]
+pub(crate) fn joint_stretch<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    j: usize,
+) -> Option<JointStretch<T>> {
+    let absent = joint_spring(params, j).is_zero();
+    (!absent).then(|| stretch_of_joint(model, params, (&state.qpos, &state.plastic), j))
+}
+
+/// How far joint `j` at positions `qpos` is from where its spring rests, which `plastic` says of a spring that yields.
+#[inline(always)]
+pub(crate) fn stretch_of_joint<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    (qpos, plastic): (&[T], &[T]),
+    j: usize,
+) -> JointStretch<T> {
+    let joint = &model.joints[j];
+    let q = &qpos[joint.qpos..];
+    let rest = match joint.plastic {
+        Some(start) => &plastic[start..],
+        None => &params.qpos_spring[joint.qpos..],
+    };
+    let rotation = |q: &[T], rest: &[T]| {
+        Quat::from_slice(q)
+            .normalize()
+            .difference(Quat::from_slice(rest))
+    };
+    match joint.kind {
+        JointKind::Slide | JointKind::Hinge => JointStretch::Scalar(q[0] - rest[0]),
+        JointKind::Ball => JointStretch::Rotation(rotation(q, rest)),
+        JointKind::Free => JointStretch::Pose(
+            Vec3::from_slice(q) - Vec3::from_slice(rest),
+            rotation(&q[3..], &rest[3..]),
+        ),
+    }
+}
+
+/// The force law of tendon `t`'s spring.
+#[inline(always)]
+pub fn tendon_spring<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
+    Polynomial::new(params.tendon_stiffness[t], params.tendon_stiffnesspoly[t])
+}
+
+/// How far tendon `t` of length `length` is outside the dead band of its spring, which `plastic` says of a spring that yields.
+#[inline(always)]
+pub fn tendon_stretch<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    plastic: &[T],
+    t: usize,
+    length: T,
+) -> T {
+    let band = match model.tendons[t].plastic {
+        Some(start) => [plastic[start], plastic[start + 1]],
+        None => params.tendon_lengthspring[t],
+    };
+    stretch_outside(band, length)
+}
+
+/// How far a length is outside a dead band.
+#[inline(always)]
+pub(crate) fn stretch_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
+    let below = T::select(length.lt(low), length - low, T::ZERO);
+    T::select(length.gt(high), length - high, below)
+}

@@ -1,0 +1,128 @@
+//! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
+
+use crate::dynamics::site_transmission::{
+    relative_pose, relative_turn, slider_crank, turning_arms, wrench_arms,
+};
+use crate::model::{Actuator, Joint, JointKind, Model, Params, Transmission};
+use crate::stages::Positions;
+use clench_math::{Quat, Real, Vec3, kernel};
+
+/// The dofs that a force of an actuator, one of `Model::nout`, acts on, with its moment arm along each.
+#[inline(always)]
+pub fn moment<'a, T: Real>(
+    model: &'a Model,
+    pos: &'a Positions<T>,
+    output: usize,
+) -> impl Iterator<Item = (usize, T)> + Clone + 'a {
+    model.actuator_dofs.row(&pos.actuator_moment, output)
+}
+
+/// `actuator_length` and `actuator_moment`, after the kinematics and the tendons.
+///
+/// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
+/// the child's frame, or for [`Transmission::JointInParent`] in the parent's. What pulls on contacts has no length.
+#[kernel]
+pub fn transmissions<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    qpos: &[T],
+    pos: &mut Positions<T>,
+) {
+    let mut moments = std::mem::take(&mut pos.actuator_moment);
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let gear = &params.actuator_gear[u];
+        let first = actuator.outputs.start;
+        let row = &mut moments[model.actuator_dofs.range(first)];
+        pos.actuator_length[first] = match actuator.transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                let joint = &model.joints[j];
+                let in_parent = matches!(actuator.transmission, Transmission::JointInParent(_));
+                let (q, turn) = (qpos[joint.qpos], pos.jnt_turn[j]);
+                joint_arms(joint, q, turn, gear, in_parent, row)
+            }
+            Transmission::Tendon(t) => {
+                let gradient = &pos.ten_jacobian[model.tendon_dofs.range(t)];
+                for (arm, &derivative) in row.iter_mut().zip(gradient) {
+                    *arm = derivative * gear[0];
+                }
+                pos.ten_length[t] * gear[0]
+            }
+            Transmission::Site(site) => {
+                wrench_arms(model, pos, site, gear, row);
+                T::ZERO
+            }
+            Transmission::SiteInFrame(sites) => relative_pose(model, params, pos, sites, gear, row),
+            Transmission::SliderCrank(sites) => slider_crank(model, params, pos, u, sites, row),
+            // Its moment arms wait for the contacts, see `adhesion`.
+            Transmission::Body(_) => T::ZERO,
+            Transmission::Rotation(_) | Transmission::RotationInFrame(_) => {
+                rotation(model, params, pos, actuator, &mut moments);
+                continue;
+            }
+        };
+    }
+    pos.actuator_moment = moments;
+}
+
+/// Writes the three lengths and moment arms of an orientation: those of its rotation vector, about the axes of what is turned.
+#[inline(always)]
+fn rotation<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &mut Positions<T>,
+    actuator: &Actuator,
+    moments: &mut [T],
+) {
+    let vector = match actuator.transmission {
+        Transmission::Rotation(j) => pos.jnt_turn[j].to_rotation_vector(),
+        Transmission::RotationInFrame(sites) => relative_turn(model, params, pos, sites),
+        _ => return,
+    };
+    vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
+    for (axis, output) in actuator.outputs.clone().enumerate() {
+        let row = &mut moments[model.actuator_dofs.range(output)];
+        match actuator.transmission {
+            Transmission::RotationInFrame(sites) => turning_arms(model, pos, sites, axis, row),
+            _ => row.fill(T::ONE),
+        }
+    }
+}
+
+/// Writes the moment arms on a joint that stands at `q`, or at the rotation `turn`, and returns the length.
+#[inline(always)]
+fn joint_arms<T: Real>(
+    joint: &Joint,
+    q: T,
+    turn: Quat<T>,
+    gear: &[T; 6],
+    in_parent: bool,
+    arms: &mut [T],
+) -> T {
+    match joint.kind {
+        JointKind::Slide | JointKind::Hinge => {
+            arms[0] = gear[0];
+            q * gear[0]
+        }
+        JointKind::Ball => {
+            let axis = to_child(turn, in_parent, gear);
+            axis.write(arms);
+            turn.to_rotation_vector().dot(axis)
+        }
+        JointKind::Free => {
+            Vec3::from_slice(gear).write(arms);
+            to_child(turn, in_parent, &gear[3..]).write(&mut arms[3..]);
+            T::ZERO
+        }
+    }
+}
+
+/// A torque on a joint that stands at the rotation `turn`, along the axes of the child.
+#[inline(always)]
+fn to_child<T: Real>(turn: Quat<T>, in_parent: bool, torque: &[T]) -> Vec3<T> {
+    let torque = Vec3::from_slice(torque);
+    if in_parent {
+        turn.conjugate().rotate(torque)
+    } else {
+        torque
+    }
+}

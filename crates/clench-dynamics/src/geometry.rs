@@ -1,0 +1,129 @@
+//! Geoms where they are, for whoever asks about them: rays and shapes, in lanes. Contacts have their own way, `contact`.
+
+use crate::contact::shape;
+use crate::model::{Model, Params};
+use crate::stages::Positions;
+use clench_collide::{Hit, Mesh, Pose, Ray, Shape, ShapeKind, UnitRay, ray};
+use clench_math::{Mask, Real, Vec3, kernel};
+
+/// The geoms of a configuration.
+#[derive(Clone, Copy)]
+pub struct Geoms<'a, T: Real> {
+    /// The model.
+    pub model: &'a Model,
+    /// Its parameters.
+    pub params: &'a Params<T>,
+    /// Where everything is.
+    pub position: &'a Positions<T>,
+}
+
+impl<'a, T: Real> Geoms<'a, T> {
+    /// Where a geom is.
+    pub fn pose(&self, geom: usize) -> Pose<T> {
+        Pose {
+            position: self.position.geom_xpos[geom],
+            rotation: self.position.geom_xmat[geom],
+        }
+    }
+
+    /// The shape of a geom, with a hull even if it does not collide.
+    pub fn solid(&self, geom: usize) -> Shape<'a, T> {
+        match self.model.geoms[geom].mesh {
+            Some(mesh) => Shape::Mesh(Mesh {
+                hull: self.model.meshes[mesh].any_hull(),
+                extent: self.params.geom_size[geom],
+            }),
+            None => shape(self.model, self.params, geom),
+        }
+    }
+
+    /// The geom that a ray hits first, by its number, and where; the distance is infinite where it hits none.
+    #[kernel]
+    pub fn first_hit(&self, line: &Ray<T>, filter: &RayFilter) -> (T, Hit<T>) {
+        let mut best = (
+            T::ZERO,
+            Hit {
+                distance: T::new(f64::INFINITY),
+                normal: Vec3::ZERO,
+            },
+        );
+        let unit = UnitRay::of(line);
+        for geom in 0..self.model.geoms.len() {
+            if !self.is_hit_by(geom, filter) {
+                continue;
+            }
+            let may_hit = self.may_hit(geom, &unit, best.1.distance);
+            if !may_hit.any() {
+                continue;
+            }
+            let hit = self.hit(geom, line);
+            let nearer = may_hit & hit.distance.lt(best.1.distance);
+            best.0 = T::select(nearer, T::new(geom as f64), best.0);
+            best.1.distance = T::select(nearer, hit.distance, best.1.distance);
+            best.1.normal = Vec3::select(nearer, hit.normal, best.1.normal);
+        }
+        best
+    }
+
+    fn is_hit_by(&self, geom: usize, filter: &RayFilter) -> bool {
+        let geom = &self.model.geoms[geom];
+        let fixed = self.model.bodies[geom.body].weld == 0;
+        let group = geom.group.clamp(0, filter.groups.len() as i32 - 1) as usize;
+        geom.visible
+            && filter.groups[group]
+            && (filter.fixed || !fixed)
+            && filter.excluded_body != Some(geom.body)
+    }
+
+    /// Where a ray may meet a geom's bounding sphere before it has gone `within`.
+    #[inline(always)]
+    fn may_hit(&self, geom: usize, ray: &UnitRay<T>, within: T) -> T::Mask {
+        if self.model.geoms[geom].kind == ShapeKind::Plane {
+            return T::Mask::splat(true);
+        }
+        let center = self.position.geom_xpos[geom];
+        ray.may_meet(center, self.params.geom_rbound[geom], within)
+    }
+
+    #[inline(always)]
+    fn hit(&self, geom: usize, line: &Ray<T>) -> Hit<T> {
+        let pose = self.pose(geom);
+        match self.model.geoms[geom].mesh {
+            Some(mesh) => self.model.meshes[mesh].triangles().ray(&pose, line),
+            None => ray(&shape(self.model, self.params, geom), &pose, line),
+        }
+    }
+}
+
+/// Which geoms a ray can hit. Those that cannot be seen, it never hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayFilter {
+    /// For each group whether its geoms are hit; groups beyond these count as the nearest of them.
+    pub groups: [bool; 6],
+    /// Whether geoms are hit that are fixed to the world.
+    pub fixed: bool,
+    /// A body whose geoms are not hit, such as the one that a sensor sits on.
+    pub excluded_body: Option<usize>,
+}
+
+impl Default for RayFilter {
+    /// Everything.
+    fn default() -> Self {
+        RayFilter {
+            groups: [true; 6],
+            fixed: true,
+            excluded_body: None,
+        }
+    }
+}
+
+/// Where a ray hits first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit<T> {
+    /// The geom.
+    pub geom: usize,
+    /// From the ray's origin, in lengths of its direction.
+    pub distance: T,
+    /// The unit vector out of the geom there, in world coordinates.
+    pub normal: Vec3<T>,
+}

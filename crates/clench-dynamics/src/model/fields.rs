@@ -1,0 +1,227 @@
+//! The fields of [`Params`] by name: what their numbers must be, and what follows from them.
+
+use super::rule::Rule;
+use super::{Model, ParamField, Params};
+use crate::check::check_length;
+use crate::error::SimError;
+use clench_collide::{Shape, ShapeKind};
+use clench_math::{Real, Scalar};
+use std::sync::Arc;
+
+/// Shorter axes and quaternions say no direction.
+const MIN_LENGTH: f64 = 1e-7;
+
+impl ParamField {
+    /// The field of that name.
+    ///
+    /// # Errors
+    /// A name that no field has.
+    pub fn find(name: &str) -> Result<Self, SimError> {
+        let all = ParamField::ALL.iter();
+        let found = all.clone().find(|field| field.name() == name);
+        found
+            .copied()
+            .ok_or_else(|| SimError::unknown("parameter", name, all.map(|field| field.name())))
+    }
+
+    /// Its shape in a model, such as (nbody, 3) for `body_inertia`; empty for a single number.
+    pub fn shape(self, model: &Model) -> Vec<usize> {
+        model.params.shape(self)
+    }
+
+    /// The field of that name, to be set.
+    ///
+    /// # Errors
+    /// A name that no field has, and a field that follows from another.
+    pub fn settable(name: &str) -> Result<Self, SimError> {
+        let found = ParamField::find(name)?;
+        let field = found.name();
+        match found.rule() {
+            Rule::Follows(other) => Err(SimError::Follows { field, other }),
+            _ => Ok(found),
+        }
+    }
+
+    /// The field that follows from this one, and changes with it.
+    pub fn follower(self) -> Option<ParamField> {
+        match self {
+            ParamField::body_mass => Some(ParamField::body_subtreemass),
+            ParamField::geom_size => Some(ParamField::geom_rbound),
+            _ => None,
+        }
+    }
+
+    /// Checks the numbers of this field for one environment, and gives unit length to what must have it.
+    ///
+    /// # Errors
+    /// A wrong number of numbers, or the first that cannot be.
+    pub fn check_row<S: Scalar>(self, model: &Model, row: &mut [S]) -> Result<(), SimError> {
+        let field = self.name();
+        let rule = self.rule();
+        let of_model = model.params.read_lane(self, 0);
+        check_length(field, row.len(), of_model.len())?;
+        for (index, (&value, &of_model)) in row.iter().zip(&of_model).enumerate() {
+            if let Some(range) = rule.refuses(value, of_model) {
+                let value = value.to_f64();
+                return Err(SimError::Parameter {
+                    field,
+                    index,
+                    value,
+                    range,
+                });
+            }
+        }
+        if self == ParamField::geom_size {
+            require_own_sizes(model, field, row)?;
+        }
+        let size = match rule {
+            Rule::Quaternion => 4,
+            Rule::Axis => 3,
+            Rule::Range => return require_rising(field, row),
+            _ => return Ok(()),
+        };
+        (row.chunks_exact_mut(size).enumerate())
+            .try_for_each(|(i, direction)| normalize(field, size * i, direction))
+    }
+}
+
+/// Whether a shape's size is that of its asset, which is the same in every environment.
+fn has_own_size(kind: ShapeKind) -> bool {
+    matches!(kind, ShapeKind::Mesh | ShapeKind::HeightField)
+}
+
+fn require_own_sizes<S: Scalar>(
+    model: &Model,
+    field: &'static str,
+    row: &[S],
+) -> Result<(), SimError> {
+    for (g, geom) in model.geoms.iter().enumerate() {
+        let own = model.params.geom_size[g].to_array().map(S::new);
+        let given = &row[3 * g..][..3];
+        if has_own_size(geom.kind) && given != own {
+            let axis = (0..3).find(|&i| given[i] != own[i]).unwrap_or(0);
+            return Err(SimError::Parameter {
+                field,
+                index: 3 * g + axis,
+                value: given[axis].to_f64(),
+                range: "the size of its mesh or height field",
+            });
+        }
+    }
+    Ok(())
+}
+
+fn require_rising<S: Scalar>(field: &'static str, row: &[S]) -> Result<(), SimError> {
+    let falls = |pair: &[S]| pair[0] > pair[1];
+    match row.chunks_exact(2).position(falls) {
+        None => Ok(()),
+        Some(i) => Err(SimError::Parameter {
+            field,
+            index: 2 * i + 1,
+            value: row[2 * i + 1].to_f64(),
+            range: "at least the number before it",
+        }),
+    }
+}
+
+fn normalize<S: Scalar>(
+    field: &'static str,
+    index: usize,
+    direction: &mut [S],
+) -> Result<(), SimError> {
+    let squared = (direction.iter()).fold(S::ZERO, |sum, &x| sum + x * x);
+    let norm = Real::sqrt(squared);
+    if !(norm > S::new(MIN_LENGTH) && norm.is_finite()) {
+        return Err(SimError::Parameter {
+            field,
+            index,
+            value: direction[0].to_f64(),
+            range: "part of a direction, neither too short nor too long",
+        });
+    }
+    direction.iter_mut().for_each(|x| *x /= norm);
+    Ok(())
+}
+
+impl<T: Real> Params<T> {
+    /// Computes what follows directly from a field: the masses of subtrees from those of bodies, the bounding radii of geoms
+    /// from their sizes. The inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are.
+    pub fn derive(&mut self, model: &Model, field: ParamField) {
+        match field {
+            ParamField::body_mass => {
+                self.body_subtreemass.clone_from(&self.body_mass);
+                for b in (1..model.nbody()).rev() {
+                    let mass = self.body_subtreemass[b];
+                    self.body_subtreemass[model.bodies[b].parent] += mass;
+                }
+            }
+            ParamField::geom_size => {
+                self.geom_rbound.clear();
+                for (g, (geom, &size)) in model.geoms.iter().zip(&self.geom_size).enumerate() {
+                    self.geom_rbound.push(match geom.kind {
+                        ShapeKind::Plane => T::ZERO,
+                        kind if has_own_size(kind) => T::new(model.params.geom_rbound[g]),
+                        kind => Shape::new(kind, size).bounding_radius(),
+                    });
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Model {
+    /// Updates the structure of a model whose environments get parameters of their own. Structure lets a step leave out what the model's
+    /// own numbers make zero: dry friction of a dof or tendon, inertia and damping that an actuator reflects, the offset of an inertial
+    /// frame, [trivial poses](super::SameFrames). Where a number in `row` is not zero, the step must no longer leave it out. The model is copied at most once, and only if
+    /// something changes.
+    pub fn clear_structural_guarantees<S: Scalar>(
+        model: &mut Arc<Model>,
+        field: ParamField,
+        row: &[S],
+    ) {
+        Model::restrict_same_frames(model, field, row);
+        let nonzero = |numbers: &[S]| numbers.iter().any(|&x| x != S::ZERO);
+        let bodies = || model.bodies.iter().enumerate();
+        let changes: Vec<usize> = match field {
+            ParamField::dof_frictionloss => (model.dofs.iter().enumerate())
+                .filter(|&(i, dof)| !dof.frictionloss && nonzero(&row[i..=i]))
+                .map(|(i, _)| i)
+                .collect(),
+            ParamField::tendon_frictionloss => (model.tendons.iter().enumerate())
+                .filter(|&(i, tendon)| !tendon.frictionloss && nonzero(&row[i..=i]))
+                .map(|(i, _)| i)
+                .collect(),
+            ParamField::actuator_damping
+            | ParamField::actuator_dampingpoly
+            | ParamField::actuator_armature => {
+                let width = row.len() / model.actuators.len().max(1);
+                (0..model.actuators.len())
+                    .filter(|&u| !model.reflects(u) && nonzero(&row[width * u..][..width]))
+                    .collect()
+            }
+            ParamField::body_ipos => bodies()
+                .filter(|&(b, body)| body.simple_inertia && nonzero(&row[3 * b..][..3]))
+                .map(|(b, _)| b)
+                .collect(),
+            ParamField::body_iquat => bodies()
+                .filter(|&(b, body)| body.simple_inertia && nonzero(&row[4 * b + 1..][..3]))
+                .map(|(b, _)| b)
+                .collect(),
+            _ => return,
+        };
+        for i in changes {
+            let model = Arc::make_mut(model);
+            match field {
+                ParamField::dof_frictionloss => model.dofs[i].frictionloss = true,
+                ParamField::tendon_frictionloss => model.tendons[i].frictionloss = true,
+                ParamField::actuator_damping
+                | ParamField::actuator_dampingpoly
+                | ParamField::actuator_armature => {
+                    model.let_reflect(i);
+                }
+                _ => model.bodies[i].simple_inertia = false,
+            }
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! The immutable description of a model: structure here, numbers in [`Params`].
+//!
+//! Structure is what decides loops and branches and is the same for every environment: who is whose parent, which
+//! joint is a hinge, which geoms may collide. Numbers (masses, lengths, stiffnesses) live in [`Params`], so that a
+//! batch can give each environment its own.
+
+mod custom;
+mod fields;
+pub(crate) mod flat;
+mod lookup;
+mod params;
+mod rule;
+mod same_frame;
+mod sensor;
+mod sensor_target;
+mod structure;
+
+pub use custom::{Custom, TupleEntry};
+pub use params::{ParamField, Params};
+pub use same_frame::SameFrames;
+pub use sensor::{Attachment, Sensor, SensorData, SensorDimension, SensorKind};
+pub use sensor_target::{
+    ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, RayField, RaySource,
+    SensorTarget, TAXEL_CHANNELS,
+};
+pub use structure::{
+    Actuator, Appearance, BiasKind, Body, Camera, CameraMode, ControlInput, ControllerStates,
+    Coupled, Dof, DynamicsKind, Equality, EqualityTarget, Flags, GainKind, Geom, Headlight,
+    HeightField, History, Integrator, Interpolation, Joint, JointKind, Keyframe, KinematicTree,
+    Light, LightKind, LightProperties, Material, Mesh, MeshInertia, MeshSpec, Origin, Pair,
+    Pattern, Pixels, RowPattern, Section, Site, SleepPolicy, Tendon, Texture, TextureKind,
+    TextureMark, TexturePattern, TexturePicture, Transmission, Visuals, Wrap,
+};
+
+use crate::Budget;
+use crate::options::RigidOptions;
+use clench_solver::Tree;
+use std::collections::HashSet;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A model: never changes while stepping, shared by `Arc` between simulations.
+///
+/// Elements are numbered as in MuJoCo: bodies depth first, joints, dofs, geoms and sites in the order of their bodies.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name.
+    pub name: String,
+    /// Bodies; the first is the world.
+    pub bodies: Vec<Body>,
+    /// Joints.
+    pub joints: Vec<Joint>,
+    /// Degrees of freedom.
+    pub dofs: Vec<Dof>,
+    /// Geoms.
+    pub geoms: Vec<Geom>,
+    /// Sites.
+    pub sites: Vec<Site>,
+    /// Cameras.
+    pub cameras: Vec<Camera>,
+    /// Tendons.
+    pub tendons: Vec<Tendon>,
+    /// The dofs that change the length of each tendon.
+    pub tendon_dofs: RowPattern,
+    /// Actuators.
+    pub actuators: Vec<Actuator>,
+    /// The dofs that each actuator acts on.
+    pub actuator_dofs: RowPattern,
+    /// Sensors.
+    pub sensors: Vec<Sensor>,
+    /// Equality constraints.
+    pub equalities: Vec<Equality>,
+    /// How many constraints can be added at run time, beside each other: slots that every state has.
+    pub max_dynamic_constraints: usize,
+    /// Explicit geom pairs.
+    pub pairs: Vec<Pair>,
+    /// Body pairs (smaller index first) that never collide.
+    pub excludes: HashSet<(u32, u32)>,
+    /// Stored states.
+    pub keyframes: Vec<Keyframe>,
+    /// Meshes.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// Height fields.
+    pub height_fields: Vec<Arc<HeightField>>,
+    /// Position coordinates.
+    pub nq: usize,
+    /// Degrees of freedom.
+    pub nv: usize,
+    /// Activations.
+    pub na: usize,
+    /// Numbers that say where springs that yield rest.
+    pub nplastic: usize,
+    /// Numbers in buffers of past values.
+    pub nhistory: usize,
+    /// Mocap bodies.
+    pub nmocap: usize,
+    /// Sparsity of the mass matrix.
+    pub tree: Arc<Tree>,
+    /// Kinematic trees, in the order of their dofs.
+    pub trees: Vec<KinematicTree>,
+    /// Of each tendon that pulls on two trees, these.
+    pub tendon_ties: Vec<Option<[usize; 2]>>,
+    /// The initial [`State::tree_asleep`](crate::State::tree_asleep), which has no numbers without the flag `sleep`.
+    pub tree_asleep0: Vec<f64>,
+    /// How time advances.
+    pub integrator: Integrator,
+    /// Feature switches.
+    pub flags: Flags,
+    /// Whether contacts take the parameters in `params.override_*`.
+    pub override_contacts: bool,
+    /// Solver options of the file, over its format's defaults.
+    pub options: RigidOptions,
+    /// What a step may ask for.
+    pub budget: Budget,
+    /// Every number of the model.
+    pub params: Params<f64>,
+    /// Which of its fixed poses are trivial.
+    pub same_frames: SameFrames,
+    /// Things worth telling the user once.
+    pub notes: Vec<String>,
+    /// What was left out of the file because it is not supported yet, each with its place.
+    pub left_out: Vec<String>,
+    /// The user's own data.
+    pub custom: Custom,
+    /// How its elements look.
+    pub visuals: Visuals,
+}
+
+impl Model {
+    /// Number of bodies, the world included.
+    pub fn nbody(&self) -> usize {
+        self.bodies.len()
+    }
+    /// Whether nothing can move a body: neither joints nor the user, who moves mocap bodies.
+    #[inline(always)]
+    pub(crate) fn is_fixed(&self, body: usize) -> bool {
+        let weld = &self.bodies[self.bodies[body].weld];
+        weld.dofs.is_empty() && weld.mocap.is_none()
+    }
+    /// The joints of consecutive bodies.
+    #[inline(always)]
+    pub(crate) fn joints_of(&self, bodies: &Range<usize>) -> Range<usize> {
+        match self.bodies[bodies.clone()] {
+            [ref first, .., ref last] => first.joints.start..last.joints.end,
+            [ref only] => only.joints.clone(),
+            [] => 0..0,
+        }
+    }
+    /// Whether any tree can sleep.
+    pub(crate) fn may_sleep(&self) -> bool {
+        !self.tree_asleep0.is_empty()
+    }
+    /// Number of kinematic trees.
+    pub fn ntree(&self) -> usize {
+        self.trees.len()
+    }
+    /// The kinematic tree of a body; none where nothing moves it.
+    pub fn tree_of_body(&self, body: usize) -> Option<usize> {
+        self.bodies[body].last_dof.map(|dof| self.tree.tree_of(dof))
+    }
+    /// The kinematic trees of some dofs, each once.
+    pub fn trees_of(&self, dofs: &[u32]) -> Vec<usize> {
+        let mut trees = Vec::from_iter(dofs.iter().map(|&dof| self.tree.tree_of(dof as usize)));
+        trees.sort_unstable();
+        trees.dedup();
+        trees
+    }
+    /// Number of controls. Most actuators have one.
+    pub fn nu(&self) -> usize {
+        self.actuators.last().map_or(0, |last| last.controls.end)
+    }
+    /// Number of forces of actuators. Most actuators have one.
+    pub fn nout(&self) -> usize {
+        self.actuators.last().map_or(0, |last| last.outputs.end)
+    }
+    /// The buffers of past values.
+    pub fn histories(&self) -> impl Iterator<Item = &History> {
+        let of_actuators = self.actuators.iter().filter_map(|a| a.history.as_ref());
+        let of_sensors = self.sensors.iter().filter_map(|s| s.history.as_ref());
+        of_actuators.chain(of_sensors)
+    }
+    /// Lets actuator `u` damp its target and add inertia to it, if that is a joint or a tendon. Others have neither, as in MuJoCo.
+    pub fn let_reflect(&mut self, u: usize) {
+        let reflecting = match self.actuators[u].transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                &mut self.joints[j].reflecting
+            }
+            Transmission::Tendon(t) => &mut self.tendons[t].reflecting,
+            _ => return,
+        };
+        if let Err(place) = reflecting.binary_search(&u) {
+            reflecting.insert(place, u);
+        }
+    }
+    /// Whether actuator `u` may damp its target, or add inertia to it, as far as that has any.
+    fn reflects(&self, u: usize) -> bool {
+        match self.actuators[u].transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                self.joints[j].reflecting.contains(&u)
+            }
+            Transmission::Tendon(t) => self.tendons[t].reflecting.contains(&u),
+            _ => true,
+        }
+    }
+    /// Numbers that all sensors give.
+    pub fn nsensordata(&self) -> usize {
+        self.sensors.last().map_or(0, |sensor| sensor.numbers.end)
+    }
+    /// A body and all below it, which are numbered depth first.
+    pub fn subtree(&self, body: usize) -> Range<usize> {
+        let below = &self.bodies[body + 1..];
+        let end = below.iter().position(|other| other.parent < body);
+        body..end.map_or(self.bodies.len(), |end| body + 1 + end)
+    }
+}

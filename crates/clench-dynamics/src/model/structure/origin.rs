@@ -1,0 +1,19 @@
+//! Where the elements of a model were written.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Where an element was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// File name as the user gave it, or as an include names it.
+    pub file: Arc<str>,
+    /// Line, counted from one.
+    pub line: u32,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.line)
+    }
+}

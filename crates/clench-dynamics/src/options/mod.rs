@@ -1,0 +1,252 @@
+//! What a user may set. A table has a row for each option; the struct, its checks, the flags of the program, MJCF's `<option>` and
+//! Python's class follow from it.
+
+mod table;
+mod value;
+
+pub use value::{FrictionCone, MaxContacts, OptionError, OptionValue, Range};
+
+use clench_solver::{ConstraintSolver, SolverOptions, Switch};
+
+/// The flag of the program that sets an option.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Argument {
+    /// A flag that the value follows.
+    Given(&'static str),
+    /// A flag that stands for a value.
+    Sets(&'static str, OptionValue),
+}
+
+/// Where MJCF has an option.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mjcf {
+    /// An attribute of `<option>` that is written as the value is.
+    Attribute(&'static str),
+    /// An attribute of `<option>` with words of its own. The first for a value is the one that is written.
+    Words(&'static str, &'static [(&'static str, OptionValue)]),
+    /// An attribute of `<flag>`, and what "disable" and "enable" mean.
+    Flag(&'static str, [OptionValue; 2]),
+    /// Nowhere.
+    Nowhere,
+}
+
+macro_rules! declare_options {
+    ($($group:ident {$(
+        $(#[doc = $doc:literal])*
+        $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
+    )*})*) => {
+        /// Options of the constraint model and its solver. Every field knows whether it was set, so that what the user sets
+        /// wins over the file and the file over its format's defaults: `user.or(file).or(format)`.
+        ///
+        /// ```
+        /// use clench_dynamics::options::RigidOptions;
+        /// let user = RigidOptions::new().iterations(10);
+        /// let file = RigidOptions::new().iterations(100).impratio(10.0);
+        /// let both = user.or(file);
+        /// assert_eq!((both.iterations, both.impratio, both.ls_iterations), (Some(10), Some(10.0), None));
+        /// ```
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct RigidOptions {
+            $($( $(#[doc = $doc])* pub $name: Option<$type>, )*)*
+        }
+
+        impl RigidOptions {
+            $($( $(#[doc = $doc])*
+            #[must_use]
+            pub fn $name(mut self, value: $type) -> Self {
+                self.$name = Some(value);
+                self
+            } )*)*
+
+            /// Takes from `lower` what is not set here.
+            #[must_use]
+            pub fn or(self, lower: RigidOptions) -> Self {
+                RigidOptions { $($( $name: self.$name.or(lower.$name), )*)* }
+            }
+
+            /// The value of an option that is set.
+            pub fn get(&self, option: RigidOption) -> Option<OptionValue> {
+                match option {
+                    $($( RigidOption::$name => self.$name.map(OptionValue::from), )*)*
+                }
+            }
+
+            /// Sets an option.
+            ///
+            /// # Errors
+            /// A value of another type, or out of the option's range; nothing is set then.
+            pub fn set(&mut self, option: RigidOption, value: OptionValue) -> Result<(), OptionError> {
+                match option {
+                    $($( RigidOption::$name => {
+                        let own = value.try_into().map_err(|value| OptionError {
+                            name: option.name(),
+                            value,
+                            range: option.default(false).what(),
+                        })?;
+                        option.check(value)?;
+                        self.$name = Some(own);
+                    } )*)*
+                }
+                Ok(())
+            }
+        }
+
+        /// An option.
+        #[allow(non_camel_case_types)] // Named as the fields are.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum RigidOption {
+            $($( $(#[doc = $doc])* $name, )*)*
+        }
+
+        impl RigidOption {
+            /// Every option, those of the solver first.
+            pub const ALL: &[RigidOption] = &[$($( RigidOption::$name, )*)*];
+
+            /// Its name.
+            pub fn name(self) -> &'static str {
+                match self { $($( RigidOption::$name => stringify!($name), )*)* }
+            }
+
+            /// What it is, and its default.
+            pub fn sentence(self) -> &'static str {
+                match self { $($( RigidOption::$name => concat!($($doc),*).trim_ascii(), )*)* }
+            }
+
+            /// Its value where nobody sets it.
+            pub fn default(self, single_precision: bool) -> OptionValue {
+                match self {
+                    $($( RigidOption::$name => {
+                        let value: $type = $( if single_precision { $single } else )? { $default };
+                        value.into()
+                    } )*)*
+                }
+            }
+
+            /// What its numbers may be.
+            pub fn range(self) -> Range {
+                match self { $($( RigidOption::$name => Range::$range, )*)* }
+            }
+
+            /// The flag of the program that sets it.
+            pub fn argument(self) -> Argument {
+                use Argument::{Given, Sets};
+                use OptionValue::Truth;
+                match self { $($( RigidOption::$name => $argument, )*)* }
+            }
+
+            /// Where MJCF has it.
+            pub fn mjcf(self) -> Mjcf {
+                use Mjcf::{Attribute, Flag, Nowhere, Words};
+                use OptionValue::{Algorithm, Choice, Truth};
+                match self { $($( RigidOption::$name => $mjcf, )*)* }
+            }
+        }
+    };
+}
+
+crate::rigid_options!(declare_options);
+
+macro_rules! declare_solver_part {
+    (
+        solver {$(
+            $(#[$doc:meta])*
+            $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
+        )*}
+        step $step:tt
+    ) => {
+        impl RigidOptions {
+            /// The options that the solver reads.
+            pub fn solver(self) -> SolverOptions {
+                SolverOptions { $( $name: self.$name, )* }
+            }
+        }
+    };
+}
+
+crate::rigid_options!(declare_solver_part);
+
+impl RigidOptions {
+    /// Nothing set.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// # Errors
+    /// The first option that is out of its range.
+    pub fn check(&self) -> Result<(), OptionError> {
+        let set = |&option: &RigidOption| Some((option, self.get(option)?));
+        let mut all = RigidOption::ALL.iter().filter_map(set);
+        all.try_for_each(|(option, value)| option.check(value))
+    }
+}
+
+impl RigidOption {
+    /// # Errors
+    /// A value out of the range.
+    pub fn check(self, value: OptionValue) -> Result<(), OptionError> {
+        match self.range().holds(value) {
+            true => Ok(()),
+            false => Err(OptionError {
+                name: self.name(),
+                value,
+                range: self.range().text(),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_tell_the_defaults() {
+        for &option in RigidOption::ALL {
+            let told = option
+                .sentence()
+                .split_once("; ")
+                .map_or("", |(_, told)| told);
+            let default = option.default(false).to_string();
+            assert!(told.starts_with(&default), "{}: {told}", option.name());
+            let single = option.default(true).to_string();
+            assert!(
+                told.contains(&single),
+                "{} in single precision",
+                option.name()
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_set_comes_back_and_other_types_are_refused() {
+        for &option in RigidOption::ALL {
+            let mut options = RigidOptions::new();
+            let value = option.default(false);
+            options
+                .set(option, value)
+                .expect("a default is in its range");
+            assert_eq!(options.get(option), Some(value));
+            for &other in RigidOption::ALL {
+                let alike = value.what() == other.default(false).what();
+                assert_eq!(
+                    options.set(other, value).is_ok(),
+                    alike,
+                    "{other:?}: {value}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn names_of_flags_and_attributes_are_different() {
+        let mut names: Vec<&str> = Vec::new();
+        for &option in RigidOption::ALL {
+            let (Argument::Given(flag) | Argument::Sets(flag, _)) = option.argument();
+            names.push(flag);
+        }
+        let all = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), all);
+    }
+}

@@ -1,0 +1,297 @@
+//! The stages of a step. Each reads what those before it left in the workspace.
+
+use crate::constraint::constraint_stage;
+use crate::contact::detect;
+use crate::dynamics::actuation::actuation;
+use crate::dynamics::adhesion::adhesion;
+use crate::dynamics::articulated::articulated_factor;
+use crate::dynamics::bias::bias_forces;
+use crate::dynamics::com::com_positions;
+use crate::dynamics::discrete::{discrete, enter_metric};
+use crate::dynamics::energy::{Energy, energy};
+use crate::dynamics::euler::euler;
+use crate::dynamics::implicit::{implicit, implicit_fast};
+use crate::dynamics::inertia::composite_inertia;
+use crate::dynamics::kinematics::{Computed, kinematics};
+use crate::dynamics::passive::passive_forces;
+use crate::dynamics::rk4::rk4;
+use crate::dynamics::smooth::{smooth_acceleration, smooth_forces};
+use crate::dynamics::tendon::tendons;
+use crate::dynamics::tendon_armature::{add_tendon_bias, add_tendon_inertia};
+use crate::dynamics::transmission::transmissions;
+use crate::dynamics::velocity::velocities;
+use crate::model::{Integrator, Model, Params};
+use crate::profile::Stage;
+use crate::settings::StepSettings;
+use crate::sleep;
+use crate::stages::Positions;
+use crate::state::State;
+use crate::workspace::{EnergyScratch, Workspace};
+use clench_math::Real;
+use clench_solver::TreeMatrix;
+use std::slice::from_ref;
+
+/// What evaluates the sensors of a model, after a forward pass and before the state moves on. Sensors are no part of this crate.
+pub type Sensors<T> = fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>);
+
+/// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with
+/// its factor.
+pub fn position_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.forget_poses();
+    positions(model, params, state, ws);
+}
+
+/// The same, but the poses of what is fixed to the world, and of trees that sleep where they slept in the last pass, are taken from the
+/// workspace: [`Sleep::parts`](sleep::Sleep::parts) leaves them out.
+fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let computed = Computed {
+        parts: ws.sleep.parts(&ws.fixed),
+        fixed: !ws.fixed.known(),
+    };
+    let pos = &mut ws.position;
+    poses(model, params, state, computed, pos);
+    ws.fixed.note();
+    ws.clock.lap(Stage::Kinematics as usize);
+    let (mass, factor) = match ws.metric.acts() {
+        true => (&mut ws.metric.mass, &mut ws.metric.mass_factor),
+        false => (&mut ws.problem.mass, &mut ws.problem.mass_factor),
+    };
+    mass_matrix(model, params, pos, mass);
+    ws.clock.lap(Stage::Inertia as usize);
+    ws.singular = !if ws.articulated.is_empty() {
+        ws.solver.factor(factor, &model.tree, mass)
+    } else {
+        articulated_factor(model, params, pos, |_| T::ZERO, &mut ws.articulated, factor)
+    };
+    ws.clock.lap(Stage::MassFactorization as usize);
+}
+
+/// Poses of some bodies; tendons and transmissions.
+pub fn poses<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    computed: Computed,
+    pos: &mut Positions<T>,
+) {
+    body_poses(model, params, state, computed, pos);
+    tendons(model, params, &state.qpos, pos);
+    transmissions(model, params, &state.qpos, pos);
+}
+
+/// Poses of some bodies.
+pub fn body_poses<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    computed: Computed,
+    pos: &mut Positions<T>,
+) {
+    kinematics(model, params, state, computed, pos);
+    com_positions(model, params, computed.parts, pos);
+}
+
+/// The mass matrix at poses, with the inertia of tendons.
+fn mass_matrix<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    pos: &mut Positions<T>,
+    mass: &mut TreeMatrix<T>,
+) {
+    composite_inertia(model, params, pos, mass);
+    add_tendon_inertia(model, params, pos, mass);
+}
+
+/// The energy of a state, whatever the workspace holds, which stays what it is.
+pub fn state_energy<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    scratch: &mut EnergyScratch<T>,
+) -> Energy<T> {
+    let EnergyScratch { position, mass } = scratch;
+    let bodies = 0..model.nbody();
+    let all = Computed::all(from_ref(&bodies));
+    poses(model, params, state, all, position);
+    mass_matrix(model, params, position, mass);
+    energy(model, params, position, mass, state)
+}
+
+/// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.
+pub(crate) fn velocity_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
+    velocities(model, pos, &state.qvel, vel);
+    passive_forces(model, params, pos, vel, state, &ws.contacts, force);
+    bias_forces(model, params, pos, vel, &state.qvel, force);
+    let bias = &mut force.qfrc_bias;
+    add_tendon_bias(model, params, pos, vel, &state.qvel, bias);
+    ws.clock.lap(Stage::Velocity as usize);
+}
+
+/// Actuator forces, the sum of all smooth forces, and the acceleration that they alone would cause.
+pub(crate) fn force_stage<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
+    actuation(model, params, state, pos, vel, ws.integration.offset, force);
+    smooth_forces(model, state, pos, force);
+    ws.problem.qacc_smooth.copy_from_slice(&force.qfrc_smooth);
+    if ws.metric.acts() {
+        enter_metric(model, params, settings, state, ws);
+    }
+    smooth_acceleration(model, &mut ws.problem);
+    ws.clock.lap(Stage::Force as usize);
+}
+
+/// Everything that follows from the state: forward dynamics, and what sensors measure.
+pub fn forward<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    forward_dynamics(model, params, settings, state, ws);
+    sensors(model, params, settings, state, ws);
+    ws.clock.lap(Stage::Sensors as usize);
+}
+
+/// Forward dynamics, up to `ws.qacc` and the constraint forces.
+fn forward_dynamics<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    before_forces(model, params, settings, state, ws);
+    from_forces(model, params, settings, state, ws);
+}
+
+/// The first half of forward dynamics, before controls act: all that depends on positions and velocities alone, contacts included.
+/// (MuJoCo's `mj_step1`.)
+pub fn before_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.clock.start();
+    let sleep = settings.flags.sleep;
+    if sleep {
+        sleep::wake_touched(model, state, ws);
+        ws.sleep.find_parts(model, state, &ws.fixed);
+    }
+    positions(model, params, state, ws);
+    if sleep {
+        sleep::wake_pulled(model, params, settings, ws);
+    }
+    detect(model, params, settings, ws);
+    if sleep {
+        while sleep::wake_touching(model, ws) {
+            detect(model, params, settings, ws);
+        }
+        sleep::wake_coupled(model, state, ws);
+    }
+    adhesion(model, &ws.contacts, &mut ws.position);
+    velocity_stage(model, params, state, ws);
+}
+
+/// The second half of forward dynamics: forces, those of controls among them, and constraints.
+fn from_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    force_stage(model, params, settings, state, ws);
+    constraint_stage(model, params, settings, state, ws);
+    if settings.flags.sleep {
+        ws.sleep.still(model, &mut ws.qacc);
+        ws.sleep.note(model, state);
+    }
+}
+
+/// Advances the state by one time step. The next step's solver starts from this one's acceleration.
+pub fn step<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    if rest(model, params, settings, state, ws, sensors) {
+        return;
+    }
+    if settings.flags.sleep && sleep::is_idle(model, state, ws) {
+        sleep::idle(model, params, settings, state, ws, sensors);
+        return;
+    }
+    before_forces(model, params, settings, state, ws);
+    step_from_forces(model, params, settings, state, ws, sensors);
+}
+
+/// Does a step that finds everything asleep as the last one left it, so that nothing changes but time. Returns whether it was one.
+pub fn rest<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) -> bool {
+    let rests = settings.flags.sleep && sleep::rests(model, state, ws);
+    if rests {
+        sleep::pass_time(model, params, settings, state, ws, sensors);
+    }
+    rests
+}
+
+/// The rest of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
+pub fn step_from_forces<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    from_forces(model, params, settings, state, ws);
+    sensors(model, params, settings, state, ws);
+    ws.clock.lap(Stage::Sensors as usize);
+    if settings.flags.sleep {
+        sleep::fall_asleep(model, params, settings, state, ws);
+    }
+    match model.integrator {
+        Integrator::Euler => euler(model, params, state, ws),
+        Integrator::ImplicitFast => implicit_fast(model, params, state, ws),
+        Integrator::Implicit => implicit(model, params, state, ws),
+        Integrator::Discrete => discrete(model, params, state, ws),
+        Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
+            forward_dynamics(model, params, settings, state, ws);
+        }),
+    }
+    if settings.flags.sleep {
+        sleep::hold(model, state, ws);
+    }
+    state.qacc_warmstart.copy_from_slice(&ws.qacc);
+    ws.clock.lap(Stage::Integration as usize);
+}

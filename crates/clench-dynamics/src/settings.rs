@@ -1,0 +1,87 @@
+//! What a step is told besides model and state: the options of user and file, decided, and the feature switches.
+
+use crate::Model;
+use crate::contact::check_supported;
+use crate::dynamics::discrete_limits::check_discrete;
+use crate::error::SimError;
+use crate::model::Flags;
+use crate::options::{FrictionCone, MaxContacts, OptionError, RigidOptions};
+use clench_math::Real;
+use clench_solver::{Settings, Switch};
+
+macro_rules! declare_settings {
+    (
+        solver $solver:tt
+        step {$(
+            $(#[$doc:meta])*
+            $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
+        )*}
+    ) => {
+        /// Every choice that a step reads. What the user sets wins over the file, the file over the defaults.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct StepSettings {
+            /// What the solver reads.
+            pub solver: Settings,
+            /// Feature switches of the model, less what the settings turn off.
+            pub flags: Flags,
+            $( $(#[$doc])* pub $name: $type, )*
+        }
+
+        impl StepSettings {
+            /// Options where they are set, else defaults; and the flags of the model.
+            fn resolve<T: Real>(options: RigidOptions, flags: Flags) -> Self {
+                StepSettings {
+                    solver: options.solver().resolve::<T>(),
+                    flags,
+                    $( $name: options.$name.unwrap_or({
+                        $( if size_of::<T::Scalar>() < size_of::<f64>() { $single } else )? { $default }
+                    }), )*
+                }
+            }
+        }
+    };
+}
+
+crate::rigid_options!(declare_settings);
+
+impl StepSettings {
+    /// Decides every option for a simulation of `model` in the number type `T`.
+    ///
+    /// # Errors
+    /// An option that is not finite or outside its range.
+    pub fn new<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, OptionError> {
+        let options = user.or(model.options);
+        options.check()?;
+        let mut settings = StepSettings::resolve::<T>(options, model.flags);
+        settings.solver.max_matrix = usize::try_from(model.budget.matrix).unwrap_or(usize::MAX);
+        // A switch of the file is a setting of the file: what the user says about the same thing wins.
+        if user.disable_constraint.is_none() {
+            settings.disable_constraint |= !model.flags.constraint;
+        }
+        settings.flags.constraint = !settings.disable_constraint;
+        settings.flags.sleep &= model.may_sleep();
+        if user.enable_joint_limit.is_none() {
+            settings.enable_joint_limit &= model.flags.limit;
+        }
+        if user.warmstart.is_none() {
+            settings.solver.warmstart &= model.flags.warmstart;
+        }
+        if user.islands.is_none() && !model.flags.island {
+            settings.solver.islands = Switch::Off;
+        }
+        Ok(settings)
+    }
+
+    /// The same for a model whose contacts are then sought.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), what the integrator cannot be combined with, and shapes that may meet and cannot be collided.
+    pub fn supported<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, SimError> {
+        let settings = StepSettings::new::<T>(model, user)?;
+        check_discrete(model, settings.flags.sleep, settings.solver.islands)?;
+        if settings.flags.constraint && settings.flags.contact {
+            check_supported(model)?;
+        }
+        Ok(settings)
+    }
+}

@@ -1,0 +1,162 @@
+//! Falling asleep, and staying where one fell asleep.
+//!
+//! A tree is slow where each of its velocities, times the length of its dof, is below the tolerance, and no force is applied to
+//! it. What counts is the velocity at the start of the step, as in MuJoCo: a step in which an island falls asleep leaves it
+//! where it was.
+
+use super::wake::is_free;
+use super::{AWAKE, READY, Sleep, is_blank, mocap_pose};
+use crate::model::{KinematicTree, Model, Params, SleepPolicy};
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Mask, Real, kernel};
+use clench_solver::{Problem, Switch};
+
+/// Counts the steps in which trees rest, and puts the islands to sleep of which all trees have rested for long enough: their
+/// velocities and accelerations become zero. Reads the constraints of `ws`, from which the islands follow.
+#[kernel]
+pub fn fall_asleep<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let sleep = &mut ws.sleep;
+    // Without islands nobody knows what rests alone, as in MuJoCo.
+    let counting = match settings.solver.islands {
+        Switch::Off => !constrained(&ws.problem),
+        _ => T::Mask::splat(true),
+    };
+    let mut ready = T::Mask::splat(false);
+    for (t, tree) in model.trees.iter().enumerate() {
+        let counts = counting & sleep.awake[t];
+        if !counts.any() {
+            continue;
+        }
+        let counter = sleep.counters[t];
+        let next = (counter.max(T::new(AWAKE)) + T::ONE).min(T::new(READY));
+        let next = T::select(is_slow(params, tree, state), next, T::new(AWAKE));
+        sleep.counters[t] = T::select(counts, next, counter);
+        ready |= counts & next.eq(T::new(READY));
+    }
+    if ready.any() {
+        put_islands_to_sleep(model, state, &ws.problem, counting, sleep, &mut ws.qacc);
+    }
+}
+
+/// Lanes in which any constraint acts.
+fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
+    let rows = problem.blocks().flat_map(|block| block.d);
+    rows.fold(T::Mask::splat(false), |lanes, d| lanes | d.gt(T::ZERO))
+}
+
+/// Lanes in which a tree may sleep, is slow and is left alone.
+#[inline(always)]
+fn is_slow<T: Real>(params: &Params<T>, tree: &KinematicTree, state: &State<T>) -> T::Mask {
+    let mut slow = T::Mask::splat(tree.sleep != SleepPolicy::Never);
+    let tolerance = params.sleep_tolerance;
+    for i in tree.dofs.clone() {
+        let speed = params.dof_length[i] * state.qvel[i].abs();
+        slow &= speed.lt(tolerance) | (tolerance.eq(T::ZERO) & is_blank(state.qvel[i]));
+    }
+    slow & is_free(tree, state)
+}
+
+/// Puts to sleep what is ready: islands as a whole, and trees on which no constraint acts.
+#[inline(always)]
+fn put_islands_to_sleep<T: Real>(
+    model: &Model,
+    state: &mut State<T>,
+    problem: &Problem<T>,
+    lanes: T::Mask,
+    sleep: &mut Sleep<T>,
+    qacc: &mut [T],
+) {
+    let mut partition = std::mem::take(&mut sleep.partition);
+    let mut members = std::mem::take(&mut sleep.members);
+    partition.find(problem);
+    for island in partition.islands() {
+        members.clear();
+        members.extend_from_slice(partition.trees(island));
+        members.sort_unstable();
+        let is_ready = |&tree: &u32| sleep.counters[tree as usize].eq(T::new(READY));
+        let ready = (members.iter().map(is_ready)).fold(lanes & island.lanes, |all, one| all & one);
+        if ready.any() {
+            put_to_sleep(model, state, sleep, &members, ready, qacc);
+        }
+    }
+    for tree in 0..model.ntree() {
+        let alone = lanes & !partition.constrained(tree);
+        let ready = alone & sleep.counters[tree].eq(T::new(READY));
+        if ready.any() {
+            put_to_sleep(model, state, sleep, &[tree as u32], ready, qacc);
+        }
+    }
+    sleep.partition = partition;
+    sleep.members = members;
+    sleep.update(model);
+}
+
+/// Puts the trees of an island to sleep in some lanes.
+#[inline(always)]
+fn put_to_sleep<T: Real>(
+    model: &Model,
+    state: &mut State<T>,
+    sleep: &mut Sleep<T>,
+    members: &[u32],
+    lanes: T::Mask,
+    qacc: &mut [T],
+) {
+    for (k, &tree) in members.iter().enumerate() {
+        let next = members[(k + 1) % members.len()];
+        let counter = &mut sleep.counters[tree as usize];
+        *counter = T::select(lanes, T::new(f64::from(next)), *counter);
+        let tree = &model.trees[tree as usize];
+        for i in tree.dofs.clone() {
+            state.qvel[i] = T::select(lanes, T::ZERO, state.qvel[i]);
+            qacc[i] = T::select(lanes, T::ZERO, qacc[i]);
+        }
+        for q in tree.qpos.clone() {
+            state.pose_asleep[q] = T::select(lanes, state.qpos[q], state.pose_asleep[q]);
+        }
+    }
+}
+
+impl<T: Real> Sleep<T> {
+    /// Lets sleeping trees have no acceleration.
+    #[kernel]
+    pub fn still(&self, model: &Model, qacc: &mut [T]) {
+        for (tree, &awake) in model.trees.iter().zip(&self.awake) {
+            if awake.all() {
+                continue;
+            }
+            for qacc in &mut qacc[tree.dofs.clone()] {
+                *qacc = T::select(awake, *qacc, T::ZERO);
+            }
+        }
+    }
+}
+
+/// Takes over which trees sleep now, and leaves those where they fell asleep, whatever the integrator did.
+#[kernel]
+pub fn hold<T: Real>(model: &Model, state: &mut State<T>, ws: &Workspace<T>) {
+    state.tree_asleep.copy_from_slice(&ws.sleep.counters);
+    for (tree, &awake) in model.trees.iter().zip(&ws.sleep.awake) {
+        if awake.all() {
+            continue;
+        }
+        for i in tree.dofs.clone() {
+            state.qvel[i] = T::select(awake, state.qvel[i], T::ZERO);
+        }
+        for q in tree.qpos.clone() {
+            state.qpos[q] = T::select(awake, state.qpos[q], state.pose_asleep[q]);
+        }
+    }
+    for mocap in 0..model.nmocap {
+        let pose = mocap_pose(state, mocap);
+        let start = model.nq + 7 * mocap;
+        state.pose_asleep[start..start + 7].copy_from_slice(&pose);
+    }
+}

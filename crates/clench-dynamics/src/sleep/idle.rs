@@ -1,0 +1,194 @@
+//! What a step leaves out because it sleeps.
+//!
+//! Poses of trees that sleep, and lie where they lay when the workspace's poses were computed, need not be computed again.
+//! If no lane has a tree that is awake, and nothing can wake one, a step only lets time pass. What the workspace holds then is
+//! that of the last pass, if all trees slept in it where they sleep now: no number of it would come out differently. Otherwise
+//! the step is done in full once, unless nobody reads the workspace.
+
+use super::wake::wake_coupled;
+use super::{Sleep, hold, is_blank, mocap_pose, wake_touched};
+use crate::check::are_occasional;
+use crate::constraint::assemble;
+use crate::fixed::FixedPoses;
+use crate::model::{Model, Params};
+use crate::pipeline::Sensors;
+use crate::settings::StepSettings;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Clock, Mask, Real, kernel};
+use std::ops::Range;
+
+/// Whether a step finds everything asleep and as the last pass left it, so that nothing but time changes. What can act on sleepers in
+/// other ways than by forces on them, or is written in every step, is looked at by [`is_idle`].
+#[kernel]
+pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> bool {
+    let sleep = &ws.sleep;
+    let bare = model.actuators.is_empty()
+        && model.equalities.is_empty()
+        && model.nhistory == 0
+        && state.plastic.is_empty();
+    bare && !ws.collision.given
+        && sleep.rests_as_before(model, state)
+        && all_same(&state.tree_asleep, &sleep.counters)
+        && all_same(&state.pose_asleep, &sleep.pose)
+        && all_blank(&state.qvel)
+        && all_blank(&state.qacc_warmstart)
+        && all_blank(&state.qfrc_applied)
+        && are_occasional(state, all_blank)
+        && (0..T::LANES).all(|lane| state.time.lane(lane).is_finite())
+}
+
+/// So many numbers are looked at before anyone asks whether they are as they should be.
+const BLOCK: usize = 256;
+
+/// Whether two arrays hold the same numbers in all lanes.
+#[inline(always)]
+fn all_same<T: Real>(one: &[T], other: &[T]) -> bool {
+    let same = |same: T::Mask, (a, b): (&T, &T)| same & a.eq(*b);
+    let mut blocks = one.chunks(BLOCK).zip(other.chunks(BLOCK));
+    blocks.all(|(a, b)| a.iter().zip(b).fold(T::Mask::splat(true), same).all())
+}
+
+/// Whether all bits of all numbers are zero.
+#[inline(always)]
+fn all_blank<T: Real>(numbers: &[T]) -> bool {
+    let mut blocks = numbers.chunks(BLOCK);
+    let and_blank = |blank: T::Mask, x: &T| blank & is_blank(*x);
+    blocks.all(|block| block.iter().fold(T::Mask::splat(true), and_blank).all())
+}
+
+/// Does a step that changes nothing but time.
+pub(crate) fn pass_time<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    sensors(model, params, settings, state, ws);
+    state.pass(params.timestep);
+}
+
+/// Whether a step only lets time pass. Actuators and mocap bodies act on what sleeps, or may touch it, and past values are
+/// written in every step, so a model that has them is looked at in full.
+#[kernel]
+pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) -> bool {
+    if !model.actuators.is_empty() || model.nhistory > 0 || ws.collision.given {
+        return false;
+    }
+    wake_touched(model, state, ws);
+    if !ws.sleep.all_asleep().all() {
+        return false;
+    }
+    if wake_coupled(model, state, ws) {
+        // A pass looks for what touches before, and for that among what is not yet awake.
+        ws.sleep.begin(model, state);
+        return false;
+    }
+    ws.sleep.rests_as_before(model, state) || (model.nmocap == 0 && !ws.read)
+}
+
+/// Does a step that only lets time pass.
+pub(crate) fn idle<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    if !ws.sleep.at_rest {
+        clear(model, params, settings, state, ws);
+    }
+    pass_time(model, params, settings, state, ws, sensors);
+    hold(model, state, ws);
+    state.qacc_warmstart.fill(T::ZERO);
+}
+
+/// Makes the workspace say that nothing acts and nothing went wrong. Its poses and forces are not updated.
+fn clear<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.contacts.clear();
+    ws.collision.excess = T::ZERO;
+    ws.collision.overflow = T::Mask::splat(false);
+    ws.singular = T::Mask::splat(false);
+    ws.problem.qacc_smooth.fill(T::ZERO);
+    assemble(model, params, settings, state, ws);
+    (ws.solver.solve(&ws.problem, &settings.solver, None))
+        .expect("a problem without constraints has the model's lengths");
+    ws.qacc.fill(T::ZERO);
+    ws.qfrc_constraint.fill(T::ZERO);
+}
+
+impl<T: Real> Sleep<T> {
+    /// Has the next pass compute all poses, because what the workspace holds was computed from other numbers.
+    pub fn forget(&mut self) {
+        (self.placed, self.at_rest) = (false, false);
+        if self.enabled {
+            self.parts.clear();
+            self.parts.push(0..self.bodies.len());
+        }
+    }
+
+    /// Takes note of a pass over a state.
+    pub fn note(&mut self, model: &Model, state: &State<T>) {
+        let (qpos, mocap) = self.pose.split_at_mut(model.nq);
+        qpos.copy_from_slice(&state.qpos);
+        for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
+            pose.copy_from_slice(&mocap_pose(state, m));
+        }
+        self.placed = true;
+        self.at_rest = self.all_asleep().all();
+    }
+
+    /// Ranges of the bodies whose poses the position stage computes: all but those of trees on the world that are known to be fixed, or
+    /// that sleep where they slept in the last pass.
+    pub fn parts<'a>(&'a self, fixed: &'a FixedPoses) -> &'a [Range<usize>] {
+        match self.enabled {
+            true => &self.parts,
+            false => fixed.parts(),
+        }
+    }
+
+    /// Finds [`parts`](Self::parts) for a state.
+    pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>, fixed: &FixedPoses) {
+        self.parts.clear();
+        let mut trees = model.trees.iter().zip(&self.awake).peekable();
+        for part in fixed.parts() {
+            let mut start = part.start;
+            while let Some((tree, awake)) = trees.next_if(|(tree, _)| tree.bodies.end <= part.end) {
+                let apart = !awake.any() && model.bodies[tree.bodies.start].parent == 0;
+                if apart && self.placed && self.lies_as_before(tree.qpos.clone(), state) {
+                    if start < tree.bodies.start {
+                        self.parts.push(start..tree.bodies.start);
+                    }
+                    start = tree.bodies.end;
+                }
+            }
+            if start < part.end {
+                self.parts.push(start..part.end);
+            }
+        }
+    }
+
+    /// Whether positions are those of the last pass.
+    fn lies_as_before(&self, qpos: Range<usize>, state: &State<T>) -> bool {
+        all_same(&self.pose[qpos.clone()], &state.qpos[qpos])
+    }
+
+    /// Whether all trees slept in the last pass where they sleep now, and no mocap body has moved.
+    fn rests_as_before(&self, model: &Model, state: &State<T>) -> bool {
+        let mut mocap = self.pose[model.nq..].chunks_exact(7).enumerate();
+        self.at_rest
+            && self.lies_as_before(0..model.nq, state)
+            && mocap.all(|(m, pose)| {
+                (pose.iter().zip(&mocap_pose(state, m))).all(|(one, other)| one.eq(*other).all())
+            })
+    }
+}

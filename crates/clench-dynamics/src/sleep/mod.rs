@@ -1,0 +1,167 @@
+//! Sleeping islands: trees that have come to rest are left out of the step until something wakes them.
+//!
+//! Each tree has a number, as MuJoCo's `tree_asleep`. Awake, it counts steps of small velocity, from [`AWAKE`] up to `READY`.
+//! When all trees of an island are ready, their velocities become zero and the numbers a cycle through the island: each names
+//! the next tree. `docs/sleeping.md` has the rules, `wake.rs` what wakes trees and `fall.rs` how they fall asleep.
+//!
+//! A tree that sleeps in a lane keeps its positions there. Constraints that would act on sleeping and fixed bodies alone are
+//! absent, as are contacts between them; a constraint between a sleeping tree and one that is awake wakes the former before
+//! it acts. So a lane's sleep is nothing to its neighbours.
+
+mod fall;
+mod idle;
+mod wake;
+
+pub use fall::fall_asleep;
+pub(crate) use fall::hold;
+pub(crate) use idle::{idle, is_idle, pass_time, rests};
+pub use wake::wake_in_state;
+pub(crate) use wake::{wake_coupled, wake_pulled, wake_touched, wake_touching};
+
+use crate::model::Model;
+use crate::state::State;
+use clench_math::{Mask, Quat, Real, Scalar, Vec3};
+use clench_solver::Partition;
+use std::ops::Range;
+
+/// The number of a tree that moves: it must stay below the tolerance for so many steps less one (MuJoCo's `mjMINAWAKE`, 10).
+pub const AWAKE: f64 = -11.0;
+/// The number of a tree that has rested for long enough.
+pub const READY: f64 = -1.0;
+
+/// Which trees are awake in a step.
+#[derive(Clone, Debug)]
+pub struct Sleep<T: Real> {
+    /// Whether any tree can sleep: without the flag nothing below is used.
+    enabled: bool,
+    /// The numbers of the trees, to become [`State::tree_asleep`] after the step.
+    counters: Vec<T>,
+    /// Lanes in which each tree is awake.
+    awake: Vec<T::Mask>,
+    /// Lanes in which each body is: mocap bodies always, for the user may move them, and fixed bodies never.
+    bodies: Vec<T::Mask>,
+    /// Whether the workspace holds what follows from the positions and the poses of mocap bodies in `pose`.
+    placed: bool,
+    pose: Vec<T>,
+    /// Whether, besides, all trees slept in the last pass in all lanes.
+    at_rest: bool,
+    /// Ranges of the bodies whose poses the position stage computes.
+    parts: Vec<Range<usize>>,
+    partition: Partition<T>,
+    /// The trees of an island.
+    members: Vec<u32>,
+}
+
+impl<T: Real> Sleep<T> {
+    /// Everything is awake.
+    pub fn new(model: &Model) -> Self {
+        let enabled = model.may_sleep();
+        let numbers = |of_model: usize| if enabled { of_model } else { 0 };
+        let awake = |of_model: usize| vec![T::Mask::splat(true); numbers(of_model)];
+        Sleep {
+            enabled,
+            counters: vec![T::new(AWAKE); numbers(model.ntree())],
+            awake: awake(model.ntree()),
+            bodies: awake(model.nbody()),
+            at_rest: false,
+            placed: false,
+            parts: std::iter::once(0..model.nbody()).collect(),
+            pose: vec![T::ZERO; numbers(model.nq + 7 * model.nmocap)],
+            partition: Partition::default(),
+            members: Vec::new(),
+        }
+    }
+
+    /// The numbers of the trees.
+    pub fn counters(&self) -> &[T] {
+        &self.counters
+    }
+
+    /// Starts from the numbers of a state.
+    pub fn begin(&mut self, model: &Model, state: &State<T>) {
+        self.counters.copy_from_slice(&state.tree_asleep);
+        self.update(model);
+    }
+
+    /// Takes note of numbers that have changed.
+    fn update(&mut self, model: &Model) {
+        for (awake, counter) in self.awake.iter_mut().zip(&self.counters) {
+            *awake = counter.lt(T::ZERO);
+        }
+        for (body, awake) in self.bodies.iter_mut().enumerate() {
+            *awake = match model.tree_of_body(body) {
+                Some(tree) => self.awake[tree],
+                None => {
+                    let weld = model.bodies[body].weld;
+                    T::Mask::splat(model.bodies[weld].mocap.is_some())
+                }
+            };
+        }
+    }
+
+    /// Lanes in which a tree is awake.
+    #[inline(always)]
+    pub(crate) fn is_awake(&self, tree: usize) -> T::Mask {
+        match self.enabled {
+            true => self.awake[tree],
+            false => T::Mask::splat(true),
+        }
+    }
+
+    /// Lanes in which constraints between two bodies act: in which either is awake.
+    #[inline(always)]
+    pub(crate) fn is_either_awake(&self, [first, second]: [usize; 2]) -> T::Mask {
+        match self.enabled {
+            true => self.bodies[first] | self.bodies[second],
+            false => T::Mask::splat(true),
+        }
+    }
+
+    /// Lanes in which everything sleeps.
+    pub fn all_asleep(&self) -> T::Mask {
+        let nothing = T::Mask::splat(!self.awake.is_empty());
+        (self.awake.iter()).fold(nothing, |asleep, &awake| asleep & !awake)
+    }
+
+    /// The lowest tree of the island with which a tree sleeps in a lane.
+    fn first_of_island(&self, tree: usize, lane: usize) -> usize {
+        let mut lowest = tree;
+        self.each_of_island(tree, lane, |at| lowest = lowest.min(at));
+        lowest
+    }
+
+    /// Shows the trees of the island with which a tree sleeps in a lane. Numbers that users wrote may be no cycle: what is shown
+    /// then is some of the trees, and ends.
+    fn each_of_island(&self, tree: usize, lane: usize, mut show: impl FnMut(usize)) {
+        let mut at = tree;
+        for _ in 0..self.counters.len() {
+            let next = self.counters[at].lane(lane).to_f64();
+            if next < 0.0 {
+                return;
+            }
+            show(at);
+            at = next as usize;
+            if at == tree || at >= self.counters.len() {
+                return;
+            }
+        }
+    }
+}
+
+/// Lanes in which all bits of a number are zero: not those of −0, by which users wake what they do not move.
+#[inline(always)]
+fn is_blank<T: Real>(x: T) -> T::Mask {
+    x.eq(T::ZERO) & T::ONE.copysign(x).gt(T::ZERO)
+}
+
+/// The pose of a mocap body, as [`State::pose_asleep`] holds it.
+fn mocap_pose<T: Real>(state: &State<T>, mocap: usize) -> [T; 7] {
+    let (Vec3 { x, y, z }, turn) = (state.mocap_pos[mocap], state.mocap_quat[mocap]);
+    let Quat {
+        w,
+        x: i,
+        y: j,
+        z: k,
+    } = turn;
+    [x, y, z, w, i, j, k]
+}

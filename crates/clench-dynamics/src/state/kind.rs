@@ -1,0 +1,247 @@
+//! What fields of a state are made of: numbers, vectors, quaternions, wrenches, truth values.
+
+use clench_math::{Force, Mask, Quat, Real, Scalar, Vec3};
+use std::array::from_mut;
+use std::fmt::Debug;
+
+/// A kind of element. An element is a few numbers in each lane, or a truth value.
+pub trait Kind {
+    /// An element in the number type `T`.
+    type Of<T: Real>: Copy + Debug;
+    /// What a row of a batch holds of it.
+    type Cell<S>;
+    /// How many cells an element takes.
+    const WIDTH: usize;
+
+    /// Zero, or false.
+    fn zero<T: Real>() -> Self::Of<T>;
+    /// A cell of it.
+    fn zero_cell<S: Real>() -> Self::Cell<S>;
+    /// Cell `part` of an element in lane `lane`.
+    fn cell<T: Real>(element: &Self::Of<T>, part: usize, lane: usize) -> Self::Cell<T::Scalar>;
+    /// Sets cell `part` of an element in lane `lane`.
+    fn set_cell<T: Real>(
+        element: &mut Self::Of<T>,
+        part: usize,
+        lane: usize,
+        cell: Self::Cell<T::Scalar>,
+    );
+    /// A cell as a number.
+    fn number<S: Scalar>(cell: Self::Cell<S>) -> S;
+    /// The cell of a number.
+    fn from_number<S: Scalar>(number: S) -> Self::Cell<S>;
+    /// Shows the numbers of elements to `visit`, with the index of the first: many at once, or an element at a time.
+    fn numbers<T: Real>(elements: &[Self::Of<T>], visit: impl FnMut(usize, &[T]));
+    /// The element of one environment in every lane.
+    fn splat<T: Real>(element: &Self::Of<T::Scalar>) -> Self::Of<T>;
+    /// Whether two elements are the same, bit by bit.
+    fn same<T: Real>(one: &Self::Of<T>, other: &Self::Of<T>) -> bool;
+}
+
+/// Whether two numbers are the same, bit by bit, in every lane.
+fn same_bits<T: Real>(one: T, other: T) -> bool {
+    let bits = |lane: usize| {
+        let bits = |x: T| x.lane(lane).to_f64().to_bits();
+        bits(one) == bits(other)
+    };
+    (0..T::LANES).all(bits)
+}
+
+/// A number a lane.
+#[derive(Debug)]
+pub enum Number {}
+
+impl Kind for Number {
+    type Of<T: Real> = T;
+    type Cell<S> = S;
+    const WIDTH: usize = 1;
+
+    fn zero<T: Real>() -> T {
+        T::ZERO
+    }
+    fn zero_cell<S: Real>() -> S {
+        S::ZERO
+    }
+    #[inline(always)]
+    fn cell<T: Real>(number: &T, _: usize, lane: usize) -> T::Scalar {
+        T::as_scalars(std::slice::from_ref(number))[lane]
+    }
+    #[inline(always)]
+    fn set_cell<T: Real>(number: &mut T, _: usize, lane: usize, cell: T::Scalar) {
+        T::as_scalars_mut(from_mut(number))[lane] = cell;
+    }
+    #[inline(always)]
+    fn number<S: Scalar>(cell: S) -> S {
+        cell
+    }
+    #[inline(always)]
+    fn from_number<S: Scalar>(number: S) -> S {
+        number
+    }
+    #[inline(always)]
+    fn numbers<T: Real>(numbers: &[T], mut visit: impl FnMut(usize, &[T])) {
+        visit(0, numbers);
+    }
+    #[inline(always)]
+    fn splat<T: Real>(number: &T::Scalar) -> T {
+        T::splat(*number)
+    }
+    fn same<T: Real>(one: &T, other: &T) -> bool {
+        same_bits(*one, *other)
+    }
+}
+
+/// An integer a lane, of a size that every number type holds exactly; in rows 32 bits.
+#[derive(Debug)]
+pub enum Integer {}
+
+impl Kind for Integer {
+    type Of<T: Real> = T;
+    type Cell<S> = i32;
+    const WIDTH: usize = 1;
+
+    fn zero<T: Real>() -> T {
+        T::ZERO
+    }
+    fn zero_cell<S: Real>() -> i32 {
+        0
+    }
+    #[inline(always)]
+    fn cell<T: Real>(number: &T, _: usize, lane: usize) -> i32 {
+        number.lane(lane).to_f64() as i32
+    }
+    #[inline(always)]
+    fn set_cell<T: Real>(number: &mut T, _: usize, lane: usize, cell: i32) {
+        number.set_lane(lane, T::Scalar::new(f64::from(cell)));
+    }
+    #[inline(always)]
+    fn number<S: Scalar>(cell: i32) -> S {
+        S::new(f64::from(cell))
+    }
+    #[inline(always)]
+    fn from_number<S: Scalar>(number: S) -> i32 {
+        number.to_f64() as i32
+    }
+    #[inline(always)]
+    fn numbers<T: Real>(numbers: &[T], mut visit: impl FnMut(usize, &[T])) {
+        visit(0, numbers);
+    }
+    #[inline(always)]
+    fn splat<T: Real>(number: &T::Scalar) -> T {
+        T::splat(*number)
+    }
+    fn same<T: Real>(one: &T, other: &T) -> bool {
+        same_bits(*one, *other)
+    }
+}
+
+/// Kinds of several numbers, by the order of their parts.
+macro_rules! compound {
+    ($($(#[$doc:meta])* $name:ident: $of:ident, $zero:expr, [$($($part:ident).+),*];)*) => {$(
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub enum $name {}
+
+        impl Kind for $name {
+            type Of<T: Real> = $of<T>;
+            type Cell<S> = S;
+            const WIDTH: usize = [$(stringify!($($part).+)),*].len();
+
+            fn zero<T: Real>() -> $of<T> {
+                $zero
+            }
+            fn zero_cell<S: Real>() -> S {
+                S::ZERO
+            }
+            #[inline(always)]
+            fn cell<T: Real>(element: &$of<T>, part: usize, lane: usize) -> T::Scalar {
+                let parts = [$(&element.$($part).+),*];
+                Number::cell(parts[part], 0, lane)
+            }
+            #[inline(always)]
+            fn set_cell<T: Real>(element: &mut $of<T>, part: usize, lane: usize, cell: T::Scalar) {
+                let parts = [$(&mut element.$($part).+),*];
+                if let Some(part) = parts.into_iter().nth(part) {
+                    Number::set_cell(part, 0, lane, cell);
+                }
+            }
+            #[inline(always)]
+            fn number<S: Scalar>(cell: S) -> S {
+                cell
+            }
+            #[inline(always)]
+            fn from_number<S: Scalar>(number: S) -> S {
+                number
+            }
+            #[inline(always)]
+            fn numbers<T: Real>(elements: &[$of<T>], mut visit: impl FnMut(usize, &[T])) {
+                for (i, element) in elements.iter().enumerate() {
+                    visit(i * Self::WIDTH, &[$(element.$($part).+),*]);
+                }
+            }
+            #[inline(always)]
+            fn splat<T: Real>(element: &$of<T::Scalar>) -> $of<T> {
+                let mut lanes: $of<T> = $zero;
+                $(lanes.$($part).+ = T::splat(element.$($part).+);)*
+                lanes
+            }
+            fn same<T: Real>(one: &$of<T>, other: &$of<T>) -> bool {
+                [$((one.$($part).+, other.$($part).+)),*].iter().all(|&(a, b)| same_bits(a, b))
+            }
+        }
+    )*};
+}
+compound! {
+    /// Three numbers.
+    Vector: Vec3, Vec3::ZERO, [x, y, z];
+    /// Four numbers, w first.
+    Quaternion: Quat, Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO), [w, x, y, z];
+    /// A force and a torque, the force first.
+    Wrench: Force, Force::ZERO, [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
+}
+
+/// A truth value a lane; in rows a byte, of which all but 0 means true, for those who write rows by their address may leave others
+/// than those of false and true.
+#[derive(Debug)]
+pub enum Truth {}
+
+impl Kind for Truth {
+    type Of<T: Real> = T::Mask;
+    type Cell<S> = u8;
+    const WIDTH: usize = 1;
+
+    fn zero<T: Real>() -> T::Mask {
+        T::Mask::splat(false)
+    }
+    fn zero_cell<S: Real>() -> u8 {
+        0
+    }
+    #[inline(always)]
+    fn cell<T: Real>(truth: &T::Mask, _: usize, lane: usize) -> u8 {
+        u8::from(truth.lane(lane))
+    }
+    #[inline(always)]
+    fn set_cell<T: Real>(truth: &mut T::Mask, _: usize, lane: usize, cell: u8) {
+        truth.set_lane(lane, cell != 0);
+    }
+    #[inline(always)]
+    fn number<S: Scalar>(cell: u8) -> S {
+        match cell {
+            0 => S::ZERO,
+            _ => S::ONE,
+        }
+    }
+    #[inline(always)]
+    fn from_number<S: Scalar>(number: S) -> u8 {
+        u8::from(number != S::ZERO)
+    }
+    #[inline(always)]
+    fn numbers<T: Real>(_: &[T::Mask], _: impl FnMut(usize, &[T])) {}
+    #[inline(always)]
+    fn splat<T: Real>(truth: &<T::Scalar as Real>::Mask) -> T::Mask {
+        T::Mask::splat(truth.lane(0))
+    }
+    fn same<T: Real>(one: &T::Mask, other: &T::Mask) -> bool {
+        one == other
+    }
+}

@@ -1,0 +1,313 @@
+//! What a user saves and restores.
+
+pub mod kind;
+mod table;
+
+use crate::model::{ControlInput, Joint, Keyframe, Model};
+use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast, kernel};
+use kind::Kind;
+use std::ops::Range;
+
+/// How many elements a field has: as many as the model has of what a variant is named after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "`symbol` says how many each means")]
+pub enum Size {
+    Positions,
+    Dofs,
+    Activations,
+    Plastic,
+    Actuators,
+    History,
+    Bodies,
+    MocapBodies,
+    Equalities,
+    DynamicConstraints,
+    Trees,
+    AsleepPose,
+}
+
+impl Size {
+    /// How it is written where shapes are told, in MuJoCo's names.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Size::Positions => "nq",
+            Size::Dofs => "nv",
+            Size::Activations => "na",
+            Size::Plastic => "nplastic",
+            Size::Actuators => "nu",
+            Size::History => "nhistory",
+            Size::Bodies => "nbody",
+            Size::MocapBodies => "nmocap",
+            Size::Equalities => "neq",
+            Size::DynamicConstraints => "max_dynamic_constraints",
+            Size::Trees => "ntree where trees may sleep, else 0",
+            Size::AsleepPose => "nq + 7 nmocap where trees may sleep, else 0",
+        }
+    }
+
+    fn of(self, model: &Model) -> usize {
+        match self {
+            Size::Positions => model.nq,
+            Size::Dofs => model.nv,
+            Size::Activations => model.na,
+            Size::Plastic => model.nplastic,
+            Size::Actuators => model.nu(),
+            Size::History => model.nhistory,
+            Size::Bodies => model.nbody(),
+            Size::MocapBodies => model.nmocap,
+            Size::Equalities => model.equalities.len(),
+            Size::DynamicConstraints => model.max_dynamic_constraints,
+            Size::Trees => model.tree_asleep0.len(),
+            Size::AsleepPose if model.may_sleep() => model.nq + 7 * model.nmocap,
+            Size::AsleepPose => 0,
+        }
+    }
+
+    /// Where the elements of a joint lie, in fields that have any for joints: next to each other.
+    pub fn of_joint(self, joint: &Joint) -> Option<Range<usize>> {
+        match self {
+            Size::Positions => Some(joint.qpos..joint.qpos + joint.kind.nq()),
+            Size::Dofs => Some(joint.dof..joint.dof + joint.kind.nv()),
+            _ => None,
+        }
+    }
+}
+
+/// A field of the state besides the time.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// How many elements it has.
+    pub size: Size,
+    /// How many numbers each of them has.
+    width: usize,
+}
+
+impl Field {
+    /// How many numbers it has.
+    pub fn numbers(self, model: &Model) -> usize {
+        self.width * self.size.of(model)
+    }
+}
+
+/// The elements of one environment in every lane.
+#[kernel]
+fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
+    for (from, to) in from.iter().zip(to) {
+        *to = K::splat::<T>(from);
+    }
+}
+
+/// The elements of the first lane.
+fn first_lane<T: Real, K: Kind>(from: &[K::Of<T>], to: &mut [K::Of<T::Scalar>]) {
+    for (from, to) in from.iter().zip(to) {
+        for part in 0..K::WIDTH {
+            K::set_cell::<T::Scalar>(to, part, 0, K::cell::<T>(from, part, 0));
+        }
+    }
+}
+
+#[inline(never)] // Every field calls it.
+fn copy<X: Copy>(from: &[X], to: &mut Vec<X>) {
+    to.clear();
+    to.extend_from_slice(from);
+}
+
+#[inline(never)] // Every field calls it.
+fn zeros<T: Real, K: Kind>(count: usize) -> Vec<K::Of<T>> {
+    vec![K::zero::<T>(); count]
+}
+
+macro_rules! declare_state {
+    ($($group:ident { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* })*) => {
+        /// The state of one environment (or of the lanes of a group): everything that the next step depends on.
+        #[derive(Clone, Debug)]
+        pub struct State<T: Real> {
+            /// s, in double precision.
+            pub time: T::Clock,
+            $($($(#[$doc])* pub $name: Vec<<kind::$kind as Kind>::Of<T>>,)*)*
+        }
+
+        /// The fields of a state, but for the time.
+        pub const FIELDS: &[Field] = &[$($(Field {
+            name: stringify!($name),
+            size: Size::$size,
+            width: <kind::$kind as Kind>::WIDTH,
+        }),*),*];
+
+        /// Bit by bit: a NaN equals itself, and 0 does not equal −0.
+        impl<T: Real> PartialEq for State<T> {
+            fn eq(&self, other: &Self) -> bool {
+                let same_time = |lane| {
+                    self.time.lane(lane).to_bits() == other.time.lane(lane).to_bits()
+                };
+                (0..T::LANES).all(same_time) $($(&& {
+                    let mut pairs = self.$name.iter().zip(&other.$name);
+                    self.$name.len() == other.$name.len()
+                        && pairs.all(|(a, b)| <kind::$kind as Kind>::same::<T>(a, b))
+                })*)*
+            }
+        }
+
+        impl<T: Real> State<T> {
+            /// Zero and false everywhere.
+            fn zero(model: &Model) -> Self {
+                State {
+                    time: T::Clock::splat(0.0),
+                    $($($name: zeros::<T, kind::$kind>(Size::$size.of(model)),)*)*
+                }
+            }
+
+            /// How many numbers each field has, in the order of [`FIELDS`].
+            pub fn lengths(&self) -> impl Iterator<Item = usize> {
+                [$($(self.$name.len() * <kind::$kind as Kind>::WIDTH),*),*].into_iter()
+            }
+
+            /// Whether every field has as many elements as the model says.
+            pub fn fits(&self, model: &Model) -> bool {
+                $($(self.$name.len() == Size::$size.of(model))&&*)&&*
+            }
+
+            /// Takes over another state of the same model, without allocating.
+            pub fn copy_from(&mut self, other: &Self) {
+                self.time = other.time;
+                $($(copy(&other.$name, &mut self.$name);)*)*
+            }
+
+            /// Takes over the state of one environment, of the same model, in every lane.
+            pub fn splat_from(&mut self, other: &State<T::Scalar>) {
+                self.time = T::Clock::splat(other.time);
+                $($(splat::<T, kind::$kind>(&other.$name, &mut self.$name);)*)*
+            }
+        }
+    };
+}
+crate::state_fields!(declare_state);
+
+macro_rules! declare_moving {
+    (moving { $(
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+    )* } $($others:tt)*) => {
+        impl<T: Real> State<T> {
+            /// Takes over from another state of the same model what a step writes, without allocating.
+            pub fn copy_moving_from(&mut self, other: &Self) {
+                self.time = other.time;
+                $(self.$name.clone_from(&other.$name);)*
+            }
+
+            /// Writes what a step changed in the first lane to the state of one environment of the same model.
+            pub fn write_moving(&self, other: &mut State<T::Scalar>) {
+                other.time = self.time.lane(0);
+                $(first_lane::<T, kind::$kind>(&self.$name, &mut other.$name);)*
+            }
+        }
+    };
+}
+crate::state_fields!(declare_moving);
+
+impl<T: Real> Eq for State<T> {}
+
+impl<T: Real> State<T> {
+    /// The initial state of a model.
+    pub fn new(model: &Model) -> Self {
+        let mut state = State::zero(model);
+        broadcast(&model.params.qpos0, &mut state.qpos);
+        write_initial_rests(model, &mut state.plastic);
+        for actuator in &model.actuators {
+            if actuator.inputs.first() == Some(&ControlInput::Quaternion) {
+                state.ctrl[actuator.controls.start] = T::ONE; // No rotation.
+            }
+        }
+        let step = model.params.timestep;
+        for history in model.histories() {
+            history.begin(step, &mut state.history);
+        }
+        for (sensor, &period) in model.sensors.iter().zip(&model.params.sensor_interval) {
+            if let Some(history) = sensor.history.as_ref().filter(|_| period > 0.0) {
+                let phase = if sensor.phase == 0.0 {
+                    -period
+                } else {
+                    sensor.phase
+                };
+                history.begin_periodic(step, [period, phase], &mut state.history);
+            }
+        }
+        let mocap_bodies = (0..model.nbody()).filter(|&b| model.bodies[b].mocap.is_some());
+        for (m, b) in mocap_bodies.enumerate() {
+            state.mocap_pos[m] = Vec3::from_f64(model.params.body_pos[b].to_array());
+            state.mocap_quat[m] = Quat::from_f64(model.params.body_quat[b].to_array());
+        }
+        for (active, equality) in state.eq_active.iter_mut().zip(&model.equalities) {
+            *active = T::Mask::splat(equality.active0);
+        }
+        broadcast(&model.tree_asleep0, &mut state.tree_asleep);
+        if model.may_sleep() {
+            let (qpos, mocap) = state.pose_asleep.split_at_mut(model.nq);
+            broadcast(&model.params.qpos0, qpos);
+            for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
+                let (pos, turn) = (state.mocap_pos[m], state.mocap_quat[m]);
+                pos.write(pose);
+                turn.write(&mut pose[3..]);
+            }
+        }
+        state
+    }
+
+    /// Lets time pass.
+    #[inline(always)]
+    pub fn pass(&mut self, time: T) {
+        for lane in 0..T::LANES {
+            let now = self.time.lane(lane);
+            self.time.set_lane(lane, now + time.lane(lane).to_f64());
+        }
+    }
+
+    /// The time in the precision of all other numbers.
+    pub fn rounded_time(&self) -> T {
+        let mut time = T::ZERO;
+        for lane in 0..T::LANES {
+            time.set_lane(lane, T::Scalar::new(self.time.lane(lane)));
+        }
+        time
+    }
+
+    /// Takes over what a keyframe of the model holds, the same in every lane.
+    pub fn set_keyframe(&mut self, key: &Keyframe) {
+        self.time = T::Clock::splat(key.time);
+        for (to, from) in [
+            (&mut self.qpos, &key.qpos),
+            (&mut self.qvel, &key.qvel),
+            (&mut self.act, &key.act),
+            (&mut self.plastic, &key.plastic),
+            (&mut self.ctrl, &key.ctrl),
+        ] {
+            broadcast(from, to);
+        }
+        for (to, p) in (self.mocap_pos.iter_mut()).zip(key.mocap_pos.chunks_exact(3)) {
+            *to = Vec3::from_f64([p[0], p[1], p[2]]);
+        }
+        for (to, q) in (self.mocap_quat.iter_mut()).zip(key.mocap_quat.chunks_exact(4)) {
+            *to = Quat::from_f64([q[0], q[1], q[2], q[3]]);
+        }
+    }
+}
+
+/// Writes where springs that yield rest in the model (nplastic): before anything yields.
+fn write_initial_rests<T: Real>(model: &Model, plastic: &mut [T]) {
+    for joint in &model.joints {
+        if let Some(start) = joint.plastic {
+            let count = joint.kind.nq();
+            let rest = &model.params.qpos_spring[joint.qpos..][..count];
+            broadcast(rest, &mut plastic[start..start + count]);
+        }
+    }
+    // While a model is built, joints have their places before tendons have lengths.
+    for (tendon, &[low, high]) in model.tendons.iter().zip(&model.params.tendon_lengthspring) {
+        if let Some(start) = tendon.plastic {
+            (plastic[start], plastic[start + 1]) = (T::new(low), T::new(high));
+        }
+    }
+}
