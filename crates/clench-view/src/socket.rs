@@ -4,8 +4,7 @@
 use crate::command::Command;
 use crate::delta::delta;
 use crate::shared::Shared;
-use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::io;
 use std::net::TcpStream;
 use std::sync::atomic::Ordering::Relaxed;
@@ -21,23 +20,28 @@ const LOOK: Duration = Duration::from_millis(500);
 /// A browser that takes nothing for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What a browser asks of its connection.
-#[derive(Deserialize)]
-#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
-enum Request {
-    /// For the next frame, or for what has changed in it since the last one that came.
-    Next {
-        #[serde(default)]
-        changes: bool,
-    },
+/// What a browser sends: an object whose `do` says what it asks.
+enum Said {
+    /// The next frame, or what has changed in it since the last one that came.
+    Next { changes: bool },
+    /// To be done by whoever steps the simulation.
+    Command(Command),
 }
 
-/// What a browser sends.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Said {
-    Request(Request),
-    Command(Command),
+impl Said {
+    /// None where it is no object of either kind.
+    fn read(text: &str) -> Option<Self> {
+        let mut object: Map<String, Value> = serde_json::from_str(text).ok()?;
+        let Value::String(name) = object.remove("do")? else {
+            return None;
+        };
+        if name != "next" {
+            return Command::read(name, object).map(Said::Command);
+        }
+        let changes = object.remove("changes").unwrap_or(Value::Bool(false));
+        let changes = changes.as_bool().filter(|_| object.is_empty())?;
+        Some(Said::Next { changes })
+    }
 }
 
 /// Serves a browser after the handshake, until one of both goes.
@@ -68,8 +72,8 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
             Err(error) => return Err(error),
         };
         match message {
-            Message::Text(text) => match serde_json::from_str(&text) {
-                Ok(Said::Request(Request::Next { changes })) => {
+            Message::Text(text) => match Said::read(&text) {
+                Some(Said::Next { changes }) => {
                     let news = shared.newer_than(seen);
                     if news.said > told {
                         told = news.said;
@@ -81,14 +85,14 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
                     let frame = changed.map_or_else(|| last.clone(), Bytes::from);
                     socket.send(Message::Binary(frame))?;
                 }
-                Ok(Said::Command(command)) => match shared.commands.try_send(command) {
+                Some(Said::Command(command)) => match shared.commands.try_send(command) {
                     Ok(()) => {}
                     Err(TrySendError::Full(_)) => {
                         refuse(&mut socket, "the simulation is too busy to take commands")?;
                     }
                     Err(TrySendError::Disconnected(_)) => return socket.close(None),
                 },
-                Err(_) => refuse(&mut socket, "this is no command that the viewer knows")?,
+                None => refuse(&mut socket, "this is no command that the viewer knows")?,
             },
             Message::Binary(_) => refuse(&mut socket, "the viewer takes no binary messages")?,
             Message::Close(_) => return Ok(()),
