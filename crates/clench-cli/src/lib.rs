@@ -1,9 +1,114 @@
-//! What the `clench` program reads and writes besides models: NumPy's files and the JSON of states and results. A library, so
-//! that the fuzz targets reach its readers; with the bounds that they keep to.
+//! The `clench` program: `view`, `simulate`, `forward` and `inspect` a robot file, `convert` it to MJCF, and say what files may hold (`mjcf`).
+//!
+//! One module a subcommand, plus what they share: options that override the file (`options`), files that replace others when
+//! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`),
+//! NumPy's files (`npy`, `zip`) and the JSON of states and results (`protocol`), which the fuzz targets reach too, with the bounds that they keep
+//! to (`limits`). Physics lives in the library `clench`.
+//!
+//! A library, because `rustc` compiles it beside the crates below it, where a program waits for all of them.
 
 #![deny(unreachable_pub)]
 
+mod allocator;
+mod convert;
+mod description;
+mod exit;
+mod forward;
+mod inspect;
+mod interrupt;
 pub mod limits;
+mod message;
+mod mjcf;
 pub mod npy;
+mod options;
+mod overrides;
 pub mod protocol;
+mod render;
+mod replacement;
+mod simulate;
+mod table;
+mod view;
 mod zip;
+
+use clap::{Parser, Subcommand};
+use exit::{BAD_INPUT, is_closed_pipe};
+use message::tell;
+use std::process::ExitCode;
+
+/// Constrained motion of articulated rigid bodies, with MuJoCo's numbers.
+#[derive(Parser)]
+#[command(name = "clench", version, about, arg_required_else_help = true, after_help = EXAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  clench view models/humanoid.xml
+      see a robot move in the browser, and pull it about
+  clench simulate models/humanoid.xml --time 2
+      step a robot for two seconds and summarise what happened
+  clench simulate models/pendulum.xml --steps 500 --record swing.npz --every 5
+      keep every fifth state as NumPy arrays
+  clench simulate models/humanoid.xml --envs 1024 --noise 0.01 --precision 32
+      step many robots side by side, in single precision
+  echo '{}' | clench forward models/quadruped.xml
+      accelerations, contacts and constraint forces of the initial state, as JSON
+  clench inspect models/four_bar.xml --steps 100
+      sizes, tree, options, and the constraints that act after 100 steps
+  clench convert models/gripper/gripper.urdf gripper.xml
+      a URDF file, or any other model, as MJCF";
+
+#[derive(Subcommand)]
+enum Command {
+    /// See a model move in the browser, and touch it
+    View(view::Arguments),
+    /// Draw a picture or a film of a model, without a window
+    Render(render::Arguments),
+    /// Step a model through time and summarise the run
+    Simulate(simulate::Arguments),
+    /// Compute accelerations and forces of states: one JSON state a line in, one JSON result a line out
+    Forward(forward::Arguments),
+    /// Show a model: sizes, tree, options, and the constraints that act
+    Inspect(inspect::Arguments),
+    /// Write a model as MJCF, with every number resolved
+    Convert(convert::Arguments),
+    /// List the graphics devices that `simulate --device gpu` can step on
+    #[command(long_flag = "list-devices")]
+    Devices,
+    /// Say what of MJCF is read, what is ignored, and what is refused
+    Mjcf(mjcf::Arguments),
+}
+
+/// Runs the program with the arguments of the process, and gives its exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::View(arguments) => view::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Forward(arguments) => forward::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Inspect(arguments) => inspect::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Convert(arguments) => convert::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Devices => simulate::list_devices().map(|()| ExitCode::SUCCESS),
+        Command::Mjcf(arguments) => mjcf::run(&arguments).map(|()| ExitCode::SUCCESS),
+    };
+    match result {
+        Ok(code) => code,
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            tell(format_args!("error: {error:#}"));
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+/// The error of a program that was built without a feature: what the feature does, and the command that brings it.
+#[cfg(not(all(feature = "gpu", feature = "render")))]
+fn without(feature: &str, does: &str) -> anyhow::Error {
+    anyhow::anyhow!(
+        "this program was built without the feature `{feature}`, which {does}; `cargo run --release --features {feature} -- ...` \
+         builds one that has it, in about two minutes more on two cores"
+    )
+}
