@@ -90,6 +90,7 @@ class Model:
         *,
         budget: float = 1.0,
         package_path: Sequence[str | PathLike[str]] = (),
+        floating: bool = False,
         ignore_unsupported: bool = False,
         max_dynamic_constraints: SupportsIndex = 8,
     ) -> Model: ...
@@ -98,6 +99,7 @@ class Model:
         text: str,
         *,
         budget: float = 1.0,
+        floating: bool = False,
         ignore_unsupported: bool = False,
         assets: Mapping[str, bytes] = {},
         max_dynamic_constraints: SupportsIndex = 8,

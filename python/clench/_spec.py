@@ -76,13 +76,15 @@ class ModelSpec:
         return spec
 
     @staticmethod
-    def from_file(path: str | PathLike[str]) -> ModelSpec:
+    def from_file(path: str | PathLike[str], *, floating: bool = False) -> ModelSpec:
         """Begin with a file, MJCF or URDF. Files that it names are read now.
 
         Parameters
         ----------
         path : str or os.PathLike
             The file. What it includes becomes part of the document; URDF becomes MJCF.
+        floating : bool
+            Free the base of a URDF robot, as `Model.from_file` does.
 
         Returns
         -------
@@ -91,13 +93,13 @@ class ModelSpec:
         Raises
         ------
         LoadError
-            A file that cannot be read or is not well-formed.
+            A file that cannot be read or is not well-formed, a robot that has no base to free, an MJCF file that is to float.
         """
         from clench._core import Model
 
         path = Path(path)
-        if is_urdf(path):
-            return ModelSpec.from_xml(Model.from_file(path).to_xml())
+        if floating or is_urdf(path):
+            return ModelSpec.from_xml(Model.from_file(path, floating=floating).to_xml())
         spec = ModelSpec()
         spec._document = Document.from_file(path)
         return spec

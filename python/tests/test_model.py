@@ -349,6 +349,22 @@ def test_robots_in_urdf_find_their_packages(tmp_path: Path) -> None:
     assert (model.nv, model.neq) == (3, 1)
 
 
+def test_the_base_of_a_robot_in_urdf_can_float() -> None:
+    gripper = ROOT / "models/gripper/gripper.urdf"
+    fixed, free = clench.Model.from_file(gripper), clench.Model.from_file(gripper, floating=True)
+    assert (free.nq, free.nv) == (fixed.nq + 7, fixed.nv + 6)
+    assert free.names("body")[1] == "base" and free.body("base").mass > 0 and "base" not in fixed.names("body")
+    spec = clench.ModelSpec.from_file(gripper, floating=True)
+    assert spec.build().nv == free.nv and "floating_base" in spec.names("joint")
+    ball = "<robot name='r'><link name='ball'><collision><geometry><sphere radius='0.1'/></geometry></collision></link></robot>"
+    assert clench.Model.from_xml(ball, floating=True).nv == 6
+    assert pickle.loads(pickle.dumps(free)).nv == free.nv
+    with pytest.raises(clench.LoadError, match="freejoint"):
+        clench.Model.from_file(HUMANOID, floating=True)
+    with pytest.raises(clench.LoadError, match="freejoint"):
+        clench.ModelSpec.from_file(HUMANOID, floating=True)
+
+
 @pytest.mark.parametrize("path", [*EXAMPLES, *FEATURES], ids=lambda path: path.stem)
 def test_a_saved_model_is_the_model(path: Path) -> None:
     model = clench.Model.from_file(path)
@@ -385,6 +401,7 @@ def test_everything_says_what_it_is_for() -> None:
         "path",
         "budget",
         "package_path",
+        "floating",
         "ignore_unsupported",
         "max_dynamic_constraints",
     ]

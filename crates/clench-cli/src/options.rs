@@ -20,6 +20,9 @@ pub(crate) struct ModelFile {
     /// A folder that holds packages, of which URDF files name meshes by `package://`; may be repeated
     #[arg(long, value_name = "FOLDER")]
     package_path: Vec<PathBuf>,
+    /// Free the base of a URDF robot, which its file fixes to the world
+    #[arg(long)]
+    floating: bool,
     /// Leave out of an MJCF model what is not supported yet and what the rest can do without, and say what
     #[arg(long)]
     ignore_unsupported: bool,
@@ -43,6 +46,7 @@ impl ModelFile {
         let loader = Loader::new()
             .budget(Budget::default().times(self.budget))
             .package_path(&self.package_path)
+            .floating(self.floating)
             .ignore_unsupported(self.ignore_unsupported);
         let model = loader.load(&self.model)?;
         for note in &model.notes {

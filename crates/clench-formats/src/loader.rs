@@ -21,6 +21,7 @@ use std::sync::Arc;
 pub struct Loader {
     budget: Budget,
     packages: Vec<PathBuf>,
+    floating: bool,
     ignore_unsupported: bool,
     memory: Arc<Memory>,
 }
@@ -43,6 +44,21 @@ impl Loader {
     #[must_use]
     pub fn package_path<P: Into<PathBuf>>(mut self, folders: impl IntoIterator<Item = P>) -> Self {
         self.packages.extend(folders.into_iter().map(Into::into));
+        self
+    }
+
+    /// Frees the base of a URDF robot: the one link that stands on the world gets a free joint, `floating_base`, and keeps its name, pose
+    /// and inertia. A robot whose base has a free joint stays as it is. An MJCF model is refused: its file says `<freejoint/>`.
+    ///
+    /// ```
+    /// let robot = "<robot name='box'><link name='trunk'><inertial><mass value='2'/>
+    ///   <inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link></robot>";
+    /// assert_eq!(clench_formats::Loader::new().floating(true).load_str(robot)?.nv, 6);
+    /// # Ok::<(), clench_formats::LoadError>(())
+    /// ```
+    #[must_use]
+    pub fn floating(mut self, floating: bool) -> Self {
+        self.floating = floating;
         self
     }
 
@@ -136,6 +152,11 @@ impl Loader {
         let root = document::parse(bytes, file, spending)?;
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         if root.tag == "mujoco" {
+            if self.floating {
+                return Err(root.error(
+                    "only a URDF robot can be made to float: an MJCF body floats by <freejoint/>",
+                ));
+            }
             return mjcf::read(
                 root,
                 path,
@@ -145,7 +166,7 @@ impl Loader {
             );
         }
         if document::is_urdf(&root.tag) {
-            return urdf::read(&root, directory, &self.packages, spending);
+            return urdf::read(&root, directory, &self.packages, self.floating, spending);
         }
         Err(root.error("the root element of a model is <mujoco> (MJCF) or <robot> (URDF)"))
     }

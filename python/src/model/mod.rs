@@ -88,6 +88,8 @@ impl Model {
     ///     those around it are searched.
     /// max_dynamic_constraints : int
     ///     How many constraints can be added at run time beside each other (`Sim.add_weld`).
+    /// floating : bool
+    ///     Free the base of a URDF robot: the one link that stands on the world gets a free joint, ``floating_base``.
     /// ignore_unsupported : bool
     ///     Leave out of an MJCF model what is not supported yet, where the rest still means the same: plugins, deformable bodies,
     ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`left_out` say what.
@@ -101,13 +103,15 @@ impl Model {
     /// LoadError
     ///     A file that cannot be read, is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new(), ignore_unsupported = false, max_dynamic_constraints = Count(8)),
-           text_signature = "(path, *, budget=1.0, package_path=(), ignore_unsupported=False, max_dynamic_constraints=8)")]
+    #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new(), floating = false, ignore_unsupported = false,
+                        max_dynamic_constraints = Count(8)),
+           text_signature = "(path, *, budget=1.0, package_path=(), floating=False, ignore_unsupported=False, max_dynamic_constraints=8)")]
     fn from_file(
         py: Python<'_>,
         path: PathBuf,
         budget: f64,
         package_path: Vec<PathBuf>,
+        floating: bool,
         ignore_unsupported: bool,
         max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
@@ -117,6 +121,7 @@ impl Model {
         arguments.set_item("path", absolute.as_ref().unwrap_or(&path))?;
         arguments.set_item("budget", budget)?;
         arguments.set_item("package_path", &package_path)?;
+        arguments.set_item("floating", floating)?;
         arguments.set_item("ignore_unsupported", ignore_unsupported)?;
         arguments.set_item("max_dynamic_constraints", max_dynamic_constraints.0)?;
         let source = Source {
@@ -126,6 +131,7 @@ impl Model {
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
             .package_path(package_path)
+            .floating(floating)
             .ignore_unsupported(ignore_unsupported);
         let mut model = py.detach(|| loader.load(&path)).map_err(load_error)?;
         model.max_dynamic_constraints = max_dynamic_constraints.0;
@@ -142,6 +148,8 @@ impl Model {
     ///     As of :meth:`from_file`.
     /// max_dynamic_constraints : int
     ///     As of :meth:`from_file`.
+    /// floating : bool
+    ///     As of :meth:`from_file`.
     /// ignore_unsupported : bool
     ///     As of :meth:`from_file`.
     /// assets : dict of str to bytes
@@ -157,12 +165,13 @@ impl Model {
     /// LoadError
     ///     A text that is not well-formed, or asks for something that cannot be, or for more than the budget.
     #[staticmethod]
-    #[pyo3(signature = (text, *, budget = 1.0, ignore_unsupported = false, assets = HashMap::new(), max_dynamic_constraints = Count(8)),
-           text_signature = "(text, *, budget=1.0, ignore_unsupported=False, assets={}, max_dynamic_constraints=8)")]
+    #[pyo3(signature = (text, *, budget = 1.0, floating = false, ignore_unsupported = false, assets = HashMap::new(), max_dynamic_constraints = Count(8)),
+           text_signature = "(text, *, budget=1.0, floating=False, ignore_unsupported=False, assets={}, max_dynamic_constraints=8)")]
     fn from_xml(
         py: Python<'_>,
         text: &str,
         budget: f64,
+        floating: bool,
         ignore_unsupported: bool,
         assets: HashMap<String, Vec<u8>>,
         max_dynamic_constraints: Count,
@@ -170,6 +179,7 @@ impl Model {
         let arguments = PyDict::new(py);
         arguments.set_item("text", text)?;
         arguments.set_item("budget", budget)?;
+        arguments.set_item("floating", floating)?;
         arguments.set_item("ignore_unsupported", ignore_unsupported)?;
         let files = PyDict::new(py);
         for (name, data) in &assets {
@@ -183,6 +193,7 @@ impl Model {
         };
         let loader = clench::Loader::new()
             .budget(clench::Budget::default().times(budget))
+            .floating(floating)
             .ignore_unsupported(ignore_unsupported)
             .assets(assets);
         let mut model = py.detach(|| loader.load_str(text)).map_err(load_error)?;

@@ -6,6 +6,7 @@
 //! ([`document`](crate::document)).
 
 mod element;
+mod floating;
 mod geometry;
 mod hints;
 mod joint;
@@ -23,7 +24,7 @@ use meshes::Meshes;
 use std::path::{Path, PathBuf};
 use tree::Tree;
 
-/// Reads the robot below a root element, whose file is in a directory.
+/// Reads the robot below a root element, whose file is in a directory; `floating` frees the link that stands on the world.
 ///
 /// # Errors
 /// What breaks a rule of the format: missing elements and attributes, names that are taken or lead nowhere, joints that form a loop,
@@ -32,6 +33,7 @@ pub(crate) fn read(
     root: &Element,
     directory: &Path,
     packages: &[PathBuf],
+    floating: bool,
     spending: &mut Spending,
 ) -> Result<ModelBuilder, LoadError> {
     let mut builder = ModelBuilder {
@@ -53,6 +55,9 @@ pub(crate) fn read(
         link::read(&link, &mut geoms, &mut builder, spending)?;
     }
     joint::read_all(&tree, &mut builder, spending)?;
+    if floating {
+        floating::float(root, &mut builder)?;
+    }
     builder.meshes = geoms.meshes.found;
     Ok(builder)
 }

@@ -21,7 +21,7 @@ pub(super) fn as_mjcf(
     directory: &Path,
     shared: &mut Shared,
 ) -> Result<Element, LoadError> {
-    let mut builder = crate::urdf::read(root, directory, shared.packages, shared.spending)?;
+    let mut builder = crate::urdf::read(root, directory, shared.packages, false, shared.spending)?;
     builder.compiler.fusestatic = false;
     shared.notes.append(&mut builder.notes);
     let text = builder.build()?.to_mjcf();

@@ -1,5 +1,6 @@
 //! URDF: links, joints, meshes of packages, MuJoCo's extension, and what is wrong with a file.
 
+mod floating;
 mod joints;
 mod links;
 mod meshes;

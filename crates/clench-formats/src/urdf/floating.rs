@@ -1,0 +1,56 @@
+//! Robots whose base is free to move, though their file does not say so.
+
+use crate::LoadError;
+use crate::document::Element;
+use clench_builder::{JointSpec, ModelBuilder};
+use clench_dynamics::model::JointKind;
+
+/// What the joint is called; a joint of the robot with this name makes it `floating_base_1`, and so on.
+const NAME: &str = "floating_base";
+
+/// Gives a free joint to the link that stands on the world. A link that has one already keeps it.
+///
+/// # Errors
+/// No such link, several, or one that another joint moves.
+pub(super) fn float(root: &Element, builder: &mut ModelBuilder) -> Result<(), LoadError> {
+    let on_world = |&body: &usize| builder.bodies[body].parent == ModelBuilder::WORLD;
+    let bases = Vec::from_iter((1..builder.bodies.len()).filter(on_world));
+    let &[base] = &bases[..] else {
+        let names = bases.iter().map(|&body| builder.bodies[body].name.as_str());
+        return Err(root.error(match bases.is_empty() {
+            true => "there is no link besides the world that could float".to_owned(),
+            false => format!(
+                "one link alone can float, and several stand on the world: {}",
+                Vec::from_iter(names).join(", ")
+            ),
+        }));
+    };
+    let body = &builder.bodies[base];
+    match body.joints.first() {
+        Some(joint) if joint.kind == JointKind::Free => return Ok(()),
+        Some(joint) => {
+            return Err(root.error(format!(
+                "the link \"{}\" cannot float: the joint \"{}\" moves it along the world",
+                body.name, joint.name
+            )));
+        }
+        None => {}
+    }
+    let taken = |name: &str| {
+        let mut joints = builder.bodies.iter().flat_map(|body| &body.joints);
+        joints.any(|joint| joint.name == name)
+    };
+    let mut name = NAME.to_owned();
+    for number in 1.. {
+        if !taken(&name) {
+            break;
+        }
+        name = format!("{NAME}_{number}");
+    }
+    let joint = JointSpec {
+        origin: body.origin.clone(),
+        ..JointSpec::free(name)
+    };
+    builder.bodies[base].joints.push(joint);
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! Robots whose base is freed when they are loaded.
+
+use super::{joint, link, names, robot};
+use clench_formats::{LoadError, Loader};
+use clench_rigid::Model;
+use clench_rigid::model::JointKind;
+
+fn floating(parts: &[String]) -> Result<Model, LoadError> {
+    Loader::new().floating(true).load_str(&robot(parts))
+}
+
+#[track_caller]
+fn refused(parts: &[String], because: &str) {
+    let error = floating(parts).unwrap_err();
+    assert!(error.message.contains(because), "{error}");
+    assert_eq!(error.line, Some(1));
+}
+
+#[test]
+fn the_base_gets_a_free_joint_and_keeps_what_it_is() {
+    let parts = [
+        link("trunk", ""),
+        link("imu", ""),
+        link("leg", ""),
+        joint("mount", "fixed", "trunk", "imu", "<origin xyz='0 0 0.2'/>"),
+        joint(
+            "hip",
+            "continuous",
+            "trunk",
+            "leg",
+            "<origin xyz='0.3 0 0'/>",
+        ),
+    ];
+    let model = floating(&parts).unwrap();
+    assert_eq!(
+        names(model.joints.iter().map(|j| &j.name)),
+        ["floating_base", "hip"]
+    );
+    assert_eq!(model.joints[0].kind, JointKind::Free);
+    // The fixed link is part of the base, as it is without floating of a base that a file frees.
+    assert_eq!(
+        names(model.bodies.iter().map(|b| &b.name)),
+        ["world", "trunk", "leg"]
+    );
+    assert_eq!(model.params.body_mass, [0.0, 2.0, 1.0]);
+    assert_eq!(model.params.body_pos[1].to_array(), [0.0; 3]);
+    assert_eq!(model.params.qpos0, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_base_that_is_fixed_to_a_link_world_floats_where_it_stands() {
+    let model = floating(&[
+        "<link name='world'/>".to_owned(),
+        link("trunk", ""),
+        joint(
+            "floating_base",
+            "fixed",
+            "world",
+            "trunk",
+            "<origin xyz='0 0 0.4'/>",
+        ),
+    ]);
+    let model = model.unwrap();
+    assert_eq!(model.params.qpos0[..3], [0.0, 0.0, 0.4]);
+    assert_eq!(model.joints[0].name, "floating_base");
+}
+
+#[test]
+fn a_base_that_a_file_frees_stays_as_it_is_and_names_stay_unique() {
+    let free = floating(&[
+        "<link name='world'/>".to_owned(),
+        link("trunk", ""),
+        joint("root", "floating", "world", "trunk", ""),
+    ]);
+    assert_eq!(
+        names(free.unwrap().joints.iter().map(|j| &j.name)),
+        ["root"]
+    );
+    let taken = floating(&[
+        link("trunk", ""),
+        link("leg", ""),
+        joint("floating_base", "revolute", "trunk", "leg", ""),
+    ]);
+    let taken = taken.unwrap();
+    let joints = names(taken.joints.iter().map(|j| &j.name));
+    assert_eq!(joints, ["floating_base_1", "floating_base"]);
+}
+
+#[test]
+fn what_has_no_base_to_free_is_refused() {
+    refused(
+        &[link("a", ""), link("b", "")],
+        "several stand on the world: a, b",
+    );
+    refused(
+        &["<link name='world'/>".to_owned()],
+        "no link besides the world",
+    );
+    let rail = joint("rail", "prismatic", "world", "cart", "");
+    refused(
+        &["<link name='world'/>".to_owned(), link("cart", ""), rail],
+        "the joint \"rail\" moves it",
+    );
+    let mjcf = Loader::new()
+        .floating(true)
+        .load_str("<mujoco/>")
+        .unwrap_err();
+    assert!(mjcf.message.contains("<freejoint/>"), "{mjcf}");
+}
