@@ -72,6 +72,9 @@ class Document:
     def __init__(self, root: ET.Element) -> None:
         self.root = root
         self.assets: dict[str, bytes] = {}
+        # Elements by kind and name; None where it has to be made anew.
+        self._names: dict[tuple[str, str], ET.Element] | None = None
+        self._has_copies = False
 
     @staticmethod
     def from_text(text: str, assets: Mapping[str, bytes]) -> Document:
@@ -104,7 +107,32 @@ class Document:
                 yield node, section.tag
 
     def elements(self, kind: str) -> list[ET.Element]:
-        return [node for node, _ in self.nodes() if self.kind_of(node) == kind]
+        return [node for node, section in self.nodes() if _kind(node, section) == kind]
+
+    def _index(self) -> dict[tuple[str, str], ET.Element]:
+        if self._names is None:
+            self._names, self._has_copies = {}, False
+            for node, section in self.nodes():
+                self.added(section, node)
+        return self._names
+
+    def added(self, section: str, node: ET.Element) -> None:
+        """A node came into a section, or got a name that it had not."""
+        if self._names is None:
+            return
+        self._has_copies |= node.tag in ("attach", "replicate")
+        kind = _kind(node, section)
+        if kind and (name := named(node)):
+            self._names.setdefault((kind, name), node)
+
+    def changed(self) -> None:
+        """A node went, or has another name."""
+        self._names = None
+
+    def has_copies(self) -> bool:
+        """Whether names come into being when the model is built: those of attached models and of replicas."""
+        self._index()
+        return self._has_copies
 
     def kind_of(self, node: ET.Element) -> str | None:
         """What kind of element a node is that can have a name; None for references, defaults and the like."""
@@ -114,13 +142,13 @@ class Document:
     def find(self, kind: str, name: str) -> ET.Element | None:
         if kind not in _TAGS and kind not in _SECTIONS:
             raise ValueError(f'there is no kind of element "{kind}": there are {", ".join([*_TAGS, *_SECTIONS])}')
-        found = (node for node, section in self.nodes() if node.get("name") == name and _kind(node, section) == kind)
-        return next(found, None)
+        return self._index().get((kind, name))
 
-    def check_name(self, node: ET.Element, attribute: str, value: Value) -> None:
+    def check_name(self, section: str, node: ET.Element, attribute: str, value: Value) -> None:
+        """Refuse a name that another element of its kind has."""
         if attribute != "name":
             return
-        kind = self.kind_of(node)
+        kind = _kind(node, section)
         taken = self.find(kind, written(value)) if kind else None
         if taken is not None and taken is not node:
             raise ValueError(f'there is a {kind} "{written(value)}" already')
@@ -146,6 +174,7 @@ class Document:
         parent = self.parents()[node]
         gone = [(kind, part.get("name", "")) for part in node.iter() for kind in [self.kind_of(part)] if kind]
         parent.remove(node)
+        self.changed()
         for kind, name in gone:
             if name:
                 self._remove_references(kind, name)
@@ -199,6 +228,40 @@ class Document:
                 other = Document.from_file(folder / place)
                 self.add_files(other.assets)
                 self.assets[Path(file).name] = other.to_xml().encode()
+
+
+def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None:
+    """What kind of element an attribute of an element in a section names; None if it names none, or none that is looked up."""
+    if (section in _NO_REFERENCES and node.tag != "element") or attribute == "model":
+        return None
+    if attribute in _TYPED:
+        kind = node.get(_TYPED[attribute])
+        return "body" if kind == "xbody" else kind if kind in _REFERENCES else None
+    if _kind(node, section) == attribute:
+        return None
+    return next((kind for kind, attributes in _REFERENCES.items() if attribute in attributes), None)
+
+
+def described(document: Document, node: ET.Element) -> str:
+    """An element by its path below the section that it stands in: ``body "tip" / geom 2`` is the third geom of that body."""
+    parents = document.parents()
+    parts: list[str] = []
+    while node in parents and parents[node] in parents:
+        alike = [other for other in parents[node] if other.tag == node.tag]
+        name = node.get("name")
+        parts.append(f'{node.tag} "{name}"' if name else f"{node.tag} {alike.index(node)}")
+        if name and parts[1:]:
+            break
+        node = parents[node]
+    return " / ".join(reversed(parts)) or node.tag
+
+
+def named(node: ET.Element) -> str:
+    """The name of an element; that of its file where it has none, as meshes and pictures are called."""
+    if name := node.get("name"):
+        return name
+    file = node.get("file", "").replace("\\", "/").rpartition("/")[2]
+    return file.rpartition(".")[0] or file
 
 
 def _kind(node: ET.Element, section: str | None) -> str | None:

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from typing import Protocol
 
+from clench._check import check, limit
 from clench._document import Document, Value, written
 
 
@@ -34,11 +35,14 @@ class SpecElement:
         What it is an element of.
     node : xml.etree.ElementTree.Element
         The element in the document.
+    ancestors : tuple of xml.etree.ElementTree.Element, optional
+        What it stands in, the section first; if not given, it is looked for when it is first needed.
     """
 
-    def __init__(self, document: Document, node: ET.Element) -> None:
+    def __init__(self, document: Document, node: ET.Element, ancestors: tuple[ET.Element, ...] | None = None) -> None:
         self._document = document
         self._node = node
+        self._ancestors = ancestors
 
     @property
     def tag(self) -> str:
@@ -62,12 +66,17 @@ class SpecElement:
             raise KeyError(f"{self._described()} does not say {attribute!r}") from None
 
     def __setitem__(self, attribute: str, value: Value) -> None:
-        self._document.check_name(self._node, attribute, value)
+        self._document.check_name(self._section(), self._node, attribute, value)
+        before = dict(self._node.attrib)
         self._node.set(attribute, written(value))
+        self._check_or_restore(before)
+        if attribute in ("name", "file"):
+            self._document.changed()
 
     def __delitem__(self, attribute: str) -> None:
         self[attribute]
         del self._node.attrib[attribute]
+        self._document.changed()
 
     def __contains__(self, attribute: str) -> bool:
         return attribute in self._node.attrib
@@ -94,17 +103,50 @@ class SpecElement:
         ------
         ValueError
             A name that another element of its kind has.
+        LoadError
+            A tag or an attribute that MJCF does not have here, a value that cannot be, a name that leads nowhere.
         """
         node = ET.Element(tag)
         self._node.append(node)
-        element = SpecElement(self._document, node)
+        ancestors = (*self._path(), self._node) if self._node is not self._document.root else ()
+        element = SpecElement(self._document, node, ancestors)
         try:
             for name, value in attributes.items():
-                element[name.removesuffix("_")] = value
+                name = name.removesuffix("_")
+                self._document.check_name(element._section(), node, name, value)
+                node.set(name, written(value))
+            element._check_or_restore({})
         except (TypeError, ValueError):
             self._node.remove(node)
             raise
+        self._document.added(element._section(), node)
         return element
+
+    def _section(self) -> str:
+        """The section that it stands in, or is."""
+        path = self._path()
+        return path[0].tag if path else self._node.tag
+
+    def _path(self) -> tuple[ET.Element, ...]:
+        """What it stands in, the section first; nothing for a section."""
+        if self._ancestors is None:
+            parents, path, node = self._document.parents(), [], self._node
+            while parents.get(node, self._document.root) is not self._document.root:
+                node = parents[node]
+                path.append(node)
+            self._ancestors = tuple(reversed(path))
+        return self._ancestors
+
+    def _check_or_restore(self, before: dict[str, str]) -> None:
+        """Refuse what is wrong with the element, which then is as it was before. What a range implies is switched on."""
+        node = self._node
+        node.attrib.update(limit(self._document, node))
+        try:
+            check(self._document, self._path(), node)
+        except ValueError:
+            node.attrib.clear()
+            node.attrib.update(before)
+            raise
 
     def add_body(self, **attributes: Value) -> SpecElement:
         """Add a body below this body or frame.
@@ -234,6 +276,7 @@ class SpecElement:
         if kind and old:
             for node, attribute in self._document.references(kind, old):
                 node.set(attribute, name)
+            self._document.changed()
 
     def _described(self) -> str:
         return f'{self.tag} "{self.name}"' if self.name else f"a {self.tag}"

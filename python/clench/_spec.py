@@ -14,8 +14,10 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from clench._check import located
 from clench._document import Document, Value, is_urdf, written
 from clench._element import SpecElement
+from clench.errors import LoadError
 
 if TYPE_CHECKING:
     from clench._core import Model
@@ -131,7 +133,9 @@ class ModelSpec:
         SpecElement
         """
         node = self._document.root.find(tag)
-        return SpecElement(self._document, ET.SubElement(self._document.root, tag) if node is None else node)
+        if node is None:
+            return SpecElement(self._document, self._document.root, ()).add(tag)
+        return SpecElement(self._document, node, ())
 
     def add_actuator(self, tag: str, /, **attributes: Value) -> SpecElement:
         """Add an actuator: "motor", "position", "general" and so on.
@@ -363,11 +367,16 @@ class ModelSpec:
         Raises
         ------
         LoadError
-            What asks for something that cannot be; its line is that of `to_xml`.
+            What asks for something that cannot be; it names the element by its path, such as ``body "tip" / geom 2``, the third geom of
+            that body.
         """
         from clench._core import Model
 
-        return Model.from_xml(self.to_xml(), assets=self.assets, **options)
+        text = self.to_xml()
+        try:
+            return Model.from_xml(text, assets=self.assets, **options)
+        except LoadError as error:
+            raise located(self._document, text, error) from None
 
     def copy(self) -> ModelSpec:
         """Another one that says the same."""

@@ -20,6 +20,7 @@ pub(crate) fn load_error(error: LoadError) -> PyErr {
         line,
         element,
         message,
+        incomplete: _,
     } = error;
     classes::LoadError::new_err((message, file.to_string(), line, element))
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import clench
@@ -192,10 +193,82 @@ def test_wrong_values_are_refused() -> None:
     assert spec.names("body") == [] and len(list(spec.world)) == 0
     with pytest.raises(ValueError, match="no kind of element"):
         spec.find("bodies", "x")
-    with pytest.raises(clench.LoadError, match="unknown|geom"):
-        spec.world.add_geom(size=0.1, colour="red")
-        spec.build()
     with pytest.raises(clench.LoadError, match="was expected"):
         clench.ModelSpec.from_xml("<sdf/>")
     with pytest.raises(clench.LoadError, match="not well-formed"):
         clench.ModelSpec.from_xml("<mujoco>\n<a b=></mujoco>")
+
+
+# What is added to the finger, and what is said of it at the call.
+MISTAKES: list[tuple[Callable[[clench.ModelSpec], object], str]] = [
+    (lambda spec: spec.body("tip").add_geom(type="bx"), 'body "tip" / geom 1: type is "bx", not one of .*box'),
+    (lambda spec: spec.body("tip").add_geom(size=0.1, frction=1), 'unknown attribute "frction"; did you mean "friction"'),
+    (lambda spec: spec.body("tip").add_geom(size=[1, 2, 3, 4]), "size has more than 3 numbers"),
+    (lambda spec: spec.body("tip").add_geom(pos=[1, 2]), "pos needs 3 numbers, not 2"),
+    (lambda spec: spec.body("tip").add_geom(size=0.1, material="wod"), 'there is no material "wod"'),
+    (lambda spec: spec.body("tip").add_geom(type="mesh", mesh="wod"), 'there is no mesh "wod"'),
+    (lambda spec: spec.body("tip").add_geom(size=0.1, class_="wod"), 'there is no default class "wod"'),
+    (lambda spec: spec.body("tip").add("gom", size=0.1), "unknown element <gom> in <body>; did you mean .geom."),
+    (lambda spec: spec.section("opton"), "unknown element <opton> in <mujoco>; did you mean .option."),
+    (lambda spec: spec.section("option").__setitem__("timestep", "fast"), "fast.* is not a finite number"),
+    (lambda spec: spec.section("default").add("geom", rgba=[1, 2]), "rgba needs 4 numbers"),
+    (lambda spec: spec.geom("tip").__setitem__("type", "bx"), 'geom "tip": type is "bx"'),
+    (lambda spec: spec.add_actuator("motr", joint="bend"), "unknown element <motr>.*did you mean .motor."),
+    (lambda spec: spec.add_actuator("motor", joint="bnd"), 'motor 0: there is no joint "bnd"; did you mean "bend"'),
+    (lambda spec: spec.add_sensor("framepos", objtype="site", objname="tip"), 'there is no site "tip"'),
+    (lambda spec: spec.add_sensor("framepos", objtype="sit", objname="tip"), 'objtype is "sit", not one of'),
+    (lambda spec: spec.add_equality("weld", body1="base", body2="top"), 'there is no body "top"; did you mean "tip"'),
+    (lambda spec: [spec.add_tendon("fixed").add("joint", joint=name, coef=1) for name in ("bend", "bnd")], 'there is no joint "bnd"'),
+    (lambda spec: spec.add_asset("mesh", name="m", vertex="1 2 x"), "x.* is not a finite number"),
+    (lambda spec: spec.add_asset("mesh", file="nowhere.stl"), 'cannot find the file "nowhere.stl"'),
+]
+
+
+@pytest.mark.parametrize(("mistake", "message"), MISTAKES, ids=lambda value: value[:30] if isinstance(value, str) else "")
+def test_mistakes_are_told_where_they_are_written(mistake: Callable[[clench.ModelSpec], object], message: str) -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    before = {tag: spec.to_xml().count(f"<{tag}") for tag in ("geom", "motor", "weld", "mesh", "framepos")}
+    with pytest.raises(clench.LoadError, match=message) as raised:
+        mistake(spec)
+    assert raised.value.line is None
+    # Nothing of it stays.
+    assert before == {tag: spec.to_xml().count(f"<{tag}") for tag in before}
+    assert spec.geom("tip")["type"] == "capsule"
+
+
+def test_what_an_element_lacks_can_be_said_later() -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    box = spec.body("tip").add_geom(type="box")
+    box["size"] = [0.1, 0.1, 0.1]
+    string = spec.add_tendon("spatial", name="string")
+    gyro = spec.add_sensor("gyro", name="gyro")
+    for body in ("base", "tip"):
+        spec.body(body).add_site(name=body)
+        string.add("site", site=body)
+    gyro["site"] = "tip"
+    model = spec.build()
+    assert (model.ntendon, model.nsensor, model.ngeom) == (1, 3, 3)
+
+
+def test_what_only_the_whole_can_tell_names_the_element_by_its_path() -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    spec.body("tip").add_geom(size=0.1)
+    spec.body("tip").add_geom(type="box", size=0.1)
+    with pytest.raises(clench.LoadError, match='^body "tip" / geom 2: ') as raised:
+        spec.build()
+    assert (raised.value.line, raised.value.element) == (None, 'body "tip" / geom 2')
+
+
+def test_ranges_act_where_a_document_does_not_infer_it() -> None:
+    spec = clench.ModelSpec.from_xml("<mujoco><compiler autolimits='false'/><worldbody/></mujoco>")
+    body = spec.world.add_body(name="b")
+    body.add_joint(name="j", range=[-1, 1])
+    body.add_geom(size=0.1)
+    body.add_joint(name="free", type="slide", range=[-1, 1], limited=False)
+    spec.add_actuator("motor", name="m", joint="j", ctrlrange=[-2, 2])
+    model = spec.build()
+    assert model.jnt_limited.tolist() == [True, False] and model.actuator_ctrllimited.tolist() == [True]
+    saved = clench.ModelSpec.from_xml(model.to_xml())
+    saved.add_actuator("motor", name="n", joint="free", ctrlrange=[-2, 2], forcerange=[-1, 1])
+    again = saved.build()
+    assert again.actuator_ctrllimited.tolist() == [True, True] and again.actuator_forcelimited.tolist() == [False, True]

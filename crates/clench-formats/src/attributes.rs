@@ -46,7 +46,15 @@ impl Element {
 
     /// The error of an attribute that must be there.
     pub(crate) fn missing(&self, name: &str) -> LoadError {
-        self.error(format!("the attribute \"{name}\" is required"))
+        self.incomplete(format!("the attribute \"{name}\" is required"))
+    }
+
+    /// An error about what this element lacks.
+    pub(crate) fn incomplete(&self, message: impl Into<String>) -> LoadError {
+        LoadError {
+            incomplete: true,
+            ..self.error(message)
+        }
     }
 
     /// The numbers of an attribute, at most `max`; `None` where it is absent or blank.

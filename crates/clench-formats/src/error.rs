@@ -17,6 +17,8 @@ pub struct LoadError {
     pub element: Option<String>,
     /// What is wrong.
     pub message: String,
+    /// Whether the element lacks something that it needs, and all that it says may be right.
+    pub incomplete: bool,
 }
 
 impl LoadError {
@@ -27,6 +29,7 @@ impl LoadError {
             line: None,
             element: None,
             message: shorten(&message.into()),
+            incomplete: false,
         }
     }
 
@@ -77,6 +80,7 @@ impl From<BuildError> for LoadError {
             line,
             element: Some(error.element),
             message: error.message,
+            incomplete: false,
         }
     }
 }

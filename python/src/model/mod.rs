@@ -201,6 +201,17 @@ impl Model {
         Model::told(py, model, source)
     }
 
+    /// Refuse a text for what it says, though not for what it lacks: nothing is built, and names may lead nowhere.
+    #[staticmethod]
+    fn _check(py: Python<'_>, text: &str, assets: HashMap<String, Vec<u8>>) -> PyResult<()> {
+        let loader = clench::Loader::new().assets(assets);
+        match py.detach(|| loader.read_str(text)) {
+            Ok(_) => Ok(()),
+            Err(error) if error.incomplete => Ok(()),
+            Err(error) => Err(load_error(error)),
+        }
+    }
+
     /// The model as an MJCF file that stands alone.
     ///
     /// Every number is resolved: inertials, limits and poses are explicit, angles radians, meshes and height fields in the file. It loads

@@ -115,7 +115,7 @@ impl CameraDraft {
     fn lens(&self, element: &Element) -> Result<CameraLens, LoadError> {
         if self.sensorsize.iter().all(|&size| size > 0.0) {
             if self.resolution.iter().any(|&n| n <= 0) {
-                return Err(element.error("a sensorsize needs a positive resolution"));
+                return Err(element.incomplete("a sensorsize needs a positive resolution"));
             }
             let [focal, principal] = [self.focal, self.principal].map(|x| self.on_sensor(x));
             if focal.iter().chain(&principal).any(|x| x.is_infinite()) {
@@ -130,7 +130,7 @@ impl CameraDraft {
         }
         if self.focal.is_given() || self.principal.is_given() {
             let message = "a focal length or a principal point needs a sensorsize";
-            return Err(element.error(message));
+            return Err(element.incomplete(message));
         }
         Ok(CameraLens::FieldOfView(self.fovy))
     }

@@ -90,7 +90,7 @@ fn read_numbers(element: &Element, spending: &mut Spending) -> Result<Vec<f64>, 
 
 fn read_entries(tuple: &Element) -> Result<Vec<TupleEntry>, LoadError> {
     if tuple.children.is_empty() {
-        return Err(tuple.error("a tuple needs at least one element"));
+        return Err(tuple.incomplete("a tuple needs at least one element"));
     }
     let read = |element: &Element| {
         let kind = element.required_text("objtype")?;

@@ -126,7 +126,7 @@ impl Classes {
     ) -> Result<usize, LoadError> {
         let name = element.text("class").unwrap_or_default();
         if name.is_empty() {
-            return Err(element.error("a nested default needs a class"));
+            return Err(element.incomplete("a nested default needs a class"));
         }
         if self.by_name.contains_key(name) {
             return Err(element.error(format!("the default class \"{name}\" exists already")));

@@ -114,12 +114,12 @@ fn read_sites(element: &Element, of_bodies: &[&str]) -> Result<Option<ConnectAnc
                 })),
             }
         }
-        _ => Err(element.error("site1 and site2 must be given together")),
+        _ => Err(element.incomplete("site1 and site2 must be given together")),
     }
 }
 
 fn read_bodies(element: &Element, anchor: [f64; 3]) -> Result<ConnectAnchor, LoadError> {
-    let either = || element.error("either body1 or site1 and site2 must be given");
+    let either = || element.incomplete("either body1 or site1 and site2 must be given");
     Ok(ConnectAnchor::Bodies {
         body1: element.text("body1").ok_or_else(either)?.to_owned(),
         body2: element.string("body2"),

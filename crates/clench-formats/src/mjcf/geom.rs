@@ -186,7 +186,7 @@ pub(crate) fn place_segment(
         ShapeKind::Capsule | ShapeKind::Cylinder => size[1] = half_length,
         ShapeKind::Ellipsoid | ShapeKind::Box => *size = [size[0], size[0], half_length],
         ShapeKind::Plane | ShapeKind::Sphere | ShapeKind::HeightField | ShapeKind::Mesh => {
-            return Err(element.error("fromto needs a capsule, cylinder, box or ellipsoid"));
+            return Err(element.incomplete("fromto needs a capsule, cylinder, box or ellipsoid"));
         }
     }
     Ok((pose, deformation))

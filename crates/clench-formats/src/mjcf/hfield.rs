@@ -36,7 +36,7 @@ pub(crate) fn read(
         None => written(element, spending)?,
     };
     if name.is_empty() {
-        return Err(element.error("a height field needs a name or a file"));
+        return Err(element.incomplete("a height field needs a name or a file"));
     }
     let found = found.in_parts();
     Ok(HeightFieldSpec {
@@ -55,7 +55,7 @@ fn written(element: &Element, spending: &mut Spending) -> Result<Elevation, Load
     let columns = element.count("ncol")?.unwrap_or(0);
     let count = rows.saturating_mul(columns);
     if count == 0 {
-        return Err(element.error("a height field needs a file, or nrow and ncol"));
+        return Err(element.incomplete("a height field needs a file, or nrow and ncol"));
     }
     let taken = spending.bytes(HEIGHT.saturating_mul(count as u64));
     taken.map_err(|excess| element.error(excess))?;

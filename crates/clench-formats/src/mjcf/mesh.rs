@@ -71,7 +71,7 @@ impl MeshDraft {
             found.tangents = given;
         }
         if mesh.name.is_empty() {
-            return Err(element.error("a mesh needs a name or a file"));
+            return Err(element.incomplete("a mesh needs a name or a file"));
         }
         Ok(MeshSpec {
             vertices: found.vertices,

@@ -169,7 +169,7 @@ fn read_rays(element: &Element) -> Result<SensorSubject, LoadError> {
     let (kind, name) = match (element.text("site"), element.text("camera")) {
         (Some(site), _) => (FrameKind::Site, site),
         (None, Some(camera)) => (FrameKind::Camera, camera),
-        (None, None) => return Err(element.error("either site or camera must be given")),
+        (None, None) => return Err(element.incomplete("either site or camera must be given")),
     };
     let known = RayField::ALL.iter().map(|&field| (field.name(), field));
     Ok(SensorSubject::Rays {
@@ -253,7 +253,7 @@ fn read_geoms(element: &Element, geom: &str, body: &str) -> Result<GeomsName, Lo
     match (element.text(geom), element.text(body)) {
         (Some(name), _) => Ok(GeomsName::Geom(name.to_owned())),
         (None, Some(name)) => Ok(GeomsName::Body(name.to_owned())),
-        (None, None) => Err(element.error(format!("either {geom} or {body} must be given"))),
+        (None, None) => Err(element.incomplete(format!("either {geom} or {body} must be given"))),
     }
 }
 

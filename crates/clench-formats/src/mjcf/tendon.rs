@@ -42,7 +42,7 @@ pub(crate) fn read(element: &Element, mut tendon: TendonSpec) -> Result<TendonSp
         tendon.path.push(read_wrap(child)?);
     }
     if tendon.path.is_empty() {
-        return Err(element.error(match element.tag.as_str() {
+        return Err(element.incomplete(match element.tag.as_str() {
             "fixed" => "a fixed tendon needs at least one joint",
             _ => "a spatial tendon needs at least two sites",
         }));

@@ -61,14 +61,14 @@ pub(super) fn read(
                 }))
             }
             None if kind == TextureKind::Plane => {
-                return Err(element.error("a 2d texture needs a builtin or a file"));
+                return Err(element.incomplete("a 2d texture needs a builtin or a file"));
             }
             None => TexturePicture::Pixels(Arc::new(six_files(element, files, spending)?)),
         },
     };
     // As in MuJoCo a sky, which no material names, does without.
     if name.is_empty() && kind != TextureKind::Sky {
-        return Err(element.error("a texture needs a name or a file"));
+        return Err(element.incomplete("a texture needs a name or a file"));
     }
     Ok(Some(Texture {
         name,
@@ -119,7 +119,7 @@ fn pattern(
     ];
     let side = |name: &str| match element.integer(name)? {
         Some(pixels @ 1..) => Ok(pixels as usize),
-        _ => Err(element.error(format!("a computed texture needs a positive {name}"))),
+        _ => Err(element.incomplete(format!("a computed texture needs a positive {name}"))),
     };
     let width = side("width")?;
     let (height, sides) = match kind {
@@ -251,7 +251,9 @@ fn six_files(
     }
     match found {
         Some(width) => cube(element, width, &sides, spending),
-        None => Err(element.error("a cube texture needs a builtin, a file, or files of its sides")),
+        None => {
+            Err(element.incomplete("a cube texture needs a builtin, a file, or files of its sides"))
+        }
     }
 }
 

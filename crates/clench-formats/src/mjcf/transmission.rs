@@ -46,8 +46,7 @@ pub(super) fn read(element: &Element) -> Result<TransmissionSpec, LoadError> {
         .or_else(|| name("site").map(site))
         .ok_or_else(|| match element.tag.as_str() {
             "adhesion" => element.missing("body"),
-            _ => {
-                element.error("one of joint, jointinparent, tendon, site or cranksite is required")
-            }
+            _ => element
+                .incomplete("one of joint, jointinparent, tendon, site or cranksite is required"),
         })
 }

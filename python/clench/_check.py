@@ -1,0 +1,126 @@
+"""What is wrong with an element of a document, told when it is written.
+
+The reader of files judges: it is given the element alone, with the settings, classes and materials of the document around it. What an
+element still lacks may be said later. What names refer to is looked up in the document.
+"""
+
+from __future__ import annotations
+
+import difflib
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from xml.parsers import expat
+
+from clench._document import Document, described, named, reference_kind
+from clench.errors import LoadError
+
+# Sections that an element is read with; what is checked in one of them is not given a second time.
+_AROUND = ("compiler", "option", "size", "default")
+# Elements that are about other documents.
+_OTHERS = ("attach", "model", "include")
+# Attributes that say a range, each with the switch that makes it act. `range` is also a word of lights.
+_LIMITED = ("joint", "fixed", "spatial")
+_SWITCHES = {
+    "range": "limited",
+    "ctrlrange": "ctrllimited",
+    "forcerange": "forcelimited",
+    "actrange": "actlimited",
+    "actuatorfrcrange": "actuatorfrclimited",
+}
+
+
+def check(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> None:
+    """Refuse an element, or a new attribute of it.
+
+    Parameters
+    ----------
+    document : Document
+        The document, which it is part of.
+    ancestors : sequence of xml.etree.ElementTree.Element
+        What it stands in, the section first.
+    node : xml.etree.ElementTree.Element
+        The element.
+
+    Raises
+    ------
+    LoadError
+        A tag or an attribute that MJCF does not have there, a value that cannot be, a name that leads nowhere.
+    """
+    from clench._core import Model
+
+    if node.tag in _OTHERS:
+        return
+    try:
+        Model._check(_fragment(document, ancestors, node), document.assets if "file" in node.attrib else {})
+    except LoadError as error:
+        # A part of the document that is wrong since it was read is told of by `build`.
+        if error.element in (node.tag, f'{node.tag} "{node.get("name")}"'):
+            raise LoadError(error.message, element=described(document, node)) from None
+    _check_names(document, ancestors, node)
+
+
+def limit(document: Document, node: ET.Element) -> dict[str, str]:
+    """The switches of limits whose ranges an element says, where it does not say them and the document does not infer them."""
+    compilers = document.root.findall("compiler")
+    infers = next((value for node in reversed(compilers) if (value := node.get("autolimits"))), "true")
+    if infers == "true":
+        return {}
+    switches = {
+        switch: "true" for name, switch in _SWITCHES.items() if name in node.attrib and (name != "range" or node.tag in _LIMITED)
+    }
+    return {switch: value for switch, value in switches.items() if switch not in node.attrib}
+
+
+def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> str:
+    """A document of the element alone."""
+    root = ET.Element("mujoco")
+    root.extend(section for section in document.root if section.tag in _AROUND)
+    assets = ET.SubElement(root, "asset")
+    for asset in document.root.iterfind("asset/*"):
+        # Elements are read with materials of the right names, whatever these look like.
+        if asset.tag == "texture" and asset is not node:
+            ET.SubElement(assets, "texture", name=named(asset), type="2d", builtin="flat", width="1", height="1")
+        elif asset.tag == "material" and asset is not node:
+            ET.SubElement(assets, "material", name=named(asset))
+    section = ancestors[0].tag if ancestors else node.tag
+    if section in _AROUND:
+        return ET.tostring(root, encoding="unicode")
+    place = assets if ancestors and section == "asset" else root
+    if ancestors and section != "asset":
+        place = ET.SubElement(root, section)
+    if section == "worldbody":
+        # Where in the tree an element stands is no matter to it.
+        place = ET.SubElement(place, "body") if len(ancestors) > 1 else place
+    else:
+        for ancestor in ancestors[1:]:
+            place = ET.SubElement(place, ancestor.tag, ancestor.attrib)
+    ET.SubElement(place, node.tag, node.attrib)
+    return ET.tostring(root, encoding="unicode")
+
+
+def _check_names(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> None:
+    # What another document brings, and copies, are named when the model is built.
+    if document.has_copies():
+        return
+    section = ancestors[0].tag if ancestors else node.tag
+    for attribute, name in node.attrib.items():
+        kind = reference_kind(section, node, attribute)
+        if kind is None or name == "" or (kind == "body" and name == "world"):
+            continue
+        if document.find(kind, name) is None:
+            known = [named(other) for other in document.elements(kind)]
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f'; did you mean "{near[0]}"?' if near else ""
+            raise LoadError(f'there is no {kind} "{name}"{hint}', element=described(document, node))
+
+
+def located(document: Document, text: str, error: LoadError) -> LoadError:
+    """An error about a line of a document's text, as one about the element that is written there."""
+    if error.line is None or error.file:
+        return error
+    starts: list[int] = []
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = lambda *_: starts.append(parser.CurrentLineNumber)
+    parser.Parse(text, True)
+    nodes = [node for line, node in zip(starts, document.root.iter()) if line == error.line]
+    return LoadError(error.message, element=described(document, nodes[0])) if nodes else error
