@@ -6,6 +6,7 @@ import io
 import math
 import operator
 import zipfile
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, make_dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -89,6 +90,54 @@ class State(_StateArrays):
         return all(_same_bits(array, others[name]) for name, array in own.items())
 
     __hash__ = None  # type: ignore[assignment]
+
+    def __len__(self) -> int:
+        """How many environments it is of."""
+        if self.qpos.ndim == 1:
+            raise TypeError("the state of one environment has no length")
+        return len(self.qpos)
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __getitem__(self, envs: Any) -> State:
+        """The state of one environment, or of several.
+
+        Parameters
+        ----------
+        envs : int, slice or array_like
+            Which, as NumPy selects rows.
+
+        Returns
+        -------
+        State
+            A copy.
+
+        Examples
+        --------
+        >>> batch = clench.Batch(clench.Model.from_file("models/pendulum.xml"), 3)
+        >>> sim = clench.Sim(batch.model)
+        >>> sim.state = batch.state[2]
+        """
+        if self.qpos.ndim == 1:
+            raise TypeError("the state of one environment has no rows")
+        return State(**{name: np.array(array[envs]) for name, array in self._arrays().items()})
+
+    @staticmethod
+    def stack(states: Sequence[State]) -> State:
+        """The states of several environments side by side.
+
+        Parameters
+        ----------
+        states : sequence of State
+            One an environment, at least one.
+
+        Returns
+        -------
+        State
+        """
+        rows = [state._arrays() for state in states]
+        return State(**{name: np.stack([arrays[name] for arrays in rows]) for name in rows[0]})
 
     def to_bytes(self) -> bytes:
         """Pack the state into bytes.

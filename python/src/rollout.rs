@@ -2,8 +2,9 @@
 
 use crate::arrays::{numbers, require_shape, shape_text};
 use crate::error::sim_error;
+use crate::state_views::StateViews;
 use crate::view::{Keeper, view};
-use clench::{Batch, Controls, Precision};
+use clench::{Batch, Controls, Output, Precision};
 use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -42,11 +43,21 @@ fn initial_rows<S: Precision + Element>(
     })
 }
 
+/// Where environments start.
+pub(crate) enum Start<'a, 'py> {
+    /// Where they are.
+    Here,
+    /// In states of time, positions, velocities and activations.
+    Rows(&'a Bound<'py, PyAny>),
+    /// In a `clench.State`, which the arrays of the batch take over.
+    State(&'a StateViews, &'a Bound<'py, PyAny>),
+}
+
 /// See `Batch.rollout`.
 pub(crate) fn rollout<'py, S: Precision + Element>(
     py: Python<'py>,
     batch: &mut Batch<S>,
-    initial: Option<&Bound<'py, PyAny>>,
+    start: &Start<'_, 'py>,
     ctrl: Option<&Bound<'py, PyAny>>,
     record: &[String],
     steps: Option<usize>,
@@ -81,11 +92,24 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
         }
     };
     let width = 1 + model.nq + model.nv + model.na;
-    let initial = initial
-        .map(|values| initial_rows(values, n, width))
-        .transpose()?;
-    let start = initial.as_ref().map(|values| &values.numbers[..]);
     let names = Vec::from_iter(record.iter().map(String::as_str));
+    let initial = match start {
+        Start::Here => None,
+        Start::Rows(values) => Some(initial_rows(values, n, width)?),
+        Start::State(views, state) => {
+            // Whatever else is wrong with the call is found before the states change.
+            names
+                .iter()
+                .try_for_each(|name| Output::find(name).map(drop))
+                .map_err(sim_error)?;
+            views.take_over(state)?;
+            (0..n)
+                .try_for_each(|env| batch.revive(env))
+                .map_err(sim_error)?;
+            None
+        }
+    };
+    let start = initial.as_ref().map(|values| &values.numbers[..]);
     let mut interrupt = Ok(());
     let recording = py.detach(|| {
         batch.rollout_while(start, steps, controls, &names, || {

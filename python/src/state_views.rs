@@ -1,5 +1,6 @@
 //! The arrays of a state, live.
 
+use crate::arrays::shape_text;
 use crate::view::{Keeper, view};
 use clench::Precision;
 use clench::rigid::batch::{Rows, StateRows};
@@ -161,13 +162,25 @@ impl StateViews {
         state_class(py)?.call((), Some(&copies))
     }
 
-    /// Takes over a `clench.State` of the same shapes.
+    /// Takes over a `clench.State`: of the same shapes, or, into those of a batch, that of one environment for all.
     ///
     /// # Errors
     /// Another shape or type; the arrays are then as before.
     pub(crate) fn take_over(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.take_over_rows(state, None)
+    }
+
+    /// The same into some environments of a batch, of which there are so many.
+    ///
+    /// # Errors
+    /// As [`take_over`](Self::take_over).
+    pub(crate) fn take_over_rows(
+        &self,
+        state: &Bound<'_, PyAny>,
+        envs: Option<(&Bound<'_, PyAny>, usize)>,
+    ) -> PyResult<()> {
         let py = state.py();
-        if !state.is_instance(state_class(py)?)? {
+        if !is_state(state)? {
             let found = state.get_type().name()?;
             return Err(PyTypeError::new_err(format!(
                 "a state must be a clench.State, not {found}"
@@ -179,11 +192,19 @@ impl StateViews {
             let (to, mut from) = (array.bind(py), values.get_item(name)?);
             // States of versions that knew no constraints at run time have no slots for them: nothing is tied.
             if name.starts_with("dynamic_") && from.getattr("size")?.extract::<usize>()? == 0 {
-                from = to.call_method0("copy")?;
+                let rows = envs.map_or_else(|| Ok(to.clone()), |(envs, _)| to.get_item(envs))?;
+                from = rows.call_method0("copy")?;
                 from.call_method1("fill", (0,))?;
             }
             let (found, needed) = (from.getattr("shape")?, to.getattr("shape")?);
-            if !found.eq(&needed)? {
+            let found: Vec<usize> = found.extract()?;
+            let mut needed: Vec<usize> = needed.extract()?;
+            if let (Some((_, count)), Some(first)) = (envs, needed.first_mut()) {
+                *first = count;
+            }
+            let one_for_all = self.is_of_batch(py)? && needed.get(1..) == Some(&found[..]);
+            if found != needed && !one_for_all {
+                let (found, needed) = (shape_text(&found), shape_text(&needed));
                 return Err(PyValueError::new_err(format!(
                     "{name} of the state has shape {found} where {needed} is needed: is it of another model, or of another \
                      number of environments?"
@@ -191,8 +212,22 @@ impl StateViews {
             }
             pairs.push((to, from));
         }
-        pairs.iter().try_for_each(|(to, from)| copy_to(to, from))
+        pairs.iter().try_for_each(|(to, from)| match envs {
+            Some((envs, _)) => to.set_item(envs, from),
+            None => copy_to(to, from),
+        })
     }
+
+    /// Whether the arrays are of environments side by side.
+    fn is_of_batch(&self, py: Python<'_>) -> PyResult<bool> {
+        let time = self.time.bind(py).getattr("ndim")?;
+        Ok(time.extract::<usize>()? > 0)
+    }
+}
+
+/// Whether something is a `clench.State`.
+pub(crate) fn is_state(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    value.is_instance(state_class(value.py())?)
 }
 
 /// `clench.State`.

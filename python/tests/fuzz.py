@@ -263,7 +263,7 @@ class Fuzz:
     def call_batch(self) -> Any:
         batch = self.choose([owner for owner in self.owners if isinstance(owner, clench.Batch)] or [clench.Batch(ball(), 2)])
         n, model = batch.n_envs, batch.model
-        what = self.choose(("reset", "revive", "forward", "fault", "randomize", "record", "rollout", "sim", "status"))
+        what = self.choose(("reset", "revive", "forward", "fault", "randomize", "record", "rollout", "set_state", "sim", "status"))
         if what == "reset":
             return batch.reset(self.choose((None, self.subset(n))), self.key())
         if what in ("revive", "forward"):
@@ -278,12 +278,15 @@ class Fuzz:
             given = self.maybe(lambda: self.choose((None, envs)))
             count = n if given is None else np.size(envs)
             return batch.randomize(*self.parameter(model, count), given)
+        if what == "set_state":
+            envs = self.rng.integers(0, max(n, 1), self.rng.integers(0, n + 1))
+            return batch.set_state(self.maybe(lambda: self.choose(self.states)), self.maybe(lambda: self.choose((None, envs))))
         if what == "record":
             names = self.names()
             return batch.record(*names) if isinstance(names, list) else batch.record(names)
         if what == "rollout":
             steps = int(self.rng.integers(0, 5))
-            initial = self.numbers(n, 1 + model.nq + model.nv + model.na) * 1.0 if self.junk.chance(0.3) else None
+            initial = self.numbers(n, 1 + model.nq + model.nv + model.na) * 1.0 if self.junk.chance(0.3) else self.choose((None, self.choose(self.states)))
             ctrl = self.choose((None, self.numbers(steps, model.nu), self.numbers(n, steps, model.nu)))
             return batch.rollout(initial, ctrl, self.names(), self.maybe(lambda: self.choose((None, steps))))
         return batch.status, batch.running, batch.outputs, batch.bytes_per_env

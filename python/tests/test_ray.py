@@ -76,6 +76,25 @@ def test_it_moves_as_a_batch_alone(precision: str) -> None:
         assert (spread.state.qpos == alone.qpos[0]).all()
 
 
+def test_states_of_simulations_are_taken() -> None:
+    alone, spread = pair()
+    sim = clench.Sim(alone.model)
+    sim.step(7)
+    with spread:
+        for batch in (alone, spread):
+            batch.ctrl[:] = 0.1
+            batch.step(3)
+            batch.set_state(sim.state, [1, N - 1])
+            batch.set_state(batch.state[[0, 1]], [1, 0])
+        assert_same(spread, alone)
+        ctrl = np.full((4, alone.model.nu), 0.2)
+        np.testing.assert_array_equal(spread.rollout(sim.state, ctrl)["qpos"], alone.rollout(sim.state, ctrl)["qpos"])
+        spread.state = sim.state
+        assert spread.state == clench.State.stack([sim.state] * N)
+        with pytest.raises(ValueError, match="a state of 2 environments"):
+            spread.set_state(alone.state, [0, 1])
+
+
 @pytest.mark.parametrize("snapshot_every", [1, 10, 1000])
 def test_a_death_changes_no_bit(snapshot_every: int) -> None:
     alone, spread = pair(snapshot_every=snapshot_every)

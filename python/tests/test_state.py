@@ -98,7 +98,7 @@ def test_states_of_others() -> None:
     for state in (batch.state, clench.Sim(example("quadruped")).state):
         with pytest.raises(ValueError, match="shape"):
             sim.state = state
-    for state in (sim.state, clench.Batch(puppet(), 2).state):
+    for state in (clench.Sim(example("quadruped")).state, clench.Batch(puppet(), 2).state):
         with pytest.raises(ValueError, match="shape"):
             batch.state = state
     for state in (None, 3, "state", {}, sim.state.to_bytes(), sim):
@@ -344,3 +344,78 @@ def test_same_bits_knows_the_difference() -> None:
     assert same_bits(np.array([np.nan, 0.0]), np.array([np.nan, 0.0]))
     assert not same_bits(np.array([0.0]), np.array([-0.0]))
     assert not same_bits(np.array([0.0]), np.array([0.0], np.float32))
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_a_state_of_one_environment_is_taken_by_all(precision: Any) -> None:
+    model = example("quadruped")
+    sim = clench.Sim(model, precision=precision)
+    sim.ctrl += 0.1
+    sim.step(30)
+    batch = clench.Batch(model, 5, precision=precision)
+    batch.qpos[3] = np.nan
+    batch.step()
+    batch.state = sim.state
+    assert len(batch.state) == 5 and batch.running.all()
+    assert all(same_state(batch.state[env], sim.state) for env in range(5))
+    sim.step(20)
+    batch.step(20)
+    assert all(same_state(batch.state[env], sim.state) for env in range(5))
+
+
+def test_some_environments_are_brought_to_a_state() -> None:
+    model = example("quadruped")
+    batch = clench.Batch(model, 4)
+    batch.ctrl[:] = np.linspace(-0.1, 0.1, 4)[:, None]
+    batch.step(20)
+    before = batch.state
+    sim = clench.Sim(model)
+    sim.step(7)
+    batch.set_state(sim.state, [1, 3])
+    assert same_state(batch.state[[0, 2]], before[[0, 2]])
+    assert same_state(batch.state[1], sim.state) and same_state(batch.state[3], sim.state)
+    batch.set_state(before[1:3], np.array([2, 0]))
+    assert same_state(batch.state[[2, 0]], before[1:3])
+    batch.set_state(before)
+    assert same_state(batch.state, before)
+    assert same_state(clench.State.stack([before[env] for env in range(4)]), before)
+    sim.state = batch.state[2]
+    assert same_state(sim.state, before[2])
+    with pytest.raises(IndexError, match="no environment 4"):
+        batch.set_state(sim.state, [0, 4])
+    with pytest.raises(ValueError, match="shape"):
+        batch.set_state(before, [0, 1])
+    with pytest.raises(ValueError, match="shape"):
+        sim.state = before
+    with pytest.raises(ValueError, match="another model"):
+        batch.set_state(clench.Sim(example("pendulum")).state)
+    with pytest.raises(TypeError, match="no rows"):
+        sim.state[0]
+    with pytest.raises(TypeError, match="no length"):
+        len(sim.state)
+    assert sim.state and same_state(batch.state, before)
+
+
+def test_a_rollout_starts_from_a_state() -> None:
+    model = example("quadruped")
+    sim = clench.Sim(model)
+    sim.ctrl += 0.1
+    sim.step(30)
+    batch, ctrl = clench.Batch(model, 3), np.full((10, model.nu), 0.2)
+    start = sim.state
+    found = batch.rollout(start, ctrl, record=["qpos"])["qpos"]
+    for step in range(10):
+        sim.ctrl[:] = 0.2
+        sim.step()
+        for env in range(3):
+            np.testing.assert_array_equal(found[env, step], sim.qpos)
+    again = batch.rollout(clench.State.stack([start] * 3), ctrl, record=["qpos"])["qpos"]
+    np.testing.assert_array_equal(again, found)
+    before = batch.state
+    with pytest.raises(ValueError, match="no output"):
+        batch.rollout(start, ctrl, record=["nothing"])
+    with pytest.raises(ValueError, match="ctrl"):
+        batch.rollout(start, ctrl[:, 1:])
+    with pytest.raises(ValueError, match="another model"):
+        batch.rollout(clench.Sim(example("pendulum")).state, ctrl)
+    assert same_state(batch.state, before)

@@ -13,7 +13,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from clench import Batch, FreeCamera, Model, RigidOptions, SimulationError
+from clench import Batch, FreeCamera, Model, RigidOptions, SimulationError, State
 from clench.gymnasium import infos as vector_infos
 from clench.gymnasium import observed
 from clench.gymnasium.checks import check_action_space, checked_action, checked_mask, checked_seeds, one_each, one_or_all, rows
@@ -326,6 +326,9 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         batch.reset(mask)
         envs = np.flatnonzero(mask)
         start = self.initial_states(envs)
+        if isinstance(start, State):
+            batch.set_state(start, envs)
+            start = qpos[envs], qvel[envs]
         for name, rows_of, values in zip(("qpos", "qvel"), (qpos, qvel), start, strict=True):
             shape = (len(envs), rows_of.shape[1])
             rows_of[envs] = one_or_all(values, shape, f"{self._name}: {name} of initial_states()")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clench import State
 from clench.gymnasium.generators import Generators
 from clench.gymnasium.observed import Observation
 
@@ -75,7 +76,7 @@ class TaskMethods(Generators):
     def before_step(self) -> None:
         """Called with the controls set, before the simulator steps: the place to keep what the step will change."""
 
-    def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
+    def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array] | State:
         """Where an episode of one environment starts. The initial state of the model unless defined.
 
         Not asked where :meth:`initial_states` is defined.
@@ -88,11 +89,11 @@ class TaskMethods(Generators):
         Returns
         -------
         qpos, qvel : ndarray
-            Positions (nq,) and velocities (nv,).
+            Positions (nq,) and velocities (nv,); or a `State`, such as ``sim.state``, of which everything counts.
         """
         return self.init_qpos, self.init_qvel
 
-    def initial_states(self, envs: NDArray[np.intp]) -> tuple[Array, Array]:
+    def initial_states(self, envs: NDArray[np.intp]) -> tuple[Array, Array] | State:
         """Where episodes start, of all environments that are reset at once. What :meth:`initial_state` says of each unless defined.
 
         Parameters
@@ -103,10 +104,15 @@ class TaskMethods(Generators):
         Returns
         -------
         qpos, qvel : ndarray
-            Positions (k, nq) and velocities (k, nv); or (nq,) and (nv,), where all start from the same.
+            Positions (k, nq) and velocities (k, nv); or (nq,) and (nv,), where all start from the same; or a `State`, of one or of k
+            environments.
         """
         starts = [self.initial_state(self.generator(env)) for env in envs.tolist()]
-        return np.array([qpos for qpos, _ in starts]), np.array([qvel for _, qvel in starts])
+        states = [start for start in starts if isinstance(start, State)]
+        if states:
+            return State.stack(states)
+        pairs = [start for start in starts if not isinstance(start, State)]
+        return np.array([qpos for qpos, _ in pairs]), np.array([qvel for _, qvel in pairs])
 
     def on_reset(self, mask: Array) -> None:
         """Called when environments start an episode, with their states set and before anything is observed.

@@ -132,7 +132,7 @@ class Batch(Asked, Tied):
 
     def rollout(
         self,
-        initial: ArrayLike | None = None,
+        initial: clench.State | ArrayLike | None = None,
         ctrl: ArrayLike | None = None,
         record: Sequence[str] = ("qpos", "qvel"),
         steps: SupportsIndex | None = None,
@@ -141,8 +141,8 @@ class Batch(Asked, Tied):
 
         Parameters
         ----------
-        initial : array_like, optional
-            States to start from, one for all (1 + nq + nv + na) or a row each (n, ...).
+        initial : State or array_like, optional
+            States to start from: a `State`; or one row for all (1 + nq + nv + na) or a row each (n, ...).
         ctrl : array_like, optional
             Controls of each step, for all (steps, nu) or each (n, steps, nu) environment.
         record : sequence of str
@@ -155,6 +155,9 @@ class Batch(Asked, Tied):
         dict of str to ndarray
             Each output (n, steps, ...).
         """
+        if isinstance(initial, clench.State):
+            self.set_state(initial)
+            initial = None
         starts, controls = self._split(initial, 2, "initial"), self._split(ctrl, 3, "ctrl")
         length = 1 if steps is None else operator.index(steps)
         if ctrl is not None and steps is None:
@@ -210,11 +213,29 @@ class Batch(Asked, Tied):
 
     @state.setter
     def state(self, state: clench.State) -> None:
-        fields = {name: getattr(state, name) for name in _STATE}
-        if any(values.shape[:1] != (self.n_envs,) for values in fields.values()):
-            raise ValueError(f"a state of {self.n_envs} environments is needed")
-        parts = [clench.State(**{name: values[part] for name, values in fields.items()}) for part in self._parts]
-        self._change("set_state", [(part,) for part in parts])
+        self.set_state(state)
+
+    def set_state(self, state: clench.State, envs: ArrayLike | None = None) -> None:
+        """Brings some environments to a state, and lets them run; see `clench.Batch.set_state`.
+
+        Parameters
+        ----------
+        state : State
+            One for all of them, such as ``sim.state``, or of as many environments as there are in `envs`.
+        envs : array_like of int, optional
+            Which environments; by default all.
+        """
+        chosen = self._chosen(envs)
+        one = state.qpos.ndim == 1
+        if not one and any(len(values) != chosen.size for values in state._arrays().values()):
+            raise ValueError(f"a state of {chosen.size} environments is needed")
+        # All or nothing, though the workers do not know of each other.
+        self._one.state = state if one else state[:1]
+        arguments = []
+        for part in self._parts:
+            here = (part.start <= chosen) & (chosen < part.stop)
+            arguments.append((state if one else state[here], (chosen[here] - part.start).tolist()))
+        self._change("set_state", arguments)
 
     def sim(self, env: SupportsIndex) -> clench.Sim:
         """A simulation of one environment, in its state and with its parameters; it goes its own way.

@@ -80,8 +80,8 @@ class Shard:
     def _get_state(self) -> clench.State:
         return self._batch.state
 
-    def _set_state(self, state: clench.State) -> None:
-        self._batch.state = state
+    def _set_state(self, state: clench.State, envs: list[int]) -> None:
+        self._batch.set_state(state, envs)
 
     def _set_options(self, options: clench.RigidOptions) -> None:
         self._batch.options = options

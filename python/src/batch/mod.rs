@@ -18,6 +18,7 @@ use clench::math::Instructions;
 use clench::{BatchOptions, Output};
 use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyRuntimeWarning};
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -202,7 +203,8 @@ impl Batch {
 
     /// State : A copy of what the next step of every environment depends on, parameters apart.
     ///
-    /// Assigning one brings all environments there, to the bit, and lets all of them run.
+    /// Assigning one brings all environments there, to the bit, and lets all of them run. That of a `Sim`, or of one environment
+    /// (``batch.state[env]``), brings all to the same state.
     #[getter]
     fn state<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let _guard = lock(&this.get().inner, "batch")?;
@@ -215,6 +217,46 @@ impl Batch {
         let mut guard = lock(&own.inner, "batch")?;
         this.as_super().get().take_over(state)?;
         let mut envs = 0..own.n_envs;
+        each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
+    }
+
+    /// Bring some environments to a state, and let them run.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State
+    ///     One for all of them, such as ``sim.state``, or of as many environments as there are in `envs`.
+    /// envs : array_like of int, optional
+    ///     Which environments; by default all.
+    ///
+    /// Raises
+    /// ------
+    /// IndexError
+    ///     An environment that there is not.
+    /// ValueError
+    ///     A state of another model, or of another number of environments. All states are then as before.
+    #[pyo3(name = "set_state", signature = (state, envs = None))]
+    fn bring_to(
+        this: &Bound<'_, Self>,
+        state: &Bound<'_, PyAny>,
+        envs: Option<Vec<usize>>,
+    ) -> PyResult<()> {
+        let own = this.get();
+        let Some(envs) = envs else {
+            return Self::set_state(this, state);
+        };
+        if let Some(&env) = envs.iter().find(|&&env| env >= own.n_envs) {
+            return Err(sim_error(clench::SimError::NoSuchElement {
+                kind: "environment",
+                index: env,
+                count: own.n_envs,
+            }));
+        }
+        let mut guard = lock(&own.inner, "batch")?;
+        let rows = PyList::new(this.py(), &envs)?;
+        let rows = Some((rows.as_any(), envs.len()));
+        this.as_super().get().take_over_rows(state, rows)?;
+        let mut envs = envs.into_iter();
         each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
     }
 

@@ -6,7 +6,8 @@ use crate::count::Count;
 use crate::error::sim_error;
 use crate::kind::Kind;
 use crate::names::Names;
-use crate::rollout::rollout;
+use crate::rollout::{Start, rollout};
+use crate::state_views::is_state;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -117,9 +118,10 @@ impl Batch {
     ///
     /// Parameters
     /// ----------
-    /// initial : array_like, optional
-    ///     States to start from, one for all (1 + nq + nv + na) or a row each (n, ...): time, positions, velocities, activations. All environments then run, and
-    ///     the solver starts anew, so that what comes out depends on no earlier step. By default they go on from where they are.
+    /// initial : State or array_like, optional
+    ///     States to start from: a `State`, of a `Sim` for all environments or of the batch, of which everything counts; or one row for all
+    ///     (1 + nq + nv + na) or a row each (n, ...): time, positions, velocities, activations, with which the solver starts anew, so that what
+    ///     comes out depends on no earlier step. All environments then run. By default they go on from where they are.
     /// ctrl : array_like, optional
     ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`, which
     ///     stay as they are in any case.
@@ -140,7 +142,7 @@ impl Batch {
     #[pyo3(signature = (initial = None, ctrl = None, record = None, steps = None),
            text_signature = "($self, initial=None, ctrl=None, record=('qpos', 'qvel'), steps=None)")]
     fn rollout<'py>(
-        &self,
+        this: &Bound<'py, Self>,
         py: Python<'py>,
         initial: Option<&Bound<'py, PyAny>>,
         ctrl: Option<&Bound<'py, PyAny>>,
@@ -149,7 +151,12 @@ impl Batch {
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = record.map_or_else(|| vec!["qpos".into(), "qvel".into()], |names| names.0);
         let steps = steps.map(|count| count.0);
-        let mut guard = lock(&self.inner, "batch")?;
-        each!(&mut *guard, batch => rollout(py, batch, initial, ctrl, &record, steps))
+        let start = match initial {
+            Some(state) if is_state(state)? => Start::State(this.as_super().get(), state),
+            Some(rows) => Start::Rows(rows),
+            None => Start::Here,
+        };
+        let mut guard = lock(&this.get().inner, "batch")?;
+        each!(&mut *guard, batch => rollout(py, batch, &start, ctrl, &record, steps))
     }
 }

@@ -13,7 +13,7 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 from tasks_of_tests import CART, Cart
 
-from clench import Model
+from clench import Model, Sim, State
 from clench.gymnasium import BatchEnv
 
 
@@ -227,3 +227,25 @@ def test_resets_can_set_goals_and_welds_and_actions_have_any_shape() -> None:
     assert envs.resets == [[0, 1, 2], [1]] and (envs.batch.dynamic_kind[:, 0] == 2).all()
     with pytest.raises(ValueError, match=r"an action of shape \(3, 2\), expected \(3, 2, 1\)"):
         envs.step(np.zeros((3, 2)))
+
+
+def test_episodes_start_in_a_state() -> None:
+    """All of it, of one environment or of many."""
+    sim = Sim(Model.from_xml(CART))
+    sim.ctrl[0] = 1.0
+    sim.step(20)
+
+    class One(Short):
+        def initial_state(self, rng: np.random.Generator) -> State:
+            return sim.state
+
+    class All(Short):
+        def initial_states(self, envs: NDArray[np.intp]) -> State:
+            return sim.state
+
+    for task in (One, All):
+        envs = task(num_envs=3, model=CART)
+        observations, _ = envs.reset(seed=0)
+        np.testing.assert_array_equal(observations, np.tile(sim.qpos, (3, 1)))
+        np.testing.assert_array_equal(envs.batch.ctrl, np.tile(sim.ctrl, (3, 1)))
+        assert (envs.batch.time == sim.time).all()
