@@ -51,7 +51,7 @@ def check(document: Document, ancestors: Sequence[ET.Element], node: ET.Element)
     if node.tag in _OTHERS:
         return
     try:
-        Model._check(_fragment(document, ancestors, node), document.assets if "file" in node.attrib else {})
+        Model._check(_fragment(document, ancestors, node), _files(document, node))
     except LoadError as error:
         # A part of the document that is wrong since it was read is told of by `build`.
         if error.element in (node.tag, f'{node.tag} "{node.get("name")}"'):
@@ -96,6 +96,13 @@ def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Elem
             place = ET.SubElement(place, ancestor.tag, ancestor.attrib)
     ET.SubElement(place, node.tag, node.attrib)
     return ET.tostring(root, encoding="unicode")
+
+
+def _files(document: Document, node: ET.Element) -> dict[str, bytes]:
+    """The files in memory that an element names."""
+    paths = [value for attribute, value in node.attrib.items() if attribute.startswith("file")]
+    names = [path.replace("\\", "/").rpartition("/")[2] for path in paths]
+    return {name: document.assets[name] for name in names if name in document.assets}
 
 
 def _check_names(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> None:

@@ -146,6 +146,7 @@ class SpecElement:
         except ValueError:
             node.attrib.clear()
             node.attrib.update(before)
+            self._document.changed()
             raise
 
     def add_body(self, **attributes: Value) -> SpecElement:

@@ -170,7 +170,7 @@ impl StateViews {
         self.take_over_rows(state, None)
     }
 
-    /// The same into some environments of a batch, of which there are so many.
+    /// Takes over a `clench.State` into some environments of a batch: their indices, and how many there are.
     ///
     /// # Errors
     /// As [`take_over`](Self::take_over).

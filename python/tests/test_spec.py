@@ -272,3 +272,17 @@ def test_ranges_act_where_a_document_does_not_infer_it() -> None:
     saved.add_actuator("motor", name="n", joint="free", ctrlrange=[-2, 2], forcerange=[-1, 1])
     again = saved.build()
     assert again.actuator_ctrllimited.tolist() == [True, True] and again.actuator_forcelimited.tolist() == [False, True]
+
+
+def test_a_refused_element_leaves_its_names_free() -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    with pytest.raises(clench.LoadError, match="no joint"):
+        spec.add_actuator("motor", name="lift", joint="bnd")
+    assert spec.add_actuator("motor", name="lift", joint="bend").name == "lift"
+    with pytest.raises(clench.LoadError, match="no joint"):
+        spec.actuator("lift")["joint"] = "bnd"
+    spec.actuator("lift").rename("raise")
+    assert spec.names("actuator") == ["bend", "raise"]
+    spec.add_asset("mesh", data=b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", file="parts/block.obj")
+    spec.body("tip").add_geom(type="mesh", mesh="block")
+    assert spec.build().nmesh == 1

@@ -381,7 +381,7 @@ def test_some_environments_are_brought_to_a_state() -> None:
     assert same_state(clench.State.stack([before[env] for env in range(4)]), before)
     sim.state = batch.state[2]
     assert same_state(sim.state, before[2])
-    with pytest.raises(IndexError, match="no environment 4"):
+    with pytest.raises(IndexError, match="indices go from 0 to 3"):
         batch.set_state(sim.state, [0, 4])
     with pytest.raises(ValueError, match="shape"):
         batch.set_state(before, [0, 1])

@@ -15,6 +15,6 @@ pub struct HeightFieldSpec {
     pub heights: Vec<f64>,
     /// Half lengths along x and y, elevation, depth of the base below the lowest height, m.
     pub size: [f64; 4],
-    /// Where it was written.
+    /// The place in the file, if it came from one.
     pub origin: Option<Origin>,
 }

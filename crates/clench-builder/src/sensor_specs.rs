@@ -79,7 +79,7 @@ impl Default for ContactQuerySpec {
     }
 }
 
-/// What a sensor is attached to, by name; it must be what its kind's [`Attachment`](clench_dynamics::model::Attachment) says.
+/// The object that a sensor is attached to, by name; it must be what its kind's [`Attachment`](clench_dynamics::model::Attachment) says.
 #[derive(Clone, Debug, Default)]
 pub enum SensorSubject {
     /// Nothing.

@@ -3,7 +3,7 @@
 /// Bounds on the memory and work that a model file, and each step of its model, may ask for. A few letters of a file can ask for
 /// gigabytes, so a file from elsewhere must not decide alone; a model that is meant to be large is given a larger budget.
 ///
-/// What exceeds a bound is an error that names it: a `LoadError` or `BuildError` while a model is
+/// Exceeding a bound is an error that names it: a `LoadError` or `BuildError` while a model is
 /// read and built, a [`Fault`](crate::Fault) of the environment while it moves.
 ///
 /// ```

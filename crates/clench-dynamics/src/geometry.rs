@@ -13,7 +13,7 @@ pub struct Geoms<'a, T: Real> {
     pub model: &'a Model,
     /// Its parameters.
     pub params: &'a Params<T>,
-    /// Where everything is.
+    /// Poses of everything.
     pub position: &'a Positions<T>,
 }
 

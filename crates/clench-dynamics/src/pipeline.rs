@@ -31,7 +31,7 @@ use clench_math::Real;
 use clench_solver::TreeMatrix;
 use std::slice::from_ref;
 
-/// What evaluates the sensors of a model, after a forward pass and before the state moves on. Sensors are no part of this crate.
+/// A function that evaluates the sensors of a model, after a forward pass and before the state moves on. This crate has no sensors.
 pub type Sensors<T> = fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>);
 
 /// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with

@@ -17,7 +17,7 @@ pub struct LoadError {
     pub element: Option<String>,
     /// What is wrong.
     pub message: String,
-    /// Whether the element lacks something that it needs, and all that it says may be right.
+    /// True if the element lacks something that it needs, and all that it says may be right.
     pub incomplete: bool,
 }
 

@@ -5,7 +5,7 @@ use clench::prelude::FrictionCone;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// What a user does in the page. [`read`](Self::read) takes it from a JSON object whose `do` is its name.
+/// An action of a user in the page. [`read`](Self::read) takes it from a JSON object whose `do` is its name.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Command {
@@ -116,7 +116,7 @@ const FAR: f64 = 1e6;
 impl Command {
     /// The command of this name with these fields; none where either is unknown, or a field is missing or of another type.
     ///
-    /// The name is taken apart here and not by `serde(tag)`, whose code is three times as large.
+    /// The caller takes the name out of the object: `serde(tag)` would do it with three times the code.
     pub fn read(name: String, fields: Map<String, Value>) -> Option<Self> {
         let tagged = Map::from_iter([(name, Value::Object(fields))]);
         Command::deserialize(Value::Object(tagged)).ok()

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 impl Batch {
     /// The environments of these indices, all where there are none.
-    fn chosen(&self, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
+    pub(super) fn chosen(&self, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         match envs {
             Some(envs) => indices("envs", envs, self.n_envs),
             None => Ok(Vec::from_iter(0..self.n_envs)),

@@ -239,19 +239,13 @@ impl Batch {
     fn bring_to(
         this: &Bound<'_, Self>,
         state: &Bound<'_, PyAny>,
-        envs: Option<Vec<usize>>,
+        envs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let own = this.get();
-        let Some(envs) = envs else {
+        if envs.is_none() {
             return Self::set_state(this, state);
-        };
-        if let Some(&env) = envs.iter().find(|&&env| env >= own.n_envs) {
-            return Err(sim_error(clench::SimError::NoSuchElement {
-                kind: "environment",
-                index: env,
-                count: own.n_envs,
-            }));
         }
+        let own = this.get();
+        let envs = own.chosen(envs)?;
         let mut guard = lock(&own.inner, "batch")?;
         let rows = PyList::new(this.py(), &envs)?;
         let rows = Some((rows.as_any(), envs.len()));

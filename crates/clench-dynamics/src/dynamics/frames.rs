@@ -14,7 +14,7 @@ pub struct Frames<'a, T: Real> {
     pub model: &'a Model,
     /// Its parameters.
     pub params: &'a Params<T>,
-    /// Where everything is.
+    /// Poses of everything.
     pub pos: &'a Positions<T>,
 }
 

@@ -209,5 +209,5 @@ pub enum SensorTarget {
     },
 }
 
-/// How many numbers a skin reports for a vertex: depth, and speeds along two tangents.
+/// The number of values that a tactile sensor reports for a vertex: the depth, and speeds along two tangents.
 pub const TAXEL_CHANNELS: usize = 3;

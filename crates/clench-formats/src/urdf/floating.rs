@@ -1,11 +1,11 @@
-//! Robots whose base is free to move, though their file does not say so.
+//! Frees the base of a robot whose file fixes it to the world.
 
 use crate::LoadError;
 use crate::document::Element;
 use clench_builder::{JointSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;
 
-/// What the joint is called; a joint of the robot with this name makes it `floating_base_1`, and so on.
+/// The name of the joint. It becomes `floating_base_1` if the robot has a joint of this name, and so on.
 const NAME: &str = "floating_base";
 
 /// Gives a free joint to the link that stands on the world. A link that has one already keeps it.

@@ -1,9 +1,9 @@
-//! Where the elements of a model were written.
+//! The place in a file where an element of a model was written.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// Where an element was written.
+/// A file and a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// File name as the user gave it, or as an include names it.

@@ -11,7 +11,7 @@ fn floating(parts: &[String]) -> Result<Model, LoadError> {
 
 #[track_caller]
 fn refused(parts: &[String], because: &str) {
-    let error = floating(parts).unwrap_err();
+    let error = floating(parts).expect_err("it is refused");
     assert!(error.message.contains(because), "{error}");
     assert_eq!(error.line, Some(1));
 }
@@ -31,7 +31,7 @@ fn the_base_gets_a_free_joint_and_keeps_what_it_is() {
             "<origin xyz='0.3 0 0'/>",
         ),
     ];
-    let model = floating(&parts).unwrap();
+    let model = floating(&parts).expect("it loads");
     assert_eq!(
         names(model.joints.iter().map(|j| &j.name)),
         ["floating_base", "hip"]
@@ -60,7 +60,7 @@ fn a_base_that_is_fixed_to_a_link_world_floats_where_it_stands() {
             "<origin xyz='0 0 0.4'/>",
         ),
     ]);
-    let model = model.unwrap();
+    let model = model.expect("it loads");
     assert_eq!(model.params.qpos0[..3], [0.0, 0.0, 0.4]);
     assert_eq!(model.joints[0].name, "floating_base");
 }
@@ -73,7 +73,7 @@ fn a_base_that_a_file_frees_stays_as_it_is_and_names_stay_unique() {
         joint("root", "floating", "world", "trunk", ""),
     ]);
     assert_eq!(
-        names(free.unwrap().joints.iter().map(|j| &j.name)),
+        names(free.expect("it loads").joints.iter().map(|j| &j.name)),
         ["root"]
     );
     let taken = floating(&[
@@ -81,7 +81,7 @@ fn a_base_that_a_file_frees_stays_as_it_is_and_names_stay_unique() {
         link("leg", ""),
         joint("floating_base", "revolute", "trunk", "leg", ""),
     ]);
-    let taken = taken.unwrap();
+    let taken = taken.expect("it loads");
     let joints = names(taken.joints.iter().map(|j| &j.name));
     assert_eq!(joints, ["floating_base_1", "floating_base"]);
 }
@@ -104,6 +104,6 @@ fn what_has_no_base_to_free_is_refused() {
     let mjcf = Loader::new()
         .floating(true)
         .load_str("<mujoco/>")
-        .unwrap_err();
+        .expect_err("it is refused");
     assert!(mjcf.message.contains("<freejoint/>"), "{mjcf}");
 }
