@@ -43,6 +43,7 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::OutOfRange { .. }
         | SimError::Parameter { .. }
         | SimError::Follows { .. }
+        | SimError::SingularMass { .. }
         | SimError::Unknown { .. }
         | SimError::NoFreeSlot { .. }
         | SimError::StaleConstraint

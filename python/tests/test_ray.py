@@ -47,6 +47,7 @@ def drive(batch: Any, steps: int, rng: np.random.Generator) -> None:
             batch.reset(np.arange(N) == step % N)
         if step % 5 == 2:
             batch.randomize("geom_friction", batch.param("geom_friction")[[1, 4]] * 1.1, envs=[1, 4])
+            batch.randomize("body_mass", batch.param("body_mass")[[0, 4]] * 1.1, envs=[0, 4], consistent=True)
             batch.qvel[step % N, 0] += 0.3
 
 

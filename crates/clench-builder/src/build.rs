@@ -8,10 +8,8 @@ use super::{
     equalities, fuse, invweight0, keyframes, length_range, lights, sensors, sleep, tendons,
     user_numbers,
 };
-use clench_dynamics::dynamics::kinematics;
+use clench_dynamics::constants::pose;
 use clench_dynamics::model::{Model, Params, RowPattern, SameFrames, Visuals};
-use clench_dynamics::stages::Positions;
-use clench_dynamics::{State, Step};
 use clench_math::Vec3;
 use clench_solver::Tree;
 use std::collections::HashSet;
@@ -70,17 +68,15 @@ impl ModelBuilder {
         user_numbers::pad(self, &mut model)?;
         sleep::add_trees(self, &order, &mut model)?;
 
-        let mut pose0 = pose(&model, &model.params.qpos0);
-        let rest = |model: &Model| pose(model, &model.params.qpos_spring);
-        tendons::lengths(self, &pose0, rest, &mut model);
-        cameras::set_initial_frames(&pose0, &mut model);
+        let pose0 = pose(&model, &model.params, &model.params.qpos0);
+        let rest = |model: &Model| pose(model, &model.params, &model.params.qpos_spring);
+        tendons::spring_lengths(self, rest, &mut model);
         lights::set_initial_places(&pose0, &mut model);
-        sleep::dof_lengths(&pose0, &mut model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
-        invweight0::derive(self, &order, &springdampers, &mut pose0, &mut model)?;
+        invweight0::derive(self, &order, &springdampers, pose0, &mut model)?;
         length_range::find_all(self, &mut model)?;
         budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;
@@ -153,16 +149,4 @@ impl ModelBuilder {
 fn tree(model: &Model) -> Result<Tree, BuildError> {
     let parents: Vec<_> = model.dofs.iter().map(|dof| dof.parent).collect();
     Tree::new(&parents).map_err(|e| BuildError::new("model", e.to_string()))
-}
-
-/// Poses, and all that depends on them alone, at `qpos`.
-fn pose(model: &Model, qpos: &[f64]) -> Positions<f64> {
-    let (params, mut state) = (&model.params, State::new(model));
-    state.qpos.copy_from_slice(qpos);
-    let mut pos = Positions::new(model);
-    let all = 0..model.nbody();
-    let parts = std::slice::from_ref(&all);
-    let all = kinematics::Computed::all(parts);
-    (Step::compiled().poses)(model, params, &state, all, &mut pos);
-    pos
 }

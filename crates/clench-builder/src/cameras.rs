@@ -5,9 +5,7 @@ use super::camera_spec::{CameraLens, CameraSpec, CameraTracking};
 use super::geoms::{Moved, place};
 use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
-use clench_dynamics::dynamics::camera::fixed_pose;
 use clench_dynamics::model::{Camera, CameraMode, Model};
-use clench_dynamics::stages::Positions;
 use std::sync::Arc;
 
 /// MuJoCo's focal lengths of a camera that has a field of view instead, m.
@@ -86,23 +84,4 @@ pub(super) fn mode(
         CameraTracking::TargetBody(name) => target(name, CameraMode::TargetBody)?,
         CameraTracking::TargetBodyCom(name) => target(name, CameraMode::TargetBodyCom)?,
     })
-}
-
-/// Notes the frames in the initial configuration, which cameras that track keep.
-pub(super) fn set_initial_frames(pose0: &Positions<f64>, model: &mut Model) {
-    for (c, camera) in model.cameras.iter().enumerate() {
-        let (pos, mat) = fixed_pose(model, &model.params, pose0, c);
-        let p = &mut model.params;
-        p.cam_pos0.push(pos - pose0.xpos[camera.body]);
-        let from = match camera.mode {
-            CameraMode::TrackCom(Some(body)) => body,
-            _ => camera.body,
-        };
-        p.cam_poscom0.push(pos - pose0.subtree_com[from]);
-        let mut rows = [0.0; 9];
-        for (to, row) in rows.chunks_exact_mut(3).zip(mat.rows) {
-            row.write(to);
-        }
-        p.cam_mat0.push(rows);
-    }
 }

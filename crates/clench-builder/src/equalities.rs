@@ -5,6 +5,7 @@ use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
 use super::{BuildError, ConnectAnchor, EqualityKind, EqualitySpec};
+use clench_dynamics::constants::carry;
 use clench_dynamics::model::{Equality, EqualityTarget, Model};
 use clench_dynamics::stages::Positions;
 use clench_math::{Quat, Vec3};
@@ -248,12 +249,6 @@ fn require_different(spec: &EqualitySpec, different: bool) -> Result<(), BuildEr
 fn require_finite_points(spec: &EqualitySpec, data: &Data) -> Result<(), BuildError> {
     let numbers = data.points.map(Vec3::to_array);
     spec.require_finite("anchor", numbers.as_flattened())
-}
-
-/// A point of the first body in the coordinates of the second, as they are placed initially.
-fn carry(pose0: &Positions<f64>, [from, to]: [usize; 2], point: Vec3<f64>) -> Vec3<f64> {
-    let world = pose0.xpos[from] + pose0.xmat[from] * point;
-    pose0.xmat[to].transpose_mul(world - pose0.xpos[to])
 }
 
 /// A weld's anchor is a point of the second body; its relative pose says where the first body holds it, and how turned.

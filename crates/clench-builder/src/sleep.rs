@@ -5,17 +5,13 @@ use super::element::Element;
 use super::model_builder::ModelBuilder;
 use super::{BodySpec, BuildError};
 use clench_dynamics::contact::check_supported;
-use clench_dynamics::model::{JointKind, KinematicTree, Model, SleepPolicy, Transmission};
+use clench_dynamics::model::{KinematicTree, Model, SleepPolicy, Transmission};
 use clench_dynamics::options::RigidOptions;
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::sleep::{AWAKE, READY};
-use clench_dynamics::stages::Positions;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_dynamics::{pipeline, sleep};
-
-/// The least size of a body, m (as in MuJoCo).
-const MIN_SIZE: f64 = 1e-5;
 
 /// Finds the trees, and decides which may sleep.
 ///
@@ -130,33 +126,6 @@ fn tree_of_root(model: &Model, body: usize) -> Option<usize> {
 
 fn not_a_root(spec: &BodySpec) -> BuildError {
     spec.error("has a sleep policy, which only the moving root of a tree can have")
-}
-
-/// The size of bodies at qpos0: how far joints and geoms lie from their centres of mass. It makes lengths of angles.
-pub(super) fn dof_lengths(pose0: &Positions<f64>, model: &mut Model) {
-    let mut sizes = vec![0.0f64; model.nbody()];
-    for (j, joint) in model.joints.iter().enumerate() {
-        for body in [joint.body, model.bodies[joint.body].parent] {
-            let distance = (pose0.xipos[body] - pose0.xanchor[j]).norm();
-            sizes[body] = sizes[body].max(distance);
-        }
-    }
-    for (g, geom) in model.geoms.iter().enumerate() {
-        let radius = model.params.geom_rbound[g];
-        if radius > 0.0 {
-            let distance = (pose0.xipos[geom.body] - pose0.geom_xpos[g]).norm();
-            sizes[geom.body] = sizes[geom.body].max(radius + distance);
-        }
-    }
-    let lengths = model.dofs.iter().enumerate().map(|(i, dof)| {
-        let joint = &model.joints[dof.joint];
-        match joint.kind {
-            JointKind::Slide => 1.0,
-            JointKind::Free if i < joint.dof + 3 => 1.0,
-            _ => sizes[dof.body].max(MIN_SIZE),
-        }
-    });
-    model.params.dof_length = lengths.collect();
 }
 
 /// Puts the trees to sleep that begin asleep. Islands sleep as a whole: where one tree of an island begins awake, all do, and

@@ -206,13 +206,11 @@ fn push_params(spec: &TendonSpec, model: &mut Model) {
 
 /// Fills in the lengths in the initial configuration, and where springs rest: as said, or as long as where the joints' springs
 /// rest, which `rest` computes.
-pub(super) fn lengths(
+pub(super) fn spring_lengths(
     builder: &ModelBuilder,
-    pose0: &Positions<f64>,
     rest: impl FnOnce(&Model) -> Positions<f64>,
     model: &mut Model,
 ) {
-    model.params.tendon_length0.clone_from(&pose0.ten_length);
     let said = |spec: &TendonSpec| spec.springlength;
     let springs = if builder.tendons.iter().all(|spec| said(spec).is_some()) {
         builder.tendons.iter().filter_map(said).collect()

@@ -59,6 +59,14 @@ pub enum SimError {
         /// What to set instead.
         other: &'static str,
     },
+    /// Parameters with which the mass matrix is not positive definite in the initial configuration.
+    #[error("at qpos0 the mass matrix is not positive definite{}{place}", env.map(|env| format!(" in environment {env}")).unwrap_or_default())]
+    SingularMass {
+        /// The environment, in a batch.
+        env: Option<usize>,
+        /// The joint where that shows, if it is known.
+        place: String,
+    },
     /// A name that nothing has.
     #[error("there is no {kind} \"{name}\"{hint}")]
     Unknown {

@@ -11,6 +11,7 @@
 
 pub mod budget;
 pub mod check;
+pub mod constants;
 pub mod constraint;
 pub mod contact;
 pub mod dynamics;

@@ -137,7 +137,7 @@ class Batch(Asked, Tied):
         record: Sequence[str] = ("qpos", "qvel"),
         steps: SupportsIndex | None = None,
     ) -> dict[str, Array]:
-        """Steps all running environments and records outputs after each step; see `clench.Batch.rollout`.
+        """Steps all running environments and records outputs after each step; see `clench.Batch.rollout`, which also takes functions.
 
         Parameters
         ----------
@@ -170,7 +170,9 @@ class Batch(Asked, Tied):
 
     # Parameters, options and states.
 
-    def randomize(self, field: str, values: ArrayLike, envs: ArrayLike | None = None) -> None:
+    def randomize(
+        self, field: str, values: ArrayLike, envs: ArrayLike | None = None, *, consistent: bool | np.bool_ = False
+    ) -> None:
         """Gives environments numbers of their own in place of the model's; see `clench.Batch.randomize`.
 
         Parameters
@@ -181,6 +183,8 @@ class Batch(Asked, Tied):
             The whole field for each environment: its shape in the model after an axis over environments.
         envs : array_like of int, optional
             Which environments; by default all.
+        consistent : bool, optional
+            Whether to compute the constants that follow, as `set_constants` does.
         """
         chosen = self._chosen(envs)
         rows = np.asarray(values)
@@ -194,6 +198,20 @@ class Batch(Asked, Tied):
             here = (part.start <= chosen) & (chosen < part.stop)
             arguments.append((field, rows[here], chosen[here] - part.start))
         self._change("randomize", arguments)
+        if consistent:
+            self.set_constants(chosen)
+
+    def set_constants(self, envs: ArrayLike | None = None) -> None:
+        """Computes the constants that follow from the parameters of environments; see `clench.Batch.set_constants`.
+
+        Parameters
+        ----------
+        envs : array_like of int, optional
+            Which environments; by default all.
+        """
+        chosen = self._chosen(envs)
+        own = [chosen[(part.start <= chosen) & (chosen < part.stop)] - part.start for part in self._parts]
+        self._change("set_constants", [(envs,) for envs in own])
 
     @property
     def options(self) -> clench.RigidOptions:

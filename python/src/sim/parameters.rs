@@ -13,7 +13,7 @@ impl Sim {
     /// Replaces the numbers of a parameter for this simulation alone.
     ///
     /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
-    /// quaternions and axes are normalized.
+    /// quaternions and axes are normalized. All else that follows stays as it is until `set_constants`.
     ///
     /// Parameters
     /// ----------
@@ -33,6 +33,23 @@ impl Sim {
             let values = shaped(field, values, &shape)?;
             own.sim.set_param(field, values.as_slice()?).map_err(sim_error)
         })
+    }
+
+    /// Computes the constants that follow from the parameters in the initial configuration ``qpos0``, as MuJoCo's
+    /// ``mj_setConst`` does: subtree masses, the inverse inertias ``body_invweight0``, ``dof_invweight0`` and
+    /// ``tendon_invweight0`` by which constraints are scaled, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, frames of
+    /// cameras (``cam_pos0``, ``cam_poscom0``, ``cam_mat0``), second anchors of connects, anchors at sites. The state stays as it is.
+    ///
+    /// Call it after masses, inertias, positions or armatures have changed, unless constraints are to stay as soft as those of
+    /// the original model.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A mass matrix that is not positive definite. All is then as before.
+    fn set_constants(&self) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => own.sim.set_constants().map_err(sim_error))
     }
 
     /// The numbers of a parameter as this simulation uses them.

@@ -3,6 +3,7 @@
 use super::env_rows::ParamRows;
 use super::{Batch, Precision, Rows};
 use clench_dynamics::check::check_length;
+use clench_dynamics::constants::{CONSTANTS, Constants};
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField};
 use clench_dynamics::options::RigidOptions;
@@ -14,9 +15,9 @@ impl<S: Precision> Batch<S> {
     /// element after element.
     ///
     /// What follows directly is computed with it: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`.
-    /// Quaternions and axes are normalized. The inverse inertias `*_invweight0`, by which constraints are scaled, stay the
-    /// model's unless they are set themselves (as in MuJoCo without `mj_setConst`). An environment costs memory only for
-    /// the fields that were set in any, and keeps its numbers when it is reset or restored.
+    /// Quaternions and axes are normalized. All else that follows stays the model's until
+    /// [`set_constants`](Self::set_constants). An environment costs memory only for the fields that were set in any, and keeps
+    /// its numbers when it is reset or restored.
     ///
     /// # Errors
     /// A name that no field has, a field that follows from another, environments that the batch does not have, a wrong
@@ -56,6 +57,49 @@ impl<S: Precision> Batch<S> {
             Some(mirror) => mirror.set_parameters(envs, &on_device),
             None => Ok(()),
         }
+    }
+
+    /// Computes the constants that follow from the parameters of environments in the initial configuration, as
+    /// [`Sim::set_constants`](crate::Sim::set_constants) does.
+    ///
+    /// # Errors
+    /// Environments that the batch does not have; one whose mass matrix is not positive definite. All parameters are then as
+    /// before.
+    pub fn set_constants(&mut self, envs: &[usize]) -> Result<(), SimError> {
+        self.check_envs(envs)?;
+        let mut params = self.model.params.clone();
+        let mut rows = CONSTANTS.map(|_| Vec::new());
+        for &env in envs {
+            for own in &self.params {
+                let row = own.rows.row(env).iter().map(|x| x.to_f64());
+                params.write_lane(own.field, 0, &Vec::from_iter(row));
+            }
+            let constants = Constants::new(&self.model, &params);
+            let set = constants.and_then(|mut all| all.set(&self.model, &mut params));
+            set.map_err(|singular| singular.error(&self.model, Some(env)))?;
+            for (rows, field) in rows.iter_mut().zip(CONSTANTS) {
+                rows.extend(params.read_lane(field, 0).into_iter().map(S::new));
+            }
+        }
+        for (rows, field) in rows.iter().zip(CONSTANTS) {
+            // Subtree masses have followed already.
+            if field != ParamField::body_subtreemass && self.differs(field, envs, rows) {
+                self.randomize(field.name(), envs, rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether environments have other numbers of a field than these.
+    fn differs(&self, field: ParamField, envs: &[usize], values: &[S]) -> bool {
+        let width = self.model.params.width(field).max(1);
+        let of_model: Vec<S> = model_row(&self.model, field);
+        let own = self.params.iter().find(|own| own.field == field);
+        let mut rows = envs.iter().zip(values.chunks(width));
+        rows.any(|(&env, row)| match own {
+            Some(own) => own.rows.row(env) != row,
+            None => of_model != row,
+        })
     }
 
     /// What the device, if there is one, takes as the parameters of environments whose `field` will have these values.

@@ -2,6 +2,7 @@
 
 use super::Sim;
 use crate::Precision;
+use clench_dynamics::constants::{CONSTANTS, Constants};
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField, Params};
 use clench_dynamics::options::RigidOptions;
@@ -9,8 +10,8 @@ use clench_dynamics::settings::StepSettings;
 
 impl<T: Precision> Sim<T> {
     /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from
-    /// them: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. The
-    /// inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are unless they are set themselves.
+    /// them: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. All else
+    /// that follows stays as it is until [`set_constants`](Self::set_constants).
     ///
     /// # Errors
     /// A name that no field has, a field that follows from another, a wrong number of numbers, or numbers that the field
@@ -22,6 +23,30 @@ impl<T: Precision> Sim<T> {
         Model::clear_structural_guarantees(&mut self.model, field, &row);
         self.params.write_lanes(field, &row);
         self.params.derive(&self.model, field);
+        self.forget();
+        Ok(())
+    }
+
+    /// Computes the constants that follow from the parameters in the initial configuration, as MuJoCo's `mj_setConst` does: subtree
+    /// masses, the inverse inertias `*_invweight0` by which constraints are scaled, `dof_length`, `tendon_length0`,
+    /// `actuator_acc0`, frames of cameras (`cam_*0`), second anchors of connects, anchors at sites. Call it after masses, inertias,
+    /// positions or armatures have changed, unless constraints are to stay as soft as those of the original model.
+    ///
+    /// # Errors
+    /// A mass matrix that is not positive definite. The parameters are then as before.
+    pub fn set_constants(&mut self) -> Result<(), SimError> {
+        let mut params = self.model.params.clone();
+        for &field in ParamField::ALL {
+            let row = self.params.read_lane(field, 0);
+            params.write_lane(field, 0, &Vec::from_iter(row.iter().map(|x| x.to_f64())));
+        }
+        let constants = Constants::new(&self.model, &params);
+        let set = constants.and_then(|mut all| all.set(&self.model, &mut params));
+        set.map_err(|singular| singular.error(&self.model, None))?;
+        for field in CONSTANTS {
+            let row = params.read_lane(field, 0).into_iter().map(T::new);
+            self.params.write_lanes(field, &Vec::from_iter(row));
+        }
         self.forget();
         Ok(())
     }

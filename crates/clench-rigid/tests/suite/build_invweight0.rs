@@ -1,15 +1,17 @@
 //! What the builder derives from the model as a whole: inverse inertias, springs, servo damping, equality data.
 
+use clench_dynamics::constants::CONSTANTS;
 use clench_math::{Quat, Vec3};
-use clench_rigid::State;
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomSpec, JointSpec,
     ModelBuilder, TendonSpec, TransmissionSpec,
 };
 use clench_rigid::dynamics::{com, inertia, kinematics};
-use clench_rigid::model::{EqualityTarget, Model};
+use clench_rigid::model::{EqualityTarget, Model, ParamField};
 use clench_rigid::workspace::Positions;
+use clench_rigid::{Batch, Sim, State};
 use clench_solver::TreeMatrix;
+use std::sync::Arc;
 
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
 
@@ -225,4 +227,39 @@ fn an_aligned_free_body_is_the_same_body_with_a_diagonal_mass_matrix() {
             .sum();
         assert!(off < 1e-12 * row[i], "row {i}: {row:?}");
     }
+}
+
+#[test]
+fn constants_of_changed_numbers_are_those_of_a_model_built_with_them() {
+    let arm = |mass: f64, armature: f64| {
+        let mut builder = ModelBuilder::new("arm");
+        let shoulder = JointSpec::hinge("shoulder", Y).armature(armature);
+        let upper = bob("upper", mass).joint(shoulder);
+        let upper = builder.add_body(ModelBuilder::WORLD, upper);
+        let elbow = JointSpec::hinge("elbow", Y);
+        builder.add_body(upper, bob("lower", 1.0).at([0.0, 0.0, -1.0]).joint(elbow));
+        builder
+            .tendons
+            .push(TendonSpec::fixed("string", &[("elbow", 2.0)]));
+        Arc::new(builder.build().unwrap())
+    };
+    let (light, heavy) = (arm(1.0, 0.1), arm(3.0, 0.4));
+    let mut sim = Sim::<f64>::new(light.clone()).unwrap();
+    let mut batch = Batch::<f64>::new(light.clone(), 3).unwrap();
+    for field in ["body_mass", "dof_armature"] {
+        let field = ParamField::find(field).unwrap();
+        let row = heavy.params.read_lane(field, 0);
+        sim.set_param(field.name(), &row).unwrap();
+        batch.randomize(field.name(), &[1], &row).unwrap();
+    }
+    sim.set_constants().unwrap();
+    batch.set_constants(&[1]).unwrap();
+    for field in CONSTANTS {
+        let name = field.name();
+        let [before, expected] = [&light, &heavy].map(|model| model.params.read_lane(field, 0));
+        assert_eq!(sim.param(name).unwrap(), expected, "{name}");
+        assert_eq!(batch.param(name, 1).unwrap(), expected, "{name}");
+        assert_eq!(batch.param(name, 2).unwrap(), before, "{name}");
+    }
+    assert!(batch.set_constants(&[3]).is_err());
 }

@@ -1,0 +1,341 @@
+//! Constants that follow from a model's numbers in its initial configuration qpos0 (MuJoCo's `mj_setConst`): subtree masses, inverse
+//! inertias, lengths of tendons, frames of cameras, anchors of equality constraints.
+//!
+//! The inverse inertia that a constraint with Jacobian J meets is A = J M⁻¹ Jᵀ; MuJoCo's `invweight0` are such numbers at
+//! qpos0, averaged over the directions that belong together. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
+
+use crate::dynamics::camera::fixed_pose;
+use crate::dynamics::inertia::composite_inertia;
+use crate::dynamics::kinematics::Computed;
+use crate::dynamics::tendon_armature::add_tendon_inertia;
+use crate::dynamics::{tendon, transmission};
+use crate::error::SimError;
+use crate::model::{CameraMode, EqualityTarget, JointKind, Model, ParamField, Params};
+use crate::singular::first_bad_pivot;
+use crate::stages::Positions;
+use crate::{State, Step};
+use clench_math::{Motion, Vec3};
+use clench_solver::{TreeFactor, TreeMatrix};
+
+/// Smallest mass (kg), inertia (kg m²) or inverse that is divided by (MuJoCo's `mjMINVAL`).
+pub const MIN_INERTIA: f64 = 1e-15;
+/// The least size of a body, m (as in MuJoCo).
+const MIN_SIZE: f64 = 1e-5;
+
+/// The fields that [`Constants`] sets.
+pub const CONSTANTS: [ParamField; 14] = [
+    ParamField::body_subtreemass,
+    ParamField::body_invweight0,
+    ParamField::dof_invweight0,
+    ParamField::dof_length,
+    ParamField::tendon_length0,
+    ParamField::tendon_invweight0,
+    ParamField::actuator_acc0,
+    ParamField::cam_pos0,
+    ParamField::cam_poscom0,
+    ParamField::cam_mat0,
+    ParamField::eq_anchor1,
+    ParamField::eq_anchor2,
+    ParamField::eq_quat1,
+    ParamField::eq_quat2,
+];
+
+/// A mass matrix that is not positive definite at qpos0, or hardly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SingularMass {
+    /// The dof at which that shows, if it is known.
+    pub dof: Option<usize>,
+}
+
+/// The poses of a model at qpos0, and its mass matrix there.
+pub struct Constants {
+    pose: Positions<f64>,
+    mass: TreeFactor<f64>,
+    row: Vec<f64>,
+}
+
+impl SingularMass {
+    /// The error of a simulation, or of an environment of a batch.
+    pub fn error(self, model: &Model, env: Option<usize>) -> SimError {
+        let place = self.dof.map(|dof| {
+            let name = &model.joints[model.dofs[dof].joint].name;
+            format!(" (joint \"{name}\", dof {dof})")
+        });
+        SimError::SingularMass {
+            env,
+            place: place.unwrap_or_default(),
+        }
+    }
+}
+
+impl Constants {
+    /// The initial configuration of a model with these numbers.
+    ///
+    /// # Errors
+    /// A mass matrix that is not positive definite.
+    pub fn new(model: &Model, params: &Params<f64>) -> Result<Self, SingularMass> {
+        let pose = pose(model, params, &params.qpos0);
+        Self::at(model, params, pose)
+    }
+
+    /// The same, with the poses at qpos0.
+    ///
+    /// # Errors
+    /// A mass matrix that is not positive definite.
+    pub fn at(
+        model: &Model,
+        params: &Params<f64>,
+        mut pose: Positions<f64>,
+    ) -> Result<Self, SingularMass> {
+        let mut mass = TreeMatrix::zeros(&model.tree);
+        composite_inertia(model, params, &mut pose, &mut mass);
+        add_tendon_inertia(model, params, &pose, &mut mass);
+        let mut factor = TreeFactor::zeros(&model.tree);
+        if !factor.factor(&model.tree, &mass) {
+            let dof = first_bad_pivot(&model.tree, mass.values);
+            return Err(SingularMass { dof });
+        }
+        Ok(Constants {
+            pose,
+            mass: factor,
+            row: vec![0.0; model.nv],
+        })
+    }
+
+    /// The poses.
+    pub fn pose(&self) -> &Positions<f64> {
+        &self.pose
+    }
+
+    /// Sets the fields of [`CONSTANTS`] to what follows from the others.
+    ///
+    /// # Errors
+    /// A mass matrix so nearly singular that inverse inertias are not finite.
+    pub fn set(&mut self, model: &Model, params: &mut Params<f64>) -> Result<(), SingularMass> {
+        params.derive(model, ParamField::body_mass);
+        self.set_dof_lengths(model, params);
+        self.set_dof_weights(model, params);
+        self.set_body_weights(model, params);
+        self.set_tendons(model, params);
+        self.set_unit_accelerations(model, params);
+        self.set_cameras(model, params);
+        self.set_anchors(model, params);
+        let is_finite = |field: &ParamField| {
+            let row = params.read_lane(*field, 0);
+            row.iter().all(|x| x.is_finite())
+        };
+        match CONSTANTS.iter().all(is_finite) {
+            true => Ok(()),
+            false => Err(SingularMass { dof: None }),
+        }
+    }
+
+    /// J M⁻¹ Jᵀ for a force of an actuator, one of `Model::nout`.
+    pub fn weight_of_output(&mut self, model: &Model, output: usize) -> f64 {
+        let row = transmission::moment(model, &self.pose, output);
+        fill(&mut self.row, row);
+        self.weight(model)
+    }
+
+    /// J M⁻¹ Jᵀ for `row`.
+    fn weight(&mut self, model: &Model) -> f64 {
+        self.mass.solve_half(&model.tree, &mut self.row);
+        self.row.iter().map(|x| x * x).sum()
+    }
+
+    /// The largest distance of a body's joints and geoms from its centre of mass, for rotations.
+    fn set_dof_lengths(&self, model: &Model, params: &mut Params<f64>) {
+        let pose = &self.pose;
+        let mut sizes = vec![0.0f64; model.nbody()];
+        for (j, joint) in model.joints.iter().enumerate() {
+            for body in [joint.body, model.bodies[joint.body].parent] {
+                let distance = (pose.xipos[body] - pose.xanchor[j]).norm();
+                sizes[body] = sizes[body].max(distance);
+            }
+        }
+        for (g, geom) in model.geoms.iter().enumerate() {
+            let radius = params.geom_rbound[g];
+            if radius > 0.0 {
+                let distance = (pose.xipos[geom.body] - pose.geom_xpos[g]).norm();
+                sizes[geom.body] = sizes[geom.body].max(radius + distance);
+            }
+        }
+        let lengths = model.dofs.iter().enumerate().map(|(i, dof)| {
+            let joint = &model.joints[dof.joint];
+            match joint.kind {
+                JointKind::Slide => 1.0,
+                JointKind::Free if i < joint.dof + 3 => 1.0,
+                _ => sizes[dof.body].max(MIN_SIZE),
+            }
+        });
+        params.dof_length = lengths.collect();
+    }
+
+    fn set_dof_weights(&mut self, model: &Model, params: &mut Params<f64>) {
+        let mut weight_of = |last: usize| {
+            let unit = |dof: usize| f64::from(u8::from(dof == last));
+            weight_along(&self.mass, &mut self.row, model, last, unit)
+        };
+        let mut weights = Vec::from_iter((0..model.nv).map(&mut weight_of));
+        for joint in &model.joints {
+            let together = match joint.kind {
+                JointKind::Free => 3,
+                kind => kind.nv(),
+            };
+            let dofs = &mut weights[joint.dof..joint.dof + joint.kind.nv()];
+            for group in dofs.chunks_mut(together) {
+                group.fill(mean(group));
+            }
+            if slides_alone(model, joint.body) {
+                dofs.fill(1.0 / params.body_mass[joint.body].max(MIN_INERTIA));
+            }
+        }
+        params.dof_invweight0 = weights;
+    }
+
+    /// Mean over the three translations of the centre of mass, and over the three rotations.
+    fn set_body_weights(&mut self, model: &Model, params: &mut Params<f64>) {
+        let Constants { pose, mass, row } = self;
+        let mut weights = vec![[0.0; 2]; model.nbody()];
+        for (b, weight) in weights.iter_mut().enumerate() {
+            if model.bodies[model.bodies[b].weld].joints.is_empty() {
+                continue;
+            }
+            if slides_alone(model, b) {
+                *weight = [1.0 / params.body_mass[b].max(MIN_INERTIA), 0.0];
+                continue;
+            }
+            let Some(last) = model.bodies[b].last_dof else {
+                continue;
+            };
+            let offset = pose.xipos[b] - pose.subtree_com[model.bodies[b].root];
+            let mut along = |part: &dyn Fn(Motion<f64>) -> f64| {
+                weight_along(mass, row, model, last, |dof| part(pose.cdof[dof]))
+            };
+            let translation = [0, 1, 2].map(|k| along(&|m| m.velocity_at(offset)[k]));
+            let rotation = [0, 1, 2].map(|k| along(&|m| m.angular[k]));
+            *weight = [mean(&translation), mean(&rotation)];
+        }
+        params.body_invweight0 = weights;
+    }
+
+    fn set_tendons(&mut self, model: &Model, params: &mut Params<f64>) {
+        params.tendon_length0.clone_from(&self.pose.ten_length);
+        let weights = (0..model.tendons.len()).map(|t| {
+            fill(&mut self.row, tendon::gradient(model, &self.pose, t));
+            self.weight(model)
+        });
+        params.tendon_invweight0 = weights.collect();
+    }
+
+    /// ‖M⁻¹ Jᵀ‖ of the first force of each actuator, by which muscles scale theirs.
+    fn set_unit_accelerations(&mut self, model: &Model, params: &mut Params<f64>) {
+        let norms = model.actuators.iter().map(|actuator| {
+            let arms = transmission::moment(model, &self.pose, actuator.outputs.start);
+            fill(&mut self.row, arms);
+            self.mass.solve(&model.tree, &mut self.row);
+            self.row.iter().map(|x| x * x).sum::<f64>().sqrt()
+        });
+        params.actuator_acc0 = norms.collect();
+    }
+
+    /// The frames that cameras that track keep.
+    fn set_cameras(&self, model: &Model, params: &mut Params<f64>) {
+        let pose = &self.pose;
+        let count = model.cameras.len();
+        params.cam_pos0 = vec![Vec3::ZERO; count];
+        params.cam_poscom0 = vec![Vec3::ZERO; count];
+        params.cam_mat0 = vec![[0.0; 9]; count];
+        for (c, camera) in model.cameras.iter().enumerate() {
+            let (pos, mat) = fixed_pose(model, params, pose, c);
+            let from = match camera.mode {
+                CameraMode::TrackCom(Some(body))
+                | CameraMode::TargetBody(body)
+                | CameraMode::TargetBodyCom(body) => body,
+                CameraMode::Fixed | CameraMode::Track | CameraMode::TrackCom(None) => camera.body,
+            };
+            params.cam_pos0[c] = pos - pose.xpos[camera.body];
+            params.cam_poscom0[c] = pos - pose.subtree_com[from];
+            for (to, row) in params.cam_mat0[c].chunks_exact_mut(3).zip(mat.rows) {
+                row.write(to);
+            }
+        }
+    }
+
+    /// A connect's second anchor is where its first is at qpos0; sites are where they are.
+    fn set_anchors(&self, model: &Model, params: &mut Params<f64>) {
+        for (i, equality) in model.equalities.iter().enumerate() {
+            match (equality.sites, equality.target) {
+                (Some([site1, site2]), _) => {
+                    params.eq_anchor1[i] = params.site_pos[site1];
+                    params.eq_anchor2[i] = params.site_pos[site2];
+                    if let EqualityTarget::Weld { .. } = equality.target {
+                        params.eq_quat1[i] = params.site_quat[site1];
+                        params.eq_quat2[i] = params.site_quat[site2];
+                    }
+                }
+                (None, EqualityTarget::Connect { body1, body2 }) => {
+                    let bodies = [body1, body2];
+                    params.eq_anchor2[i] = carry(&self.pose, bodies, params.eq_anchor1[i]);
+                }
+                (None, EqualityTarget::Weld { .. })
+                | (None, EqualityTarget::Joint { .. })
+                | (None, EqualityTarget::Tendon { .. }) => {}
+            }
+        }
+    }
+}
+
+/// Poses, and all that depends on them alone, at `qpos`.
+pub fn pose(model: &Model, params: &Params<f64>, qpos: &[f64]) -> Positions<f64> {
+    let mut state = State::new(model);
+    state.qpos.copy_from_slice(qpos);
+    let mut pos = Positions::new(model);
+    let all = 0..model.nbody();
+    let all = Computed::all(std::slice::from_ref(&all));
+    (Step::compiled().poses)(model, params, &state, all, &mut pos);
+    pos
+}
+
+/// A point of the first body in the coordinates of the second.
+pub fn carry(pose: &Positions<f64>, [from, to]: [usize; 2], point: Vec3<f64>) -> Vec3<f64> {
+    let world = pose.xpos[from] + pose.xmat[from] * point;
+    pose.xmat[to].transpose_mul(world - pose.xpos[to])
+}
+
+/// J M⁻¹ Jᵀ for a row that is zero but on the path to dof `last`, where `entry` gives it.
+fn weight_along(
+    mass: &TreeFactor<f64>,
+    row: &mut [f64],
+    model: &Model,
+    last: usize,
+    entry: impl Fn(usize) -> f64,
+) -> f64 {
+    let path = model.tree.row(last);
+    let row = &mut row[..path.len()];
+    for (x, &dof) in row.iter_mut().zip(path) {
+        *x = entry(dof as usize);
+    }
+    mass.solve_half_along(&model.tree, last, row);
+    row.iter().map(|x| x * x).sum()
+}
+
+/// Writes a sparse row.
+fn fill(to: &mut [f64], row: impl Iterator<Item = (usize, f64)>) {
+    to.fill(0.0);
+    for (dof, entry) in row {
+        to[dof] = entry;
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Whether a body's mass alone decides its weights: MuJoCo takes 1/mass for them, in every direction and without armature (its
+/// `body_simple` of level two).
+fn slides_alone(model: &Model, body: usize) -> bool {
+    let slides = |j: usize| model.joints[j].kind == JointKind::Slide;
+    let body = &model.bodies[body];
+    body.diagonal_inertia && body.joints.clone().all(slides)
+}
