@@ -1072,9 +1072,11 @@ class Batch(_Outputs):
     def rollout(
         self,
         initial: State | ArrayLike | None = None,  # or (n, 1 + nq + nv + na), or one for all: time, qpos, qvel, act
-        ctrl: ArrayLike | None = None,  # (steps, nu) or (n, steps, nu)
+        ctrl: ArrayLike | Callable[[int], ArrayLike | None] | None = None,  # (steps, nu) or (n, steps, nu)
         record: Sequence[str] = ("qpos", "qvel"),
         steps: SupportsIndex | None = None,
+        *,
+        progress: bool | np.bool_ | Callable[[int, int], object] | None = None,
     ) -> dict[str, NDArray[Any]]: ...  # (n, steps, ...) each
     def contacts(self, env: SupportsIndex) -> Contacts: ...
     def constraints(self, env: SupportsIndex) -> Constraints: ...

@@ -6,7 +6,7 @@ use crate::state_views::StateViews;
 use crate::view::{Keeper, view};
 use clench::{Batch, Controls, Output, Precision};
 use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -61,6 +61,7 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
     ctrl: Option<&Bound<'py, PyAny>>,
     record: &[String],
     steps: Option<usize>,
+    progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (n, model) = (batch.count(), Arc::clone(batch.model()));
     // Copies: other threads may write to the arrays while this one steps.
@@ -110,15 +111,27 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
         }
     };
     let start = initial.as_ref().map(|values| &values.numbers[..]);
-    let mut interrupt = Ok(());
+    let progress = progress.map(Bound::as_unbound);
+    let tell = |py: Python<'_>, done: usize| {
+        progress.map_or(Ok(()), |tell| tell.call1(py, (done, steps)).map(drop))
+    };
+    let (mut done, mut stopped) = (steps, Ok(()));
     let recording = py.detach(|| {
-        batch.rollout_while(start, steps, controls, &names, || {
-            interrupt = Python::attach(|py| py.check_signals());
-            interrupt.is_ok()
+        batch.rollout_while(start, steps, controls, &names, |so_far| {
+            done = so_far;
+            stopped = Python::attach(|py| py.check_signals().and_then(|()| tell(py, so_far)));
+            stopped.is_ok()
         })
     });
     let recording = recording.map_err(sim_error)?;
-    interrupt?;
+    match stopped {
+        Ok(()) => tell(py, steps)?,
+        Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => {
+            let say = module(py)?.getattr("interrupted")?;
+            say.call1((done, steps))?;
+        }
+        Err(error) => return Err(error),
+    }
     let arrays = PyDict::new(py);
     for (output, mut rows) in recording.into_rows() {
         let start = rows.as_mut_ptr();
@@ -128,4 +141,27 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
         arrays.set_item(output.name(), unsafe { view(&keeper, start, &shape) }?)?;
     }
     Ok(arrays)
+}
+
+/// What of a rollout is written in Python.
+pub(crate) fn module(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
+    py.import("clench._rollout")
+}
+
+/// What is told of the progress of a rollout of `n` environments: a function, a line on stderr for True, or nothing.
+pub(crate) fn progress<'py>(
+    wanted: Option<Bound<'py, PyAny>>,
+    n: usize,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let Some(wanted) = wanted.filter(|wanted| !wanted.is_none()) else {
+        return Ok(None);
+    };
+    if wanted.is_callable() {
+        return Ok(Some(wanted));
+    }
+    let shown = wanted.extract::<bool>().map_err(|_| {
+        PyTypeError::new_err("progress must be a bool or a function of (steps done, steps)")
+    })?;
+    let line = |py| module(py)?.getattr("Progress")?.call1((n,));
+    shown.then(|| line(wanted.py())).transpose()
 }

@@ -203,3 +203,63 @@ def test_controls_are_those_of_the_call() -> None:
     assert thread.is_alive(), "the rollout is over too soon"
     thread.join()
     np.testing.assert_array_equal(found["qpos"][:, -1], expected)
+
+
+@pytest.mark.parametrize("shared", [True, False], ids=["shared", "each"])
+def test_a_function_gives_the_controls_of_each_step(shared: bool) -> None:
+    batch, hand = (clench.Batch(example("humanoid"), 3) for _ in range(2))
+    initial = start(batch)
+    times, given = [], []
+
+    def policy(step: int) -> Any:
+        assert step == len(times)
+        times.append(batch.time.copy())
+        ctrl = -0.2 * batch.qvel[:, 6:] if not shared else np.full(batch.model.nu, 0.1 * np.sin(batch.qpos[0, 2]))
+        given.append(np.broadcast_to(batch.ctrl if step == 4 else ctrl, batch.ctrl.shape))
+        return None if step == 4 else ctrl
+
+    rows = batch.rollout(initial, policy, ["qpos", "qacc"], 10)
+    np.testing.assert_array_equal(times[0], initial[:, 0])
+    again = hand.rollout(initial, np.stack(given, axis=1), ["qpos", "qacc"])
+    for name, array in rows.items():
+        assert np.isfinite(array).all()
+        np.testing.assert_array_equal(array, again[name])
+
+
+def test_a_function_needs_steps_and_may_fail() -> None:
+    batch = clench.Batch(example("humanoid"), 2)
+    with pytest.raises(ValueError, match="needs steps"):
+        batch.rollout(ctrl=lambda _: None)
+    with pytest.raises(ValueError, match="ctrl"):
+        batch.rollout(ctrl=lambda _: np.zeros(3), steps=2)
+
+    def fails(step: int) -> None:
+        raise ArithmeticError(step)
+
+    with pytest.raises(ArithmeticError):
+        batch.rollout(ctrl=fails, steps=2)
+    assert batch.step() == 0
+
+
+@pytest.mark.parametrize("ctrl", [None, lambda _: None], ids=["held", "function"])
+def test_progress_is_told(ctrl: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    batch = clench.Batch(ball(), 2)
+    told: list[tuple[int, int]] = []
+    batch.rollout(None, ctrl, [], 10_000, progress=lambda done, steps: told.append((done, steps)))
+    assert len(told) > 2
+    assert told == sorted(told)
+    assert told[-1] == (10_000, 10_000)
+    batch.rollout(None, ctrl, [], 100, progress=True)
+    line = capsys.readouterr().err
+    assert line.startswith("\rrollout: 100 of 100 steps")
+    assert line.endswith("environment steps/s\n")
+    batch.rollout(None, ctrl, [], 100, progress=False)
+    assert capsys.readouterr().err == ""
+
+    def stop(done: int, steps: int) -> None:
+        raise ArithmeticError
+
+    with pytest.raises(ArithmeticError):
+        batch.rollout(None, ctrl, [], 10_000, progress=stop)
+    with pytest.raises(TypeError, match="progress must be"):
+        batch.rollout(None, ctrl, [], 1, progress="yes")  # type: ignore[arg-type]

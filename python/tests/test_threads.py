@@ -268,9 +268,26 @@ def test_steps_end_where_nobody_runs() -> None:
 def test_control_c_ends_a_rollout() -> None:
     batch = clench.Batch(ball(), 2)
     interrupt_soon()
-    with pytest.raises(KeyboardInterrupt):
-        batch.rollout(steps=2**50, record=[])
+    with pytest.warns(RuntimeWarning, match=r"interrupted after \d+ of"):
+        assert batch.rollout(steps=2**50, record=[]) == {}
+    assert batch.time[0] > 0
     assert batch.step() == 0
+
+
+@pytest.mark.parametrize("ctrl", [None, lambda _: None], ids=["held", "function"])
+def test_what_was_recorded_until_control_c_is_returned(ctrl: Any) -> None:
+    batch, other = humanoids(), humanoids()
+    steps = steps_of(5, humanoids)
+    interrupt_soon()
+    with pytest.warns(RuntimeWarning, match="interrupted after") as warned:
+        rows = batch.rollout(None, ctrl, steps=steps)
+    done = round(float(batch.time[0]) / batch.model.timestep)
+    assert 0 < done < steps
+    assert f"after {done} of {steps}" in str(warned[0].message)
+    expected = other.rollout(steps=done)
+    for name, array in rows.items():
+        np.testing.assert_array_equal(array[:, :done], expected[name])
+        assert np.isnan(array[:, done:]).all()
 
 
 def test_handlers_run_meanwhile() -> None:

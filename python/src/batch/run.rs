@@ -6,8 +6,9 @@ use crate::count::Count;
 use crate::error::sim_error;
 use crate::kind::Kind;
 use crate::names::Names;
-use crate::rollout::{Start, rollout};
+use crate::rollout::{self, Start};
 use crate::state_views::is_state;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -114,7 +115,8 @@ impl Batch {
 
     /// Steps all running environments and records outputs after each step.
     ///
-    /// Other Python threads run meanwhile. Ctrl-C is looked at now and then, and loses what was recorded.
+    /// Other Python threads run meanwhile. Ctrl-C is looked at now and then: it ends the rollout with a `RuntimeWarning`, and what
+    /// was recorded until then is returned.
     ///
     /// Parameters
     /// ----------
@@ -122,13 +124,17 @@ impl Batch {
     ///     States to start from: a `State`, of a `Sim` for all environments or of the batch, of which everything counts; or one row for all
     ///     (1 + nq + nv + na) or a row each (n, ...): time, positions, velocities, activations, with which the solver starts anew, so that what
     ///     comes out depends on no earlier step. All environments then run. By default they go on from where they are.
-    /// ctrl : array_like, optional
+    /// ctrl : array_like or callable, optional
     ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`, which
-    ///     stay as they are in any case.
+    ///     stay as they are in any case. A function is called before each step with its number, from 0 on; it may read and call
+    ///     the batch, and returns the controls of all (nu) or each (n, nu) environment, or None for those in `ctrl`.
     /// record : sequence of str
     ///     Outputs to record, see `clench.OUTPUTS`.
     /// steps : int, optional
-    ///     How many steps; needed only without `ctrl`.
+    ///     How many steps; needed only where `ctrl` is no array.
+    /// progress : bool or callable, optional
+    ///     True shows the progress in a line on stderr. A function is called every fraction of a second, and at the end, with
+    ///     the steps done and the steps in all; an exception that it raises ends the rollout.
     ///
     /// Returns
     /// -------
@@ -139,8 +145,10 @@ impl Batch {
     /// ------
     /// ValueError
     ///     Wrong shapes; names that no output has. The states are then as before.
-    #[pyo3(signature = (initial = None, ctrl = None, record = None, steps = None),
-           text_signature = "($self, initial=None, ctrl=None, record=('qpos', 'qvel'), steps=None)")]
+    /// TypeError
+    ///     A progress that is neither a bool nor a function.
+    #[pyo3(signature = (initial = None, ctrl = None, record = None, steps = None, *, progress = None),
+           text_signature = "($self, initial=None, ctrl=None, record=('qpos', 'qvel'), steps=None, *, progress=None)")]
     fn rollout<'py>(
         this: &Bound<'py, Self>,
         py: Python<'py>,
@@ -148,15 +156,27 @@ impl Batch {
         ctrl: Option<&Bound<'py, PyAny>>,
         record: Option<Names>,
         steps: Option<Count>,
+        progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let progress = rollout::progress(progress, this.get().n_envs)?;
         let record = record.map_or_else(|| vec!["qpos".into(), "qvel".into()], |names| names.0);
         let steps = steps.map(|count| count.0);
+        if let Some(policy) = ctrl.filter(|ctrl| ctrl.is_callable()) {
+            let steps = steps.ok_or_else(|| {
+                PyValueError::new_err("rollout needs steps where ctrl is a function")
+            })?;
+            let controlled = rollout::module(py)?.getattr("controlled")?;
+            let rows = controlled.call1((this, initial, policy, record, steps, progress))?;
+            return Ok(rows.cast_into()?);
+        }
         let start = match initial {
             Some(state) if is_state(state)? => Start::State(this.as_super().get(), state),
             Some(rows) => Start::Rows(rows),
             None => Start::Here,
         };
         let mut guard = lock(&this.get().inner, "batch")?;
-        each!(&mut *guard, batch => rollout(py, batch, &start, ctrl, &record, steps))
+        each!(&mut *guard, batch => {
+            rollout::rollout(py, batch, &start, ctrl, &record, steps, progress.as_ref())
+        })
     }
 }

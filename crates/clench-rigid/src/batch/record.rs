@@ -10,8 +10,9 @@ use clench_dynamics::check::check_length;
 use clench_dynamics::error::SimError;
 use std::mem::{replace, swap};
 
-/// So many steps of environments are done before a rollout asks whether to go on: a fraction of a second.
+/// So many steps of environments, and so many steps, are done before a rollout asks whether to go on: a fraction of a second.
 const ENV_STEPS_A_PORTION: usize = 1 << 16;
+const STEPS_A_PORTION: usize = 1 << 12;
 
 /// What a rollout recorded.
 #[derive(Debug)]
@@ -98,7 +99,7 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         record: &[&str],
     ) -> Result<Recording<S>, SimError> {
-        self.rollout_while(None, steps, controls, record, || true)
+        self.rollout_while(None, steps, controls, record, |_| true)
     }
 
     /// As [`rollout`](Self::rollout), with all environments running from states of which `initial` holds what moves, environment
@@ -115,11 +116,11 @@ impl<S: Precision> Batch<S> {
         controls: Controls<S>,
         record: &[&str],
     ) -> Result<Recording<S>, SimError> {
-        self.rollout_while(Some(initial), steps, controls, record, || true)
+        self.rollout_while(Some(initial), steps, controls, record, |_| true)
     }
 
     /// A [`rollout`](Self::rollout), or one from given states, that goes on only as long as `go_on` says, which is asked every
-    /// now and then. Steps that are not done are NaN.
+    /// now and then and given the number of steps done. Steps that are not done are NaN.
     ///
     /// # Errors
     /// As [`rollout_from`](Self::rollout_from).
@@ -129,7 +130,7 @@ impl<S: Precision> Batch<S> {
         steps: usize,
         controls: Controls<S>,
         record: &[&str],
-        mut go_on: impl FnMut() -> bool,
+        mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<Recording<S>, SimError> {
         self.check_state()?;
         self.check_threads()?;
@@ -140,7 +141,7 @@ impl<S: Precision> Batch<S> {
         if let Some(initial) = initial {
             self.start_from(initial);
         }
-        let portion = (ENV_STEPS_A_PORTION / self.count().max(1)).max(1);
+        let portion = (ENV_STEPS_A_PORTION / self.count().max(1)).clamp(1, STEPS_A_PORTION);
         let (mut failed, mut resets, mut first) = (0, 0, 0_usize);
         let summary = loop {
             let range = first..steps.min(first.saturating_add(portion));
@@ -153,7 +154,7 @@ impl<S: Precision> Batch<S> {
             let part = self.run(&call, &mut outputs)?;
             failed += part.failed;
             resets += part.resets;
-            if first == steps || part.running == 0 || !go_on() {
+            if first == steps || part.running == 0 || !go_on(first) {
                 break Summary {
                     failed,
                     resets,
