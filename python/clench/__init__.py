@@ -53,6 +53,7 @@ from clench._core import (
     devices,
     solve,
 )
+from clench._descriptions import load_description
 from clench._named import (
     ActuatorView,
     BodyView,
@@ -117,6 +118,7 @@ __all__ = [
     "Viewer",
     "__version__",
     "devices",
+    "load_description",
     "solve",
     "view",
 ]
