@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from xml.parsers import expat
 
-from clench._document import Document, described, named, reference_kind
+from clench._document import Document, described, file_of, named, reference_kind
 from clench.errors import LoadError
 
 # Sections that an element is read with; what is checked in one of them is not given a second time.
@@ -75,8 +75,14 @@ def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Elem
     """A document of the element alone."""
     root = ET.Element("mujoco")
     root.extend(section for section in document.root if section.tag in _AROUND)
+    # Classes of attached documents are known by name.
+    lent = [node for other in document.family() if other is not document for node in other.root.iter("default")]
+    if lent and node.tag != "default":
+        classes = ET.SubElement(root, "default")
+        for name in dict.fromkeys(name for node in lent if (name := node.get("class", "main")) != "main"):
+            ET.SubElement(classes, "default", {"class": name})
     assets = ET.SubElement(root, "asset")
-    for asset in document.root.iterfind("asset/*"):
+    for asset in [asset for other in document.first().family() for asset in other.root.iterfind("asset/*")]:
         # Elements are read with materials of the right names, whatever these look like.
         if asset.tag == "texture" and asset is not node:
             ET.SubElement(assets, "texture", name=named(asset), type="2d", builtin="flat", width="1", height="1")
@@ -106,7 +112,7 @@ def _files(document: Document, node: ET.Element) -> dict[str, bytes]:
 
 
 def _check_names(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> None:
-    # What another document brings, and copies, are named when the model is built.
+    # Replicas, and what a file attaches, are named when the model is built.
     if document.has_copies():
         return
     section = ancestors[0].tag if ancestors else node.tag
@@ -121,13 +127,15 @@ def _check_names(document: Document, ancestors: Sequence[ET.Element], node: ET.E
             raise LoadError(f'there is no {kind} "{name}"{hint}', element=described(document, node))
 
 
-def located(document: Document, text: str, error: LoadError) -> LoadError:
+def located(document: Document, error: LoadError) -> LoadError:
     """An error about a line of a document's text, as one about the element that is written there."""
-    if error.line is None or error.file:
+    documents = {file_of(name): attached for other in document.family() for name, attached in other.attached.items()}
+    of = document if not error.file else documents.get(error.file)
+    if error.line is None or of is None:
         return error
     starts: list[int] = []
     parser = expat.ParserCreate()
     parser.StartElementHandler = lambda *_: starts.append(parser.CurrentLineNumber)
-    parser.Parse(text, True)
-    nodes = [node for line, node in zip(starts, document.root.iter()) if line == error.line]
-    return LoadError(error.message, element=described(document, nodes[0])) if nodes else error
+    parser.Parse(of.text(), True)
+    nodes = [node for line, node in zip(starts, of.root.iter()) if line == error.line]
+    return LoadError(error.message, element=described(of, nodes[0])) if nodes else error

@@ -2,6 +2,9 @@
 
 What can be named and what refers to names is told by tables of MJCF's tags and attributes. What a user sees of a document is in
 `_spec.py`.
+
+A model that is attached stays a document of its own, since its elements are read with its own units and classes. Its names have the
+prefix already. A document and those attached to it, and to these, are a family, in which no two elements of a kind have the same name.
 """
 
 from __future__ import annotations
@@ -33,6 +36,7 @@ _REFERENCES = {
     "material": ("material",),
     "texture": ("texture",),
     "model": ("model",),
+    "frame": ("frame",),
 }
 # Attributes that name an element whose kind stands in another attribute.
 _TYPED = {"objname": "objtype", "refname": "reftype"}
@@ -45,8 +49,10 @@ _TAGS = {
     "pair": ("pair",),
     **{kind: (kind,) for kind in ("body", "geom", "site", "camera", "mesh", "hfield", "material", "texture", "model")},
 }
+# Sections without names.
+_SETTINGS = ("compiler", "option", "size", "statistic", "visual")
 # Where names refer to nothing that can be renamed or removed.
-_NO_REFERENCES = ("default", "custom", "compiler", "option", "size", "statistic", "visual")
+_NO_REFERENCES = ("default", "custom", *_SETTINGS)
 
 
 def written(value: Value) -> str:
@@ -71,9 +77,15 @@ class Document:
 
     def __init__(self, root: ET.Element) -> None:
         self.root = root
+        # Files of the family, kept by its first document.
         self.assets: dict[str, bytes] = {}
-        # Elements by kind and name; None where it has to be made anew.
-        self._names: dict[tuple[str, str], ET.Element] | None = None
+        # Documents that are attached, by the names of their `model` elements, and the one that this is attached to.
+        self.attached: dict[str, Document] = {}
+        self._outer: Document | None = None
+        # Elements that an attachment of a single body leaves out.
+        self._hidden: set[ET.Element] = set()
+        # Elements of the family by kind and name; None where it has to be made anew.
+        self._names: dict[tuple[str, str], tuple[Document, ET.Element]] | None = None
         self._has_copies = False
 
     @staticmethod
@@ -92,11 +104,102 @@ class Document:
         document._read_assets(path.parent)
         return document
 
-    def to_xml(self) -> str:
-        """Its text."""
+    def text(self) -> str:
+        """Its text, without those of attached documents."""
         root = copy.deepcopy(self.root)
         ET.indent(root)
         return ET.tostring(root, encoding="unicode")
+
+    def files(self) -> dict[str, bytes]:
+        """The files that its text names, attached documents among them."""
+        texts = {file_of(name): document.text().encode() for document in self.family() for name, document in document.attached.items()}
+        return {**self.first().assets, **texts}
+
+    # The family.
+
+    def first(self) -> Document:
+        """The document that all others of the family are attached to."""
+        return self if self._outer is None else self._outer.first()
+
+    def family(self) -> Iterator[Document]:
+        """This document and all that are attached to it."""
+        yield self
+        for document in self.attached.values():
+            yield from document.family()
+
+    def attach(self, other: Document, prefix: str, body: str | None) -> str:
+        """Take in a copy of a document whose names get a prefix; of a single body and what belongs to it, if one is named.
+
+        Returns what the copy is called in `attached`.
+        """
+        name = f"{prefix}model"
+        if any(name in document.attached for document in self.first().family()):
+            raise ValueError(f"a model is attached with the prefix {prefix!r} already")
+        own = other._prefixed(prefix)
+        if body is not None:
+            found = own.find("body", f"{prefix}{body}")
+            if found is None:
+                raise ValueError(f'the attached model has no body "{body}"')
+            found[0]._hide_all_but(found[1])
+        for kind, taken in own._index():
+            if self.find(kind, taken) is not None:
+                raise ValueError(f'there is a {kind} "{taken}" already')
+        self.first().add_files(own.assets)
+        own.assets, own._outer = {}, self
+        self.attached[name] = own
+        self.changed()
+        return name
+
+    def attaches_files(self) -> bool:
+        """Whether an element of the family attaches a file, or a part of its own document."""
+        return any(
+            node.tag == "attach" and node.get("model") not in document.attached
+            for document in self.family()
+            for node, _ in document.nodes()
+        )
+
+    def _prefixed(self, prefix: str) -> Document:
+        own = copy.deepcopy(self)
+        for document in own.family():
+            for section in document.root:
+                if section.tag not in _SETTINGS:
+                    for node in section.iter():
+                        _prefix(node, prefix)
+            document.attached = {prefix + name: attached for name, attached in document.attached.items()}
+            for name in document.attached:
+                for model in document.root.iterfind(f"asset/model[@name='{name}']"):
+                    model.set("file", file_of(name))
+        own.changed()
+        return own
+
+    def _hide_all_but(self, body: ET.Element) -> None:
+        """Leave out the rest of the tree, and what refers to it."""
+        less = copy.deepcopy(self)
+        copies = dict(zip(self.root.iter(), less.root.iter(), strict=True))
+        less.parents()[copies[body]].remove(copies[body])
+        for world in less.root.findall("worldbody"):
+            for node in list(world):
+                less.remove(node)
+        left = {*less.root.iter(), *copies[body].iter()}
+        self._hidden |= {node for node, other in copies.items() if other not in left}
+
+    def shown_in(self, attachment: ET.Element) -> tuple[Document, list[ET.Element]]:
+        """What stands in the place of an attachment, with its document."""
+        own = self.attached[attachment.get("model", "")]
+        if (body := attachment.get("body")) is not None:
+            return own, [node for node in own.elements("body") if node.get("name") == body]
+        return own, [node for world in own.root.findall("worldbody") for node in world]
+
+    def _detach(self, name: str) -> list[tuple[str, str]]:
+        """Give up an attached document. Returns kinds and names of its elements."""
+        own = self.attached.pop(name, None)
+        if own is None:
+            return []
+        for section in self.root.findall("asset"):
+            for model in section.findall(f"model[@name='{name}']"):
+                section.remove(model)
+        gone = [(document, node, section) for document in own.family() for node, section in document.nodes()]
+        return [(kind, node.get("name", "")) for _, node, section in gone if (kind := _kind(node, section))]
 
     # Names, and what refers to them.
 
@@ -104,42 +207,48 @@ class Document:
         """Every element with the section that it stands in."""
         for section in self.root:
             for node in section.iter():
-                yield node, section.tag
+                if node not in self._hidden:
+                    yield node, section.tag
 
     def elements(self, kind: str) -> list[ET.Element]:
-        return [node for node, section in self.nodes() if _kind(node, section) == kind]
+        """Elements of a kind in this document and those attached to it."""
+        return [node for document in self.family() for node, section in document.nodes() if _kind(node, section) == kind]
 
-    def _index(self) -> dict[tuple[str, str], ET.Element]:
-        if self._names is None:
-            self._names, self._has_copies = {}, False
-            for node, section in self.nodes():
-                self.added(section, node)
-        return self._names
+    def _index(self) -> dict[tuple[str, str], tuple[Document, ET.Element]]:
+        first = self.first()
+        if first._names is None:
+            first._names, first._has_copies = {}, False
+            for document in first.family():
+                for node, section in document.nodes():
+                    document.added(section, node)
+        return first._names
 
     def added(self, section: str, node: ET.Element) -> None:
         """A node came into a section, or got a name that it had not."""
-        if self._names is None:
+        first = self.first()
+        if first._names is None:
             return
-        self._has_copies |= node.tag in ("attach", "replicate")
+        first._has_copies |= node.tag == "replicate" or (node.tag == "attach" and node.get("model") not in self.attached)
         kind = _kind(node, section)
         if kind and (name := named(node)):
-            self._names.setdefault((kind, name), node)
+            first._names.setdefault((kind, name), (self, node))
 
     def changed(self) -> None:
         """A node went, or has another name."""
-        self._names = None
+        self.first()._names = None
 
     def has_copies(self) -> bool:
-        """Whether names come into being when the model is built: those of attached models and of replicas."""
+        """Whether names come into being when the model is built: those of replicas, and of models that a file attaches."""
         self._index()
-        return self._has_copies
+        return self.first()._has_copies
 
     def kind_of(self, node: ET.Element) -> str | None:
         """What kind of element a node is that can have a name; None for references, defaults and the like."""
         section = next((tag for other, tag in self.nodes() if other is node), None)
         return _kind(node, section)
 
-    def find(self, kind: str, name: str) -> ET.Element | None:
+    def find(self, kind: str, name: str) -> tuple[Document, ET.Element] | None:
+        """The element of a kind and name, with its document."""
         if kind not in _TAGS and kind not in _SECTIONS:
             raise ValueError(f'there is no kind of element "{kind}": there are {", ".join([*_TAGS, *_SECTIONS])}')
         return self._index().get((kind, name))
@@ -150,29 +259,34 @@ class Document:
             return
         kind = _kind(node, section)
         taken = self.find(kind, written(value)) if kind else None
-        if taken is not None and taken is not node:
+        if taken is not None and taken[1] is not node:
             raise ValueError(f'there is a {kind} "{written(value)}" already')
 
     def parents(self) -> dict[ET.Element, ET.Element]:
         return {child: parent for parent in self.root.iter() for child in parent}
 
-    def references(self, kind: str, name: str) -> list[tuple[ET.Element, str]]:
-        """Attributes that name an element of a kind."""
+    def references(self, kind: str, name: str) -> list[tuple[Document, ET.Element, str]]:
+        """Attributes in the family that name an element of a kind."""
         found = []
-        for node, section in self.nodes():
-            if section in _NO_REFERENCES and node.tag != "element":
-                continue
-            found += [(node, attribute) for attribute in _REFERENCES.get(kind, ()) if node.get(attribute) == name]
-            for attribute, typed in _TYPED.items():
-                of_kind = node.get(typed) in ((kind, "xbody") if kind == "body" else (kind,))
-                if of_kind and node.get(attribute) == name:
-                    found.append((node, attribute))
+        for document in self.first().family():
+            for node, section in document.nodes():
+                if section in _NO_REFERENCES and node.tag != "element":
+                    continue
+                # What a file attaches has names of its own.
+                if node.tag == "attach" and kind != "model" and node.get("model", "") not in ("", *document.attached):
+                    continue
+                found += [(document, node, attribute) for attribute in _REFERENCES.get(kind, ()) if node.get(attribute) == name]
+                for attribute, typed in _TYPED.items():
+                    of_kind = node.get(typed) in ((kind, "xbody") if kind == "body" else (kind,))
+                    if of_kind and node.get(attribute) == name:
+                        found.append((document, node, attribute))
         return found
 
     def remove(self, node: ET.Element) -> None:
-        """Remove a node, all below it, and what refers to any of them."""
+        """Remove a node, all below it, and what refers to any of them; with an attachment the attached document."""
         parent = self.parents()[node]
         gone = [(kind, part.get("name", "")) for part in node.iter() for kind in [self.kind_of(part)] if kind]
+        gone += [name for part in node.iter("attach") for name in self._detach(part.get("model", ""))]
         parent.remove(node)
         self.changed()
         for kind, name in gone:
@@ -180,13 +294,13 @@ class Document:
                 self._remove_references(kind, name)
 
     def _remove_references(self, kind: str, name: str) -> None:
-        for node, _ in self.references(kind, name):
-            parents = self.parents()
+        for document, node, _ in self.references(kind, name):
+            parents = document.parents()
             if node in parents:
                 # Where only a part of a tendon is named, the tendon is no longer what it was.
                 while parents[node].tag in ("spatial", "fixed"):
                     node = parents[node]
-                self.remove(node)
+                document.remove(node)
 
     # Files.
 
@@ -227,7 +341,7 @@ class Document:
             if node.tag == "model":
                 other = Document.from_file(folder / place)
                 self.add_files(other.assets)
-                self.assets[Path(file).name] = other.to_xml().encode()
+                self.assets[Path(file).name] = other.text().encode()
 
 
 def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None:
@@ -254,6 +368,23 @@ def described(document: Document, node: ET.Element) -> str:
             break
         node = parents[node]
     return " / ".join(reversed(parts)) or node.tag
+
+
+def file_of(name: str) -> str:
+    """The file that an attached document is called by."""
+    return f"{name}.xml"
+
+
+def _prefix(node: ET.Element, prefix: str) -> None:
+    """Put a prefix before the name of an element and before those that it refers to."""
+    if node.tag in ("mesh", "hfield", "texture") and node.get("file"):
+        node.set("name", named(node))
+    for attribute, name in node.attrib.items():
+        kind = node.get(_TYPED[attribute]) if attribute in _TYPED else next((k for k, of in _REFERENCES.items() if attribute in of), None)
+        is_class = attribute in ("class", "childclass")
+        is_shared = name == ("main" if is_class else "world" if kind in ("body", "xbody") else "")
+        if (attribute == "name" or is_class or kind) and not is_shared:
+            node.set(attribute, prefix + name)
 
 
 def named(node: ET.Element) -> str:

@@ -7,19 +7,15 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from clench._check import check, limit
-from clench._document import Document, Value, written
+from clench._document import Document, Value, file_of, written
 
 
 class Attachable(Protocol):
     """A model that can be attached, such as a `ModelSpec`."""
 
     @property
-    def assets(self) -> dict[str, bytes]:
-        """Files that its document names, by name without folders."""
-        ...
-
-    def to_xml(self) -> str:
-        """Its document."""
+    def document(self) -> Document:
+        """What is attached."""
         ...
 
 
@@ -82,8 +78,11 @@ class SpecElement:
         return attribute in self._node.attrib
 
     def __iter__(self) -> Iterator[SpecElement]:
-        """The elements directly below it."""
-        return (SpecElement(self._document, node) for node in list(self._node))
+        """The elements directly below it; of an ``attach`` those that it puts there."""
+        document, nodes = self._document, list(self._node)
+        if self._node.tag == "attach" and self._node.get("model") in document.attached:
+            document, nodes = document.shown_in(self._node)
+        return (SpecElement(document, node) for node in nodes)
 
     def add(self, tag: str, /, **attributes: Value) -> SpecElement:
         """Add an element below this one.
@@ -220,37 +219,46 @@ class SpecElement:
         return self.add("frame", **attributes)
 
     def attach(self, other: Attachable, *, prefix: str, body: str | None = None) -> SpecElement:
-        """Attach another model below this body or frame, as MJCF's ``attach``.
+        """Attach another model below this body or frame.
+
+        Its elements become elements of this model, whose names begin with `prefix`: they are found, changed, renamed, removed and
+        referred to as all others are. They are read with the units, classes and rules for inertia of their own model.
+
+        >>> hand = clench.ModelSpec("hand")
+        >>> _ = hand.world.add_body(name="palm").add_geom(size=0.1)
+        >>> arm = clench.ModelSpec("arm")
+        >>> _ = arm.world.add_body(name="tip", pos=[0, 0, 1]).attach(hand, prefix="g_")
+        >>> arm.body("g_palm")["pos"] = [0, 0, 0.1]
+        >>> arm.build().body("g_palm").name
+        'g_palm'
 
         Parameters
         ----------
         other : ModelSpec
-            The model; as it is now, later changes do not count.
+            The model. A copy of it as it is now is attached: it may be changed and attached again, which does not change this model.
         prefix : str
             What the names of its elements begin with here; no other attached model may have it.
         body : str, optional
-            The body of it that is attached, with all below; if not given, all that its world holds.
+            The body of it that is attached, with all below and what refers to no other part of the tree; if not given, all that its
+            world holds.
 
         Returns
         -------
         SpecElement
-            The ``attach`` element.
+            The ``attach`` element. To remove it is to remove all that it brought.
 
         Raises
         ------
         ValueError
-            A prefix that is taken; files of the same name and other contents.
+            A prefix or a name that is taken; files of the same name and other contents; a body that the model does not have.
         """
         document = self._document
-        name = f"{prefix}model"
-        if document.find("model", name) is not None:
-            raise ValueError(f"a model is attached with the prefix {prefix!r} already")
-        file = f"{name}.xml"
-        document.add_files({**other.assets, file: other.to_xml().encode()})
+        name = document.attach(other.document, prefix, body)
         assets = document.root.find("asset")
         section = ET.SubElement(document.root, "asset") if assets is None else assets
-        SpecElement(document, section).add("model", name=name, file=file)
-        return self.add("attach", model=name, prefix=prefix, **({} if body is None else {"body": body}))
+        SpecElement(document, section).add("model", name=name, file=file_of(name))
+        # The names have their prefix already.
+        return self.add("attach", model=name, prefix="", **({} if body is None else {"body": prefix + body}))
 
     def remove(self) -> None:
         """Remove this element, all below it, and what refers to any of them: sensors of a joint go with the joint."""
@@ -275,7 +283,7 @@ class SpecElement:
         kind = self._document.kind_of(self._node)
         self["name"] = name
         if kind and old:
-            for node, attribute in self._document.references(kind, old):
+            for _, node, attribute in self._document.references(kind, old):
                 node.set(attribute, name)
             self._document.changed()
 

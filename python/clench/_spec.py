@@ -50,8 +50,14 @@ class ModelSpec:
 
     @property
     def assets(self) -> dict[str, bytes]:
-        """Files that the document names, by name without folders: meshes, height fields, attached models."""
+        """Files that the document names, by name without folders, such as meshes and height fields."""
         return self._document.assets
+
+    @property
+    def document(self) -> Document:
+        """What a model that this one is attached to takes in."""
+        # Names of what a file attaches come into being when that is built.
+        return ModelSpec.from_xml(self.build().to_xml())._document if self._document.attaches_files() else self._document
 
     @staticmethod
     def from_xml(text: str, assets: Mapping[str, bytes] | None = None) -> ModelSpec:
@@ -272,11 +278,11 @@ class ModelSpec:
         ValueError
             A name that none has.
         """
-        node = self._document.find(kind, name)
-        if node is None:
+        found = self._document.find(kind, name)
+        if found is None:
             known = ", ".join(self.names(kind)[:10])
             raise ValueError(f'there is no {kind} "{name}"' + (f": there are {known}" if known else ""))
-        return SpecElement(self._document, node)
+        return SpecElement(*found)
 
     def body(self, name: str) -> SpecElement:
         """The body of that name; "world" is the world.
@@ -349,8 +355,16 @@ class ModelSpec:
         return self.find("keyframe", name)
 
     def to_xml(self) -> str:
-        """The document as MJCF text. What it names is in `assets`; `Model.to_xml` of what is built stands alone."""
-        return self._document.to_xml()
+        """The document as MJCF text, which loads together with the files in `assets`.
+
+        Where models are attached it is `Model.to_xml` of what is built: one document, which stands alone.
+
+        Raises
+        ------
+        LoadError
+            Models are attached, and the whole cannot be built.
+        """
+        return self.build().to_xml() if self._document.attached else self._document.text()
 
     def build(self, **options: Any) -> Model:
         """The model.
@@ -372,11 +386,10 @@ class ModelSpec:
         """
         from clench._core import Model
 
-        text = self.to_xml()
         try:
-            return Model.from_xml(text, assets=self.assets, **options)
+            return Model.from_xml(self._document.text(), assets=self._document.files(), **options)
         except LoadError as error:
-            raise located(self._document, text, error) from None
+            raise located(self._document, error) from None
 
     def copy(self) -> ModelSpec:
         """Another one that says the same."""

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import clench
+import mujoco  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 from scenes import ROOT
@@ -127,6 +128,158 @@ def test_a_model_is_attached_with_a_prefix_as_often_as_wanted() -> None:
     with pytest.raises(ValueError, match="prefix 'left_' already"):
         palm.attach(finger, prefix="left_")
     assert ends(clench.Model.from_xml(model.to_xml())).qpos.shape == (2,)
+
+
+def armed() -> clench.ModelSpec:
+    """An arm in degrees with a hand in radians, which is read with classes and units of its own."""
+    arm = clench.ModelSpec("arm")
+    arm.section("default").add("geom", friction=[0.5, 0.01, 0.001])
+    arm.world.add_geom(name="floor", type="plane", size=[1, 1, 0.1])
+    upper = arm.world.add_body(name="upper", pos=[0, 0, 0.5])
+    upper.add_joint(name="shoulder", axis=[0, 1, 0], range=[-90, 90], damping=0.1)
+    upper.add_geom(type="capsule", fromto=[0, 0, 0, 0.3, 0, 0], size=0.03)
+    tip = upper.add_body(name="tip", pos=[0.3, 0, 0])
+    tip.add_joint(name="wrist", axis=[0, 0, 1], damping=0.05)
+    tip.add_geom(size=0.03)
+    arm.add_actuator("position", name="shoulder", joint="shoulder", kp=20)
+    tip.add_frame(pos=[0.05, 0, 0], euler=[0, 90, 0]).attach(clench.ModelSpec.from_xml(HAND, HAND_ASSETS), prefix="g_")
+    return arm
+
+
+HAND = """
+<mujoco model="hand">
+  <compiler angle="radian" eulerseq="zyx"/>
+  <default>
+    <geom rgba="0.8 0.3 0.3 1"/>
+    <default class="pad"><geom friction="1.5" solref="0.01 1"/><joint range="-0.3 0.6" damping="0.02"/></default>
+  </default>
+  <asset>
+    <mesh file="block.obj" scale="0.01 0.02 0.03"/>
+    <material name="rubber" rgba="0.2 0.2 0.2 1"/>
+  </asset>
+  <worldbody>
+    <body name="palm" euler="0.4 0.2 0.1">
+      <geom name="palm" type="mesh" mesh="block" mass="0.2"/>
+      <body name="finger" pos="0 0 0.04">
+        <joint name="bend" class="pad" axis="1 0 0"/>
+        <geom name="finger" class="pad" type="box" size="0.01 0.01 0.03" pos="0 0 0.03" material="rubber"/>
+        <site name="pad" pos="0 0 0.06"/>
+      </body>
+    </body>
+  </worldbody>
+  <contact><exclude body1="palm" body2="finger"/></contact>
+  <tendon><fixed name="cord"><joint joint="bend" coef="0.5"/></fixed></tendon>
+  <actuator><motor name="bend" tendon="cord" gear="0.1"/></actuator>
+  <sensor><framepos name="pad" objtype="site" objname="pad"/></sensor>
+</mujoco>"""
+HAND_ASSETS = {
+    "block.obj": b"v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv 0 0 1\nf 1 3 2\nf 1 4 3\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+}
+
+
+def test_what_is_attached_is_found_changed_and_referred_to() -> None:
+    arm = armed()
+    assert arm.names("body") == ["upper", "tip", "g_palm", "g_finger"]
+    assert [arm.names(kind) for kind in ("actuator", "tendon", "mesh")] == [["shoulder", "g_bend"], ["g_cord"], ["g_block"]]
+    arm.body("g_finger")["pos"] = [0, 0, 0.06]
+    arm.body("g_finger").add_geom(name="nail", class_="g_pad", material="g_rubber", size=0.005)
+    arm.add_sensor("touch", name="touch", site="g_pad")
+    arm.add_tendon("spatial", name="string").add("site", site="g_pad")
+    arm.body("tip").add_site(name="tip")
+    list(arm.section("tendon"))[0].add("site", site="tip")
+    model = arm.build()
+    np.testing.assert_array_equal(model.body("g_finger").pos, [0, 0, 0.06])
+    np.testing.assert_array_equal(model.geom("nail").friction, [1.5, 0.005, 0.0001])
+    np.testing.assert_array_equal(model.geom("floor").friction, [0.5, 0.01, 0.001])
+    np.testing.assert_array_equal(model.joint("g_bend").range, [-0.3, 0.6])
+    assert model.names("sensor") == ["touch", "g_pad"]
+    for change in (
+        lambda: arm.add_sensor("touch", site="g_pod"),
+        lambda: arm.body("g_finger").add_geom(type="bx"),
+        lambda: arm.actuator("g_bend").__setitem__("tendon", "cord"),
+    ):
+        with pytest.raises(clench.LoadError):
+            change()
+    with pytest.raises(ValueError, match='there is a body "g_palm" already'):
+        arm.body("upper").rename("g_palm")
+    arm.body("g_finger").add_geom(type="mesh")
+    with pytest.raises(clench.LoadError, match='^body "g_finger" / geom 2: '):
+        arm.build()
+
+
+def test_what_is_attached_is_renamed_and_removed() -> None:
+    arm = armed()
+    arm.joint("g_bend").rename("flex")
+    arm.body("g_palm").rename("hand")
+    model = arm.build()
+    assert model.names("joint") == ["shoulder", "wrist", "flex"] and model.names("body")[3] == "hand"
+    arm.joint("flex").remove()
+    model = arm.build()
+    assert (model.nv, model.nu, model.ntendon, model.nsensor) == (2, 1, 0, 1)
+    arm.body("hand").remove()
+    assert arm.build().nbody == 3 and arm.names("sensor") == []
+
+    arm = armed()
+    arm.add_sensor("touch", site="g_pad")
+    list(list(arm.body("tip"))[-1])[0].remove()
+    assert arm.names("body") == ["upper", "tip"] and arm.names("material") == []
+    model = arm.build()
+    assert (model.nbody, model.nu, model.nsensor, model.nmesh) == (3, 1, 0, 0)
+
+
+def test_the_source_goes_its_own_way() -> None:
+    hand = clench.ModelSpec.from_xml(HAND, HAND_ASSETS)
+    two = clench.ModelSpec("two")
+    left, right = (two.world.add_body(name=name, pos=[0, y, 1]) for name, y in (("left", -0.5), ("right", 0.5)))
+    left.attach(hand, prefix="l_")
+    hand.joint("bend").rename("curl")
+    hand.body("palm").add_site(name="grip")
+    attached = right.attach(hand, prefix="r_", body="finger")
+    assert [child.name for child in attached] == ["r_finger"]
+    assert two.names("joint") == ["l_bend", "r_curl"] and two.names("site") == ["l_pad", "r_pad"]
+    two.joint("l_bend")["damping"] = 3
+    assert "damping" not in hand.joint("curl")
+    model = two.build()
+    assert model.names("body") == ["world", "left", "l_palm", "l_finger", "right", "r_finger"]
+    assert model.names("actuator") == ["l_bend", "r_bend"]
+    # What was attached is attached with what it was attached to, and a copy is another.
+    room = clench.ModelSpec("room")
+    room.world.attach(two, prefix="a_")
+    room.world.add_frame(pos=[2, 0, 0]).attach(two, prefix="b_", body="right")
+    other = room.copy()
+    room.body("a_l_finger").rename("thumb")
+    assert room.build().names("body") == [
+        "world", "a_left", "a_l_palm", "thumb", "a_right", "a_r_finger", "b_right", "b_r_finger",
+    ]  # fmt: skip
+    assert "a_l_finger" in other.build().names("body")
+    with pytest.raises(ValueError, match='no body "thumb"'):
+        room.world.attach(two, prefix="c_", body="thumb")
+    with pytest.raises(ValueError, match='there is a body "left" already'):
+        two.world.attach(two, prefix="")
+
+
+def test_an_attached_model_moves_in_mujoco_as_here() -> None:
+    text = armed().to_xml()
+    model = armed().build()
+    oracle = mujoco.MjModel.from_xml_string(text)
+    data, sim = mujoco.MjData(oracle), clench.Sim(model)
+    assert oracle.names == mujoco.MjModel.from_xml_string(model.to_xml()).names
+    for step in range(200):
+        data.ctrl[:] = sim.ctrl[:] = [0.5 * np.sin(0.05 * step), np.cos(0.1 * step)]
+        mujoco.mj_step(oracle, data)
+        sim.step()
+        np.testing.assert_allclose(sim.qpos, data.qpos, rtol=0, atol=1e-6)
+    assert np.abs(sim.qpos).max() > 0.3
+
+
+def test_a_model_whose_file_attaches_others_is_attached() -> None:
+    part = "<mujoco><worldbody><body name='b'><joint name='j'/><geom size='1'/></body></worldbody></mujoco>"
+    pair = """<mujoco><asset><model name="part" file="part.xml"/></asset>
+      <worldbody><attach model="part" prefix="x_"/><body name="c"><geom size="1"/></body><attach body="c" prefix="y_"/></worldbody></mujoco>"""
+    spec = clench.ModelSpec("room")
+    spec.world.attach(clench.ModelSpec.from_xml(pair, {"part.xml": part.encode()}), prefix="p_")
+    assert spec.names("body") == ["p_x_b", "p_c", "p_y_c"]
+    assert spec.build().names("joint") == ["p_x_j"]
 
 
 def test_what_refers_to_a_name_follows_it() -> None:
