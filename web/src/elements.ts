@@ -50,6 +50,15 @@ export interface Slider {
   show(value: number): void;
 }
 
+/** A name with its middle left out where it is longer than so many letters: both ends tell it from others. */
+export function shortened(text: string, most: number): string {
+  const head = Math.ceil((most - 1) / 2);
+  return text.length <= most ? text : `${text.slice(0, head)}…${text.slice(head + 1 - most)}`;
+}
+
+/** Letters of a name before a slider. */
+const LETTERS = 13;
+
 /** A slider that is not moved by the simulation while the user holds it. */
 export function slider(
   text: string,
@@ -68,7 +77,8 @@ export function slider(
     number.value = written(range.valueAsNumber);
     changed(range.valueAsNumber);
   };
-  const row = element("label", { className: "slider" }, element("span", { title: text }, text), range, number);
+  const name = shortened(text, LETTERS);
+  const row = element("label", { className: "slider" }, element("span", { title: name === text ? "" : text }, name), range, number);
   return {
     row,
     show(value) {
@@ -80,11 +90,16 @@ export function slider(
 }
 
 export function fold(title: string, open: boolean, ...children: Node[]): HTMLDetailsElement {
-  return element("details", { open }, element("summary", {}, title), ...children);
+  return element("details", { open }, element("summary", {}, title), element("div", { className: "content" }, ...children));
 }
 
+/** What is smaller is what rounding leaves of nothing. */
+const NOTHING = 1e-9;
+
+/** A number with few digits. */
 export function brief(value: number): string {
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(2);
+  if (size < NOTHING) return "0";
+  if (size < 1e-3 || size >= 1e5) return value.toExponential(2);
   return value.toFixed(size >= 100 ? 1 : 3);
 }

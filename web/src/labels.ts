@@ -22,12 +22,13 @@ export class Labels {
     this.used = 0;
   }
 
-  add(text: string, at: THREE.Vector3, colour: THREE.Color): void {
+  /** Adds a word; `size` is its share of a usual one's. */
+  add(text: string, at: THREE.Vector3, colour: THREE.Color, size = 1): void {
     const sprite = this.sprite();
     const { texture, aspect } = this.paint(text, colour);
     sprite.material.map = texture;
     sprite.position.copy(at);
-    sprite.scale.set(HEIGHT * aspect, HEIGHT, 1);
+    sprite.scale.set(size * HEIGHT * aspect, size * HEIGHT, 1);
     sprite.visible = true;
   }
 

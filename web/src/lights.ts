@@ -7,6 +7,9 @@ import type { Light, Numbers3, Scene } from "./scene.ts";
 /** Matt surfaces in three.js reflect the light of a lamp divided by this. */
 const MATT = Math.PI;
 
+/** As crates/clench-render/src/light.rs has it. */
+const TO_SUN = new THREE.Vector3(0.15, -0.551, 0.821);
+
 /** Colours of lights add up on screens. */
 function colour([red, green, blue]: Numbers3): THREE.Color {
   return new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace);
@@ -25,7 +28,11 @@ export class Lights {
   /** Whether the model has lights of its own. */
   readonly own: boolean;
   private lamps: Lamp[] = [];
-  private sun: THREE.DirectionalLight | null = null;
+  private sun = new THREE.DirectionalLight(0xffffff, 2.8);
+  /** A sun and a sky, and what the model has. */
+  private day = new THREE.Group();
+  private night = new THREE.Group();
+  private head: THREE.DirectionalLight | null = null;
 
   constructor(
     scene: Scene,
@@ -34,23 +41,19 @@ export class Lights {
     camera: THREE.Camera,
   ) {
     this.own = scene.lights.length > 0;
+    this.group.add(this.day, this.night);
     if (this.own) this.ofModel(scene, camera);
-    else this.daylight();
-  }
-
-  private daylight(): void {
-    this.group.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.7));
-    this.sun = new THREE.DirectionalLight(0xffffff, 2.8);
-    this.add(this.sun, true);
+    this.day.add(new THREE.HemisphereLight(0xffffff, 0xb9b4ac, 0.7));
+    this.add(this.day, this.sun, true);
   }
 
   private ofModel({ lights, headlight }: Scene, camera: THREE.Camera): void {
     const everywhere = new THREE.Color(0);
     if (headlight.active) {
       everywhere.add(colour(headlight.ambient));
-      const head = new THREE.DirectionalLight(colour(headlight.diffuse), MATT);
-      head.position.set(0, 0, 1);
-      camera.add(head, head.target);
+      this.head = new THREE.DirectionalLight(colour(headlight.diffuse), MATT);
+      this.head.position.set(0, 0, 1);
+      camera.add(this.head, this.head.target);
     }
     // One shadow is what a laptop draws sixty times a second.
     const casting = lights.findIndex(({ active, castshadow }) => active && castshadow);
@@ -59,12 +62,12 @@ export class Lights {
       everywhere.add(colour(told.ambient));
       const lamp = made(told);
       this.lamps.push({ told, row, lamp });
-      this.add(lamp, row === casting);
+      this.add(this.night, lamp, row === casting);
     });
-    this.group.add(new THREE.AmbientLight(everywhere, MATT));
+    this.night.add(new THREE.AmbientLight(everywhere, MATT));
   }
 
-  private add(lamp: Lamp["lamp"], casts: boolean): void {
+  private add(group: THREE.Group, lamp: Lamp["lamp"], casts: boolean): void {
     if (casts) {
       lamp.castShadow = true;
       lamp.shadow.mapSize.set(2048, 2048);
@@ -72,15 +75,18 @@ export class Lights {
       lamp.shadow.normalBias = 0.004 * this.extent;
       lamp.shadow.radius = 3;
     }
-    this.group.add(lamp);
-    if (!(lamp instanceof THREE.PointLight)) this.group.add(lamp.target);
+    group.add(lamp);
+    if (!(lamp instanceof THREE.PointLight)) group.add(lamp.target);
   }
 
-  /** Lets shadows reach all environments side by side. */
-  shade(reach: number): void {
+  /** Lets light and shadows reach all environments side by side. Lights of a model are in one place: several are in daylight. */
+  shade(reach: number, several: boolean): void {
+    this.night.visible = this.own && !several;
+    this.day.visible = !this.night.visible;
+    if (this.head) this.head.visible = this.night.visible;
     const half = 2.4 * reach * this.extent;
     for (const lamp of [this.sun, ...this.lamps.map(({ lamp }) => lamp)]) {
-      if (!lamp?.castShadow) continue;
+      if (!lamp.castShadow) continue;
       const { camera } = lamp.shadow;
       if (camera instanceof THREE.OrthographicCamera) {
         camera.left = camera.bottom = -half;
@@ -94,10 +100,8 @@ export class Lights {
 
   /** Puts lights where they are in a frame, seen from a point; `offset` is the origin of the environment that it is of. */
   update(frame: Frame, target: THREE.Vector3, offset: THREE.Vector3, reach: number): void {
-    if (this.sun) {
-      this.sun.target.position.copy(target);
-      this.sun.position.copy(target).add(new THREE.Vector3(2.2, -1.6, 4.6).multiplyScalar(reach * this.extent));
-    }
+    this.sun.target.position.copy(target);
+    this.sun.position.copy(target).addScaledVector(TO_SUN, 5.3 * reach * this.extent);
     for (const { told, row, lamp } of this.lamps) {
       const { data } = frame.rows.lights;
       const at = new THREE.Vector3().fromArray(data, 6 * row).add(offset);

@@ -26,6 +26,7 @@ const sight: Sight = {
 const layers: Layers = {
   contacts: true,
   forces: true,
+  largest: false,
   constraints: true,
   cones: false,
   tendons: true,

@@ -9,6 +9,7 @@ export const UP = new THREE.Vector3(0, 1, 0);
 export class Many {
   readonly group = new THREE.Group();
   private mesh: THREE.InstancedMesh;
+  private fades!: THREE.InstancedBufferAttribute;
   private count = 0;
 
   constructor(
@@ -16,11 +17,24 @@ export class Many {
     private surface: THREE.Material,
     private order = 0,
   ) {
+    // Instances of three.js have a colour each, and no opacity.
+    surface.onBeforeCompile = (shader) => {
+      shader.vertexShader = `attribute float fade;\nvarying float vFade;\n${shader.vertexShader}`.replace(
+        "#include <begin_vertex>",
+        "#include <begin_vertex>\nvFade = fade;",
+      );
+      shader.fragmentShader = `varying float vFade;\n${shader.fragmentShader}`.replace(
+        "#include <color_fragment>",
+        "#include <color_fragment>\ndiffuseColor.a *= vFade;",
+      );
+    };
     this.mesh = this.make(64);
   }
 
   private make(room: number): THREE.InstancedMesh {
     const mesh = new THREE.InstancedMesh(this.shape, this.surface, room);
+    this.fades = new THREE.InstancedBufferAttribute(new Float32Array(room), 1);
+    this.shape.setAttribute("fade", this.fades);
     mesh.frustumCulled = false;
     mesh.renderOrder = this.order;
     mesh.setColorAt(0, new THREE.Color());
@@ -37,23 +51,28 @@ export class Many {
     }
   }
 
-  add(place: THREE.Matrix4, colour: THREE.Color): void {
+  /** Adds one; `fade` is the share of its surface's opacity that it has, of use where that is transparent. */
+  add(place: THREE.Matrix4, colour: THREE.Color, fade = 1): void {
     this.mesh.setMatrixAt(this.count, place);
     this.mesh.setColorAt(this.count, colour);
+    this.fades.setX(this.count, fade);
     this.count += 1;
   }
 
   end(): void {
     this.mesh.count = this.count;
     this.mesh.instanceMatrix.needsUpdate = true;
+    this.fades.needsUpdate = true;
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
   }
 
-  /** The length of an instance along its own y, as it is drawn. */
-  lengthOf(index: number): number {
+  /** Where an instance begins and ends along its own y, as it is drawn. */
+  endsOf(index: number): [number[], number[]] {
     const place = new THREE.Matrix4();
     this.mesh.getMatrixAt(index, place);
-    return new THREE.Vector3().setFromMatrixColumn(place, 1).length();
+    const from = new THREE.Vector3().setFromMatrixPosition(place);
+    const to = from.clone().add(new THREE.Vector3().setFromMatrixColumn(place, 1));
+    return [from.toArray(), to.toArray()];
   }
 
   get size(): number {

@@ -11,6 +11,8 @@ import type { Scene } from "./scene.ts";
 export interface Layers {
   contacts: boolean;
   forces: boolean;
+  /** Of contacts and their forces only the {@link LARGEST} with the largest forces. */
+  largest: boolean;
   /** Forces and torques of limits and equalities. */
   constraints: boolean;
   cones: boolean;
@@ -20,6 +22,14 @@ export interface Layers {
   masses: boolean;
   inertia: boolean;
 }
+
+/** How many contacts are seen where only the largest are. */
+export const LARGEST = 50;
+/** From so many contacts on marks of contacts become smaller and thinner, down to a share. */
+const CROWD = 24;
+const THINNEST = 0.45;
+/** The share of its opacity that the farthest contact of a crowd keeps. */
+const FARTHEST = 0.25;
 
 const NORMAL = new THREE.Color(0x2f7de1);
 const FRICTION = new THREE.Color(0xf08a24);
@@ -53,9 +63,11 @@ export class Overlays {
   forceScale = 0.002;
   /** Tendons that are at their limits. */
   private strained = new Set<number>();
+  /** How thick marks of contacts are drawn: 1 where there are few. */
+  private thin = 1;
   private discs = new Many(new THREE.CylinderGeometry(1, 1, 0.12, 32), glow(0.85), 3);
   private shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 12)), glow(0.95), 5);
-  private heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), glow(0.95), 5);
+  private heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), glow(0.95), 6);
   private cones = new Many(
     standing(new THREE.ConeGeometry(1, 1, 40, 1, true).rotateX(Math.PI)),
     new THREE.MeshBasicMaterial({
@@ -78,16 +90,16 @@ export class Overlays {
   constructor(
     private scene: Scene,
     private layers: Layers,
-    /** A length that suits the model, m. */
-    extent: number,
-    /** One that suits marks on its bodies, m. */
+    /** What the size of arrows is chosen by: an arrow for the weight of this, N, is about as long as it, m. */
+    heaviest: { weight: number; size: number },
+    /** A length that suits marks on bodies, m. */
     private size: number,
   ) {
     for (const many of this.all()) this.group.add(many.group);
     this.marks = new Marks();
     this.group.add(this.marks.group);
-    const weight = 9.81 * scene.bodies.reduce((sum, body) => sum + body.mass, 0);
-    if (weight > 0) this.forceScale = (1.1 * extent) / weight;
+    const { weight, size: length } = heaviest;
+    if (weight > 0) this.forceScale = (0.8 * length) / weight;
   }
 
   /** Metres a newton metre: a torque is as long as the force that has it at a lever as long as a usual body. */
@@ -99,7 +111,8 @@ export class Overlays {
     return [this.discs, this.shafts, this.heads, this.cones, this.strings, this.balls, this.boxes];
   }
 
-  update(frame: Frame, poses: THREE.Matrix4[]): void {
+  /** Draws a frame, seen from a point in the coordinates of its environment. */
+  update(frame: Frame, poses: THREE.Matrix4[], eye: THREE.Vector3): void {
     const { contacts, spans, drag, turn, pushes } = frame.rows;
     const { scene, layers } = this;
     const marks = 3 * (scene.bodies.length + scene.joints.length);
@@ -112,9 +125,8 @@ export class Overlays {
     this.strings.begin(spans.count);
     this.balls.begin(scene.bodies.length + 1);
     this.boxes.begin(scene.bodies.length);
-    for (let row = 0; row < contacts.count; row++) {
-      this.contact(contacts.data.subarray(20 * row, 20 * row + 20));
-    }
+    this.contacts(contacts.data, contacts.count, eye);
+    this.thin = 1;
     if (layers.constraints) {
       for (let row = 0; row < pushes.count; row++) this.push(pushes.data.subarray(12 * row, 12 * row + 12));
     }
@@ -131,9 +143,51 @@ export class Overlays {
     for (const many of this.all()) many.end();
   }
 
-  private contact(row: Float32Array): void {
+  private contacts(data: Float32Array, count: number, eye: THREE.Vector3): void {
+    let rows = Array.from({ length: count }, (_, row) => data.subarray(20 * row, 20 * row + 20));
+    const neighbours = this.neighbours(rows);
+    if (this.layers.largest) rows = rows.sort((a, b) => b[12] - a[12]).slice(0, LARGEST);
+    this.thin = Math.max(THINNEST, Math.min(1, Math.sqrt(CROWD / rows.length)));
+    const distances = rows.map(([x, y, z]) => eye.distanceTo(new THREE.Vector3(x, y, z)));
+    const near = Math.min(...distances);
+    const depth = Math.max(...distances) - near;
+    rows.forEach((row, k) => {
+      const fade = rows.length > CROWD && depth > 0 ? 1 - ((1 - FARTHEST) * (distances[k] - near)) / depth : 1;
+      this.contact(row, this.side(row, neighbours), fade);
+    });
+  }
+
+  /** The bodies that touch each body. */
+  private neighbours(rows: Float32Array[]): Map<number, Set<number>> {
+    const found = new Map<number, Set<number>>();
+    for (const row of rows) {
+      const [first, second] = this.bodiesOf(row);
+      for (const [body, other] of [[first, second], [second, first]]) {
+        if (!found.has(body)) found.set(body, new Set());
+        found.get(body)!.add(other);
+      }
+    }
+    return found;
+  }
+
+  private bodiesOf(row: Float32Array): number[] {
+    return [row[17], row[18]].map((geom) => this.scene.geoms[geom]?.body ?? 0);
+  }
+
+  /**
+   * Which body the force is drawn on: 1 for the second, that the normal points into, -1 for the first. It is one that can move, and of two
+   * that can the one that touches fewer others: what is pinched between two would have both arrows over each other.
+   */
+  private side(row: Float32Array, neighbours: Map<number, Set<number>>): number {
+    const [first, second] = this.bodiesOf(row);
+    const { bodies } = this.scene;
+    if (!bodies[first].free || !bodies[second].free) return bodies[first].free ? -1 : 1;
+    return neighbours.get(first)!.size < neighbours.get(second)!.size ? -1 : 1;
+  }
+
+  private contact(row: Float32Array, side: number, fade: number): void {
     const place = new THREE.Vector3(row[0], row[1], row[2]);
-    const axis = (k: number) => new THREE.Vector3(row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k]);
+    const axis = (k: number) => new THREE.Vector3(row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k]).multiplyScalar(side);
     const [normal, first, second] = [axis(0), axis(1), axis(2)];
     const [pressure, along, across] = [row[12], row[13], row[14]];
     const friction = row[16];
@@ -142,31 +196,31 @@ export class Overlays {
     const limit = friction * Math.max(pressure, 1e-9);
     const near = row[19] > 1 ? Math.min(1, sideways / limit) : 0;
     const colour = STICKS.clone().lerp(SLIPS, near);
-    const radius = 0.018 * this.size;
+    const radius = 0.018 * this.size * this.thin;
     if (this.layers.contacts) {
-      this.discs.add(stretched(place, normal, radius, radius), pressure > 0 ? colour : new THREE.Color(0x9a9aa2));
+      this.discs.add(stretched(place, normal, radius, radius), pressure > 0 ? colour : new THREE.Color(0x9a9aa2), fade);
     }
     if (pressure > 0 && this.layers.forces) {
-      this.arrow(place, normal.clone().multiplyScalar(pressure * this.forceScale), NORMAL);
+      this.arrow(place, normal.clone().multiplyScalar(pressure * this.forceScale), NORMAL, fade);
       const force = first.multiplyScalar(along).addScaledVector(second, across);
-      this.arrow(place, force.multiplyScalar(this.forceScale), FRICTION);
+      this.arrow(place, force.multiplyScalar(this.forceScale), FRICTION, fade);
     }
     if (pressure > 0 && this.layers.cones && row[19] > 1) {
       const height = pressure * this.forceScale;
-      this.cones.add(stretched(place, normal, friction * height, height), colour);
+      this.cones.add(stretched(place, normal, friction * height, height), colour, fade);
     }
   }
 
   /** An arrow; too short a one is nothing. */
-  private arrow(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color): void {
+  private arrow(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color, fade = 1): void {
     const length = along.length();
-    const thick = 0.0085 * this.size;
+    const thick = 0.0085 * this.size * this.thin;
     if (length < 0.2 * thick) return;
     const direction = along.clone().divideScalar(length);
     const head = Math.min(4 * thick, 0.5 * length);
-    this.shafts.add(stretched(from, direction, thick, length), colour);
+    this.shafts.add(stretched(from, direction, thick, length), colour, fade);
     const base = from.clone().addScaledVector(direction, length - head);
-    this.heads.add(stretched(base, direction, 2.4 * thick, 1.15 * head), colour);
+    this.heads.add(stretched(base, direction, 2.4 * thick, 1.15 * head), colour, fade);
   }
 
   private span(row: Float32Array): void {
@@ -253,8 +307,13 @@ export class Overlays {
     return this.marks.counts();
   }
 
-  /** Lengths of all arrows as they are drawn, m. */
-  arrowLengths(): number[] {
-    return Array.from({ length: this.shafts.size }, (_, k) => this.shafts.lengthOf(k));
+  /** Where all arrows begin and end, m, for tests. */
+  arrows(): [number[], number[]][] {
+    return Array.from({ length: this.shafts.size }, (_, k) => this.shafts.endsOf(k));
+  }
+
+  /** How many contacts are seen, for tests. */
+  get discCount(): number {
+    return this.discs.size;
   }
 }

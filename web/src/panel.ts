@@ -1,8 +1,8 @@
 // The controls beside the picture.
 
-import type { Layers } from "./overlays.ts";
+import { LARGEST, type Layers } from "./overlays.ts";
 import type { Sight } from "./bodies.ts";
-import { brief, button, check, choice, element, fold, paint, slider, type Slider } from "./elements.ts";
+import { brief, button, check, choice, element, fold, paint, shortened, slider, type Slider } from "./elements.ts";
 import type { Frame } from "./frame.ts";
 import type { Command } from "./link.ts";
 import type { Replay } from "./replay.ts";
@@ -23,12 +23,13 @@ const SPEEDS: [string, string][] = [
 const LAYERS: [keyof Layers, string][] = [
   ["contacts", "contacts"],
   ["forces", "forces"],
+  ["largest", `largest ${LARGEST}`],
   ["constraints", "limits, welds"],
   ["cones", "friction cones"],
   ["tendons", "tendons"],
   ["frames", "frames"],
   ["joints", "joint axes"],
-  ["masses", "centres of mass"],
+  ["masses", "mass centres"],
   ["inertia", "inertia boxes"],
 ];
 
@@ -244,7 +245,7 @@ export class Panel {
     const { overlays } = this.stage;
     const first = overlays.forceScale;
     const scale = slider("arrow length", -2, 2, (power) => (overlays.forceScale = first * 10 ** power), (power) =>
-      `${brief(1000 * first * 10 ** power)} mm/N`,
+      `${Number((1000 * first * 10 ** power).toPrecision(2))} mm/N`,
     );
     scale.show(0);
     return element("div", {}, box, scale.row);
@@ -306,7 +307,9 @@ export class Panel {
     const depth: number[] = [];
     this.scene.bodies.forEach((body, index) => {
       depth[index] = index === 0 ? 0 : depth[body.parent] + 1;
-      const row = element("div", { className: "body" }, nameOf("body", index, index === 0 ? "world" : body.name));
+      const name = nameOf("body", index, index === 0 ? "world" : body.name);
+      const text = shortened(name, Math.max(10, 30 - depth[index]));
+      const row = element("div", { className: "body", title: name === text ? "" : name }, text);
       row.style.paddingLeft = `${0.4 + 0.8 * depth[index]}em`;
       row.onclick = () => this.choose(index);
       this.rows.set(index, row);
@@ -360,7 +363,7 @@ export class Panel {
       if (joint.body !== body || joint.kind === "free" || joint.kind === "ball") return;
       const { qpos, qvel } = frame.rows;
       lines.push([
-        nameOf("joint", index, joint.name),
+        shortened(nameOf("joint", index, joint.name), 16),
         `${brief(qpos.data[joint.qpos])}  (${brief(qvel.data[joint.dof])} /s)`,
       ]);
     });

@@ -45,6 +45,21 @@ function sources(scene: Scene): Source[] {
   return all;
 }
 
+/** Time between drawings of a plot, ms. */
+const PAUSE = 100;
+
+/** Numbers that rounding leaves of nothing. */
+const NOTHING = 1e-12;
+
+/** The axis from the least to the most of a line: around one that is flat, as much as its value. */
+function reach(least: number | null, most: number | null): uPlot.Range.MinMax {
+  if (least === null || most === null) return [0, 1];
+  const size = Math.max(Math.abs(least), Math.abs(most));
+  if (size < NOTHING) return [-1, 1];
+  if (most - least > NOTHING * size) return uPlot.rangeNum(least, most, 0.1, true);
+  return [least - 0.5 * size, most + 0.5 * size];
+}
+
 /** Pixels that the texts of a vertical axis take, with the gaps around them. */
 function room(texts: string[] | null): number {
   return 16 + 6 * Math.max(3, ...(texts ?? []).map((text) => text.length));
@@ -57,6 +72,9 @@ class Plot {
   private values: number[][] = [];
   private plot: uPlot;
   private names: HTMLElement;
+  /** When it was drawn last, and whether it has got something since, ms. */
+  private drawn = -Infinity;
+  private isOld = true;
 
   constructor(
     private all: Source[],
@@ -94,7 +112,7 @@ class Plot {
         legend: { show: false },
         cursor: { show: false },
         // Areas that lie on each other begin at nothing.
-        scales: { x: { time: false }, y: parts.length > 0 ? { range: (_, __, most) => [0, most] } : {} },
+        scales: { x: { time: false }, y: { range: (_, least, most) => (parts.length > 0 ? [0, most || 1] : reach(least, most)) } },
         axes: [
           { size: 22, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
           { size: (_, texts) => room(texts), values: (_, ticks) => tickTexts(ticks), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
@@ -107,6 +125,7 @@ class Plot {
   }
 
   clear(): void {
+    this.drawn = -Infinity;
     this.times = [];
     this.values = Array.from({ length: Math.max(1, this.all[this.source].parts.length) }, () => []);
   }
@@ -115,6 +134,7 @@ class Plot {
     const last = this.times.at(-1);
     if (last === frame.time) return;
     if (last !== undefined && frame.time < last) this.clear();
+    this.isOld = true;
     this.times.push(frame.time);
     const numbers = this.all[this.source].read(frame);
     let sum = 0;
@@ -125,8 +145,25 @@ class Plot {
     if (this.times.length > ROOM) for (const row of [this.times, ...this.values]) row.shift();
   }
 
-  draw(): void {
+  /** Draws what it got, if it is time to: at once where history begins anew. */
+  draw(now: number): void {
+    if (!this.isOld || now - this.drawn < PAUSE) return;
+    // A line begins with two moments: it is not to wait for the next time.
+    this.drawn = this.times.length > 1 ? now : -Infinity;
+    this.isOld = false;
     this.plot.setData([this.times, ...this.values]);
+  }
+
+  /** The moments between which it is drawn. */
+  get span(): [number, number] {
+    const { min, max } = this.plot.scales.x;
+    return [min ?? NaN, max ?? NaN];
+  }
+
+  /** The numbers between which it is drawn. */
+  get heights(): [number, number] {
+    const { min, max } = this.plot.scales.y;
+    return [min ?? NaN, max ?? NaN];
   }
 
   get count(): number {
@@ -141,7 +178,6 @@ class Plot {
 
 export class Plots {
   private plots: Plot[];
-  private turn = 0;
 
   constructor(scene: Scene, place: HTMLElement) {
     const all = sources(scene);
@@ -153,10 +189,14 @@ export class Plots {
     for (const plot of this.plots) plot.add(frame);
   }
 
-  /** Draws one of them, which is often enough to look at. */
   draw(): void {
-    this.turn = (this.turn + 1) % this.plots.length;
-    this.plots[this.turn].draw();
+    const now = performance.now();
+    for (const plot of this.plots) plot.draw(now);
+  }
+
+  /** The moments and the numbers between which each is drawn. */
+  spans(): { times: [number, number]; values: [number, number] }[] {
+    return this.plots.map((plot) => ({ times: plot.span, values: plot.heights }));
   }
 
   /** The last of what each draws, the highest first. */

@@ -9,11 +9,29 @@ import { Labels } from "./labels.ts";
 import { Lights } from "./lights.ts";
 import { Overlays, type Layers } from "./overlays.ts";
 import { localPose, readPoses, readPosesOf } from "./poses.ts";
-import type { Scene } from "./scene.ts";
+import type { Geom, Scene } from "./scene.ts";
 
 const SKY = 0xdfe6ee;
 /** Vertical field of view of the free camera, degrees. */
 const FOV = 42;
+/** From where the free camera looks at first, at one and at several environments. */
+const ASIDE = new THREE.Vector3(1.35, -1.55, 0.62).normalize();
+const ABOVE = new THREE.Vector3(1.35, -1.55, 1.1).normalize();
+/** How much larger the ball that is seen is than the one around the model. */
+const ROOMY = 1.08;
+/** Least share of the picture that counts as free, along each side. */
+const LEAST_FREE = 0.35;
+
+/** The elements around the free part of the picture: above, at the right, below. */
+const AROUND = ["bar", "panel", "plots"];
+
+/** A part of the picture, in pixels. */
+interface Area {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
 
 export class Stage {
   readonly camera = new THREE.PerspectiveCamera(FOV, 1, 0.01, 500);
@@ -29,13 +47,23 @@ export class Stage {
   private world = new THREE.Scene();
   readonly lights: Lights;
   private centre = new THREE.Vector3();
+  /** The height of the ground, or of the lowest that is seen at first, m. */
+  private lowest = 0;
   private followedAt: THREE.Vector3 | null = null;
+  /** Whether a user has moved the free camera. */
+  private isMoved = false;
+  private sizes = new ResizeObserver(() => {
+    this.fit();
+    if (!this.isMoved && this.through === null && this.followed === null) this.home();
+  });
   /** The environments that are seen, in the order of their places. */
   private envs: Env[] = [];
   /** How much wider they are than one alone. */
   private reach = 1;
   private copies: Copy[] = [];
-  private faults = new Labels();
+  readonly labels = new Labels();
+  /** A border around the place of the chosen environment. */
+  readonly border = new THREE.Mesh(borderShape(), new THREE.MeshBasicMaterial({ color: 0xf08a24, toneMapped: false, fog: false }));
   /** Where the origin of the chosen environment is. */
   readonly offset = new THREE.Vector3();
   /** A length that suits the whole, m. */
@@ -71,16 +99,20 @@ export class Stage {
       this.world.environmentIntensity = 0.42;
     }
     this.bodies = new Bodies(scene, sight, 1);
-    this.overlays = new Overlays(scene, layers, this.extent, Math.min(this.extent, usualSize(scene)));
-    this.world.add(this.bodies.group, this.overlays.group, this.faults.group, this.ground(scene));
+    this.overlays = new Overlays(scene, layers, this.heaviest(scene), Math.min(this.extent, usualSize(scene)));
+    this.world.add(this.bodies.group, this.overlays.group, this.labels.group, this.border, this.ground(scene));
+    this.border.scale.setScalar(1.42 * this.extent);
+    this.border.visible = false;
 
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
-    this.home();
-    new ResizeObserver(() => this.fit()).observe(place);
+    this.controls.addEventListener("start", () => (this.isMoved = true));
+    // The controls around the picture get their sizes after it, and lines of text more or fewer.
+    for (const part of [place, ...AROUND.map((id) => document.getElementById(id))]) if (part) this.sizes.observe(part);
     this.fit();
+    this.home();
   }
 
   get canvas(): HTMLCanvasElement {
@@ -91,21 +123,38 @@ export class Stage {
   private measure(scene: Scene): number {
     const bounds = new THREE.Box3();
     const whole = new THREE.Box3();
+    const still: THREE.Box3[] = [];
     const lost = this.strays();
     for (const geom of scene.geoms) {
       if (lost.has(geom.body)) continue;
-      const place = this.poses[geom.body].clone().multiply(localPose(geom));
-      const at = new THREE.Vector3().setFromMatrixPosition(place);
-      const flat = geom.kind === "plane";
-      const reach = flat ? 0.5 : Math.min(Math.hypot(...geom.size), 5);
-      const ball = new THREE.Box3().setFromCenterAndSize(at, new THREE.Vector3(reach, reach, reach).multiplyScalar(1.2));
-      whole.union(ball);
-      if (geom.body > 0) bounds.union(ball);
+      const box = boxOf(geom, this.poses[geom.body]);
+      whole.union(box);
+      if (geom.body > 0) bounds.union(box);
+      else if (geom.kind !== "plane" && geom.kind !== "hfield") still.push(box);
     }
+    // What carries the model, such as the base of an arm, is a part of it; a room is not.
+    const size = bounds.isEmpty() ? 0 : diagonal(bounds);
+    const near = bounds.clone().expandByScalar(0.5 * size);
+    for (const box of still) if (box.intersectsBox(near) && diagonal(box) < size) bounds.union(box);
     const seen = bounds.isEmpty() ? whole : bounds;
     if (seen.isEmpty()) return 1;
     seen.getCenter(this.centre);
-    return Math.max(0.05, seen.getSize(new THREE.Vector3()).length() * 0.6);
+    this.lowest = seen.min.z;
+    return Math.max(0.05, 0.6 * diagonal(seen));
+  }
+
+  /** The heaviest of the bodies that the world carries, with all that it carries: its weight, N, and its size, m. */
+  private heaviest(scene: Scene): { weight: number; size: number } {
+    const root = scene.bodies.map((_, body) => body);
+    scene.bodies.forEach(({ parent }, body) => {
+      if (body > 0 && parent > 0) root[body] = root[parent];
+    });
+    const masses = scene.bodies.map(() => 0);
+    scene.bodies.forEach(({ mass }, body) => (masses[root[body]] += body > 0 ? mass : 0));
+    const heaviest = masses.indexOf(Math.max(...masses));
+    const bounds = new THREE.Box3();
+    for (const geom of scene.geoms) if (root[geom.body] === heaviest) bounds.union(boxOf(geom, this.poses[geom.body]));
+    return { weight: 9.81 * masses[heaviest], size: bounds.isEmpty() ? this.extent : Math.min(this.extent, 0.6 * diagonal(bounds)) };
   }
 
   /** Bodies that have gone far away from most others. */
@@ -122,15 +171,17 @@ export class Stage {
     return new Set(distances.flatMap((distance, k) => (distance > 8 * usual + 1 ? [k + 1] : [])));
   }
 
-  /** Lines on the lowest plane, a metre or a tenth of the model apart. */
+  /** Lines on the lowest plane, a metre or a tenth of the model apart, or below what has no ground; a floor with a picture needs none. */
   private ground(scene: Scene): THREE.Object3D {
     const planes = scene.geoms.filter((geom) => geom.kind === "plane" && geom.body === 0);
-    if (planes.length === 0) return new THREE.Group();
-    const lowest = Math.min(...planes.map((plane) => plane.pos[2]));
+    const floor = planes.reduce<(typeof planes)[0] | null>((low, plane) => (low && low.pos[2] <= plane.pos[2] ? low : plane), null);
+    const hasPicture = floor !== null && floor.material !== null && scene.materials[floor.material].texture !== null;
+    if (floor) this.lowest = floor.pos[2];
+    if (hasPicture || (!floor && scene.geoms.some(({ kind }) => kind === "hfield"))) return new THREE.Group();
     const cell = this.extent > 1.2 ? 0.5 : this.extent > 0.25 ? 0.1 : 0.02;
     const grid = new THREE.GridHelper(80 * cell, 80, 0x6b7684, 0x98a2ae);
     grid.rotateX(Math.PI / 2);
-    grid.position.z = lowest + 0.0006 * this.extent;
+    grid.position.z = this.lowest + 0.0006 * this.extent;
     const lines = grid.material as THREE.LineBasicMaterial;
     lines.transparent = true;
     lines.opacity = 0.42;
@@ -141,24 +192,47 @@ export class Stage {
   /** Looks at the whole model, or all environments side by side, from the side and above. */
   home(): void {
     const side = this.side();
-    const reach = 1 + 0.66 * (side - 1);
-    this.reach = reach;
-    this.lights.shade(reach);
-    const away = new THREE.Vector3(1.35, -1.55, side > 1 ? 1.1 : 0.62).multiplyScalar(1.55 * reach * this.extent);
-    // The plots cover more of the lower edge than the bar of the upper: what matters stands a little higher.
-    this.controls.target.copy(this.centre).addScaledVector(this.camera.up, -0.09 * this.extent);
-    this.camera.position.copy(this.controls.target).add(away);
+    this.reach = 1 + 0.66 * (side - 1);
+    this.lights.shade(this.reach, side > 1);
+    const height = this.place.clientHeight;
+    const free = this.free();
+    // All is to lie in a ball that the free part of the picture shows.
+    const radius = ROOMY * (this.extent / 1.2) + 1.5 * this.extent * (side - 1) * Math.SQRT1_2;
+    const up = Math.tan((FOV * Math.PI) / 360);
+    const angle = Math.atan(up * Math.min(free.height / height, free.width / height));
+    const distance = height > 0 ? radius / Math.sin(angle) : radius;
+    this.controls.target.copy(this.centre);
+    this.camera.position.copy(this.centre).addScaledVector(side > 1 ? ABOVE : ASIDE, distance);
     this.camera.near = 0.01 * this.extent;
-    this.camera.far = 120 * reach * this.extent;
+    this.camera.far = 120 * this.reach * this.extent;
     this.camera.updateProjectionMatrix();
     this.controls.update();
   }
 
-  private fit(): void {
+  /** The part of the picture that no control covers, or all where little is left of it. */
+  free(): Area {
+    const { clientWidth: width, clientHeight: height } = this.place;
+    const [bar, panel, plots] = AROUND.map((id) => document.getElementById(id)?.getBoundingClientRect());
+    const right = panel?.width ? panel.left : width;
+    const top = bar?.height ? bar.bottom : 0;
+    const bottom = plots?.height ? plots.top : height;
+    const area = { x: 0, y: top, width: right, height: bottom - top };
+    const isWide = area.width > LEAST_FREE * width && area.height > LEAST_FREE * height;
+    return isWide ? area : { x: 0, y: 0, width, height };
+  }
+
+  /** Fits the picture to its place. The free camera looks through the middle of what is free. */
+  fit(): void {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
+    if (this.through === null) {
+      const { x, y, width: wide, height: high } = this.free();
+      this.camera.setViewOffset(width, height, width / 2 - (x + wide / 2), height / 2 - (y + high / 2), width, height);
+    } else {
+      this.camera.clearViewOffset();
+    }
     this.camera.updateProjectionMatrix();
   }
 
@@ -201,13 +275,18 @@ export class Stage {
     });
     this.offset.copy(this.placeOf(own));
     if (others) this.home();
-    this.faults.begin();
+    this.labels.begin();
     envs.forEach(({ index, fault }, k) => {
-      if (fault === "") return;
-      const at = this.placeOf(k).add(this.centre);
-      this.faults.add(`${index}: ${fault}`, at, new THREE.Color(0x8c1616));
+      const at = this.placeOf(k).add(this.centre).addScaledVector(this.camera.up, 0.8 * this.extent);
+      const [text, colour] = fault === "" ? [`${index}`, 0x33414d] : [`${index}: ${fault}`, 0x8c1616];
+      // As they stand farther away the more there are.
+      if (envs.length > 1) this.labels.add(text, at, new THREE.Color(colour), 2 / (1 + this.side()));
     });
-    this.faults.end();
+    this.labels.end();
+    this.border.visible = envs.length > 1;
+    this.border.position.copy(this.offset).setZ(this.lowest + 0.002 * this.extent);
+    this.border.position.x += this.centre.x;
+    this.border.position.y += this.centre.y;
   }
 
   draw(frame: Frame, chosen: number | null): void {
@@ -215,7 +294,7 @@ export class Stage {
     this.spread(frame, chosen);
     this.bodies.update(this.copies);
     this.overlays.group.position.copy(this.offset);
-    this.overlays.update(frame, this.poses);
+    this.overlays.update(frame, this.poses, this.camera.position.clone().sub(this.offset));
     this.follow();
     this.controls.update();
     if (this.through !== null) this.lookThrough(frame, this.through);
@@ -227,10 +306,9 @@ export class Stage {
   choose(camera: number | null): void {
     this.through = camera;
     this.controls.enabled = camera === null;
-    if (camera !== null) return;
-    this.camera.fov = FOV;
+    if (camera === null) this.camera.fov = FOV;
     this.fit();
-    this.home();
+    if (camera === null) this.home();
   }
 
   /** Puts the camera where one of the model's is. One with parallel lines of sight is far away, with a narrow view. */
@@ -254,6 +332,7 @@ export class Stage {
 
   /** Gives back what the graphics card holds. */
   dispose(): void {
+    this.sizes.disconnect();
     this.controls.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
@@ -287,6 +366,31 @@ export class Stage {
 }
 
 const NOTHING = new Float32Array();
+
+function diagonal(box: THREE.Box3): number {
+  return box.getSize(new THREE.Vector3()).length();
+}
+
+/** A box along the axes of the world around a geom; half a metre of a plane. */
+function boxOf(geom: Geom, pose: THREE.Matrix4): THREE.Box3 {
+  const [x, y, z] = geom.size.map((size) => Math.min(size, 5));
+  const half: Record<string, [number, number, number]> = {
+    plane: [0.25, 0.25, 0],
+    sphere: [x, x, x],
+    capsule: [x, x, x + y],
+    cylinder: [x, x, y],
+  };
+  const corner = new THREE.Vector3(...(half[geom.kind] ?? [x, y, z]));
+  return new THREE.Box3(corner.clone().negate(), corner).applyMatrix4(pose.clone().multiply(localPose(geom)));
+}
+
+/** A square of unit sides, hollow. */
+function borderShape(): THREE.ShapeGeometry {
+  const square = (half: number) => [new THREE.Vector2(-half, -half), new THREE.Vector2(half, -half), new THREE.Vector2(half, half), new THREE.Vector2(-half, half)];
+  const shape = new THREE.Shape(square(0.5));
+  shape.holes.push(new THREE.Path(square(0.475)));
+  return new THREE.ShapeGeometry(shape);
+}
 
 function newCopy(): Copy {
   return { poses: [], fails: false, asleep: NOTHING, islands: NOTHING, chosen: null };

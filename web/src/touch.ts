@@ -80,7 +80,8 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
     if (!hit) return;
     const body = scene.bodies[hit.body];
     const geom = nameOf("geom", hit.geom, scene.geoms[hit.geom].name);
-    label.textContent = `${geom} · ${nameOf("body", hit.body, hit.body === 0 ? "world" : body.name)}`;
+    const owner = nameOf("body", hit.body, hit.body === 0 ? "world" : body.name);
+    label.textContent = geom === owner ? owner : `${geom} · ${owner}`;
     label.style.transform = `translate(${event.clientX + 14}px, ${event.clientY + 14}px)`;
   });
 

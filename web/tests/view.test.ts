@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
+import { brief, shortened } from "../src/elements.ts";
 import { tickTexts } from "../src/ticks.ts";
 import { PICTURES, PROGRAM, ROOT, browser, open, skip, started, until, view } from "./browser.ts";
 
@@ -15,11 +16,17 @@ interface Seen {
   frame: { time: number; paused: boolean; rows: Record<string, { count: number; data: Float32Array }> };
   stage: {
     extent: number;
-    overlays: { forceScale: number; arrowLengths(): number[] };
-    camera: { projectionMatrix: unknown };
-    poses: { elements: number[] }[];
+    overlays: { forceScale: number; arrows(): [number[], number[]][]; discCount: number };
+    camera: { projectionMatrix: Matrix; matrixWorldInverse: Matrix };
+    poses: Matrix[];
+    border: { visible: boolean };
+    labels: { count: number };
+    free(): { x: number; y: number; width: number; height: number };
   };
-  plots: { counts(): number[]; lasts(): number[][] };
+  plots: { counts(): number[]; lasts(): number[][]; spans(): { times: [number, number]; values: [number, number] }[] };
+}
+interface Matrix {
+  elements: number[];
 }
 declare const window: { clench: Seen };
 
@@ -80,14 +87,21 @@ test("ticks of plots differ from their neighbours", () => {
   assert.deepEqual(tickTexts([]), []);
 });
 
+test("names keep both ends, and what rounding leaves of nothing is nothing", () => {
+  assert.equal(shortened("right_shoulder_x", 13), "right_…lder_x");
+  assert.equal(shortened("knee", 13), "knee");
+  assert.deepEqual([-3.74e-19, 0, 2.5e-4, 12.34567, 1234.5].map(brief), ["0", "0", "2.50e-4", "12.346", "1234.5"]);
+});
+
 test("the humanoid is seen where it stands", { skip }, async () => {
   const program = await view("models/humanoid.xml", "--keyframe", "standing", "--paused");
   try {
     const page = await open(browser, program.url);
     await page.waitForTimeout(500);
     assert.match(await page.title(), /humanoid/);
-    const middle = await detail(page, [0.4, 0.25, 0.6, 0.75]);
-    const corner = await detail(page, [0.02, 0.1, 0.2, 0.5]);
+    // In the middle of what the panel and the plots leave of the picture.
+    const middle = await detail(page, [0.25, 0.2, 0.45, 0.7]);
+    const corner = await detail(page, [0.02, 0.15, 0.15, 0.5]);
     assert.ok(middle > 0.06, `the robot fills ${middle} of the middle`);
     assert.ok(corner < 0.01, `and ${corner} of the left edge`);
     await page.screenshot({ path: join(PICTURES, "humanoid.png") });
@@ -204,7 +218,8 @@ test("arrows are as long as contact forces are strong", { skip }, async () => {
       const { stage, frame } = window.clench;
       const { data, count } = frame.rows.contacts;
       const forces = Array.from({ length: count }, (_, row) => data[20 * row + 12]);
-      const drawn = stage.overlays.arrowLengths().map((length) => length / stage.overlays.forceScale);
+      const length = ([from, to]: [number[], number[]]) => Math.hypot(...to.map((x, k) => x - from[k]));
+      const drawn = stage.overlays.arrows().map((arrow) => length(arrow) / stage.overlays.forceScale);
       return { drawn, forces };
     });
     const strongest = Math.max(...forces);
@@ -213,6 +228,80 @@ test("arrows are as long as contact forces are strong", { skip }, async () => {
     await page.close();
   } finally {
     await program.end();
+  }
+});
+
+test("what two fingers pinch has the arrows of each on its own side", { skip }, async () => {
+  const program = await view("models/pinch.xml");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => window.clench.frame.time > 0.3 && window.clench.frame.rows.contacts.count > 0);
+    await page.click("#pause");
+    await until(page, () => window.clench.frame.paused);
+    await page.waitForTimeout(200);
+    const arrows = await page.evaluate(() => window.clench.stage.overlays.arrows());
+    const pressing = arrows.map(([from, to]) => [from[0], to[0]]).filter(([from, to]) => Math.abs(to - from) > 0.02);
+    assert.ok(pressing.length >= 2);
+    // They begin at the faces of the block, and go away from it.
+    for (const [from, to] of pressing) assert.ok(Math.abs(from) > 0.045 && Math.abs(to) > Math.abs(from), `${pressing}`);
+    assert.ok(pressing.some(([from]) => from < 0) && pressing.some(([from]) => from > 0));
+    await page.screenshot({ path: join(PICTURES, "pinch.png") });
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("of a pile the largest contacts are seen alone, if that is wished", { skip }, async () => {
+  const program = await view("models/pile.xml");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => window.clench.frame.rows.contacts.count > 100);
+    await page.click("#pause");
+    await until(page, () => window.clench.frame.paused);
+    await page.waitForTimeout(500);
+    const counts = () => page.evaluate(() => [window.clench.stage.overlays.discCount, window.clench.frame.rows.contacts.count]);
+    let [seen, all] = await counts();
+    assert.equal(seen, all);
+    await page.getByLabel("largest 50").click();
+    await until(page, () => window.clench.stage.overlays.discCount === 50);
+    [seen, all] = await counts();
+    assert.ok(all > 100);
+    await page.screenshot({ path: join(PICTURES, "pile.png") });
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("the first view shows the whole model between the controls", { skip }, async () => {
+  for (const model of ["models/humanoid.xml", "models/gripper/gripper.urdf"]) {
+    const program = await view(model, "--paused");
+    try {
+      const page = await open(browser, program.url);
+      await page.setViewportSize({ width: 1440, height: 900 });
+      await page.reload();
+      await until(page, () => "clench" in window && window.clench.frame.paused);
+      const { free, places } = await page.evaluate(() => {
+        const { stage, frame } = window.clench;
+        const times = (m: number[], v: number[]) => [0, 1, 2, 3].map((i) => m[i] * v[0] + m[i + 4] * v[1] + m[i + 8] * v[2] + m[i + 12] * v[3]);
+        const rows = Array.from({ length: frame.rows.bodies.count - 1 }, (_, k) => [...frame.rows.bodies.data.subarray(7 * (k + 1), 7 * (k + 1) + 3), 1]);
+        const places = rows.map((row) => {
+          const [x, y, , w] = times(stage.camera.projectionMatrix.elements, times(stage.camera.matrixWorldInverse.elements, row));
+          return [((x / w + 1) / 2) * innerWidth, ((1 - y / w) / 2) * innerHeight];
+        });
+        return { free: stage.free(), places };
+      });
+      const [right, bottom] = [free.x + free.width, free.y + free.height];
+      assert.ok(right < 1200 && bottom < 800, `${right} ${bottom}`);
+      for (const [x, y] of places) assert.ok(x > free.x && x < right && y > free.y && y < bottom, `${model}: ${x} ${y}`);
+      const middle = (values: number[]) => (Math.min(...values) + Math.max(...values)) / 2;
+      assert.ok(Math.abs(middle(places.map(([x]) => x)) / (free.x + free.width / 2) - 1) < 0.2);
+      await page.screenshot({ path: join(PICTURES, `first-${model.split("/").at(-1)}.png`) });
+      await page.close();
+    } finally {
+      await program.end();
+    }
   }
 });
 
@@ -236,8 +325,11 @@ test("environments stand side by side, and one of them is chosen", { skip }, asy
     const page = await open(browser, program.url);
     await until(page, () => window.clench.frame.rows.envs.count === 5);
     assert.ok((await page.evaluate(() => window.clench.frame.rows.poses.count)) > 5);
+    await until(page, () => window.clench.stage.border.visible && window.clench.stage.labels.count === 5);
+    await page.screenshot({ path: join(PICTURES, "grid.png") });
     await page.locator("#grid").selectOption("1");
     await until(page, () => window.clench.frame.rows.envs.count === 1);
+    await until(page, () => !window.clench.stage.border.visible && window.clench.stage.labels.count === 0);
     const first = await page.evaluate(() => window.clench.frame.rows.qpos.data[0]);
     await page.locator("#env").fill("3");
     await page.locator("#env").press("Enter");
@@ -286,7 +378,8 @@ test("limits and equalities push with arrows, and islands have colours", { skip 
     await until(page, () => window.clench.frame.rows.pushes.count > 0);
     const [drawn, row] = await page.evaluate(() => {
       const { stage, frame } = window.clench;
-      const lengths = stage.overlays.arrowLengths().map((length) => length / stage.overlays.forceScale);
+      const length = ([from, to]: [number[], number[]]) => Math.hypot(...to.map((x, k) => x - from[k]));
+      const lengths = stage.overlays.arrows().map((arrow) => length(arrow) / stage.overlays.forceScale);
       return [lengths, [...frame.rows.pushes.data.slice(0, 12)]];
     });
     const force = Math.hypot(row[6], row[7], row[8]);
@@ -437,5 +530,28 @@ test("a recording opens from a disk and replays", { skip }, async () => {
   await until(page, () => Math.abs(window.clench.frame.time - 0.064) < 1e-9);
   await page.waitForTimeout(300);
   assert.ok(Math.abs((await time(page)) - 0.064) < 1e-9);
+  // All plots end where the clock is, wherever that goes.
+  for (const moment of ["3", "25", "9"]) {
+    await page.locator("#time").fill(moment);
+    await until(page, (moment) => {
+      const { frame, plots } = window.clench;
+      return Math.abs(frame.time - 0.016 * (Number(moment) + 1)) < 1e-9 && plots.spans().every(({ times }) => times[1] === frame.time);
+    }, moment);
+  }
   await page.close();
+});
+
+test("a plot has a line after two moments, and what is zero lies in its middle", { skip }, async () => {
+  const program = await view("models/gripper/gripper.urdf", "--paused");
+  try {
+    const page = await open(browser, program.url);
+    await page.click("#step");
+    await until(page, () => window.clench.plots.counts().every((count) => count === 2));
+    await until(page, () => window.clench.plots.spans().every(({ times }) => times[1] > times[0]));
+    // Nothing moves or touches.
+    assert.deepEqual(await page.evaluate(() => window.clench.plots.spans().map(({ values }) => values)), [[-1, 1], [-1, 1], [-1, 1]]);
+    await page.close();
+  } finally {
+    await program.end();
+  }
 });

@@ -1,6 +1,7 @@
 //! What is drawn now: geoms, sites and tendons, each with its pose, colour and surface, as the shader reads them.
 
 use clench::Model;
+use clench::collide::ShapeKind;
 use clench::rigid::model::{Appearance, TextureKind};
 use clench::rigid::readout::TendonLine;
 use clench::rigid::{Precision, Sim};
@@ -29,6 +30,61 @@ pub(crate) fn of_model(model: &Model) -> Vec<Item> {
         .iter()
         .map(|&appearance| item_of(model, appearance));
     geoms.chain(sites).collect()
+}
+
+/// The ground of a picture, as on the viewer's page: lines on the lowest plane of the world, or below a model that has no ground. A floor
+/// with a picture needs none. Returns an item for the latter, which goes behind geoms and sites.
+pub(crate) fn add_ground(
+    model: &Model,
+    items: &mut [Item],
+    extent: f32,
+    lowest: f32,
+) -> Option<Item> {
+    let cell = match extent {
+        1.2.. => 0.5,
+        0.25.. => 0.1,
+        _ => 0.02,
+    };
+    let kind_of = |g: usize| model.geoms[g].kind;
+    let height = |g: usize| model.params.geom_pos[g].z;
+    let floors = (0..model.geoms.len())
+        .filter(|&g| kind_of(g) == ShapeKind::Plane && model.geoms[g].body == 0);
+    if let Some(floor) = floors.min_by(|&a, &b| height(a).total_cmp(&height(b))) {
+        if items[floor].texture[0] == 0.0 {
+            items[floor].texture[1] = cell;
+        }
+        return None;
+    }
+    if (0..model.geoms.len()).any(|g| kind_of(g) == ShapeKind::HeightField) {
+        return None;
+    }
+    let column = |k: usize| [0, 1, 2, 3].map(|row| f32::from(u8::from(row == k)));
+    Some(Item {
+        pose: [column(0), column(1), column(2), [0.0, 0.0, lowest, 1.0]],
+        color: [0.0; 4],
+        surface: [0.0, 0.0, 0.0, -1.0],
+        texture: [0.0, cell, 1.0, 0.0],
+    })
+}
+
+/// The lowest height of what moves, or of all where nothing does, m, as far as sizes say.
+pub(crate) fn lowest<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimError> {
+    let poses = poses_of(sim, "geom_xpos", "geom_xmat")?;
+    let model = sim.model();
+    let bottom = |g: usize| {
+        let size = model.params.geom_size[g].norm().min(5.0);
+        poses[g][3][2] - 0.6 * size as f32
+    };
+    let all = 0..model.geoms.len();
+    let moving = all.clone().filter(|&g| model.geoms[g].body > 0);
+    let least = |z: f32, g: usize| z.min(bottom(g));
+    let low = moving.fold(f32::INFINITY, least);
+    let low = if low.is_finite() {
+        low
+    } else {
+        all.fold(f32::INFINITY, least)
+    };
+    Ok(if low.is_finite() { low } else { 0.0 })
 }
 
 /// What is drawn of an element. Where it has no material it shines as MuJoCo lets it.

@@ -36,7 +36,7 @@ struct Item {
     color: vec4<f32>,
     // Strength and sharpness of highlights, emission, number of the geom.
     surface: vec4<f32>,
-    // The kind of its texture: 0 none, 1 a plane's, 2 a cube's.
+    // The kind of its texture: 0 none, 1 a plane's, 2 a cube's. The distance of the lines of a grid on it, m, or 0; 1 where these are all of it.
     texture: vec4<f32>,
 }
 
@@ -119,6 +119,17 @@ fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3
         return textureSampleGrad(cube, picture_sampler, at, across, down).rgb;
     }
     return vec3(1.0);
+}
+
+// The color of the lines of a ground, and how much of what is below they cover.
+const GRID = vec4(0.596, 0.635, 0.682, 0.42);
+
+// The share of a pixel that lines of a grid cover: a pixel wide, and gone where they are close to each other.
+fn grid_cover(place: vec2<f32>, cell: f32) -> f32 {
+    let at = place / max(cell, 1e-6);
+    let wide = fwidth(at);
+    let lines = saturate(1.0 - abs(fract(at - 0.5) - 0.5) / max(wide, vec2(1e-6))) * saturate(1.0 - 2.0 * wide);
+    return select(0.0, GRID.a * max(lines.x, lines.y), cell > 0.0);
 }
 
 // The share that comes through of the light that casts the shadow, from nine places beside each other.
@@ -205,6 +216,7 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
 fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let item = items[in.item];
     let texel = painted(item.texture.x, in.texcoord, dpdx(in.texcoord), dpdy(in.texcoord));
+    let lines = grid_cover(in.place.xy, item.texture.y);
     var to_eye = view.eye.xyz - in.place;
     let distance = length(to_eye);
     to_eye = select(to_eye / distance, -view.ahead.xyz, view.ahead.w > 0.0);
@@ -218,6 +230,10 @@ fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
         light = daylight(linear(item.color.rgb) * texel, item.surface, in.place, normal, to_eye);
     }
     let fog = smoothstep(view.fog.x, view.fog.y, distance);
+    if (item.texture.z > 0.0) {
+        return vec4(linear(GRID.rgb), lines * (1.0 - fog));
+    }
+    light = mix(light, linear(GRID.rgb), lines);
     return vec4(mix(light, linear(view.sky.rgb), fog), item.color.a);
 }
 

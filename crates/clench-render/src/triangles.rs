@@ -57,6 +57,11 @@ pub(crate) fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32
     shape
 }
 
+/// Those of a plane that reaches so far.
+pub(crate) fn ground(far: f32) -> Vec<Vertex> {
+    primitive(ShapeKind::Plane, [0.0; 3], far)
+}
+
 /// The triangles of a site.
 pub(crate) fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<Vertex> {
     let (kind, size) = (model.sites[site].kind, params.site_size[site]);

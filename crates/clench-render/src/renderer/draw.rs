@@ -107,10 +107,8 @@ impl Renderer {
 
     fn texture_of(&self, item: usize) -> &BindGroup {
         let visuals = &self.model.visuals;
-        let appearance = match item.checked_sub(visuals.geoms.len()) {
-            None => visuals.geoms[item],
-            Some(site) => visuals.sites[site],
-        };
+        let all = visuals.geoms.iter().chain(&visuals.sites);
+        let appearance = all.copied().nth(item).unwrap_or_default();
         self.textures.of(&self.model, appearance)
     }
 

@@ -63,8 +63,9 @@ pub struct Renderer {
     passes: Passes,
     model: Arc<Model>,
     corners: Buffer,
-    /// The corners of each geom, of each site, and of a part of a tendon.
+    /// The corners of each geom, of each site, of the ground, and of a part of a tendon.
     shapes: Vec<Range<u32>>,
+    /// Geoms, sites, and the ground where the model has none.
     items: Vec<Item>,
     textures: Textures,
     /// The size of what moves at first, m.
@@ -84,12 +85,16 @@ impl Renderer {
         let passes = Passes::new(&gpu.device, !model.visuals.lights.is_empty());
         let mut sim = Sim::<f64>::new(Arc::clone(model))?;
         let extent = (FreeCamera::of_all(&mut sim)?.distance / 1.75) as f32;
+        let mut items = items::of_model(model);
+        let ground = items::add_ground(model, &mut items, extent, items::lowest(&mut sim)?);
+        let wide = ground.map(|_| triangles::ground(FAR * extent));
+        items.extend(ground);
         let mut corners: Vec<Vertex> = Vec::new();
         let mut shapes = Vec::new();
         let geoms = (0..model.geoms.len())
             .map(|g| triangles::of_geom(model, &model.params, g, FAR * extent));
         let sites = (0..model.sites.len()).map(|s| triangles::of_site(model, &model.params, s));
-        for shape in geoms.chain(sites).chain([triangles::string()]) {
+        for shape in geoms.chain(sites).chain(wide).chain([triangles::string()]) {
             let start = corners.len() as u32;
             corners.extend(shape);
             shapes.push(start..corners.len() as u32);
@@ -103,7 +108,7 @@ impl Renderer {
         let shadow = shadow.create_view(&Default::default());
         let light = light_group(&gpu, &passes, &shadow);
         Ok(Renderer {
-            items: items::of_model(model),
+            items,
             textures: Textures::new(&gpu, &passes, model),
             model: Arc::clone(model),
             gpu,
@@ -185,7 +190,7 @@ impl Renderer {
             .collect();
         let seen =
             |&k: &usize| wanted.groups.contains(&(groups[k] as usize)) && items[k].color[3] > 0.0;
-        let all = (0..items.len()).filter(seen);
+        let all = (0..groups.len()).filter(seen);
         let (opaque, mut transparent): (Vec<_>, Vec<_>) =
             all.partition(|&g| items[g].color[3] >= 1.0);
         // What is farther is drawn first, so that the nearer lies over it.
@@ -196,6 +201,8 @@ impl Renderer {
                 .sum::<f32>()
         };
         transparent.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        // The ground is below all.
+        transparent.splice(..0, groups.len()..self.items.len());
         Shown {
             opaque,
             transparent,
