@@ -199,19 +199,17 @@ class Batch(Asked, Tied):
             arguments.append((field, rows[here], chosen[here] - part.start))
         self._change("randomize", arguments)
         if consistent:
-            self.set_constants(chosen)
+            self.set_constants(np.isin(np.arange(self.n_envs), chosen))
 
-    def set_constants(self, envs: ArrayLike | None = None) -> None:
+    def set_constants(self, mask: ArrayLike | None = None) -> None:
         """Computes the constants that follow from the parameters of environments; see `clench.Batch.set_constants`.
 
         Parameters
         ----------
-        envs : array_like of int, optional
-            Which environments; by default all.
+        mask : array_like of bool, optional
+            Which environments (n); by default all.
         """
-        chosen = self._chosen(envs)
-        own = [chosen[(part.start <= chosen) & (chosen < part.stop)] - part.start for part in self._parts]
-        self._change("set_constants", [(envs,) for envs in own])
+        self._change("set_constants", self._split_mask(mask))
 
     @property
     def options(self) -> clench.RigidOptions:

@@ -41,7 +41,10 @@ impl Batch {
         envs: Option<&Bound<'_, PyAny>>,
         consistent: bool,
     ) -> PyResult<()> {
-        let envs = self.these_or_all(envs)?;
+        let envs = match envs {
+            Some(envs) => indices("envs", envs, self.n_envs)?,
+            None => Vec::from_iter(0..self.n_envs),
+        };
         let shape = self.model.get().param_shape(field)?;
         let mut guard = lock(&self.inner, "batch")?;
         each!(&mut *guard, batch => {
@@ -62,16 +65,17 @@ impl Batch {
     ///
     /// Parameters
     /// ----------
-    /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    /// mask : array_like of bool, optional
+    ///     Which environments (n); by default all.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     Environments that the batch does not have, or one whose mass matrix is not positive definite. All is then as before.
-    #[pyo3(signature = (envs = None))]
-    fn set_constants(&self, py: Python<'_>, envs: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
-        let envs = self.these_or_all(envs)?;
+    ///     An environment whose mass matrix is not positive definite. All is then as before.
+    #[pyo3(signature = (mask = None))]
+    fn set_constants(&self, py: Python<'_>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let chosen = self.mask(mask)?;
+        let envs = Vec::from_iter((0..self.n_envs).filter(|&env| chosen[env]));
         let mut guard = lock(&self.inner, "batch")?;
         each!(&mut *guard, batch => py.detach(|| batch.set_constants(&envs)).map_err(sim_error))
     }
@@ -98,15 +102,5 @@ impl Batch {
             let shape = [&[self.n_envs], &shape[..]].concat();
             Ok(PyArray1::from_vec(py, all).reshape(shape)?.into_any())
         })
-    }
-}
-
-impl Batch {
-    /// The environments that were named, or all.
-    fn these_or_all(&self, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
-        match envs {
-            Some(envs) => indices("envs", envs, self.n_envs),
-            None => Ok(Vec::from_iter(0..self.n_envs)),
-        }
     }
 }

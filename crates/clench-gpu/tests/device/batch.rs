@@ -366,3 +366,41 @@ fn parameters_that_would_make_other_kernels_are_refused() {
     );
     assert_eq!(batch.param("jnt_stiffness", 2).expect("a field"), before);
 }
+
+#[test]
+fn constants_follow_the_parameters_of_environments() {
+    let model = text(&own("runner"));
+    let Some((mut device, _)) = both(&model) else {
+        return;
+    };
+    let mut processor = Batch::with_options(model.clone(), COUNT, BatchOptions::default());
+    let processor = processor.as_mut().expect("a good model");
+    let start = device.save().expect("rows");
+    processor.restore(&start).expect("the same model");
+    let envs = [3, 20];
+    let mut before = Vec::new();
+    for batch in [&mut device, processor] {
+        before = batch.param("dof_invweight0", 3).expect("a field");
+        for field in ["body_mass", "body_inertia"] {
+            let row = batch.param(field, 0).expect("a field");
+            let row = Vec::from_iter(row.into_iter().map(|x| 3.0 * x));
+            batch
+                .randomize(field, &envs, &row.repeat(2))
+                .expect("good values");
+        }
+        batch.set_constants(&envs).expect("a good mass matrix");
+        batch.step_n(5).expect("good states");
+    }
+    let weights = device.param("dof_invweight0", 20).expect("a field");
+    assert!(weights[0] < 0.5 * before[0], "{weights:?} {before:?}");
+    for env in 0..COUNT {
+        let pairs = device
+            .state
+            .qvel
+            .row(env)
+            .iter()
+            .zip(processor.state.qvel.row(env));
+        let gap = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(gap < 1e-2, "environment {env}: {gap}");
+    }
+}
