@@ -14,8 +14,8 @@ class Attachable(Protocol):
     """A model that can be attached, such as a `ModelSpec`."""
 
     @property
-    def document(self) -> Document:
-        """What is attached."""
+    def _source(self) -> Document:
+        """The document that is attached."""
         ...
 
 
@@ -253,7 +253,7 @@ class SpecElement:
             A prefix or a name that is taken; files of the same name and other contents; a body that the model does not have.
         """
         document = self._document
-        name = document.attach(other.document, prefix, body)
+        name = document.attach(other._source, prefix, body)
         assets = document.root.find("asset")
         section = ET.SubElement(document.root, "asset") if assets is None else assets
         SpecElement(document, section).add("model", name=name, file=file_of(name))

@@ -1,4 +1,4 @@
-"""What `Batch.rollout` does in Python: it shows its progress, asks for controls at each step, and says where it was interrupted."""
+"""The parts of `Batch.rollout` that are written in Python: its progress, controls that are computed at each step, interrupts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _INTERVAL = 0.1  # s
 
 
 class Progress:
-    """Writes how far a rollout of so many environments is on stderr, in one line."""
+    """Writes the progress of a rollout of `n_envs` environments to stderr, in one line."""
 
     def __init__(self, n_envs: int) -> None:
         self._n_envs = n_envs
@@ -39,9 +39,9 @@ class Progress:
         self._width = len(line)
 
 
-def interrupted(done: int, steps: int) -> None:
-    """Warns that Ctrl-C ended a rollout."""
-    warnings.warn(f"the rollout was interrupted after {done} of {steps} steps", RuntimeWarning, stacklevel=3)
+def interrupted(done: int, steps: int, depth: int = 2) -> None:
+    """Warns that Ctrl-C ended a rollout, which was called `depth` Python frames above."""
+    warnings.warn(f"the rollout was interrupted after {done} of {steps} steps", RuntimeWarning, stacklevel=depth)
 
 
 def controlled(
@@ -67,5 +67,5 @@ def controlled(
             if progress is not None:
                 progress(step + 1, steps)
     except KeyboardInterrupt:
-        interrupted(step, steps)
+        interrupted(step, steps, 3)
     return rows

@@ -54,8 +54,8 @@ class ModelSpec:
         return self._document.assets
 
     @property
-    def document(self) -> Document:
-        """What a model that this one is attached to takes in."""
+    def _source(self) -> Document:
+        """The document that a model takes in to which this one is attached."""
         # Names of what a file attaches come into being when that is built.
         return ModelSpec.from_xml(self.build().to_xml())._document if self._document.attaches_files() else self._document
 
