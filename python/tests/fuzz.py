@@ -239,7 +239,7 @@ class Fuzz:
     def call_sim(self) -> Any:
         sim = self.choose([owner for owner in self.owners if isinstance(owner, clench.Sim)] or [clench.Sim(ball())])
         views = ("contacts", "constraints", "solver_stats")
-        what = self.choose(("reset", "set_equality", "set_param", "mass_matrix", "ray", "distance", *views))
+        what = self.choose(("reset", "set_equality", "set_param", "set_constants", "mass_matrix", "ray", "distance", *views))
         if what == "reset":
             return sim.reset(self.key())
         if what == "set_equality":
@@ -247,8 +247,8 @@ class Fuzz:
             return sim.set_equality(which, self.maybe(lambda: self.junk.chance(0.5)))
         if what == "set_param":
             return sim.set_param(*self.parameter(sim.model))
-        if what == "mass_matrix":
-            return sim.mass_matrix()
+        if what in ("mass_matrix", "set_constants"):
+            return getattr(sim, what)()
         if what == "ray":
             groups = self.maybe(lambda: self.choose((None, [0], [1, 5])))
             body = self.maybe(lambda: self.choose((None, 0, "ball")))
@@ -263,10 +263,11 @@ class Fuzz:
     def call_batch(self) -> Any:
         batch = self.choose([owner for owner in self.owners if isinstance(owner, clench.Batch)] or [clench.Batch(ball(), 2)])
         n, model = batch.n_envs, batch.model
-        what = self.choose(("reset", "revive", "forward", "fault", "randomize", "record", "rollout", "set_state", "sim", "status"))
+        changes = ("reset", "revive", "forward", "randomize", "set_constants", "record", "rollout", "set_state")
+        what = self.choose((*changes, "fault", "sim", "status"))
         if what == "reset":
             return batch.reset(self.choose((None, self.subset(n))), self.key())
-        if what in ("revive", "forward"):
+        if what in ("revive", "forward", "set_constants"):
             return getattr(batch, what)(self.subset(n))
         if what in ("fault", "sim"):
             made = getattr(batch, what)(self.count())
@@ -277,7 +278,8 @@ class Fuzz:
             envs = self.rng.integers(0, max(n, 1), self.rng.integers(0, n + 1))
             given = self.maybe(lambda: self.choose((None, envs)))
             count = n if given is None else np.size(envs)
-            return batch.randomize(*self.parameter(model, count), given)
+            consistent = self.maybe(lambda: self.junk.chance(0.3))
+            return batch.randomize(*self.parameter(model, count), given, consistent=consistent)
         if what == "set_state":
             envs = self.rng.integers(0, max(n, 1), self.rng.integers(0, n + 1))
             return batch.set_state(self.maybe(lambda: self.choose(self.states)), self.maybe(lambda: self.choose((None, envs))))
@@ -287,8 +289,9 @@ class Fuzz:
         if what == "rollout":
             steps = int(self.rng.integers(0, 5))
             initial = self.numbers(n, 1 + model.nq + model.nv + model.na) * 1.0 if self.junk.chance(0.3) else self.choose((None, self.choose(self.states)))
-            ctrl = self.choose((None, self.numbers(steps, model.nu), self.numbers(n, steps, model.nu)))
-            return batch.rollout(initial, ctrl, self.names(), self.maybe(lambda: self.choose((None, steps))))
+            ctrl = self.choose((None, self.numbers(steps, model.nu), self.numbers(n, steps, model.nu), lambda step: self.numbers(model.nu)))
+            progress = self.maybe(lambda: self.choose((None, False, lambda done, steps: None)))
+            return batch.rollout(initial, ctrl, self.names(), self.maybe(lambda: self.choose((None, steps))), progress=progress)
         return batch.status, batch.running, batch.outputs, batch.bytes_per_env
 
     def call_question(self) -> Any:
