@@ -1,8 +1,9 @@
 //! Chooses the instruction sets that lanes are compiled for.
 //!
-//! A build from source usually runs on the machine that builds it, so by default only the widest lanes of this processor are
-//! compiled. `CLENCH_INSTRUCTIONS` chooses others: `native` (the default), `all`, `scalar` (no lanes), or the name of one set.
-//! The feature `all-instruction-sets` is the same as `all`. A build for another machine compiles all sets of its architecture.
+//! A build from source usually runs on the machine that builds it, so by default only the widest lanes of this
+//! processor are compiled. `CLENCH_INSTRUCTIONS` chooses others: `native` (the default), `all`, `scalar` (no
+//! lanes), or the name of one set. The feature `all-instruction-sets` is the same as `all`. A build for another
+//! machine compiles all sets of its architecture.
 
 use std::env::var;
 use std::process::exit;

@@ -1,7 +1,8 @@
-//! Fuzz targets: each is a function that reads any bytes with one of our readers, and says whether they were accepted.
+//! Fuzz targets: each is a function that reads any bytes with one of our readers, and returns true if they were
+//! accepted.
 //!
-//! None may panic, hang or fill the memory, and what a reader accepts must be usable. `cargo xtask fuzz` searches for bytes that
-//! break this, guided by coverage; the tests of this crate replay what is in `seeds` and `regressions`.
+//! None may panic, hang or fill the memory, and accepted input must be usable. `cargo xtask fuzz` searches for bytes
+//! that break this, guided by coverage; the tests of this crate replay `seeds` and `regressions`.
 
 mod checksums;
 mod contacts;

@@ -3,7 +3,7 @@
 use crate::{files, trial};
 use std::cell::Cell;
 
-/// What lies beside a model, by name.
+/// The files beside a model, by name.
 const BESIDE: [(&str, &[u8]); 6] = [
     ("cube.stl", include_bytes!("../seeds/stl/cube.stl")),
     ("cube.obj", include_bytes!("../seeds/obj/cube.obj")),

@@ -27,8 +27,7 @@ pub fn gltf(data: &[u8]) -> bool {
     mesh("gltf", data)
 }
 
-/// A height field from an image. Its checksums are made right first: what they keep out is no concern of the readers behind
-/// them.
+/// Reads a height field from an image, with corrected checksums: wrong ones would hide the readers behind them.
 pub fn png(data: &[u8]) -> bool {
     height_field("png", &checksums::mend(data))
 }

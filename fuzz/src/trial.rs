@@ -1,22 +1,21 @@
-//! What is done with a model that was read: whatever it says, nothing may panic, and no result may be other than finite.
+//! The trial of a model that was read: nothing may panic, and every result must be finite.
 
 use clench::math::Vec3;
 use clench::{Budget, Model, RayFilter, SaveModel, Sim};
 use std::sync::Arc;
 
-/// What a model may ask for: so little that a step takes a moment, for a fuzzer takes thousands in a second. What it bounds is
-/// counted in the same way whatever the bounds are.
+/// Returns the budget of a model: small, since a fuzzer steps thousands of models a second.
 pub fn budget() -> Budget {
     Budget::default().times(1.0 / 256.0)
 }
 
-/// What is said of a model whose mass matrix is singular, but for rounding.
+/// The error of a model whose mass matrix is singular up to rounding.
 const SINGULAR: &str = "the mass matrix is not positive definite";
 
 /// Steps of a trial.
 const STEPS: usize = 3;
 
-/// Saves a model, steps it, and asks it some questions.
+/// Saves a model, steps it, and queries it.
 pub fn run(model: Model) {
     // What cannot be said in MJCF is an error; what is said can be read, within what a file may ask for.
     if let Ok(text) = model.to_mjcf() {
@@ -55,14 +54,14 @@ pub fn run(model: Model) {
     let _ = sim.energy();
 }
 
-/// What a step or a forward pass without an error leaves behind is finite.
+/// Checks that a step or forward pass without an error left finite results.
 pub fn check_result(sim: &Sim<f64>) {
     let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
     assert!(finite(&sim.state.qpos) && finite(&sim.state.qvel) && finite(&sim.state.act));
     assert!(finite(&sim.workspace().qacc) && finite(&sim.workspace().qfrc_constraint));
 }
 
-/// A model with something of everything that a state can set.
+/// Returns a model with every kind of state.
 pub fn machine() -> Arc<Model> {
     let text = include_str!("../seeds/mjcf/machine.xml");
     Arc::new(clench::load_str(text).expect("our own model"))

@@ -1,6 +1,6 @@
 """MuJoCo's constraint model, fast: one robot or thousands at once.
 
-Load a model, move one environment of it with `Sim` or many with `Batch`:
+Load a model; simulate one environment with `Sim` or many with `Batch`:
 
 >>> import clench
 >>> model = clench.Model.from_xml('''

@@ -1,8 +1,7 @@
-"""What is wrong with an element of a document, told when it is written.
+"""Validation of an element of a document at the time it is written.
 
-The reader of files judges: it is given the element alone, with the settings, classes and materials of the document around it. What an
-element still lacks may be said later. What names refer to is looked up in the document.
-"""
+The file reader decides: it receives only the element, with the settings, classes and materials of the enclosing
+document. Required attributes may be added later. References to names are looked up in the document."""
 
 from __future__ import annotations
 
@@ -14,11 +13,11 @@ from xml.parsers import expat
 from clench._document import Document, described, file_of, named, reference_kind
 from clench.errors import LoadError
 
-# Sections that an element is read with; what is checked in one of them is not given a second time.
+# Sections that an element is read with. An element of one of these sections is checked alone.
 _AROUND = ("compiler", "option", "size", "default")
-# Elements that are about other documents.
+# Elements that refer to other documents.
 _OTHERS = ("attach", "model", "include")
-# Attributes that say a range, each with the switch that makes it act. `range` is also a word of lights.
+# Attributes that specify a range, each with the switch that activates it. `range` is also an attribute of lights.
 _LIMITED = ("joint", "fixed", "spatial")
 _SWITCHES = {
     "range": "limited",
@@ -30,21 +29,21 @@ _SWITCHES = {
 
 
 def check(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> None:
-    """Refuse an element, or a new attribute of it.
+    """Rejects an invalid element, or an invalid new attribute of it.
 
     Parameters
     ----------
     document : Document
-        The document, which it is part of.
+        The document that contains it.
     ancestors : sequence of xml.etree.ElementTree.Element
-        What it stands in, the section first.
+        The enclosing elements, the section first.
     node : xml.etree.ElementTree.Element
         The element.
 
     Raises
     ------
     LoadError
-        A tag or an attribute that MJCF does not have there, a value that cannot be, a name that leads nowhere.
+        If MJCF does not have the tag or attribute there, a value is invalid, or a name is undefined.
     """
     from clench._core import Model
 
@@ -53,14 +52,15 @@ def check(document: Document, ancestors: Sequence[ET.Element], node: ET.Element)
     try:
         Model._check(_fragment(document, ancestors, node), _files(document, node))
     except LoadError as error:
-        # A part of the document that is wrong since it was read is told of by `build`.
+        # Errors that the document contained when it was read are reported by `build`.
         if error.element in (node.tag, f'{node.tag} "{node.get("name")}"'):
             raise LoadError(error.message, element=described(document, node)) from None
     _check_names(document, ancestors, node)
 
 
 def limit(document: Document, node: ET.Element) -> dict[str, str]:
-    """The switches of limits whose ranges an element says, where it does not say them and the document does not infer them."""
+    """Returns the switches of limits whose ranges an element specifies, if neither it specifies them nor the document
+    infers them."""
     compilers = document.root.findall("compiler")
     infers = next((value for node in reversed(compilers) if (value := node.get("autolimits"))), "true")
     if infers == "true":
@@ -72,10 +72,10 @@ def limit(document: Document, node: ET.Element) -> dict[str, str]:
 
 
 def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> str:
-    """A document of the element alone."""
+    """Returns a document with only this element."""
     root = ET.Element("mujoco")
     root.extend(section for section in document.root if section.tag in _AROUND)
-    # Classes of attached documents are known by name.
+    # Classes of attached documents are referred to by name.
     lent = [node for other in document.family() if other is not document for node in other.root.iter("default")]
     if lent and node.tag != "default":
         classes = ET.SubElement(root, "default")
@@ -83,7 +83,7 @@ def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Elem
             ET.SubElement(classes, "default", {"class": name})
     assets = ET.SubElement(root, "asset")
     for asset in [asset for other in document.first().family() for asset in other.root.iterfind("asset/*")]:
-        # Elements are read with materials of the right names, whatever these look like.
+        # Elements are read with materials of the right names; their appearance does not affect the result.
         if asset.tag == "texture" and asset is not node:
             ET.SubElement(assets, "texture", name=named(asset), type="2d", builtin="flat", width="1", height="1")
         elif asset.tag == "material" and asset is not node:
@@ -95,7 +95,7 @@ def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Elem
     if ancestors and section != "asset":
         place = ET.SubElement(root, section)
     if section == "worldbody":
-        # Where in the tree an element stands is no matter to it.
+        # The position of an element in the tree does not affect the result.
         place = ET.SubElement(place, "body") if len(ancestors) > 1 else place
     else:
         for ancestor in ancestors[1:]:
@@ -105,14 +105,14 @@ def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Elem
 
 
 def _files(document: Document, node: ET.Element) -> dict[str, bytes]:
-    """The files in memory that an element names."""
+    """Returns the files in memory that an element names."""
     paths = [value for attribute, value in node.attrib.items() if attribute.startswith("file")]
     names = [path.replace("\\", "/").rpartition("/")[2] for path in paths]
     return {name: document.assets[name] for name in names if name in document.assets}
 
 
 def _check_names(document: Document, ancestors: Sequence[ET.Element], node: ET.Element) -> None:
-    # Replicas, and what a file attaches, are named when the model is built.
+    # The contents of replicas and of models that a file attaches are named when the model is built.
     if document.has_copies():
         return
     section = ancestors[0].tag if ancestors else node.tag
@@ -128,7 +128,7 @@ def _check_names(document: Document, ancestors: Sequence[ET.Element], node: ET.E
 
 
 def located(document: Document, error: LoadError) -> LoadError:
-    """An error about a line of a document's text, as one about the element that is written there."""
+    """Converts an error about a line of a document's text to one about the element on that line."""
     documents = {file_of(name): attached for other in document.family() for name, attached in other.attached.items()}
     of = document if not error.file else documents.get(error.file)
     if error.line is None or of is None:

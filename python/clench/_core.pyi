@@ -80,7 +80,7 @@ _Flags: TypeAlias = NDArray[np.bool_]
 __version__: str
 OUTPUTS: tuple[str, ...]
 PARAMETERS: tuple[str, ...]
-_STATE_FIELDS: tuple[tuple[str, str, str, str], ...]  # Name, type, shape, and what it is; all but the time.
+_STATE_FIELDS: tuple[tuple[str, str, str, str], ...]  # Name, type, shape and description; all except the time.
 
 @final
 class Model:
@@ -200,7 +200,7 @@ class Model:
     timestep: Final[float]  # Seconds a step.
     gravity: Final[_Floats]  # (3,) Acceleration of gravity.
     wind: Final[_Floats]  # (3,) Velocity of the medium.
-    magnetic: Final[_Floats]  # (3,) The magnetic field, which magnetometers measure.
+    magnetic: Final[_Floats]  # (3,) Magnetic field for magnetometers.
     density: Final[float]  # Density of the medium.
     viscosity: Final[float]  # Viscosity of the medium.
     sleep_tolerance: Final[float]  # Speed below which trees fall asleep, m/s.
@@ -209,7 +209,7 @@ class Model:
     override_solimp: Final[_Floats]  # (5,) Impedance of every contact, likewise.
     override_friction: Final[_Floats]  # (5,) Friction of every contact, likewise.
     qpos0: Final[_Floats]  # (nq,) Initial position coordinates.
-    qpos_spring: Final[_Floats]  # (nq,) Position coordinates at which springs rest.
+    qpos_spring: Final[_Floats]  # (nq,) Rest positions of springs.
 
     body_pos: Final[_Floats]  # (nbody, 3) Position in the parent's frame.
     body_quat: Final[_Floats]  # (nbody, 4) Orientation in the parent's frame.
@@ -224,19 +224,19 @@ class Model:
     body_rootid: Final[_Codes]  # (nbody,) The ancestor below the world.
     body_weldid: Final[_Codes]  # (nbody,) The ancestor that it cannot move against.
     body_mocapid: Final[_Codes]  # (nbody,) Index among mocap bodies, or -1.
-    body_jntnum: Final[_Codes]  # (nbody,) How many joints.
+    body_jntnum: Final[_Codes]  # (nbody,) Number of joints.
     body_jntadr: Final[_Codes]  # (nbody,) The first of them, or -1.
-    body_dofnum: Final[_Codes]  # (nbody,) How many degrees of freedom.
+    body_dofnum: Final[_Codes]  # (nbody,) Number of degrees of freedom.
     body_dofadr: Final[_Codes]  # (nbody,) The first of them, or -1.
-    body_geomnum: Final[_Codes]  # (nbody,) How many geoms.
+    body_geomnum: Final[_Codes]  # (nbody,) Number of geoms.
     body_geomadr: Final[_Codes]  # (nbody,) The first of them, or -1.
-    body_user: Final[_Floats]  # (nbody, k) The user's own numbers, of which each body has as many.
+    body_user: Final[_Floats]  # (nbody, k) User data.
 
     jnt_pos: Final[_Floats]  # (njnt, 3) Anchor in the body frame.
     jnt_axis: Final[_Floats]  # (njnt, 3) Unit axis in the body frame.
     jnt_stiffness: Final[_Floats]  # (njnt,) Spring stiffness.
     jnt_stiffnesspoly: Final[_Floats]  # (njnt, 2) Coefficients of the spring's quadratic and cubic force.
-    jnt_springyield: Final[_Floats]  # (njnt,) Stretch at which the spring yields.
+    jnt_springyield: Final[_Floats]  # (njnt,) Elongation at which the spring yields.
     jnt_range: Final[_Floats]  # (njnt, 2) Allowed positions.
     jnt_margin: Final[_Floats]  # (njnt,) Distance at which the limit appears.
     jnt_actfrcrange: Final[_Floats]  # (njnt, 2) Limits of the total actuator force.
@@ -246,15 +246,15 @@ class Model:
     jnt_bodyid: Final[_Codes]  # (njnt,) The body that it moves.
     jnt_qposadr: Final[_Codes]  # (njnt,) The first of its position coordinates.
     jnt_dofadr: Final[_Codes]  # (njnt,) The first of its degrees of freedom.
-    jnt_plasticadr: Final[_Codes]  # (njnt,) Where the state says at which position its spring rests, or -1.
+    jnt_plasticadr: Final[_Codes]  # (njnt,) Index of the rest position of its plastic spring in the state, or -1.
     jnt_group: Final[_Codes]  # (njnt,) Group.
-    jnt_limited: Final[_Flags]  # (njnt,) Whether its range is a limit.
-    jnt_actfrclimited: Final[_Flags]  # (njnt,) Whether the force of its actuators is limited.
-    jnt_actgravcomp: Final[_Flags]  # (njnt,) Whether gravity compensation counts as actuation.
-    jnt_user: Final[_Floats]  # (njnt, k) The user's own numbers.
+    jnt_limited: Final[_Flags]  # (njnt,) True if its range is a limit.
+    jnt_actfrclimited: Final[_Flags]  # (njnt,) True if the force of its actuators is limited.
+    jnt_actgravcomp: Final[_Flags]  # (njnt,) True if gravity compensation counts as actuation.
+    jnt_user: Final[_Floats]  # (njnt, k) User data.
 
     dof_armature: Final[_Floats]  # (nv,) Added inertia.
-    dof_length: Final[_Floats]  # (nv,) What makes a velocity of a rotation that is compared with `sleep_tolerance`, m.
+    dof_length: Final[_Floats]  # (nv,) Length that converts angular to linear velocity for `sleep_tolerance`, m.
     dof_damping: Final[_Floats]  # (nv,) Damping.
     dof_dampingpoly: Final[_Floats]  # (nv, 2) Coefficients of quadratic and cubic damping.
     dof_frictionloss: Final[_Floats]  # (nv,) Dry friction.
@@ -273,7 +273,7 @@ class Model:
     geom_margin: Final[_Floats]  # (ngeom,) Margin.
     geom_gap: Final[_Floats]  # (ngeom,) Gap.
     geom_surfacevel: Final[_Floats]  # (ngeom, 6) Velocity of the surface in the geom's frame: linear, angular.
-    geom_adhesion: Final[_Floats]  # (ngeom,) Force with which contacts hold on.
+    geom_adhesion: Final[_Floats]  # (ngeom,) Adhesive force of contacts.
     geom_fluidcoef: Final[_Floats]  # (ngeom, 5) Coefficients of blunt, slender and angular drag, Kutta and Magnus lift.
     geom_virtualmass: Final[_Floats]  # (ngeom, 3) Volume of the medium that moves with the geom along each axis.
     geom_virtualinertia: Final[_Floats]  # (ngeom, 3) Inertia of the medium that turns with the geom, at unit density.
@@ -288,26 +288,26 @@ class Model:
     geom_condim: Final[_Codes]  # (ngeom,) Dimensions of its contacts.
     geom_priority: Final[_Codes]  # (ngeom,) Whose parameters win.
     geom_group: Final[_Codes]  # (ngeom,) Group.
-    geom_user: Final[_Floats]  # (ngeom, k) The user's own numbers.
+    geom_user: Final[_Floats]  # (ngeom, k) User data.
 
     site_size: Final[_Floats]  # (nsite, 3) Size of the site's volume, as a geom's.
     site_pos: Final[_Floats]  # (nsite, 3) Position in the body frame.
     site_quat: Final[_Floats]  # (nsite, 4) Orientation in the body frame.
     site_bodyid: Final[_Codes]  # (nsite,) The body that carries it.
-    site_user: Final[_Floats]  # (nsite, k) The user's own numbers.
+    site_user: Final[_Floats]  # (nsite, k) User data.
     cam_pos: Final[_Floats]  # (ncam, 3) Position in the body frame.
     cam_quat: Final[_Floats]  # (ncam, 4) Orientation in the body frame.
     cam_pos0: Final[_Floats]  # (ncam, 3) From the body to the camera in the initial configuration, world axes.
     cam_poscom0: Final[_Floats]  # (ncam, 3) From the centre of mass of the body and all below it to the camera, likewise.
     cam_mat0: Final[_Floats]  # (ncam, 9) Orientation in the initial configuration, row by row.
-    cam_fovy: Final[_Floats]  # (ncam,) Vertical field of view, degrees; where lines of sight are parallel, the picture's height.
+    cam_fovy: Final[_Floats]  # (ncam,) Vertical field of view, degrees; for orthographic cameras, the picture's height.
     cam_sensorsize: Final[_Floats]  # (ncam, 2) Size of the sensor, width and height; both zero: cam_fovy counts.
     cam_intrinsic: Final[_Floats]  # (ncam, 4) Focal length and principal point, two numbers each.
     cam_bodyid: Final[_Codes]  # (ncam,) The body that carries it.
     cam_resolution: Final[_Codes]  # (ncam, 2) Pixels: width, height.
-    cam_user: Final[_Floats]  # (ncam, k) The user's own numbers.
+    cam_user: Final[_Floats]  # (ncam, k) User data.
 
-    wrap_coef: Final[_Floats]  # (nwrap,) What tendons are made of: coefficients of joints, divisors of pulleys, else 0.
+    wrap_coef: Final[_Floats]  # (nwrap,) Parameters of tendon paths: coefficients of joints, divisors of pulleys, else 0.
     wrap_type: Final[_Codes]  # (nwrap,) 1 joint, 2 pulley, 3 site, 4 sphere, 5 cylinder.
     wrap_objid: Final[_Codes]  # (nwrap,) The joint, site or geom; -1 for pulleys.
     wrap_sideid: Final[_Codes]  # (nwrap,) The side site of a geom, or -1.
@@ -318,7 +318,7 @@ class Model:
     tendon_dampingpoly: Final[_Floats]  # (ntendon, 2) Coefficients of quadratic and cubic damping.
     tendon_armature: Final[_Floats]  # (ntendon,) Inertia of changes of the length.
     tendon_lengthspring: Final[_Floats]  # (ntendon, 2) Dead band of the spring.
-    tendon_springyield: Final[_Floats]  # (ntendon,) Stretch at which the spring yields.
+    tendon_springyield: Final[_Floats]  # (ntendon,) Elongation at which the spring yields.
     tendon_length0: Final[_Floats]  # (ntendon,) Length at qpos0.
     tendon_invweight0: Final[_Floats]  # (ntendon,) Inverse inertia at qpos0.
     tendon_range: Final[_Floats]  # (ntendon, 2) Allowed lengths.
@@ -330,12 +330,12 @@ class Model:
     tendon_solref_fri: Final[_Floats]  # (ntendon, 2) Dry-friction reference dynamics.
     tendon_solimp_fri: Final[_Floats]  # (ntendon, 5) Dry-friction impedance.
     tendon_type: Final[_Codes]  # (ntendon,) 0 fixed, 1 spatial.
-    tendon_user: Final[_Floats]  # (ntendon, k) The user's own numbers.
-    tendon_num: Final[_Codes]  # (ntendon,) How many elements its path has.
+    tendon_user: Final[_Floats]  # (ntendon, k) User data.
+    tendon_num: Final[_Codes]  # (ntendon,) Number of elements of its path.
     tendon_adr: Final[_Codes]  # (ntendon,) The first element of its path, or -1.
-    tendon_plasticadr: Final[_Codes]  # (ntendon,) Where the state says how long its spring rests, or -1.
-    tendon_limited: Final[_Flags]  # (ntendon,) Whether its range is a limit.
-    tendon_actfrclimited: Final[_Flags]  # (ntendon,) Whether the force of its actuators is limited.
+    tendon_plasticadr: Final[_Codes]  # (ntendon,) Index of the rest length of its plastic spring in the state, or -1.
+    tendon_limited: Final[_Flags]  # (ntendon,) True if its range is a limit.
+    tendon_actfrclimited: Final[_Flags]  # (ntendon,) True if the force of its actuators is limited.
 
     actuator_gear: Final[_Floats]  # (nactuator, 6) Scaling of the force onto the transmission's axes.
     actuator_cranklength: Final[_Floats]  # (nactuator,) Length of the rod of a slider-crank, or 0.
@@ -345,38 +345,38 @@ class Model:
     actuator_ctrlrange: Final[_Floats]  # (nu, 2) Allowed controls.
     actuator_forcerange: Final[_Floats]  # (nactuator, 2) Allowed forces.
     actuator_actrange: Final[_Floats]  # (nactuator, 2) Allowed activations.
-    actuator_delay: Final[_Floats]  # (nactuator,) How late controls arrive, s; only of actuators that keep past ones.
+    actuator_delay: Final[_Floats]  # (nactuator,) Delay of controls, s; only for actuators that store past ones.
     actuator_damping: Final[_Floats]  # (nactuator,) Damping that the target gets, times the square of the gear.
     actuator_dampingpoly: Final[_Floats]  # (nactuator, 2) Coefficients of its quadratic and cubic damping, likewise.
     actuator_armature: Final[_Floats]  # (nactuator,) Inertia that the target gets, likewise.
     actuator_acc0: Final[_Floats]  # (nactuator,) Norm of the acceleration that a unit force causes at qpos0.
-    actuator_lengthrange: Final[_Floats]  # (nactuator, 2) Lengths between which the transmission can be; of use to muscles.
+    actuator_lengthrange: Final[_Floats]  # (nactuator, 2) Range of transmission lengths, for muscles.
     actuator_trntype: Final[_Codes]  # (nactuator,) 0 joint, 1 in the parent's frame, 2 slider-crank, 3 tendon, 4 site, 5 body.
-    actuator_trnid: Final[_Codes]  # (nactuator, 2) What it pulls on; the slider or reference site, or -1.
+    actuator_trnid: Final[_Codes]  # (nactuator, 2) Target of the transmission; the slider or reference site, or -1.
     actuator_dyntype: Final[_Codes]  # (nactuator,) 0 none, 1 integrator, 2 filter, 3 filterexact, 4 muscle, 5 dcmotor, 6 pid, 7 user.
     actuator_gaintype: Final[_Codes]  # (nactuator,) 0 fixed, 1 affine, 2 muscle, 3 dcmotor, 4 so3, 5 pid, 6 user.
     actuator_biastype: Final[_Codes]  # (nactuator,) 0 none, 1 affine, 2 muscle, 3 dcmotor, 4 so3, 5 user.
     actuator_actadr: Final[_Codes]  # (nactuator,) The first of its activations, or -1.
-    actuator_actnum: Final[_Codes]  # (nactuator,) How many activations; the last acts.
+    actuator_actnum: Final[_Codes]  # (nactuator,) Number of activations; the last one has the effect.
     actuator_ctrladr: Final[_Codes]  # (nactuator,) The first of its controls, or -1.
-    actuator_ctrlnum: Final[_Codes]  # (nactuator,) How many controls: one, but for controllers and motors.
+    actuator_ctrlnum: Final[_Codes]  # (nactuator,) Number of controls: one, except for controllers and motors.
     actuator_outadr: Final[_Codes]  # (nactuator,) The first of its lengths, velocities and forces.
-    actuator_outnum: Final[_Codes]  # (nactuator,) How many of them: one, but three of an orientation servo.
+    actuator_outnum: Final[_Codes]  # (nactuator,) Number of forces: one, but three for an orientation servo.
     actuator_group: Final[_Codes]  # (nactuator,) Group.
-    actuator_ctrllimited: Final[_Flags]  # (nu,) Whether its control is clamped.
-    actuator_forcelimited: Final[_Flags]  # (nactuator,) Whether its force is clamped.
-    actuator_actlimited: Final[_Flags]  # (nactuator,) Whether its activation is clamped.
-    actuator_actearly: Final[_Flags]  # (nactuator,) Whether the activation as of the end of the step acts.
-    actuator_user: Final[_Floats]  # (nactuator, k) The user's own numbers.
+    actuator_ctrllimited: Final[_Flags]  # (nu,) True if its control is clamped.
+    actuator_forcelimited: Final[_Flags]  # (nactuator,) True if its force is clamped.
+    actuator_actlimited: Final[_Flags]  # (nactuator,) True if its activation is clamped.
+    actuator_actearly: Final[_Flags]  # (nactuator,) True if the activation at the end of the step is used.
+    actuator_user: Final[_Floats]  # (nactuator, k) User data.
 
     sensor_adr: Final[_Codes]  # (nsensor,) The first of its numbers in sensordata.
-    sensor_dim: Final[_Codes]  # (nsensor,) How many numbers.
-    sensor_cutoff: Final[_Floats]  # (nsensor,) Bound of its numbers, where positive.
-    sensor_delay: Final[_Floats]  # (nsensor,) How late it tells what it measures, s; only where it keeps past values.
-    sensor_interval: Final[_Floats]  # (nsensor,) How often it measures, s; zero: every step. (MuJoCo has the phase beside it.)
+    sensor_dim: Final[_Codes]  # (nsensor,) Number of values.
+    sensor_cutoff: Final[_Floats]  # (nsensor,) Limit of its values, if positive.
+    sensor_delay: Final[_Floats]  # (nsensor,) Delay of its values, s; only if it stores past values.
+    sensor_interval: Final[_Floats]  # (nsensor,) Sampling interval, s; zero: every step. (MuJoCo stores the phase with it.)
     sensor_noise: Final[_Floats]  # (nsensor,) Standard deviation of the noise that is expected; none is added.
-    sensor_phase: Final[_Floats]  # (nsensor,) When one that measures at intervals did so last before time zero, s; zero: one period before.
-    sensor_user: Final[_Floats]  # (nsensor, k) The user's own numbers.
+    sensor_phase: Final[_Floats]  # (nsensor,) Time of the last sample before time zero, s; zero: one period before.
+    sensor_user: Final[_Floats]  # (nsensor, k) User data.
 
     eq_anchor1: Final[_Floats]  # (neq, 3) Anchor or weld point in the first body's frame.
     eq_anchor2: Final[_Floats]  # (neq, 3) Anchor or weld point in the second body's frame.
@@ -389,7 +389,7 @@ class Model:
     eq_type: Final[_Codes]  # (neq,) 0 connect, 1 weld, 2 joint, 3 tendon.
     eq_obj1id: Final[_Codes]  # (neq,) The first body, joint or tendon; of a site, its body.
     eq_obj2id: Final[_Codes]  # (neq,) The second, or -1.
-    eq_active0: Final[_Flags]  # (neq,) Whether it is on at first.
+    eq_active0: Final[_Flags]  # (neq,) True if it is initially active.
 
     pair_friction: Final[_Floats]  # (npair, 5) Friction of a pair: two slides, spin, two rolls.
     pair_solref: Final[_Floats]  # (npair, 2) Reference dynamics.
@@ -397,23 +397,23 @@ class Model:
     pair_solimp: Final[_Floats]  # (npair, 5) Impedance.
     pair_margin: Final[_Floats]  # (npair,) Margin.
     pair_gap: Final[_Floats]  # (npair,) Gap.
-    pair_adhesion: Final[_Floats]  # (npair,) Force with which contacts hold on.
+    pair_adhesion: Final[_Floats]  # (npair,) Adhesive force of contacts.
     pair_dim: Final[_Codes]  # (npair,) Dimensions of the contact.
     pair_geom1: Final[_Codes]  # (npair,) The geom whose type has the smaller code.
     pair_geom2: Final[_Codes]  # (npair,) The other.
 
-    mesh_pos: Final[_Floats]  # (nmesh, 3) Its centre of mass where its author put it.
+    mesh_pos: Final[_Floats]  # (nmesh, 3) Its centre of mass in the coordinates of its file.
     mesh_quat: Final[_Floats]  # (nmesh, 4) Its principal axes there.
     mesh_vertadr: Final[_Codes]  # (nmesh,) The first of its vertices.
-    mesh_vertnum: Final[_Codes]  # (nmesh,) How many vertices.
+    mesh_vertnum: Final[_Codes]  # (nmesh,) Number of vertices.
     mesh_faceadr: Final[_Codes]  # (nmesh,) The first of its triangles.
-    mesh_facenum: Final[_Codes]  # (nmesh,) How many triangles.
+    mesh_facenum: Final[_Codes]  # (nmesh,) Number of triangles.
     mesh_vert: Final[_Floats]  # (nmeshvert, 3) Vertices of all meshes, about the centres of mass, along the principal axes.
     mesh_face: Final[_Codes]  # (nmeshface, 3) Corners of all triangles, counted from the first vertex of each mesh.
 
     hfield_size: Final[_Floats]  # (nhfield, 4) Half lengths along x and y, elevation, depth of the base.
-    hfield_nrow: Final[_Codes]  # (nhfield,) How many rows, along y.
-    hfield_ncol: Final[_Codes]  # (nhfield,) How many columns, along x.
+    hfield_nrow: Final[_Codes]  # (nhfield,) Number of rows, along y.
+    hfield_ncol: Final[_Codes]  # (nhfield,) Number of columns, along x.
     hfield_adr: Final[_Codes]  # (nhfield,) The first of its heights.
     hfield_data: Final[_Floats]  # (nhfielddata,) Heights of all, as parts of the elevation.
 
@@ -421,7 +421,7 @@ class Model:
     key_qpos: Final[_Floats]  # (nkey, nq) Position coordinates.
     key_qvel: Final[_Floats]  # (nkey, nv) Velocities.
     key_act: Final[_Floats]  # (nkey, na) Activations.
-    key_plastic: Final[_Floats]  # (nkey, nplastic) Where springs that yield rest.
+    key_plastic: Final[_Floats]  # (nkey, nplastic) Rest positions of plastic springs.
     key_ctrl: Final[_Floats]  # (nkey, nu) Controls.
     key_mpos: Final[_Floats]  # (nkey, nmocap, 3) Positions of mocap bodies.
     key_mquat: Final[_Floats]  # (nkey, nmocap, 4) Orientations of mocap bodies.
@@ -773,8 +773,8 @@ class _StateArrays:
     # </arrays of a state>
 
 class _Outputs(StateViews):
-    # What the last step or forward computed: copies for a simulation; for a batch, views of those that are recorded, with the
-    # environments as first axis. None can be written.
+    # Outputs of the last step or forward: copies for a simulation; for a batch, views of the recorded ones, with the
+    # environments as first axis. All are read-only.
     qacc: Final[NDArray[Any]]  # (nv,) Accelerations.
     xpos: Final[NDArray[Any]]  # (nbody, 3) Positions of bodies.
     xquat: Final[NDArray[Any]]  # (nbody, 4) Orientations of bodies.
@@ -807,14 +807,14 @@ class _Outputs(StateViews):
     qfrc_bias: Final[NDArray[Any]]  # (nv,) Coriolis, centrifugal and gravitational forces.
     qfrc_smooth: Final[NDArray[Any]]  # (nv,) All forces but those of constraints.
     qfrc_constraint: Final[NDArray[Any]]  # (nv,) Constraint forces.
-    cfrc_ext: Final[NDArray[Any]]  # (nbody, 6) What acts from outside, about the centre of mass of the tree, torque first.
-    cfrc_int: Final[NDArray[Any]]  # (nbody, 6) What each body's joints carry, about the centre of mass of the tree, torque first.
+    cfrc_ext: Final[NDArray[Any]]  # (nbody, 6) External force about the centre of mass of the tree, torque first.
+    cfrc_int: Final[NDArray[Any]]  # (nbody, 6) Force of each body's joints about the centre of mass of the tree, torque first.
     cacc: Final[NDArray[Any]]  # (nbody, 6) Accelerations there with gravity's upward reaction, angular first.
     contact_force: Final[NDArray[Any]]  # (nbody, 6) Contacts, at the body's centre of mass, force first.
-    sensordata: Final[NDArray[Any]]  # (nsensordata,) What the sensors measured.
+    sensordata: Final[NDArray[Any]]  # (nsensordata,) Sensor values.
     energy: Final[NDArray[Any]]  # (2,) Potential and kinetic energy of the state.
 
-    # Elements, with what belongs to each.
+    # Views of elements.
     def body(self, which: str | SupportsIndex) -> BodyView: ...
     def joint(self, which: str | SupportsIndex) -> JointView: ...
     def geom(self, which: str | SupportsIndex) -> GeomView: ...
@@ -870,7 +870,7 @@ class Sim(_Outputs):
     def set_param(self, field: str, values: ArrayLike) -> None: ...
     def set_constants(self) -> None: ...
     def param(self, field: str) -> NDArray[Any]: ...
-    def output(self, name: str) -> Any: ...  # an array, or a float where an output is a single number
+    def output(self, name: str) -> Any: ...  # an array, or a float if the output is a single number
     def sensor(self, which: str | SupportsIndex) -> NDArray[Any]: ...  # (sensor_dim,)
     @property
     def contacts(self) -> Contacts: ...
@@ -1004,7 +1004,7 @@ class Sim(_Outputs):
         restarts: SupportsIndex = 0,
     ) -> IkResult: ...
 
-    actuator_power: Final[float]  # Power that actuators put in, W; those that brake do not count.
+    actuator_power: Final[float]  # Power input of actuators, W; without those that brake.
     contact_count: Final[float]
     solver_iterations: Final[float]
 
@@ -1347,7 +1347,7 @@ class PostureTarget:
 
 @final
 class IkResult:
-    # In a batch the environments are the first axis, also of what is a single number here.
+    # In a batch the environments are the first axis; single numbers become arrays.
     @property
     def qpos(self) -> NDArray[Any]: ...  # (nq,)
     @property

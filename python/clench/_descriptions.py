@@ -17,20 +17,20 @@ _PACKAGE = "robot_descriptions"
 
 
 def load_description(name: str, *, floating: bool = False, ignore_unsupported: bool = False) -> Model:
-    """Loads a robot of the package ``robot_descriptions``, which fetches its files on first use and keeps them.
+    """Loads a robot of the package ``robot_descriptions``, which downloads its files on first use and caches them.
 
     >>> model = clench.load_description("go2_mj_description")  # doctest: +SKIP
 
-    Where a description has an MJCF and a URDF file, the MJCF file is loaded.
+    If a description has an MJCF and a URDF file, the MJCF file is loaded.
 
     Parameters
     ----------
     name : str
         The module of the description, such as ``"go2_mj_description"`` (MJCF) or ``"go2_description"`` (URDF).
     floating : bool
-        Whether the base of a URDF robot floats; see `Model.from_file`.
+        True to free the base of a URDF robot; see `Model.from_file`.
     ignore_unsupported : bool
-        Whether to leave out what Clench does not compute; see `Model.from_file`.
+        True to omit what Clench does not compute; see `Model.from_file`.
 
     Returns
     -------
@@ -39,10 +39,10 @@ def load_description(name: str, *, floating: bool = False, ignore_unsupported: b
     Raises
     ------
     ModuleNotFoundError
-        ``robot_descriptions`` is not installed.
+        If ``robot_descriptions`` is not installed.
     LoadError
-        There is no such description, its files cannot be fetched, it has neither an MJCF nor a URDF file, or the file cannot be
-        loaded.
+        If the description does not exist, its files cannot be downloaded, it has neither an MJCF nor a URDF file, or
+        the file cannot be loaded.
     """
     module = _description(name)
     path = getattr(module, "MJCF_PATH", None)
@@ -58,7 +58,7 @@ def load_description(name: str, *, floating: bool = False, ignore_unsupported: b
 
 
 def _description(name: str) -> ModuleType:
-    """The module of a description, whose files are there once it is imported."""
+    """Imports the module of a description, which downloads its files."""
     try:
         package = importlib.import_module(_PACKAGE)
     except ModuleNotFoundError as error:
@@ -72,5 +72,5 @@ def _description(name: str) -> ModuleType:
         raise LoadError(f'{_PACKAGE} has no description "{name}"{hint}')
     try:
         return importlib.import_module(f"{_PACKAGE}.{name}")
-    except Exception as error:  # Git, the network and the disk each have exceptions of their own.
+    except Exception as error:  # Git, the network and the disk have their own exceptions.
         raise LoadError(f'the files of the description "{name}" cannot be fetched: {error}') from error

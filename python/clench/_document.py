@@ -1,10 +1,11 @@
-"""MJCF documents: which elements have names, what refers to them, and the files that a document names.
+"""MJCF documents: named elements, references to them, and the files that a document names.
 
-What can be named and what refers to names is told by tables of MJCF's tags and attributes. What a user sees of a document is in
-`_spec.py`.
+Tables of MJCF's tags and attributes define what can be named and what refers to names. The user's API of a document is
+in `_spec.py`.
 
-A model that is attached stays a document of its own, since its elements are read with its own units and classes. Its names have the
-prefix already. A document and those attached to it, and to these, are a family, in which no two elements of a kind have the same name.
+An attached model remains a document of its own, since its elements are read with its own units and classes. Its names
+already have the prefix. A document and all documents attached to it, directly or indirectly, are a family, in which no
+two elements of a kind have the same name.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from clench.errors import LoadError
 
 Value: TypeAlias = str | bool | ArrayLike
 
-# Attributes that name an element of a kind.
+# Attributes that name an element of a fixed kind.
 _REFERENCES = {
     "body": ("body", "body1", "body2", "subtree1", "subtree2", "target"),
     "joint": ("joint", "joint1", "joint2", "jointinparent"),
@@ -38,9 +39,9 @@ _REFERENCES = {
     "model": ("model",),
     "frame": ("frame",),
 }
-# Attributes that name an element whose kind stands in another attribute.
+# Attributes that name an element whose kind is the value of another attribute.
 _TYPED = {"objname": "objtype", "refname": "reftype"}
-# Elements of each kind where the tag is not the kind: whatever stands in these sections.
+# Kinds that are not the tag of their elements: all elements of these sections.
 _SECTIONS = {"tendon": "tendon", "actuator": "actuator", "sensor": "sensor", "equality": "equality"}
 _TAGS = {
     "joint": ("joint", "freejoint"),
@@ -51,12 +52,12 @@ _TAGS = {
 }
 # Sections without names.
 _SETTINGS = ("compiler", "option", "size", "statistic", "visual")
-# Where names refer to nothing that can be renamed or removed.
+# Sections whose names refer to nothing that can be renamed or removed.
 _NO_REFERENCES = ("default", "custom", *_SETTINGS)
 
 
 def written(value: Value) -> str:
-    """An attribute as MJCF writes it."""
+    """Formats an attribute as in MJCF."""
     if isinstance(value, str):
         return value
     array = np.asarray(value)
@@ -68,29 +69,29 @@ def written(value: Value) -> str:
         return " ".join(array.ravel().tolist())
     if array.dtype.kind not in "iuf":
         raise TypeError(f"an attribute is a str, a bool or numbers, not {type(value).__name__}")
-    # The shortest text that reads as the same number.
+    # The shortest text that parses to the same number.
     return " ".join(repr(number) for number in array.ravel().tolist())
 
 
 class Document:
-    """A document, with the files that it names."""
+    """A document with the files that it names."""
 
     def __init__(self, root: ET.Element) -> None:
         self.root = root
-        # Files of the family, kept by its first document.
+        # The files of the family, stored by its first document.
         self.assets: dict[str, bytes] = {}
-        # Documents that are attached, by the names of their `model` elements, and the one that this is attached to.
+        # The attached documents by the names of their `model` elements, and the document that this one is attached to.
         self.attached: dict[str, Document] = {}
         self._outer: Document | None = None
-        # Elements that an attachment of a single body leaves out.
+        # Elements that are omitted if a single body is attached.
         self._hidden: set[ET.Element] = set()
-        # Elements of the family by kind and name; None where it has to be made anew.
+        # The elements of the family by kind and name; None if the index must be rebuilt.
         self._names: dict[tuple[str, str], tuple[Document, ET.Element]] | None = None
         self._has_copies = False
 
     @staticmethod
     def from_text(text: str, assets: Mapping[str, bytes]) -> Document:
-        """A document of its text and of files that this includes or names."""
+        """Creates a document from its text and the files that it includes or names."""
         document = Document(_parsed(text, ""))
         document.add_files(assets)
         document._expand(Path(), "")
@@ -98,39 +99,40 @@ class Document:
 
     @staticmethod
     def from_file(path: Path) -> Document:
-        """A document that is read from a file, with all that it includes and names."""
+        """Reads a document from a file, with everything that it includes and names."""
         document = Document(_parsed(_read(path, str(path)).decode("utf-8", "replace"), str(path)))
         document._expand(path.parent, str(path))
         document._read_assets(path.parent)
         return document
 
     def text(self) -> str:
-        """Its text, without those of attached documents."""
+        """Returns its text, without the text of attached documents."""
         root = copy.deepcopy(self.root)
         ET.indent(root)
         return ET.tostring(root, encoding="unicode")
 
     def files(self) -> dict[str, bytes]:
-        """The files that its text names, attached documents among them."""
+        """Returns the files that its text names, including attached documents."""
         texts = {file_of(name): document.text().encode() for document in self.family() for name, document in document.attached.items()}
         return {**self.first().assets, **texts}
 
     # The family.
 
     def first(self) -> Document:
-        """The document that all others of the family are attached to."""
+        """Returns the root document of the family."""
         return self if self._outer is None else self._outer.first()
 
     def family(self) -> Iterator[Document]:
-        """This document and all that are attached to it."""
+        """Iterates over this document and all documents attached to it."""
         yield self
         for document in self.attached.values():
             yield from document.family()
 
     def attach(self, other: Document, prefix: str, body: str | None) -> str:
-        """Take in a copy of a document whose names get a prefix; of a single body and what belongs to it, if one is named.
+        """Attaches a copy of a document with a prefix on its names; if a body is given, only that body and what belongs
+        to it.
 
-        Returns what the copy is called in `attached`.
+        Returns the name of the copy in `attached`.
         """
         name = f"{prefix}model"
         if any(name in document.attached for document in self.first().family()):
@@ -151,7 +153,7 @@ class Document:
         return name
 
     def attaches_files(self) -> bool:
-        """Whether an element of the family attaches a file, or a part of its own document."""
+        """Returns true if an element of the family attaches a file, or a part of its own document."""
         return any(
             node.tag == "attach" and node.get("model") not in document.attached
             for document in self.family()
@@ -173,7 +175,7 @@ class Document:
         return own
 
     def _hide_all_but(self, body: ET.Element) -> None:
-        """Leave out the rest of the tree, and what refers to it."""
+        """Hides all other bodies, and everything that refers to them."""
         less = copy.deepcopy(self)
         copies = dict(zip(self.root.iter(), less.root.iter(), strict=True))
         less.parents()[copies[body]].remove(copies[body])
@@ -184,14 +186,14 @@ class Document:
         self._hidden |= {node for node, other in copies.items() if other not in left}
 
     def shown_in(self, attachment: ET.Element) -> tuple[Document, list[ET.Element]]:
-        """What stands in the place of an attachment, with its document."""
+        """Returns the elements that replace an attachment, with their document."""
         own = self.attached[attachment.get("model", "")]
         if (body := attachment.get("body")) is not None:
             return own, [node for node in own.elements("body") if node.get("name") == body]
         return own, [node for world in own.root.findall("worldbody") for node in world]
 
     def _detach(self, name: str) -> list[tuple[str, str]]:
-        """Give up an attached document. Returns kinds and names of its elements."""
+        """Removes an attached document. Returns the kinds and names of its elements."""
         own = self.attached.pop(name, None)
         if own is None:
             return []
@@ -201,17 +203,17 @@ class Document:
         gone = [(document, node, section) for document in own.family() for node, section in document.nodes()]
         return [(kind, node.get("name", "")) for _, node, section in gone if (kind := _kind(node, section))]
 
-    # Names, and what refers to them.
+    # Names and references.
 
     def nodes(self) -> Iterator[tuple[ET.Element, str]]:
-        """Every element with the section that it stands in."""
+        """Iterates over all elements, with their sections."""
         for section in self.root:
             for node in section.iter():
                 if node not in self._hidden:
                     yield node, section.tag
 
     def elements(self, kind: str) -> list[ET.Element]:
-        """Elements of a kind in this document and those attached to it."""
+        """Returns the elements of a kind in this document and those attached to it."""
         return [node for document in self.family() for node, section in document.nodes() if _kind(node, section) == kind]
 
     def _index(self) -> dict[tuple[str, str], tuple[Document, ET.Element]]:
@@ -224,7 +226,7 @@ class Document:
         return first._names
 
     def added(self, section: str, node: ET.Element) -> None:
-        """A node came into a section, or got a name that it had not."""
+        """Updates the index after a node was added to a section or got its first name."""
         first = self.first()
         if first._names is None:
             return
@@ -234,27 +236,28 @@ class Document:
             first._names.setdefault((kind, name), (self, node))
 
     def changed(self) -> None:
-        """A node went, or has another name."""
+        """Invalidates the index after a node was removed or renamed."""
         self.first()._names = None
 
     def has_copies(self) -> bool:
-        """Whether names come into being when the model is built: those of replicas, and of models that a file attaches."""
+        """Returns true if some names are created when the model is built: those of replicas, and of models that a file
+        attaches."""
         self._index()
         return self.first()._has_copies
 
     def kind_of(self, node: ET.Element) -> str | None:
-        """What kind of element a node is that can have a name; None for references, defaults and the like."""
+        """Returns the kind of a node that can have a name; None for references, defaults and the like."""
         section = next((tag for other, tag in self.nodes() if other is node), None)
         return _kind(node, section)
 
     def find(self, kind: str, name: str) -> tuple[Document, ET.Element] | None:
-        """The element of a kind and name, with its document."""
+        """Returns the element with this kind and name, with its document."""
         if kind not in _TAGS and kind not in _SECTIONS:
             raise ValueError(f'there is no kind of element "{kind}": there are {", ".join([*_TAGS, *_SECTIONS])}')
         return self._index().get((kind, name))
 
     def check_name(self, section: str, node: ET.Element, attribute: str, value: Value) -> None:
-        """Refuse a name that another element of its kind has."""
+        """Rejects a name that another element of its kind has."""
         if attribute != "name":
             return
         kind = _kind(node, section)
@@ -266,13 +269,13 @@ class Document:
         return {child: parent for parent in self.root.iter() for child in parent}
 
     def references(self, kind: str, name: str) -> list[tuple[Document, ET.Element, str]]:
-        """Attributes in the family that name an element of a kind."""
+        """Returns the attributes in the family that refer to an element."""
         found = []
         for document in self.first().family():
             for node, section in document.nodes():
                 if section in _NO_REFERENCES and node.tag != "element":
                     continue
-                # What a file attaches has names of its own.
+                # A model that a file attaches has its own names.
                 if node.tag == "attach" and kind != "model" and node.get("model", "") not in ("", *document.attached):
                     continue
                 found += [(document, node, attribute) for attribute in _REFERENCES.get(kind, ()) if node.get(attribute) == name]
@@ -283,7 +286,8 @@ class Document:
         return found
 
     def remove(self, node: ET.Element) -> None:
-        """Remove a node, all below it, and what refers to any of them; with an attachment the attached document."""
+        """Removes a node, its descendants, and all references to them. If it is an attachment, the attached document is
+        removed too."""
         parent = self.parents()[node]
         gone = [(kind, part.get("name", "")) for part in node.iter() for kind in [self.kind_of(part)] if kind]
         gone += [name for part in node.iter("attach") for name in self._detach(part.get("model", ""))]
@@ -297,7 +301,7 @@ class Document:
         for document, node, _ in self.references(kind, name):
             parents = document.parents()
             if node in parents:
-                # Where only a part of a tendon is named, the tendon is no longer what it was.
+                # A tendon that loses a part would be a different tendon, so the whole tendon is removed.
                 while parents[node].tag in ("spatial", "fixed"):
                     node = parents[node]
                 document.remove(node)
@@ -312,7 +316,7 @@ class Document:
         self.assets.update({Path(file.replace("\\", "/")).name: bytes(data) for file, data in files.items()})
 
     def _expand(self, folder: Path, source: str) -> None:
-        """Puts in what the document includes."""
+        """Inserts the files that the document includes."""
         for _ in range(100):
             parents = self.parents()
             include = next(self.root.iter("include"), None)
@@ -345,7 +349,8 @@ class Document:
 
 
 def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None:
-    """What kind of element an attribute of an element in a section names; None if it names none, or none that is looked up."""
+    """Returns the kind of element that an attribute refers to; None if it refers to none, or to none that is
+    indexed."""
     if (section in _NO_REFERENCES and node.tag != "element") or attribute == "model":
         return None
     if attribute in _TYPED:
@@ -357,7 +362,7 @@ def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None
 
 
 def described(document: Document, node: ET.Element) -> str:
-    """An element by its path below the section that it stands in: ``body "tip" / geom 2`` is the third geom of that body."""
+    """Describes an element by its path below its section: ``body "tip" / geom 2`` is the third geom of that body."""
     parents = document.parents()
     parts: list[str] = []
     while node in parents and parents[node] in parents:
@@ -371,12 +376,12 @@ def described(document: Document, node: ET.Element) -> str:
 
 
 def file_of(name: str) -> str:
-    """The file that an attached document is called by."""
+    """Returns the file name of an attached document."""
     return f"{name}.xml"
 
 
 def _prefix(node: ET.Element, prefix: str) -> None:
-    """Put a prefix before the name of an element and before those that it refers to."""
+    """Adds a prefix to the name of an element and to the names that it refers to."""
     if node.tag in ("mesh", "hfield", "texture") and node.get("file"):
         node.set("name", named(node))
     for attribute, name in node.attrib.items():
@@ -388,7 +393,8 @@ def _prefix(node: ET.Element, prefix: str) -> None:
 
 
 def named(node: ET.Element) -> str:
-    """The name of an element; that of its file where it has none, as meshes and pictures are called."""
+    """Returns the name of an element, or that of its file if it has none, which is the default name of meshes and
+    textures."""
     if name := node.get("name"):
         return name
     file = node.get("file", "").replace("\\", "/").rpartition("/")[2]
@@ -396,12 +402,12 @@ def named(node: ET.Element) -> str:
 
 
 def _kind(node: ET.Element, section: str | None) -> str | None:
-    """The kind of an element in a section of the document."""
+    """Returns the kind of an element in a section of the document."""
     if section is None or section in _NO_REFERENCES:
         return None
     for kind, of in _SECTIONS.items():
         if section == of:
-            # Deeper in a section stand references, as of a tendon to its sites.
+            # Elements deeper in a section are references, such as those of a tendon to its sites.
             return kind if "name" in node.attrib or node.tag not in ("site", "geom", "joint", "pulley", of) else None
     if section in ("worldbody", "asset", "keyframe", "contact"):
         return next((kind for kind, tags in _TAGS.items() if node.tag in tags), None)
@@ -426,7 +432,7 @@ def _parsed(text: str, source: str) -> ET.Element:
 
 
 def is_urdf(path: Path) -> bool:
-    """Whether a file describes a robot in URDF."""
+    """Returns true if a file describes a robot in URDF."""
     try:
         return ET.fromstring(_read(path, str(path)).decode("utf-8", "replace")).tag == "robot"
     except ET.ParseError:

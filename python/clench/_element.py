@@ -1,4 +1,4 @@
-"""One element of a model that is built in Python."""
+"""Elements of a model that is built in Python."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ class Attachable(Protocol):
 
     @property
     def _source(self) -> Document:
-        """The document that is attached."""
+        """Returns the document to attach."""
         ...
 
 
 class SpecElement:
-    """An element of a `ModelSpec`: its attributes by name, as MJCF calls them, and what can be added below it.
+    """An element of a `ModelSpec`: its attributes with MJCF's names, and methods that add elements below it.
 
-    Attributes are read as text, ``element["pos"]``, and set from text, truth values, numbers or arrays of them; ``del`` leaves one at its
-    default. Keywords of Python take an underscore: ``class_="visual"``.
+    Attributes are read as text, ``element["pos"]``, and set from text, booleans, numbers or arrays of them; ``del``
+    restores the default. Names that are Python keywords take an underscore: ``class_="visual"``.
 
     Parameters
     ----------
     document : Document
-        What it is an element of.
+        The document that contains it.
     node : xml.etree.ElementTree.Element
         The element in the document.
     ancestors : tuple of xml.etree.ElementTree.Element, optional
-        What it stands in, the section first; if not given, it is looked for when it is first needed.
+        The enclosing elements, the section first; by default they are looked up when first needed.
     """
 
     def __init__(self, document: Document, node: ET.Element, ancestors: tuple[ET.Element, ...] | None = None) -> None:
@@ -42,7 +42,7 @@ class SpecElement:
 
     @property
     def tag(self) -> str:
-        """What MJCF calls it, such as "geom" or "motor"."""
+        """MJCF's name of the element, such as "geom" or "motor"."""
         return self._node.tag
 
     @property
@@ -78,21 +78,21 @@ class SpecElement:
         return attribute in self._node.attrib
 
     def __iter__(self) -> Iterator[SpecElement]:
-        """The elements directly below it; of an ``attach`` those that it puts there."""
+        """Iterates over the elements directly below it; for an ``attach`` element, over those that it inserts."""
         document, nodes = self._document, list(self._node)
         if self._node.tag == "attach" and self._node.get("model") in document.attached:
             document, nodes = document.shown_in(self._node)
         return (SpecElement(document, node) for node in nodes)
 
     def add(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Add an element below this one.
+        """Adds an element below this one.
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the element.
         **attributes : str, bool or array_like
-            Its attributes; an underscore at the end of a name does not count.
+            Its attributes; an underscore at the end of a name is ignored.
 
         Returns
         -------
@@ -101,9 +101,9 @@ class SpecElement:
         Raises
         ------
         ValueError
-            A name that another element of its kind has.
+            If another element of its kind has the name.
         LoadError
-            A tag or an attribute that MJCF does not have here, a value that cannot be, a name that leads nowhere.
+            If MJCF does not have the tag or attribute here, a value is invalid, or a name is undefined.
         """
         node = ET.Element(tag)
         self._node.append(node)
@@ -122,12 +122,12 @@ class SpecElement:
         return element
 
     def _section(self) -> str:
-        """The section that it stands in, or is."""
+        """Returns the tag of the section that contains it, or of itself if it is a section."""
         path = self._path()
         return path[0].tag if path else self._node.tag
 
     def _path(self) -> tuple[ET.Element, ...]:
-        """What it stands in, the section first; nothing for a section."""
+        """Returns the enclosing elements, the section first; empty for a section."""
         if self._ancestors is None:
             parents, path, node = self._document.parents(), [], self._node
             while parents.get(node, self._document.root) is not self._document.root:
@@ -137,7 +137,7 @@ class SpecElement:
         return self._ancestors
 
     def _check_or_restore(self, before: dict[str, str]) -> None:
-        """Refuse what is wrong with the element, which then is as it was before. What a range implies is switched on."""
+        """Rejects an invalid element and restores its attributes. Switches on the limits whose ranges are set."""
         node = self._node
         node.attrib.update(limit(self._document, node))
         try:
@@ -149,80 +149,81 @@ class SpecElement:
             raise
 
     def add_body(self, **attributes: Value) -> SpecElement:
-        """Add a body below this body or frame.
+        """Adds a body below this body or frame.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("body", **attributes)
 
     def add_joint(self, **attributes: Value) -> SpecElement:
-        """Add a joint to this body.
+        """Adds a joint to this body.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("joint", **attributes)
 
     def add_freejoint(self, **attributes: Value) -> SpecElement:
-        """Add a free joint to this body, below the world.
+        """Adds a free joint to this body, which must be a child of the world.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("freejoint", **attributes)
 
     def add_geom(self, **attributes: Value) -> SpecElement:
-        """Add a geom to this body or frame.
+        """Adds a geom to this body or frame.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("geom", **attributes)
 
     def add_site(self, **attributes: Value) -> SpecElement:
-        """Add a site to this body or frame.
+        """Adds a site to this body or frame.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("site", **attributes)
 
     def add_camera(self, **attributes: Value) -> SpecElement:
-        """Add a camera to this body or frame.
+        """Adds a camera to this body or frame.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("camera", **attributes)
 
     def add_frame(self, **attributes: Value) -> SpecElement:
-        """Add a frame to this body or frame: what is added to it is placed in its coordinates.
+        """Adds a frame to this body or frame: elements below it are placed in its coordinates.
 
         Parameters
         ----------
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.add("frame", **attributes)
 
     def attach(self, other: Attachable, *, prefix: str, body: str | None = None) -> SpecElement:
-        """Attach another model below this body or frame.
+        """Attaches another model below this body or frame.
 
-        Its elements become elements of this model, whose names begin with `prefix`: they are found, changed, renamed, removed and
-        referred to as all others are. They are read with the units, classes and rules for inertia of their own model.
+        Its elements become elements of this model, with names that begin with `prefix`: they are found, changed,
+        renamed, removed and referred to like all others. They are read with the units, classes and inertia rules of
+        their own model.
 
         >>> hand = clench.ModelSpec("hand")
         >>> _ = hand.world.add_body(name="palm").add_geom(size=0.1)
@@ -235,39 +236,42 @@ class SpecElement:
         Parameters
         ----------
         other : ModelSpec
-            The model. A copy of it as it is now is attached: it may be changed and attached again, which does not change this model.
+            The model. A copy of its current version is attached: later changes to it do not affect this model, and it
+            may be attached again.
         prefix : str
-            What the names of its elements begin with here; no other attached model may have it.
+            The prefix of the names of its elements; no other attached model may have it.
         body : str, optional
-            The body of it that is attached, with all below and what refers to no other part of the tree; if not given, all that its
-            world holds.
+            The body to attach, with its subtree and everything that refers to no other part of the tree; by default all
+            contents of the world.
 
         Returns
         -------
         SpecElement
-            The ``attach`` element. To remove it is to remove all that it brought.
+            The ``attach`` element. Removing it removes everything that it attached.
 
         Raises
         ------
         ValueError
-            A prefix or a name that is taken; files of the same name and other contents; a body that the model does not have.
+            If the prefix or a name is taken, files have the same name but different contents, or the model does not
+            have the body.
         """
         document = self._document
         name = document.attach(other._source, prefix, body)
         assets = document.root.find("asset")
         section = ET.SubElement(document.root, "asset") if assets is None else assets
         SpecElement(document, section).add("model", name=name, file=file_of(name))
-        # The names have their prefix already.
+        # The names already have their prefix.
         return self.add("attach", model=name, prefix="", **({} if body is None else {"body": prefix + body}))
 
     def remove(self) -> None:
-        """Remove this element, all below it, and what refers to any of them: sensors of a joint go with the joint."""
+        """Removes this element, its descendants, and everything that refers to them: removing a joint removes its
+        sensors."""
         if self._node not in self._document.parents():
             raise ValueError(f"{self._described()} is removed already, or is the document itself")
         self._document.remove(self._node)
 
     def rename(self, name: str) -> None:
-        """Give it another name, here and wherever it is referred to.
+        """Renames this element and all references to it.
 
         Parameters
         ----------
@@ -277,7 +281,7 @@ class SpecElement:
         Raises
         ------
         ValueError
-            A name that another element of its kind has.
+            If another element of its kind has the name.
         """
         old = self.name
         kind = self._document.kind_of(self._node)

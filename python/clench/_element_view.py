@@ -1,4 +1,4 @@
-"""What every element of a simulation or a batch has, whatever its kind: the element, its name and its number."""
+"""The common part of element views of a simulation or a batch: the element, its name and its index."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ if TYPE_CHECKING:
 
 
 def is_alone(owner: Any) -> bool:
-    """Whether it is a `Sim`, which has no axis over environments."""
+    """Returns true if the owner is a `Sim`, which has no axis of environments."""
     return not hasattr(owner, "n_envs")
 
 
 class ElementView:
-    """An element of a simulation or batch: what belongs to it can be read and set.
+    """An element of a simulation or batch, with its quantities as attributes.
 
-    Parts of the state are live views of the same memory; write into them or assign. Outputs are those of the last step, or of the
-    present state where it was written since; in a batch they must be recorded. Parameters are of this simulation alone: they are read
-    as copies that cannot be written, and an assignment is checked. In a batch all have the environments as their first axis.
+    Parts of the state are live views of the same memory; write into them or assign. Outputs are those of the last step,
+    or of the current state if it was written since; in a batch they must be recorded. Parameters belong to this
+    simulation only: they are read as read-only copies, and assignments are validated. In a batch all have the
+    environments as their first axis.
 
     Parameters
     ----------
     owner : Sim or Batch
-        What it is an element of.
+        The owner of the element.
     which : str or int
         Its name or index.
     """
@@ -39,12 +40,12 @@ class ElementView:
 
     @property
     def element(self) -> Element:
-        """The element of the model, which knows its structure too."""
+        """The element of the model, with its structure."""
         return self._element
 
     @property
     def id(self) -> int:
-        """Index among the elements of its kind."""
+        """Its index among the elements of its kind."""
         return self._row
 
     @property

@@ -1,4 +1,5 @@
-"""Lines of the tables in `_named.py`: how what belongs to an element is read and set, by where it comes from."""
+"""Descriptors for the tables in `_named.py`: they read and set the quantities of an element, depending on their
+source."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Line:
-    """A quantity of an element: which rows of which array it is."""
+    """A quantity of an element: its rows of an array."""
 
     def __init__(self, array: str, doc: str, rows: str = "_row") -> None:
         self._array = array
@@ -22,7 +23,7 @@ class Line:
         self.__doc__ = doc
 
     def _part(self, view: ElementView, array: NDArray[Any]) -> Any:
-        """The rows of this element, after the axis over environments where there is one."""
+        """Returns the rows of this element, after the axis of environments if there is one."""
         rows = getattr(view, self._rows)
         return array[rows] if view._alone else array[:, rows]
 
@@ -43,7 +44,7 @@ class Line:
 
 
 class StateLine(Line):
-    """A part of the state: a live view."""
+    """A part of the state, as a live view."""
 
     def _read(self, view: ElementView) -> Any:
         return self._part(view, getattr(view._owner, self._array))
@@ -51,19 +52,19 @@ class StateLine(Line):
     def __set__(self, view: ElementView, values: ArrayLike) -> None:
         array = getattr(view._owner, self._array)
         rows = getattr(view, self._rows)
-        # Also where the part is a single number, which is no view.
+        # This also works if the part is a single number, which is not a view.
         array[rows if view._alone else (slice(None), rows)] = values
 
 
 class OutputLine(Line):
-    """What the last step or forward pass computed, or follows from the present state: as `Sim.output` and `Batch.output`."""
+    """An output of the last step or forward pass, or of the current state, as in `Sim.output` and `Batch.output`."""
 
     def _read(self, view: ElementView) -> Any:
         return self._part(view, view._owner.output(self._array))
 
 
 class ParameterLine(Line):
-    """A parameter as this simulation uses it: a copy that cannot be written; an assignment is checked as `set_param` does."""
+    """A parameter of this simulation, as a read-only copy. Assignments are validated as in `set_param`."""
 
     def _read(self, view: ElementView) -> Any:
         part = self._part(view, view._owner.param(self._array))

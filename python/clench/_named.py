@@ -1,7 +1,7 @@
-"""Elements of a simulation or a batch by name: what belongs to a body, a joint, a geom, ready to be read and set.
+"""Elements of a simulation or a batch by name, with the quantities of a body, a joint, a geom as attributes.
 
-Each class is a table with a line for each quantity, which says where it comes from: the state (live), an output (of the last step), a
-parameter (of this simulation alone). How the three are read and set stands in `_lines.py`.
+Each class is a table with one line per quantity, which defines its source: the state (live), an output (of the last
+step), or a parameter (of this simulation only). `_lines.py` defines how the three are read and set.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ __all__ = [
 
 
 class BodyView(ElementView):
-    """A body, see `ElementView`."""
+    """A body; see `ElementView`."""
 
     __slots__ = ()
     _kind = "body"
@@ -70,7 +70,7 @@ class BodyView(ElementView):
 
 
 class JointView(ElementView):
-    """A joint, see `ElementView`. Quantities along its degrees of freedom have as many entries as those."""
+    """A joint; see `ElementView`. Quantities along its degrees of freedom have one entry for each of them."""
 
     __slots__ = ()
     _kind = "joint"
@@ -117,7 +117,7 @@ class JointView(ElementView):
 
 
 class GeomView(ElementView):
-    """A geom, see `ElementView`."""
+    """A geom; see `ElementView`."""
 
     __slots__ = ()
     _kind = "geom"
@@ -142,7 +142,7 @@ class GeomView(ElementView):
 
 
 class SiteView(ElementView):
-    """A site, see `ElementView`."""
+    """A site; see `ElementView`."""
 
     __slots__ = ()
     _kind = "site"
@@ -155,7 +155,7 @@ class SiteView(ElementView):
 
 
 class CameraView(ElementView):
-    """A camera, see `ElementView`."""
+    """A camera; see `ElementView`."""
 
     __slots__ = ()
     _kind = "camera"
@@ -173,7 +173,7 @@ class CameraView(ElementView):
 
 
 class TendonView(ElementView):
-    """A tendon, see `ElementView`."""
+    """A tendon; see `ElementView`."""
 
     __slots__ = ()
     _kind = "tendon"
@@ -200,7 +200,7 @@ class TendonView(ElementView):
 
 
 class ActuatorView(ElementView):
-    """An actuator, see `ElementView`."""
+    """An actuator; see `ElementView`."""
 
     __slots__ = ()
     _kind = "actuator"
@@ -242,7 +242,7 @@ class ActuatorView(ElementView):
 
 
 class EqualityView(ElementView):
-    """An equality constraint, see `ElementView`."""
+    """An equality constraint; see `ElementView`."""
 
     __slots__ = ()
     _kind = "equality"
@@ -261,7 +261,7 @@ class EqualityView(ElementView):
 class Parameters:
     """All parameters of a simulation or batch by name, such as ``sim.params.gravity`` or ``batch.params.geom_friction``.
 
-    They are read as copies that cannot be written; an assignment is checked as `Sim.set_param` and `Batch.randomize` do. In a batch
+    They are read as read-only copies. Assignments are validated as in `Sim.set_param` and `Batch.randomize`. In a batch
     the environments are the first axis.
     """
 
@@ -274,7 +274,7 @@ class Parameters:
 
     def __getattr__(self, name: str) -> NDArray[Any]:
         if name.startswith("_"):
-            # Also where nothing has been set yet, as in a copy that is being made.
+            # This also applies before any attribute is set, as in a copy that is being made.
             raise AttributeError(f'there is no parameter "{name}"')
         try:
             values = self._owner.param(name)

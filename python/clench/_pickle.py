@@ -1,8 +1,10 @@
-"""Models, simulations, batches and targets of inverse kinematics as pickles: so they are copied, and sent to other processes.
+"""Pickling of models, simulations, batches and targets of inverse kinematics, to copy them and send them to other
+processes.
 
-A pickle of a model holds how it was loaded: the text and the files in memory, or the path of its file, which must then be there; a
-checksum tells where it has changed. A pickle of a simulation or batch holds its model, its options, the parameters that it changed, and
-its state: what comes out moves on to the bit. Environments of a batch that could not go on are tried again.
+A pickle of a model stores how it was loaded: the text and the files in memory, or the path of its file, which must then
+exist; a checksum detects changes of the file. A pickle of a simulation or batch stores its model, its options, the
+parameters that it changed, and its state: the copy continues identically, to the bit. Failed environments of a batch
+are set running again.
 """
 
 from __future__ import annotations
@@ -16,12 +18,12 @@ import numpy as np
 from clench._core import PARAMETERS, Batch, ComTarget, FrameTarget, Model, PostureTarget, RigidOptions, Sim
 from clench._state import State
 
-# What is computed from others and cannot be set.
+# Parameters that are computed from others and cannot be set.
 _FOLLOWING = ("body_subtreemass", "geom_rbound")
 
 Target = FrameTarget | ComTarget | PostureTarget
 
-# What targets of inverse kinematics are made of.
+# The arguments of the targets of inverse kinematics.
 _OBJECTS = ("body", "body_com", "geom", "site", "camera")
 _TARGETS: dict[Any, tuple[str, ...]] = {
     FrameTarget: (*_OBJECTS, "position", "quat", "position_cost", "orientation_cost"),
@@ -31,7 +33,7 @@ _TARGETS: dict[Any, tuple[str, ...]] = {
 
 
 def _checksum(model: Model) -> int:
-    """Of all parameters."""
+    """Computes a checksum of all parameters."""
     checksum = 0
     for name in PARAMETERS:
         checksum = zlib.crc32(np.asarray(getattr(model, name)).tobytes(), checksum)
@@ -39,7 +41,7 @@ def _checksum(model: Model) -> int:
 
 
 def reduce_model(model: Model, method: str, arguments: dict[str, Any]) -> tuple[Any, ...]:
-    """What `Model.__reduce__` returns."""
+    """Implements `Model.__reduce__`."""
     return _model, (method, arguments, _checksum(model))
 
 
@@ -53,7 +55,7 @@ def _model(method: str, arguments: dict[str, Any], checksum: int) -> Model:
 
 
 def _changed(own: Sim | Batch) -> dict[str, Any]:
-    """The parameters that are not the model's."""
+    """Returns the parameters that differ from the model's."""
     changed = {}
     for name in PARAMETERS:
         values = own.param(name)
@@ -92,7 +94,7 @@ def _batch(model: Model, how: tuple[Any, ...], changed: dict[str, Any], state: S
 
 
 def target_fields(target: Target) -> dict[str, Any]:
-    """The arguments of which a target of inverse kinematics is made."""
+    """Returns the constructor arguments of a target of inverse kinematics."""
     return {name: getattr(target, name) for name in _TARGETS[type(target)]}
 
 

@@ -1,4 +1,4 @@
-"""The parts of `Batch.rollout` that are written in Python: its progress, controls that are computed at each step, interrupts."""
+"""The Python part of `Batch.rollout`: progress, controls that are computed at each step, and interrupts."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ def controlled(
     steps: int,
     progress: Callable[[int, int], object] | None,
 ) -> dict[str, NDArray[Any]]:
-    """A rollout whose controls are computed at each step."""
-    # Sets the initial states and checks the names.
+    """Runs a rollout whose controls are computed at each step."""
+    # This call sets the initial states and validates the names.
     none = batch.rollout(initial, None, record, 0)
     rows = {name: np.full((batch.n_envs, steps, *array.shape[2:]), np.nan, array.dtype) for name, array in none.items()}
     step = 0
     try:
         for step in range(steps):
             ctrl = policy(step)
-            # An axis over steps before that over actuators.
+            # Adds an axis of steps before that of actuators.
             part = batch.rollout(None, None if ctrl is None else np.asarray(ctrl)[..., None, :], record, 1)
             for name, array in part.items():
                 rows[name][:, step] = array[:, 0]

@@ -1,8 +1,9 @@
-"""Models that are built and edited in Python, before they are models.
+"""Models that are built and edited in Python.
 
-A `ModelSpec` is an MJCF document: what is added, changed and removed is what a file would say, and `ModelSpec.build` hands it to the
-loader that reads files. So a model that is built steps like the one from such a file, to the bit, and all that a file can say can be
-said here. What a name refers to is known from one table of MJCF's attributes, in `_document.py`.
+A `ModelSpec` is an MJCF document: adding, changing and removing elements edits the document, and `ModelSpec.build`
+passes it to the loader that reads files. The built model therefore steps like the one from such a file, to the bit, and
+supports everything that a file can express. A table of MJCF's attributes in `_document.py` defines the references to
+names.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ __all__ = ["ModelSpec", "SpecElement"]
 
 
 class ModelSpec:
-    """A model that is built or edited, and becomes a `Model` by `build`.
+    """A model that is built or edited in Python; `build` turns it into a `Model`.
 
     Examples
     --------
@@ -55,18 +56,18 @@ class ModelSpec:
 
     @property
     def _source(self) -> Document:
-        """The document that a model takes in to which this one is attached."""
-        # Names of what a file attaches come into being when that is built.
+        """Returns the document to attach to another model."""
+        # Names of attached files are created only when the model is built.
         return ModelSpec.from_xml(self.build().to_xml())._document if self._document.attaches_files() else self._document
 
     @staticmethod
     def from_xml(text: str, assets: Mapping[str, bytes] | None = None) -> ModelSpec:
-        """Begin with the text of an MJCF file.
+        """Creates a spec from the text of an MJCF file.
 
         Parameters
         ----------
         text : str
-            The text; what it includes must be in `assets`.
+            The text; files that it includes must be in `assets`.
         assets : dict of str to bytes, optional
             Files that the text names.
 
@@ -77,7 +78,7 @@ class ModelSpec:
         Raises
         ------
         LoadError
-            A text that is not well-formed, or is of another format.
+            If the text is not well-formed, or has another format.
         """
         spec = ModelSpec()
         spec._document = Document.from_text(text, assets or {})
@@ -85,14 +86,14 @@ class ModelSpec:
 
     @staticmethod
     def from_file(path: str | PathLike[str], *, floating: bool = False) -> ModelSpec:
-        """Begin with a file, MJCF or URDF. Files that it names are read now.
+        """Creates a spec from an MJCF or URDF file. Files that it names are read immediately.
 
         Parameters
         ----------
         path : str or os.PathLike
-            The file. What it includes becomes part of the document; URDF becomes MJCF.
+            The file. Included files become part of the document; URDF is converted to MJCF.
         floating : bool
-            Free the base of a URDF robot, as `Model.from_file` does.
+            True to free the base of a URDF robot, as in `Model.from_file`.
 
         Returns
         -------
@@ -101,7 +102,8 @@ class ModelSpec:
         Raises
         ------
         LoadError
-            A file that cannot be read or is not well-formed, a robot that has no base to free, an MJCF file that is to float.
+            If the file cannot be read or is not well-formed, the robot has no base to free, or `floating` is used with
+            an MJCF file.
         """
         from clench._core import Model
 
@@ -123,16 +125,16 @@ class ModelSpec:
 
     @property
     def world(self) -> SpecElement:
-        """The world, to which bodies and what stands still are added."""
+        """The world, to which bodies and static objects are added."""
         return self.section("worldbody")
 
     def section(self, tag: str) -> SpecElement:
-        """A section of the document, such as "option", "default" or "contact"; made if there is none.
+        """Returns a section of the document, such as "option", "default" or "contact"; creates it if there is none.
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the section.
 
         Returns
         -------
@@ -144,62 +146,62 @@ class ModelSpec:
         return SpecElement(self._document, node, ())
 
     def add_actuator(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Add an actuator: "motor", "position", "general" and so on.
+        """Adds an actuator: "motor", "position", "general" and so on.
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the actuator type.
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.section("actuator").add(tag, **attributes)
 
     def add_sensor(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Add a sensor: "jointpos", "gyro", "touch" and so on.
+        """Adds a sensor: "jointpos", "gyro", "touch" and so on.
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the sensor type.
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.section("sensor").add(tag, **attributes)
 
     def add_equality(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Add an equality constraint: "weld", "connect", "joint" or "tendon".
+        """Adds an equality constraint: "weld", "connect", "joint" or "tendon".
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the constraint type.
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.section("equality").add(tag, **attributes)
 
     def add_tendon(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Add a tendon, "fixed" or "spatial"; what it runs through is added to it.
+        """Adds a tendon, "fixed" or "spatial"; its path is added to it.
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the tendon type.
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
         """
         return self.section("tendon").add(tag, **attributes)
 
     def add_keyframe(self, state: State | None = None, /, **attributes: Value) -> SpecElement:
-        """Add a keyframe.
+        """Adds a keyframe.
 
         Parameters
         ----------
         state : State, optional
-            The state that it brings a simulation of this model to, such as ``sim.state``; else its attributes say all of it.
+            A state of a simulation of this model, such as ``sim.state``; by default the attributes define the keyframe.
         **attributes : str, bool or array_like
-            Its attributes, as MJCF calls them.
+            Its attributes, with MJCF's names.
 
         Returns
         -------
@@ -208,7 +210,7 @@ class ModelSpec:
         Raises
         ------
         ValueError
-            The state of a batch: a keyframe is of one environment.
+            If the state is that of a batch: a keyframe is of one environment.
 
         Examples
         --------
@@ -229,16 +231,16 @@ class ModelSpec:
         return self.section("keyframe").add("key", **{**kept, **attributes})
 
     def add_asset(self, tag: str, /, data: bytes | None = None, **attributes: Value) -> SpecElement:
-        """Add an asset: "mesh", "hfield", "material" and so on.
+        """Adds an asset: "mesh", "hfield", "material" and so on.
 
         Parameters
         ----------
         tag : str
-            What MJCF calls it.
+            MJCF's name of the asset type.
         data : bytes, optional
-            What its ``file`` holds, if that is not on the disk.
+            The contents of its ``file``, if that is not on the disk.
         **attributes : str, bool or array_like
-            Its attributes.
+            Its attributes, with MJCF's names.
 
         Returns
         -------
@@ -251,7 +253,7 @@ class ModelSpec:
         return self.section("asset").add(tag, **attributes)
 
     def names(self, kind: str) -> list[str]:
-        """Names of all elements of a kind, in the order of the document; those without one are left out.
+        """Returns the names of all elements of a kind, in the order of the document, without unnamed ones.
 
         Parameters
         ----------
@@ -261,7 +263,7 @@ class ModelSpec:
         return [name for node in self._document.elements(kind) if (name := node.get("name"))]
 
     def find(self, kind: str, name: str) -> SpecElement:
-        """The element of that kind and name.
+        """Returns the element with this kind and name.
 
         Parameters
         ----------
@@ -276,7 +278,7 @@ class ModelSpec:
         Raises
         ------
         ValueError
-            A name that none has.
+            If no element has the name.
         """
         found = self._document.find(kind, name)
         if found is None:
@@ -285,7 +287,7 @@ class ModelSpec:
         return SpecElement(*found)
 
     def body(self, name: str) -> SpecElement:
-        """The body of that name; "world" is the world.
+        """Returns the body with this name; "world" is the world.
 
         Parameters
         ----------
@@ -295,7 +297,7 @@ class ModelSpec:
         return self.world if name == "world" else self.find("body", name)
 
     def joint(self, name: str) -> SpecElement:
-        """The joint of that name.
+        """Returns the joint with this name.
 
         Parameters
         ----------
@@ -305,7 +307,7 @@ class ModelSpec:
         return self.find("joint", name)
 
     def geom(self, name: str) -> SpecElement:
-        """The geom of that name.
+        """Returns the geom with this name.
 
         Parameters
         ----------
@@ -315,7 +317,7 @@ class ModelSpec:
         return self.find("geom", name)
 
     def site(self, name: str) -> SpecElement:
-        """The site of that name.
+        """Returns the site with this name.
 
         Parameters
         ----------
@@ -325,7 +327,7 @@ class ModelSpec:
         return self.find("site", name)
 
     def actuator(self, name: str) -> SpecElement:
-        """The actuator of that name.
+        """Returns the actuator with this name.
 
         Parameters
         ----------
@@ -335,7 +337,7 @@ class ModelSpec:
         return self.find("actuator", name)
 
     def sensor(self, name: str) -> SpecElement:
-        """The sensor of that name.
+        """Returns the sensor with this name.
 
         Parameters
         ----------
@@ -345,7 +347,7 @@ class ModelSpec:
         return self.find("sensor", name)
 
     def keyframe(self, name: str) -> SpecElement:
-        """The keyframe of that name.
+        """Returns the keyframe with this name.
 
         Parameters
         ----------
@@ -355,24 +357,24 @@ class ModelSpec:
         return self.find("keyframe", name)
 
     def to_xml(self) -> str:
-        """The document as MJCF text, which loads together with the files in `assets`.
+        """Returns the document as MJCF text, which loads together with the files in `assets`.
 
-        Where models are attached it is `Model.to_xml` of what is built: one document, which stands alone.
+        If models are attached, it is the built model's `Model.to_xml`: one self-contained document.
 
         Raises
         ------
         LoadError
-            Models are attached, and the whole cannot be built.
+            If models are attached, and the whole cannot be built.
         """
         return self.build().to_xml() if self._document.attached else self._document.text()
 
     def build(self, **options: Any) -> Model:
-        """The model.
+        """Builds the model.
 
         Parameters
         ----------
         **options : Any
-            As of `Model.from_xml`, such as ``budget`` or ``max_dynamic_constraints``.
+            As for `Model.from_xml`, such as ``budget`` or ``max_dynamic_constraints``.
 
         Returns
         -------
@@ -381,8 +383,8 @@ class ModelSpec:
         Raises
         ------
         LoadError
-            What asks for something that cannot be; it names the element by its path, such as ``body "tip" / geom 2``, the third geom of
-            that body.
+            If the document requests something impossible; the error names the element by its path, such as ``body "tip"
+            / geom 2``, the third geom of that body.
         """
         from clench._core import Model
 
@@ -392,7 +394,7 @@ class ModelSpec:
             raise located(self._document, error) from None
 
     def copy(self) -> ModelSpec:
-        """Another one that says the same."""
+        """Returns a copy."""
         return copy.deepcopy(self)
 
     def __repr__(self) -> str:

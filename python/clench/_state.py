@@ -1,4 +1,4 @@
-"""States that can be kept: in memory, or as bytes that survive a restart."""
+"""States that can be stored: in memory, or as bytes that survive a restart."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from clench._core import _STATE_FIELDS
 
 __all__ = ["State"]
 
-# What the bytes hold is said by this number: readers refuse what is newer than they know. Before version 2, times were of
-# the precision of all other numbers; before version 3, nothing was delayed and nothing slept; before version 4,
-# nothing was tied together at run time; before version 5, no spring yielded.
+# The version of the byte format; readers reject newer versions. Before version 2, times had the precision of all other
+# numbers; before version 3, there were no delays and no sleeping; before version 4, no constraints were added at run
+# time; before version 5, there were no plastic springs.
 _VERSION = 5
-# What came with version 4, and how many numbers an element of it has.
+# The fields that were added in version 4, with the number of values per element.
 _SINCE_4 = {
     "dynamic_kind": (),
     "dynamic_serial": (),
@@ -31,7 +31,7 @@ _SINCE_4 = {
     "dynamic_anchor2": (3,),
     "dynamic_quat": (4,),
 }
-# The most entries of an archive that are looked at: more than any version has.
+# The maximum number of entries that are read from an archive: more than any version has.
 _MAX_ENTRIES = 100
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ else:
     _names = ("time", *(name for name, *_ in _STATE_FIELDS))
     _StateArrays = make_dataclass("_StateArrays", [(name, np.ndarray) for name in _names], kw_only=True, eq=False, repr=False)
 
-# The types of all fields but those that have the precision of the simulation.
+# The dtypes of all fields except those with the precision of the simulation.
 _DTYPES: dict[str, np.dtype[Any]] = {
     "time": np.dtype(np.float64),
     **{name: np.dtype(kind) for name, kind, *_ in _STATE_FIELDS if kind != "number"},
@@ -49,31 +49,31 @@ _DTYPES: dict[str, np.dtype[Any]] = {
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class State(_StateArrays):
-    """A copy of everything that the next step depends on, parameters apart.
+    """A copy of everything that the next step depends on, except parameters.
 
-    `Sim.state` and `Batch.state` make one, and assigning it brings the simulation back there, to the bit. The arrays are the
-    same as those of the simulation, with the environments as first axis for a `Batch`; they can be changed freely.
+    `Sim.state` and `Batch.state` return one, and assigning it restores the simulation. The arrays have the names and
+    shapes of those of the simulation, with the environments as first axis for a `Batch`; they can be changed freely.
 
-    Two states are equal if all their arrays are, in type, shape and every bit: a NaN equals itself, 0.0 is not -0.0. What can be
-    changed has no hash.
+    Two states are equal if all their arrays are, in dtype, shape and every bit: a NaN equals itself, and 0.0 differs
+    from -0.0. States are mutable and have no hash.
 
     Parameters
     ----------
     time : numpy.ndarray
-        s, float64 in every precision.
+        s, float64 in either precision.
     {fields}
 
     Raises
     ------
     TypeError
-        Arrays of other types.
+        If an array has another dtype.
     """
 
     def __post_init__(self) -> None:
         self._arrays()
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
-        """The fields by name, their types checked: fields can be replaced."""
+        """Returns the fields by name. Their dtypes are checked, since fields can be replaced."""
         arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         numbers = np.dtype(np.float32 if getattr(self.qpos, "dtype", None) == np.float32 else np.float64)
         for name, array in arrays.items():
@@ -92,7 +92,7 @@ class State(_StateArrays):
     __hash__ = None  # type: ignore[assignment]
 
     def __len__(self) -> int:
-        """How many environments it is of."""
+        """Returns the number of environments."""
         if self.qpos.ndim == 1:
             raise TypeError("the state of one environment has no length")
         return len(self.qpos)
@@ -101,12 +101,12 @@ class State(_StateArrays):
         return True
 
     def __getitem__(self, envs: Any) -> State:
-        """The state of one environment, or of several.
+        """Returns the state of one environment, or of several.
 
         Parameters
         ----------
         envs : int, slice or array_like
-            Which, as NumPy selects rows.
+            Their indices, as NumPy selects rows.
 
         Returns
         -------
@@ -125,12 +125,12 @@ class State(_StateArrays):
 
     @staticmethod
     def stack(states: Sequence[State]) -> State:
-        """The states of several environments side by side.
+        """Stacks the states of several environments.
 
         Parameters
         ----------
         states : sequence of State
-            One an environment, at least one.
+            At least one state, one for each environment.
 
         Returns
         -------
@@ -140,12 +140,12 @@ class State(_StateArrays):
         return State(**{name: np.stack([arrays[name] for arrays in rows]) for name in rows[0]})
 
     def to_bytes(self) -> bytes:
-        """Pack the state into bytes.
+        """Packs the state into bytes.
 
         Returns
         -------
         bytes
-            A NumPy ``.npz`` archive with an array a field and the number of its format, ``version``.
+            A NumPy ``.npz`` archive with one array per field, and the version of the format as ``version``.
         """
         buffer = io.BytesIO()
         arrays: dict[str, Any] = {"version": np.int64(_VERSION), **self._arrays()}
@@ -154,12 +154,12 @@ class State(_StateArrays):
 
     @staticmethod
     def from_bytes(data: bytes) -> State:
-        """Unpack what `to_bytes` packed, in this or an earlier version.
+        """Unpacks bytes of `to_bytes`, of this or an earlier version.
 
         Parameters
         ----------
         data : bytes
-            What `to_bytes` returned.
+            The result of `to_bytes`.
 
         Returns
         -------
@@ -169,9 +169,9 @@ class State(_StateArrays):
         Raises
         ------
         ValueError
-            Bytes that are damaged, of something else, or of a later version.
+            If the bytes are damaged, of another format, or of a later version.
         TypeError
-            What is not bytes.
+            If the argument is not bytes.
         """
         if not isinstance(data, bytes | bytearray | memoryview):
             raise TypeError(f"a state is unpacked from bytes, not from {type(data).__name__}")
@@ -182,10 +182,10 @@ class State(_StateArrays):
             with zipfile.ZipFile(stream) as archive:
                 _require_plain(archive, stream.getbuffer().nbytes)
                 version = operator.index(_entry(archive, "version.npy")[()])
-                # Nothing else is looked at before it is known to be understood.
+                # The version is checked before anything else is read.
                 if 1 <= version <= _VERSION:
                     arrays = {name.removesuffix(".npy"): _entry(archive, name) for name in archive.namelist()}
-        except Exception as error:  # Readers of damaged archives raise whatever they stumble over.
+        except Exception as error:  # Readers of damaged archives raise arbitrary exceptions.
             raise ValueError(f"these bytes hold no state: {error}") from error
         if not 1 <= version <= _VERSION:
             raise ValueError(f"this state has version {version}, and this clench reads versions 1 to {_VERSION}")
@@ -212,7 +212,7 @@ class State(_StateArrays):
 
 
 def _describe(name: str, kind: str, shape: str, doc: str) -> str:
-    """An entry of the documentation's list of parameters."""
+    """Formats an entry of the parameter list of the docstring."""
     dtype = "float64 or float32" if kind == "number" else kind
     return f"{name} : numpy.ndarray\n        {shape} of {dtype}. {doc}"
 
@@ -226,7 +226,7 @@ def _same_bits(one: NDArray[Any], other: NDArray[Any]) -> bool:
 
 
 def _require_plain(archive: zipfile.ZipFile, size: int) -> None:
-    """Refuse an archive, of so many bytes, that would take more memory unpacked than it has itself."""
+    """Rejects an archive of the given size that would take more memory unpacked than packed."""
     entries = archive.infolist()
     if len(entries) > _MAX_ENTRIES:
         raise ValueError(f"the archive has {len(entries)} entries, and at most {_MAX_ENTRIES} are looked at")
@@ -241,7 +241,7 @@ def _require_plain(archive: zipfile.ZipFile, size: int) -> None:
 
 
 def _entry(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
-    """An array of an archive, as large as its bytes are and no larger."""
+    """Reads an array of an archive; its size must equal that of its bytes."""
     stream = io.BytesIO(archive.read(name))
     read_header = {
         (1, 0): np.lib.format.read_array_header_1_0,

@@ -1,4 +1,4 @@
-"""Whether an environment runs, and how inverse kinematics ended."""
+"""Status codes of environments and of inverse kinematics."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ __all__ = ["EnvStatus", "IkStatus"]
 
 
 class EnvStatus(IntEnum):
-    """Whether an environment of a `Batch` runs, and if not why: the codes in `Batch.status`."""
+    """The status of an environment of a `Batch`: the codes in `Batch.status`."""
 
     RUNNING = 0
-    """It takes part in steps."""
+    """The environment takes part in steps."""
     NOT_FINITE = 1
-    """Its state held a number that is infinite or none."""
+    """The state had an infinite or NaN value."""
     SINGULAR = 2
-    """Its mass matrix was not positive definite."""
+    """The mass matrix was not positive definite."""
     DIVERGED = 3
-    """Its motion left all bounds: positions, velocities or accelerations beyond 1e10 or not finite."""
+    """The motion diverged: positions, velocities or accelerations exceeded 1e10 or were not finite."""
     CONTACT_OVERFLOW = 4
-    """It had more contacts than `max_contacts` allows."""
+    """There were more contacts than `max_contacts` allows."""
     OVER_BUDGET = 5
-    """Its step asked for more than the budget that the model was loaded with."""
+    """The step exceeded the budget that the model was loaded with."""
     UNFINISHED = 6
-    """The graphics device ended its step before the end, as Mesa's software device does with very long ones."""
+    """The GPU terminated its step early, as Mesa's software device does for very long ones."""
 
 
 class IkStatus(IntEnum):
-    """How inverse kinematics ended: the codes in `IkResult.status`."""
+    """The outcome of inverse kinematics: the codes in `IkResult.status`."""
 
     REACHED = 0
-    """Every goal but postures is within the tolerance."""
+    """All goals except postures are within the tolerance."""
     STATIONARY = 1
-    """Nothing near brings the targets closer to their goals together."""
+    """A local minimum was found: no nearby positions reduce the total error."""
     ITERATION_LIMIT = 2
-    """The iteration limit came first."""
+    """The iteration limit was reached."""
     NON_FINITE = 3
-    """A number became infinite or none."""
+    """A number became infinite or NaN."""

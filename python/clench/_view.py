@@ -1,4 +1,4 @@
-"""Viewers and recordings where Python shows them: in a browser, and in a Jupyter notebook."""
+"""Display of viewers and recordings: in a browser, and in a Jupyter notebook."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _HEIGHT = 560  # pixels of a cell
 
 
 def _in_notebook() -> bool:
-    """Whether this runs in a kernel of Jupyter, whose cells show what they end with."""
+    """Returns true in a Jupyter kernel, which displays the last value of a cell."""
     shell = sys.modules.get("IPython")
     if shell is None:
         return False
@@ -36,7 +36,7 @@ def view(
     paused: bool = False,
     speed: float = 1.0,
 ) -> Viewer:
-    """Shows a simulation in the browser, while a loop of one's own steps it.
+    """Shows a simulation in the browser, while a Python loop steps it.
 
     >>> with clench.view(sim) as viewer:  # doctest: +SKIP
     ...     while not viewer.closed:
@@ -46,32 +46,32 @@ def view(
     Parameters
     ----------
     target : Sim or Batch
-        What to show.
+        The simulation or batch to show.
     env : int
-        Which environment of a batch at first; `Viewer.env` and the page choose another.
+        The environment of a batch that is shown initially; `Viewer.env` and the page can change it.
     host : str
-        Address to listen at. Another than this lets other machines in that know the token.
+        Address to listen on. Other addresses than the default admit other machines that have the token.
     port : int
-        Port to listen at; 0 for any that is free.
+        Port to listen on; 0 for any free port.
     open_browser : bool, optional
-        Whether to open a browser. By default one is opened, but in a Jupyter notebook, where the viewer is seen in the cell that
-        ends with it.
+        True to open a browser. By default one is opened, except in a Jupyter notebook, where the last value of a cell
+        displays the viewer.
     paused : bool
-        Whether the loop stands still at first.
+        True if the loop is paused initially.
     speed : float
-        Simulated over real time, which `Viewer.sync` holds the loop to; 0 for as fast as it goes.
+        The ratio of simulated to real time that `Viewer.sync` maintains; 0 for as fast as possible.
 
     Returns
     -------
     Viewer
-        To be closed; a ``with`` block does that.
+        The viewer. Close it after use; a ``with`` block does so.
 
     Raises
     ------
     OSError
-        An address or port where one cannot listen.
+        If the address or port is not available.
     ClenchError
-        A package that was built without the viewer's page, and what to do.
+        If the package was built without the viewer's page; the message says what to do.
     """
     viewer = Viewer(target, env=env, host=host, port=port, paused=paused, speed=speed)
     wanted = not _in_notebook() if open_browser is None else open_browser
@@ -81,24 +81,24 @@ def view(
 
 
 def _frame(url: str) -> str:
-    """A page in a cell."""
+    """Returns an HTML frame of a page, for a cell."""
     style = f"width:100%;height:{_HEIGHT}px;border:0"
     return f'<iframe src="{html.escape(url)}" style="{style}"></iframe>'
 
 
 def _frame_of_html(page: str) -> str:
-    """A document in a cell."""
+    """Returns an HTML frame of a document, for a cell."""
     style = f"width:100%;height:{_HEIGHT}px;border:0"
     return f'<iframe srcdoc="{html.escape(page)}" style="{style}"></iframe>'
 
 
 def _show(page: str) -> None:
-    """Shows a document: in the cell that runs, else in a browser."""
+    """Shows a document: in the current cell, else in a browser."""
     if _in_notebook():
         display = importlib.import_module("IPython.display")
         display.display(display.HTML(_frame_of_html(page)))
         return
-    # The browser reads it after this has ended, so it stays.
+    # The browser reads the file after this process has ended, so it is not removed.
     handle, path = tempfile.mkstemp(prefix="clench-", suffix=".html")
     with os.fdopen(handle, "w", encoding="utf-8") as file:
         file.write(page)

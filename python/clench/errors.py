@@ -1,8 +1,8 @@
 """The exceptions of clench.
 
-What is wrong with an argument is said as Python says it: a wrong shape or value is a :class:`ValueError`, a wrong type or
-dtype a :class:`TypeError`, an element that is not there an :class:`IndexError`, memory that is not there a
-:class:`MemoryError`. What only a simulator can say is a :class:`ClenchError`.
+Errors of arguments are Python's: a wrong shape or value raises a :class:`ValueError`, a wrong type or dtype a
+:class:`TypeError`, a nonexistent element an :class:`IndexError`, insufficient memory a :class:`MemoryError`. Errors of
+the simulator are a :class:`ClenchError`.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ __all__ = ["BusyError", "ClenchError", "LoadError", "SimulationError"]
 
 
 class ClenchError(Exception):
-    """What the exceptions of this package have in common."""
+    """The base class of this package's exceptions."""
 
 
 class LoadError(ClenchError, ValueError):
-    """A model file that cannot be loaded, and where.
+    """An error in a model file, with its location.
 
     As text it reads ``robot.xml:12: joint "knee": ...``.
 
     Parameters
     ----------
     message : str
-        What is wrong.
+        The problem.
     file : str
-        The file as it was named, or as an include found it; empty where the model came from no file.
+        The file as it was named, or as an include found it; empty if the model is not from a file.
     line : int or None
-        Line, counted from one; None where the whole file is meant.
+        Line number, from one; None for the whole file.
     element : str or None
-        The element, such as ``joint "knee"``; None where the whole file is meant.
+        The element, such as ``joint "knee"``; None for the whole file.
     """
 
     message: str
@@ -50,7 +50,7 @@ class LoadError(ClenchError, ValueError):
 
 
 class SimulationError(ClenchError, RuntimeError):
-    """A state that cannot be stepped from, or a step that led nowhere; the state stays at the last good one."""
+    """The state cannot be stepped, or the step failed; the last good state is kept."""
 
 
 class BusyError(ClenchError, RuntimeError):

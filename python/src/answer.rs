@@ -1,4 +1,4 @@
-//! Answers as arrays: new ones, or in the place that a caller gave, and rows that are each answered by themselves.
+//! Results as arrays: new ones or an `out` array of the caller, and functions that apply to each row.
 
 use crate::arrays::{numbers, require_shape, shape_text};
 use crate::error::sim_error;
@@ -7,7 +7,7 @@ use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// Numbers in a new array of this shape, or in the one that was given.
+/// Returns the numbers in a new array of this shape, or writes them to `out` if it is given.
 pub(crate) fn answer<'py, S: Element + Copy>(
     py: Python<'py>,
     values: Vec<S>,
@@ -31,7 +31,7 @@ pub(crate) fn answer<'py, S: Element + Copy>(
     Ok(out.clone())
 }
 
-/// Rows of `width` numbers, of any count or a single one, each of which `change` replaces.
+/// Applies `change` to each row of `width` numbers; `values` is a single row or any number of rows.
 pub(crate) fn each_row<'py, S: Precision + Element>(
     name: &str,
     values: &Bound<'py, PyAny>,

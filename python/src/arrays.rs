@@ -1,4 +1,4 @@
-//! Arrays out of what Python gives: anything that NumPy takes for an array, of the kind that is meant.
+//! Conversion of Python values to arrays of a required kind. Anything that NumPy converts is accepted.
 
 use numpy::{
     Element, PyArray1, PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods,
@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 
-/// Numbers of any shape, converted to `S` and to C order where they are not yet; `name` is for messages.
+/// Converts a value to an array of `S` in C order, of any shape, copying if necessary; `name` is for messages.
 ///
 /// Integers and booleans count as numbers, complex numbers and text do not.
 pub(crate) fn numbers<'py, S: Element>(
@@ -20,7 +20,7 @@ pub(crate) fn numbers<'py, S: Element>(
     contiguous(&array)
 }
 
-/// Numbers of shape `shape`, as [`numbers`].
+/// Converts a value as [`numbers`] does, and requires this shape.
 pub(crate) fn shaped<'py, S: Element>(
     name: &str,
     value: &Bound<'py, PyAny>,
@@ -31,25 +31,25 @@ pub(crate) fn shaped<'py, S: Element>(
     Ok(array)
 }
 
-/// As many booleans as there are elements, `n`.
+/// Converts a value to `n` booleans, one for each element.
 pub(crate) fn mask(name: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<bool>> {
     let array = as_array(value)?;
-    // An empty list is an array of floats to NumPy.
+    // NumPy makes an empty list an array of floats.
     if !array.is_empty() {
         require_kind(name, &array, b"b", "booleans")?;
     }
     require_shape(name, array.shape(), &[n])?;
-    // As bytes: NumPy's booleans may be any byte, Rust's only 0 and 1.
+    // Read as bytes: a NumPy boolean may be any byte, a Rust `bool` only 0 or 1.
     let bytes = numpy(value.py())?.call_method1("require", (array, dtype::<bool>(value.py())))?;
     let bytes = bytes.call_method1("view", ("u1",))?.cast_into()?;
     let bytes = contiguous::<u8>(&bytes)?;
     Ok(bytes.as_slice()?.iter().map(|&byte| byte != 0).collect())
 }
 
-/// Indices of some of `n` elements, each counted from zero.
+/// Converts a value to indices of elements, counted from zero and less than `n`.
 pub(crate) fn indices(name: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<usize>> {
     let array = as_array(value)?;
-    // An empty list is an array of floats to NumPy.
+    // NumPy makes an empty list an array of floats.
     if !array.is_empty() {
         require_kind(name, &array, b"iu", "integers")?;
     }
@@ -65,7 +65,7 @@ pub(crate) fn indices(name: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResul
     array.as_slice()?.iter().map(index).collect()
 }
 
-/// Nothing but finite numbers; the first other one is an error.
+/// Returns an error if a number is not finite; it names the first one.
 pub(crate) fn require_finite(name: &str, values: &[f64]) -> PyResult<()> {
     match values.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
@@ -76,7 +76,7 @@ pub(crate) fn require_finite(name: &str, values: &[f64]) -> PyResult<()> {
     }
 }
 
-/// A shape other than that is an error.
+/// Returns an error if the shape differs from the needed one.
 pub(crate) fn require_shape(name: &str, found: &[usize], needed: &[usize]) -> PyResult<()> {
     if found == needed {
         return Ok(());
@@ -88,7 +88,7 @@ pub(crate) fn require_shape(name: &str, found: &[usize], needed: &[usize]) -> Py
     )))
 }
 
-/// A shape as Python writes it.
+/// Formats a shape as Python does.
 pub(crate) fn shape_text(shape: &[usize]) -> String {
     match shape {
         [n] => format!("({n},)"),
@@ -126,7 +126,7 @@ fn require_kind(
     )))
 }
 
-/// The same numbers in C order and native form, copied only where they are not so already.
+/// Returns the same numbers in C order and native byte order, copied only if necessary.
 fn contiguous<'py, S: Element>(
     array: &Bound<'py, PyUntypedArray>,
 ) -> PyResult<PyReadonlyArrayDyn<'py, S>> {
@@ -141,7 +141,7 @@ fn contiguous<'py, S: Element>(
     Ok(array.cast_into::<PyArrayDyn<S>>()?.try_readonly()?)
 }
 
-/// An array over rows, of what `read` takes from each: as many numbers as `shape` says.
+/// Returns an array of the values that `read` takes from each row; `shape` is the shape of one row's values.
 pub(crate) fn column<Row, E: Element, const N: usize, Part: IntoIterator<Item = E>>(
     py: Python<'_>,
     rows: &[Row],

@@ -1,4 +1,4 @@
-//! Meshes and height fields in MuJoCo's names: counts, where each begins in the arrays of all, and those arrays.
+//! Meshes and height fields under MuJoCo's names: counts, start indices, and the arrays of all of them.
 
 use crate::field::{Field, Numbers, Reader, codes, id};
 use clench::Model;
@@ -6,7 +6,7 @@ use clench::rigid::model::{HeightField, Mesh};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Fields of what geoms refer to.
+/// The fields of the assets that geoms refer to.
 pub(crate) const ASSETS: &[Reader] = &[
     ("mesh_pos", |m| rows(&m.meshes, |mesh| mesh.pos.to_array())),
     ("mesh_quat", |m| {
@@ -35,7 +35,7 @@ pub(crate) const ASSETS: &[Reader] = &[
     ("hfield_data", heights),
 ];
 
-/// Which rows of `mesh_vert`, `mesh_face` or `hfield_data` belong to the mesh or height field of that index.
+/// Returns the rows of `mesh_vert`, `mesh_face` or `hfield_data` of the mesh or height field with this index.
 pub(crate) fn rows_of(model: &Model, field: &str, index: usize) -> Option<Range<usize>> {
     match field {
         "mesh_vert" => Some(span(&model.meshes, vertex_count, index)),
@@ -57,7 +57,7 @@ fn height_count(field: &HeightField) -> usize {
     field.shape.heights().len()
 }
 
-/// Where element number `index` is, where each follows the one before.
+/// Returns the range of element `index` in an array of all elements, one after the other.
 fn span<E>(elements: &[Arc<E>], count: fn(&E) -> usize, index: usize) -> Range<usize> {
     let start = elements[..index].iter().map(|e| count(e)).sum();
     start..start + count(&elements[index])
@@ -68,7 +68,7 @@ fn starts<E>(elements: &[Arc<E>], count: fn(&E) -> usize) -> Field {
     codes(&indices, |&index| id(span(elements, count, index).start))
 }
 
-/// N numbers an element.
+/// Returns a field with N numbers for each element.
 fn rows<E, const N: usize>(elements: &[Arc<E>], row: impl Fn(&E) -> [f64; N]) -> Field {
     Field {
         shape: vec![elements.len(), N],
@@ -84,7 +84,7 @@ fn vertices(model: &Model) -> Field {
     }
 }
 
-/// Corners are counted within each mesh.
+/// Returns the faces of all meshes. Vertex indices are counted within each mesh.
 fn faces(model: &Model) -> Field {
     let all = || model.meshes.iter().flat_map(|mesh| &mesh.faces);
     let corner = |&corner: &u32| corner.cast_signed();

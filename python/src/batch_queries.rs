@@ -1,4 +1,4 @@
-//! What `Batch` answers about all environments at once.
+//! Queries of `Batch` that cover all environments at once.
 
 use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
@@ -14,7 +14,7 @@ use clench::rigid::batch::Rows;
 use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// The rows of a table as an array of this shape.
+/// Returns the rows of a table as an array of this shape.
 fn rows_array<'py, S: Element + Copy>(
     py: Python<'py>,
     rows: &Rows<S>,
@@ -26,8 +26,8 @@ fn rows_array<'py, S: Element + Copy>(
 
 #[pymethods]
 impl Batch {
-    /// The Jacobian of an object in every environment, in the present states, see `Sim.jacobian`. Those of all sites can be
-    /// recorded: outputs ``site_jacp`` and ``site_jacr``.
+    /// Computes the Jacobian of an object in every environment, in the current states; see `Sim.jacobian`. The
+    /// Jacobians of all sites can be recorded: outputs ``site_jacp`` and ``site_jacr``.
     ///
     /// Parameters
     /// ----------
@@ -37,7 +37,7 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (n, 2, 3, nv): translation, then rotation, world axes; NaN where a state is not finite.
+    ///     (n, 2, 3, nv): translation, then rotation, in world axes; NaN where a state is not finite.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None))]
     fn jacobian<'py>(
         &self,
@@ -57,17 +57,17 @@ impl Batch {
         })
     }
 
-    /// The Jacobian of the centre of mass of a body and all below it in every environment, likewise.
+    /// Computes the Jacobian of the centre of mass of a body's subtree in every environment, in the current states.
     ///
     /// Parameters
     /// ----------
     /// body : str or int
-    ///     The body; 0, the world, for that of everything.
+    ///     The body; 0, the world, for the centre of mass of everything.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (n, 3, nv), world axes; NaN where a state is not finite.
+    ///     (n, 3, nv), in world axes; NaN where a state is not finite.
     fn subtree_jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -82,14 +82,14 @@ impl Batch {
         })
     }
 
-    /// The velocity of an object in every environment, in the present states, see `Sim.velocity`.
+    /// Computes the velocity of an object in every environment, in the current states; see `Sim.velocity`.
     ///
     /// Parameters
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object, see `jacobian`.
     /// local : bool
-    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///     True for the axes of the object, false for those of the world.
     ///
     /// Returns
     /// -------
@@ -115,20 +115,21 @@ impl Batch {
         })
     }
 
-    /// The acceleration of an object in every environment, in the present states, see `Sim.acceleration`: gravity's upward reaction
-    /// included. It takes all of forward dynamics.
+    /// Computes the acceleration of an object in every environment, in the current states; see `Sim.acceleration`. It
+    /// includes the upward reaction to gravity. It runs all of forward dynamics.
     ///
     /// Parameters
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object, see `jacobian`.
     /// local : bool
-    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///     True for the axes of the object, false for those of the world.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (n, 2, 3): linear, m/s², of its position, then angular, rad/s²; NaN where a simulation alone would raise SimulationError.
+    ///     (n, 2, 3): linear, m/s², of its position, then angular, rad/s²; NaN where a single `Sim` would raise
+    ///     SimulationError.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn acceleration<'py>(
@@ -149,17 +150,17 @@ impl Batch {
         })
     }
 
-    /// M x in every environment, in the present states, see `Sim.mul_mass`.
+    /// Computes M x in every environment, in the current states; see `Sim.mul_mass`.
     ///
     /// Parameters
     /// ----------
     /// x : array_like
-    ///     Accelerations, (nv,) for all environments, or (n, nv) for each its own.
+    ///     Accelerations, (nv,) for all environments, or (n, nv) with one row for each.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     The forces along dofs that they take (n, nv), N and N m; NaN where a state is not finite.
+    ///     The forces along dofs that cause them (n, nv), N and N m; NaN where a state is not finite.
     fn mul_mass<'py>(&self, py: Python<'py>, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.described().nv;
         let mut guard = lock(self.inner(), "batch")?;
@@ -170,12 +171,12 @@ impl Batch {
         })
     }
 
-    /// M⁻¹ x in every environment, in the present states, see `Sim.solve_mass`.
+    /// Computes M⁻¹ x in every environment, in the current states; see `Sim.solve_mass`.
     ///
     /// Parameters
     /// ----------
     /// x : array_like
-    ///     Forces along dofs, (nv,) for all environments, or (n, nv) for each its own.
+    ///     Forces along dofs, (nv,) for all environments, or (n, nv) with one row for each.
     ///
     /// Returns
     /// -------
@@ -195,25 +196,26 @@ impl Batch {
         })
     }
 
-    /// What many rays hit in every environment, in the present states: a lidar.
+    /// Casts many rays, as a lidar does, in every environment, in the current states.
     ///
     /// Parameters
     /// ----------
     /// origins, directions : array_like
-    ///     As in `Sim.rays`: (k, 3) for all environments, or (n, k, 3) for each its own.
+    ///     As in `Sim.rays`: (k, 3) for all environments, or (n, k, 3) with different ones for each.
     /// body, body_com, geom, site, camera : str or int, optional
-    ///     An object in whose frame rays are told, so that they move with it; else they are in the world.
+    ///     An object in whose frame the rays are given, so that they move with it; by default they are in the world
+    ///     frame.
     /// groups : array_like of int, optional
-    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
+    ///     The groups of geoms, 0 to 5, that can be hit; by default all.
     /// fixed : bool
-    ///     Whether geoms can be hit that are fixed to the world.
+    ///     True if rays can hit geoms that are fixed to the world.
     /// exclude_body : str or int, optional
     ///     A body, by name or index, whose geoms are not hit.
     ///
     /// Returns
     /// -------
     /// RayHits
-    ///     One a ray, with the environments as first axis. Where a state is not finite distances are NaN.
+    ///     One hit for each ray, with the environments as first axis. Distances are NaN where a state is not finite.
     #[pyo3(signature = (origins, directions, *, body = None, body_com = None, geom = None, site = None, camera = None,
                         groups = None, fixed = true, exclude_body = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
@@ -243,16 +245,17 @@ impl Batch {
         })
     }
 
-    /// Heights of terrain in every environment, in the present states, see `Sim.heights`.
+    /// Computes heights of terrain in every environment, in the current states; see `Sim.heights`.
     ///
     /// Parameters
     /// ----------
     /// hfield : str or int
     ///     The geom that is the height field. Exact where its z axis points upwards.
     /// places : array_like
-    ///     x and y, m: (k, 2) for all environments, or (n, k, 2) for each its own.
+    ///     x and y, m: (k, 2) for all environments, or (n, k, 2) with different ones for each.
     /// body, body_com, geom, site, camera : str or int, optional
-    ///     An object from whose position, along whose x axis as seen from above, places are told; else they are in the world.
+    ///     An object whose position is the origin of the places, with their x axis along its own as seen from above; by
+    ///     default they are in the world frame.
     ///
     /// Returns
     /// -------
@@ -282,20 +285,20 @@ impl Batch {
         })
     }
 
-    /// Inverse dynamics of every environment, in the present states, see `Sim.inverse`.
+    /// Computes inverse dynamics in every environment, in the current states; see `Sim.inverse`.
     ///
     /// Parameters
     /// ----------
     /// qacc : array_like
-    ///     Accelerations, (nv,) for all environments, or (n, nv) for each its own.
+    ///     Accelerations, (nv,) for all environments, or (n, nv) with one row for each.
     /// discrete : bool, optional
-    ///     Whether they are those by which a step changes the velocity, ``(v1 - v0) / timestep``; else those that `forward` finds.
-    ///     By default as the model says (flag ``invdiscrete``).
+    ///     True if a step changes the velocity by them, ``(v1 - v0) / timestep``; false if they are those that
+    ///     `forward` finds. The default is the model's flag ``invdiscrete``.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Forces along dofs (n, nv), N and N m; NaN where a simulation alone would raise SimulationError.
+    ///     Forces along dofs (n, nv), N and N m; NaN where a single `Sim` would raise SimulationError.
     #[pyo3(signature = (qacc, *, discrete = None))]
     fn inverse<'py>(
         &self,

@@ -15,31 +15,32 @@ const COSTS: [(&str, Cost); 5] = [
     ("elliptic", Cost::Elliptic),
 ];
 
-/// One constraint of a bare convex problem: what it costs that ``y = jacobian @ qacc - aref`` is what it is.
+/// One constraint of a bare convex problem: the cost of a value of ``y = jacobian @ qacc - aref``.
 ///
 /// Parameters
 /// ----------
 /// cost : {"quadratic", "one_sided", "huber", "pyramid", "elliptic"}
-///     With ``D = 1 / R``: "quadratic" is ``D y**2 / 2`` always (an equality), "one_sided" the same where ``y < 0`` (a
-///     limit, a contact without friction), "huber" the same as long as the force is below `shape` and linear beyond (dry
-///     friction), "pyramid" one-sided on each edge ``y[0] +- shape[j] y[j]`` (a contact with friction), "elliptic" the
-///     exact friction cone as MuJoCo defines it.
+///     With ``D = 1 / R``: "quadratic" is ``D y**2 / 2`` always (an equality); "one_sided" is the same where ``y < 0``
+///     (a limit, a contact without friction); "huber" is the same as long as the force is below `shape`, and linear
+///     beyond (dry friction); "pyramid" is one-sided on each edge ``y[0] +- shape[j] y[j]`` (a contact with friction);
+///     "elliptic" is the exact friction cone as MuJoCo defines it.
 /// jacobian : array_like, (dim, nv), or (nv,) for one row
-///     How the rows move with the accelerations; 1 to 6 rows, of a contact the normal first.
+///     The derivatives of the rows' velocities by those of the dofs; 1 to 6 rows. The first row of a contact is its
+///     normal.
 /// aref : array_like, (dim,), or a number for all rows
-///     The acceleration along each row that the constraint asks for.
+///     The acceleration along each row that the constraint demands.
 /// R : array_like, (dim,), or a number for all rows
-///     Softness of each row, positive. The rows of a pyramid have one R; those of an elliptic cone
-///     ``R[j] = R[0] (shape[0] / shape[j])**2``.
+///     The softness of each row, positive. All rows of a pyramid have the same R; those of an elliptic cone have ``R[j]
+///     = R[0] (shape[0] / shape[j])**2``.
 /// shape : array_like, (dim,), or a number for all rows, optional
-///     Of "huber" the greatest force of each row. Of "pyramid" the friction coefficient of each row, where the first is
-///     unused. Of "elliptic" likewise, where the first is the regularized coefficient ``shape[1] * sqrt(R[1] / R[0])``.
-///     The others have none.
+///     For "huber" the greatest force of each row. For "pyramid" the friction coefficient of each row; the first is
+///     unused. For "elliptic" the same, but the first is the regularized coefficient ``shape[1] * sqrt(R[1] / R[0])``.
+///     The other costs have no shape.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     A shape that does not fit, a number that is not finite, an R that is not positive.
+///     If a shape does not fit, a number is not finite, or an R is not positive.
 ///
 /// Examples
 /// --------
@@ -52,12 +53,12 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Its numbers.
+    /// Returns its numbers.
     pub(crate) fn plain(&self) -> &PlainBlock<f64> {
         &self.plain
     }
 
-    /// Degrees of freedom of the problem that it belongs to.
+    /// Returns the number of degrees of freedom of its problem.
     pub(crate) fn nv(&self) -> usize {
         self.nv
     }
@@ -106,7 +107,7 @@ impl Block {
         Ok(Block { plain, nv })
     }
 
-    /// str : Which cost.
+    /// str : The kind of cost.
     #[getter]
     fn cost(&self) -> &'static str {
         let found = COSTS.iter().find(|(_, cost)| *cost == self.plain.cost);
@@ -119,13 +120,13 @@ impl Block {
         self.plain.aref.len()
     }
 
-    /// numpy.ndarray : How the rows move with the accelerations (dim, nv). A copy.
+    /// numpy.ndarray : The Jacobian of the rows (dim, nv). A copy.
     #[getter]
     fn jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         PyArray1::from_slice(py, &self.plain.jacobian).reshape([self.dim(), self.nv])
     }
 
-    /// numpy.ndarray : The acceleration along each row that the constraint asks for (dim). A copy.
+    /// numpy.ndarray : The acceleration along each row that the constraint demands (dim). A copy.
     #[getter]
     fn aref<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.plain.aref)
@@ -137,7 +138,7 @@ impl Block {
         PyArray1::from_slice(py, &self.plain.r)
     }
 
-    /// numpy.ndarray or None : Greatest forces or friction coefficients (dim), if the cost has them. A copy.
+    /// numpy.ndarray or None : Greatest forces or friction coefficients (dim); None if the cost has none. A copy.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let shape = &self.plain.shape;
@@ -154,7 +155,7 @@ impl Block {
     }
 }
 
-/// The rows of a Jacobian one after the other, how many, and how long each is.
+/// Returns the rows of a Jacobian in sequence, their number and their length.
 fn matrix(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, usize, usize)> {
     let array = numbers::<f64>("jacobian", value)?;
     let (dim, nv) = match *array.shape() {
@@ -172,7 +173,7 @@ fn matrix(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, usize, usize)> {
     Ok((values.to_vec(), dim, nv))
 }
 
-/// A number for each of `dim` rows.
+/// Converts a value to one number for each of `dim` rows.
 fn rows(name: &str, value: &Bound<'_, PyAny>, dim: usize) -> PyResult<Vec<f64>> {
     let array = numbers::<f64>(name, value)?;
     let values = array.as_slice()?;

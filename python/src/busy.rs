@@ -1,19 +1,19 @@
-//! One thread at a time: a second one is told so instead of waiting, and long calls notice Ctrl-C.
+//! Exclusive access: a second thread gets an error instead of waiting, and long calls handle Ctrl-C.
 
 use crate::error::busy;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
-/// As many steps are taken at once at first: environments of a batch are grouped anew as often.
+/// The number of steps of the first portion. A batch regroups its environments once per portion.
 const FIRST_PORTION: usize = 8;
-/// Portions grow until they take this long; after each, signals are looked at.
+/// The duration up to which portions grow; signals are checked after each portion.
 const PORTION: Duration = Duration::from_millis(20);
 
-/// What `shared` holds, for the time of a call.
+/// Locks `shared` for the duration of a call.
 ///
 /// # Errors
-/// `clench.BusyError` while a call of another thread has it.
+/// Returns `clench.BusyError` if a call of another thread holds the lock.
 pub(crate) fn lock<'a, T>(shared: &'a Mutex<T>, what: &str) -> PyResult<MutexGuard<'a, T>> {
     match shared.try_lock() {
         Ok(guard) => Ok(guard),
@@ -23,10 +23,10 @@ pub(crate) fn lock<'a, T>(shared: &'a Mutex<T>, what: &str) -> PyResult<MutexGua
     }
 }
 
-/// Takes `steps` steps in portions without holding the interpreter, and looks at signals in between.
+/// Takes `steps` steps in portions without holding the interpreter, and checks signals in between.
 ///
 /// # Errors
-/// What a portion returns, and `KeyboardInterrupt`: the steps before it are done.
+/// Returns the error of a portion, or `KeyboardInterrupt`; the steps before it are done.
 pub(crate) fn in_portions(
     py: Python<'_>,
     steps: usize,

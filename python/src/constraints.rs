@@ -6,40 +6,41 @@ use clench::rigid::readout::{self, ConstraintRow};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Constraint rows, as MuJoCo's ``efc`` fields: entry i of each array belongs to row i, edges of a pyramid counted one by one. All
-/// are copies, in float64.
+/// Constraint rows, like MuJoCo's ``efc`` fields: entry i of each array belongs to row i, and each edge of a pyramid is
+/// a row. All arrays are copies, in float64.
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Constraints {
     /// list of str : Kind of constraint: "equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon",
-    /// "contact" or, of what was added at run time, "dynamic".
+    /// "contact", or "dynamic" for constraints that were added at run time.
     #[pyo3(get)]
     kind: Vec<&'static str>,
-    /// numpy.ndarray : Number of the constraint among those of its kind (nefc), int64: the equality, dof, joint, tendon,
-    /// contact or slot.
+    /// numpy.ndarray : Index of the constraint among those of its kind (nefc), int64: of the equality, dof, joint,
+    /// tendon, contact or slot.
     #[pyo3(get)]
     id: Py<PyAny>,
-    /// list of str : Its name, of the joint for a dof; empty where it has none, for contacts and for what was added at run time.
+    /// list of str : Its name, for a dof that of the joint; empty for contacts, dynamic constraints and unnamed
+    /// elements.
     #[pyo3(get)]
     name: Vec<String>,
     /// numpy.ndarray : Violation of an equality, signed distance of a limit or contact, zero for friction (nefc).
     #[pyo3(get)]
     pos: Py<PyAny>,
-    /// numpy.ndarray : Distance at which it begins to act (nefc).
+    /// numpy.ndarray : Distance at which the constraint begins to act (nefc).
     #[pyo3(get)]
     margin: Py<PyAny>,
     /// numpy.ndarray : Rate of change of the position (nefc).
     #[pyo3(get)]
     vel: Py<PyAny>,
-    /// numpy.ndarray : Acceleration that it asks for (nefc).
+    /// numpy.ndarray : Reference acceleration (nefc).
     #[pyo3(get)]
     aref: Py<PyAny>,
-    /// numpy.ndarray : Weight of its cost (nefc), the inverse of its regularization R.
+    /// numpy.ndarray : Weight of the cost (nefc), the inverse of the regularization R.
     #[pyo3(get, name = "D")]
     d: Py<PyAny>,
     /// numpy.ndarray : Impedance (nefc).
     #[pyo3(get)]
     impedance: Py<PyAny>,
-    /// numpy.ndarray : Dry friction, zero for all else (nefc).
+    /// numpy.ndarray : Dry friction, zero for all other rows (nefc).
     #[pyo3(get)]
     frictionloss: Py<PyAny>,
     /// numpy.ndarray : Force (nefc).
@@ -51,7 +52,7 @@ pub(crate) struct Constraints {
 }
 
 impl Constraints {
-    /// Those of the last step or forward.
+    /// Reads the rows of the last step or forward.
     pub(crate) fn of<'py, S: Precision>(
         py: Python<'py>,
         sim: &clench::Sim<S>,

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 pub(crate) struct Contact {
     /// tuple of int : The geoms; the normal points from the first to the second.
     pub(crate) geom: (usize, usize),
-    /// tuple of str : Their names; a geom without one goes by its body and its number there, as in ``torso[1]``.
+    /// tuple of str : Their names; an unnamed geom is called by its body and its index there, as in ``torso[1]``.
     pub(crate) geom_names: (String, String),
     /// tuple of int : The bodies that carry them.
     pub(crate) body: (usize, usize),
@@ -23,11 +23,13 @@ pub(crate) struct Contact {
     pub(crate) includemargin: f64,
     /// numpy.ndarray : Friction coefficients (5): two slides, spin, two rolls.
     pub(crate) friction: Py<PyAny>,
-    /// float : Force with which the contact holds on, N.
+    /// float : Adhesive force, N.
     pub(crate) adhesion: f64,
-    /// numpy.ndarray : Velocity of the second surface less that of the first (3): along both tangents, m/s, about the normal, rad/s.
+    /// numpy.ndarray : Velocity of the second surface relative to the first (3): along both tangents, m/s, about the
+    /// normal, rad/s.
     pub(crate) surfacevel: Py<PyAny>,
-    /// numpy.ndarray : Force on the second geom in the contact frame (6): along normal and tangents, N, then torques about them, N m.
+    /// numpy.ndarray : Force on the second geom in the contact frame (6): along normal and tangents, N, then torques
+    /// about them, N m.
     pub(crate) force: Py<PyAny>,
     /// numpy.ndarray : The same in world axes (6): force, N, then torque about `pos`, N m.
     pub(crate) wrench: Py<PyAny>,

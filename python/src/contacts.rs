@@ -11,19 +11,21 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::Arc;
 
-/// Contacts between geoms, an array a quantity: entry i of each belongs to contact i. All are copies, in float64.
+/// Contacts between geoms, one array per quantity: entry i belongs to contact i. All arrays are copies, in float64.
 ///
-/// Indexed by a number or iterated they give each `Contact`; by a slice, by numbers or by a mask (ncon) some of them. `of_geom`,
-/// `of_body` and `between` find those of a geom, a body or a pair.
+/// An index or an iteration gives a `Contact`; a slice, indices or a mask (ncon) give a selection. `of_geom`, `of_body`
+/// and `between` find the contacts of a geom, a body or a pair.
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Contacts {
     /// numpy.ndarray : The geoms (ncon, 2), int64; the normal points from the first to the second.
     #[pyo3(get)]
     geom: Py<PyAny>,
-    /// list of tuple of str : Their names; a geom without one goes by its body and its number there, as in ``torso[1]``.
+    /// list of tuple of str : Their names; an unnamed geom is called by its body and its index there, as in
+    /// ``torso[1]``.
     #[pyo3(get)]
     geom_names: Vec<(String, String)>,
-    /// numpy.ndarray : Dimensions (ncon), int64: 1 without friction, 3 with sliding, 4 with spin, 6 with rolling friction.
+    /// numpy.ndarray : Dimensions (ncon), int64: 1 without friction, 3 with sliding, 4 with spin, 6 with rolling
+    /// friction.
     #[pyo3(get)]
     dim: Py<PyAny>,
     /// numpy.ndarray : Signed distance (ncon), m; negative in penetration.
@@ -41,14 +43,15 @@ pub(crate) struct Contacts {
     /// numpy.ndarray : Friction coefficients (ncon, 5): two slides, spin, two rolls.
     #[pyo3(get)]
     friction: Py<PyAny>,
-    /// numpy.ndarray : Force with which a contact holds on (ncon), N: it acts beyond `includemargin` too, and can pull.
+    /// numpy.ndarray : Adhesive force (ncon), N: it acts beyond `includemargin` too, and can pull.
     #[pyo3(get)]
     adhesion: Py<PyAny>,
-    /// numpy.ndarray : Velocity of the second surface less that of the first (ncon, 3): along both tangents, m/s, about the normal, rad/s.
+    /// numpy.ndarray : Velocity of the second surface relative to the first (ncon, 3): along both tangents, m/s, about
+    /// the normal, rad/s.
     #[pyo3(get)]
     surfacevel: Py<PyAny>,
-    /// numpy.ndarray : Force in the contact frame (ncon, 6): along normal and tangents, N, then torques about them, N m. It acts
-    /// on the second geom, its negative on the first.
+    /// numpy.ndarray : Force in the contact frame (ncon, 6): along normal and tangents, N, then torques about them, N
+    /// m. It acts on the second geom; the first gets the opposite force.
     #[pyo3(get)]
     force: Py<PyAny>,
     /// numpy.ndarray : The same in world axes (ncon, 6): force, N, then torque about `pos`, N m.
@@ -59,7 +62,7 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
-    /// Those of the last step or forward.
+    /// Reads the contacts of the last step or forward.
     pub(crate) fn of<'py, S: Precision>(
         py: Python<'py>,
         sim: &clench::Sim<S>,
@@ -89,7 +92,7 @@ impl Contacts {
         Bound::new(py, contacts)
     }
 
-    /// Some of them, in this order.
+    /// Returns the chosen contacts, in this order.
     fn take(&self, py: Python<'_>, chosen: &[usize]) -> PyResult<Contacts> {
         let index = PyArray1::from_iter(py, chosen.iter().map(|&i| i as i64));
         let rows = |array: &Py<PyAny>| array.call_method1(py, "take", (&index, 0));
@@ -111,7 +114,7 @@ impl Contacts {
         })
     }
 
-    /// Those whose geoms are so.
+    /// Returns the contacts whose geoms are wanted.
     fn filter(&self, py: Python<'_>, wanted: impl Fn([usize; 2]) -> bool) -> PyResult<Contacts> {
         let all = self.geoms.iter().enumerate();
         let chosen: Vec<usize> = all
@@ -121,11 +124,11 @@ impl Contacts {
         self.take(py, &chosen)
     }
 
-    /// Contact `i`.
+    /// Returns contact `i`.
     fn single(&self, py: Python<'_>, i: usize) -> PyResult<Contact> {
         let row = |array: &Py<PyAny>| {
             let row = array.bind(py).get_item(i)?;
-            // A view of the arrays would keep all of them.
+            // A view would keep the whole array alive.
             Ok::<_, PyErr>(row.call_method0("copy")?.unbind())
         };
         let number = |array: &Py<PyAny>| array.bind(py).get_item(i)?.extract::<f64>();
@@ -154,12 +157,12 @@ impl Contacts {
 
 #[pymethods]
 impl Contacts {
-    /// Those of a geom.
+    /// Selects the contacts of a geom.
     ///
     /// Parameters
     /// ----------
     /// which : str or int
-    ///     Its name or index.
+    ///     The name or index of the geom.
     ///
     /// Returns
     /// -------
@@ -169,12 +172,12 @@ impl Contacts {
         self.filter(which.py(), |geoms| geoms.contains(&geom))
     }
 
-    /// Those of any geom of a body.
+    /// Selects the contacts of all geoms of a body.
     ///
     /// Parameters
     /// ----------
     /// which : str or int
-    ///     Its name or index.
+    ///     The name or index of the body.
     ///
     /// Returns
     /// -------
@@ -188,7 +191,7 @@ impl Contacts {
         })
     }
 
-    /// Those between two geoms, whichever comes first.
+    /// Selects the contacts between two geoms, in either order.
     ///
     /// Parameters
     /// ----------

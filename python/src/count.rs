@@ -1,4 +1,4 @@
-//! Whole numbers that say how many.
+//! Non-negative integer arguments.
 
 use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;

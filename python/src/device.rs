@@ -1,4 +1,4 @@
-//! What steps a batch: the processor, or a graphics device, as users name it.
+//! The device that steps a batch: the CPU or a GPU, as users name it.
 
 use clench::BatchOptions;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use std::sync::Arc;
 
-/// `"cpu"`, `"gpu"`, or `"gpu:"` and a part of a device's name.
+/// `"cpu"`, `"gpu"`, or `"gpu:"` followed by a part of a device's name.
 #[derive(Clone, PartialEq)]
 pub(crate) enum Device {
     Processor,
@@ -58,7 +58,7 @@ mod graphics {
     }
 }
 
-/// A batch that a graphics device steps, in the precision of its numbers.
+/// Creates a batch on a GPU, with the precision of its numbers.
 #[cfg(feature = "gpu")]
 pub(crate) fn batch<S: graphics::GpuReal>(
     model: Arc<clench::Model>,
@@ -69,7 +69,7 @@ pub(crate) fn batch<S: graphics::GpuReal>(
     clench_gpu::batch(model, count, options, name.as_deref()).map_err(graphics::error)
 }
 
-/// Says how to build a package that steps on graphics devices.
+/// Returns an error that says how to build a package with GPU support.
 #[cfg(not(feature = "gpu"))]
 pub(crate) fn batch<S: clench::Precision>(
     _: Arc<clench::Model>,
@@ -85,7 +85,7 @@ fn no_devices() -> PyErr {
     pyo3::exceptions::PyRuntimeError::new_err(without("graphics devices", "gpu"))
 }
 
-/// What an error says of a part that was not compiled in.
+/// Returns the error message for a part that was not compiled in.
 #[cfg(not(all(feature = "gpu", feature = "render")))]
 pub(crate) fn without(part: &str, feature: &str) -> String {
     format!(
@@ -95,17 +95,17 @@ pub(crate) fn without(part: &str, feature: &str) -> String {
     )
 }
 
-/// The graphics devices of this machine that can step batches, cards first.
+/// Lists the GPUs of this machine that can step batches, physical ones first.
 ///
 /// Returns
 /// -------
 /// list of str
-///     Their names, the first of which ``Batch(..., device="gpu")`` takes; empty where there is none.
+///     Their names. ``Batch(..., device="gpu")`` uses the first. Empty if there is none.
 ///
 /// Raises
 /// ------
 /// RuntimeError
-///     A package that was built without them, and how to build it with them.
+///     If the package was built without GPU support; the message says how to build it with that.
 #[pyfunction]
 pub(crate) fn devices(py: Python<'_>) -> PyResult<Vec<String>> {
     #[cfg(feature = "gpu")]

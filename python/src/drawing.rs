@@ -1,4 +1,4 @@
-//! Drawing pictures into arrays.
+//! Pictures as arrays.
 
 use crate::batch::AnyBatch;
 use crate::busy::lock;
@@ -16,7 +16,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::PoisonError;
 
-/// What of a picture is wanted, as users say it.
+/// The picture that a user requests.
 pub(crate) struct Wanted<'a, 'py> {
     /// Width and height.
     pub(crate) size: (u32, u32),
@@ -71,7 +71,7 @@ impl From<&FreeCamera> for clench_render::FreeCamera {
     }
 }
 
-/// Draws an environment.
+/// Draws one environment.
 pub(crate) fn draw<'py>(
     py: Python<'py>,
     model: &Model,

@@ -10,14 +10,13 @@ use pyo3::types::PySlice;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// One element of a model: a body, joint, geom, site, camera, tendon, actuator, equality constraint, keyframe, geom pair, mesh or
-/// height field.
+/// One element of a model: a body, joint, geom, site, camera, tendon, actuator, equality constraint, keyframe, geom
+/// pair, mesh or height field.
 ///
-/// Its numbers are attributes, named as the fields of the model without the kind: the `mass` of a body is
+/// Its fields are attributes, named as the fields of the model without the kind: the `mass` of a body is
 /// ``body_mass[id]``, the `range` of a joint ``jnt_range[id]``, the `qpos` of a keyframe ``key_qpos[id]``. A joint also
-/// has a row of each `dof_...` field for each of its degrees of freedom, and its part of `qpos0` and `qpos_spring`; a mesh
-/// has its vertices and faces as `vert` and `face`, a height field its (nrow, ncol) heights as `data`.
-/// ``dir(element)`` lists all.
+/// has its rows of each `dof_...` field, and its part of `qpos0` and `qpos_spring`. A mesh has its vertices and faces
+/// as `vert` and `face`, a height field its (nrow, ncol) heights as `data`. ``dir(element)`` lists all.
 ///
 /// Examples
 /// --------
@@ -31,14 +30,14 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    /// The element that a user names or counts.
+    /// Finds an element by name or index.
     pub(crate) fn find(model: &Arc<Model>, kind: Kind, which: &Bound<'_, PyAny>) -> PyResult<Self> {
         let id = kind.find(model, which)?;
         let model = model.clone();
         Ok(Element { model, kind, id })
     }
 
-    /// Heights by row and column; anything else as it is.
+    /// Reshapes heights to rows and columns; returns anything else unchanged.
     fn in_shape<'py>(&self, rows: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         if self.kind != Kind::HeightField {
             return Ok(rows);
@@ -47,7 +46,7 @@ impl Element {
         rows.call_method1("reshape", (shape.rows(), shape.columns()))
     }
 
-    /// The names of its fields.
+    /// Returns the names of its fields.
     fn fields(&self) -> Vec<&'static str> {
         let mut names: Vec<_> = fields::names()
             .filter_map(|name| name.strip_prefix(self.kind.prefix()))
@@ -58,7 +57,7 @@ impl Element {
         names
     }
 
-    /// Which rows of a field of the model belong to this element, where that is not the one of its number.
+    /// Returns the rows of a field that belong to this element, if they are not the single row of its index.
     fn rows_of(&self, field: &str) -> Option<Range<usize>> {
         if field.starts_with(self.kind.prefix()) {
             return assets::rows_of(&self.model, field, self.id);
@@ -79,7 +78,7 @@ impl Element {
 
 #[pymethods]
 impl Element {
-    /// str : What it is, such as "body".
+    /// str : Its kind, such as "body".
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()

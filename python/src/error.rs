@@ -1,4 +1,4 @@
-//! Errors as exceptions: which class each becomes. The classes themselves are Python's, in `clench/errors.py`.
+//! Conversion of errors to exceptions. The exception classes are defined in Python, in `clench/errors.py`.
 
 use clench::solver::ProblemError;
 use clench::{LoadError, SimError};
@@ -13,7 +13,7 @@ pub(crate) mod classes {
     pyo3::import_exception!(clench.errors, BusyError);
 }
 
-/// What is wrong with a file.
+/// Converts an error of loading a file.
 pub(crate) fn load_error(error: LoadError) -> PyErr {
     let LoadError {
         file,
@@ -25,7 +25,7 @@ pub(crate) fn load_error(error: LoadError) -> PyErr {
     classes::LoadError::new_err((message, file.to_string(), line, element))
 }
 
-/// What is wrong with a simulation or with what it was given.
+/// Converts an error of a simulation or of its arguments.
 pub(crate) fn sim_error(error: SimError) -> PyErr {
     let text = error.to_string();
     match error {
@@ -54,7 +54,7 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
     }
 }
 
-/// What is wrong with a bare problem.
+/// Converts an error of a bare problem.
 pub(crate) fn problem_error(error: ProblemError) -> PyErr {
     PyValueError::new_err(match error {
         ProblemError::MassNotPositiveDefinite { .. } => "M is not positive definite".to_owned(),
@@ -63,7 +63,7 @@ pub(crate) fn problem_error(error: ProblemError) -> PyErr {
     })
 }
 
-/// Another thread is using `what`.
+/// Returns the error that another thread is using `what`.
 pub(crate) fn busy(what: &str) -> PyErr {
     classes::BusyError::new_err(format!("another thread is using this {what}"))
 }

@@ -1,4 +1,4 @@
-//! A field of a model as it is read: its shape, and its numbers.
+//! Fields of a model as Python reads them: shapes and numbers.
 
 use clench::Model;
 use numpy::ndarray::{ArrayD, IxDyn};
@@ -6,7 +6,7 @@ use numpy::{Element, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use std::ops::Range;
 
-/// Some numbers, and how many along each axis.
+/// An array of numbers and its shape.
 pub(crate) struct Field {
     pub(crate) shape: Vec<usize>,
     pub(crate) numbers: Numbers,
@@ -19,7 +19,7 @@ pub(crate) enum Numbers {
 }
 
 impl Field {
-    /// A float if it is a single number, else an array that cannot be written to.
+    /// Returns a float for a single number, else a read-only array.
     pub(crate) fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         match self.numbers {
             Numbers::Real(numbers) if self.shape.is_empty() => {
@@ -32,7 +32,7 @@ impl Field {
     }
 }
 
-/// A new array that cannot be written to.
+/// Returns a new read-only array.
 pub(super) fn read_only<'py, T: Element>(
     py: Python<'py>,
     shape: &[usize],
@@ -44,7 +44,7 @@ pub(super) fn read_only<'py, T: Element>(
     Ok(array.into_any())
 }
 
-/// The name of a field, and how it is read.
+/// The name of a field and the function that reads it.
 pub(crate) type Reader = (&'static str, fn(&Model) -> Field);
 
 pub(crate) fn codes<E>(elements: &[E], code: impl Fn(&E) -> i32) -> Field {
@@ -68,7 +68,7 @@ pub(super) fn reals<E>(elements: &[E], number: impl Fn(&E) -> f64) -> Field {
     }
 }
 
-/// The user's own numbers, of which each element has as many.
+/// Returns a field of user data; every element has the same number of values.
 pub(crate) fn user_rows<E>(elements: &[E], numbers: impl Fn(&E) -> &[f64]) -> Field {
     let width = elements.first().map_or(0, |first| numbers(first).len());
     Field {
@@ -77,7 +77,7 @@ pub(crate) fn user_rows<E>(elements: &[E], numbers: impl Fn(&E) -> &[f64]) -> Fi
     }
 }
 
-/// Indices and counts are far below 2³¹: no memory holds so many elements.
+/// Converts an index or count. All are far below 2³¹: no memory holds that many elements.
 pub(crate) fn id(index: usize) -> i32 {
     index as i32
 }
@@ -90,5 +90,5 @@ pub(super) fn first(range: &Range<usize>) -> i32 {
     id_or_none(Some(range.start).filter(|_| !range.is_empty()))
 }
 
-/// The index of nothing.
+/// The index that stands for no element.
 pub(super) const NONE: i32 = -1;

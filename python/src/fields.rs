@@ -1,4 +1,4 @@
-//! The fields of a model by name: its parameters, and the structure in MuJoCo's names and codes.
+//! The fields of a model by name: its parameters, and its structure with MuJoCo's names and codes.
 
 use crate::assets::ASSETS;
 use crate::field::{
@@ -11,7 +11,7 @@ use clench::rigid::model::{
     Transmission, Wrap,
 };
 
-/// The names of all fields.
+/// Returns the names of all fields.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     let structure = STRUCTURE.iter().chain(ASSETS).map(|(name, _)| *name);
     ParamField::ALL
@@ -20,7 +20,7 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
         .chain(structure)
 }
 
-/// The field of that name.
+/// Returns the field with this name.
 pub(crate) fn find(model: &Model, name: &str) -> Option<Field> {
     let param = ParamField::ALL.iter().find(|field| field.name() == name);
     let param = param.map(|&field| Field {
@@ -34,7 +34,7 @@ pub(crate) fn find(model: &Model, name: &str) -> Option<Field> {
     })
 }
 
-/// Structure, read from the records of the model. Where there is nothing to point at, the index is −1.
+/// The structure, read from the records of the model. An index is −1 if there is no element to refer to.
 const STRUCTURE: &[Reader] = &[
     ("body_parentid", |m| codes(&m.bodies, |b| id(b.parent))),
     ("body_rootid", |m| codes(&m.bodies, |b| id(b.root))),
@@ -183,7 +183,7 @@ const STRUCTURE: &[Reader] = &[
     }),
 ];
 
-/// Numbers of keyframes, each of shape `shape`.
+/// Returns a quantity of all keyframes, each of shape `shape`.
 fn stored(model: &Model, shape: &[usize], numbers: impl Fn(&Keyframe) -> &[f64]) -> Field {
     let keyframes = &model.keyframes;
     Field {
@@ -192,7 +192,7 @@ fn stored(model: &Model, shape: &[usize], numbers: impl Fn(&Keyframe) -> &[f64])
     }
 }
 
-/// Pixels of cameras.
+/// Returns the resolutions of cameras, in pixels.
 fn resolutions(model: &Model) -> Field {
     let pixels = (model.cameras.iter()).flat_map(|camera| camera.resolution.map(id));
     Field {
@@ -201,14 +201,14 @@ fn resolutions(model: &Model) -> Field {
     }
 }
 
-/// A code of each element of each tendon's path.
+/// Returns one code for each element of each tendon's path.
 fn wraps(model: &Model, code: impl Fn((i32, i32, i32)) -> i32) -> Field {
     let path = model.tendons.iter().flat_map(|tendon| &tendon.path);
     let found: Vec<i32> = path.map(|&element| code(wrap(model, element))).collect();
     codes(&found, |&code| code)
 }
 
-/// What each actuator pulls on; the second index is for transmissions between two things.
+/// Returns the targets of each actuator's transmission. The second index is for transmissions with two targets.
 fn transmission_targets(model: &Model) -> Field {
     let targets = (model.actuators.iter()).flat_map(|a| transmission(a.transmission).1);
     Field {
@@ -275,7 +275,7 @@ fn bias_type(kind: BiasKind) -> i32 {
     }
 }
 
-/// Type, and what is pulled on.
+/// Returns the type of a transmission and its targets.
 fn transmission(transmission: Transmission) -> (i32, [i32; 2]) {
     match transmission {
         Transmission::Joint(joint) => (0, [id(joint), NONE]),
@@ -290,7 +290,7 @@ fn transmission(transmission: Transmission) -> (i32, [i32; 2]) {
     }
 }
 
-/// Type, what the element of a tendon's path is, and the side site of a geom.
+/// Returns the type of a path element, its object, and the side site of a geom.
 fn wrap(model: &Model, wrap: Wrap) -> (i32, i32, i32) {
     match wrap {
         Wrap::Joint(joint) => (1, id(joint), NONE),
@@ -303,7 +303,7 @@ fn wrap(model: &Model, wrap: Wrap) -> (i32, i32, i32) {
     }
 }
 
-/// Type, and what is held.
+/// Returns the type of an equality and its objects.
 fn equality(target: EqualityTarget) -> (i32, i32, i32) {
     let (first, second) = match target.coupled() {
         Coupled::Bodies([first, second]) => (first, Some(second)),

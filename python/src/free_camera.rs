@@ -1,17 +1,17 @@
-//! A camera of the user's own.
+//! Free cameras.
 
 use crate::arrays::shaped;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A camera that belongs to no model, as MuJoCo's free one: it looks at a point from a distance and a direction.
+/// A camera that belongs to no model, like MuJoCo's free camera: it looks at a point from a distance and a direction.
 ///
 /// Parameters
 /// ----------
 /// lookat : array_like
 ///     The point in the middle of the picture (3,), m.
 /// distance : float
-///     How far from it, m.
+///     Distance from that point, m.
 /// azimuth : float
 ///     Direction of view about the vertical, degrees: 0 looks along x, 90 along y.
 /// elevation : float
@@ -23,7 +23,7 @@ pub(crate) struct FreeCamera {
     /// list of float : The point in the middle of the picture (3,), m.
     #[pyo3(get)]
     pub(crate) lookat: [f64; 3],
-    /// float : How far from it, m.
+    /// float : Distance from that point, m.
     #[pyo3(get)]
     pub(crate) distance: f64,
     /// float : Direction of view about the vertical, degrees.

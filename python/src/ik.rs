@@ -17,23 +17,24 @@ use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// What inverse kinematics found. In a batch the environments are the first axis.
+/// The result of inverse kinematics. In a batch the environments are the first axis.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct IkResult {
     /// numpy.ndarray : Positions of the joints (nq,).
     qpos: Py<PyAny>,
-    /// numpy.ndarray : How far each goal is missed, without its cost (goals,), m or rad: in the order of the targets, of a frame its
-    /// position before its orientation. Of a posture it is the length of the velocity that leads there in a second.
+    /// numpy.ndarray : Remaining error of each goal, without its cost (goals,), m or rad, in the order of the targets;
+    /// a frame's position precedes its orientation. The error of a posture is the norm of the velocity that reaches it
+    /// in one second.
     errors: Py<PyAny>,
-    /// int or numpy.ndarray : Iterations; int64 in a batch.
+    /// int or numpy.ndarray : Number of iterations; int64 in a batch.
     iterations: Py<PyAny>,
-    /// int or numpy.ndarray : How it ended, a code of `IkStatus`; int8 in a batch.
+    /// int or numpy.ndarray : Outcome, a code of `IkStatus`; int8 in a batch.
     status: Py<PyAny>,
-    /// bool or numpy.ndarray : Whether all goals but postures are reached within the tolerance.
+    /// bool or numpy.ndarray : True if all goals except postures are reached within the tolerance.
     reached: Py<PyAny>,
 }
 
-/// A goal's number in an error message, and its values in a precision.
+/// The goals of all targets: tasks, and goal values in a precision.
 struct Goals<S> {
     tasks: Vec<IkTask>,
     tables: Vec<(Table<S>, usize)>,
@@ -118,7 +119,7 @@ impl<S: Precision + Element> Goals<S> {
         Ok(())
     }
 
-    /// All goals of an environment.
+    /// Returns all goals of an environment.
     fn row(&self, env: usize) -> Vec<S> {
         let rows = self
             .tables
@@ -127,7 +128,7 @@ impl<S: Precision + Element> Goals<S> {
         rows.flatten().copied().collect()
     }
 
-    /// The goals of all of `n` environments, and whether these differ.
+    /// Returns the goals of all `n` environments, and true if they differ between environments.
     fn all(&self, n: usize) -> (Vec<S>, bool) {
         match self.tables.iter().any(|(table, _)| table.is_each()) {
             true => ((0..n).flat_map(|env| self.row(env)).collect(), true),
@@ -136,7 +137,7 @@ impl<S: Precision + Element> Goals<S> {
     }
 }
 
-/// How the search goes on.
+/// Creates the options of the search.
 fn search(
     model: &Model,
     (iterations, restarts): (Count, Count),
@@ -158,44 +159,46 @@ fn search(
 
 #[pymethods]
 impl Sim {
-    /// Inverse kinematics: positions of the joints that bring targets to their goals, by damped least squares within the limits of
-    /// joints.
+    /// Solves inverse kinematics: finds joint positions that bring targets to their goals, by damped least squares
+    /// within the joint limits.
     ///
-    /// Minimises half the sum of the squared errors times their costs, downhill from the start: other starts may end elsewhere. Equality
-    /// constraints, tendon limits and collisions are not looked at. The state stays as it is: assign ``sim.qpos[:] = result.qpos``.
+    /// Minimises half the sum of the squared errors times their costs, descending from the start: other starts may lead
+    /// to other minima. Equality constraints, tendon limits and collisions are ignored. The state is not changed:
+    /// assign ``sim.qpos[:] = result.qpos``.
     ///
     /// Parameters
     /// ----------
     /// targets : iterable of FrameTarget, ComTarget and PostureTarget
-    ///     What is to be where.
+    ///     The targets and their goals.
     /// start : array_like, optional
-    ///     Positions to begin with (nq,); by default those of the present state.
+    ///     Initial positions (nq,); by default those of the current state.
     /// iterations : int
-    ///     The most iterations from one start.
+    ///     Maximum number of iterations from one start.
     /// tolerance : float
-    ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
+    ///     The error, m or rad, below which a goal counts as reached. Postures do not have to be reached if there are
+    ///     other targets.
     /// damping : float
-    ///     Damping at the start, in parts of the present cost; it adapts.
+    ///     Initial damping, relative to the current cost; it adapts.
     /// max_step : float, optional
-    ///     The most that any dof moves in an iteration, m or rad; by default steps are of any length. With one iteration, that is how far a
-    ///     control loop goes towards its goals.
+    ///     Maximum motion of any dof in an iteration, m or rad; by default unlimited. With one iteration, it limits how
+    ///     far a control loop moves towards its goals.
     /// limits : bool
-    ///     Whether joints are kept in their ranges; a start outside is moved in.
+    ///     True to keep joints in their ranges; a start outside is moved inside.
     /// dofs : array_like of bool, optional
-    ///     Which dofs may move (nv,); by default all.
+    ///     Mask of the dofs that may move (nv,); by default all.
     /// restarts : int
-    ///     How often a search that did not reach its goals begins anew, from postures spread evenly over the ranges of the joints; the
-    ///     best of all ends comes out.
+    ///     Number of new starts if the goals are not reached, from postures spread evenly over the ranges of the
+    ///     joints. The best result is returned.
     ///
     /// Returns
     /// -------
     /// IkResult
-    ///     The positions, and how far they are from the goals.
+    ///     The positions and their errors.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     Objects that the model does not have, wrong shapes, numbers that are not finite.
+    ///     If the model does not have an object, a shape is wrong, or a number is not finite.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
                         max_step = None, limits = true, dofs = None, restarts = Count(0)),
            text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]
@@ -245,35 +248,37 @@ impl Sim {
 
 #[pymethods]
 impl Batch {
-    /// Inverse kinematics of every environment, from the present states, see `Sim.ik`.
+    /// Solves inverse kinematics in every environment, from the current states; see `Sim.ik`.
     ///
     /// Parameters
     /// ----------
     /// targets : iterable of FrameTarget, ComTarget and PostureTarget
-    ///     What is to be where; goals may be the same for all environments, or have the environments as first axis.
+    ///     The targets and their goals. Goals may be the same for all environments, or have the environments as first
+    ///     axis.
     /// start : array_like, optional
-    ///     Positions to begin with, (nq,) or (n, nq); by default those of the present states.
+    ///     Initial positions, (nq,) or (n, nq); by default those of the current states.
     /// iterations : int
-    ///     The most iterations from one start.
+    ///     Maximum number of iterations from one start.
     /// tolerance : float
-    ///     The error of each goal, m or rad, at which it is done. Postures are not waited for where there are other targets.
+    ///     The error, m or rad, below which a goal counts as reached. Postures do not have to be reached if there are
+    ///     other targets.
     /// damping : float
-    ///     Damping at the start, in parts of the present cost; it adapts.
+    ///     Initial damping, relative to the current cost; it adapts.
     /// max_step : float, optional
-    ///     The most that any dof moves in an iteration, m or rad; by default steps are of any length. With one iteration, that is how far a
-    ///     control loop goes towards its goals.
+    ///     Maximum motion of any dof in an iteration, m or rad; by default unlimited. With one iteration, it limits how
+    ///     far a control loop moves towards its goals.
     /// limits : bool
-    ///     Whether joints are kept in their ranges; a start outside is moved in.
+    ///     True to keep joints in their ranges; a start outside is moved inside.
     /// dofs : array_like of bool, optional
-    ///     Which dofs may move (nv,); by default all.
+    ///     Mask of the dofs that may move (nv,); by default all.
     /// restarts : int
-    ///     How often a search that did not reach its goals begins anew, from postures spread evenly over the ranges of the joints; the
-    ///     best of all ends comes out.
+    ///     Number of new starts if the goals are not reached, from postures spread evenly over the ranges of the
+    ///     joints. The best result is returned.
     ///
     /// Returns
     /// -------
     /// IkResult
-    ///     With the environments as first axis.
+    ///     The results, with the environments as first axis.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
                         max_step = None, limits = true, dofs = None, restarts = Count(0)),
            text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]
@@ -316,7 +321,7 @@ fn is_reached(status: IkStatus) -> bool {
     status == IkStatus::Reached
 }
 
-/// The results of all environments.
+/// Collects the results of all environments.
 fn many<S: Precision + Element>(
     py: Python<'_>,
     found: &[IkSolution<S>],

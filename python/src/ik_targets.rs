@@ -1,34 +1,34 @@
-//! What inverse kinematics bring to their goals, as Python sees it: descriptions, whose numbers are read when they are solved for.
+//! Targets of inverse kinematics as Python objects. Their numbers are read when a problem is solved.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A frame that inverse kinematics bring to a place, an orientation or both.
+/// A target position, orientation or both of a frame, for inverse kinematics.
 ///
-/// Exactly one object is chosen, by name or index. Each of the two counts as a goal of its own.
+/// Exactly one object is chosen, by name or index. The position and the orientation are separate goals.
 ///
 /// Parameters
 /// ----------
 /// body, body_com, geom, site, camera : str or int
 ///     The object: the frame of a body, its centre of mass, a geom, a site or a camera.
 /// position : array_like, optional
-///     Where it is to be, in the world (3,), m; in a batch also (n, 3).
+///     Desired position in the world (3,), m; in a batch also (n, 3).
 /// quat : array_like, optional
-///     How it is to be turned (4,); in a batch also (n, 4).
+///     Desired orientation, a quaternion (4,); in a batch also (n, 4).
 /// position_cost : float or array_like
-///     Weight of the error of the position, 1/m; one number, or one for each world axis (3,), 0 where it does not count.
+///     Weight of the position error, 1/m; one number, or one for each world axis (3,), 0 to ignore it.
 /// orientation_cost : float
-///     Weight of the angle that is left, 1/rad.
+///     Weight of the angle error, 1/rad.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     Neither a position nor an orientation.
+///     If there is neither a position nor an orientation.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct FrameTarget {
-    /// str, int or None : The body whose frame it is.
+    /// str, int or None : The body, for its frame.
     pub(crate) body: Option<Py<PyAny>>,
-    /// str, int or None : The body whose inertial frame it is.
+    /// str, int or None : The body, for its inertial frame.
     pub(crate) body_com: Option<Py<PyAny>>,
     /// str, int or None : The geom.
     pub(crate) geom: Option<Py<PyAny>>,
@@ -36,13 +36,13 @@ pub(crate) struct FrameTarget {
     pub(crate) site: Option<Py<PyAny>>,
     /// str, int or None : The camera.
     pub(crate) camera: Option<Py<PyAny>>,
-    /// array_like or None : Where it is to be.
+    /// array_like or None : Desired position.
     pub(crate) position: Option<Py<PyAny>>,
-    /// array_like or None : How it is to be turned.
+    /// array_like or None : Desired orientation.
     pub(crate) quat: Option<Py<PyAny>>,
-    /// float or array_like : Weight of the error of the position.
+    /// float or array_like : Weight of the position error.
     pub(crate) position_cost: Py<PyAny>,
-    /// float : Weight of the angle that is left.
+    /// float : Weight of the angle error.
     pub(crate) orientation_cost: f64,
 }
 
@@ -83,21 +83,21 @@ impl FrameTarget {
     }
 }
 
-/// A centre of mass that inverse kinematics bring to a place.
+/// A target position of a centre of mass, for inverse kinematics.
 ///
 /// Parameters
 /// ----------
 /// position : array_like
-///     Where it is to be, in the world (3,), m; in a batch also (n, 3).
+///     Desired position in the world (3,), m; in a batch also (n, 3).
 /// body : str or int
-///     The body that it is of, with all below it; by default the world, which is everything.
+///     The root of the subtree whose centre of mass it is; by default the world, for everything.
 /// cost : float or array_like
-///     Weight of the error, 1/m; one number, or one for each world axis (3,), 0 where it does not count.
+///     Weight of the error, 1/m; one number, or one for each world axis (3,), 0 to ignore it.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct ComTarget {
-    /// array_like : Where it is to be.
+    /// array_like : Desired position.
     pub(crate) position: Py<PyAny>,
-    /// str or int : The body that it is of, with all below it.
+    /// str or int : The root of the subtree.
     pub(crate) body: Py<PyAny>,
     /// float or array_like : Weight of the error.
     pub(crate) cost: Py<PyAny>,
@@ -123,19 +123,19 @@ impl ComTarget {
     }
 }
 
-/// Positions of all joints that inverse kinematics keep near, usually at a small cost beside other targets.
+/// A target posture for inverse kinematics, usually with a small cost in addition to other targets.
 ///
 /// Parameters
 /// ----------
 /// qpos : array_like
-///     The positions (nq,); in a batch also (n, nq).
+///     The positions of all joints (nq,); in a batch also (n, nq).
 /// cost : float or array_like
-///     Weight of errors, 1/m and 1/rad; one number, or one for each dof (nv,), 0 where it does not count.
+///     Weight of the errors, 1/m and 1/rad; one number, or one for each dof (nv,), 0 to ignore it.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct PostureTarget {
     /// array_like : The positions.
     pub(crate) qpos: Py<PyAny>,
-    /// float or array_like : Weight of errors.
+    /// float or array_like : Weight of the errors.
     pub(crate) cost: Py<PyAny>,
 }
 

@@ -1,4 +1,4 @@
-//! What `Sim` answers about forces and accelerations.
+//! Queries of `Sim` about forces and accelerations.
 
 use crate::answer::{answer, each_row};
 use crate::busy::lock;
@@ -12,7 +12,7 @@ use clench::math::{Real, Vec3};
 use clench::{Acceleration, Model};
 use pyo3::prelude::*;
 
-/// Which acceleration is given, by the argument or else by the model.
+/// Returns the kind of acceleration: that of the argument, or by default the model's.
 pub(crate) fn given(model: &Model, discrete: Option<bool>) -> Acceleration {
     match discrete {
         None => Acceleration::of(model),
@@ -23,7 +23,8 @@ pub(crate) fn given(model: &Model, discrete: Option<bool>) -> Acceleration {
 
 #[pymethods]
 impl Sim {
-    /// M x: the forces along dofs that accelerations take, as MuJoCo's ``mj_mulM``. See `mass_matrix` for M itself.
+    /// Computes M x, the forces along dofs that cause given accelerations, like MuJoCo's ``mj_mulM``. `mass_matrix`
+    /// returns M itself.
     ///
     /// Parameters
     /// ----------
@@ -33,7 +34,7 @@ impl Sim {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     In the shape of `x`.
+    ///     The forces, in the shape of `x`.
     fn mul_mass<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.described().nv;
         let mut guard = lock(self.inner(), "simulation")?;
@@ -48,7 +49,7 @@ impl Sim {
         })
     }
 
-    /// M⁻¹ x: the accelerations that forces along dofs cause, as MuJoCo's ``mj_solveM``.
+    /// Computes M⁻¹ x, the accelerations caused by forces along dofs, like MuJoCo's ``mj_solveM``.
     ///
     /// Parameters
     /// ----------
@@ -58,12 +59,12 @@ impl Sim {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     In the shape of `x`.
+    ///     The accelerations, in the shape of `x`.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     A mass matrix that is singular.
+    ///     If the mass matrix is singular.
     fn solve_mass<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.described().nv;
         let mut guard = lock(self.inner(), "simulation")?;
@@ -73,7 +74,7 @@ impl Sim {
         })
     }
 
-    /// The forces along dofs of a force and a torque on a body, as MuJoCo's ``mj_applyFT``.
+    /// Computes the forces along dofs of a force and a torque on a body, like MuJoCo's ``mj_applyFT``.
     ///
     /// Parameters
     /// ----------
@@ -84,12 +85,12 @@ impl Sim {
     /// torque : array_like, optional
     ///     N m, world axes (3,).
     /// point : array_like, optional
-    ///     Where the force acts, in the world (3,), m; by default at the body's centre of mass.
+    ///     The point of application in the world (3,), m; by default the body's centre of mass.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (nv,), N along slides and N m about hinges. Nothing is applied: add it to `qfrc_applied` for that.
+    ///     (nv,), N along slides and N m about hinges. To apply them, add them to `qfrc_applied`.
     #[pyo3(signature = (body, force = None, torque = None, point = None))]
     fn joint_forces<'py>(
         &self,
@@ -119,19 +120,21 @@ impl Sim {
         })
     }
 
-    /// Inverse dynamics: the forces along dofs that cause an acceleration in the present state, contacts and all other constraints
-    /// included, as MuJoCo's ``mj_inverse``.
+    /// Computes inverse dynamics: the forces along dofs that cause an acceleration in the current state, contacts and
+    /// all other constraints included, like MuJoCo's ``mj_inverse``.
     ///
-    /// It is what actuators and applied forces have to add up to: ``qfrc_actuator + qfrc_applied`` and what ``xfrc_applied`` is
-    /// along dofs. Nothing is searched for. Outputs stay as they are; whatever sleeps takes part.
+    /// This is the required sum of actuator and applied forces: ``qfrc_actuator + qfrc_applied`` and ``xfrc_applied``
+    /// mapped to dofs. The computation is direct, without iterations. Outputs do not change; sleeping trees are
+    /// included.
     ///
     /// Parameters
     /// ----------
     /// qacc : array_like
     ///     Accelerations (nv,), or rows of them (k, nv).
     /// discrete : bool, optional
-    ///     Whether they are those by which a step changes the velocity, ``(v1 - v0) / timestep``; else those that `forward` finds.
-    ///     They differ where forces are integrated implicitly. By default as the model says (flag ``invdiscrete``).
+    ///     True if a step changes the velocity by them, ``(v1 - v0) / timestep``; false if they are those that
+    ///     `forward` finds. They differ if forces are integrated implicitly. The default is the model's flag
+    ///     ``invdiscrete``.
     ///
     /// Returns
     /// -------
@@ -141,9 +144,9 @@ impl Sim {
     /// Raises
     /// ------
     /// ValueError
-    ///     Wrong shapes, numbers that are not finite, discrete ones with the Runge-Kutta integrator.
+    ///     If a shape is wrong, a number is not finite, or `discrete` is used with the Runge-Kutta integrator.
     /// SimulationError
-    ///     As `step`.
+    ///     As for `step`.
     #[pyo3(signature = (qacc, *, discrete = None))]
     fn inverse<'py>(
         &self,

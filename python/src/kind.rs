@@ -1,4 +1,4 @@
-//! The kinds of element that a model has, and how one is found.
+//! The kinds of elements of a model, and the search for an element.
 
 use crate::names::unknown;
 use clench::Model;
@@ -6,7 +6,7 @@ use pyo3::exceptions::{PyIndexError, PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
-/// What an element is.
+/// The kind of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Body,
@@ -41,13 +41,13 @@ impl Kind {
         Kind::HeightField,
     ];
 
-    /// The kind of that name.
+    /// Returns the kind with this name.
     pub(crate) fn of_name(name: &str) -> PyResult<Kind> {
         let found = Kind::ALL.into_iter().find(|kind| kind.name() == name);
         found.ok_or_else(|| unknown("kind of element", name, &Kind::ALL.map(Kind::name)))
     }
 
-    /// What one is called.
+    /// Returns the name of the kind.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Kind::Body => "body",
@@ -66,7 +66,7 @@ impl Kind {
         }
     }
 
-    /// How the names of its fields begin.
+    /// Returns the prefix of the names of its fields.
     pub(crate) fn prefix(self) -> &'static str {
         match self {
             Kind::Body => "body_",
@@ -85,7 +85,7 @@ impl Kind {
         }
     }
 
-    /// The names of all elements of this kind, some of them possibly empty.
+    /// Returns the names of all elements of this kind; some may be empty.
     pub(crate) fn names(self, model: &Model) -> Vec<&str> {
         match self {
             Kind::Body => model.bodies.iter().map(|e| &*e.name).collect(),
@@ -104,11 +104,11 @@ impl Kind {
         }
     }
 
-    /// The index of the element that a user names or counts.
+    /// Finds an element by name or index.
     ///
     /// # Errors
-    /// ValueError for a name that nothing has, IndexError for a number that is negative or too large, TypeError for what is
-    /// neither name nor number.
+    /// Returns a ValueError if no element has the name, an IndexError if the index is negative or too large, or a
+    /// TypeError if the argument is neither a name nor an index.
     pub(crate) fn find(self, model: &Model, which: &Bound<'_, PyAny>) -> PyResult<usize> {
         let names = self.names(model);
         let kind = self.name();

@@ -1,5 +1,5 @@
-//! The compiled part of the Python package `clench`: the classes and functions that `clench/__init__.py` offers. Numbers are
-//! computed in the crates; here they are only shown, checked and handed on.
+//! The compiled part of the Python package `clench`: the classes and functions that `clench/__init__.py` exports. The
+//! crates do the computation; this crate converts, checks and forwards values.
 
 #![deny(unreachable_pub)]
 
@@ -102,7 +102,7 @@ mod _core {
     #[pymodule_export]
     use crate::viewer::Viewer;
     #[pymodule_export]
-    #[allow(non_upper_case_globals)] // Python's name.
+    #[allow(non_upper_case_globals)] // The name that Python prescribes.
     const __version__: &str = env!("CARGO_PKG_VERSION");
 
     #[pymodule_init]
@@ -111,7 +111,7 @@ mod _core {
         let parameters = ParamField::ALL.iter().map(|field| field.name());
         module.add("OUTPUTS", PyTuple::new(module.py(), outputs)?)?;
         module.add("PARAMETERS", PyTuple::new(module.py(), parameters)?)?;
-        // For `clench.State` and for the tool that writes the stub: set, for `add` would list it in `__all__`.
+        // For `clench.State` and for the tool that writes the stub. `add` would list it in `__all__`, so it is set.
         let fields = state_views::FIELDS.iter().map(|field| {
             let shape = match field.width {
                 1 => format!("{},", field.size.symbol()),

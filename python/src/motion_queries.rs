@@ -1,4 +1,4 @@
-//! What `Sim` answers about how objects move.
+//! Queries of `Sim` about the motion of objects.
 
 use crate::answer::answer;
 use crate::busy::lock;
@@ -15,7 +15,7 @@ use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The place that a question is about: an object, or a point of a body.
+/// Returns the point of a query: an object, or a point of a body.
 fn anchor<S: Precision>(model: &Model, choices: &Choices, point: Choice) -> PyResult<Anchor<S>> {
     let object = choices.one(model)?;
     match (object, point) {
@@ -30,25 +30,26 @@ fn anchor<S: Precision>(model: &Model, choices: &Choices, point: Choice) -> PyRe
 
 #[pymethods]
 impl Sim {
-    /// The Jacobian of an object: its velocity, and its body's angular velocity, by the velocities of the dofs.
+    /// Computes the Jacobian of an object: the derivative of its velocity, and of its body's angular velocity, by the
+    /// dof velocities.
     ///
-    /// Exactly one object is chosen, by name or index. Where bodies are as queries see them (see `Sim`). As MuJoCo's ``mj_jac``,
-    /// ``mj_jacBody``, ``mj_jacBodyCom``, ``mj_jacGeom`` and ``mj_jacSite``.
+    /// Exactly one object is chosen, by name or index. Body poses are those that queries use (see `Sim`). It is like
+    /// MuJoCo's ``mj_jac``, ``mj_jacBody``, ``mj_jacBodyCom``, ``mj_jacGeom`` and ``mj_jacSite``.
     ///
     /// Parameters
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object: the frame of a body, its centre of mass, a geom, a site or a camera.
     /// point : array_like, optional
-    ///     With `body`: the point of the body that is at this place in the world now (3,), m.
+    ///     With `body`: the point of the body that is currently at this position in the world (3,), m.
     /// out : numpy.ndarray, optional
-    ///     Where to write it: (2, 3, nv), of the precision of the simulation.
+    ///     An array to write to: (2, 3, nv), of the precision of the simulation.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (2, 3, nv), world axes: translation, m/s a unit of each dof's velocity, then rotation, rad/s. So
-    ///     ``jacp, jacr = sim.jacobian(site="hand")``.
+    ///     (2, 3, nv), in world axes: translation, m/s per unit of each dof's velocity, then rotation, rad/s. For
+    ///     example, ``jacp, jacr = sim.jacobian(site="hand")``.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None, out = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian<'py>(
@@ -76,21 +77,21 @@ impl Sim {
         })
     }
 
-    /// How fast the Jacobian of an object changes, as MuJoCo's ``mj_jacDot``.
+    /// Computes the time derivative of the Jacobian of an object, like MuJoCo's ``mj_jacDot``.
     ///
     /// Parameters
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object, see `jacobian`.
     /// point : array_like, optional
-    ///     With `body`: the point of the body that is at this place in the world now (3,), m.
+    ///     With `body`: the point of the body that is currently at this position in the world (3,), m.
     /// out : numpy.ndarray, optional
-    ///     Where to write it: (2, 3, nv), of the precision of the simulation.
+    ///     An array to write to: (2, 3, nv), of the precision of the simulation.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (2, 3, nv): that of the translational part, then of the rotational one, 1/s times the units of `jacobian`.
+    ///     (2, 3, nv): of the translational part, then of the rotational part, in 1/s times the units of `jacobian`.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None, out = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian_rate<'py>(
@@ -118,19 +119,19 @@ impl Sim {
         })
     }
 
-    /// The Jacobian of the centre of mass of a body and all below it, as MuJoCo's ``mj_jacSubtreeCom``.
+    /// Computes the Jacobian of the centre of mass of a body's subtree, like MuJoCo's ``mj_jacSubtreeCom``.
     ///
     /// Parameters
     /// ----------
     /// body : str or int
-    ///     The body; 0, the world, for that of everything.
+    ///     The body; 0, the world, for the centre of mass of everything.
     /// out : numpy.ndarray, optional
-    ///     Where to write it: (3, nv), of the precision of the simulation.
+    ///     An array to write to: (3, nv), of the precision of the simulation.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (3, nv), world axes.
+    ///     (3, nv), in world axes.
     #[pyo3(signature = (body, *, out = None))]
     fn subtree_jacobian<'py>(
         &self,
@@ -149,14 +150,14 @@ impl Sim {
         })
     }
 
-    /// The velocity of an object, as MuJoCo's ``mj_objectVelocity`` (which has the angular part first).
+    /// Computes the velocity of an object, like MuJoCo's ``mj_objectVelocity`` (which has the angular part first).
     ///
     /// Parameters
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object, see `jacobian`.
     /// local : bool
-    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///     True for the axes of the object, false for those of the world.
     ///
     /// Returns
     /// -------
@@ -182,15 +183,15 @@ impl Sim {
         })
     }
 
-    /// The acceleration of an object, as MuJoCo's ``mj_objectAcceleration`` (which has the angular part first): what an
-    /// accelerometer there feels, gravity's upward reaction included.
+    /// Computes the acceleration of an object, like MuJoCo's ``mj_objectAcceleration`` (which has the angular part
+    /// first). An accelerometer there would measure it: it includes the upward reaction to gravity.
     ///
     /// Parameters
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object, see `jacobian`.
     /// local : bool
-    ///     Whether it is told in the axes of the object; else in those of the world.
+    ///     True for the axes of the object, false for those of the world.
     ///
     /// Returns
     /// -------

@@ -1,10 +1,10 @@
-//! Elements of simulations and batches by name: methods that give the views of `clench._named`.
+//! Elements of simulations and batches by name: methods that return the views of `clench._named`.
 
 use crate::batch::Batch;
 use crate::sim::Sim;
 use pyo3::prelude::*;
 
-/// A view of what belongs to `owner`, of a class of `clench._named`.
+/// Creates a view of an element of `owner`, of a class of `clench._named`.
 fn view<'py>(
     owner: &Bound<'py, PyAny>,
     class: &str,
@@ -14,7 +14,7 @@ fn view<'py>(
     module.getattr(class)?.call1((owner, which))
 }
 
-/// What is said of each method that gives a view.
+/// The docstring of a method that returns a view.
 macro_rules! doc {
     ($kind:literal, $class:literal) => {
         concat!(
@@ -95,7 +95,8 @@ macro_rules! named_access {
                 view(this.as_any(), "EqualityView", which)
             }
 
-            /// Parameters : All parameters by name, as in ``params.gravity``: read as copies, an assignment is checked.
+            /// Parameters : All parameters by name, as in ``params.gravity``. Reading returns copies; assignments are
+            /// validated.
             #[getter]
             fn params<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
                 let module = this.py().import("clench._named")?;

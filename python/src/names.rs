@@ -1,10 +1,10 @@
-//! Names as users give them, and what to say where nothing has such a name.
+//! Names from Python, and error messages for unknown ones.
 
 use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
-/// Most names that a message lists.
+/// The maximum number of names that a message lists.
 const LISTED: usize = 10;
 
 /// Several names.
@@ -14,7 +14,7 @@ impl FromPyObject<'_, '_> for Names {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        // A sequence too, to Python: of letters.
+        // A str is also a sequence in Python: of letters.
         if let Ok(name) = object.cast::<PyString>() {
             let name = name.to_string_lossy();
             return Err(PyTypeError::new_err(format!(
@@ -25,7 +25,7 @@ impl FromPyObject<'_, '_> for Names {
     }
 }
 
-/// Nothing of this kind is called `name`; `known` are those that are.
+/// Returns the error that nothing of this kind is called `name`; `known` are the existing names.
 pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> PyErr {
     let known: Vec<&str> = (known.iter().copied())
         .filter(|known| !known.is_empty())
@@ -45,7 +45,7 @@ pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> PyErr {
     PyValueError::new_err(text)
 }
 
-/// An object of this class has no attribute `name`; `known` are some that it has.
+/// Returns the error that an object of this class has no attribute `name`; `known` are some that it has.
 pub(crate) fn no_attribute(class: &str, name: &str, known: &[&str]) -> PyErr {
     let hint = nearest(name, known).map(did_you_mean).unwrap_or_default();
     PyAttributeError::new_err(format!("{class} has no attribute \"{name}\"{hint}"))
@@ -55,8 +55,8 @@ fn did_you_mean(known: &str) -> String {
     format!("; did you mean \"{known}\"?")
 }
 
-/// The name that was probably meant: one that goes on where `name` ends or begins before it, such as `body_mass` for `mass`,
-/// or else the one with the fewest letters to change.
+/// Returns the name that was probably meant: one that extends `name` at either end, such as `body_mass` for `mass`, or
+/// else the one with the smallest edit distance.
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let distance = |known: &str| strsim::damerau_levenshtein(known, name);
     let holds = |known: &&&str| {

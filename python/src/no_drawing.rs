@@ -1,14 +1,14 @@
-//! What stands for `drawing` in a package that is built without pictures.
+//! Replacement of `drawing` in a package that is built without rendering.
 
 use crate::error::classes::ClenchError;
 use crate::model::Model;
 use crate::viewed::Target;
 use pyo3::prelude::*;
 
-/// Nothing draws.
+/// A renderer, which cannot exist without the `render` feature.
 pub(crate) enum Renderer {}
 
-/// What of a picture is wanted, as users say it.
+/// The picture that a user requests.
 #[expect(dead_code, reason = "nothing draws")]
 pub(crate) struct Wanted<'a, 'py> {
     pub(crate) size: (u32, u32),
@@ -17,7 +17,7 @@ pub(crate) struct Wanted<'a, 'py> {
     pub(crate) groups: Option<Vec<usize>>,
 }
 
-/// Says how to build a package that draws.
+/// Returns an error that says how to build a package that draws.
 pub(crate) fn draw<'py>(
     _: Python<'py>,
     _: &Model,

@@ -1,4 +1,4 @@
-//! The values of options: read from Python, checked, and shown again.
+//! Conversion of option values from and to Python, and their validation.
 
 use clench::rigid::options::{FrictionCone, MaxContacts, OptionValue, RigidOption};
 use clench::solver::{ConstraintSolver, Switch};
@@ -6,15 +6,15 @@ use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
 
-/// Most iterations, sweeps or contacts that can be asked for.
+/// The maximum number of iterations, sweeps or contacts.
 const MOST: usize = i32::MAX as usize;
 
-/// A type of options, as Python gives it.
+/// A type of option that can be read from Python.
 pub(crate) trait OptionType: Sized {
     fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self>;
 }
 
-/// The value of an option that was read from what is `given`.
+/// Returns the value of an option, or an error about the `given` object if it is out of range.
 pub(crate) fn in_range<T: Copy + Into<OptionValue>>(
     option: RigidOption,
     value: T,
@@ -148,7 +148,7 @@ fn wrong_type(name: &str, value: &Bound<'_, PyAny>, what: &str) -> PyErr {
     }
 }
 
-/// An option's value as Python has it.
+/// A type of option that can be converted to Python.
 pub(crate) trait Show {
     fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
 }

@@ -1,11 +1,11 @@
-//! `clench.RigidOptions`: which options were set, each checked as it is. What there is says the table of options.
+//! `clench.RigidOptions`: the options that were set, each checked separately. The table of options defines them.
 
 use crate::option_values::{OptionType, Show, in_range};
 use clench::rigid::options::RigidOption;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// What Python may give for an option of a type.
+/// Returns the documented Python type for an option type.
 macro_rules! given {
     (usize) => {
         "int"
@@ -37,7 +37,8 @@ macro_rules! declare_class {
     )*})*) => {
         /// Options of the constraint model and its solver.
         ///
-        /// What is set here wins over the model's file, the file over the defaults below. What is not set is None.
+        /// Options that are set here take precedence over the model's file, and the file over the defaults below. An
+        /// option that is not set is None.
         ///
         /// Parameters
         /// ----------
@@ -49,9 +50,9 @@ macro_rules! declare_class {
         /// Raises
         /// ------
         /// ValueError
-        ///     An option outside its range.
+        ///     If an option is outside its range.
         /// TypeError
-        ///     An option of the wrong type, or one that does not exist.
+        ///     If an option has the wrong type or does not exist.
         ///
         /// Examples
         /// --------
@@ -65,7 +66,7 @@ macro_rules! declare_class {
         impl RigidOptions {
             #[new]
             #[pyo3(signature = (*, $($($name=None),*),*))]
-            #[allow(clippy::too_many_arguments)] // By name, in Python.
+            #[allow(clippy::too_many_arguments)] // They are keywords.
             fn new($($($name: Option<&Bound<'_, PyAny>>),*),*) -> PyResult<Self> {
                 Ok(RigidOptions(clench::RigidOptions {
                     $($($name: $name.map(|given| {
@@ -101,7 +102,7 @@ macro_rules! declare_class {
         }
 
         impl RigidOptions {
-            /// What is set, in order.
+            /// Returns the options that are set, in order.
             fn set<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
                 let set = PyDict::new(py);
                 $($(if let Some(value) = self.0.$name {

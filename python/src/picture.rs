@@ -10,33 +10,34 @@ use std::sync::Arc;
 
 #[pymethods]
 impl Sim {
-    /// A picture of the present state, drawn without a window by a graphics card or, where there is none, by Mesa.
+    /// Renders a picture of the current state, without a window, on a GPU or, if there is none, with Mesa.
     ///
-    /// Geoms have the sizes of the model, whatever `set_param` changed; not drawn are sites, skins, and pictures of files on surfaces.
+    /// Geoms have the sizes of the model, regardless of `set_param`. Sites, skins and image textures are not drawn.
     ///
     /// Parameters
     /// ----------
     /// width, height : int
     ///     Pixels.
     /// camera : str, int or FreeCamera, optional
-    ///     A camera of the model by name or index, or one of your own; without it all that moves is seen.
+    ///     A camera of the model by name or index, or a free one; by default everything that moves is in view.
     /// kind : {"rgb", "depth", "geom"}
-    ///     What is wanted of each pixel.
+    ///     The quantity of each pixel.
     /// groups : sequence of int, optional
-    ///     The groups of geoms that are seen; 0, 1 and 2 if not given, as in MuJoCo.
+    ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     "rgb": colours (height, width, 3), uint8. "depth": distances along the direction in which the camera looks (height,
-    ///     width), m, float32, infinite where nothing is. "geom": geoms (height, width), int32, -1 for none.
+    ///     "rgb": colours (height, width, 3), uint8. "depth": distances along the viewing direction (height, width), m,
+    ///     float32, infinite where there is no geom. "geom": indices of geoms (height, width), int32, -1 for none.
     ///
     /// Raises
     /// ------
     /// ClenchError
-    ///     No device that draws, and what to install; a package that was built without pictures, and how to build it with them.
+    ///     If no device can draw; the message says what to install. Also if the package was built without rendering;
+    ///     the message says how to build it with that.
     /// ValueError
-    ///     A size that no picture can have; a name that no camera has.
+    ///     If the size is invalid, or no camera has the name.
     #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None))]
     fn render<'py>(
         &self,
@@ -60,27 +61,27 @@ impl Sim {
 
 #[pymethods]
 impl Batch {
-    /// A picture of one environment in its present state, as `Sim.render`.
+    /// Renders a picture of one environment in its current state; see `Sim.render`.
     ///
     /// Parameters
     /// ----------
     /// env : int
-    ///     Which environment.
+    ///     The index of the environment.
     /// width, height : int
     ///     Pixels.
     /// camera : str, int or FreeCamera, optional
-    ///     A camera of the model by name or index, or one of your own; without it all that moves is seen.
+    ///     A camera of the model by name or index, or a free one; by default everything that moves is in view.
     /// kind : {"rgb", "depth", "geom"}
-    ///     What is wanted of each pixel.
+    ///     The quantity of each pixel.
     /// groups : sequence of int, optional
-    ///     The groups of geoms that are seen; 0, 1 and 2 if not given, as in MuJoCo.
+    ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     As of `Sim.render`.
+    ///     As for `Sim.render`.
     #[pyo3(signature = (env, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None))]
-    #[allow(clippy::too_many_arguments)] // Named ones, to Python.
+    #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
         py: Python<'py>,

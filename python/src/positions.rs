@@ -1,4 +1,4 @@
-//! What `Model` says of positions of joints: where velocities lead, and which velocity leads somewhere.
+//! Functions of `Model` on joint positions: integration and differentiation.
 
 use crate::answer::{answer, each_row};
 use crate::arrays::{numbers, require_finite, shape_text, shaped};
@@ -10,16 +10,16 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Model {
-    /// Positions after motion at a constant velocity, as MuJoCo's ``mj_integratePos``.
+    /// Integrates positions at a constant velocity, like MuJoCo's ``mj_integratePos``.
     ///
     /// Parameters
     /// ----------
     /// qpos : array_like
     ///     Positions (nq,), or rows of them (k, nq).
     /// qvel : array_like
-    ///     Velocities (nv,), or as many rows (k, nv).
+    ///     Velocities (nv,), or the same number of rows (k, nv).
     /// time : float
-    ///     How long, s.
+    ///     Duration, s.
     ///
     /// Returns
     /// -------
@@ -42,14 +42,15 @@ impl Model {
         })
     }
 
-    /// The constant velocity that leads from positions to others, as MuJoCo's ``mj_differentiatePos``.
+    /// Computes the constant velocity that leads from one configuration to another, like MuJoCo's
+    /// ``mj_differentiatePos``.
     ///
     /// Parameters
     /// ----------
     /// qpos1, qpos2 : array_like
-    ///     Positions, before and after (nq,), or rows of them (k, nq).
+    ///     Positions before and after (nq,), or rows of them (k, nq).
     /// time : float
-    ///     In how long, s; not 0.
+    ///     Duration, s; not 0.
     ///
     /// Returns
     /// -------
@@ -85,7 +86,7 @@ impl Model {
     }
 }
 
-/// As many rows of `width` numbers as another array has rows.
+/// Converts a value to rows of `width` numbers, as many as another array has.
 fn shaped_rows(
     name: &str,
     values: &Bound<'_, PyAny>,

@@ -1,4 +1,4 @@
-//! Bits of a number, as users name them.
+//! The precision of numbers, as users name it.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

@@ -1,4 +1,4 @@
-//! What rays and distances are asked with, and what they find.
+//! Arguments and results of rays and distances.
 
 use crate::arrays::{column, indices, require_finite, shaped};
 use crate::kind::Kind;
@@ -9,23 +9,23 @@ use clench::{Model, Precision, RayFilter};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Where a ray hits first.
+/// The first hit of a ray.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct RayHit {
     /// int : The geom.
     geom: usize,
-    /// str : Its name; a geom without one goes by its body and its number there, as in ``torso[1]``.
+    /// str : Its name; an unnamed geom is called by its body and its index there, as in ``torso[1]``.
     geom_name: String,
     /// float : From the ray's origin, in lengths of its direction.
     distance: f64,
-    /// numpy.ndarray : The place (3,), m.
+    /// numpy.ndarray : The point of the hit (3,), m.
     position: Py<PyAny>,
-    /// numpy.ndarray : Unit vector out of the geom there (3,).
+    /// numpy.ndarray : Outward unit normal of the geom there (3,).
     normal: Py<PyAny>,
 }
 
 impl RayHit {
-    /// What a ray from `origin` hit.
+    /// Creates the hit of a ray from `origin`.
     pub(crate) fn new<S: Precision>(
         py: Python<'_>,
         hit: &Hit<S>,
@@ -51,14 +51,14 @@ impl RayHit {
     }
 }
 
-/// The shortest way between two geoms.
+/// The shortest distance between two geoms.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct Separation {
-    /// float : Signed, m; negative is how far they must move apart to touch no more.
+    /// float : Signed, m; a negative value is the penetration depth.
     distance: f64,
     /// numpy.ndarray : Unit vector from the first to the second (3,).
     normal: Py<PyAny>,
-    /// numpy.ndarray : The nearest point of each, or the deepest where they overlap (2, 3), m.
+    /// numpy.ndarray : The nearest point of each, or the deepest if they overlap (2, 3), m.
     points: Py<PyAny>,
 }
 
@@ -79,7 +79,7 @@ impl Separation {
     }
 }
 
-/// Which geoms rays hit.
+/// Creates the filter of geoms that rays can hit.
 pub(crate) fn ray_filter(
     model: &Model,
     groups: Option<&Bound<'_, PyAny>>,
@@ -99,7 +99,7 @@ pub(crate) fn ray_filter(
     Ok(filter)
 }
 
-/// A vector (3,) of finite numbers.
+/// Converts a value to a vector (3,) of finite numbers.
 pub(crate) fn vector<S: Precision>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec3<S>> {
     let values = shaped::<f64>(name, value, &[3])?;
     let values = values.as_slice()?;
@@ -107,7 +107,7 @@ pub(crate) fn vector<S: Precision>(name: &str, value: &Bound<'_, PyAny>) -> PyRe
     Ok(Vec3::from_f64([values[0], values[1], values[2]]))
 }
 
-/// A vector that is not zero.
+/// Converts a value to a nonzero vector.
 pub(crate) fn direction<S: Precision>(value: &Bound<'_, PyAny>) -> PyResult<Vec3<S>> {
     let found = vector::<S>("direction", value)?;
     if found.to_array().iter().all(|x| x.abs() < S::MIN_POSITIVE) {

@@ -9,31 +9,32 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Mutex;
 
-/// Live views of recorded outputs, in the order in which they were asked for. None is ever taken back, so that views stay valid.
+/// Live views of recorded outputs, in the order in which they were requested. None is ever removed, so that views stay
+/// valid.
 ///
-/// They have a lock of their own, since they are read while the batch steps. Nothing of Python's runs while it is held: else
-/// another thread could ask for it in the middle.
+/// They have a separate lock, since they are read while the batch steps. No Python code runs while it is held, because
+/// another thread could request it meanwhile.
 #[derive(Default)]
 pub(crate) struct Recorded(Mutex<Vec<(Output, Py<PyAny>)>>);
 
 impl Recorded {
-    /// Which outputs there are.
+    /// Returns the recorded outputs.
     pub(crate) fn outputs(&self) -> PyResult<Vec<Output>> {
         let views = lock(&self.0, "batch")?;
         Ok(views.iter().map(|(output, _)| *output).collect())
     }
 
-    /// The view of an output, if it is recorded.
+    /// Returns the view of an output if it is recorded.
     pub(crate) fn get(&self, py: Python<'_>, output: Output) -> PyResult<Option<Py<PyAny>>> {
         let views = lock(&self.0, "batch")?;
         let found = views.iter().find(|(recorded, _)| *recorded == output);
         Ok(found.map(|(_, array)| array.clone_ref(py)))
     }
 
-    /// Lets `batch`, which `keeper` keeps, record outputs beside those that it records already.
+    /// Makes `batch`, which `keeper` keeps alive, record outputs in addition to those that it records already.
     ///
     /// # Errors
-    /// A name that no output has; more memory than there is. What is recorded is then as before.
+    /// Returns an error if no output has a name or memory is insufficient. The recorded outputs are then unchanged.
     pub(crate) fn add<S: Precision + Element>(
         &self,
         keeper: &Bound<'_, Keeper>,
@@ -58,12 +59,12 @@ impl Recorded {
     }
 }
 
-/// What to say of an output that is not recorded.
+/// Returns the message for an output that is not recorded.
 pub(crate) fn not_recorded(name: &str) -> String {
     format!("the output \"{name}\" is not recorded: call record(\"{name}\") first")
 }
 
-/// A live view of an output that `batch` records.
+/// Creates a live view of an output that `batch` records.
 fn output_view<S: Precision + Element>(
     keeper: &Bound<'_, Keeper>,
     batch: &Batch<S>,
@@ -73,7 +74,7 @@ fn output_view<S: Precision + Element>(
         return Err(PyValueError::new_err(not_recorded(output.name())));
     };
     let shape = [&[batch.count()], &output.shape(batch.model())[..]].concat();
-    // SAFETY: the table has this shape, lives in the batch that `keeper` keeps, and is never taken back.
+    // SAFETY: the table has this shape, lives in the batch that `keeper` keeps alive, and is never removed.
     let array = unsafe { view(keeper, rows.as_ptr(), &shape) }?;
     Ok(read_only(array)?.into_any().unbind())
 }

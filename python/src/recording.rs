@@ -1,4 +1,4 @@
-//! `clench.Recording`: moments of a simulation, and the page that replays them.
+//! `clench.Recording`: frames of a simulation, and the page that replays them.
 
 use crate::batch::AnyBatch;
 use crate::busy::lock;
@@ -15,17 +15,17 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::{fs, io};
 
-/// Bytes that a recording may take where nothing else is said.
+/// The default limit of a recording, in bytes.
 const LIMIT: usize = 1_000_000_000;
 
-/// What happened in a simulation, moment by moment, with its contacts, forces and sensors.
+/// A recording of a simulation, frame by frame, with its contacts, forces and sensors.
 ///
-/// `save` makes one page of it that replays in any browser, without a server and without Clench.
+/// `save` writes it as one page that replays in any browser, without a server and without Clench.
 ///
 /// Parameters
 /// ----------
 /// limit : int
-///     The most bytes that it may take.
+///     Maximum size in bytes.
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Recording {
     limit: usize,
@@ -34,12 +34,12 @@ pub(crate) struct Recording {
 
 struct Kept {
     recording: clench_view::Recording,
-    /// The model of the last frame; none where they come from a file.
+    /// The model of the last frame; none if the frames come from a file.
     model: Option<Arc<Model>>,
 }
 
 impl Recording {
-    /// The recording of a model, begun where there is none.
+    /// Returns the recording of a model, and creates it if there is none.
     fn of<'a>(&self, kept: &'a mut Option<Kept>, model: &Arc<Model>) -> PyResult<&'a mut Kept> {
         let kept = kept.get_or_insert_with(|| Kept {
             recording: clench_view::Recording::new(Scene::new(model), self.limit),
@@ -60,7 +60,7 @@ impl Recording {
         Ok(kept)
     }
 
-    /// The page that replays it.
+    /// Returns the page that replays the recording.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
         let guard = lock(&self.inner, "recording")?;
         let Some(kept) = &*guard else {
@@ -81,23 +81,23 @@ impl Recording {
         }
     }
 
-    /// Keeps what is now.
+    /// Appends a frame with the current state.
     ///
     /// Parameters
     /// ----------
     /// target : Sim or Batch
-    ///     All that is appended must be of one model.
+    ///     The simulation. All frames must be of one model.
     /// env : int
-    ///     Which environment of a batch.
+    ///     The index of the environment, for a batch.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     A state that cannot be evaluated.
+    ///     If the state cannot be evaluated.
     /// MemoryError
-    ///     A recording that has reached its limit.
+    ///     If the recording has reached its limit.
     /// ValueError
-    ///     Another model.
+    ///     If the model is another one.
     #[pyo3(signature = (target, env = 0))]
     fn append(&self, target: &Bound<'_, PyAny>, env: usize) -> PyResult<()> {
         let target = Target::of(target)?;
@@ -113,45 +113,45 @@ impl Recording {
         })
     }
 
-    /// Writes one page that replays the recording, with a slider for time, all overlays and plots.
+    /// Writes one page that replays the recording, with a time slider, all overlays and plots.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     Where to; the name should end in ``.html``. What is there is replaced.
+    ///     The file; its name should end in ``.html``. An existing file is replaced.
     ///
     /// Raises
     /// ------
     /// OSError
-    ///     A file that cannot be written.
+    ///     If the file cannot be written.
     /// ValueError
-    ///     Nothing to write.
+    ///     If there are no frames.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let html = self.html(py)?;
         let written = py.detach(|| fs::write(&path, html));
         written.map_err(|error| at(&path, &error))
     }
 
-    /// Reads what `save` or ``clench simulate --record`` wrote.
+    /// Reads a page that `save` or ``clench simulate --record`` wrote.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
     ///     The page.
     /// limit : int
-    ///     The most bytes that the recording may take.
+    ///     Maximum size of the recording in bytes.
     ///
     /// Returns
     /// -------
     /// Recording
-    ///     More can be appended to it, of the same model.
+    ///     The recording. Frames of the same model can be appended to it.
     ///
     /// Raises
     /// ------
     /// OSError
-    ///     A file that cannot be read.
+    ///     If the file cannot be read.
     /// ValueError
-    ///     A file that is no such page, or one of another version of Clench.
+    ///     If the file is not such a page, or was written by another version of Clench.
     #[staticmethod]
     #[pyo3(signature = (path, *, limit = LIMIT), text_signature = "(path, *, limit=1000000000)")]
     fn load(py: Python<'_>, path: PathBuf, limit: usize) -> PyResult<Self> {
@@ -171,13 +171,13 @@ impl Recording {
         })
     }
 
-    /// Replays it: in a Jupyter notebook in the cell, else in a browser, from a temporary file.
+    /// Replays the recording: in the cell of a Jupyter notebook, else in a browser from a temporary file.
     fn show(&self, py: Python<'_>) -> PyResult<()> {
         let show = py.import("clench._view")?.getattr("_show")?;
         show.call1((self.html(py)?,)).map(drop)
     }
 
-    /// numpy.ndarray : The simulated times of its moments (n), s. A copy.
+    /// numpy.ndarray : The simulated times of the frames (n), s. A copy.
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let guard = lock(&self.inner, "recording")?;
@@ -203,7 +203,7 @@ impl Recording {
     }
 }
 
-/// What went wrong with a file, with its name.
+/// Converts an error of a file operation and adds the file's name.
 fn at(path: &std::path::Path, error: &io::Error) -> PyErr {
     PyErr::from(io::Error::new(
         error.kind(),

@@ -1,4 +1,5 @@
-//! `Batch.rollout` in one precision: shapes are checked before anything moves, and what was recorded is shown without a copy.
+//! `Batch.rollout` in one precision. Shapes are checked before the first step, and recorded arrays are returned without
+//! a copy.
 
 use crate::arrays::{numbers, require_shape, shape_text};
 use crate::error::sim_error;
@@ -11,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// The numbers of an array.
+/// A copy of an array.
 struct Copied<S> {
     shape: Vec<usize>,
     numbers: Vec<S>,
@@ -26,7 +27,7 @@ impl<S: Element + Copy> Copied<S> {
     }
 }
 
-/// The states that environments start from: a row each, or one for all.
+/// Reads the states that environments start from: one row each, or one row for all.
 fn initial_rows<S: Precision + Element>(
     values: &Bound<'_, PyAny>,
     n: usize,
@@ -43,17 +44,17 @@ fn initial_rows<S: Precision + Element>(
     })
 }
 
-/// Where environments start.
+/// The initial states of a rollout.
 pub(crate) enum Start<'a, 'py> {
-    /// Where they are.
+    /// The current states.
     Here,
-    /// In states of time, positions, velocities and activations.
+    /// Rows of time, positions, velocities and activations.
     Rows(&'a Bound<'py, PyAny>),
-    /// In a `clench.State`, which the arrays of the batch take over.
+    /// A `clench.State`, which is copied into the arrays of the batch.
     State(&'a StateViews, &'a Bound<'py, PyAny>),
 }
 
-/// See `Batch.rollout`.
+/// Implements `Batch.rollout`.
 pub(crate) fn rollout<'py, S: Precision + Element>(
     py: Python<'py>,
     batch: &mut Batch<S>,
@@ -64,7 +65,7 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (n, model) = (batch.count(), Arc::clone(batch.model()));
-    // Copies: other threads may write to the arrays while this one steps.
+    // These are copies: other threads may write to the arrays during the steps.
     let ctrl = ctrl
         .map(|values| Copied::of(numbers::<S>("ctrl", values)?))
         .transpose()?;
@@ -98,7 +99,7 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
         Start::Here => None,
         Start::Rows(values) => Some(initial_rows(values, n, width)?),
         Start::State(views, state) => {
-            // Whatever else is wrong with the call is found before the states change.
+            // All other errors of the call are found before the states change.
             names
                 .iter()
                 .try_for_each(|name| Output::find(name).map(drop))
@@ -137,18 +138,18 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
         let start = rows.as_mut_ptr();
         let keeper = Keeper::new(py, Arc::new(rows))?;
         let shape = [&[n, steps], &output.shape(&model)[..]].concat();
-        // SAFETY: the table has this shape, and `keeper` has it.
+        // SAFETY: the table has this shape, and `keeper` owns it.
         arrays.set_item(output.name(), unsafe { view(&keeper, start, &shape) }?)?;
     }
     Ok(arrays)
 }
 
-/// What of a rollout is written in Python.
+/// Returns the module with the Python part of rollouts.
 pub(crate) fn module(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
     py.import("clench._rollout")
 }
 
-/// What is told of the progress of a rollout of `n` environments: a function, a line on stderr for True, or nothing.
+/// Returns the progress function of a rollout of `n` environments: the given one, a line on stderr for True, or none.
 pub(crate) fn progress<'py>(
     wanted: Option<Bound<'py, PyAny>>,
     n: usize,

@@ -1,10 +1,10 @@
-//! A simulation in either precision, beside the rows of its state that Python sees.
+//! A simulation in either precision, with the state rows that Python sees.
 
 use crate::precision::Bits;
 use clench::rigid::batch::StateRows;
 use clench::{Precision, SimError};
 
-/// A simulation beside the rows that Python sees: rows go in before each call, and come out after steps.
+/// A simulation with the rows that Python sees. Rows are read before each call, and written after steps.
 pub(crate) struct RowSim<S: Precision> {
     pub(crate) rows: StateRows<S>,
     pub(crate) sim: clench::Sim<S>,
@@ -17,20 +17,20 @@ impl<S: Precision> RowSim<S> {
         Ok(RowSim { rows, sim })
     }
 
-    /// The simulation, in the state that the rows hold.
+    /// Returns the simulation in the state of the rows.
     pub(crate) fn current(&mut self) -> Result<&mut clench::Sim<S>, SimError> {
         self.rows.read(0, &mut self.sim.state)?;
         Ok(&mut self.sim)
     }
 
-    /// The same, where all is known that follows from it.
+    /// Returns the simulation in the state of the rows, with all derived quantities up to date.
     pub(crate) fn refreshed(&mut self) -> Result<&clench::Sim<S>, SimError> {
         let sim = self.current()?;
         sim.refresh()?;
         Ok(sim)
     }
 
-    /// Steps up to the first that fails, whose state is the one before it.
+    /// Takes steps. At the first that fails, the state is the one before it.
     pub(crate) fn step(&mut self, steps: usize) -> Result<(), SimError> {
         let sim = self.current()?;
         let done = (0..steps).try_for_each(|_| sim.step());
@@ -38,7 +38,7 @@ impl<S: Precision> RowSim<S> {
         done
     }
 
-    /// The second half of a step.
+    /// Does the second half of a step.
     pub(crate) fn step2(&mut self) -> Result<(), SimError> {
         let done = self.current()?.step2();
         self.rows.write(0, &self.sim.state)?;
@@ -60,7 +60,7 @@ pub(crate) enum AnySim {
     F32(Box<RowSim<f32>>),
 }
 
-/// Evaluates an expression about a simulation of whichever precision.
+/// Evaluates an expression about a simulation of either precision.
 macro_rules! each_sim {
     ($any:expr, $own:ident => $value:expr) => {
         match $any {
@@ -72,11 +72,11 @@ macro_rules! each_sim {
 pub(crate) use each_sim;
 
 impl AnySim {
-    /// A simulation in double precision.
+    /// Wraps a simulation in double precision.
     pub(crate) fn f64(sim: clench::Sim<f64>) -> Result<Self, SimError> {
         RowSim::new(sim).map(|sim| AnySim::F64(Box::new(sim)))
     }
-    /// A simulation in single precision.
+    /// Wraps a simulation in single precision.
     pub(crate) fn f32(sim: clench::Sim<f32>) -> Result<Self, SimError> {
         RowSim::new(sim).map(|sim| AnySim::F32(Box::new(sim)))
     }

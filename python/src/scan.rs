@@ -1,4 +1,4 @@
-//! Many rays at once, and heights of terrain.
+//! Scans with many rays, and heights of terrain.
 
 use crate::answer::answer;
 use crate::arrays::shape_text;
@@ -15,14 +15,14 @@ use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// What many rays hit. In a batch the environments are the first axis.
+/// The hits of many rays. In a batch the environments are the first axis.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct RayHits {
-    /// numpy.ndarray : The geom that each ray hits first (k,), int64; -1 where there is none.
+    /// numpy.ndarray : The first geom that each ray hits (k,), int64; -1 if there is none.
     geom: Py<PyAny>,
-    /// numpy.ndarray : From the ray's origin, in lengths of its direction (k,); infinite where it hits nothing.
+    /// numpy.ndarray : From the ray's origin, in lengths of its direction (k,); infinite if it hits nothing.
     distance: Py<PyAny>,
-    /// numpy.ndarray : Unit vector out of the geom there, world axes (k, 3); zero where the ray hits nothing.
+    /// numpy.ndarray : Outward unit normal of the geom there, in world axes (k, 3); zero if the ray hits nothing.
     normal: Py<PyAny>,
 }
 
@@ -35,7 +35,7 @@ impl RayHits {
 }
 
 impl RayHits {
-    /// From five numbers a ray.
+    /// Creates the hits from five numbers per ray.
     pub(crate) fn new<S: Precision + Element>(
         py: Python<'_>,
         hits: &[S],
@@ -53,7 +53,7 @@ impl RayHits {
     }
 }
 
-/// Origins and directions (k, 3), of which either may be each environment's own, as rays of six numbers.
+/// Combines origins and directions (k, 3) into rays of six numbers. Either may be different for each environment.
 pub(crate) fn rays<S: Precision + Element>(
     origins: &Bound<'_, PyAny>,
     directions: &Bound<'_, PyAny>,
@@ -62,7 +62,7 @@ pub(crate) fn rays<S: Precision + Element>(
     let origins = Table::<S>::rows_of("origins", origins, 3, n)?;
     let directions = Table::<S>::rows_of("directions", directions, 3, n)?;
     let count = origins.rows.max(directions.rows);
-    // A single origin serves all directions, as that of a lidar does.
+    // A single origin can be shared by all directions, as for a lidar.
     for (name, rows) in [("origins", origins.rows), ("directions", directions.rows)] {
         if rows != count && rows != 1 {
             return Err(PyValueError::new_err(format!(
@@ -88,7 +88,7 @@ pub(crate) fn rays<S: Precision + Element>(
     })
 }
 
-/// What rays hit as a batch tells it: five numbers a ray.
+/// Converts hits to the format of a batch: five numbers per ray.
 fn in_numbers<S: Precision>(hits: &[Option<RayHit<S>>]) -> Vec<S> {
     let nothing = [-1.0, f64::INFINITY, 0.0, 0.0, 0.0].map(S::new);
     let numbers = |hit: &RayHit<S>| {
@@ -103,27 +103,28 @@ fn in_numbers<S: Precision>(hits: &[Option<RayHit<S>>]) -> Vec<S> {
 
 #[pymethods]
 impl Sim {
-    /// What many rays hit, see `ray`.
+    /// Casts many rays; see `ray`.
     ///
     /// Parameters
     /// ----------
     /// origins : array_like
-    ///     Where the rays begin (k, 3), m; one (1, 3) may serve all.
+    ///     Origins (k, 3), m; a single one (1, 3) is used for all rays.
     /// directions : array_like
-    ///     Where they lead (k, 3); their lengths are the units of distances. One (1, 3) may serve all.
+    ///     Directions (k, 3); their lengths are the units of distances. A single one (1, 3) is used for all rays.
     /// body, body_com, geom, site, camera : str or int, optional
-    ///     An object in whose frame rays are told, so that they move with it; else they are in the world.
+    ///     An object in whose frame the rays are given, so that they move with it; by default they are in the world
+    ///     frame.
     /// groups : array_like of int, optional
-    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
+    ///     The groups of geoms, 0 to 5, that can be hit; by default all.
     /// fixed : bool
-    ///     Whether geoms can be hit that are fixed to the world.
+    ///     True if rays can hit geoms that are fixed to the world.
     /// exclude_body : str or int, optional
     ///     A body, by name or index, whose geoms are not hit.
     ///
     /// Returns
     /// -------
     /// RayHits
-    ///     One a ray.
+    ///     One hit for each ray.
     #[pyo3(signature = (origins, directions, *, body = None, body_com = None, geom = None, site = None, camera = None,
                         groups = None, fixed = true, exclude_body = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
@@ -153,16 +154,17 @@ impl Sim {
         })
     }
 
-    /// Heights of terrain: of the surface of a height field over places, where queries see it (see `Sim`).
+    /// Computes heights of a height field's surface at given places, in the poses that queries use (see `Sim`).
     ///
     /// Parameters
     /// ----------
     /// hfield : str or int
     ///     The geom that is the height field. Exact where its z axis points upwards.
     /// places : array_like
-    ///     x and y (k, 2), m. Beyond the field's edges its height there goes on.
+    ///     x and y (k, 2), m. Beyond the field's edges, the height at the edge continues.
     /// body, body_com, geom, site, camera : str or int, optional
-    ///     An object from whose position, along whose x axis as seen from above, places are told; else they are in the world.
+    ///     An object whose position is the origin of the places, with their x axis along its own as seen from above; by
+    ///     default they are in the world frame.
     ///
     /// Returns
     /// -------

@@ -10,10 +10,10 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// How far M may be from symmetric, over its largest entry. Rounding leaves 1e-16 or so for each of the sums behind it.
+/// The maximum asymmetry of M relative to its largest entry. Rounding errors are about 1e-16 for each sum.
 const SYMMETRIC: f64 = 1e-10;
 
-/// Solve the convex problem of constrained dynamics, without bodies, joints or contacts.
+/// Solves the convex problem of constrained dynamics, without bodies, joints or contacts.
 ///
 /// The accelerations `qacc` minimise::
 ///
@@ -28,21 +28,21 @@ const SYMMETRIC: f64 = 1e-10;
 /// blocks : iterable of Block
 ///     The constraints.
 /// options : RigidOptions, optional
-///     How to solve. Only the options of the solver matter: `constraint_solver`, `iterations`, `tolerance`, those of its
+///     Options of the solver. Only these have an effect: `constraint_solver`, `iterations`, `tolerance`, those of its
 ///     line search and of noslip, `sparse_solve`.
 ///
 /// Returns
 /// -------
 /// Solution
-///     Accelerations, forces, and how good they are.
+///     Accelerations, forces, and their accuracy.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     Shapes that do not fit, numbers that are not finite, an M that is not symmetric or not positive definite, a block
-///     that makes no sense.
+///     If shapes do not fit, a number is not finite, M is not symmetric or not positive definite, or a block is
+///     invalid.
 /// TypeError
-///     What is not an array of numbers, or not a block.
+///     If an argument is not an array of numbers, or a block is not a Block.
 ///
 /// Examples
 /// --------
@@ -85,20 +85,21 @@ fn minimise(
     Ok((problem, solver))
 }
 
-/// What :func:`clench.solve` found.
+/// The result of :func:`clench.solve`.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct Solution {
-    /// numpy.ndarray : The accelerations that minimise (nv).
+    /// numpy.ndarray : The accelerations of least cost (nv).
     qacc: Py<PyArray1<f64>>,
     /// list of numpy.ndarray : The force of each block along its rows (dim): the negative gradient of its cost.
     forces: Vec<Py<PyArray1<f64>>>,
     /// numpy.ndarray : All forces along the degrees of freedom (nv): the sum of ``jacobian.T @ force``.
     qfrc_constraint: Py<PyArray1<f64>>,
-    /// str : How the solve ended; see :attr:`SolverStats.status`. After "non_finite" the numbers are not usable.
+    /// str : Outcome; see :attr:`SolverStats.status`. After "non_finite" the numbers are not usable.
     status: &'static str,
-    /// float : The duality gap: the cost exceeds its minimum by at most this. With noslip, of the solution before its sweeps.
+    /// float : The duality gap, an upper bound of cost minus minimum. With noslip, it is that of the solution before
+    /// the noslip sweeps.
     certificate: f64,
-    /// SolverStats : How the solve went.
+    /// SolverStats : Statistics of the solve.
     stats: Py<SolverStats>,
 }
 

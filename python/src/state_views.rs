@@ -1,4 +1,4 @@
-//! The arrays of a state, live.
+//! Live arrays of a state.
 
 use crate::arrays::shape_text;
 use crate::view::{Keeper, view};
@@ -13,15 +13,15 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-/// What Python is told of a field of the state.
+/// The description of a state field for Python.
 pub(crate) struct StateField {
     pub name: &'static str,
-    /// NumPy's type; `number` is the float of the simulation's precision.
+    /// The NumPy dtype; `number` is the float of the simulation's precision.
     pub dtype: &'static str,
     pub size: Size,
-    /// How many numbers each element has.
+    /// The number of values per element.
     pub width: usize,
-    /// What it is.
+    /// The description of the field.
     pub doc: &'static str,
 }
 
@@ -29,19 +29,19 @@ macro_rules! views {
     ($($group:ident { $(
         $(#[doc = $doc:literal])* $field:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
     )* })*) => {
-        /// The state of a `Sim` or of all environments of a `Batch`, as NumPy arrays that are the memory a step works on: no
-        /// copies.
+        /// The state of a `Sim` or of all environments of a `Batch`, as NumPy arrays that share memory with the
+        /// simulation: they are not copies.
         ///
-        /// Each array is the same object as long as the simulation lives, and keeps its memory when it outlives the simulation.
-        /// Write between steps; an assignment such as ``sim.ctrl = values`` copies the values in. In a `Batch` every array has
-        /// the environments as its first axis.
+        /// Each array remains the same object during the life of the simulation, and stays valid after it. Write
+        /// between steps; an assignment such as ``sim.ctrl = values`` copies the values. In a `Batch` the environments
+        /// are the first axis of every array.
         #[pyclass(frozen, subclass, module = "clench")]
         pub(crate) struct StateViews {
             time: Py<PyAny>,
             $($($field: Py<PyAny>,)*)*
         }
 
-        /// The fields of a state, but for the time.
+        /// The fields of a state, except the time.
         pub(crate) const FIELDS: &[StateField] = &[$($(StateField {
             name: stringify!($field),
             dtype: <<kind::$kind as Kind>::Cell<f64> as Viewed>::NAME,
@@ -51,7 +51,7 @@ macro_rules! views {
         }),*),*];
 
         impl StateViews {
-            /// The arrays with their names.
+            /// Returns the arrays with their names.
             fn named(&self) -> Vec<(&'static str, &Py<PyAny>)> {
                 vec![("time", &self.time), $($((stringify!($field), &self.$field)),*),*]
             }
@@ -72,7 +72,8 @@ macro_rules! views {
                 copy_to(self.$field.bind(values.py()), values)
             })*)*
 
-            /// float or numpy.ndarray : Time, s: a number for a `Sim`, an array (n) for a `Batch`, float64 in every precision.
+            /// float or numpy.ndarray : Time, s: a number for a `Sim`, an array (n) for a `Batch`, float64 in either
+            /// precision.
             #[getter]
             fn time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
                 let time = self.time.bind(py);
@@ -89,7 +90,7 @@ macro_rules! views {
         }
 
         impl StateViews {
-            /// Views of `rows`, whose memory `keeper` keeps; with `alone`, of its only row.
+            /// Creates views of `rows`, whose memory `keeper` owns; with `alone`, of the only row.
             pub(crate) fn new<S: Precision + Viewed>(
                 keeper: &Bound<'_, Keeper>,
                 rows: &mut StateRows<S>,
@@ -116,11 +117,11 @@ macro_rules! views {
 }
 clench::rigid::state_fields!(views);
 
-/// What rows hold, as NumPy calls it.
+/// A type of the state's values, with its NumPy counterpart.
 pub(crate) trait Viewed: Sized {
-    /// The number of the same bytes.
+    /// The NumPy type with the same bytes.
     type As: Element;
-    /// What it is called in [`StateField::dtype`].
+    /// The name of the type in [`StateField::dtype`].
     const NAME: &'static str;
 }
 impl Viewed for f64 {
@@ -135,25 +136,25 @@ impl Viewed for i32 {
     type As = i32;
     const NAME: &'static str = "int32";
 }
-/// A truth value is a byte for NumPy too.
+/// NumPy stores a boolean as a byte.
 impl Viewed for u8 {
     type As = bool;
     const NAME: &'static str = "bool";
 }
 
-/// A table as an array of a shape that has as many numbers.
+/// Returns a table as an array of this shape, which has the same number of values.
 fn array<E: Viewed>(
     keeper: &Bound<'_, Keeper>,
     rows: &mut Rows<E>,
     shape: &[usize],
 ) -> PyResult<Py<PyAny>> {
-    // SAFETY: the shape is that of the table, which `keeper` keeps and nothing replaces.
+    // SAFETY: the shape is that of the table, which `keeper` owns and which is never replaced.
     let array = unsafe { view(keeper, rows.as_mut_ptr().cast::<E::As>(), shape) }?;
     Ok(array.into_any().unbind())
 }
 
 impl StateViews {
-    /// A copy of all arrays, as a `clench.State`.
+    /// Copies all arrays into a `clench.State`.
     pub(crate) fn copy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let copies = PyDict::new(py);
         for (name, array) in self.named() {
@@ -162,18 +163,19 @@ impl StateViews {
         state_class(py)?.call((), Some(&copies))
     }
 
-    /// Takes over a `clench.State`: of the same shapes, or, into those of a batch, that of one environment for all.
+    /// Copies a `clench.State` into the arrays: one of the same shapes or, for a batch, a state of one environment for
+    /// all.
     ///
     /// # Errors
-    /// Another shape or type; the arrays are then as before.
+    /// Returns an error if a shape or type differs. The arrays are then unchanged.
     pub(crate) fn take_over(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
         self.take_over_rows(state, None)
     }
 
-    /// Takes over a `clench.State` into some environments of a batch: their indices, and how many there are.
+    /// Copies a `clench.State` into some environments of a batch, given by their indices and number.
     ///
     /// # Errors
-    /// As [`take_over`](Self::take_over).
+    /// Same as [`take_over`](Self::take_over).
     pub(crate) fn take_over_rows(
         &self,
         state: &Bound<'_, PyAny>,
@@ -190,7 +192,7 @@ impl StateViews {
         let mut pairs = Vec::new();
         for (name, array) in self.named() {
             let (to, mut from) = (array.bind(py), values.get_item(name)?);
-            // States of versions that knew no constraints at run time have no slots for them: nothing is tied.
+            // States of versions without dynamic constraints have no slots for them: all slots are set to empty.
             if name.starts_with("dynamic_") && from.getattr("size")?.extract::<usize>()? == 0 {
                 let rows = envs.map_or_else(|| Ok(to.clone()), |(envs, _)| to.get_item(envs))?;
                 from = rows.call_method0("copy")?;
@@ -218,25 +220,25 @@ impl StateViews {
         })
     }
 
-    /// Whether the arrays are of environments side by side.
+    /// Returns true if the arrays have an axis of environments.
     fn is_of_batch(&self, py: Python<'_>) -> PyResult<bool> {
         let time = self.time.bind(py).getattr("ndim")?;
         Ok(time.extract::<usize>()? > 0)
     }
 }
 
-/// Whether something is a `clench.State`.
+/// Returns true if a value is a `clench.State`.
 pub(crate) fn is_state(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     value.is_instance(state_class(value.py())?)
 }
 
-/// `clench.State`.
+/// Returns the class `clench.State`.
 fn state_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     static STATE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     STATE.import(py, "clench._state", "State")
 }
 
-/// Copies values into an array as NumPy would, but only numbers of the same kind.
+/// Copies values into an array as NumPy does, but only between dtypes of the same kind.
 fn copy_to(array: &Bound<'_, PyAny>, values: &Bound<'_, PyAny>) -> PyResult<()> {
     static COPYTO: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let copyto = COPYTO.import(array.py(), "numpy", "copyto")?;

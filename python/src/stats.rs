@@ -3,44 +3,45 @@
 use clench::solver::LaneStats;
 use pyo3::prelude::*;
 
-/// How the last solve went.
+/// Statistics of the last solve.
 ///
-/// Norms and costs are over mean inertia times nv, unless said otherwise.
+/// Norms and costs are divided by mean inertia times nv, unless stated otherwise.
 #[pyclass(frozen, get_all, module = "clench")]
 pub(crate) struct SolverStats {
-    /// str : How it ended: "unconstrained" (no constraint acted), "proven" (the starting point was good enough), "converged",
-    /// "no_progress" (the working precision allows no more), "iteration_limit", "non_finite" or "too_large" (for the model's budget). Over islands, the
-    /// worst.
+    /// str : Outcome: "unconstrained" (no constraint acted), "proven" (the starting point was good enough),
+    /// "converged", "no_progress" (the working precision allows no more), "iteration_limit", "non_finite" or
+    /// "too_large" (for the model's budget). Over islands, the worst.
     status: &'static str,
-    /// int : Iterations; over islands, the most.
+    /// int : Number of iterations; over islands, the maximum.
     iterations: usize,
-    /// float : Norm of the gradient; over islands, the largest.
+    /// float : Norm of the gradient; over islands, the maximum.
     gradient: f64,
-    /// float : Last improvement of the cost; over islands, the largest.
+    /// float : Last improvement of the cost; over islands, the maximum.
     improvement: f64,
     /// float : The duality gap, an upper bound of cost minus minimum, in the units of the cost.
     gap: f64,
-    /// int : How often a constraint changed its piece (a contact began to slip, a limit let go), in all iterations.
+    /// int : Number of changes of a constraint's state (a contact began to slip, a limit became inactive), in all
+    /// iterations.
     active_set_changes: usize,
-    /// int : Evaluations of line searches.
+    /// int : Number of line-search evaluations.
     ls_evaluations: usize,
-    /// int : Hessians factored from scratch.
+    /// int : Number of Hessian factorizations from scratch.
     factorizations: usize,
-    /// int : Rank-one updates of a factored Hessian.
+    /// int : Number of rank-one updates of a factored Hessian.
     updates: usize,
-    /// int : Sweeps that removed slip.
+    /// int : Number of noslip sweeps.
     noslip_iterations: usize,
-    /// int : Parts that were solved separately; 1 where islands are not used and constraints act.
+    /// int : Number of islands that were solved separately; 1 if islands are not used and constraints act.
     islands: usize,
 }
 
 impl SolverStats {
-    /// How it ended.
+    /// Returns the outcome.
     pub(crate) fn status(&self) -> &'static str {
         self.status
     }
 
-    /// The duality gap.
+    /// Returns the duality gap.
     pub(crate) fn gap(&self) -> f64 {
         self.gap
     }

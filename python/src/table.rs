@@ -1,4 +1,4 @@
-//! Numbers that a question gives: the same for all environments, or each environment's own.
+//! Arguments of queries: the same for all environments, or different for each.
 
 use crate::arrays::{numbers, require_shape, shape_text};
 use clench::{Given, Precision};
@@ -6,16 +6,16 @@ use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Numbers that are the same for all environments, or each environment's own.
+/// Numbers that are the same for all environments, or different for each.
 pub(crate) struct Table<S> {
     pub(crate) values: Vec<S>,
     pub(crate) each: bool,
-    /// Rows that an environment has.
+    /// The number of rows per environment.
     pub(crate) rows: usize,
 }
 
 impl<S: Precision + Element> Table<S> {
-    /// Rows of `width` numbers, (k, width) or, for `n` environments, (n, k, width).
+    /// Reads rows of `width` numbers: (k, width) or, for `n` environments, (n, k, width).
     pub(crate) fn rows_of(
         name: &str,
         values: &Bound<'_, PyAny>,
@@ -38,7 +38,7 @@ impl<S: Precision + Element> Table<S> {
         Ok(Table { values, each, rows })
     }
 
-    /// One row of `width` numbers, (width,) or, for `n` environments, (n, width).
+    /// Reads one row of `width` numbers: (width,) or, for `n` environments, (n, width).
     pub(crate) fn row_of(
         name: &str,
         values: &Bound<'_, PyAny>,
@@ -57,7 +57,7 @@ impl<S: Precision + Element> Table<S> {
         Ok(Table { values, each, rows })
     }
 
-    /// The numbers, as a batch takes them.
+    /// Returns the numbers in the form that a batch requires.
     pub(crate) fn given(&self) -> Given<'_, S> {
         match self.each {
             true => Given::Each(&self.values),
@@ -65,7 +65,7 @@ impl<S: Precision + Element> Table<S> {
         }
     }
 
-    /// The row of an environment, of `width` numbers.
+    /// Returns the row of an environment, of `width` numbers.
     pub(crate) fn row(&self, env: usize, width: usize) -> &[S] {
         match self.each {
             true => &self.values[env * width..][..width],
@@ -73,7 +73,7 @@ impl<S: Precision + Element> Table<S> {
         }
     }
 
-    /// Whether each environment has its own.
+    /// Returns true if each environment has its own numbers.
     pub(crate) fn is_each(&self) -> bool {
         self.each
     }

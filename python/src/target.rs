@@ -1,4 +1,4 @@
-//! Which object a question is about: exactly one of several keyword arguments.
+//! The object of a query: exactly one of several keyword arguments.
 
 use crate::kind::Kind;
 use clench::Model;
@@ -6,18 +6,18 @@ use clench::rigid::model::FrameObject;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A name or index of an object, as given or not.
+/// The optional name or index of an object.
 pub(crate) type Choice<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// What a caller may choose from, in the order of the keywords: body, body_com, geom, site, camera.
+/// The choices of a caller, in the order of the keywords: body, body_com, geom, site, camera.
 #[derive(Clone, Copy)]
 pub(crate) struct Choices<'a, 'py>(pub(crate) [Choice<'a, 'py>; 5]);
 
 impl Choices<'_, '_> {
-    /// The object, if any was chosen.
+    /// Returns the object, if one was chosen.
     ///
     /// # Errors
-    /// ValueError where several were; as [`Kind::find`].
+    /// Returns a ValueError if several were chosen, and the errors of [`Kind::find`].
     pub(crate) fn optional(&self, model: &Model) -> PyResult<Option<FrameObject>> {
         type Make = fn(usize) -> FrameObject;
         const OBJECTS: [(Kind, Make); 5] = [
@@ -38,10 +38,10 @@ impl Choices<'_, '_> {
         }
     }
 
-    /// The object.
+    /// Returns the object.
     ///
     /// # Errors
-    /// ValueError where none was chosen; as [`optional`](Self::optional).
+    /// Returns a ValueError if none was chosen, and the errors of [`optional`](Self::optional).
     pub(crate) fn one(&self, model: &Model) -> PyResult<FrameObject> {
         let none = "give one of body, body_com, geom, site and camera, by keyword";
         self.optional(model)?

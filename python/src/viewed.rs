@@ -1,4 +1,4 @@
-//! What a viewer looks at: a simulation, or one environment of a batch at a time.
+//! The target of a viewer: a simulation, or one environment of a batch at a time.
 
 use crate::batch::{AnyBatch, Batch};
 use crate::busy::lock;
@@ -68,13 +68,13 @@ impl<S: Precision> Viewed for RowSim<S> {
     }
 }
 
-/// A simulation or a batch, shared with the Python object that it belongs to.
+/// A simulation or a batch, shared with its Python object.
 pub(crate) enum Target {
     Sim(Arc<Mutex<AnySim>>),
     Batch(Arc<Mutex<AnyBatch>>),
 }
 
-/// Evaluates an expression about what a target has, whichever it is and in whichever precision.
+/// Evaluates an expression about a target of either kind and either precision.
 macro_rules! each_viewed {
     ($target:expr, $viewed:ident => $value:expr) => {
         match $target {
@@ -98,10 +98,10 @@ macro_rules! each_viewed {
 pub(crate) use each_viewed;
 
 impl Target {
-    /// What an object of Python's stands for.
+    /// Returns the target of a Python object.
     ///
     /// # Errors
-    /// An object that is neither.
+    /// Returns an error if the object is neither a simulation nor a batch.
     pub(crate) fn of(object: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(sim) = object.cast::<Sim>() {
             return Ok(Target::Sim(Arc::clone(sim.get().shared())));
@@ -115,10 +115,10 @@ impl Target {
         )))
     }
 
-    /// How many environments it has.
+    /// Returns the number of environments.
     ///
     /// # Errors
-    /// Another thread that has it.
+    /// Returns an error if another thread is using it.
     pub(crate) fn envs(&self) -> PyResult<usize> {
         Ok(each_viewed!(self, viewed => viewed.envs()))
     }

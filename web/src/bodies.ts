@@ -1,17 +1,17 @@
-// The geoms and sites of a model, drawn by instances: as many of a shape and surface as there are take one call.
+// The geoms and sites of a model, drawn by instances: all elements of equal shape and surface take one call.
 
 import * as THREE from "three";
 import { localPose } from "./poses.ts";
 import type { Geom, Numbers4, Placed, Scene } from "./scene.ts";
 import { materialOf, shapeOf } from "./shapes.ts";
 
-/** What users choose to see. */
+/** The visible elements that users select. */
 export interface Sight {
   groups: boolean[];
   hulls: boolean;
   transparent: boolean;
   sites: boolean;
-  /** Bodies in the colours of their islands. */
+  /** True to draw bodies in the colours of their islands. */
   islands: boolean;
 }
 
@@ -21,28 +21,28 @@ interface Drawn {
   local: THREE.Matrix4;
   mesh: THREE.InstancedMesh;
   slot: number;
-  /** Which of the environments side by side it belongs to. */
+  /** The index of its environment among those side by side. */
   place: number;
 }
 
-/** An environment where it is drawn. */
+/** The state of a drawn environment. */
 export interface Copy {
   poses: THREE.Matrix4[];
   fails: boolean;
-  /** Which of its trees sleep, where that is known. */
+  /** The sleep state of each tree, if available. */
   asleep: Float32Array;
-  /** The island of each tree, by its lowest tree, where that is known; -1 where no constraint acts. */
+  /** The island of each tree, by the lowest index of its trees, if available; -1 if no constraint acts on the tree. */
   islands: Float32Array;
-  /** The body that is chosen in it. */
+  /** The selected body. */
   chosen: number | null;
 }
 
-/** What the pointer is at. */
+/** The element under the pointer. */
 export interface Hit {
   geom: number;
   body: number;
   point: THREE.Vector3;
-  /** Which of the environments side by side. */
+  /** The index of the environment among those side by side. */
   place: number;
 }
 
@@ -61,20 +61,20 @@ export class Bodies {
   constructor(
     private scene: Scene,
     private sight: Sight,
-    /** How many environments there is room for. */
+    /** The number of environments with allocated instances. */
     private room: number,
   ) {
     this.rebuild();
   }
 
-  /** Makes room for so many environments. */
+  /** Allocates instances for `room` environments. */
   resize(room: number): void {
     if (room === this.room) return;
     this.room = room;
     this.rebuild();
   }
 
-  /** Makes everything anew, after what is seen has changed. */
+  /** Rebuilds all instances after the visible elements have changed. */
   rebuild(): void {
     this.group.traverse((object) => {
       if (object instanceof THREE.InstancedMesh) object.dispose();
@@ -90,7 +90,7 @@ export class Bodies {
     all.forEach((placed, index) => {
       const { kind, size, material, rgba } = placed;
       const { mesh, hfield } = placed as Partial<Geom>;
-      // Opaque ones of one shape can differ in colour.
+      // Opaque elements of one shape can differ in colour.
       const opacity = rgba[3] < 1 ? rgba.join() : "";
       const key = [kind, size.join(), material, mesh, hfield, opacity].join("|");
       alike.set(key, [...(alike.get(key) ?? []), index]);
@@ -98,7 +98,7 @@ export class Bodies {
     const drawn: Drawn[] = [];
     for (const indices of alike.values()) {
       const first = all[indices[0]];
-      // A plane of the world is under all of them.
+      // All environments share a plane of the world.
       const shared = first.kind === "plane" && first.body === 0 && this.room > 1;
       const copies = shared ? 1 : this.room;
       const surface = materialOf(this.scene, first);
@@ -128,7 +128,7 @@ export class Bodies {
     return drawn;
   }
 
-  /** Moves everything to where it is; there are as many copies as there is room for. */
+  /** Updates all poses and colours; there are as many copies as allocated environments. */
   update(copies: Copy[]): void {
     const place = new THREE.Matrix4();
     for (const drawn of this.geoms) {
@@ -157,7 +157,7 @@ export class Bodies {
     }
   }
 
-  /** The nearest geom along a ray. */
+  /** Returns the nearest geom along a ray. */
   pick(ray: THREE.Raycaster): Hit | null {
     for (const hit of ray.intersectObjects([...this.shown.keys()], false)) {
       const drawn = this.shown.get(hit.object)?.[hit.instanceId ?? -1];
@@ -167,7 +167,7 @@ export class Bodies {
   }
 }
 
-/** Neighbouring numbers have colours far apart: their hues go round by the golden section. */
+/** Returns a colour that differs clearly between consecutive indices: the hue advances by the golden ratio. */
 function islandColour(island: number): THREE.Color {
   return new THREE.Color().setHSL((0.11 + 0.618034 * island) % 1, 0.72, 0.5, THREE.SRGBColorSpace);
 }

@@ -1,4 +1,4 @@
-// Small parts of the page's controls.
+// Elements of the page's controls.
 
 export function element<K extends keyof HTMLElementTagNameMap>(
   tag: K,
@@ -10,7 +10,7 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** Outlines of the pictures on buttons, in a square of 16. */
+/** The outlines of the icons on buttons, in a square of 16. */
 const ICONS = {
   pause: "M4 3h3v10H4zM9 3h3v10H9z",
   play: "M4 2.5v11l9-5.5z",
@@ -50,16 +50,16 @@ export interface Slider {
   show(value: number): void;
 }
 
-/** A name with its middle left out where it is longer than so many letters: both ends tell it from others. */
+/** Shortens a name to `most` characters by omitting the middle: both ends distinguish it from others. */
 export function shortened(text: string, most: number): string {
   const head = Math.ceil((most - 1) / 2);
   return text.length <= most ? text : `${text.slice(0, head)}…${text.slice(head + 1 - most)}`;
 }
 
-/** Letters of a name before a slider. */
+/** The number of characters of a name before a slider. */
 const LETTERS = 13;
 
-/** A slider that is not moved by the simulation while the user holds it. */
+/** Creates a slider that the simulation does not move while the user holds it. */
 export function slider(
   text: string,
   low: number,
@@ -93,10 +93,10 @@ export function fold(title: string, open: boolean, ...children: Node[]): HTMLDet
   return element("details", { open }, element("summary", {}, title), element("div", { className: "content" }, ...children));
 }
 
-/** What is smaller is what rounding leaves of nothing. */
+/** Smaller values are rounding errors of zero. */
 const NOTHING = 1e-9;
 
-/** A number with few digits. */
+/** Formats a number with few digits. */
 export function brief(value: number): string {
   const size = Math.abs(value);
   if (size < NOTHING) return "0";

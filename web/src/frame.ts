@@ -1,4 +1,4 @@
-// Where everything is at one moment; see crates/clench-view/src/frame.rs.
+// Frames, the state at one moment; see crates/clench-view/src/frame.rs.
 
 import type { Scene } from "./scene.ts";
 
@@ -6,7 +6,7 @@ const MAGIC = 0x464e4c43; // "CLNF"
 const DELTA = 0x444e4c43; // "CLND"
 const HEAD = 20;
 
-/** Rows of numbers, all of one width. */
+/** Rows of equal width. */
 export interface Rows {
   width: number;
   count: number;
@@ -16,7 +16,7 @@ export interface Rows {
 export interface Frame {
   time: number;
   paused: boolean;
-  /** As it came. */
+  /** The bytes as received. */
   bytes: ArrayBuffer;
   rows: Record<string, Rows>;
 }
@@ -41,7 +41,9 @@ export function decode(scene: Scene, buffer: ArrayBuffer): Frame | null {
   };
 }
 
-/** The whole frame that a message is: as it came, or what has changed since the last one; see crates/clench-view/src/delta.rs. */
+/**
+ * Returns the whole frame of a message: as received, or the last one with changes; see crates/clench-view/src/delta.rs.
+ */
 export function whole(scene: Scene, message: ArrayBuffer, last: ArrayBuffer | null): ArrayBuffer | null {
   const view = new DataView(message);
   if (message.byteLength < HEAD || view.getUint32(0, true) !== DELTA) return message;
@@ -77,14 +79,14 @@ export function whole(scene: Scene, message: ArrayBuffer, last: ArrayBuffer | nu
   return made;
 }
 
-/** An environment of a batch that is seen. */
+/** A shown environment of a batch. */
 export interface Env {
   index: number;
-  /** Why it cannot go on; empty if it can. */
+  /** The reason if it cannot continue; otherwise empty. */
   fault: string;
 }
 
-/** All texts of a frame: those of its marks, then those of its environments. */
+/** Returns all texts of a frame: those of its marks, then those of its environments. */
 export function textsOf(frame: Frame): string[] {
   const { texts, letters } = frame.rows;
   let at = 0;
@@ -95,7 +97,7 @@ export function textsOf(frame: Frame): string[] {
   });
 }
 
-/** The environments that are seen; none where there is only one. */
+/** Returns the shown environments; empty if there is only one. */
 export function envsOf(frame: Frame): Env[] {
   const { envs, marks } = frame.rows;
   if (envs.count === 0) return [];
@@ -103,7 +105,7 @@ export function envsOf(frame: Frame): Env[] {
   return texts.map((fault, k) => ({ index: envs.data[2 * k], fault }));
 }
 
-/** The plotted numbers, in the order of the section `plots`. */
+/** The plotted values, in the order of the section `plots`. */
 export const PLOTS = [
   { name: "solver iterations", unit: "" },
   { name: "duality gap", unit: "log₁₀" },

@@ -1,15 +1,15 @@
-// Words in the picture, which face the camera and have one size wherever they are.
+// Texts in the picture, which face the camera with a constant size on the screen.
 
 import * as THREE from "three";
 
-/** Height of a line over the height of the picture. */
+/** The height of a line over the height of the picture. */
 const HEIGHT = 0.034;
-/** Pixels of a line. */
+/** The height of a line, pixels. */
 const PIXELS = 48;
 
 interface Painted {
   texture: THREE.CanvasTexture;
-  /** Width over height. */
+  /** The width over the height. */
   aspect: number;
 }
 
@@ -22,7 +22,7 @@ export class Labels {
     this.used = 0;
   }
 
-  /** Adds a word; `size` is its share of a usual one's. */
+  /** Adds a text; `size` is relative to the default size. */
   add(text: string, at: THREE.Vector3, colour: THREE.Color, size = 1): void {
     const sprite = this.sprite();
     const { texture, aspect } = this.paint(text, colour);
@@ -38,7 +38,7 @@ export class Labels {
 
   end(): void {
     this.group.children.slice(this.used).forEach((sprite) => (sprite.visible = false));
-    // Numbers that change would fill the memory with pictures of old ones.
+    // Changing numbers would fill the memory with textures of old ones.
     if (this.painted.size > 200 + this.used) this.forget();
   }
 

@@ -1,35 +1,35 @@
-// The lights of a model, or where it has none a sun and a sky.
+// The lights of a model, or a sun and a sky if it has none.
 
 import * as THREE from "three";
 import type { Frame } from "./frame.ts";
 import type { Light, Numbers3, Scene } from "./scene.ts";
 
-/** Matt surfaces in three.js reflect the light of a lamp divided by this. */
+/** Matt surfaces in three.js divide the light of a lamp by this. */
 const MATT = Math.PI;
 
-/** As crates/clench-render/src/light.rs has it. */
+/** The same as in crates/clench-render/src/light.rs. */
 const TO_SUN = new THREE.Vector3(0.15, -0.551, 0.821);
 
-/** Colours of lights add up on screens. */
+/** Creates a colour; lights are added in sRGB values. */
 function colour([red, green, blue]: Numbers3): THREE.Color {
   return new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace);
 }
 
 interface Lamp {
   told: Light;
-  /** Its number in frames. */
+  /** The row in frames. */
   row: number;
   lamp: THREE.DirectionalLight | THREE.SpotLight | THREE.PointLight;
 }
 
-/** What lights the picture. */
+/** The lighting of the picture. */
 export class Lights {
   readonly group = new THREE.Group();
-  /** Whether the model has lights of its own. */
+  /** True if the model has its own lights. */
   readonly own: boolean;
   private lamps: Lamp[] = [];
   private sun = new THREE.DirectionalLight(0xffffff, 2.8);
-  /** A sun and a sky, and what the model has. */
+  /** A sun and a sky, and the lights of the model. */
   private day = new THREE.Group();
   private night = new THREE.Group();
   private head: THREE.DirectionalLight | null = null;
@@ -37,7 +37,7 @@ export class Lights {
   constructor(
     scene: Scene,
     private extent: number,
-    /** Light that goes with the camera is a part of it. */
+    /** The parent of the headlight, which follows the camera. */
     camera: THREE.Camera,
   ) {
     this.own = scene.lights.length > 0;
@@ -55,7 +55,7 @@ export class Lights {
       this.head.position.set(0, 0, 1);
       camera.add(this.head, this.head.target);
     }
-    // One shadow is what a laptop draws sixty times a second.
+    // A laptop can draw only one shadow map sixty times a second.
     const casting = lights.findIndex(({ active, castshadow }) => active && castshadow);
     lights.forEach((told, row) => {
       if (!told.active) return;
@@ -79,7 +79,10 @@ export class Lights {
     if (!(lamp instanceof THREE.PointLight)) group.add(lamp.target);
   }
 
-  /** Lets light and shadows reach all environments side by side. Lights of a model are in one place: several are in daylight. */
+  /**
+   * Extends light and shadows to all environments side by side. The model's lights have one position: several
+   * environments are drawn in daylight.
+   */
   shade(reach: number, several: boolean): void {
     this.night.visible = this.own && !several;
     this.day.visible = !this.night.visible;
@@ -98,7 +101,10 @@ export class Lights {
     }
   }
 
-  /** Puts lights where they are in a frame, seen from a point; `offset` is the origin of the environment that it is of. */
+  /**
+   * Moves the lights to their poses in a frame, for a view of `target`; `offset` is the origin of the frame's
+   * environment.
+   */
   update(frame: Frame, target: THREE.Vector3, offset: THREE.Vector3, reach: number): void {
     this.sun.target.position.copy(target);
     this.sun.position.copy(target).addScaledVector(TO_SUN, 5.3 * reach * this.extent);
@@ -107,14 +113,14 @@ export class Lights {
       const at = new THREE.Vector3().fromArray(data, 6 * row).add(offset);
       const along = new THREE.Vector3().fromArray(data, 6 * row + 3);
       if (lamp instanceof THREE.DirectionalLight) {
-        // It shines everywhere: what matters is that all shadows are within its picture.
+        // It shines everywhere, but all shadows must be within its shadow map.
         lamp.target.position.copy(target);
         lamp.position.copy(target).addScaledVector(along, -5 * reach * this.extent);
       } else {
         lamp.position.copy(at);
         const distance = at.distanceTo(target);
         const [constant, linear, square] = told.attenuation;
-        // As weak everywhere as in the middle of the picture.
+        // Use the attenuation at the centre of the picture everywhere.
         lamp.intensity = MATT / Math.max(constant + linear * distance + square * distance * distance, 1e-9);
         if (lamp instanceof THREE.SpotLight) lamp.target.position.copy(at).add(along);
       }

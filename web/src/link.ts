@@ -1,4 +1,4 @@
-// The connection to the server. A frame is asked for when the last one has been drawn.
+// The connection to the server. It requests a frame when the last one has been drawn.
 
 import { decode, whole, type Frame } from "./frame.ts";
 import type { Scene } from "./scene.ts";
@@ -12,13 +12,13 @@ export interface Listener {
   lost(): void;
 }
 
-/** How long to wait before trying again, ms. */
+/** The delay before reconnecting, ms. */
 const PAUSE = 1000;
 
 export class Link {
   private socket: WebSocket | null = null;
   private scene: Scene | null = null;
-  /** The last frame that came. */
+  /** The last frame that was received. */
   private last: ArrayBuffer | null = null;
 
   constructor(private listener: Listener) {

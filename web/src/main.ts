@@ -1,4 +1,4 @@
-// The viewer's page: a live simulation from the server, or a recording that the page carries.
+// The viewer's page: a live simulation from the server, or an embedded recording.
 
 import "./style.css";
 import type { Sight } from "./bodies.ts";
@@ -13,7 +13,7 @@ import { Stage } from "./stage.ts";
 import { Tape } from "./tape.ts";
 import { listen } from "./touch.ts";
 
-/** Geoms of these groups are not seen at first, as in MuJoCo. */
+/** The groups of geoms that are hidden initially, as in MuJoCo. */
 const HIDDEN = [3, 4, 5];
 
 const sight: Sight = {
@@ -36,7 +36,7 @@ const layers: Layers = {
   inertia: false,
 };
 
-/** The parts of the page that are there once a scene and a frame are. */
+/** The parts of the page that require a scene and a frame. */
 interface Parts {
   stage: Stage;
   panel: Panel;
@@ -72,7 +72,7 @@ function show(parts: Parts, frame: Frame): void {
   parts.panel.update(frame);
   parts.plots.add(frame);
   parts.plots.draw();
-  // For tests and the curious: what is drawn, from the console.
+  // The drawn objects, for tests and for the console.
   Object.assign(window, { clench: { ...parts, frame } });
 }
 
@@ -108,7 +108,7 @@ function play(replay: Replay): void {
   let plotted = -1;
   const tick = (now: number) => {
     const frame = replay.advance((now - last) / 1000);
-    // The plots show all moments up to this one, also those that were not drawn.
+    // The plots show all moments up to this one, including those that were not drawn.
     if (replay.at < plotted) plotted = -1;
     while (plotted < replay.at) parts.plots.add(replay.frames[++plotted]);
     show(parts, frame);

@@ -1,11 +1,11 @@
-// Many of one shape, drawn in one call.
+// Many instances of one shape, drawn in one call.
 
 import * as THREE from "three";
 
-/** The axis that shapes are drawn along before they are turned. */
+/** The axis of shapes before they are rotated. */
 export const UP = new THREE.Vector3(0, 1, 0);
 
-/** As many of one shape as a frame needs. */
+/** The instances of one shape in a frame. */
 export class Many {
   readonly group = new THREE.Group();
   private mesh: THREE.InstancedMesh;
@@ -17,7 +17,7 @@ export class Many {
     private surface: THREE.Material,
     private order = 0,
   ) {
-    // Instances of three.js have a colour each, and no opacity.
+    // Instances of three.js have a colour each, but no opacity.
     surface.onBeforeCompile = (shader) => {
       shader.vertexShader = `attribute float fade;\nvarying float vFade;\n${shader.vertexShader}`.replace(
         "#include <begin_vertex>",
@@ -51,7 +51,7 @@ export class Many {
     }
   }
 
-  /** Adds one; `fade` is the share of its surface's opacity that it has, of use where that is transparent. */
+  /** Adds an instance; `fade` is a factor on its surface's opacity, which has an effect on transparent surfaces. */
   add(place: THREE.Matrix4, colour: THREE.Color, fade = 1): void {
     this.mesh.setMatrixAt(this.count, place);
     this.mesh.setColorAt(this.count, colour);
@@ -66,7 +66,7 @@ export class Many {
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
   }
 
-  /** Where an instance begins and ends along its own y, as it is drawn. */
+  /** Returns the ends of an instance along its y axis, as drawn. */
   endsOf(index: number): [number[], number[]] {
     const place = new THREE.Matrix4();
     this.mesh.getMatrixAt(index, place);
@@ -80,12 +80,12 @@ export class Many {
   }
 }
 
-/** From y = 0 to y = 1. */
+/** Shifts a geometry to y = 0 to y = 1. */
 export function standing(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
   return geometry.translate(0, 0.5, 0);
 }
 
-/** A unit shape along y, so wide, and so long along a direction from a point. */
+/** Returns the pose of a unit shape along y with this width, from a point along a direction with this length. */
 export function stretched(from: THREE.Vector3, along: THREE.Vector3, wide: number, long: number): THREE.Matrix4 {
   const turn = new THREE.Quaternion().setFromUnitVectors(UP, along);
   return new THREE.Matrix4().compose(from, turn, new THREE.Vector3(wide, long, wide));

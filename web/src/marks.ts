@@ -1,11 +1,11 @@
-// What the program draws itself: spheres, lines, arrows, words.
+// The marks that the program draws: spheres, lines, arrows, texts.
 
 import * as THREE from "three";
 import { textsOf, type Frame } from "./frame.ts";
 import { Labels } from "./labels.ts";
 import { Many, standing, stretched, UP } from "./many.ts";
 
-/** Steps of opacity: marks of one step share a call. */
+/** The number of opacity levels: marks of one level share a call. */
 const STEPS = 10;
 
 class Solids {
@@ -80,7 +80,7 @@ export class Marks {
     }
   }
 
-  /** How many balls, shafts, heads and words there are. */
+  /** Returns the numbers of balls, shafts, heads and texts. */
   counts(): number[] {
     const counts = [0, 0, 0, this.labels.count];
     this.solids.forEach((solids) => solids.all().forEach((many, k) => (counts[k] += many.size)));

@@ -1,4 +1,4 @@
-// What no camera would see: contacts, forces, friction cones, tendons, frames, joint axes, centres of mass.
+// Overlays: contacts, forces, friction cones, tendons, frames, joint axes, centres of mass.
 
 import * as THREE from "three";
 import type { Frame } from "./frame.ts";
@@ -7,11 +7,11 @@ import { Marks } from "./marks.ts";
 import { poseOf } from "./poses.ts";
 import type { Scene } from "./scene.ts";
 
-/** What users choose to see besides bodies. */
+/** The overlays that users select. */
 export interface Layers {
   contacts: boolean;
   forces: boolean;
-  /** Of contacts and their forces only the {@link LARGEST} with the largest forces. */
+  /** True to show only the {@link LARGEST} contacts with the largest forces. */
   largest: boolean;
   /** Forces and torques of limits and equalities. */
   constraints: boolean;
@@ -23,12 +23,12 @@ export interface Layers {
   inertia: boolean;
 }
 
-/** How many contacts are seen where only the largest are. */
+/** The number of shown contacts if only the largest are. */
 export const LARGEST = 50;
-/** From so many contacts on marks of contacts become smaller and thinner, down to a share. */
+/** The number of contacts above which their marks become smaller and thinner, down to a limit. */
 const CROWD = 24;
 const THINNEST = 0.45;
-/** The share of its opacity that the farthest contact of a crowd keeps. */
+/** The opacity factor of the farthest of many contacts. */
 const FARTHEST = 0.25;
 
 const NORMAL = new THREE.Color(0x2f7de1);
@@ -39,7 +39,10 @@ const LIMIT = new THREE.Color(0xc9a400);
 const STICKS = new THREE.Color(0x2eb872);
 const SLIPS = new THREE.Color(0xe0342c);
 
-/** Bright and unshaded, over what is in front of it, so that a force inside a foot is seen. */
+/**
+ * Creates a bright, unshaded material that is visible through objects in front of it, such as for a force inside a
+ * foot.
+ */
 function glow(opacity: number, through = true): THREE.MeshBasicMaterial {
   return new THREE.MeshBasicMaterial({
     transparent: true,
@@ -50,7 +53,7 @@ function glow(opacity: number, through = true): THREE.MeshBasicMaterial {
   });
 }
 
-/** The tendons whose limits push. */
+/** Returns the tendons whose limits exert a force. */
 function strainedTendons(frame: Frame): Set<number> {
   const { data, count } = frame.rows.constraints;
   const rows = Array.from({ length: count }, (_, row) => data.subarray(3 * row, 3 * row + 3));
@@ -59,11 +62,11 @@ function strainedTendons(frame: Frame): Set<number> {
 
 export class Overlays {
   readonly group = new THREE.Group();
-  /** Metres a newton. */
+  /** The length of force arrows, m/N. */
   forceScale = 0.002;
-  /** Tendons that are at their limits. */
+  /** The tendons at their limits. */
   private strained = new Set<number>();
-  /** How thick marks of contacts are drawn: 1 where there are few. */
+  /** The relative thickness of contact marks: 1 for few contacts. */
   private thin = 1;
   private discs = new Many(new THREE.CylinderGeometry(1, 1, 0.12, 32), glow(0.85), 3);
   private shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 12)), glow(0.95), 5);
@@ -90,9 +93,9 @@ export class Overlays {
   constructor(
     private scene: Scene,
     private layers: Layers,
-    /** What the size of arrows is chosen by: an arrow for the weight of this, N, is about as long as it, m. */
+    /** The reference of the arrow length: an arrow for this weight, N, is about as long as this size, m. */
     heaviest: { weight: number; size: number },
-    /** A length that suits marks on bodies, m. */
+    /** The length scale of marks on bodies, m. */
     private size: number,
   ) {
     for (const many of this.all()) this.group.add(many.group);
@@ -102,7 +105,10 @@ export class Overlays {
     if (weight > 0) this.forceScale = (0.8 * length) / weight;
   }
 
-  /** Metres a newton metre: a torque is as long as the force that has it at a lever as long as a usual body. */
+  /**
+   * The length of torque arrows, m/(N m): equal to that of a force with this torque on a lever of a typical body's
+   * length.
+   */
   private get torqueScale(): number {
     return (3 * this.forceScale) / this.size;
   }
@@ -111,7 +117,7 @@ export class Overlays {
     return [this.discs, this.shafts, this.heads, this.cones, this.strings, this.balls, this.boxes];
   }
 
-  /** Draws a frame, seen from a point in the coordinates of its environment. */
+  /** Draws a frame, viewed from a point in the coordinates of its environment. */
   update(frame: Frame, poses: THREE.Matrix4[], eye: THREE.Vector3): void {
     const { contacts, spans, drag, turn, pushes } = frame.rows;
     const { scene, layers } = this;
@@ -157,7 +163,7 @@ export class Overlays {
     });
   }
 
-  /** The bodies that touch each body. */
+  /** Returns the bodies that touch each body. */
   private neighbours(rows: Float32Array[]): Map<number, Set<number>> {
     const found = new Map<number, Set<number>>();
     for (const row of rows) {
@@ -175,8 +181,9 @@ export class Overlays {
   }
 
   /**
-   * Which body the force is drawn on: 1 for the second, that the normal points into, -1 for the first. It is one that can move, and of two
-   * that can the one that touches fewer others: what is pinched between two would have both arrows over each other.
+   * Returns the body that the force is drawn on: 1 for the second, which the normal points into, -1 for the first. It
+   * is movable; of two movable bodies it is the one that touches fewer others, since both arrows of a body pinched
+   * between two would overlap.
    */
   private side(row: Float32Array, neighbours: Map<number, Set<number>>): number {
     const [first, second] = this.bodiesOf(row);
@@ -192,7 +199,7 @@ export class Overlays {
     const [pressure, along, across] = [row[12], row[13], row[14]];
     const friction = row[16];
     const sideways = Math.hypot(along, across);
-    // 0 where it sticks without effort, 1 on the cone.
+    // 0 for no tangential force, 1 on the cone.
     const limit = friction * Math.max(pressure, 1e-9);
     const near = row[19] > 1 ? Math.min(1, sideways / limit) : 0;
     const colour = STICKS.clone().lerp(SLIPS, near);
@@ -211,7 +218,7 @@ export class Overlays {
     }
   }
 
-  /** An arrow; too short a one is nothing. */
+  /** Draws an arrow; very short ones are omitted. */
   private arrow(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color, fade = 1): void {
     const length = along.length();
     const thick = 0.0085 * this.size * this.thin;
@@ -260,7 +267,7 @@ export class Overlays {
       this.balls.add(stretched(centre, UP, radius, radius), new THREE.Color(0x8d5bd1));
     }
     if (this.layers.inertia) {
-      // The box of equal density that has these moments: x² = 3/2 (Iy + Iz − Ix) / m for its half length x.
+      // The box of equal density with these moments of inertia: x² = 3/2 (Iy + Iz − Ix) / m for its half length x.
       const [x, y, z] = inertia;
       const half = (sum: number) => Math.sqrt(Math.max(0, (1.5 * sum) / mass));
       const place = pose.clone().multiply(poseOf(ipos, iquat));
@@ -277,7 +284,7 @@ export class Overlays {
     this.balls.add(stretched(from, UP, radius, radius), PULL);
   }
 
-  /** What a limit or an equality does: an arrow for its force, one with two heads for its torque. */
+  /** Draws a limit or an equality: an arrow for its force, one with two heads for its torque. */
   private push(row: Float32Array): void {
     const colour = row[0] === 1 ? LIMIT : HELD;
     const at = new THREE.Vector3(row[3], row[4], row[5]);
@@ -287,7 +294,7 @@ export class Overlays {
     this.torque(at, torque, colour);
   }
 
-  /** An arrow along the axis of a torque, with two heads. */
+  /** Draws an arrow along the axis of a torque, with two heads. */
   private torque(from: THREE.Vector3, along: THREE.Vector3, colour: THREE.Color): void {
     this.arrow(from, along, colour);
     const head = 4 * 0.0085 * this.size;
@@ -302,17 +309,17 @@ export class Overlays {
     this.balls.add(stretched(from, UP, radius, radius), PULL);
   }
 
-  /** How many balls, shafts, heads and words the program draws itself, for tests. */
+  /** Returns the numbers of balls, shafts, heads and texts of the program's marks, for tests. */
   markCounts(): number[] {
     return this.marks.counts();
   }
 
-  /** Where all arrows begin and end, m, for tests. */
+  /** Returns the ends of all arrows, m, for tests. */
   arrows(): [number[], number[]][] {
     return Array.from({ length: this.shafts.size }, (_, k) => this.shafts.endsOf(k));
   }
 
-  /** How many contacts are seen, for tests. */
+  /** The number of shown contacts, for tests. */
   get discCount(): number {
     return this.discs.size;
   }

@@ -1,4 +1,4 @@
-// The controls beside the picture.
+// The controls next to the picture.
 
 import { LARGEST, type Layers } from "./overlays.ts";
 import type { Sight } from "./bodies.ts";
@@ -33,13 +33,13 @@ const LAYERS: [keyof Layers, string][] = [
   ["inertia", "inertia boxes"],
 ];
 
-/** How many environments can be side by side. */
+/** The selectable numbers of environments side by side. */
 const GRIDS = [1, 4, 9, 16, 25, 36, 49, 64];
 
-/** Seconds that can be saved. */
+/** The selectable durations of a saved recording, s. */
 const SAVED = [5, 10, 30];
 
-/** Range of a slider for what has none. */
+/** The range of a slider without limits. */
 const OPEN: [number, number] = [-3.1416, 3.1416];
 
 export class Panel {
@@ -54,7 +54,7 @@ export class Panel {
   private facts = element("div", { id: "facts" });
   private rows = new Map<number, HTMLElement>();
   private paused = false;
-  /** The environment of a batch that is touched. */
+  /** The environment of a batch that is interacted with. */
   env = 0;
   private selection = { env: 0, first: 0, count: 1 };
   private envFields: HTMLInputElement[] = [];
@@ -121,7 +121,7 @@ export class Panel {
     ];
   }
 
-  /** Saves what was seen last as a page. */
+  /** Creates the control that saves the last seconds as a page. */
   private saves(tape: Tape): HTMLElement {
     const options = SAVED.map((seconds): [string, string] => [`${seconds}`, `the last ${seconds} s`]);
     const list = choice([["", "save"], ...options], "", (seconds) => {
@@ -133,7 +133,7 @@ export class Panel {
     return list;
   }
 
-  /** The model's cameras, if it has any. */
+  /** Creates the choice of the model's cameras, if it has any. */
   private cameras(): HTMLElement[] {
     const { cameras } = this.scene;
     if (cameras.length === 0) return [];
@@ -145,7 +145,7 @@ export class Panel {
     return [list];
   }
 
-  /** A slider over the moments to which one can come back. */
+  /** Creates a slider over the moments that rewinding can reach. */
   private makePast(): HTMLInputElement {
     const title = "any moment of the last ten seconds";
     const made = element("input", { id: "past", type: "range", title, min: "0", max: "0", step: "any" });
@@ -161,7 +161,7 @@ export class Panel {
     this.past.valueAsNumber = frame.time;
   }
 
-  /** Chooses environments. */
+  /** Selects environments. */
   show(chosen: Partial<{ env: number; first: number; count: number }>): void {
     Object.assign(this.selection, chosen);
     this.send({ do: "show", ...this.selection });
@@ -188,7 +188,7 @@ export class Panel {
     ];
   }
 
-  /** Takes over what users of other pages, or the program, chose. */
+  /** Reads the selection of other pages or of the program. */
   private readSelection(frame: Frame): void {
     const { chosen, envs } = frame.rows;
     if (chosen.count === 0) return;
@@ -201,7 +201,7 @@ export class Panel {
     if (this.grid && document.activeElement !== this.grid) this.grid.value = `${this.selection.count}`;
   }
 
-  /** The choice that shows so many: at the end of a batch there are fewer than were asked for. */
+  /** Returns the smallest choice for this count: at the end of a batch fewer environments are shown than requested. */
   private wider(count: number): number {
     const counts = Array.from(this.grid?.options ?? [], ({ value }) => Number(value));
     return counts.find((choice) => choice >= count) ?? count;
@@ -325,7 +325,7 @@ export class Panel {
     if (this.stage.followed !== null) this.stage.followed = body;
   }
 
-  /** Shows what a frame says. */
+  /** Shows the values of a frame. */
   update(frame: Frame): void {
     this.paused = frame.paused;
     this.readSelection(frame);
@@ -380,7 +380,7 @@ export class Panel {
     }
   }
 
-  /** The sum of the sizes of contact forces on a body, N. */
+  /** Returns the sum of the norms of the contact forces on a body, N. */
   private pushOn(body: number, frame: Frame): number {
     const { data, count } = frame.rows.contacts;
     let sum = 0;

@@ -1,4 +1,4 @@
-// What is plotted while a simulation runs.
+// Plots of a running simulation.
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -7,15 +7,15 @@ import { PLOTS, type Frame } from "./frame.ts";
 import { nameOf, type Scene } from "./scene.ts";
 import { tickTexts } from "./ticks.ts";
 
-/** Moments in a plot. */
+/** The maximum number of moments in a plot. */
 const ROOM = 600;
 const COLOURS = ["#2f7de1", "#f08a24", "#2eb872"];
 const STAGE_COLOURS = ["#8e9aa6", "#2f7de1", "#2eb872", "#e8b730", "#f0642f", "#9a6ad6"];
 
-/** What can be plotted: a number, or parts on top of each other. */
+/** A plottable quantity: a number, or stacked parts. */
 interface Source {
   title: string;
-  /** Names of the parts, the lowest first; none of a single number. */
+  /** The names of the parts, the lowest first; empty for a single number. */
   parts: string[];
   read(frame: Frame): ArrayLike<number>;
 }
@@ -45,13 +45,13 @@ function sources(scene: Scene): Source[] {
   return all;
 }
 
-/** Time between drawings of a plot, ms. */
+/** The minimum time between redraws of a plot, ms. */
 const PAUSE = 100;
 
-/** Numbers that rounding leaves of nothing. */
+/** Smaller values are rounding errors of zero. */
 const NOTHING = 1e-12;
 
-/** The axis from the least to the most of a line: around one that is flat, as much as its value. */
+/** Returns the axis range of a line; a constant line is padded by half its value on both sides. */
 function reach(least: number | null, most: number | null): uPlot.Range.MinMax {
   if (least === null || most === null) return [0, 1];
   const size = Math.max(Math.abs(least), Math.abs(most));
@@ -60,7 +60,7 @@ function reach(least: number | null, most: number | null): uPlot.Range.MinMax {
   return [least - 0.5 * size, most + 0.5 * size];
 }
 
-/** Pixels that the texts of a vertical axis take, with the gaps around them. */
+/** Returns the width of a vertical axis with its labels and gaps, pixels. */
 function room(texts: string[] | null): number {
   return 16 + 6 * Math.max(3, ...(texts ?? []).map((text) => text.length));
 }
@@ -68,11 +68,11 @@ function room(texts: string[] | null): number {
 class Plot {
   readonly box: HTMLElement;
   private times: number[] = [];
-  /** Of each part what it and those below it are together, the highest first: the lower ones are drawn over it. */
+  /** The cumulative sum of each part and those below it, the highest first: lower ones are drawn over it. */
   private values: number[][] = [];
   private plot: uPlot;
   private names: HTMLElement;
-  /** When it was drawn last, and whether it has got something since, ms. */
+  /** The time of the last redraw, ms, and true if data have arrived since. */
   private drawn = -Infinity;
   private isOld = true;
 
@@ -94,7 +94,7 @@ class Plot {
     this.plot = this.made();
   }
 
-  /** The plot of what is chosen. */
+  /** Creates the plot of the selected quantity. */
   private made(): uPlot {
     const { parts } = this.all[this.source];
     const names = parts.map((name, k) => {
@@ -111,7 +111,7 @@ class Plot {
         height: 104,
         legend: { show: false },
         cursor: { show: false },
-        // Areas that lie on each other begin at nothing.
+        // Stacked areas start at zero.
         scales: { x: { time: false }, y: { range: (_, least, most) => (parts.length > 0 ? [0, most || 1] : reach(least, most)) } },
         axes: [
           { size: 22, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
@@ -145,22 +145,22 @@ class Plot {
     if (this.times.length > ROOM) for (const row of [this.times, ...this.values]) row.shift();
   }
 
-  /** Draws what it got, if it is time to: at once where history begins anew. */
+  /** Redraws the plot if it is due: immediately when the history restarts. */
   draw(now: number): void {
     if (!this.isOld || now - this.drawn < PAUSE) return;
-    // A line begins with two moments: it is not to wait for the next time.
+    // A line needs two moments: do not wait for the next redraw.
     this.drawn = this.times.length > 1 ? now : -Infinity;
     this.isOld = false;
     this.plot.setData([this.times, ...this.values]);
   }
 
-  /** The moments between which it is drawn. */
+  /** The drawn range of times. */
   get span(): [number, number] {
     const { min, max } = this.plot.scales.x;
     return [min ?? NaN, max ?? NaN];
   }
 
-  /** The numbers between which it is drawn. */
+  /** The drawn range of values. */
   get heights(): [number, number] {
     const { min, max } = this.plot.scales.y;
     return [min ?? NaN, max ?? NaN];
@@ -170,7 +170,7 @@ class Plot {
     return this.times.length;
   }
 
-  /** The last of what is drawn, the highest first. */
+  /** The last drawn values, the highest first. */
   get last(): number[] {
     return this.values.map((row) => row.at(-1) ?? NaN);
   }
@@ -194,17 +194,17 @@ export class Plots {
     for (const plot of this.plots) plot.draw(now);
   }
 
-  /** The moments and the numbers between which each is drawn. */
+  /** Returns the drawn ranges of times and values of each plot. */
   spans(): { times: [number, number]; values: [number, number] }[] {
     return this.plots.map((plot) => ({ times: plot.span, values: plot.heights }));
   }
 
-  /** The last of what each draws, the highest first. */
+  /** Returns the last drawn values of each plot, the highest first. */
   lasts(): number[][] {
     return this.plots.map((plot) => plot.last);
   }
 
-  /** Moments in each. */
+  /** Returns the number of moments in each plot. */
   counts(): number[] {
     return this.plots.map((plot) => plot.count);
   }

@@ -1,4 +1,4 @@
-// Poses of bodies out of frames.
+// Poses of bodies in frames.
 
 import * as THREE from "three";
 import type { Frame, Rows } from "./frame.ts";
@@ -7,7 +7,7 @@ import type { Numbers3, Numbers4 } from "./scene.ts";
 export const ONE = new THREE.Vector3(1, 1, 1);
 
 export function poseOf(pos: ArrayLike<number>, quat: ArrayLike<number>): THREE.Matrix4 {
-  // Quaternions of models have w first, those of three have it last.
+  // Quaternions of models have w first, those of three.js have it last.
   const turn = new THREE.Quaternion(quat[1], quat[2], quat[3], quat[0]);
   return new THREE.Matrix4().compose(new THREE.Vector3(pos[0], pos[1], pos[2]), turn, ONE);
 }
@@ -16,7 +16,7 @@ export function localPose(placed: { pos: Numbers3; quat: Numbers4 }): THREE.Matr
   return poseOf(placed.pos, placed.quat);
 }
 
-/** Writes the poses of rows from a first one on; makes room for them first. */
+/** Reads the poses of `count` rows from `first` on; extends `poses` as needed. */
 function read({ data }: Rows, first: number, count: number, poses: THREE.Matrix4[]): void {
   for (let body = 0; body < count; body++) {
     const at = 7 * (first + body);
@@ -24,12 +24,12 @@ function read({ data }: Rows, first: number, count: number, poses: THREE.Matrix4
   }
 }
 
-/** Writes the pose of every body. */
+/** Reads the pose of every body. */
 export function readPoses(frame: Frame, poses: THREE.Matrix4[]): void {
   read(frame.rows.bodies, 0, frame.rows.bodies.count, poses);
 }
 
-/** Writes the pose of every body of the k-th environment that is seen. */
+/** Reads the pose of every body of the k-th shown environment. */
 export function readPosesOf(k: number, frame: Frame, poses: THREE.Matrix4[]): void {
   const { count } = frame.rows.bodies;
   read(frame.rows.poses, k * count, count, poses);

@@ -1,4 +1,4 @@
-// A recording in the page itself: frames one after the other, with a slider for time.
+// The replay of an embedded recording, with a slider for time.
 
 import { decode, type Frame } from "./frame.ts";
 import { bytesOf, type Scene } from "./scene.ts";
@@ -23,13 +23,13 @@ export class Replay {
     this.clock = this.frames[0]?.time ?? 0;
   }
 
-  /** The recording that a page carries, if it carries one. */
+  /** Returns the embedded recording of the page, if there is one. */
   static inPage(): Replay | null {
     const carried = document.getElementById("recording")!.textContent;
     return carried ? new Replay(JSON.parse(carried) as Recording) : null;
   }
 
-  /** Goes on by so much real time, s, and from the end to the beginning. */
+  /** Advances by real time, s, and restarts after the end. */
   advance(seconds: number): Frame {
     const { frames } = this;
     if (this.playing) {

@@ -1,4 +1,4 @@
-// What the server says there is to draw; see crates/clench-view/src/scene.rs.
+// The scene that the server sends; see crates/clench-view/src/scene.rs.
 
 export type Numbers3 = [number, number, number];
 export type Numbers4 = [number, number, number, number];
@@ -13,7 +13,7 @@ export interface Placed {
   size: Numbers3;
   rgba: Numbers4;
   material: number | null;
-  /** What coordinates are multiplied by to find their place in a texture; see crates/clench-view/src/surfaces.rs. */
+  /** The factors from coordinates to texture coordinates; see crates/clench-view/src/surfaces.rs. */
   scale: Numbers3;
 }
 
@@ -45,7 +45,7 @@ export interface Joint {
   axis: Numbers3;
 }
 
-/** A light of the model; where it is stands in frames. */
+/** A light of the model; frames contain its pose. */
 export interface Light {
   name: string;
   kind: "spot" | "directional" | "point";
@@ -67,7 +67,7 @@ export interface Scene {
   name: string;
   timestep: number;
   sections: { name: string; width: number }[];
-  /** Names of the stages of a step whose times are in frames. */
+  /** The names of the stages of a step whose times are in frames. */
   stages: string[];
   bodies: Body[];
   geoms: Geom[];
@@ -90,11 +90,11 @@ export interface Scene {
     shininess: number;
     reflectance: number;
   }[];
-  /** Pictures as PNG in base 64; those of cubes have their sides below each other. */
+  /** Images as PNG in base 64; the sides of a cube are below each other. */
   textures: { kind: "plane" | "cube" | "sky"; png: string }[];
   trees: (number | null)[];
   active: boolean;
-  /** Whether the simulation keeps where it has been. */
+  /** True if the simulation can be rewound. */
   rewinds: boolean;
   envs: number;
 }

@@ -1,18 +1,18 @@
-// Geometry and surfaces of geoms and sites.
+// Geometry and materials of geoms and sites.
 
 import * as THREE from "three";
 import { bytesOf, type Geom, type Placed, type Scene, type Surface } from "./scene.ts";
 import { cover, paint, textureOf } from "./textures.ts";
 
-/** Half the side of a plane without one, m. */
+/** Half the side of an infinite plane, m. */
 const FAR = 60;
 
-/** Turns z up, which a model has, into what three's cylinders and capsules have along y. */
+/** Rotates three.js's cylinders and capsules from y to the model's z axis. */
 function upright(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
   return geometry.rotateX(Math.PI / 2);
 }
 
-/** A shape by its own measure; instances are scaled where their sizes differ alone. */
+/** Creates the shape of an element with its size. */
 export function shapeOf(scene: Scene, placed: Placed & Partial<Geom>, hulls: boolean): THREE.BufferGeometry {
   const made = shape(scene, placed, hulls);
   const found = textureOf(scene, placed);
@@ -44,7 +44,7 @@ function shape(scene: Scene, placed: Placed & Partial<Geom>, hulls: boolean): TH
   }
 }
 
-/** Triangles with a normal each, so that edges stay sharp; smooth where the mesh is fine. */
+/** Creates triangles with a normal each, so that edges stay sharp; fine meshes look smooth. */
 function surface({ vertices, faces }: Surface, texcoords: string | null): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytesOf(vertices)), 3));
@@ -72,7 +72,7 @@ function terrain(scene: Scene, index: number): THREE.BufferGeometry {
       );
     }
   }
-  // Rows run upwards here and downwards in three, so triangles are wound the other way.
+  // Rows run upwards here and downwards in three.js, so the winding of triangles is reversed.
   const corners = geometry.index!;
   for (let t = 0; t < corners.count; t += 3) {
     const swapped = corners.getX(t + 1);
@@ -83,7 +83,7 @@ function terrain(scene: Scene, index: number): THREE.BufferGeometry {
   return geometry;
 }
 
-/** How a geom or site reflects light. Colours of models are what a screen shows, sRGB. */
+/** Creates the material of a geom or site. Colours of models are in sRGB. */
 export function materialOf(scene: Scene, placed: Placed): THREE.MeshStandardMaterial {
   const [red, green, blue, alpha] = placed.rgba;
   const said = placed.material === null ? null : scene.materials[placed.material];

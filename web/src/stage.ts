@@ -1,4 +1,4 @@
-// Camera, light, ground, and the picture of a frame.
+// The camera, lights and ground, and the drawing of frames.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -12,20 +12,20 @@ import { localPose, readPoses, readPosesOf } from "./poses.ts";
 import type { Geom, Scene } from "./scene.ts";
 
 const SKY = 0xdfe6ee;
-/** Vertical field of view of the free camera, degrees. */
+/** The vertical field of view of the free camera, degrees. */
 const FOV = 42;
-/** From where the free camera looks at first, at one and at several environments. */
+/** The initial directions to the free camera, for one and for several environments. */
 const ASIDE = new THREE.Vector3(1.35, -1.55, 0.62).normalize();
 const ABOVE = new THREE.Vector3(1.35, -1.55, 1.1).normalize();
-/** How much larger the ball that is seen is than the one around the model. */
+/** The radius of the visible ball over that of the model. */
 const ROOMY = 1.08;
-/** Least share of the picture that counts as free, along each side. */
+/** The minimum share of the picture that counts as free, along each side. */
 const LEAST_FREE = 0.35;
 
 /** The elements around the free part of the picture: above, at the right, below. */
 const AROUND = ["bar", "panel", "plots"];
 
-/** A part of the picture, in pixels. */
+/** A region of the picture, pixels. */
 interface Area {
   x: number;
   y: number;
@@ -39,7 +39,7 @@ export class Stage {
   readonly overlays: Overlays;
   readonly controls: OrbitControls;
   readonly poses: THREE.Matrix4[] = [];
-  /** The camera of the model that one looks through. */
+  /** The camera of the model in use; null for the free camera. */
   through: number | null = null;
   /** The body that the camera follows. */
   followed: number | null = null;
@@ -47,26 +47,26 @@ export class Stage {
   private world = new THREE.Scene();
   readonly lights: Lights;
   private centre = new THREE.Vector3();
-  /** The height of the ground, or of the lowest that is seen at first, m. */
+  /** The height of the ground, or of the lowest point that is visible initially, m. */
   private lowest = 0;
   private followedAt: THREE.Vector3 | null = null;
-  /** Whether a user has moved the free camera. */
+  /** True if a user has moved the free camera. */
   private isMoved = false;
   private sizes = new ResizeObserver(() => {
     this.fit();
     if (!this.isMoved && this.through === null && this.followed === null) this.home();
   });
-  /** The environments that are seen, in the order of their places. */
+  /** The shown environments, in the order of their positions. */
   private envs: Env[] = [];
-  /** How much wider they are than one alone. */
+  /** The width of all environments relative to a single one. */
   private reach = 1;
   private copies: Copy[] = [];
   readonly labels = new Labels();
-  /** A border around the place of the chosen environment. */
+  /** A border around the selected environment. */
   readonly border = new THREE.Mesh(borderShape(), new THREE.MeshBasicMaterial({ color: 0xf08a24, toneMapped: false, fog: false }));
-  /** Where the origin of the chosen environment is. */
+  /** The position of the selected environment's origin. */
   readonly offset = new THREE.Vector3();
-  /** A length that suits the whole, m. */
+  /** The length scale of the model, m. */
   readonly extent: number;
 
   constructor(
@@ -91,7 +91,7 @@ export class Stage {
     this.lights = new Lights(scene, this.extent, this.camera);
     this.world.add(this.lights.group, this.camera);
     if (this.lights.own) {
-      // Light that an author chose stays as it is.
+      // The author's lights stay unchanged.
       this.renderer.toneMapping = THREE.NoToneMapping;
     } else {
       const surroundings = new THREE.PMREMGenerator(this.renderer);
@@ -109,7 +109,7 @@ export class Stage {
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("start", () => (this.isMoved = true));
-    // The controls around the picture get their sizes after it, and lines of text more or fewer.
+    // The surrounding controls receive their sizes after the picture, and their lines of text change.
     for (const part of [place, ...AROUND.map((id) => document.getElementById(id))]) if (part) this.sizes.observe(part);
     this.fit();
     this.home();
@@ -119,7 +119,7 @@ export class Stage {
     return this.renderer.domElement;
   }
 
-  /** The size of what can move, or of all where nothing can, m; `centre` is put in its middle. */
+  /** Returns the size of the movable geoms, or of all if none is movable, m; sets `centre` to their centre. */
   private measure(scene: Scene): number {
     const bounds = new THREE.Box3();
     const whole = new THREE.Box3();
@@ -132,7 +132,7 @@ export class Stage {
       if (geom.body > 0) bounds.union(box);
       else if (geom.kind !== "plane" && geom.kind !== "hfield") still.push(box);
     }
-    // What carries the model, such as the base of an arm, is a part of it; a room is not.
+    // An object that carries the model, such as the base of an arm, is included; a room is not.
     const size = bounds.isEmpty() ? 0 : diagonal(bounds);
     const near = bounds.clone().expandByScalar(0.5 * size);
     for (const box of still) if (box.intersectsBox(near) && diagonal(box) < size) bounds.union(box);
@@ -143,7 +143,7 @@ export class Stage {
     return Math.max(0.05, 0.6 * diagonal(seen));
   }
 
-  /** The heaviest of the bodies that the world carries, with all that it carries: its weight, N, and its size, m. */
+  /** Returns the weight, N, and the size, m, of the heaviest child of the world with its descendants. */
   private heaviest(scene: Scene): { weight: number; size: number } {
     const root = scene.bodies.map((_, body) => body);
     scene.bodies.forEach(({ parent }, body) => {
@@ -157,7 +157,7 @@ export class Stage {
     return { weight: 9.81 * masses[heaviest], size: bounds.isEmpty() ? this.extent : Math.min(this.extent, 0.6 * diagonal(bounds)) };
   }
 
-  /** Bodies that have gone far away from most others. */
+  /** Returns the bodies that are far away from most others. */
   private strays(): Set<number> {
     const places = this.poses.slice(1).map((pose) => new THREE.Vector3().setFromMatrixPosition(pose));
     const middle = (numbers: number[]) => numbers.sort((a, b) => a - b)[numbers.length >> 1] ?? 0;
@@ -171,7 +171,7 @@ export class Stage {
     return new Set(distances.flatMap((distance, k) => (distance > 8 * usual + 1 ? [k + 1] : [])));
   }
 
-  /** Lines on the lowest plane, a metre or a tenth of the model apart, or below what has no ground; a floor with a picture needs none. */
+  /** Draws grid lines on the lowest plane, or below a model without ground; a floor with a texture needs none. */
   private ground(scene: Scene): THREE.Object3D {
     const planes = scene.geoms.filter((geom) => geom.kind === "plane" && geom.body === 0);
     const floor = planes.reduce<(typeof planes)[0] | null>((low, plane) => (low && low.pos[2] <= plane.pos[2] ? low : plane), null);
@@ -189,14 +189,14 @@ export class Stage {
     return grid;
   }
 
-  /** Looks at the whole model, or all environments side by side, from the side and above. */
+  /** Views the whole model, or all environments side by side, from the side and above. */
   home(): void {
     const side = this.side();
     this.reach = 1 + 0.66 * (side - 1);
     this.lights.shade(this.reach, side > 1);
     const height = this.place.clientHeight;
     const free = this.free();
-    // All is to lie in a ball that the free part of the picture shows.
+    // The free part of the picture must show a ball that contains everything.
     const radius = ROOMY * (this.extent / 1.2) + 1.5 * this.extent * (side - 1) * Math.SQRT1_2;
     const up = Math.tan((FOV * Math.PI) / 360);
     const angle = Math.atan(up * Math.min(free.height / height, free.width / height));
@@ -209,7 +209,7 @@ export class Stage {
     this.controls.update();
   }
 
-  /** The part of the picture that no control covers, or all where little is left of it. */
+  /** Returns the part of the picture that no control covers, or the whole picture if that part is small. */
   free(): Area {
     const { clientWidth: width, clientHeight: height } = this.place;
     const [bar, panel, plots] = AROUND.map((id) => document.getElementById(id)?.getBoundingClientRect());
@@ -221,7 +221,7 @@ export class Stage {
     return isWide ? area : { x: 0, y: 0, width, height };
   }
 
-  /** Fits the picture to its place. The free camera looks through the middle of what is free. */
+  /** Fits the picture to its container. The free camera looks through the centre of the free part. */
   fit(): void {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width === 0 || height === 0) return;
@@ -236,24 +236,24 @@ export class Stage {
     this.camera.updateProjectionMatrix();
   }
 
-  /** How many environments are in a row. */
+  /** Returns the number of environments in a row. */
   private side(): number {
     return Math.ceil(Math.sqrt(Math.max(1, this.envs.length)));
   }
 
-  /** Where the origin of an environment is drawn: they stand in a square around that of the world. */
+  /** Returns the drawn origin of an environment: they form a square around the origin of the world. */
   private placeOf(k: number): THREE.Vector3 {
     const side = this.side();
     const at = (index: number) => 1.5 * this.extent * (index - (side - 1) / 2);
     return this.envs.length > 1 ? new THREE.Vector3(at(k % side), -at(Math.floor(k / side)), 0) : new THREE.Vector3();
   }
 
-  /** Which environment stands at a place, if several do. */
+  /** Returns the environment at a position, if there are several. */
   envAt(hit: Hit): number | null {
     return this.envs.length > 1 ? this.envs[hit.place].index : null;
   }
 
-  /** Finds out which environments a frame shows, and where each stands. */
+  /** Updates the shown environments of a frame and their positions. */
   private spread(frame: Frame, chosen: number | null): void {
     const envs = envsOf(frame);
     const others = envs.length !== this.envs.length;
@@ -261,7 +261,7 @@ export class Stage {
     const room = Math.max(1, envs.length);
     this.bodies.resize(room);
     this.copies = Array.from({ length: room }, (_, k) => this.copies[k] ?? newCopy());
-    // Of several, the one whose contacts are told is where its bodies are.
+    // Contacts are drawn in the selected environment.
     const own = Math.max(0, envs.findIndex(({ index }) => index === frame.rows.chosen.data[0]));
     this.copies.forEach((copy, k) => {
       if (envs.length > 1) readPosesOf(k, frame, copy.poses);
@@ -279,7 +279,7 @@ export class Stage {
     envs.forEach(({ index, fault }, k) => {
       const at = this.placeOf(k).add(this.centre).addScaledVector(this.camera.up, 0.8 * this.extent);
       const [text, colour] = fault === "" ? [`${index}`, 0x33414d] : [`${index}: ${fault}`, 0x8c1616];
-      // As they stand farther away the more there are.
+      // Relative to a camera distance that grows with their number.
       if (envs.length > 1) this.labels.add(text, at, new THREE.Color(colour), 2 / (1 + this.side()));
     });
     this.labels.end();
@@ -302,7 +302,7 @@ export class Stage {
     this.renderer.render(this.world, this.camera);
   }
 
-  /** Chooses a camera of the model, or the free one. */
+  /** Selects a camera of the model, or the free one. */
   choose(camera: number | null): void {
     this.through = camera;
     this.controls.enabled = camera === null;
@@ -311,7 +311,9 @@ export class Stage {
     if (camera === null) this.home();
   }
 
-  /** Puts the camera where one of the model's is. One with parallel lines of sight is far away, with a narrow view. */
+  /**
+   * Moves the camera to the pose of a model's camera. An orthographic one is approximated by a distant, narrow view.
+   */
   private lookThrough(frame: Frame, index: number): void {
     const { orthographic, fovy } = this.scene.cameras[index];
     const row = frame.rows.cameras.data.subarray(12 * index, 12 * index + 12);
@@ -330,7 +332,7 @@ export class Stage {
     camera.updateMatrixWorld();
   }
 
-  /** Gives back what the graphics card holds. */
+  /** Releases the resources of the GPU. */
   dispose(): void {
     this.sizes.disconnect();
     this.controls.dispose();
@@ -352,7 +354,7 @@ export class Stage {
     this.followedAt = now;
   }
 
-  /** The ray through a point of the window. */
+  /** Returns the ray through a point of the window. */
   rayAt(x: number, y: number): THREE.Raycaster {
     const frame = this.canvas.getBoundingClientRect();
     const at = new THREE.Vector2(
@@ -371,7 +373,7 @@ function diagonal(box: THREE.Box3): number {
   return box.getSize(new THREE.Vector3()).length();
 }
 
-/** A box along the axes of the world around a geom; half a metre of a plane. */
+/** Returns an axis-aligned box around a geom; half a metre of a plane. */
 function boxOf(geom: Geom, pose: THREE.Matrix4): THREE.Box3 {
   const [x, y, z] = geom.size.map((size) => Math.min(size, 5));
   const half: Record<string, [number, number, number]> = {
@@ -384,7 +386,7 @@ function boxOf(geom: Geom, pose: THREE.Matrix4): THREE.Box3 {
   return new THREE.Box3(corner.clone().negate(), corner).applyMatrix4(pose.clone().multiply(localPose(geom)));
 }
 
-/** A square of unit sides, hollow. */
+/** Returns a hollow unit square. */
 function borderShape(): THREE.ShapeGeometry {
   const square = (half: number) => [new THREE.Vector2(-half, -half), new THREE.Vector2(half, -half), new THREE.Vector2(half, half), new THREE.Vector2(-half, half)];
   const shape = new THREE.Shape(square(0.5));
@@ -396,7 +398,7 @@ function newCopy(): Copy {
   return { poses: [], fails: false, asleep: NOTHING, islands: NOTHING, chosen: null };
 }
 
-/** A length that marks on bodies are measured by: several times the half size of a usual geom, m. */
+/** Returns the length scale of marks on bodies: several times the half size of a typical geom, m. */
 function usualSize(scene: Scene): number {
   const moving = scene.geoms.filter((geom) => geom.body > 0);
   const sizes = moving.map((geom) => Math.hypot(...geom.size)).sort((a, b) => a - b);

@@ -1,12 +1,12 @@
-// What was seen last, kept so that it can be saved as a page that replays it.
+// The last frames, stored so that they can be saved as a page that replays them.
 
 import type { Frame } from "./frame.ts";
 import type { Scene } from "./scene.ts";
 
-/** What is kept at most: simulated time, s, and bytes. */
+/** The limits of the stored frames: simulated time, s, and bytes. */
 const SECONDS = 30;
 const BYTES = 256e6;
-/** Bytes that are turned into letters at once. */
+/** The number of bytes that are encoded at once. */
 const PIECE = 0x8000;
 
 export class Tape {
@@ -16,14 +16,14 @@ export class Tape {
 
   constructor(private notify: (text: string) => void) {}
 
-  /** Begins anew, with another scene. */
+  /** Restarts with another scene. */
   begin(scene: Scene): void {
     this.scene = scene;
     this.frames = [];
     this.bytes = 0;
   }
 
-  /** Keeps a frame. What came after it, when the simulation was set back, is forgotten. */
+  /** Stores a frame. Later frames, from before a reset, are discarded. */
   keep(frame: Frame): void {
     while (this.frames.length > 0 && this.frames.at(-1)!.time >= frame.time) this.drop(this.frames.pop()!);
     this.frames.push(frame);
@@ -35,7 +35,7 @@ export class Tape {
     this.bytes -= frame.bytes.byteLength;
   }
 
-  /** Saves the last seconds: the page itself, as the server gave it, with the frames in it. */
+  /** Saves the last seconds: the page as the server sent it, with the embedded frames. */
   async save(seconds: number): Promise<void> {
     const last = this.frames.at(-1);
     if (!last || !this.scene) return;
@@ -47,7 +47,7 @@ export class Tape {
     }
     const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: kept.map(({ bytes }) => letters(bytes)) });
     const page = new DOMParser().parseFromString(await reply.text(), "text/html");
-    // A script ends at `</`, wherever that stands.
+    // In HTML, any `</` could end a script.
     page.getElementById("recording")!.textContent = data.replaceAll("</", "<\\/");
     const text = `<!doctype html>\n${page.documentElement.outerHTML}`;
     const link = document.createElement("a");
@@ -58,7 +58,7 @@ export class Tape {
   }
 }
 
-/** Base 64. */
+/** Encodes in base 64. */
 function letters(bytes: ArrayBuffer): string {
   const all = new Uint8Array(bytes);
   const pieces: string[] = [];

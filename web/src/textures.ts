@@ -1,11 +1,11 @@
-// Pictures on surfaces: how they lie there is told by crates/clench-view/src/surfaces.rs.
+// Textures on surfaces; crates/clench-view/src/surfaces.rs defines their mapping.
 
 import * as THREE from "three";
 import type { Placed, Scene } from "./scene.ts";
 
 type Picture = Scene["textures"][number];
 
-/** What was asked for; a picture appears when the browser has decoded it. */
+/** The requested textures; a texture appears when the browser has decoded it. */
 const planes = new Map<Picture, Promise<THREE.Texture>>();
 const cubes = new Map<Picture, Promise<THREE.CubeTexture>>();
 
@@ -22,7 +22,7 @@ function once<T>(known: Map<Picture, Promise<T>>, picture: Picture, make: (image
   return made;
 }
 
-/** The picture of what a geom or site has as its surface, if it has one. */
+/** Returns the texture of a geom or site, if it has one. */
 export function textureOf(scene: Scene, placed: Placed): Picture | null {
   const material = placed.material === null ? null : scene.materials[placed.material];
   const picture = material?.texture == null ? null : scene.textures[material.texture];
@@ -34,13 +34,13 @@ function plane(image: HTMLImageElement): THREE.Texture {
   made.wrapS = made.wrapT = THREE.RepeatWrapping;
   made.colorSpace = THREE.SRGBColorSpace;
   made.anisotropy = 8;
-  // The first row of a picture is its upper one.
+  // The first row of an image is the top row.
   made.flipY = false;
   made.needsUpdate = true;
   return made;
 }
 
-/** The six sides of a cube, out of one picture that has them below each other, or is on all of them. */
+/** Creates the six sides of a cube from one image that contains them below each other, or repeats on all of them. */
 function cube(image: HTMLImageElement): THREE.CubeTexture {
   const { width } = image;
   const sides = Array.from({ length: 6 }, (_, side) => {
@@ -58,7 +58,7 @@ function cube(image: HTMLImageElement): THREE.CubeTexture {
   return made;
 }
 
-/** Gives each corner of a shape its place in a picture. Meshes may have brought their own. */
+/** Sets the texture coordinates of each vertex. Meshes may have their own. */
 export function cover(geometry: THREE.BufferGeometry, { kind, scale }: Placed, on: Picture["kind"]): void {
   const [x, y, z] = scale;
   const { position, uv } = geometry.attributes;
@@ -75,7 +75,7 @@ export function cover(geometry: THREE.BufferGeometry, { kind, scale }: Placed, o
   }
 }
 
-/** Lets a surface show the picture of what has it. */
+/** Applies the texture of an element to its material. */
 export async function paint(scene: Scene, placed: Placed, surface: THREE.MeshStandardMaterial): Promise<void> {
   const picture = textureOf(scene, placed);
   if (!picture) return;
@@ -84,7 +84,7 @@ export async function paint(scene: Scene, placed: Placed, surface: THREE.MeshSta
   surface.needsUpdate = true;
 }
 
-/** Three knows cubes of pictures as what surfaces mirror; here they are seen from the middle of a geom. */
+/** Samples a cube texture from the centre of a geom; three.js only reflects cube textures. */
 function surround(surface: THREE.MeshStandardMaterial, picture: THREE.CubeTexture): void {
   surface.customProgramCacheKey = () => "around";
   surface.onBeforeCompile = (shader) => {

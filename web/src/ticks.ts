@@ -1,9 +1,9 @@
-// The numbers along the axis of a plot.
+// The tick labels of a plot's axis.
 
-/** From how many digits on ticks are told as differences from the first. */
+/** The number of digits from which ticks are written as differences from the first. */
 const MANY_DIGITS = 6;
 
-/** Texts for ascending ticks at equal distances, each as short as it can be, and different from its neighbours. */
+/** Formats ascending, equidistant ticks, each as short as possible and different from its neighbours. */
 export function tickTexts(ticks: number[]): string[] {
   const step = ticks.length > 1 ? (ticks[ticks.length - 1] - ticks[0]) / (ticks.length - 1) : 0;
   const most = Math.max(...ticks.map(Math.abs));
@@ -13,7 +13,7 @@ export function tickTexts(ticks: number[]): string[] {
   return [short(ticks[0], step), ...rest.slice(1)];
 }
 
-/** A number with the digits that tell it from another at this distance: some ticks are two and a half of a unit apart. */
+/** Formats a number with the digits that distinguish it at this distance: some ticks are 2.5 units apart. */
 function short(value: number, distance: number): string {
   if (Math.abs(value) <= 1e-3 * distance) return "0";
   const last = Math.floor(Math.log10(distance)) - 1;

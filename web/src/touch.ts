@@ -1,4 +1,4 @@
-// The pointer in the picture: names under it, clicks that choose, drags that pull.
+// The pointer in the picture: names under it, clicks that select, drags that pull.
 
 import * as THREE from "three";
 import type { Command } from "./link.ts";
@@ -6,7 +6,7 @@ import type { Panel } from "./panel.ts";
 import { nameOf, type Scene } from "./scene.ts";
 import type { Stage } from "./stage.ts";
 
-/** A press that moves less than this is a click, pixels. */
+/** The maximum movement of a click, pixels. */
 const CLICK = 4;
 
 export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command: Command) => void): void {
@@ -21,7 +21,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
     if (target) send({ do: "drag", body: pulled!.body, point: pulled!.point, target: target.sub(stage.offset).toArray() });
   };
 
-  /** Turns the body with the pointer, as if one rolled a ball: half a turn over the height of the picture. */
+  /** Rotates the body with the pointer like a rolling ball: half a turn over the height of the picture. */
   const turn = (event: PointerEvent) => {
     const { body, from, x, y } = turned!;
     const scale = Math.PI / canvas.clientHeight;
@@ -41,7 +41,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
       if (!(event.ctrlKey || event.shiftKey || event.metaKey) || !scene.active) return;
       const hit = stage.bodies.pick(stage.rayAt(event.clientX, event.clientY));
       if (!hit || !scene.bodies[hit.body].free) return;
-      // The one that is touched is the one whose contacts are told.
+      // Only the environment whose contacts are shown can be interacted with.
       const env = stage.envAt(hit);
       if (env !== null && env !== panel.env) {
         panel.show({ env });

@@ -1,12 +1,12 @@
-//! `cargo xtask audit`: what the crates are that ours stand on, by `cargo deny`.
+//! `cargo xtask audit`: checks of the dependencies, by `cargo deny`.
 
 use crate::run::{cargo, run};
 
-/// Licences, duplicate crates and where crates come from, by `cargo deny` and `deny.toml`; then advisories, whose database is
+/// Checks licences, duplicate crates and sources, by `cargo deny` and `deny.toml`; then advisories, whose database is
 /// fetched.
 ///
 /// # Errors
-/// What `cargo deny` found, or that it is missing. A database that cannot be fetched is a remark.
+/// Returns an error if `cargo deny` finds a problem or is missing. A database that cannot be fetched is only a remark.
 pub(crate) fn audit() -> Result<(), String> {
     let deny = |args: &[&str]| {
         let mut deny = cargo(&["deny", "--workspace", "--all-features"]);

@@ -1,16 +1,16 @@
-//! `cargo xtask docs`: the site, made by Sphinx of pages, notebooks and docstrings.
+//! `cargo xtask docs`: the site, built by Sphinx from pages, notebooks and docstrings.
 
 use crate::package;
 use crate::python::{install, interpreter, prepare};
 use crate::run::{Profile, command, root, run, target};
 
-/// Where the packages lie that build the site: nothing else needs them.
+/// The folder of the packages that only the site needs.
 const FOLDER: &str = ".venv/docs";
 
 /// Builds the site in `target/site`.
 ///
 /// # Errors
-/// What could not be installed, a notebook that fails, a page that is missing or links to one that is.
+/// Returns an error if an installation or a notebook fails, or a page is missing or links to a missing one.
 pub(crate) fn build() -> Result<(), String> {
     prepare()?;
     package::install(Profile::Release)?;
@@ -24,7 +24,7 @@ pub(crate) fn build() -> Result<(), String> {
     sphinx.args(["--keep-going", "-b", "html", "-c", "docs/site", "."]);
     sphinx.arg(&site);
     sphinx.env("PYTHONPATH", &packages);
-    // Where the kernel is that runs notebooks.
+    // The location of the kernel that runs notebooks.
     sphinx.env("JUPYTER_PATH", packages.join("share/jupyter"));
     run(sphinx)?;
     println!("open {}", site.join("docs/site/index.html").display());

@@ -1,12 +1,12 @@
-//! How long stages will take: as long as last time on this machine, or, where one has not run yet, what it took elsewhere.
+//! Estimates of the duration of stages: the last duration on this machine, or else a duration measured elsewhere.
 
 use crate::run::{Profile, target};
 use std::fs;
 use std::path::PathBuf;
 use std::thread::available_parallelism;
 
-/// Seconds of a stage on one processor: when everything is compiled, and how much more when nothing was. They are rough, for they count only
-/// until the stage has run once.
+/// The duration of a stage on one processor, s: with everything compiled, and the additional time with nothing
+/// compiled. They are rough, because they apply only until the stage has run once.
 const SECONDS: [(&str, f64, f64); 13] = [
     ("fmt", 5.0, 0.0),
     ("page", 25.0, 0.0),
@@ -22,23 +22,23 @@ const SECONDS: [(&str, f64, f64); 13] = [
     ("pytest", 200.0, 0.0),
     ("parity", 700.0, 0.0),
 ];
-/// The share of that which a quick run takes.
+/// The share of that duration for a quick run.
 const QUICK: f64 = 0.5;
 
-/// What is known of earlier runs, and what kind of run this is.
+/// The records of earlier runs, and the kind of this run.
 pub(crate) struct Times {
-    /// How it compiles, and whether anything was compiled before it: runs that differ in that take other times.
+    /// The profile, and whether anything was compiled before: runs that differ in these have different durations.
     kind: String,
     guess: f64,
     cold: bool,
-    /// Kind of run, stage and seconds.
+    /// The kind of run, the stage and its duration, s.
     known: Vec<(String, String, f64)>,
 }
 
 impl Times {
-    /// Of runs before this one, which compiles by a profile.
+    /// Reads the records of earlier runs, for a run with this profile.
     pub(crate) fn read(profile: Profile) -> Self {
-        // A first run has no file, and what cannot be read is guessed.
+        // Without a readable file, as in a first run, durations are estimated.
         let known = parse(&fs::read_to_string(file()).unwrap_or_default());
         let all_sets = |kind: &str| kind.starts_with("dev");
         let (last, now) = (known.last(), format!("{profile:?}").to_lowercase());
@@ -58,7 +58,7 @@ impl Times {
         }
     }
 
-    /// Seconds that a stage will take.
+    /// Returns the expected duration of a stage, s.
     pub(crate) fn seconds(&self, stage: &str) -> f64 {
         let mut known = self.known.iter();
         if let Some((.., seconds)) =
@@ -72,20 +72,20 @@ impl Times {
         })
     }
 
-    /// Whether all of these stages have run on this machine in this way.
+    /// Returns true if all of these stages have run on this machine with this kind of run.
     pub(crate) fn knows<'a>(&self, mut stages: impl Iterator<Item = &'a str>) -> bool {
         let has =
             |stage| (self.known.iter()).any(|(kind, name, _)| *kind == self.kind && name == stage);
         stages.all(has)
     }
 
-    /// Keeps what a stage took, for the next run.
+    /// Records the duration of a stage for the next run.
     pub(crate) fn keep(&mut self, stage: &str, seconds: f64) {
         let is_old = |kind: &str, name: &str| kind == self.kind && name == stage;
         self.known.retain(|(kind, name, _)| !is_old(kind, name));
         self.known
             .push((self.kind.clone(), stage.to_owned(), seconds));
-        // Without the file the next run guesses, which fails no test.
+        // Without the file the next run uses estimates, which fails no test.
         let _ = fs::write(file(), text(&self.known));
     }
 }
@@ -94,7 +94,7 @@ fn file() -> PathBuf {
     target().join("xtask-times")
 }
 
-/// Whether the kernels were compiled, which take most of the time.
+/// Returns true if the kernels, which take most of the compile time, are compiled.
 fn has_kernels(profile: Profile) -> bool {
     let entries = fs::read_dir(profile.folder().join(".fingerprint"));
     let mut names = entries.into_iter().flatten().flatten();
@@ -106,7 +106,7 @@ fn has_kernels(profile: Profile) -> bool {
     })
 }
 
-/// A line for each stage of each kind of run: what was read of a file.
+/// Parses a file with a line for each stage of each kind of run.
 fn parse(text: &str) -> Vec<(String, String, f64)> {
     let line = |line: &str| {
         let mut words = line.split_whitespace();
@@ -125,7 +125,7 @@ fn text(known: &[(String, String, f64)]) -> String {
     known.iter().map(line).collect()
 }
 
-/// A time as one says it: `40 s`, `7 min`.
+/// Formats a time: `40 s`, `7 min`.
 pub(crate) fn spoken(seconds: f64) -> String {
     match seconds {
         ..90.0 => format!("{seconds:.0} s"),

@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: searches for bytes that break a reader, by libFuzzer, on stable Rust.
+//! `cargo xtask fuzz`: searches for input bytes that break a reader, by libFuzzer, on stable Rust.
 
 use crate::run::{cargo, command, root, run, shown, target};
 use std::fs;
@@ -11,14 +11,14 @@ const TARGETS: [&str; 12] = [
     "mjcf", "urdf", "stl", "obj", "msh", "dae", "gltf", "png", "grid", "npy", "states", "contacts",
 ];
 
-/// What the compiler adds so that libFuzzer sees which code runs: its coverage pass is part of stable Rust.
+/// The compiler flags that report the executed code to libFuzzer: the coverage pass is part of stable Rust.
 const COVERAGE: &str = "--cfg fuzzing -Cpasses=sancov-module \
     -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
     -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares";
 
-/// How `fuzz` is to be run.
+/// The parsed arguments of `fuzz`.
 struct Plan<'a> {
     targets: Vec<&'a str>,
     seconds: u64,
@@ -60,10 +60,10 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Fuzzes the targets, each in turn, up to the first that finds something.
+/// Fuzzes the targets one after the other, up to the first with a finding.
 ///
 /// # Errors
-/// Arguments that mean nothing, a compiler that cannot do it, or the target that found something.
+/// Returns an error if the arguments are invalid, the compiler lacks support, or a target has a finding.
 pub(crate) fn fuzz(args: &[String]) -> Result<(), String> {
     let plan = Plan::of(args)?;
     let programs = build(plan.address)?;
@@ -79,12 +79,12 @@ pub(crate) fn fuzz(args: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// Where the fuzzer's programs and what it learns are.
+/// Returns the folder of the fuzzer's programs and corpora.
 fn work() -> PathBuf {
     target().join("fuzzer")
 }
 
-/// The triple that rustc builds for: named, so that build scripts and macros are built without instruments.
+/// Returns the host triple of rustc: passing it explicitly builds build scripts and macros without instrumentation.
 pub(crate) fn host() -> Result<String, String> {
     let output = command("rustc", &["-vV"]).output();
     let text = output.map_err(|error| format!("cannot start rustc: {error}"))?;
@@ -121,7 +121,7 @@ fn build(address: bool) -> Result<PathBuf, String> {
     Ok(folder.join(host).join("fuzz"))
 }
 
-/// Runs a target, and says how often its body ran.
+/// Runs a target and returns the number of executions of its body.
 fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result<u64, String> {
     let corpus = work().join("corpus").join(name);
     let findings = root().join("fuzz/artifacts").join(name);
@@ -135,7 +135,7 @@ fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result
     );
     fuzzer.arg(format!("-max_total_time={seconds}"));
     fuzzer.arg(format!("-artifact_prefix={}/", findings.display()));
-    // Readers are given files: in memory they are read up to twenty times as often.
+    // Readers open files, which are up to twenty times as fast in memory.
     let memory = Path::new("/dev/shm");
     if memory.is_dir() {
         fuzzer.env("TMPDIR", memory);
@@ -175,7 +175,7 @@ fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result
     ))
 }
 
-/// The words of MJCF as libFuzzer reads them, from the reader's own rules.
+/// Builds a libFuzzer dictionary of the MJCF keywords from the reader's own rules.
 fn mjcf_dictionary() -> Result<String, String> {
     let mut print = cargo(&["run", "--quiet", "--package", "clench-fuzz"]);
     print

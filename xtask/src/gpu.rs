@@ -1,4 +1,4 @@
-//! The tests of `clench-gpu`, of `clench-render` and of the films of the program, on a graphics device or on Mesa's software device.
+//! The GPU tests of `clench-gpu`, `clench-render` and the program's videos, on a GPU or on Mesa's software device.
 
 use crate::install::try_to_install;
 use crate::python;
@@ -7,30 +7,30 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
-/// Where drivers for Vulkan register on Linux.
+/// The folders in which Vulkan drivers register on Linux.
 const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 
-/// Those that compute, of `clench-gpu` and of the program, and those that draw.
+/// The compute tests, of `clench-gpu` and of the program, and the rendering tests.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
-/// Tests of `device` that take about as long as all that is left: most compile kernels of their own, what is left shares kernels for any model. Mesa's
-/// software device compiles on one core for each program, so that they run side by side.
+/// Tests of `device` that take about as long as all others: most compile their own kernels, whereas the others share
+/// kernels for any model. Mesa's software device compiles on one core per program, so both parts run in parallel.
 const PART: [&str; 5] = ["batch::", "outputs::", "double::", "random::", "steps::"];
-/// Random models that are written for them.
+/// The number of random models that are written for the tests.
 const RANDOM_MODELS: usize = 200;
-/// Random models of a soak, and how far its seeds are apart.
+/// The number of random models of a soak, and the distance of its seeds.
 const SOAKED_MODELS: usize = 5_000;
 const APART: u64 = 1_000_000;
 
-/// Runs them.
+/// Runs the tests.
 ///
 /// # Errors
-/// That a test failed.
+/// Returns an error if a test fails.
 pub(crate) fn test(profile: Profile) -> Result<(), String> {
     write_random_models(1, RANDOM_MODELS)?;
     let mut part = computing(profile, &COMPUTING[..1])?;
     part.arg("--").args(PART);
-    // What is left, and the program's.
+    // The remaining tests, and those of the program.
     let mut rest = computing(profile, &COMPUTING)?;
     rest.arg("--");
     for name in PART {
@@ -45,10 +45,10 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
     run(tests(profile, &DRAWING))
 }
 
-/// Compares many random models with the processor.
+/// Compares many random models with the CPU.
 ///
 /// # Errors
-/// That one differs.
+/// Returns an error if one differs.
 pub(crate) fn soak(seed: u64) -> Result<(), String> {
     python::prepare()?;
     write_random_models(seed * APART, SOAKED_MODELS)?;
@@ -57,7 +57,7 @@ pub(crate) fn soak(seed: u64) -> Result<(), String> {
     run(test)
 }
 
-/// Writes the random models of so many seeds, from one on.
+/// Writes the random models of `count` seeds from `first` on.
 fn write_random_models(first: u64, count: usize) -> Result<(), String> {
     let mut script = command(python::interpreter(), &["parity/write_random_models.py"]);
     script.arg(random_folder());
@@ -69,10 +69,11 @@ fn random_folder() -> PathBuf {
     target().join("random-models")
 }
 
-/// The tests of these names, with what those that compute need.
+/// Returns the command for these tests with the environment that compute tests need.
 fn computing(profile: Profile, names: &[&str]) -> Result<Command, String> {
     let mut tests = tests(profile, names);
-    // Tests ask a few times for many kernels: Mesa's software device takes longer to optimize them than to run them as they are.
+    // Tests run many kernels a few times only: Mesa's software device takes longer to optimize them than to run them
+    // unoptimized.
     tests.env("GALLIVM_PERF", "nopt");
     tests.env("LP_NATIVE_VECTOR_WIDTH", "128");
     tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
@@ -81,7 +82,8 @@ fn computing(profile: Profile, names: &[&str]) -> Result<Command, String> {
     Ok(tests)
 }
 
-/// Runs the tests of these names, which the stage `unit` has compiled: all packages are named, so that nothing is compiled anew for other features.
+/// Returns the command for these tests, which the stage `unit` has compiled: it names all packages so that nothing is
+/// recompiled with other features.
 fn tests(profile: Profile, names: &[&str]) -> Command {
     let mut tests = profile.cargo(&["test", "--quiet", "--workspace"]);
     tests.args(["--features", ALL_FEATURES]);
@@ -89,14 +91,14 @@ fn tests(profile: Profile, names: &[&str]) -> Command {
         tests.args(["--test", name]);
     }
     tests.env("CLENCH_GPU", "require");
-    // Lines of the texts in what the driver compiles, which it takes its time over.
+    // The driver compiles debug lines of the shader text slowly.
     tests.env("WGPU_DEBUG", "0");
-    // A part of Mesa that would choose the device complains on stderr where there is no display.
+    // Mesa's device selection layer prints errors on stderr without a display.
     tests.env("NODEVICE_SELECT", "1");
     tests
 }
 
-/// Why they cannot run here, if they cannot. Where the tests may, they install Mesa's drivers.
+/// Returns the reason if the tests cannot run here. Installs Mesa's drivers if permitted.
 pub(crate) fn no_device() -> Option<String> {
     if !cfg!(target_os = "linux") || has_driver() {
         return None;

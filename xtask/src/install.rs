@@ -1,14 +1,14 @@
-//! What the tests install by themselves where they may: Debian's packages, in a container.
+//! Packages that the tests install if permitted: Debian's, in a container.
 
 use std::process::{Command, Stdio};
 
-/// Whether this is a machine where nobody is asked: the superuser's, as in a container.
+/// Returns true if the user is the superuser, as in a container, so that no consent is needed.
 fn may_install() -> bool {
     let user = Command::new("id").arg("-u").output();
     user.is_ok_and(|user| user.stdout.trim_ascii() == b"0")
 }
 
-/// Installs a package of Debian where the tests may. Whether it worked shows in what is there afterwards.
+/// Installs a Debian package if permitted. The caller checks the result.
 pub(crate) fn try_to_install(package: &str) {
     if !may_install() {
         return;

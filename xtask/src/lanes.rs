@@ -1,20 +1,20 @@
-//! `cargo xtask lanes`: where an operation on lanes is a call, in the release program.
+//! `cargo xtask lanes`: lists calls of lane operations in the release program.
 //!
-//! A plain function between two kernels is compiled for the oldest processor, and each operation on lanes in it becomes a call (see
-//! `clench_math::kernel`). Nothing is wrong then but the speed, by a factor of two to four, so that no test fails. This list shows it.
+//! A plain function between two kernels is compiled for the oldest processor, and each lane operation in it becomes a
+//! call (see `clench_math::kernel`). This costs a factor of two to four in speed and fails no test; this list shows it.
 
 use crate::run::{Profile, cargo, command, run};
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::process::{ChildStdout, Stdio};
 
-/// Fewer calls than these in a function are its first and last lines, not its work.
+/// The number of calls below which a function is omitted: they are in its prologue and epilogue.
 const FEW: usize = 8;
 
-/// Prints the functions with such calls, most first.
+/// Prints the functions with such calls in descending order.
 ///
 /// # Errors
-/// The program cannot be built, or there is no `objdump`.
+/// Returns an error if the program cannot be built or `objdump` is missing.
 pub(crate) fn list() -> Result<(), String> {
     if !cfg!(target_arch = "x86_64") {
         return Err("the list is made of instructions of x86-64".to_owned());
@@ -45,7 +45,7 @@ pub(crate) fn list() -> Result<(), String> {
     Ok(())
 }
 
-/// The most calls that one instance of each function makes to operations on lanes.
+/// Returns the maximum number of lane operation calls over the instances of each function.
 fn count(output: ChildStdout) -> std::io::Result<BTreeMap<String, usize>> {
     let mut most = BTreeMap::new();
     let (mut function, mut calls) = (String::new(), 0);
@@ -69,7 +69,8 @@ fn note(most: &mut BTreeMap<String, usize>, function: &str, calls: usize) {
     }
 }
 
-/// The function that begins at a line such as `00000000004c9370 <clench_collide::narrow::collide::h0123456789abcdef>:`, without its hash.
+/// Returns the function, without its hash, that begins at a line such as
+/// `00000000004c9370 <clench_collide::narrow::collide::h0123456789abcdef>:`.
 fn header(line: &str) -> Option<&str> {
     let (address, rest) = line.split_once(" <")?;
     let name = rest.strip_suffix(">:")?;
@@ -81,7 +82,7 @@ fn header(line: &str) -> Option<&str> {
     is_address.then_some(plain)
 }
 
-/// Whether a line calls an operation: an intrinsic of the processor, or what lanes are made of.
+/// Returns true if a line calls a lane operation: a processor intrinsic or a lane register type.
 fn is_call_of_lanes(line: &str) -> bool {
     let Some((_, target)) = line.split_once("call ") else {
         return false;

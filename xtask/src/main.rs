@@ -1,5 +1,5 @@
-//! The project's own chores: `cargo xtask test` checks everything, `cargo xtask bench` measures speed; `soak`, `fuzz`, `sanitize`
-//! and `audit` look long for what is rare.
+//! The project's tasks: `cargo xtask test` checks everything, `cargo xtask bench` measures speed; `soak`, `fuzz`,
+//! `sanitize` and `audit` are long searches for rare failures.
 
 #![deny(unreachable_pub)]
 

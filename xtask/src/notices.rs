@@ -6,30 +6,30 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where the texts go: beside our own licences, so that they are part of every wheel that is built.
+/// The file of the texts, next to the project's own licences, so that every wheel includes it.
 const FILE: &str = "python/LICENSE-THIRD-PARTY.txt";
 
-/// Beginnings of names of files that hold licences.
+/// The prefixes of the names of licence files.
 const TEXTS: [&str; 5] = ["LICENSE", "LICENCE", "COPYING", "NOTICE", "COPYRIGHT"];
 
 /// A package that is compiled in.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Part {
-    /// Its name and version, as its folder is called.
+    /// The name and version, as in the name of its folder.
     name: String,
-    /// What it says of its licence.
+    /// The declared licence.
     licence: String,
 }
 
 /// Writes the notices and builds the wheel.
 ///
 /// # Errors
-/// A package whose licence has no text, or what failed.
+/// Returns an error if a package has no licence text, or a command fails.
 pub(crate) fn build() -> Result<(), String> {
     let parts = parts()?;
     let sources = sources()?;
     let mut folders = Vec::from_iter(parts.iter().map(|part| (part, sources.find(&part.name))));
-    // The viewer's page is compiled in as well.
+    // The viewer's page is also compiled in.
     let scripts = ["three", "uplot"].map(|name| Part {
         name: name.to_owned(),
         licence: "MIT".to_owned(),
@@ -44,7 +44,7 @@ pub(crate) fn build() -> Result<(), String> {
     wheel()
 }
 
-/// The crates that the module is made of, ours left out.
+/// Returns the external crates of the module.
 fn parts() -> Result<Vec<Part>, String> {
     let mut tree = cargo(&["tree", "--locked", "--package", "clench-python"]);
     tree.args(["--features", "gpu,render"]);
@@ -57,7 +57,8 @@ fn parts() -> Result<Vec<Part>, String> {
     Ok(read_tree(&String::from_utf8_lossy(&done.stdout)))
 }
 
-/// What `cargo tree` says, a crate a line: name, version and licence. Those with a path are ours.
+/// Parses the output of `cargo tree`, one crate per line: name, version and licence. Crates with a path are the
+/// project's own.
 fn read_tree(text: &str) -> Vec<Part> {
     let foreign = text.lines().filter(|line| !line.contains(" (/"));
     let part = |line: &str| {
@@ -74,7 +75,7 @@ fn read_tree(text: &str) -> Vec<Part> {
     parts
 }
 
-/// The folders below which cargo unpacks what it fetches.
+/// The folders into which cargo unpacks fetched crates.
 struct Sources(Vec<PathBuf>);
 
 fn sources() -> Result<Sources, String> {
@@ -96,7 +97,8 @@ impl Sources {
     }
 }
 
-/// All texts, each once with the packages that bring it; packages that bring none by their licence's name.
+/// Returns all texts, each once with the packages that contain it; packages without a text are listed with the name of
+/// their licence.
 fn notices(folders: &[(&Part, Option<PathBuf>)]) -> Result<String, String> {
     let mut texts: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     let mut without = Vec::new();
@@ -130,7 +132,7 @@ fn notices(folders: &[(&Part, Option<PathBuf>)]) -> Result<String, String> {
     Ok(out + "\n")
 }
 
-/// The files of a package that hold licences.
+/// Reads the licence files of a package.
 fn licence_texts(folder: &Path) -> Result<Vec<String>, String> {
     let failed = |e: std::io::Error| format!("cannot read {}: {e}", folder.display());
     let mut files = Vec::new();

@@ -1,16 +1,16 @@
-//! `cargo xtask others`: the Python package beside large packages of others, which `cargo xtask test` does without. They lie in folders
-//! of their own below `.venv`, so that no other test sees them.
+//! `cargo xtask others`: tests of the Python package with large external packages, which `cargo xtask test` omits. They
+//! are in separate folders below `.venv`, so that no other test imports them.
 
 use crate::package;
 use crate::python::{install, interpreter, prepare};
 use crate::run::{Profile, command, root, run};
 
-/// Packages that belong together, and the tests that need them.
+/// A group of packages and the tests that need them.
 struct Group {
     name: &'static str,
-    /// Their list in `parity`.
+    /// The list of packages in `parity`.
     list: &'static str,
-    /// Their folder.
+    /// The folder of the packages.
     folder: &'static str,
     tests: &'static [&'static str],
 }
@@ -33,10 +33,10 @@ const GROUPS: [Group; 2] = [
     },
 ];
 
-/// Tests the package beside all of them, or the one that `args` names.
+/// Tests the package with all groups, or the one that `args` names.
 ///
 /// # Errors
-/// Names that mean nothing, what could not be installed, or that a test failed.
+/// Returns an error if a name is unknown, or an installation or a test fails.
 pub(crate) fn test(args: &[String]) -> Result<(), String> {
     let chosen: Vec<&Group> = match args {
         [] => GROUPS.iter().collect(),

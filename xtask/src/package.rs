@@ -1,21 +1,21 @@
-//! The Python package, as its users get it: built and installed by pip, its types checked, its tests run.
+//! The Python package as users install it: built and installed by pip, type-checked and tested.
 
 use crate::python::{self, interpreter, prepare};
 use crate::run::{Profile, command, run, target};
 use crate::web;
 use std::process::Command;
 
-/// Installs the package, and holds its types to what was installed.
+/// Installs the package and checks its types against the installed module.
 ///
 /// # Errors
-/// What failed, and what to check.
+/// Returns the failure and a remedy.
 pub(crate) fn check(profile: Profile) -> Result<(), String> {
     install(profile)?;
     let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
     let mut types = command(interpreter(), &mypy);
     types.args(["python/clench", "python/examples", "python/tests"]);
     run(types)?;
-    // What needs a package that is not installed here cannot be imported, which is all that stubtest could see of it.
+    // Modules that need a package that is not installed here cannot be imported, and stubtest would report only that.
     let stubtest = [
         "-m",
         "mypy.stubtest",
@@ -27,10 +27,10 @@ pub(crate) fn check(profile: Profile) -> Result<(), String> {
     run(command(interpreter(), &stubtest))
 }
 
-/// Builds the package and installs it in `.venv`, which is made if need be.
+/// Builds the package and installs it in `.venv`, which is created if it is missing.
 ///
 /// # Errors
-/// What failed, and what to check.
+/// Returns the failure and a remedy.
 pub(crate) fn install(profile: Profile) -> Result<(), String> {
     prepare()?;
     println!("building the package and installing it in .venv");
@@ -44,19 +44,19 @@ pub(crate) fn install(profile: Profile) -> Result<(), String> {
     })
 }
 
-/// Installs the package, and writes the sections of its stub that follow from tables in Rust.
+/// Installs the package and writes the generated sections of its stub, which follow from tables in Rust.
 ///
 /// # Errors
-/// What failed, and what to check.
+/// Returns the failure and a remedy.
 pub(crate) fn write_stubs() -> Result<(), String> {
     install(Profile::Release)?;
     run(command(interpreter(), &["python/tests/stubs.py"]))
 }
 
-/// Builds the package for others to install, for all processors of this machine's kind, in `target/wheels`.
+/// Builds the package for distribution, for all processors of this architecture, in `target/wheels`.
 ///
 /// # Errors
-/// What failed, and what to check.
+/// Returns the failure and a remedy.
 pub(crate) fn wheel() -> Result<(), String> {
     prepare()?;
     let mut build = command(
@@ -68,22 +68,22 @@ pub(crate) fn wheel() -> Result<(), String> {
     run(build)
 }
 
-/// Tells pip how the package is to be compiled, and where.
+/// Sets the profile and the target folder of pip's build.
 fn compile_with(pip: &mut Command, profile: Profile) {
     pip.arg(format!(
         "--config-settings=build-args=--profile={} --features=gpu,render",
         profile.name()
     ));
     profile.choose_instructions(pip);
-    // A relative one would mean another folder there, as pip builds in `python`.
+    // A relative path would name another folder, since pip builds in `python`.
     pip.env("CARGO_TARGET_DIR", target());
 }
 
-/// Runs the tests of the package, and with them every example in its short form; then looks at a loop in Python through a browser, where
-/// there is one.
+/// Runs the tests of the package, including every example in its short form; then tests a loop in Python through a
+/// browser, if there is one.
 ///
 /// # Errors
-/// That a test failed.
+/// Returns an error if a test fails.
 pub(crate) fn test(profile: Profile) -> Result<(), String> {
     let mut tests = python::tests(profile, &["-rs", "python/tests"]);
     if profile == Profile::Quick {

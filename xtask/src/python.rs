@@ -1,12 +1,12 @@
-//! The Python side of the checks: a virtual environment, `.venv`, with what `parity/requirements.txt` names, and beside it, in
-//! `.venv/models`, the packages whose models are compared. It is made once.
+//! The Python environment of the checks: a virtual environment, `.venv`, with `parity/requirements.txt`, and in
+//! `.venv/models` the packages whose models are compared. It is created once.
 
 use crate::run::{Profile, command, root, run};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Packages as mere folders of files: nothing that they need to run, nothing compiled, and what was there before replaced.
+/// The options for packages that serve as folders of files: no dependencies, no compilation, old files replaced.
 const UNPACK_ONLY: &[&str] = &[
     "--no-deps",
     "--no-compile",
@@ -15,17 +15,17 @@ const UNPACK_ONLY: &[&str] = &[
     ".venv/models",
 ];
 
-/// Makes what is missing of the environment.
+/// Creates the missing parts of the environment.
 ///
 /// # Errors
-/// What failed, and what to install or check.
+/// Returns the failure and a remedy.
 pub(crate) fn prepare() -> Result<(), String> {
     make_environment()?;
     install("requirements.txt", &[])?;
     install("model-packages.txt", UNPACK_ONLY)
 }
 
-/// The interpreter of `.venv`.
+/// Returns the path of the `.venv` interpreter.
 pub(crate) fn interpreter() -> PathBuf {
     root().join(if cfg!(windows) {
         ".venv/Scripts/python.exe"
@@ -34,7 +34,8 @@ pub(crate) fn interpreter() -> PathBuf {
     })
 }
 
-/// Tests in Python, some on each core; who is done takes over what others have left. A quick run leaves out those that are marked as long.
+/// Returns the command for Python tests, distributed over the cores with work stealing. A quick run omits tests that
+/// are marked as long.
 pub(crate) fn tests(profile: Profile, arguments: &[&str]) -> Command {
     let mut pytest = command(interpreter(), &["-m", "pytest", "--quiet"]);
     pytest.args(["--numprocesses", "auto", "--dist", "worksteal"]);
@@ -45,10 +46,10 @@ pub(crate) fn tests(profile: Profile, arguments: &[&str]) -> Command {
     pytest
 }
 
-/// The folder of the robots of Gymnasium's MuJoCo tasks.
+/// Returns the folder of the robots of Gymnasium's MuJoCo tasks.
 ///
 /// # Errors
-/// That `.venv` does not have Gymnasium.
+/// Returns an error if Gymnasium is not in `.venv`.
 pub(crate) fn gymnasium_assets() -> Result<PathBuf, String> {
     let where_is = "import gymnasium, pathlib; print(pathlib.Path(gymnasium.__file__).parent)";
     let found = command(interpreter(), &["-c", where_is]).output();
@@ -60,12 +61,12 @@ pub(crate) fn gymnasium_assets() -> Result<PathBuf, String> {
     Ok(PathBuf::from(package).join("envs/mujoco/assets"))
 }
 
-/// The folder of the models of dm-control's suite.
+/// Returns the folder of the models of dm-control's suite.
 pub(crate) fn dm_control_suite() -> PathBuf {
     root().join(".venv/models/dm_control/suite")
 }
 
-/// `.venv` with pip in it. One left half made by an interrupted run is made again.
+/// Creates `.venv` with pip, also after an interrupted run.
 fn make_environment() -> Result<(), String> {
     let has_pip = |mut c: Command| c.output().is_ok_and(|o| o.status.success());
     if interpreter().is_file() && has_pip(command(interpreter(), &["-m", "pip", "--version"])) {
@@ -77,10 +78,10 @@ fn make_environment() -> Result<(), String> {
     })
 }
 
-/// Installs what a file in `parity` lists, unless a copy of it, kept in `.venv`, says that this was done.
+/// Installs the packages of a list in `parity`, unless a copy of the list in `.venv` shows that this was done.
 ///
 /// # Errors
-/// What failed, and what to check.
+/// Returns the failure and a remedy.
 pub(crate) fn install(list: &str, options: &[&str]) -> Result<(), String> {
     let wanted = read(&root().join("parity").join(list))?;
     let done = root().join(".venv").join(format!("installed-{list}"));

@@ -1,43 +1,43 @@
-//! Paths of the workspace, and running other programs from its root.
+//! Paths of the workspace, and commands that run in its root.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The parts of the program that are left out by default; checks and tests have them.
+/// The features that are off by default; checks and tests enable them.
 pub(crate) const ALL_FEATURES: &str =
     "clench-cli/gpu,clench-cli/render,clench-python/gpu,clench-python/render";
 
-/// The environment variable that chooses instruction sets; see the build script of clench-math.
+/// The environment variable that selects instruction sets; see the build script of clench-math.
 const INSTRUCTIONS: &str = "CLENCH_INSTRUCTIONS";
 
-/// The workspace's root folder.
+/// Returns the workspace's root folder.
 pub(crate) fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here).to_path_buf()
 }
 
-/// The folder that cargo builds in.
+/// Returns the folder that cargo builds in.
 pub(crate) fn target() -> PathBuf {
     let chosen =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     root().join(chosen)
 }
 
-/// How cargo compiles what is not a test, and for which instruction sets it compiles all.
+/// The cargo profile and the instruction sets of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Profile {
-    /// As tests are compiled, which share it, for all instruction sets: the tests run those that the processor has.
+    /// The profile of tests, for all instruction sets: the tests run those that the processor supports.
     Dev,
     /// The same for the widest set of this processor.
     Quick,
-    /// Faster, and without the checks of tests; quick to build.
+    /// Optimized, without debug checks; quick to build.
     Release,
-    /// What is shipped and timed: slower to build, a few percent faster.
+    /// The distributed and benchmarked build: slower to build, a few percent faster.
     Dist,
 }
 
 impl Profile {
-    /// Its name in `Cargo.toml`.
+    /// Returns the name of the profile in `Cargo.toml`.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Profile::Dev | Profile::Quick => "dev",
@@ -46,7 +46,7 @@ impl Profile {
         }
     }
 
-    /// Where cargo puts what is built with it.
+    /// Returns the output folder of the profile.
     pub(crate) fn folder(self) -> PathBuf {
         target().join(match self {
             Profile::Dev | Profile::Quick => "debug",
@@ -54,37 +54,38 @@ impl Profile {
         })
     }
 
-    /// A program built with it.
+    /// Returns the path of a program built with the profile.
     pub(crate) fn program(self, name: &str) -> PathBuf {
         let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
         self.folder().join(name)
     }
 
-    /// A cargo command that may compile. All of a run choose the same instruction sets: with others everything is compiled anew.
+    /// Returns a cargo command that may compile. All commands of a run select the same instruction sets: other sets
+    /// would recompile everything.
     pub(crate) fn cargo(self, args: &[&str]) -> Command {
         let mut cargo = cargo(args);
         self.choose_instructions(&mut cargo);
         cargo
     }
 
-    /// Chooses the instruction sets that a command compiles for, if it runs cargo.
+    /// Selects the instruction sets of a command that runs cargo.
     pub(crate) fn choose_instructions(self, command: &mut Command) {
         match self {
             Profile::Dev | Profile::Dist => command.env(INSTRUCTIONS, "all"),
-            // Not by name: a plain `cargo build` then shares what was compiled.
+            // Leave it unset: a plain `cargo build` then shares the compiled code.
             Profile::Quick | Profile::Release => command.env_remove(INSTRUCTIONS),
         };
     }
 }
 
-/// A command that will run in the workspace's root.
+/// Creates a command that runs in the workspace's root.
 pub(crate) fn command(program: impl AsRef<std::ffi::OsStr>, args: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.args(args).current_dir(root());
     command
 }
 
-/// The cargo that runs this program, so that a chosen toolchain stays chosen.
+/// Creates a command of the cargo that runs this program, so that the selected toolchain is kept.
 pub(crate) fn cargo(args: &[&str]) -> Command {
     command(
         std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
@@ -92,10 +93,10 @@ pub(crate) fn cargo(args: &[&str]) -> Command {
     )
 }
 
-/// Runs a command to its end, its output passed through.
+/// Runs a command to its end and passes its output through.
 ///
 /// # Errors
-/// A line saying which command failed and how.
+/// Returns a line with the failed command and its status.
 pub(crate) fn run(mut command: Command) -> Result<(), String> {
     let status = command
         .status()
@@ -107,7 +108,7 @@ pub(crate) fn run(mut command: Command) -> Result<(), String> {
     }
 }
 
-/// A command as one would type it.
+/// Formats a command as a command line.
 pub(crate) fn shown(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words

@@ -1,4 +1,5 @@
-//! `cargo xtask sanitize`: the tests under AddressSanitizer, which is an unstable option of a stable compiler, opened by `RUSTC_BOOTSTRAP`.
+//! `cargo xtask sanitize`: the tests under AddressSanitizer, an unstable option of a stable compiler, enabled by
+//! `RUSTC_BOOTSTRAP`.
 
 use crate::fuzz::host;
 use crate::python;
@@ -7,11 +8,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Runs the Rust tests with every access to memory checked; `args` go to `cargo test`, to choose some. `python` chooses those of the
-/// Python package, and what follows it goes to pytest.
+/// Runs the Rust tests with every memory access checked; `args` go to `cargo test`, to select some. `python` selects
+/// the tests of the Python package, and the following arguments go to pytest.
 ///
 /// # Errors
-/// A test that failed, a bad access to memory, or a compiler without the runtime.
+/// Returns an error if a test fails, a memory access is invalid, or the compiler lacks the runtime.
 pub(crate) fn sanitize(args: &[String]) -> Result<(), String> {
     if let [first, rest @ ..] = args
         && first == "python"
@@ -25,12 +26,12 @@ pub(crate) fn sanitize(args: &[String]) -> Result<(), String> {
     };
     // Documentation tests are linked without the runtime.
     test.args(["--lib", "--bins", "--tests"]);
-    // Some tests keep what their shapes borrow to their end.
+    // Some tests leak the data that their shapes borrow.
     test.env("ASAN_OPTIONS", "detect_leaks=0");
     run(test)
 }
 
-/// A command of cargo that compiles with checks.
+/// Creates an instrumented cargo command.
 fn instrumented(subcommand: &str) -> Result<Command, String> {
     let mut cargo = cargo(&[subcommand, "--target", &host()?]);
     cargo.arg("--target-dir").arg(folder());
@@ -39,13 +40,13 @@ fn instrumented(subcommand: &str) -> Result<Command, String> {
     Ok(cargo)
 }
 
-/// Where all that is compiled with checks lies.
+/// Returns the folder of all instrumented builds.
 fn folder() -> PathBuf {
     target().join("sanitizer")
 }
 
-/// The same for the Python package, whose compiled part is put beside a copy of its modules. An interpreter knows nothing of the checks, so
-/// that their runtime, here that of GCC, is loaded before it.
+/// Tests the Python package: its compiled module is placed in a copy of the package. The interpreter is not
+/// instrumented, so the sanitizer's runtime (GCC's) is preloaded.
 fn sanitize_python(args: &[String]) -> Result<(), String> {
     python::prepare()?;
     let mut build = instrumented("build")?;
@@ -56,7 +57,7 @@ fn sanitize_python(args: &[String]) -> Result<(), String> {
     copy(&root().join("python/clench"), &package)?;
     copy(&compiled, &package.join("_core.abi3.so"))?;
     let mut tests = match args {
-        // How much memory a loop takes is not told where freed memory is kept to see whether somebody uses it.
+        // The memory of a loop cannot be measured, since freed memory is quarantined to detect later use.
         [] => python::tests(
             Profile::Dev,
             &["python/tests", "--ignore", "python/tests/test_leaks.py"],
@@ -67,28 +68,28 @@ fn sanitize_python(args: &[String]) -> Result<(), String> {
         ),
     };
     tests.env("PYTHONPATH", folder().join("python"));
-    // Modules of others throw exceptions of C++, whose runtime has to be there before the checks are.
+    // External modules throw C++ exceptions, whose runtime must be loaded before the sanitizer starts.
     let before = [runtime("libasan.so")?, runtime("libstdc++.so")?];
     tests.env("LD_PRELOAD", before.join(" "));
-    // The interpreter itself keeps memory to its end; arrays that are too large are errors of Python's.
+    // The interpreter itself leaks memory at exit; arrays that are too large raise errors in Python.
     tests.env("ASAN_OPTIONS", "detect_leaks=0:allocator_may_return_null=1");
     run(tests)
 }
 
-/// One of GCC's runtimes.
+/// Returns the path of one of GCC's runtime libraries.
 fn runtime(name: &str) -> Result<String, String> {
     let missing = format!("GCC's {name} is not there: install g++");
     let found = command("gcc", &[format!("-print-file-name={name}").as_str()]).output();
     let found = found.map_err(|error| format!("{missing} ({error})"))?;
     let path = String::from_utf8_lossy(&found.stdout).trim().to_owned();
-    // GCC gives the bare name of what it does not find.
+    // GCC prints the bare name of a file that it does not find.
     match Path::new(&path).is_absolute() {
         true => Ok(path),
         false => Err(missing),
     }
 }
 
-/// Copies a file, or a folder with all that is in it.
+/// Copies a file, or a folder with its content.
 fn copy(from: &Path, to: &Path) -> Result<(), String> {
     let failed = |error| format!("cannot copy {}: {error}", from.display());
     if !from.is_dir() {

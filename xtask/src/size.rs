@@ -1,10 +1,10 @@
-//! The stage `size`: how large the machine code and constants are of what users build, and that they stay below a limit.
+//! The stage `size`: checks that the machine code and constants of released files stay below a limit.
 
 use crate::run::{Profile, run};
 use std::fs;
 use std::path::Path;
 
-/// Bytes of the program and of the Python module, by `cargo build --release` for this processor.
+/// The limits of the program and of the Python module, bytes, by `cargo build --release` for this processor.
 const LIMITS: [(&str, &str, u64); 2] = [
     ("clench-cli", "clench", 9_000_000),
     ("clench-python", "libclench_python.so", 12_000_000),
@@ -13,7 +13,7 @@ const LIMITS: [(&str, &str, u64); 2] = [
 /// Builds and measures both.
 ///
 /// # Errors
-/// What cannot be built or read, or is too large.
+/// Returns an error if one cannot be built or read, or is too large.
 pub(crate) fn check() -> Result<(), String> {
     let mut too_large = Vec::new();
     for (package, file, limit) in LIMITS {
@@ -39,7 +39,7 @@ pub(crate) fn check() -> Result<(), String> {
     }
 }
 
-/// Why nothing can be measured here.
+/// Returns the reason if sizes cannot be measured here.
 pub(crate) fn no_elf() -> Option<String> {
     let is_known = cfg!(all(
         target_os = "linux",
@@ -49,15 +49,15 @@ pub(crate) fn no_elf() -> Option<String> {
     (!is_known).then(|| "only files of 64-bit Linux are measured".to_owned())
 }
 
-/// Bytes of the text segment of an ELF file, as `size` counts them.
+/// Returns the size of the text segment of an ELF file, bytes, as in `size`.
 fn text_segment(path: &Path) -> Result<u64, String> {
     let bytes = fs::read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
     sum_of_sections(&bytes)
         .ok_or_else(|| format!("{} is no 64-bit ELF file, or it is cut off", path.display()))
 }
 
-/// The sum of all sections that are in memory and cannot be written: code, constants, tables for unwinding. By the specification "System V
-/// Application Binary Interface", chapter 4, with the offsets of 64-bit files.
+/// Returns the total size of all sections that are in memory and not writable: code, constants, unwind tables. See
+/// "System V Application Binary Interface", chapter 4, with the offsets of 64-bit files.
 fn sum_of_sections(file: &[u8]) -> Option<u64> {
     const MAGIC_64_LITTLE: &[u8] = b"\x7fELF\x02\x01";
     const WRITABLE: u64 = 1;
@@ -79,7 +79,7 @@ fn sum_of_sections(file: &[u8]) -> Option<u64> {
     Some(sum)
 }
 
-/// A number of `N` bytes, the lowest first.
+/// Reads a little-endian number of `N` bytes.
 fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<u64> {
     let bytes = bytes.get(at..)?.first_chunk::<N>()?;
     Some(
@@ -94,7 +94,7 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<u64> {
 mod tests {
     use super::*;
 
-    /// A file of nothing but headers of sections, each with flags and a size.
+    /// Creates a file that contains only section headers, each with flags and a size.
     fn file(sections: &[(u64, u64)]) -> Vec<u8> {
         let mut file = vec![0; 64];
         file[..6].copy_from_slice(b"\x7fELF\x02\x01");

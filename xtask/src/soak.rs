@@ -1,4 +1,4 @@
-//! `cargo xtask soak`: what takes long and looks for rare failures.
+//! `cargo xtask soak`: long searches for rare failures.
 
 use crate::gpu;
 use crate::python;
@@ -9,7 +9,7 @@ use crate::stages::build;
 struct Soak {
     name: &'static str,
     package: &'static str,
-    /// The test's program, and the test in it.
+    /// The test program, and the test in it.
     test: &'static str,
     case: &'static str,
 }
@@ -47,15 +47,15 @@ const SOAKS: [Soak; 5] = [
     },
 ];
 
-/// The soak that is a script: random models beside MuJoCo.
+/// The soak that is a script: comparison of random models with MuJoCo.
 const MODELS: &str = "models";
-/// That of random models on a graphics device.
+/// The soak of random models on a GPU.
 const DEVICE: &str = "device";
 
-/// Runs all soaks. `args` may choose one, by `--only`, and hold a seed.
+/// Runs all soaks. `args` may select one by `--only`, and contain a seed.
 ///
 /// # Errors
-/// Arguments that mean nothing, or what a soak found.
+/// Returns an error if the arguments are invalid or a soak fails.
 pub(crate) fn soak(args: &[String]) -> Result<(), String> {
     let (only, rest) = match args {
         [flag, only, rest @ ..] if flag == "--only" => (Some(only.as_str()), rest),

@@ -10,29 +10,29 @@ use crate::unit;
 use crate::web;
 use std::time::Instant;
 
-/// One check: its name on the command line, what to do when it fails, and how to run it.
+/// A check: its name on the command line, the remedy of a failure, and the function that runs it.
 struct Stage {
     name: &'static str,
     remedy: &'static str,
-    /// Given how programs are compiled that it runs.
+    /// The function; its argument is the profile of the programs that it runs.
     check: fn(Profile) -> Result<(), String>,
-    /// Why it cannot run on this machine, if it cannot.
+    /// The reason if it cannot run on this machine.
     missing: fn() -> Option<String>,
     quick: Quick,
 }
 
-/// What a quick run does of a stage.
+/// The part of a stage that a quick run covers.
 #[derive(PartialEq)]
 enum Quick {
     All,
-    /// All but this.
+    /// All except this.
     Without(&'static str),
-    /// Nothing, unless the stage is named: then all but this.
+    /// Skipped unless the stage is named: then all except this.
     Named(&'static str),
     Nothing,
 }
 
-/// From cheap to dear, so that most mistakes show early.
+/// The stages from cheap to expensive, so that most errors show early.
 const STAGES: &[Stage] = &[
     Stage {
         name: "fmt",
@@ -129,11 +129,11 @@ const STAGES: &[Stage] = &[
     },
 ];
 
-/// Runs all stages, or those named, up to the first that fails. With `--release` among the arguments the program and the Python package are
-/// compiled as users have them; with `--quick` what takes long is left out.
+/// Runs all stages, or the named ones, up to the first failure. With the argument `--release`, the program and the
+/// Python package are compiled as for users; with `--quick`, long parts are skipped.
 ///
 /// # Errors
-/// The failing stage with its remedy, or a name that is no stage.
+/// Returns an error if a stage fails, with its remedy, or a name is unknown.
 pub(crate) fn test(args: &[String]) -> Result<(), String> {
     let (flags, names): (Vec<&str>, Vec<&str>) =
         (args.iter().map(String::as_str)).partition(|arg| arg.starts_with("--"));
@@ -195,7 +195,7 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// The stages of these names, or all of a run.
+/// Returns the stages of these names, or all of a run.
 fn choose(names: &[&str], profile: Profile) -> Result<Vec<&'static Stage>, String> {
     let is_quick = profile == Profile::Quick;
     for name in names {
@@ -216,7 +216,7 @@ fn choose(names: &[&str], profile: Profile) -> Result<Vec<&'static Stage>, Strin
     Ok(STAGES.iter().filter(is_chosen).collect())
 }
 
-/// What a quick run of these stages, or of all, has not looked at.
+/// Returns a text with the parts that a quick run of these stages, or of all, omits.
 fn left_out(names: &[&str]) -> String {
     let mut text = String::from("A quick run leaves out, and `cargo xtask test` has:");
     for stage in STAGES {
@@ -235,10 +235,10 @@ fn left_out(names: &[&str]) -> String {
     text + "\n  lanes of other instruction sets than the widest of this processor"
 }
 
-/// Times `clench` against MuJoCo; `args` go to the script.
+/// Benchmarks `clench` against MuJoCo; `args` go to the script.
 ///
 /// # Errors
-/// What could not be built, installed or run.
+/// Returns an error if a build, an installation or the script fails.
 pub(crate) fn bench(args: &[String]) -> Result<(), String> {
     let profile = Profile::Dist;
     compile(profile, "clench-cli", ["--bin", "clench"])?;
@@ -256,7 +256,7 @@ pub(crate) fn bench(args: &[String]) -> Result<(), String> {
     run(script)
 }
 
-/// What every machine can do that builds the rest.
+/// Returns `None`, for stages without further requirements.
 fn nothing() -> Option<String> {
     None
 }
@@ -278,7 +278,7 @@ fn doc(profile: Profile) -> Result<(), String> {
     run(doc)
 }
 
-/// The program, without the parts that are left out by default.
+/// Builds the program with the default features.
 pub(crate) fn build(profile: Profile) -> Result<(), String> {
     compile(profile, "clench-cli", ["--bin", "clench"])
 }
@@ -291,7 +291,7 @@ fn compile(profile: Profile, package: &str, target: [&str; 2]) -> Result<(), Str
 }
 
 fn parity(profile: Profile) -> Result<(), String> {
-    // Tests of the program with all its parts may have put theirs in its place.
+    // Tests of the program with all features may have replaced it.
     build(profile)?;
     let mut pytest = python::tests(profile, &["parity"]);
     pytest.env("CLENCH", profile.program("clench"));

@@ -1,11 +1,11 @@
-//! The stage `unit`: all Rust tests but those on a graphics device, with a line for each program of tests, so that one sees how far
-//! it is. What `cargo test` prints besides is shown where a test fails.
+//! The stage `unit`: all Rust tests except those on a GPU, with a line for each test program to show the progress.
+//! Other output of `cargo test` is shown if a test fails.
 
 use crate::run::{ALL_FEATURES, Profile, shown};
 use std::io::{BufRead, BufReader, pipe};
 use std::process::Command;
 
-/// Parts of names of tests that take from 8 s to a minute, which a quick run leaves out.
+/// Substrings of the names of tests that take from 8 s to a minute; a quick run omits them.
 const LONG: [&str; 8] = [
     "accuracy::depths_and_normals_are_true",
     "closed_forms::a_cylinder_in_a_",
@@ -16,16 +16,16 @@ const LONG: [&str; 8] = [
     "accelerations_and_forces_agree_from_every_start",
     "minima_agree_and_the_gap_certifies_them",
 ];
-/// What a quick run leaves out of this stage.
+/// The parts of this stage that a quick run omits.
 pub(crate) const LEFT_OUT: &str = "clench-gpu, clench-render, examples of documentation, and the tests that xtask/src/unit.rs lists as long";
 
-/// Builds and runs them.
+/// Builds and runs the tests.
 ///
 /// # Errors
-/// What cannot be built, or that a test failed.
+/// Returns an error if a build or a test fails.
 pub(crate) fn test(profile: Profile) -> Result<(), String> {
     let mut programs = 0;
-    // Not examples, which have no tests: the stage `clippy` has looked at them.
+    // Examples have no tests: the stage `clippy` checks them.
     let mut build = tests(profile, "--tests");
     build.arg("--no-run");
     read_lines(build, |line| {
@@ -63,7 +63,7 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
 fn tests(profile: Profile, kind: &str) -> Command {
     let mut tests = profile.cargo(&["test", "--workspace", kind]);
     match profile {
-        // Nothing that needs `wgpu`, which takes a minute and a half to compile.
+        // Packages that need `wgpu`, which takes a minute and a half to compile, are excluded.
         Profile::Quick => tests.args(
             ["clench-gpu", "clench-render", "clench-python"]
                 .map(|name| format!("--exclude={name}")),
@@ -74,7 +74,7 @@ fn tests(profile: Profile, kind: &str) -> Command {
     tests
 }
 
-/// Crates of others compile by the hundred; ours have a path.
+/// Returns true if the line is about an external crate; the project's own have a path.
 fn is_foreign(line: &str) -> bool {
     let line = line.trim_start();
     ["Compiling ", "Downloaded ", "Fresh "]
@@ -82,7 +82,7 @@ fn is_foreign(line: &str) -> bool {
         .any(|word| line.starts_with(word) && !line.contains(" (/"))
 }
 
-/// Runs a command to its end and hands on what it prints, on either stream, line by line.
+/// Runs a command to its end and passes each line of its output and errors on.
 fn read_lines(mut command: Command, mut each: impl FnMut(&str)) -> Result<(), String> {
     let failed = |e: std::io::Error| format!("cannot run cargo: {e}");
     let (reader, writer) = pipe().map_err(failed)?;
@@ -90,7 +90,7 @@ fn read_lines(mut command: Command, mut each: impl FnMut(&str)) -> Result<(), St
     command.stderr(writer);
     let text = shown(&command);
     let mut child = command.spawn().map_err(failed)?;
-    // The command holds ends of the pipe too, and reading would never end.
+    // The command also holds ends of the pipe, so reading would never end.
     drop(command);
     for line in BufReader::new(reader).split(b'\n') {
         each(String::from_utf8_lossy(&line.map_err(failed)?).trim_end());
@@ -102,14 +102,14 @@ fn read_lines(mut command: Command, mut each: impl FnMut(&str)) -> Result<(), St
     }
 }
 
-/// What was read of a run so far.
+/// The results of a run so far.
 struct Report {
-    /// Programs of tests, those of documentation apart.
+    /// The number of test programs, without documentation tests.
     programs: usize,
     begun: usize,
-    /// Which one runs.
+    /// The name of the running program.
     current: String,
-    /// What it printed.
+    /// The output of the running program.
     printed: Vec<String>,
     passed: usize,
     failed: usize,
@@ -127,7 +127,7 @@ impl Report {
         }
     }
 
-    /// Takes a line; what to show for it, if anything.
+    /// Processes a line and returns the text to show for it, if any.
     fn read(&mut self, line: &str) -> Option<String> {
         let start = line.trim_start();
         if let Some(program) = start.strip_prefix("Running ") {
@@ -166,7 +166,7 @@ impl Report {
         format!("  {place:<9} {what:<22} {}", self.current)
     }
 
-    /// What was printed and belongs to no result, such as errors of the compiler; and the sum.
+    /// Returns the output that belongs to no result, such as compiler errors, and the totals.
     fn rest(&self) -> String {
         let mut lines = self.printed.clone();
         lines.push(format!("{} passed, {} failed", self.passed, self.failed));
@@ -174,7 +174,7 @@ impl Report {
     }
 }
 
-/// How a program is called, of what cargo says about it: `tests/ik.rs (target/debug/deps/ik-0123)`.
+/// Returns the name of a program from cargo's line: `tests/ik.rs (target/debug/deps/ik-0123)`.
 fn program_name(text: &str) -> String {
     let (source, path) = text.split_once(" (").unwrap_or((text, ""));
     let file = path.trim_end_matches(')').rsplit('/').next();
@@ -188,7 +188,7 @@ fn program_name(text: &str) -> String {
     }
 }
 
-/// The number before a word of `ok. 8 passed; 0 failed; ...`.
+/// Returns the number before a word of `ok. 8 passed; 0 failed; ...`.
 fn count(result: &str, word: &str) -> usize {
     let before = result.split(word).next().unwrap_or_default();
     let number = before.trim_end().rsplit(' ').next();

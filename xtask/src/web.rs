@@ -1,4 +1,4 @@
-//! The viewer's page: built by Node, and driven in a browser by its tests.
+//! The viewer's page: its build by Node, and its tests in a browser.
 
 use crate::install::try_to_install;
 use crate::python::interpreter;
@@ -6,10 +6,10 @@ use crate::run::{Profile, command, root, run};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Builds the page, which the program and the Python package embed when they are compiled after it.
+/// Builds the page, which the program and the Python package embed when they are compiled later.
 ///
 /// # Errors
-/// That a package cannot be had, or that the page has errors of types.
+/// Returns an error if a package is not available or the page has type errors.
 pub(crate) fn build() -> Result<(), String> {
     npm(&["ci", "--silent", "--no-audit", "--no-fund"]).map_err(|e| {
         format!("{e}\nA registry of npm must be reachable, on the first run at least.")
@@ -18,18 +18,18 @@ pub(crate) fn build() -> Result<(), String> {
     npm(&["run", "--silent", "build"])
 }
 
-/// Drives the page in Chromium.
+/// Tests the page in Chromium.
 ///
 /// # Errors
-/// That a test failed.
+/// Returns an error if a test fails.
 pub(crate) fn test(profile: Profile) -> Result<(), String> {
     drive("test", profile)
 }
 
-/// Drives the page of a viewer that a loop in Python feeds, once the package is installed.
+/// Tests the page of a viewer that a Python loop feeds; the package must be installed.
 ///
 /// # Errors
-/// That a test failed.
+/// Returns an error if a test fails.
 pub(crate) fn test_python(profile: Profile) -> Result<(), String> {
     drive("test:python", profile)
 }
@@ -42,7 +42,7 @@ fn drive(script: &str, profile: Profile) -> Result<(), String> {
     run(tests)
 }
 
-/// Why the page cannot be built here, if it cannot.
+/// Returns the reason if the page cannot be built here.
 pub(crate) fn no_node() -> Option<String> {
     let installed = in_web("npm", &["--version"]).stdout(Stdio::null()).status();
     match installed {
@@ -51,7 +51,7 @@ pub(crate) fn no_node() -> Option<String> {
     }
 }
 
-/// Why the page cannot be driven here, if it cannot. Where the tests may, they install Debian's Chromium.
+/// Returns the reason if the page cannot be tested here. Installs Debian's Chromium if permitted.
 pub(crate) fn no_browser() -> Option<String> {
     no_node().or_else(|| {
         let path = chromium();
@@ -68,7 +68,7 @@ pub(crate) fn no_browser() -> Option<String> {
     })
 }
 
-/// Debian's Chromium, or that of the environment variable `CHROMIUM`.
+/// Returns the path in the environment variable `CHROMIUM`, or else of Debian's Chromium.
 fn chromium() -> PathBuf {
     std::env::var_os("CHROMIUM").map_or_else(|| "/usr/bin/chromium".into(), PathBuf::from)
 }

@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// Adds all actuators, and numbers their activations.
 ///
 /// # Errors
-/// Unknown targets, ranges that do not rise, an activation range without an activation, a range to inherit where there
-/// is none.
+/// Returns an error if a target is unknown, a range is not ascending, an activation range has no activation, or there
+/// is no range to inherit.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
@@ -127,7 +127,7 @@ fn add(
     p.actuator_dampingpoly.push([quadratic, cubic]);
     p.actuator_armature.push(spec.armature);
     if spec.damping != [0.0; 3] || spec.armature != 0.0 {
-        // As in MuJoCo, what an orientation servo turns gets neither.
+        // As in MuJoCo, the target of an orientation servo gets neither.
         use Transmission::{Joint, JointInParent, Rotation, RotationInFrame, Tendon};
         let (Joint(_) | JointInParent(_) | Tendon(_) | Rotation(_) | RotationInFrame(_)) =
             transmission
@@ -139,7 +139,7 @@ fn add(
     Ok(())
 }
 
-/// Whether a control is clamped, and to what. Of a PID controller `ctrlrange` is that of the position.
+/// Returns true if a control is clamped, and its range. For a PID controller `ctrlrange` is that of the position.
 fn control_range(spec: &ActuatorSpec, input: ControlInput, ctrllimited: bool) -> (bool, [f64; 2]) {
     let own = match (spec.gain, input) {
         (GainKind::Pid, ControlInput::Velocity) => spec.velrange,
@@ -150,24 +150,24 @@ fn control_range(spec: &ActuatorSpec, input: ControlInput, ctrllimited: bool) ->
 }
 
 impl ActuatorSpec {
-    /// What the controls of the actuator are, in their order.
+    /// Returns the meaning of the controls of the actuator, in their order.
     ///
     /// # Errors
-    /// Kinds of dynamics, gain and bias that do not go together, or inputs that they do not have.
+    /// Returns an error if the kinds of dynamics, gain and bias are incompatible, or do not support the inputs.
     pub fn controls(&self) -> Result<Vec<ControlInput>, BuildError> {
         Ok(controller(self, 0)?.inputs)
     }
 
-    /// How many activations the actuator has.
+    /// Returns the number of activations of the actuator.
     ///
     /// # Errors
-    /// The same, and another `actdim` than these dynamics have.
+    /// Also returns an error if `actdim` differs from that of these dynamics.
     pub fn activations(&self) -> Result<usize, BuildError> {
         activations(self, &controller(self, 0)?)
     }
 }
 
-/// How many activations the actuator has.
+/// Returns the number of activations of the actuator.
 fn activations(spec: &ActuatorSpec, controller: &Controller) -> Result<usize, BuildError> {
     let own = match spec.dynamics {
         DynamicsKind::None => 0,
@@ -185,7 +185,7 @@ fn activations(spec: &ActuatorSpec, controller: &Controller) -> Result<usize, Bu
     Ok(actdim)
 }
 
-/// What the parameters of a muscle must be.
+/// Checks the parameters of a muscle.
 fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(), BuildError> {
     let [low, high, _, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
     let wrong = match () {
@@ -199,18 +199,19 @@ fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(),
     Err(spec.error(format!("as a muscle, {wrong} (in {field})")))
 }
 
-/// Whether the actuator pulls back as a spring of its gain does, which may be damped by a ratio.
+/// Returns true if the bias is a restoring spring of the gain's stiffness, which may be damped by a ratio.
 fn pulls_back(spec: &ActuatorSpec) -> bool {
     let matches = spec.gain == GainKind::Pid || spec.gainprm[0] == -spec.biasprm[1];
     matches!(spec.bias, BiasKind::Affine | BiasKind::So3) && matches
 }
 
-/// Whether the actuator is a servo: its force vanishes where the control equals the length.
+/// Returns true if the actuator is a servo: its force vanishes if the control equals the length.
 fn is_servo(spec: &ActuatorSpec) -> bool {
     matches!(spec.gain, GainKind::Fixed | GainKind::Pid) && pulls_back(spec)
 }
 
-/// MuJoCo's `inheritrange`: a servo's set point ranges over a share of its target's range, about the same middle.
+/// Applies MuJoCo's `inheritrange`: a servo's setpoint range is a fraction of its target's range, about the same
+/// middle.
 fn inherit_range(
     spec: &mut ActuatorSpec,
     transmission: Transmission,

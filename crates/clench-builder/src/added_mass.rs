@@ -5,13 +5,13 @@
 //! inertia_i = V/5 (r_j² − r_k²)² (κ_k − κ_j) / (2 (r_j² − r_k²) + (r_j² + r_k²) (κ_j − κ_k))
 //! ```
 //!
-//! The integral is taken as MuJoCo takes it, for its numbers: by Kronrod's rule of 15 points in x, where
-//! λ = s x³ / (1 − x)² and s = (r_i³ r_j r_k)^(2/5).
+//! The quadrature is MuJoCo's, for equal results: Kronrod's rule of 15 points in x, where λ = s x³ / (1 − x)² and s =
+//! (r_i³ r_j r_k)^(2/5).
 
 use clench_math::Vec3;
 use std::f64::consts::PI;
 
-/// Kronrod's nodes on [0, 1] up to the middle, and their weights, in the eight digits that MuJoCo has of them.
+/// Kronrod's nodes on [0, 1] up to the middle, and their weights, with MuJoCo's eight digits.
 const RULE: [(f64, f64); 8] = [
     (0.00427231, 0.01146766),
     (0.02544604, 0.03154605),
@@ -23,7 +23,7 @@ const RULE: [(f64, f64); 8] = [
     (0.5, 0.10474107),
 ];
 
-/// Least denominator (MuJoCo's `mjEPS`).
+/// Minimum denominator (MuJoCo's `mjEPS`).
 const LEAST: f64 = 1e-14;
 
 /// Inertia of the medium, at unit density.
@@ -36,7 +36,7 @@ pub(super) struct AddedMass {
 }
 
 impl AddedMass {
-    /// The added mass of an ellipsoid of these semi-axes.
+    /// Computes the added mass of an ellipsoid with these semi-axes.
     pub(super) fn of_ellipsoid(r: Vec3<f64>) -> Self {
         let r = r.to_array();
         let volume = 4.0 / 3.0 * PI * r[0] * r[1] * r[2];
@@ -59,7 +59,7 @@ impl AddedMass {
     }
 }
 
-/// κ of the first of three semi-axes.
+/// Computes κ of the first of three semi-axes.
 fn kappa(first: f64, second: f64, third: f64) -> f64 {
     let scale = (first * first * first * second * third).powf(0.4);
     let shrunk = |lambda: f64, axis: f64| 1.0 + lambda / (axis * axis);

@@ -1,23 +1,23 @@
-//! What an author says about how elements look.
+//! The author's description of the appearance of elements.
 
 use clench_dynamics::model::Material;
 use std::sync::Arc;
 
-/// How an element looks.
+/// The appearance of an element.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AppearanceSpec {
     /// Red, green, blue and opacity, each from 0 to 1; `None`: those of the material, else grey.
     pub rgba: Option<[f32; 4]>,
-    /// Name of its material, or empty. A name that no material has means none.
+    /// Name of its material, or empty. An unknown name means none.
     pub material: Arc<str>,
 }
 
-/// A surface, in MuJoCo's terms; see [`Material`].
+/// A material, in MuJoCo's terms; see [`Material`].
 #[derive(Clone, Debug)]
 pub struct MaterialSpec {
-    /// What is resolved already; its `texture` is not looked at.
+    /// The resolved properties; its `texture` is ignored.
     pub surface: Material,
-    /// Name of its texture, or empty. A name that no texture has means none.
+    /// Name of its texture, or empty. An unknown name means none.
     pub texture: Arc<str>,
 }
 

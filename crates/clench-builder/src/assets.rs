@@ -11,10 +11,10 @@ pub struct HeightFieldSpec {
     pub rows: usize,
     /// Columns, along x, at least two.
     pub columns: usize,
-    /// Heights in any unit, row after row from the negative end; the lowest counts as 0, the highest as the elevation.
+    /// Heights in any unit, row after row from the negative end; the lowest maps to 0, the highest to the elevation.
     pub heights: Vec<f64>,
     /// Half lengths along x and y, elevation, depth of the base below the lowest height, m.
     pub size: [f64; 4],
-    /// The place in the file, if it came from one.
+    /// The source location, if it came from a file.
     pub origin: Option<Origin>,
 }

@@ -1,4 +1,4 @@
-//! Bodies in MuJoCo's order, each with what stands on it.
+//! Bodies in MuJoCo's order, each with its elements.
 
 use super::check::describe;
 use super::element::Element;
@@ -13,15 +13,15 @@ use clench_dynamics::model::{Body, JointKind, Model};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Offsets (m, and parts of a quaternion) below which frames count as equal (MuJoCo's `kFrameEps`).
+/// Offsets (m, and components of a quaternion) below which frames count as equal (MuJoCo's `kFrameEps`).
 const SAME_FRAME: f64 = 1e-6;
-/// Most degrees of freedom between a body and its parent.
+/// Maximum number of degrees of freedom between a body and its parent.
 const MAX_DOFS: usize = 6;
 
-/// The author's bodies depth first: children in order of appearance, each followed by its own.
+/// Returns the author's bodies depth first: children in order of appearance, each followed by its own.
 ///
 /// # Errors
-/// A body whose parent does not come before it.
+/// Returns an error if a body's parent does not come before it.
 pub(super) fn depth_first(bodies: &[BodySpec]) -> Result<Vec<usize>, BuildError> {
     let mut children = vec![Vec::new(); bodies.len()];
     for (index, body) in bodies.iter().enumerate().skip(1) {
@@ -45,7 +45,7 @@ pub(super) fn depth_first(bodies: &[BodySpec]) -> Result<Vec<usize>, BuildError>
 /// Adds all bodies, with their joints, geoms and sites.
 ///
 /// # Errors
-/// Whatever a body, its inertia or an element on it cannot be.
+/// Returns an error if a body, its inertia or an element on it is invalid.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     order: &[usize],
@@ -82,20 +82,20 @@ fn check_world(world: &BodySpec) -> Result<(), BuildError> {
     Err(world.error(wrong))
 }
 
-/// A body among others.
+/// The context of a body.
 struct Place {
-    /// What messages call it.
+    /// Its name in messages.
     name: String,
-    /// In the model's order.
+    /// Index in the model's order.
     parent: usize,
     has_children: bool,
 }
 
-/// A body's own frame, and how its geoms and sites must follow where that frame was moved.
+/// A body's own frame, and the transformation of its geoms and sites if that frame was moved.
 struct Frame {
     pos: Vec3<f64>,
     quat: Quat<f64>,
-    /// From the author's body frame to the model's, where they differ.
+    /// From the author's body frame to the model's, if they differ.
     moved: Option<(Vec3<f64>, Quat<f64>)>,
 }
 
@@ -151,7 +151,7 @@ fn add(
     Ok(())
 }
 
-/// Whether the inertia of a geom's body would be lost without the geom, so that MuJoCo does not discard it.
+/// Returns true if the inertia of a geom's body would be lost without the geom. MuJoCo does not discard it then.
 fn is_needed(compiler: &CompilerSpec, geom: &GeomSpec) -> bool {
     let [first, last] = compiler.inertiagrouprange;
     let (GeomMass::Mass(amount) | GeomMass::Density(amount)) = geom.mass;
@@ -198,7 +198,7 @@ fn push_body(model: &mut Model, spec: &BodySpec, parent: usize, simple_inertia: 
     model.nmocap += usize::from(spec.mocap);
 }
 
-/// Which joints a body may have, and where.
+/// Checks the joints of a body.
 fn check_joints(spec: &BodySpec, parent: usize) -> Result<(), BuildError> {
     if spec.mocap && (parent != 0 || !spec.joints.is_empty()) {
         return Err(spec.error("a mocap body must be a child of the world and have no joints"));
@@ -229,8 +229,8 @@ fn check_joints(spec: &BodySpec, parent: usize) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// MuJoCo's `alignfree`: a free body without children may take its inertial frame as its frame, which makes its mass
-/// matrix diagonal.
+/// Applies MuJoCo's `alignfree`: a free body without children may take its inertial frame as its frame, which makes its
+/// mass matrix diagonal.
 fn align(
     builder: &ModelBuilder,
     spec: &BodySpec,
@@ -273,7 +273,7 @@ fn push_params(model: &mut Model, spec: &BodySpec, frame: &Frame, inertia: &Mass
     p.body_gravcomp.push(spec.gravcomp);
 }
 
-/// Whether a frame is that of its body, up to [`SAME_FRAME`].
+/// Returns true if a frame is that of its body, up to [`SAME_FRAME`].
 pub(super) fn is_null(pos: Vec3<f64>, quat: Quat<f64>) -> bool {
     let small = |v: f64| v.abs() < SAME_FRAME;
     let turn = quat.imaginary();
@@ -284,7 +284,7 @@ pub(super) fn is_null(pos: Vec3<f64>, quat: Quat<f64>) -> bool {
         && small(quat.w.abs() - 1.0)
 }
 
-/// Whether a point is its body's origin, up to [`SAME_FRAME`].
+/// Returns true if a point is its body's origin, up to [`SAME_FRAME`].
 pub(super) fn is_null_position(pos: Vec3<f64>) -> bool {
     pos.to_array().iter().all(|v| v.abs() < SAME_FRAME)
 }

@@ -1,4 +1,4 @@
-//! What a model would take, held against its budget before it is taken.
+//! Checks of a model's resources against its budget before allocation.
 
 use super::BuildError;
 use super::element::Element;
@@ -6,10 +6,10 @@ use super::model_builder::ModelBuilder;
 use clench_dynamics::budget::RAISE;
 use clench_dynamics::model::{Coupled, Model};
 
-/// The matrices of a model whose dofs are known.
+/// Checks the matrices of a model whose dofs are determined.
 ///
 /// # Errors
-/// A mass matrix, or moment arms of actuators or tendons, of more numbers than the budget has.
+/// Returns an error if the mass matrix or the moment arms of actuators or tendons exceed the budget.
 pub(super) fn matrices(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
     let mut depths: Vec<u64> = Vec::with_capacity(model.nv);
     for dof in &model.dofs {
@@ -23,10 +23,10 @@ pub(super) fn matrices(builder: &ModelBuilder, model: &Model) -> Result<(), Buil
     check_budget(builder, "matrix of moment arms of tendons", tendons)
 }
 
-/// The Jacobian of the equalities of a model.
+/// Checks the Jacobian of the equalities of a model.
 ///
 /// # Errors
-/// More numbers than the budget has.
+/// Returns an error if it exceeds the budget.
 pub(super) fn equalities(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
     let path = |body: usize| {
         let last = model.bodies[body].last_dof;
@@ -54,10 +54,10 @@ fn check_budget(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), Bu
     }
 }
 
-/// The keyframes of a model, each of which is a state.
+/// Checks the keyframes of a model, each of which is a state.
 ///
 /// # Errors
-/// More memory for them than the budget has.
+/// Returns an error if they exceed the budget.
 pub(super) fn keyframes(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
     let numbers = model.nq + model.nv + model.na + model.nplastic + model.nu() + 7 * model.nmocap;
     let bytes = (builder.keyframes.len() as u64).saturating_mul(8 * numbers as u64);

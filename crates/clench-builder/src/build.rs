@@ -1,4 +1,4 @@
-//! From a description to a model.
+//! Building a model from its description.
 
 use super::model_builder::ModelBuilder;
 use super::placed::Assets;
@@ -16,14 +16,14 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 impl ModelBuilder {
-    /// Checks the description and turns it into a model, by the rules of MuJoCo's compiler: bodies are numbered depth
-    /// first, meshes come to stand about their centres of mass, masses come from geoms where they are not given, ranges become limits, and the inverse inertias that
-    /// scale constraints are computed in the initial configuration.
+    /// Checks the description and builds the model, by the rules of MuJoCo's compiler: bodies are numbered depth first,
+    /// meshes are centred about their centres of mass, masses come from geoms if they are not given, ranges become
+    /// limits, and the inverse inertias that scale constraints are computed in the initial configuration.
     ///
     /// # Errors
-    /// The first thing found that cannot be: names that are taken or lead nowhere, numbers that are not finite, sizes,
-    /// masses and inertias that no body has, joints where none can be, ranges that do not rise, vectors of the wrong
-    /// length. The error names the element and, if it came from a file, its place.
+    /// Returns the first error found: names that are already used or unknown, numbers that are not finite, impossible
+    /// sizes, masses and inertias, misplaced joints, ranges that are not ascending, vectors of the wrong length. The
+    /// error names the element and, if it came from a file, its source location.
     pub fn build(&self) -> Result<Model, BuildError> {
         if self.bodies.is_empty() {
             return Err(BuildError::new(
@@ -44,7 +44,7 @@ impl ModelBuilder {
         fused.assemble(assets)
     }
 
-    /// The model of a description that was checked, with its own bodies.
+    /// Builds the model of a checked description.
     fn assemble(&self, assets: Assets) -> Result<Model, BuildError> {
         let order = bodies::depth_first(&self.bodies)?;
         let names = AllNames::new(self, &order)?;
@@ -84,7 +84,7 @@ impl ModelBuilder {
         Ok(model)
     }
 
-    /// A model without any element.
+    /// Creates a model without any element.
     fn empty_model(&self) -> Model {
         let physics = &self.physics;
         let contacts = physics.contact_override.unwrap_or_default();

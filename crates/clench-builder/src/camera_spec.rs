@@ -1,10 +1,10 @@
-//! What an author says about a camera.
+//! The author's description of a camera.
 
 use super::Origin;
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// How a camera's frame follows bodies.
+/// The tracking mode of a camera.
 #[derive(Clone, Debug, Default)]
 pub enum CameraTracking {
     /// Fixed to its body.
@@ -12,21 +12,21 @@ pub enum CameraTracking {
     Fixed,
     /// At a constant offset from its body in world axes, with a constant orientation.
     Track,
-    /// The same from the centre of mass of its body and all below it. Its offset is that from the centre of mass of the body of that
-    /// name at first, if it is not empty (as in MuJoCo, where `target` says so).
+    /// The same from the centre of mass of its body and its descendants. If the name is not empty, the offset is the
+    /// initial one from the centre of mass of the named body (as with `target` in MuJoCo).
     TrackCom(String),
-    /// Fixed in place to its body, turned towards the body of that name; fixed altogether where it is empty.
+    /// Fixed in position to its body, and pointed at the named body; entirely fixed if the name is empty.
     TargetBody(String),
-    /// Turned towards the centre of mass of that body and all below it.
+    /// Pointed at the centre of mass of the named body and its descendants.
     TargetBodyCom(String),
 }
 
-/// What a camera sees at once.
+/// The field of view of a camera.
 #[derive(Clone, Copy, Debug)]
 pub enum CameraLens {
-    /// The vertical field of view, degrees; with parallel lines of sight, the height of the picture, m.
+    /// The vertical field of view, degrees; for an orthographic camera the height of the picture, m.
     FieldOfView(f64),
-    /// A pinhole before a sensor.
+    /// A pinhole in front of a sensor.
     Intrinsic {
         /// Width and height of the sensor, m.
         sensorsize: [f64; 2],
@@ -46,21 +46,21 @@ pub struct CameraSpec {
     pub pos: Vec3<f64>,
     /// Orientation in the body frame.
     pub quat: Quat<f64>,
-    /// How its frame follows bodies.
+    /// Its tracking mode.
     pub tracking: CameraTracking,
-    /// Whether its lines of sight are parallel.
+    /// True if the projection is orthographic.
     pub orthographic: bool,
-    /// What it sees at once.
+    /// Its field of view.
     pub lens: CameraLens,
     /// Pixels: width, height.
     pub resolution: [usize; 2],
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers, unused by physics.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// One pixel that sees 45 degrees, as in MuJoCo.
+/// One pixel with a field of view of 45 degrees, as in MuJoCo.
 impl Default for CameraSpec {
     fn default() -> Self {
         CameraSpec {

@@ -1,4 +1,4 @@
-//! Cameras: what an author says of them, what they are aimed at, and their frames at qpos0.
+//! Cameras: the author's description, their targets, and their frames at qpos0.
 
 use super::BuildError;
 use super::camera_spec::{CameraLens, CameraSpec, CameraTracking};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// MuJoCo's focal lengths of a camera that has a field of view instead, m.
 const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];
 
-/// Adds a camera of body `b`, not yet aimed at anything.
+/// Adds a camera of body `b`, without a target.
 pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) {
     let (fovy, sensorsize, intrinsic) = match spec.lens {
         CameraLens::FieldOfView(fovy) => (fovy, [0.0; 2], UNUSED_INTRINSIC),
@@ -20,7 +20,8 @@ pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) 
             focal,
             principal,
         } => {
-            // In single precision, as by MuJoCo's compiler: the picture of an orthographic camera is so many metres high.
+            // In single precision, as in MuJoCo's compiler. For an orthographic camera this is the height of the
+            // picture in metres.
             let half_angle = (0.5 * sensorsize[1] as f32).atan2(focal[1] as f32);
             let numbers = [focal[0], focal[1], principal[0], principal[1]];
             let fovy = 2.0 * f64::from(half_angle).to_degrees();
@@ -45,10 +46,10 @@ pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) 
     p.cam_intrinsic.push(intrinsic);
 }
 
-/// Resolves what cameras follow and are turned towards.
+/// Resolves the bodies that cameras follow or point at.
 ///
 /// # Errors
-/// A body that is not there.
+/// Returns an error if a body does not exist.
 pub(super) fn aim_all(
     builder: &ModelBuilder,
     order: &[usize],
@@ -62,10 +63,10 @@ pub(super) fn aim_all(
     Ok(())
 }
 
-/// How a camera or light follows bodies, which `find` finds by their names.
+/// Returns the tracking mode of a camera or light; `find` looks up bodies by name.
 ///
 /// # Errors
-/// A body that is not there.
+/// Returns an error if a body does not exist.
 pub(super) fn mode(
     tracking: &CameraTracking,
     find: impl Fn(&str) -> Result<usize, BuildError>,

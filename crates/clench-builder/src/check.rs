@@ -1,5 +1,5 @@
-//! What can be said of each element alone, before anything is computed: NaN and infinity are refused, and so are
-//! numbers that must be positive.
+//! Checks of single elements, before anything is computed: NaN and infinity are refused, and so are numbers that must
+//! be positive.
 
 use super::element::{Element, check_pose};
 use super::model_builder::ModelBuilder;
@@ -14,7 +14,7 @@ use clench_dynamics::model::Integrator;
 /// Checks every element.
 ///
 /// # Errors
-/// The first number found that cannot be.
+/// Returns an error for the first invalid number found.
 pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
     check_physics(builder)?;
     for (index, body) in builder.bodies.iter().enumerate() {
@@ -41,7 +41,7 @@ pub(super) fn check(builder: &ModelBuilder) -> Result<(), BuildError> {
     builder.keyframes.iter().try_for_each(check_keyframe)
 }
 
-/// How a message calls a body.
+/// Returns the name of a body in messages.
 pub(super) fn describe(name: &str, index: usize) -> String {
     match name {
         "" => format!("body {index}"),
@@ -160,10 +160,10 @@ fn check_geom(g: &GeomSpec) -> Result<(), BuildError> {
     require_condim(g, g.condim)
 }
 
-/// Contacts have 1, 3, 4 or 6 dimensions.
+/// Checks that contacts have 1, 3, 4 or 6 dimensions.
 ///
 /// # Errors
-/// Any other number.
+/// Returns an error for any other number.
 pub(super) fn require_condim(element: &impl Element, condim: u32) -> Result<(), BuildError> {
     match condim {
         1 | 3 | 4 | 6 => Ok(()),

@@ -1,5 +1,5 @@
-//! Writing a description in Rust: constructors and setters for what one says most often. Every other field is public,
-//! and struct update syntax reaches it: `GeomSpec { condim: 6, ..GeomSpec::sphere(0.1) }`.
+//! Constructors and setters for the most common parts of a description in Rust. Every other field is public, and
+//! settable by struct update syntax: `GeomSpec { condim: 6, ..GeomSpec::sphere(0.1) }`.
 
 use super::model_builder::ModelBuilder;
 use super::{
@@ -13,10 +13,10 @@ use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
 impl ModelBuilder {
-    /// The world, on which everything stands.
+    /// The index of the world body.
     pub const WORLD: usize = 0;
 
-    /// A world without anything in it.
+    /// Creates an empty world.
     pub fn new(name: impl Into<String>) -> Self {
         ModelBuilder {
             name: name.into(),
@@ -24,7 +24,7 @@ impl ModelBuilder {
         }
     }
 
-    /// Adds a body to `parent` ([`WORLD`](Self::WORLD) or what an earlier call returned), and returns its index.
+    /// Adds a body to `parent` ([`WORLD`](Self::WORLD) or the result of an earlier call), and returns its index.
     pub fn add_body(&mut self, parent: usize, body: BodySpec) -> usize {
         self.bodies.push(BodySpec { parent, ..body });
         self.bodies.len() - 1
@@ -40,27 +40,27 @@ impl ModelBuilder {
 }
 
 impl BodySpec {
-    /// A body at its parent's origin.
+    /// Creates a body at its parent's origin.
     pub fn new(name: impl Into<String>) -> Self {
         BodySpec {
             name: name.into(),
             ..BodySpec::default()
         }
     }
-    /// Its position in the parent's frame, m.
+    /// Sets its position in the parent's frame, m.
     #[must_use]
     pub fn at(mut self, pos: [f64; 3]) -> Self {
         self.pos = Vec3::from_array(pos);
         self
     }
-    /// Its orientation in the parent's frame, (w, x, y, z).
+    /// Sets its orientation in the parent's frame, (w, x, y, z).
     #[must_use]
     pub fn turned(mut self, quat: [f64; 4]) -> Self {
         self.quat = Quat::from_f64(quat);
         self
     }
-    /// Mass (kg), centre of mass in the body frame (m) and principal moments along the body's axes (kg m²), instead of
-    /// what follows from its geoms.
+    /// Sets mass (kg), centre of mass in the body frame (m) and principal moments along the body's axes (kg m²),
+    /// instead of those of its geoms.
     #[must_use]
     pub fn inertial(mut self, mass: f64, centre: [f64; 3], moments: [f64; 3]) -> Self {
         self.inertial = Some(InertialSpec {
@@ -105,54 +105,54 @@ impl JointSpec {
             ..JointSpec::default()
         }
     }
-    /// Rotation about an axis in the body frame.
+    /// Creates a rotation about an axis in the body frame.
     pub fn hinge(name: impl Into<String>, axis: [f64; 3]) -> Self {
         Self::of_kind(JointKind::Hinge, name, axis)
     }
-    /// Translation along an axis in the body frame.
+    /// Creates a translation along an axis in the body frame.
     pub fn slide(name: impl Into<String>, axis: [f64; 3]) -> Self {
         Self::of_kind(JointKind::Slide, name, axis)
     }
-    /// All rotations.
+    /// Creates a joint with all rotations.
     pub fn ball(name: impl Into<String>) -> Self {
         Self::of_kind(JointKind::Ball, name, [0.0, 0.0, 1.0])
     }
-    /// All motions.
+    /// Creates a joint with all motions.
     pub fn free(name: impl Into<String>) -> Self {
         Self::of_kind(JointKind::Free, name, [0.0, 0.0, 1.0])
     }
-    /// Its anchor in the body frame, m.
+    /// Sets its anchor in the body frame, m.
     #[must_use]
     pub fn at(mut self, pos: [f64; 3]) -> Self {
         self.pos = Vec3::from_array(pos);
         self
     }
-    /// Lowest and highest position, rad or m; for a ball joint 0 and the largest angle.
+    /// Sets its range, rad or m; for a ball joint 0 and the maximum angle.
     #[must_use]
     pub fn limited(mut self, low: f64, high: f64) -> Self {
         self.range = [low, high];
         self.limited = Some(true);
         self
     }
-    /// Viscous damping, N s/m or N m s/rad.
+    /// Sets viscous damping, N s/m or N m s/rad.
     #[must_use]
     pub fn damping(mut self, damping: f64) -> Self {
         self.damping = [damping, 0.0, 0.0];
         self
     }
-    /// Stiffness of the spring (N/m or N m/rad) and the position at which it rests.
+    /// Sets the stiffness of the spring (N/m or N m/rad) and its rest position.
     #[must_use]
     pub fn spring(mut self, stiffness: f64, rest: f64) -> Self {
         (self.stiffness, self.springref) = ([stiffness, 0.0, 0.0], rest);
         self
     }
-    /// Dry friction, N or N m.
+    /// Sets dry friction, N or N m.
     #[must_use]
     pub fn frictionloss(mut self, frictionloss: f64) -> Self {
         self.frictionloss = frictionloss;
         self
     }
-    /// Added inertia, kg or kg m².
+    /// Sets the added inertia, kg or kg m².
     #[must_use]
     pub fn armature(mut self, armature: f64) -> Self {
         self.armature = armature;
@@ -168,75 +168,75 @@ impl GeomSpec {
             ..GeomSpec::default()
         }
     }
-    /// The half-space below the local xy plane.
+    /// Creates the half-space below the local xy plane.
     pub fn plane() -> Self {
         Self::of_kind(ShapeKind::Plane, [0.0, 0.0, 1.0])
     }
-    /// Radius, m.
+    /// Creates a sphere of radius in m.
     pub fn sphere(radius: f64) -> Self {
         Self::of_kind(ShapeKind::Sphere, [radius, 0.0, 0.0])
     }
-    /// Radius, and half the length of the segment on the local z axis that it surrounds, m.
+    /// Creates a capsule of a radius, m, and half the length of its segment on the local z axis, m.
     pub fn capsule(radius: f64, half_length: f64) -> Self {
         Self::of_kind(ShapeKind::Capsule, [radius, half_length, 0.0])
     }
-    /// Radius and half length along the local z axis, m.
+    /// Creates a cylinder of a radius and half length along local z, m.
     pub fn cylinder(radius: f64, half_length: f64) -> Self {
         Self::of_kind(ShapeKind::Cylinder, [radius, half_length, 0.0])
     }
-    /// Half lengths along the local axes, m.
+    /// Creates a box of half lengths along the local axes, m.
     pub fn cuboid(half_lengths: [f64; 3]) -> Self {
         Self::of_kind(ShapeKind::Box, half_lengths)
     }
-    /// Semi-axes, m.
+    /// Creates an ellipsoid of semi-axes in m.
     pub fn ellipsoid(semi_axes: [f64; 3]) -> Self {
         Self::of_kind(ShapeKind::Ellipsoid, semi_axes)
     }
-    /// A mesh among `ModelBuilder::meshes`; its convex hull collides.
+    /// Creates a mesh among `ModelBuilder::meshes`; its convex hull collides.
     pub fn mesh(name: impl Into<String>) -> Self {
         GeomSpec {
             mesh: name.into(),
             ..Self::of_kind(ShapeKind::Mesh, [0.0; 3])
         }
     }
-    /// A height field among `ModelBuilder::height_fields`.
+    /// Creates a height field among `ModelBuilder::height_fields`.
     pub fn height_field(name: impl Into<String>) -> Self {
         GeomSpec {
             hfield: name.into(),
             ..Self::of_kind(ShapeKind::HeightField, [0.0; 3])
         }
     }
-    /// Its name.
+    /// Sets its name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
-    /// Its position in the body frame, m.
+    /// Sets its position in the body frame, m.
     #[must_use]
     pub fn at(mut self, pos: [f64; 3]) -> Self {
         self.pos = Vec3::from_array(pos);
         self
     }
-    /// Its orientation in the body frame, (w, x, y, z).
+    /// Sets its orientation in the body frame, (w, x, y, z).
     #[must_use]
     pub fn turned(mut self, quat: [f64; 4]) -> Self {
         self.quat = Quat::from_f64(quat);
         self
     }
-    /// Its mass, kg.
+    /// Sets its mass, kg.
     #[must_use]
     pub fn mass(mut self, mass: f64) -> Self {
         self.mass = GeomMass::Mass(mass);
         self
     }
-    /// Its density, kg/m³ (kg/m² for a shell).
+    /// Sets its density, kg/m³ (kg/m² for a shell).
     #[must_use]
     pub fn density(mut self, density: f64) -> Self {
         self.mass = GeomMass::Density(density);
         self
     }
-    /// Slide, spin (m) and roll (m) friction.
+    /// Sets slide, spin (m) and roll (m) friction.
     #[must_use]
     pub fn friction(mut self, friction: [f64; 3]) -> Self {
         self.friction = friction;
@@ -245,14 +245,14 @@ impl GeomSpec {
 }
 
 impl ActuatorSpec {
-    /// A motor: its force on the target is the control times `gear`.
+    /// Creates a motor: its force on the target is the control times `gear`.
     pub fn motor(name: impl Into<String>, target: TransmissionSpec, gear: f64) -> Self {
         let mut actuator = Self::general(name, target);
         actuator.gear[0] = gear;
         actuator
     }
 
-    /// A position servo: force `kp (control − position) − kv velocity`.
+    /// Creates a position servo: force `kp (control − position) − kv velocity`.
     pub fn position(name: impl Into<String>, target: TransmissionSpec, kp: f64, kv: f64) -> Self {
         let mut actuator = Self::general(name, target);
         actuator.gainprm[0] = kp;
@@ -262,7 +262,7 @@ impl ActuatorSpec {
         actuator
     }
 
-    /// A velocity servo: force `kv (control − velocity)`.
+    /// Creates a velocity servo: force `kv (control − velocity)`.
     pub fn velocity(name: impl Into<String>, target: TransmissionSpec, kv: f64) -> Self {
         let mut actuator = Self::general(name, target);
         actuator.gainprm[0] = kv;
@@ -271,7 +271,7 @@ impl ActuatorSpec {
         actuator
     }
 
-    /// A force equal to the control: what MJCF's `<general>` is without any attribute.
+    /// Creates an actuator whose force equals the control: MJCF's `<general>` without attributes.
     pub fn general(name: impl Into<String>, transmission: TransmissionSpec) -> Self {
         let one = |n: f64| {
             let mut prm = [0.0; 10];
@@ -314,7 +314,7 @@ impl ActuatorSpec {
 }
 
 impl EqualitySpec {
-    /// A constraint with MuJoCo's default softness, active from the start.
+    /// Creates a constraint with MuJoCo's default softness, initially active.
     pub fn new(name: impl Into<String>, kind: EqualityKind) -> Self {
         EqualitySpec {
             name: name.into(),
@@ -328,7 +328,7 @@ impl EqualitySpec {
 }
 
 impl TendonSpec {
-    /// A tendon of length Σ coefficient · joint position.
+    /// Creates a tendon of length Σ coefficient · joint position.
     pub fn fixed(name: impl Into<String>, terms: &[(&str, f64)]) -> Self {
         TendonSpec {
             name: name.into(),
@@ -342,7 +342,7 @@ impl TendonSpec {
         }
     }
 
-    /// A string along a path of sites, geoms and pulleys.
+    /// Creates a string along a path of sites, geoms and pulleys.
     pub fn spatial(name: impl Into<String>, path: Vec<WrapSpec>) -> Self {
         TendonSpec {
             name: name.into(),
@@ -353,7 +353,7 @@ impl TendonSpec {
 }
 
 impl KeyframeSpec {
-    /// A stored configuration at rest.
+    /// Creates a stored configuration at rest.
     pub fn at(name: impl Into<String>, qpos: Vec<f64>) -> Self {
         KeyframeSpec {
             name: name.into(),

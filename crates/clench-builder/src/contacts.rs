@@ -8,13 +8,13 @@ use super::{BuildError, PairSpec};
 use clench_dynamics::contact::mixed_params;
 use clench_dynamics::model::{Model, Pair};
 
-/// Mixing weights below this count as none where a pair is built (MuJoCo's `mjEPS`).
+/// Mixing weights below this count as zero in pairs (MuJoCo's `mjEPS`).
 const NO_WEIGHT: f64 = 1e-14;
 
 /// Adds the pairs that always collide, ordered by their bodies as in MuJoCo, and those that never do.
 ///
 /// # Errors
-/// Unknown names, a geom paired with itself, a condim that there is not.
+/// Returns an error for an unknown name, a geom paired with itself, or an invalid condim.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
@@ -39,7 +39,7 @@ pub(super) fn add_all(
     Ok(())
 }
 
-/// The two geoms, that of the earlier body first.
+/// Returns the two geoms, that of the earlier body first.
 fn pair_geoms(spec: &PairSpec, names: &AllNames, model: &Model) -> Result<[usize; 2], BuildError> {
     let mut geoms = [
         names.geoms.find(&spec.geom1, spec)?,

@@ -1,24 +1,25 @@
-//! What actuators are controlled by, and the activations that controllers and motors need: MuJoCo's rules for gains of the kinds
+//! The controls of actuators, and the activations of controllers and motors: MuJoCo's rules for gains of the kinds
 //! `pid`, `dcmotor` and `so3`.
 
 use super::element::Element;
 use super::{ActuatorSpec, BuildError};
 use clench_dynamics::model::{BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind};
 
-/// The controls of an actuator, and the activations that have a meaning of their own.
+/// The controls of an actuator, and its activations with a special meaning.
 pub(super) struct Controller {
-    /// What each control is.
+    /// The meaning of each control.
     pub inputs: Vec<ControlInput>,
-    /// Which activations there are.
+    /// The activations.
     pub states: ControllerStates,
-    /// How many.
+    /// The number of activations.
     pub count: usize,
 }
 
-/// What an actuator is controlled by; its activations start at `first`.
+/// Returns the controls of an actuator; its activations start at `first`.
 ///
 /// # Errors
-/// Kinds that do not go together, inputs that the gain does not know, parameters without the inputs that they need.
+/// Returns an error if kinds are incompatible, the gain does not support an input, or parameters lack the inputs that
+/// they need.
 pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
     if spec.dynamics == DynamicsKind::Pid && spec.gain != GainKind::Pid {
         return Err(spec.error("dynamics of the kind pid need a gain of that kind"));
@@ -72,7 +73,7 @@ fn orientation_servo(spec: &ActuatorSpec) -> Result<Controller, BuildError> {
     })
 }
 
-/// Numbers activations in the order in which they are asked for.
+/// Numbers activations in the order in which they are requested.
 struct Numbering {
     first: usize,
     count: usize,
@@ -126,9 +127,10 @@ fn pid(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
     })
 }
 
-/// A motor, or what a `general` of its class leaves of it: its dynamics, gain and bias each do their part, as in MuJoCo, which asks that
-/// there are as many activations as the motor's parameters speak of. A motor's bias needs its gain here, for what MuJoCo makes of the
-/// derivatives of another gain's force where a range limits it is not known.
+/// Returns the controls of a motor, or of a `general` with parts of a motor: its dynamics, gain and bias each
+/// contribute, as in MuJoCo, which requires that the number of activations matches the motor's parameters. A motor's
+/// bias requires its gain here, because MuJoCo's derivatives of another gain's force that is clamped to a range are not
+/// known.
 fn parts_of_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
     if spec.bias == BiasKind::DcMotor && spec.gain != GainKind::DcMotor {
         return Err(spec.error("a bias of the kind dcmotor needs a gain of that kind"));
@@ -188,7 +190,7 @@ fn dc_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError>
     })
 }
 
-/// The activations that the parameters of a motor speak of, without its inputs.
+/// Returns the activations that the parameters of a motor imply, without its inputs.
 fn motor_states(spec: &ActuatorSpec, first: usize) -> Controller {
     let [te, _, thermal, _, _, bristle, _, slewmax, ..] = spec.dynprm;
     let mut numbers = Numbering { first, count: 0 };
@@ -206,7 +208,7 @@ fn motor_states(spec: &ActuatorSpec, first: usize) -> Controller {
     }
 }
 
-/// The inputs that the author names, or the usual ones.
+/// Returns the inputs that the author names, or the default ones.
 fn inputs(
     spec: &ActuatorSpec,
     usual: &[ControlInput],

@@ -1,4 +1,4 @@
-//! What all elements have in common: a kind, a name, a place where they were written, and numbers that must be numbers.
+//! The common properties of all elements: a kind, a name, a source location, and checks of numbers.
 
 use super::{
     ActuatorSpec, BodySpec, BuildError, CameraSpec, EqualitySpec, ExcludeSpec, GeomSpec,
@@ -7,16 +7,16 @@ use super::{
 };
 use clench_math::{Quat, Vec3};
 
-/// An element of the author's description, as error messages see it.
+/// An element of the author's description, as used in error messages.
 pub(super) trait Element {
-    /// What it is called in messages.
+    /// The kind as named in messages.
     const KIND: &'static str;
-    /// Its name, possibly empty.
+    /// Returns its name, possibly empty.
     fn name(&self) -> &str;
-    /// Where it was written.
+    /// Returns its source location.
     fn origin(&self) -> Option<&Origin>;
 
-    /// Something is wrong with this element.
+    /// Creates an error about this element.
     fn error(&self, message: impl Into<String>) -> BuildError {
         let element = match self.name() {
             "" => format!("unnamed {}", Self::KIND),
@@ -28,7 +28,7 @@ pub(super) trait Element {
         }
     }
 
-    /// Refuses NaN and infinity.
+    /// Returns an error for NaN and infinity.
     fn require_finite(&self, field: &str, values: &[f64]) -> Result<(), BuildError> {
         match values.iter().find(|v| !v.is_finite()) {
             Some(bad) => Err(self.error(format!("{field} must be finite, but has {bad}"))),
@@ -36,7 +36,7 @@ pub(super) trait Element {
         }
     }
 
-    /// Refuses NaN; a range may be infinite.
+    /// Returns an error for NaN; a range may be infinite.
     fn require_numbers(&self, field: &str, range: &[f64]) -> Result<(), BuildError> {
         match range.iter().any(|v| v.is_nan()) {
             true => Err(self.error(format!("{field} contains NaN"))),
@@ -44,7 +44,7 @@ pub(super) trait Element {
         }
     }
 
-    /// Refuses negative numbers, NaN and infinity.
+    /// Returns an error for negative numbers, NaN and infinity.
     fn require_not_negative(&self, field: &str, values: &[f64]) -> Result<(), BuildError> {
         self.require_finite(field, values)?;
         match values.iter().find(|&&v| v < 0.0) {
@@ -86,10 +86,10 @@ elements! {
     KeyframeSpec => "keyframe",
 }
 
-/// Whether a range limits: as the author said, else if it is given and not empty (MuJoCo's `autolimits`).
+/// Resolves whether a range limits: as the author specified, else if it is given and not empty (MuJoCo's `autolimits`).
 ///
 /// # Errors
-/// A range without a word on its use where `autolimits` is off.
+/// Returns an error if a range does not specify this and `autolimits` is off.
 pub(super) fn resolve_limited(
     element: &impl Element,
     what: &str,
@@ -107,10 +107,10 @@ pub(super) fn resolve_limited(
     }
 }
 
-/// As [`resolve_limited`], for a range that must rise where it limits.
+/// Does the same as [`resolve_limited`], for a range that must be ascending if it limits.
 ///
 /// # Errors
-/// Also a range that limits without rising.
+/// Also returns an error if a range limits without ascending.
 pub(super) fn resolve_range(
     element: &impl Element,
     what: &str,
@@ -126,10 +126,10 @@ pub(super) fn resolve_range(
     Ok(limited)
 }
 
-/// Shortest quaternion that still says an orientation (its square is MuJoCo's `mjEPS`).
+/// The minimum length of a quaternion (its square is MuJoCo's `mjEPS`).
 pub(super) const MIN_QUAT_LENGTH: f64 = 1e-7;
 
-/// A finite position and an orientation that is one.
+/// Checks for a finite position and a valid orientation.
 pub(super) fn check_pose(
     element: &impl Element,
     pos: Vec3<f64>,

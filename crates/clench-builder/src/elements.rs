@@ -1,4 +1,4 @@
-//! Bodies and what stands on them, with MuJoCo's defaults.
+//! Bodies and the elements on them, with MuJoCo's defaults.
 
 use super::{AppearanceSpec, CameraSpec, CompilerSpec, LightSpec, Origin};
 use clench_collide::ShapeKind;
@@ -7,7 +7,7 @@ use clench_dynamics::model::{Interpolation, JointKind, SleepPolicy};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// How many constraints can be added at run time, unless the model says otherwise.
+/// The default maximum number of constraints added at run time.
 pub const DEFAULT_DYNAMIC_CONSTRAINTS: usize = 8;
 
 /// A body: a frame that moves by its joints relative to its parent.
@@ -21,20 +21,21 @@ pub struct BodySpec {
     pub pos: Vec3<f64>,
     /// Orientation in the parent's frame.
     pub quat: Quat<f64>,
-    /// The pose that is written, where frames of the file carried it to `pos` and `quat`.
+    /// The pose as written, if frames of the file transformed it to `pos` and `quat`.
     pub written: Option<(Vec3<f64>, Quat<f64>)>,
     /// Mass properties, if the author gave them.
     pub inertial: Option<InertialSpec>,
-    /// Moved by the user, not by forces; child of the world, without joints.
+    /// True if it is moved by the user, not by forces; child of the world, without joints.
     pub mocap: bool,
-    /// Where the body only slides along coordinate axes, MuJoCo scales its constraints by its mass in every direction. This one's
-    /// are scaled as those of any other body, by the mean over all directions (`simple="false"`).
+    /// If a body only slides along coordinate axes, MuJoCo scales its constraints by its mass in every direction. With
+    /// this flag they are scaled as those of any other body, by the mean over all directions (`simple="false"`).
     pub never_simple: bool,
-    /// Stays a body of its own where `CompilerSpec::fusestatic` would make it part of its parent.
+    /// True if `CompilerSpec::fusestatic` must not fuse it with its parent.
     pub never_fused: bool,
-    /// Whether the tree of which this body is the root may sleep.
+    /// The sleep policy of the tree of which this body is the root.
     pub sleep: SleepPolicy,
-    /// Share of the body's weight that is lifted. As in MuJoCo, shares below zero count only if some body's is positive.
+    /// Fraction of the body's weight that is compensated. As in MuJoCo, negative fractions count only if some body's is
+    /// positive.
     pub gravcomp: f64,
     /// Joints, in the order in which they act.
     pub joints: Vec<JointSpec>,
@@ -46,12 +47,12 @@ pub struct BodySpec {
     pub cameras: Vec<CameraSpec>,
     /// Lights.
     pub lights: Vec<LightSpec>,
-    /// The settings of the model that it was attached from, which decide about its inertia and its frame; `None` for those of
-    /// the builder.
+    /// The settings of the model that it was attached from, which determine its inertia and its frame; `None` for those
+    /// of the builder.
     pub compiler: Option<Arc<CompilerSpec>>,
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -62,11 +63,11 @@ pub struct InertialSpec {
     pub pos: Vec3<f64>,
     /// Orientation of the inertial frame in the body frame (ignored with a full inertia).
     pub quat: Quat<f64>,
-    /// kg.
+    /// Mass, kg.
     pub mass: f64,
     /// Moments.
     pub inertia: InertiaSpec,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -75,7 +76,7 @@ pub struct InertialSpec {
 pub enum InertiaSpec {
     /// Principal moments in the inertial frame.
     Diagonal([f64; 3]),
-    /// xx, yy, zz, xy, xz, yz in the body frame.
+    /// The elements xx, yy, zz, xy, xz, yz in the body frame.
     Full([f64; 6]),
 }
 
@@ -90,29 +91,29 @@ pub struct JointSpec {
     pub pos: Vec3<f64>,
     /// Axis in the body frame (normalized by the builder).
     pub axis: Vec3<f64>,
-    /// Allowed positions, rad or m; for a ball joint (0, largest angle).
+    /// Allowed positions, rad or m; for a ball joint (0, maximum angle).
     pub range: [f64; 2],
-    /// Whether the range limits the joint; `None`: if `autolimits` and a range is given.
+    /// True if the range limits the joint; `None`: if `autolimits` and a range is given.
     pub limited: Option<bool>,
     /// Limits of the total actuator force, N or N m.
     pub actuatorfrcrange: [f64; 2],
-    /// Whether that range applies; `None` as for `limited`.
+    /// True if that range applies; `None` as for `limited`.
     pub actuatorfrclimited: Option<bool>,
-    /// Gravity compensation counts as actuation.
+    /// True if gravity compensation counts as actuation.
     pub actuatorgravcomp: bool,
     /// Distance at which the limit constraint appears.
     pub margin: f64,
     /// Position in the initial configuration.
     pub reference: f64,
-    /// Position at which the spring rests.
+    /// Position at which the spring is at rest.
     pub springref: f64,
-    /// Stretch, m or rad, at which the spring yields, so that its rest follows; 0 where it never does.
+    /// Elongation, m or rad, at which the spring yields and its rest position follows; 0 for never.
     pub springyield: f64,
-    /// Coefficients of the spring, which pulls with a x + b x² + c x³ at a displacement x, N/m or N m/rad.
+    /// Coefficients of the spring force a x + b x² + c x³ at a displacement x, N/m or N m/rad.
     pub stiffness: [f64; 3],
-    /// Coefficients of the damper, which brakes with a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
+    /// Coefficients of the damping force a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
     pub damping: [f64; 3],
-    /// Time constant and damping ratio from which the linear stiffness and damping are derived, where positive.
+    /// Time constant and damping ratio from which the linear stiffness and damping are derived, if positive.
     pub springdamper: [f64; 2],
     /// Added inertia of the joint, kg or kg m².
     pub armature: f64,
@@ -128,11 +129,11 @@ pub struct JointSpec {
     pub solimp_friction: [f64; 5],
     /// Group, only for selection by the user.
     pub group: i32,
-    /// Whether the model's `alignfree` applies to this free joint; `None`: as the compiler says.
+    /// True if the model's `alignfree` applies to this free joint; `None`: the compiler's setting.
     pub align: Option<bool>,
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -169,12 +170,12 @@ impl Default for JointSpec {
     }
 }
 
-/// How heavy a geom is.
+/// The mass of a geom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GeomMass {
-    /// kg.
+    /// Mass, kg.
     Mass(f64),
-    /// kg/m³ (kg/m² for a shell).
+    /// Density, kg/m³ (kg/m² for a shell).
     Density(f64),
 }
 
@@ -185,13 +186,15 @@ pub struct GeomSpec {
     pub name: String,
     /// Shape.
     pub kind: ShapeKind,
-    /// MuJoCo's sizes of that shape, m; those of a mesh or height field, and of a shape that is fitted to a mesh, are ignored.
+    /// MuJoCo's sizes of that shape, m; those of a mesh or height field, and of a shape that is fitted to a mesh, are
+    /// ignored.
     pub size: Vec3<f64>,
-    /// The mesh that it is (`kind` is `Mesh`), or that its shape is fitted to, in whose frame it then stands; possibly empty.
+    /// The mesh of a geom of kind `Mesh`, or the mesh that its shape is fitted to and in whose frame it is; possibly
+    /// empty.
     pub mesh: String,
-    /// The height field that it is (`kind` is `HeightField`), or empty.
+    /// The height field of a geom of kind `HeightField`, or empty.
     pub hfield: String,
-    /// Multiplies the size of a shape that is fitted to a mesh.
+    /// The factor of the size of a shape that is fitted to a mesh.
     pub fitscale: f64,
     /// Position in the body frame (of the mesh's own frame, for a mesh), m.
     pub pos: Vec3<f64>,
@@ -205,7 +208,7 @@ pub struct GeomSpec {
     pub condim: u32,
     /// Slide, spin and roll friction.
     pub friction: [f64; 3],
-    /// Whose parameters win in a contact.
+    /// Priority of its contact parameters.
     pub priority: i32,
     /// Weight in mixing parameters.
     pub solmix: f64,
@@ -217,27 +220,27 @@ pub struct GeomSpec {
     pub margin: f64,
     /// Part of the margin in which contacts carry no force, m.
     pub gap: f64,
-    /// Velocity of the surface as contacts see it, in the geom's frame: linear (m/s), and angular about its origin (rad/s).
+    /// Velocity of the surface in contacts, in the geom's frame: linear (m/s), and angular about its origin (rad/s).
     pub surfacevel: [f64; 6],
-    /// Force with which each contact holds on, N; those of two geoms add up.
+    /// Adhesive force of each contact, N; those of two geoms add up.
     pub adhesion: f64,
-    /// The geom feels a surrounding medium as an ellipsoid, and its body does not as a box.
+    /// True if fluid forces act on the geom as an ellipsoid, and not on its body as a box.
     pub fluid_ellipsoid: bool,
     /// Coefficients of blunt, slender and angular drag, of Kutta and of Magnus lift.
     pub fluidcoef: [f64; 5],
     /// Mass or density.
     pub mass: GeomMass,
-    /// Mass spread over the surface.
+    /// True if the mass is on the surface.
     pub shellinertia: bool,
-    /// Whether it can be seen: rays pass through what cannot.
+    /// True if it is visible: rays pass through invisible geoms.
     pub visible: bool,
     /// Group.
     pub group: i32,
-    /// How it looks.
+    /// Its appearance.
     pub appearance: AppearanceSpec,
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -277,7 +280,7 @@ impl Default for GeomSpec {
     }
 }
 
-/// A named frame on a body, with a volume in which sensors feel.
+/// A named frame on a body, with a volume for sensors.
 #[derive(Clone, Debug)]
 pub struct SiteSpec {
     /// Name, possibly empty.
@@ -288,21 +291,21 @@ pub struct SiteSpec {
     pub quat: Quat<f64>,
     /// Shape of its volume: sphere, capsule, ellipsoid, cylinder, box or mesh.
     pub kind: ShapeKind,
-    /// The mesh whose convex hull it is (`kind` is `Mesh`), in the coordinates of its author, or empty.
+    /// The mesh whose convex hull is the volume (`kind` is `Mesh`), in the coordinates of its author, or empty.
     pub mesh: String,
-    /// Size of that, as a geom's, m; that of a mesh is ignored.
+    /// Size of the volume, as a geom's, m; ignored for a mesh.
     pub size: [f64; 3],
     /// Group.
     pub group: i32,
-    /// How it looks.
+    /// Its appearance.
     pub appearance: AppearanceSpec,
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// A ball of 5 mm, as in MuJoCo.
+/// A sphere of 5 mm radius, as in MuJoCo.
 impl Default for SiteSpec {
     fn default() -> Self {
         SiteSpec {
@@ -320,13 +323,13 @@ impl Default for SiteSpec {
     }
 }
 
-/// What is kept of the past, and how late it is read: MuJoCo's `nsample`, `interp` and `delay`.
+/// The storage and the delay of past values: MuJoCo's `nsample`, `interp` and `delay`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HistorySpec {
-    /// How many samples are kept.
+    /// The number of samples.
     pub nsample: usize,
-    /// How they are read between samples.
+    /// The interpolation between samples.
     pub interp: Interpolation,
-    /// How late values arrive, s; needs samples.
+    /// The delay of values, s; needs samples.
     pub delay: f64,
 }

@@ -1,4 +1,4 @@
-//! Equality constraints: what they hold together, and where in the initial configuration.
+//! Equality constraints: their elements, and their anchors in the initial configuration.
 
 use super::element::{Element, check_pose};
 use super::model_builder::ModelBuilder;
@@ -13,7 +13,7 @@ use clench_math::{Quat, Vec3};
 /// Adds all equality constraints; `pose0` are the poses at qpos0.
 ///
 /// # Errors
-/// Unknown names, something held equal to itself, joints without a scalar position.
+/// Returns an error for an unknown name, an element equated with itself, or a joint without a scalar position.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
@@ -49,7 +49,7 @@ pub(super) fn add_all(
 /// Checks the numbers of a constraint.
 ///
 /// # Errors
-/// Numbers that its kind cannot have.
+/// Returns an error if a number is invalid for its kind.
 pub(super) fn check(e: &EqualitySpec) -> Result<(), BuildError> {
     match &e.kind {
         EqualityKind::Connect(_) => Ok(()),
@@ -70,21 +70,21 @@ pub(super) fn check(e: &EqualitySpec) -> Result<(), BuildError> {
     }
 }
 
-/// The numbers of a constraint; a kind leaves those that it does not use at their defaults.
+/// The numbers of a constraint; those that a kind does not use have their defaults.
 #[derive(Default)]
 struct Data {
     sites: Option<[usize; 2]>,
-    /// In the frames of the first and the second body.
+    /// Anchors in the frames of the first and the second body.
     points: [Vec3<f64>; 2],
     quats: [Quat<f64>; 2],
     torquescale: f64,
     polycoef: [f64; 5],
 }
 
-/// What a constraint holds, and its numbers.
+/// The target of a constraint, and its numbers.
 type Resolved = Result<(EqualityTarget, Data), BuildError>;
 
-/// What names and poses are looked up in.
+/// The context for resolving names and poses.
 struct EqualityContext<'a> {
     names: &'a AllNames<'a>,
     pose0: &'a Positions<f64>,
@@ -197,7 +197,7 @@ impl EqualityContext<'_> {
         Ok(bodies)
     }
 
-    /// The bodies of two sites, and the sites' poses in them.
+    /// Returns the bodies of two sites, and the sites' poses in them.
     fn two_sites(
         &self,
         spec: &EqualitySpec,
@@ -219,7 +219,7 @@ impl EqualityContext<'_> {
     }
 }
 
-/// One that follows, and one that leads if any; not the same.
+/// Finds the follower, and the leader if any; they must differ.
 fn two(
     spec: &EqualitySpec,
     follower: &str,
@@ -251,7 +251,8 @@ fn require_finite_points(spec: &EqualitySpec, data: &Data) -> Result<(), BuildEr
     spec.require_finite("anchor", numbers.as_flattened())
 }
 
-/// A weld's anchor is a point of the second body; its relative pose says where the first body holds it, and how turned.
+/// Computes the frames of a weld. Its anchor is a point of the second body; its relative pose is that point's pose in
+/// the first.
 fn weld_bodies(
     pose0: &Positions<f64>,
     [body1, body2]: [usize; 2],

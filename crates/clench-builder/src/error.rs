@@ -1,16 +1,16 @@
-//! What can be wrong with a model, and where.
+//! The errors of building a model.
 
 use super::Origin;
 use std::fmt;
 
-/// A model that cannot be built: the element, where it stands, and what is wrong with it.
+/// The error of a model that cannot be built: the element, its source location, and a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BuildError {
-    /// Where the element was written, if it came from a file.
+    /// The source location of the element, if it came from a file.
     pub origin: Option<Origin>,
     /// The element, such as `joint "knee"`.
     pub element: String,
-    /// What is wrong.
+    /// The message.
     pub message: String,
 }
 
@@ -25,12 +25,12 @@ impl fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
-/// Texts longer than this are cut in messages, bytes.
+/// Longer texts are truncated in messages, bytes.
 const MAX_LENGTH: usize = 600;
-/// What is left of both ends of a text that is cut.
+/// The length of both ends of a truncated text, bytes.
 const ENDS: usize = 250;
 
-/// A text for a message: as it is, or its beginning and end where it is long.
+/// Shortens a long text for a message to its beginning and end.
 pub fn shorten(text: &str) -> String {
     if text.len() <= MAX_LENGTH {
         return text.to_owned();
@@ -47,7 +47,7 @@ pub fn shorten(text: &str) -> String {
 }
 
 impl BuildError {
-    /// An error of something that is not an element with an origin of its own.
+    /// Creates an error of an object that is not an element with an origin of its own.
     pub(super) fn new(element: impl Into<String>, message: impl Into<String>) -> Self {
         BuildError {
             origin: None,
@@ -56,13 +56,13 @@ impl BuildError {
         }
     }
 
-    /// The same error of an element called otherwise.
+    /// Returns the same error with another element name.
     pub(super) fn about(mut self, element: &str) -> Self {
         element.clone_into(&mut self.element);
         self
     }
 
-    /// The same error, saying also on which body the element is.
+    /// Returns the same error with the body of the element.
     pub(super) fn of_body(mut self, body: &str) -> Self {
         self.element = shorten(&format!("{} of {body}", self.element));
         self

@@ -1,7 +1,7 @@
-//! MuJoCo's `fusestatic`: bodies that no joint moves become part of the body that they stand on.
+//! MuJoCo's `fusestatic`: fuses bodies without joints with their parent bodies.
 //!
-//! What remains moves as before, with fewer bodies. As in MuJoCo 4.0 a body stays where another element names it, where a
-//! force or torque is measured in it, and where fusing would change motion: what a medium or gravity compensation does depends on
+//! The result moves as before, with fewer bodies. As in MuJoCo 4.0 a body stays if another element names it, if a force
+//! or torque is measured in it, or if fusing would change the motion: fluid forces and gravity compensation depend on
 //! the body.
 
 use super::bodies::depth_first;
@@ -18,10 +18,10 @@ use clench_dynamics::model::{Attachment, SensorKind};
 use clench_math::{Quat, Vec3};
 use std::collections::HashSet;
 
-/// The author's bodies, with those that are static fused into the bodies that they stand on.
+/// Returns the author's bodies, with static ones fused into their parents.
 ///
 /// # Errors
-/// Masses and inertias that no body can have.
+/// Returns an error if masses or inertias are impossible.
 pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySpec>, BuildError> {
     let bodies = &builder.bodies;
     let order = depth_first(bodies)?;
@@ -32,9 +32,9 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
         .collect::<Result<Vec<_>, _>>()?;
     let named = Named::new(builder);
     let mut fused: Vec<BodySpec> = Vec::with_capacity(bodies.len());
-    // Where each of the author's bodies ended up: in which body, and where in it.
+    // The new body, and the pose in it, of each of the author's bodies.
     let mut places: Vec<Place> = vec![Place::ORIGIN; bodies.len()];
-    // The bodies that stayed, in the author's numbers, and what was fused into each.
+    // The bodies that stayed, by the author's indices, and the masses fused into each.
     let mut stayed: Vec<(usize, Vec<MassProperties>)> = Vec::new();
     for &b in &order {
         let body = &bodies[b];
@@ -80,7 +80,7 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
     Ok(fused)
 }
 
-/// The mass of a body as the compiler has it, and whether its bounds changed it.
+/// The mass of a body after the compiler's bounds, and whether these changed it.
 struct Mass {
     bounded: MassProperties,
     adjusted: bool,
@@ -109,7 +109,7 @@ impl Mass {
     }
 }
 
-/// Whether motion would be another one if body `b` were part of `target`. What is part of the world does not move.
+/// Returns true if the motion would change if body `b` were part of `target`. Parts of the world do not move.
 fn matters(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usize) -> bool {
     if target == 0 {
         return false;
@@ -125,7 +125,7 @@ fn matters(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usize) -> 
         || from_geoms && (masses[b].adjusted || masses[target].adjusted)
 }
 
-/// The masses of a body and of what was fused into it, as one.
+/// Combines the masses of a body and of those fused into it.
 fn total(
     builder: &ModelBuilder,
     body: &BodySpec,
@@ -152,7 +152,7 @@ fn total(
     })
 }
 
-/// Where one of the author's bodies is: in which of the bodies that stay, and its pose in that.
+/// The location of one of the author's bodies: the body that it became part of, and its pose in that.
 #[derive(Clone, Copy)]
 struct Place {
     body: usize,
@@ -167,7 +167,7 @@ impl Place {
         quat: Quat::IDENTITY,
     };
 
-    /// What stands at a pose in this place.
+    /// Composes this place with a pose in it.
     fn then(&self, pos: Vec3<f64>, quat: Quat<f64>) -> Place {
         Place {
             body: self.body,
@@ -222,7 +222,7 @@ impl Place {
     }
 }
 
-/// The names of bodies, and of sites, that keep a body.
+/// The names of bodies, and of sites, that prevent fusing.
 struct Named<'a> {
     bodies: HashSet<&'a str>,
     sites: HashSet<&'a str>,
@@ -298,7 +298,7 @@ impl<'a> Named<'a> {
         Named { bodies, sites }
     }
 
-    /// Whether an element names the body, or measures forces in it.
+    /// Returns true if an element names the body, or measures forces in it.
     fn keeps(&self, body: &BodySpec) -> bool {
         let measured = |site: &SiteSpec| self.sites.contains(&site.name[..]);
         self.bodies.contains(&body.name[..]) || body.sites.iter().any(measured)

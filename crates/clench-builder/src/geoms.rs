@@ -10,7 +10,7 @@ use clench_dynamics::model::{Geom, Model, Site};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Where a body's frame was moved, its geoms and sites follow: their pose in the model's frame, of unit quaternion.
+/// The pose of a body's frame in the model's frame if it was moved, with a unit quaternion; its geoms and sites follow.
 pub(super) type Moved = Option<(Vec3<f64>, Quat<f64>)>;
 
 pub(super) fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>) {
@@ -24,7 +24,7 @@ pub(super) fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>
 /// Adds a geom of body `b`.
 ///
 /// # Errors
-/// What a geom cannot take from its asset; a plane that would move.
+/// Returns an error if the geom does not fit its asset, or if a plane would move.
 pub(super) fn add_geom(
     spec: &GeomSpec,
     b: usize,
@@ -86,7 +86,7 @@ pub(super) fn add_geom(
 /// Adds a site of body `b`.
 ///
 /// # Errors
-/// A mesh that is not there.
+/// Returns an error if a mesh does not exist.
 pub(super) fn add_site(
     spec: &SiteSpec,
     b: usize,

@@ -1,4 +1,4 @@
-//! Buffers of past values: what actuators and sensors keep, so that it can arrive late.
+//! Buffers of past values, which delay the values of actuators and sensors.
 
 use super::BuildError;
 use super::element::Element;
@@ -7,10 +7,10 @@ use super::model_builder::ModelBuilder;
 use clench_dynamics::budget::RAISE;
 use clench_dynamics::model::{History, Model};
 
-/// Makes room for the past values of an element, `width` numbers a sample, if it keeps any.
+/// Allocates the past values of an element, `width` numbers per sample, if it stores any.
 ///
 /// # Errors
-/// A delay without samples, or that is negative; samples of nothing, or more of them than the budget has.
+/// Returns an error for a negative delay, a delay without samples, or samples that are empty or exceed the budget.
 pub(super) fn add(
     builder: &ModelBuilder,
     element: &impl Element,

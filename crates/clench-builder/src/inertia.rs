@@ -1,4 +1,4 @@
-//! A body's mass, centre of mass and principal moments: as the author gave them, or from its geoms.
+//! A body's mass, centre of mass and principal moments, from the author or from its geoms.
 
 use super::element::Element;
 use super::placed::{Assets, PlacedGeom};
@@ -8,8 +8,7 @@ use super::{
 };
 use clench_math::{Inertia, Mat3, Quat, Vec3, principal_axes};
 
-/// Geoms of less mass (kg) do not count, nor less volume (m³), nor do principal moments (kg m²) of less count as positive
-/// (MuJoCo's `mjEPS`).
+/// Masses of geoms (kg), volumes (m³) and principal moments (kg m²) below this count as zero (MuJoCo's `mjEPS`).
 const NEGLIGIBLE: f64 = 1e-14;
 
 /// Mass properties of a body, in its frame.
@@ -34,10 +33,10 @@ impl MassProperties {
     };
 }
 
-/// The mass properties of a body other than the world, which messages call `name`.
+/// Returns the mass properties of a body other than the world; `name` is its name in messages.
 ///
 /// # Errors
-/// Masses or inertias that are negative, not finite, or that no body can have.
+/// Returns an error if masses or inertias are negative, not finite, or impossible.
 pub(super) fn mass_properties(
     body: &BodySpec,
     name: &str,
@@ -48,10 +47,10 @@ pub(super) fn mass_properties(
     plausible(body, found, compiler).map_err(|e| e.about(name))
 }
 
-/// As [`mass_properties`], before bounds are applied and inertias balanced.
+/// Does the same as [`mass_properties`], before bounds are applied and inertias balanced.
 ///
 /// # Errors
-/// As there, but for what no body can have.
+/// Returns the same errors, except for impossible inertias.
 pub(super) fn unbounded_mass_properties(
     body: &BodySpec,
     name: &str,
@@ -69,7 +68,8 @@ pub(super) fn unbounded_mass_properties(
     };
     let found = match (&counted[..], &body.inertial) {
         ([], Some(inertial)) => given(body, inertial, compiler),
-        // Nothing known: MuJoCo puts the inertial frame at the body's offset from its parent, or from its innermost <frame>.
+        // Without data MuJoCo puts the inertial frame at the body's offset from its parent, or from its innermost
+        // <frame>.
         ([], None) => {
             let (pos, quat) = body.written.unwrap_or((body.pos, body.quat));
             Ok(MassProperties {
@@ -84,7 +84,7 @@ pub(super) fn unbounded_mass_properties(
     found.map_err(|e| e.about(name))
 }
 
-/// The geoms that count towards inertia.
+/// Returns the geoms that count towards inertia.
 fn geoms_with_mass(
     body: &BodySpec,
     compiler: &CompilerSpec,
@@ -120,7 +120,7 @@ fn geom_mass(geom: &PlacedGeom) -> Result<f64, BuildError> {
     Ok(mass)
 }
 
-/// What the author gave, in the principal frame.
+/// Returns the author's mass properties, in the principal frame.
 fn given(
     body: &BodySpec,
     inertial: &InertialSpec,
@@ -138,10 +138,10 @@ fn given(
     })
 }
 
-/// Several geoms as one: masses add, and so do inertias about the common centre of mass.
+/// Combines several geoms: masses add, and so do inertias about the common centre of mass.
 ///
 /// # Errors
-/// Inertias that are not positive.
+/// Returns an error if inertias are not positive.
 pub(super) fn combine(
     body: &BodySpec,
     geoms: &[MassProperties],
@@ -168,7 +168,7 @@ pub(super) fn combine(
     })
 }
 
-/// Principal moments and frame of a full inertia: xx, yy, zz, xy, xz, yz.
+/// Computes principal moments and frame of a full inertia: xx, yy, zz, xy, xz, yz.
 fn principal(
     body: &BodySpec,
     full: [f64; 6],
@@ -178,7 +178,7 @@ fn principal(
     let [xx, yy, zz, xy, xz, yz] = full;
     let (moments, quat) =
         principal_axes(&Mat3::from_f64([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]));
-    // A vanishing moment is one that `boundinertia` raises; a negative one is an error whatever the bound.
+    // `boundinertia` raises a vanishing moment; a negative one is an error whatever the bound.
     let least = match compiler.boundinertia > 0.0 {
         true => -NEGLIGIBLE,
         false => NEGLIGIBLE,
@@ -192,7 +192,7 @@ fn principal(
     Ok((moments, quat))
 }
 
-/// Applies bounds, then asks for what every body satisfies: no moment exceeds the sum of the other two.
+/// Applies bounds, then checks the triangle inequality: no moment exceeds the sum of the other two.
 fn plausible(
     body: &BodySpec,
     mut found: MassProperties,

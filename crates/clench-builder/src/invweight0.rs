@@ -1,5 +1,5 @@
-//! What follows from the model as a whole at qpos0: total masses, [`Constants`], and what an author says by time constants and damping
-//! ratios.
+//! Quantities of the whole model at qpos0: total masses, [`Constants`], and parameters given by time constants and
+//! damping ratios.
 
 use super::BuildError;
 use super::bodies::{is_null, is_null_position};
@@ -10,10 +10,10 @@ use clench_dynamics::dynamics::tendon;
 use clench_dynamics::model::{JointKind, Model, ParamField};
 use clench_dynamics::stages::Positions;
 
-/// Parts of a unit axis below which it does not lean that way (MuJoCo's `mjEPS`).
+/// Components of a unit axis below this count as zero (MuJoCo's `mjEPS`).
 const ALIGNED: f64 = 1e-14;
 
-/// Masses scaled to the author's total.
+/// Scales masses to the author's total.
 pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
     let p = &mut model.params;
     if let Some(wanted) = builder.compiler.settotalmass {
@@ -29,10 +29,10 @@ pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
     model.params = params;
 }
 
-/// Every body with joints must have a mass and an inertia, its own or that of a body fixed to it.
+/// Checks that every body with joints has a mass and an inertia, its own or that of a body fixed to it.
 ///
 /// # Errors
-/// One that has not; `order` are the author's indices.
+/// Returns an error if a body lacks either; `order` are the author's indices.
 pub(super) fn require_inertia(model: &Model, order: &[usize]) -> Result<(), BuildError> {
     let p = &model.params;
     let heavy = |b: usize| {
@@ -63,11 +63,11 @@ pub(super) fn require_inertia(model: &Model, order: &[usize]) -> Result<(), Buil
     Ok(())
 }
 
-/// Sets the constants of the initial configuration, and what is derived from them: springs from `springdamper`, servo damping from
-/// `dampratio`.
+/// Sets the constants of the initial configuration, and derived parameters: springs from `springdamper`, servo damping
+/// from `dampratio`.
 ///
 /// # Errors
-/// A mass matrix that is not positive definite.
+/// Returns an error if the mass matrix is not positive definite.
 pub(super) fn derive(
     builder: &ModelBuilder,
     order: &[usize],
@@ -91,7 +91,7 @@ pub(super) fn derive(
     Ok(())
 }
 
-/// The error of a mass matrix that cannot be factored: where that shows.
+/// Creates the error of a mass matrix that cannot be factored, with the location.
 fn singular(model: &Model, found: SingularMass) -> BuildError {
     let message = "in the initial configuration the mass matrix is not positive definite";
     let why = "masses, inertias or armatures are too small, too different, or not finite";
@@ -113,7 +113,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Whether a tendon with armature moves each body: then, as in MuJoCo, its weights are those of the mass matrix.
+/// Returns true for each body that a tendon with armature moves: its weights are then those of the mass matrix, as in
+/// MuJoCo.
 fn bodies_of_tendons_with_inertia(model: &Model, pose0: &Positions<f64>) -> Vec<bool> {
     let mut found = vec![false; model.nbody()];
     for (t, &armature) in model.params.tendon_armature.iter().enumerate() {
@@ -126,8 +127,9 @@ fn bodies_of_tendons_with_inertia(model: &Model, pose0: &Positions<f64>) -> Vec<
     found
 }
 
-/// Whether the body moves alone, carrying nothing, along and about coordinate axes of its own through its centre of mass: along
-/// those of the world or of a body fixed to it, and then about one, or about all by a ball or free joint.
+/// Returns true if the body moves independently, without children, along and about its own coordinate axes through its
+/// centre of mass: along those of the world or of a body fixed to it, and then about one, or about all by a ball or
+/// free joint.
 fn moves_alone(model: &Model, b: usize) -> bool {
     let body = &model.bodies[b];
     let p = &model.params;
@@ -157,7 +159,8 @@ fn moves_alone(model: &Model, b: usize) -> bool {
         && model.bodies.get(b + 1).is_none_or(|next| next.parent != b)
 }
 
-/// Stiffness and damping that give a joint's time constant and damping ratio with its inertia at qpos0, as `solref` does.
+/// Computes the stiffness and damping that give a joint's time constant and damping ratio with its inertia at qpos0, as
+/// `solref` does.
 fn spring_dampers(springdampers: &[[f64; 2]], model: &mut Model) {
     for (j, &[timeconst, dampratio]) in springdampers.iter().enumerate() {
         if timeconst <= 0.0 || dampratio <= 0.0 {
@@ -172,8 +175,9 @@ fn spring_dampers(springdampers: &[[f64; 2]], model: &mut Model) {
     }
 }
 
-/// A servo of gain kp that moves the inertia m = (J M⁻¹ Jᵀ)⁻¹ is an oscillator, whose damping ratio is kv / (2 √(kp m)). Of an orientation
-/// servo J M⁻¹ Jᵀ is the mean about its three axes. A servo that moves nothing is not damped.
+/// Damps servos. A servo of gain kp that moves the inertia m = (J M⁻¹ Jᵀ)⁻¹ is an oscillator with the damping ratio kv
+/// / (2 √(kp m)). For an orientation servo J M⁻¹ Jᵀ is the mean about its three axes. A servo that moves nothing is not
+/// damped.
 fn servo_damping(builder: &ModelBuilder, constants: &mut Constants, model: &mut Model) {
     for (u, spec) in builder.actuators.iter().enumerate() {
         let Some(ratio) = spec.dampratio else {
@@ -185,7 +189,7 @@ fn servo_damping(builder: &ModelBuilder, constants: &mut Constants, model: &mut 
         for output in outputs {
             weight += share * constants.weight_of_output(model, output);
         }
-        // The gain of what pulls back is this too.
+        // For a restoring bias this is also the gain.
         let stiffness = -spec.biasprm[1];
         model.params.actuator_biasprm[u][2] = if weight > MIN_INERTIA {
             -2.0 * ratio * (stiffness * (1.0 / weight)).sqrt()

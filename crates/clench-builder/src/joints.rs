@@ -7,13 +7,14 @@ use clench_dynamics::model::{Dof, Joint, JointKind, Model};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Shortest axis that still says a direction (its square is MuJoCo's `mjEPS`).
+/// The minimum length of an axis (its square is MuJoCo's `mjEPS`).
 const MIN_AXIS_LENGTH: f64 = 1e-7;
 
 /// Adds a joint of body `b`, whose pose in its parent is `pose`.
 ///
 /// # Errors
-/// An axis without direction, ranges that do not rise, a spring-damper that is not positive, a free joint whose spring yields.
+/// Returns an error if the axis is zero, a range is not ascending, a spring-damper is not positive, or the spring of a
+/// free joint yields.
 pub(super) fn add(
     builder: &ModelBuilder,
     spec: &JointSpec,
@@ -51,7 +52,7 @@ pub(super) fn add(
     Ok(())
 }
 
-/// The place of where the spring rests in the state, if it yields: a position, or the orientation of a ball joint.
+/// Allocates the rest position of a yielding spring in the state: a position, or the orientation of a ball joint.
 fn plastic(spec: &JointSpec, model: &mut Model) -> Result<Option<usize>, BuildError> {
     if spec.springyield == 0.0 {
         return Ok(None);
@@ -64,8 +65,8 @@ fn plastic(spec: &JointSpec, model: &mut Model) -> Result<Option<usize>, BuildEr
     Ok(Some(start))
 }
 
-/// Whether the range limits positions, and actuator forces. Free joints are never limited; ball joints by their angle,
-/// but not in force.
+/// Resolves whether the range limits positions, and actuator forces. Free joints are never limited; ball joints by
+/// their angle, but not in force.
 fn limits(spec: &JointSpec, autolimits: bool) -> Result<(bool, bool), BuildError> {
     let force = |spec: &JointSpec| {
         let (said, range) = (spec.actuatorfrclimited, spec.actuatorfrcrange);
@@ -90,7 +91,7 @@ fn limits(spec: &JointSpec, autolimits: bool) -> Result<(bool, bool), BuildError
     }
 }
 
-/// Anchor and unit axis in the body frame.
+/// Returns the anchor and unit axis in the body frame.
 fn placement(spec: &JointSpec) -> Result<(Vec3<f64>, Vec3<f64>), BuildError> {
     let z = Vec3::new(0.0, 0.0, 1.0);
     match spec.kind {

@@ -7,10 +7,11 @@ use clench_dynamics::State;
 use clench_dynamics::model::{JointKind, Keyframe, Model};
 use clench_math::{Quat, Vec3};
 
-/// Adds all keyframes; a vector that is missing, or shorter than the model's, is completed from the initial state, controls by zeros.
+/// Adds all keyframes. A vector that is missing, or shorter than the model's, is completed from the initial state,
+/// controls by zeros.
 ///
 /// # Errors
-/// A vector longer than the model's, or one that ends within a position or quaternion of a mocap body.
+/// Returns an error if a vector is longer than the model's, or ends within a position or quaternion of a mocap body.
 pub(super) fn add_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
     let initial = State::<f64>::new(model);
     let mocap_pos: Vec<_> = initial.mocap_pos.into_iter().map(Vec3::to_array).collect();
@@ -73,10 +74,10 @@ fn complete(
     Ok(values)
 }
 
-/// Writes what a keyframe says of one element.
+/// Writes a keyframe's part of one element.
 ///
 /// # Errors
-/// An element that is not there, or another number of numbers than it has.
+/// Returns an error if the element does not exist, or has another number of values.
 fn insert(
     spec: &KeyframeSpec,
     part: &KeyframePart,

@@ -1,6 +1,6 @@
-//! Length ranges of actuators that their author did not give: a force pulls each to its shortest and its longest, in a
-//! simulation without contacts, gravity, springs, dampers and dry friction whose velocities fade, as MuJoCo's `mj_setLengthRange`
-//! does (modeling chapter, "Length range").
+//! Length ranges of actuators that their author did not give. A force pulls each to its shortest and its longest
+//! length, in a simulation without contacts, gravity, springs, dampers and dry friction whose velocities decay, as in
+//! MuJoCo's `mj_setLengthRange` (modeling chapter, "Length range").
 
 use super::element::Element;
 use super::model_builder::ModelBuilder;
@@ -14,15 +14,15 @@ use clench_dynamics::model::{
 use clench_dynamics::options::RigidOptions;
 use clench_dynamics::{Fault, SimError, State, Step, StepSettings, Workspace, check};
 
-/// Velocities fade with a time constant of at least so much, s.
+/// The minimum time constant of the decay of velocities, s.
 const MIN_TIMECONST: f64 = 0.01;
-/// Accelerations and forces that are divided by are at least so large (MuJoCo's `mjMINVAL`).
+/// The minimum of accelerations and forces that are divisors (MuJoCo's `mjMINVAL`).
 const MIN_NORM: f64 = 1e-15;
 
-/// Fills in the length ranges that are needed and not given.
+/// Computes the length ranges that are needed and not given.
 ///
 /// # Errors
-/// A simulation that breaks down, a length that does not settle or has no range, more steps than the budget has.
+/// Returns an error if a simulation fails, a length does not converge or has no range, or the steps exceed the budget.
 pub(super) fn find_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
     let settings = &builder.compiler.lengthrange;
     let mut wanted = Vec::new();
@@ -43,8 +43,8 @@ pub(super) fn find_all(builder: &ModelBuilder, model: &mut Model) -> Result<(), 
     }
 }
 
-/// Searches the ranges of some actuators, of which `last` is the last. A function of its own, because a simulation takes
-/// 100 kB of stack, which models without such actuators need not have.
+/// Searches the ranges of some actuators; `last` is the last of them. A separate function, because a simulation takes
+/// 100 kB of stack, which models without such actuators do not need.
 #[inline(never)]
 fn search_all(
     builder: &ModelBuilder,
@@ -72,7 +72,7 @@ fn is_of_mode(mode: LengthRangeMode, actuator: &Actuator) -> bool {
     }
 }
 
-/// The range of a limited joint or tendon.
+/// Returns the range of a limited joint or tendon.
 fn limit(model: &Model, transmission: Transmission) -> Option<[f64; 2]> {
     match transmission {
         Transmission::Joint(j) | Transmission::JointInParent(j) => {
@@ -93,7 +93,7 @@ struct Search<'a> {
     settings: &'a LengthRangeSpec,
     model: Model,
     options: StepSettings,
-    /// As in every search at its start.
+    /// The state at the start of every search.
     initial: State<f64>,
     state: State<f64>,
     ws: Workspace<f64>,
@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
             enable_joint_limit: None,
             warmstart: None,
             islands: None,
-            // What starts over never ends.
+            // A simulation that resets never terminates.
             autoreset: None,
             ..model.options
         };
@@ -166,7 +166,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The shortest and the longest length of an actuator.
+    /// Returns the shortest and the longest length of an actuator.
     fn range(&mut self, u: usize, spec: &ActuatorSpec) -> Result<[f64; 2], BuildError> {
         let shortest = self.settle(u, -1.0).map_err(|e| failure(spec, &e.into()))?;
         let longest = self.settle(u, 1.0).map_err(|e| failure(spec, &e.into()))?;
@@ -189,7 +189,7 @@ impl<'a> Search<'a> {
         Ok(range)
     }
 
-    /// The least and the greatest length at the end of a simulation from qpos0 that pulls in one direction.
+    /// Returns the minimum and the maximum length at the end of a simulation from qpos0 that pulls in one direction.
     fn settle(&mut self, u: usize, direction: f64) -> Result<[f64; 2], Fault> {
         self.state.copy_from(&self.initial);
         let mut seen: Option<[f64; 2]> = None;
@@ -203,7 +203,7 @@ impl<'a> Search<'a> {
         Ok(seen.unwrap_or_default())
     }
 
-    /// A step; the length at its start.
+    /// Does a step and returns the length at its start.
     fn pull(&mut self, u: usize, direction: f64) -> Result<f64, Fault> {
         let settings = self.settings;
         let fading = (-self.model.params.timestep / settings.timeconst.max(MIN_TIMECONST)).exp();
@@ -241,7 +241,7 @@ impl<'a> Search<'a> {
         Ok(length)
     }
 
-    /// A step of the simulation. The model's sensors are off.
+    /// Does a step of the simulation. The model's sensors are off.
     fn advance(&mut self) -> Result<(), Fault> {
         self.check()?;
         let (model, time) = (&self.model, self.state.time);
@@ -260,7 +260,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Refuses a state that no step can start from.
+    /// Checks that a step can start from the state.
     fn check(&self) -> Result<(), Fault> {
         match check::good_inputs(&self.state, true) {
             true => Ok(()),

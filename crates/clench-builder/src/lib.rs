@@ -1,8 +1,8 @@
-//! What an author says about a model, before anything is computed: plain public fields, filled in by a file reader or
+//! The author's description of a model, before anything is computed: plain public fields, filled in by a file reader or
 //! by hand, turned into a [`Model`](clench_dynamics::Model) by `ModelBuilder::build`.
 //!
 //! Angles are radians, orientations unit quaternions, poses relative to the parent body. References between elements
-//! are names. `None` means "not said": the builder then applies MuJoCo's rule for that field.
+//! are names. `None` means "not specified": the builder then applies MuJoCo's rule for that field.
 //!
 //! A pendulum:
 //!

@@ -1,4 +1,4 @@
-//! What an author says about a light.
+//! The author's description of a light.
 
 use super::Origin;
 use super::camera_spec::CameraTracking;
@@ -12,17 +12,17 @@ pub struct LightSpec {
     pub name: String,
     /// Position in the body frame, m.
     pub pos: Vec3<f64>,
-    /// Where it shines, in the body frame; of any length but zero.
+    /// Its direction in the body frame; of any length but zero.
     pub dir: Vec3<f64>,
-    /// How it follows bodies, as a camera does.
+    /// Its tracking mode, as a camera's.
     pub tracking: CameraTracking,
-    /// What it shines like.
+    /// Its optical properties.
     pub properties: LightProperties,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// Downwards, as in MuJoCo.
+/// Pointed downwards, as in MuJoCo.
 impl Default for LightSpec {
     fn default() -> Self {
         LightSpec {

@@ -1,4 +1,4 @@
-//! Lights: checked, placed and turned towards what they follow.
+//! Lights: checks, poses and targets.
 
 use super::cameras;
 use super::element::Element;
@@ -13,7 +13,7 @@ use clench_math::{Quat, Vec3};
 /// Checks the numbers of a light.
 ///
 /// # Errors
-/// Numbers that are not finite; a direction that is none.
+/// Returns an error if numbers are not finite or the direction is zero.
 pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
     let LightProperties {
         attenuation,
@@ -35,7 +35,7 @@ pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
     }
 }
 
-/// Adds a light of body `b`, not yet aimed at anything.
+/// Adds a light of body `b`, without a target.
 pub(super) fn add(spec: &LightSpec, b: usize, moved: Moved, model: &mut Model) {
     let (pos, turn) = place(moved, spec.pos, Quat::IDENTITY);
     let dir = turn.rotate(spec.dir.normalize().0);
@@ -52,10 +52,10 @@ pub(super) fn add(spec: &LightSpec, b: usize, moved: Moved, model: &mut Model) {
     });
 }
 
-/// Resolves what lights follow and are turned towards.
+/// Resolves the bodies that lights follow or point at.
 ///
 /// # Errors
-/// A body that is not there.
+/// Returns an error if a body does not exist.
 pub(super) fn aim_all(
     builder: &ModelBuilder,
     order: &[usize],
@@ -69,7 +69,7 @@ pub(super) fn aim_all(
     Ok(())
 }
 
-/// Notes the places in the initial configuration, which lights that track keep.
+/// Records the initial poses, which tracking lights maintain.
 pub(super) fn set_initial_places(pose0: &Positions<f64>, model: &mut Model) {
     for light in &mut model.visuals.lights {
         let turn = pose0.xmat[light.body];

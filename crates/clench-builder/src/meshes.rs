@@ -1,4 +1,5 @@
-//! From a mesh as its author gives it to one about its centre of mass, along its principal axes, by the rules of MuJoCo's compiler.
+//! Conversion of an author's mesh to one about its centre of mass, along its principal axes, by the rules of MuJoCo's
+//! compiler.
 
 use super::element::Element;
 use super::solid::Solid;
@@ -7,16 +8,17 @@ use clench_collide::{Hull, HullSurface, convex_hull};
 use clench_dynamics::model::Mesh;
 use clench_math::{Mat3, Quat, Vec3, rough_principal_axes};
 
-/// Volumes (m³) and areas (m²) below this are none (MuJoCo's `mjMINVAL`).
+/// Volumes (m³) and areas (m²) below this count as zero (MuJoCo's `mjMINVAL`).
 const NEGLIGIBLE: f64 = 1e-15;
-/// Triangles of less area (m²) have no side (the root of `mjMINVAL`).
+/// Triangles of less area (m²) have no orientation (the root of `mjMINVAL`).
 const NO_SIDE: f64 = 3.162_277_660_168_379e-8;
-/// How exactly the inertia of vertices with 24 bits a coordinate is known, as a share of its largest entry (MuJoCo's measure).
+/// The relative precision of the inertia of vertices with 24 bits per coordinate, as a fraction of its largest entry
+/// (MuJoCo's measure).
 const UNCERTAINTY: f64 = 1e-7;
-/// By how much a principal moment may exceed the sum of the others, as part of it and in m⁵.
+/// The amount by which a principal moment may exceed the sum of the others, as a fraction of it and in m⁵.
 const IMPLAUSIBLE: (f64, f64) = (1e-6, 1e-9);
 
-/// A mesh, and what geoms need to know of it.
+/// A mesh, and its data for geoms.
 #[derive(Clone, Debug)]
 pub(super) struct Processed {
     pub mesh: Mesh,
@@ -30,18 +32,18 @@ pub(super) struct Processed {
 }
 
 impl Processed {
-    /// How far the mesh reaches from its origin along each axis, m.
+    /// Returns the maximum distance of the mesh from its origin along each axis, m.
     pub(super) fn reach(&self) -> Vec3<f64> {
         let (low, high) = (self.low.to_array(), self.high.to_array());
         Vec3::from_array(std::array::from_fn(|i| low[i].abs().max(high[i].abs())))
     }
 }
 
-/// Turns a mesh into one that can be used. `keeps_hull` asks for its convex hull.
+/// Processes a mesh for use in a model. `keeps_hull` requests its convex hull.
 ///
 /// # Errors
-/// Too few vertices, indices of vertices that are not there, numbers that are not finite, no volume, triangles that do not agree
-/// on where outside is.
+/// Returns an error if there are too few vertices, an index is out of range, a number is not finite, the volume is
+/// zero, or the triangles are not consistently oriented.
 pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, BuildError> {
     check(spec)?;
     let needs_hull = keeps_hull || spec.faces.is_empty() || spec.inertia == MeshInertia::Convex;
@@ -164,7 +166,8 @@ fn check_texcoords(spec: &MeshSpec) -> Result<(), BuildError> {
     }
 }
 
-/// In a closed surface whose triangles all turn the same way, no two go along an edge in the same direction.
+/// Checks the orientation: in a closed surface with consistent triangles, no two traverse an edge in the same
+/// direction.
 fn check_sides(spec: &MeshSpec) -> Result<(), BuildError> {
     let mut halves = Vec::with_capacity(3 * spec.faces.len());
     for &[a, b, c] in &spec.faces {
@@ -184,7 +187,7 @@ fn check_sides(spec: &MeshSpec) -> Result<(), BuildError> {
     }
 }
 
-/// Vertices where they stand after reference position, orientation and scale.
+/// Returns the vertices after reference position, orientation and scale.
 fn placed(spec: &MeshSpec) -> Vec<Vec3<f64>> {
     let back = spec.refquat.normalize().conjugate();
     (spec.vertices.iter())
@@ -192,8 +195,8 @@ fn placed(spec: &MeshSpec) -> Vec<Vec3<f64>> {
         .collect()
 }
 
-/// Tangents after reference orientation and scale, by which MuJoCo divides them, as normals. It does so in single precision, which
-/// speeds along them show.
+/// Returns the tangents after reference orientation and scale. MuJoCo divides them by the scale, as normals, in single
+/// precision, which is visible in speeds along them.
 fn placed_tangents(spec: &MeshSpec, tangents: &[Vec3<f64>; 2]) -> [Vec3<f64>; 2] {
     let back = spec.refquat.normalize().conjugate();
     let scale = spec.scale.to_array();
@@ -216,7 +219,7 @@ fn faces(spec: &MeshSpec, surface: Option<&HullSurface>) -> Vec<[u32; 3]> {
     }
 }
 
-/// Which texture coordinates the corners of each triangle have.
+/// Returns the texture coordinates of the corners of each triangle.
 fn face_texcoords(spec: &MeshSpec, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
     match (spec.texcoords.is_empty(), spec.face_texcoords.is_empty()) {
         (true, _) => Vec::new(),
@@ -225,14 +228,14 @@ fn face_texcoords(spec: &MeshSpec, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
     }
 }
 
-/// Triangles that a scale which mirrors does not turn inside out.
+/// Returns the triangles with an orientation that a mirroring scale does not invert.
 fn oriented(spec: &MeshSpec, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mirrors = spec.scale.x * spec.scale.y * spec.scale.z < 0.0;
     let turn = |&[a, b, c]: &[u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
     triangles.iter().map(turn).collect()
 }
 
-/// Where the mass of a mesh is, and its equivalent box.
+/// The mass frame of a mesh, and its equivalent box.
 struct MassFrame {
     pos: Vec3<f64>,
     quat: Quat<f64>,
@@ -272,7 +275,8 @@ fn weigh(
     })
 }
 
-/// Half sizes of the box that has these moments at density one and this volume: about x, V (b² + c²) / 3, and so on.
+/// Returns the half sizes of the box with these moments at density one and this volume: about x, V (b² + c²) / 3, and
+/// so on.
 fn equivalent_box(
     spec: &MeshSpec,
     moments: Vec3<f64>,

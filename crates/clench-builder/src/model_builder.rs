@@ -17,13 +17,13 @@ use clench_dynamics::options::RigidOptions;
 pub struct ModelBuilder {
     /// Name of the model.
     pub name: String,
-    /// How to derive what was not said: inertia from geoms, limits from ranges, total mass.
+    /// The derivation of missing fields: inertia from geoms, limits from ranges, total mass.
     pub compiler: CompilerSpec,
     /// Time step, gravity, medium, integrator and feature flags.
     pub physics: PhysicsSpec,
     /// Solver options that the source sets; they rank below a user's and above the design's defaults.
     pub options: RigidOptions,
-    /// What building the model, and each of its steps, may ask for.
+    /// Limits on the resources of building the model and of each of its steps.
     pub budget: Budget,
     /// Bodies in order of appearance, parents before children; the first is the world.
     pub bodies: Vec<BodySpec>,
@@ -31,11 +31,11 @@ pub struct ModelBuilder {
     pub meshes: Vec<MeshSpec>,
     /// Height fields that geoms refer to.
     pub height_fields: Vec<HeightFieldSpec>,
-    /// Surfaces that elements refer to by name.
+    /// Materials that elements refer to by name.
     pub materials: Vec<MaterialSpec>,
-    /// Pictures that materials refer to by name.
+    /// Textures that materials refer to by name.
     pub textures: Vec<Texture>,
-    /// The light that goes with the camera.
+    /// The light at the camera.
     pub headlight: Headlight,
     /// Tendons.
     pub tendons: Vec<TendonSpec>,
@@ -45,23 +45,23 @@ pub struct ModelBuilder {
     pub sensors: Vec<SensorSpec>,
     /// Equality constraints.
     pub equalities: Vec<EqualitySpec>,
-    /// Geom pairs that collide whatever their masks say.
+    /// Geom pairs that collide regardless of their masks.
     pub pairs: Vec<PairSpec>,
     /// Body pairs that never collide.
     pub excludes: Vec<ExcludeSpec>,
     /// Stored states.
     pub keyframes: Vec<KeyframeSpec>,
-    /// Things worth telling the user once, such as a solver that was replaced.
+    /// Messages to report to the user once, such as a replaced solver.
     pub notes: Vec<String>,
-    /// What was left out of the file because it is not supported yet, each with its place.
+    /// Elements of the file that were omitted because they are not supported yet, each with its location.
     pub left_out: Vec<String>,
     /// The user's own data.
     pub custom: Custom,
-    /// How many numbers of the user's own elements have.
+    /// The number of the user's own numbers per element.
     pub user_widths: UserWidths,
 }
 
-/// A world without anything in it.
+/// An empty world.
 impl Default for ModelBuilder {
     fn default() -> Self {
         ModelBuilder {
@@ -92,7 +92,7 @@ impl Default for ModelBuilder {
 }
 
 impl ModelBuilder {
-    /// The settings that decide about the inertia and the frame of a body.
+    /// Returns the settings that determine the inertia and the frame of a body.
     pub(super) fn settings_of<'a>(&'a self, body: &'a BodySpec) -> &'a CompilerSpec {
         body.compiler.as_deref().unwrap_or(&self.compiler)
     }

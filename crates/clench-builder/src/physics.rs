@@ -1,12 +1,13 @@
-//! Model-wide settings: how to derive what was not said, the physics of the world, and how wide users' own numbers are.
+//! Model-wide settings: the derivation of missing fields, the physics of the world, and the number of users' own
+//! numbers.
 
 use clench_dynamics::constraint::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use clench_dynamics::model::{Flags, Integrator};
 
-/// When a body's inertia comes from its geoms.
+/// The condition for computing a body's inertia from its geoms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InertiaFromGeom {
-    /// Where the body has no inertial of its own.
+    /// If the body has no inertial of its own.
     #[default]
     Auto,
     /// Always, ignoring inertials.
@@ -18,17 +19,17 @@ pub enum InertiaFromGeom {
 /// MuJoCo's `<compiler>` settings that act on the model rather than on its notation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompilerSpec {
-    /// A range implies a limit where the author did not say.
+    /// A range implies a limit if the author did not specify it.
     pub autolimits: bool,
-    /// Least mass of a moving body, kg; 0 for none.
+    /// Minimum mass of a moving body, kg; 0 for none.
     pub boundmass: f64,
-    /// Least principal moment of a moving body, kg m²; 0 for none.
+    /// Minimum principal moment of a moving body, kg m²; 0 for none.
     pub boundinertia: f64,
     /// Scale all masses and inertias to this total, kg.
     pub settotalmass: Option<f64>,
-    /// Repair inertias that break the triangle inequality.
+    /// Repair inertias that violate the triangle inequality.
     pub balanceinertia: bool,
-    /// When inertia comes from geoms.
+    /// The condition for computing inertia from geoms.
     pub inertiafromgeom: InertiaFromGeom,
     /// Geom groups (first, last) that count towards inertia.
     pub inertiagrouprange: [i32; 2],
@@ -36,11 +37,12 @@ pub struct CompilerSpec {
     pub alignfree: bool,
     /// Fit shapes to the bounding boxes of meshes, not to their boxes of equivalent inertia.
     pub fitaabb: bool,
-    /// Leave out geoms that collide with nothing, and meshes that no other geom has; masses stay.
+    /// Omit geoms that collide with nothing, and meshes that no other geom uses; masses stay.
     pub discardvisual: bool,
-    /// How length ranges of actuators are found.
+    /// The search for length ranges of actuators.
     pub lengthrange: LengthRangeSpec,
-    /// Make bodies that no joint moves part of their parents, where that changes no motion and no other element names them.
+    /// Fuse bodies without joints with their parents, if that does not change the motion and no other element names
+    /// them.
     pub fusestatic: bool,
 }
 
@@ -66,27 +68,27 @@ impl Default for CompilerSpec {
 /// Time step, medium and feature flags, with MuJoCo's defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhysicsSpec {
-    /// Seconds a step.
+    /// Time step, s.
     pub timestep: f64,
-    /// m/s².
+    /// Acceleration of gravity, m/s².
     pub gravity: [f64; 3],
     /// Velocity of the medium, m/s.
     pub wind: [f64; 3],
-    /// The magnetic field, which magnetometers measure.
+    /// The magnetic field, measured by magnetometers.
     pub magnetic: [f64; 3],
     /// Density of the medium, kg/m³.
     pub density: f64,
     /// Viscosity of the medium, Pa s.
     pub viscosity: f64,
-    /// How velocity and position advance.
+    /// The integrator.
     pub integrator: Integrator,
-    /// Speed below which trees fall asleep where the flag `sleep` is on, m/s.
+    /// Speed below which trees fall asleep with the flag `sleep`, m/s.
     pub sleep_tolerance: f64,
     /// Feature switches.
     pub flags: Flags,
     /// Contact parameters that replace all others (MuJoCo's `override` flag): margin, solref, solimp, friction.
     pub contact_override: Option<ContactOverride>,
-    /// Actuator groups that are switched off.
+    /// Disabled actuator groups.
     pub disabled_actuator_groups: Vec<u32>,
 }
 
@@ -133,7 +135,7 @@ impl Default for PhysicsSpec {
     }
 }
 
-/// Which actuators need a length range.
+/// The actuators that need a length range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthRangeMode {
     /// None.
@@ -147,28 +149,28 @@ pub enum LengthRangeMode {
     All,
 }
 
-/// How length ranges are found where they are needed: MuJoCo's `<compiler><lengthrange/>`, with its defaults.
+/// The search for length ranges: MuJoCo's `<compiler><lengthrange/>`, with its defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthRangeSpec {
-    /// Which actuators need one.
+    /// The actuators that need a range.
     pub mode: LengthRangeMode,
-    /// A range that rises counts as given.
+    /// An ascending range counts as given.
     pub useexisting: bool,
     /// The range of a limited joint or tendon is the range of its actuator.
     pub uselimit: bool,
     /// Norm of the acceleration that the force causes.
     pub accel: f64,
-    /// Largest norm of the force along dofs; 0 for no bound.
+    /// Maximum norm of the force along dofs; 0 for no limit.
     pub maxforce: f64,
-    /// Time constant of the fading of velocities, s.
+    /// Time constant of the decay of velocities, s.
     pub timeconst: f64,
     /// Time step, s; 0 for that of the model.
     pub timestep: f64,
     /// Time simulated in each direction, s.
     pub inttotal: f64,
-    /// Time at the end over which the length must have settled, s.
+    /// Time at the end in which the length must have converged, s.
     pub interval: f64,
-    /// The share of its range that it may still move by then.
+    /// Fraction of its range by which it may still move in that time.
     pub tolrange: f64,
 }
 
@@ -189,24 +191,24 @@ impl Default for LengthRangeSpec {
     }
 }
 
-/// How many numbers of the user's own the elements of each kind have; `None`: as many as the one that is given most. What an
-/// element is not given is zero.
+/// The user's own numbers per element of each kind; `None`: the maximum that any element gives. Missing numbers are
+/// zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct UserWidths {
-    /// Of bodies.
+    /// For bodies.
     pub body: Option<usize>,
-    /// Of joints.
+    /// For joints.
     pub joint: Option<usize>,
-    /// Of geoms.
+    /// For geoms.
     pub geom: Option<usize>,
-    /// Of sites.
+    /// For sites.
     pub site: Option<usize>,
-    /// Of cameras.
+    /// For cameras.
     pub camera: Option<usize>,
-    /// Of tendons.
+    /// For tendons.
     pub tendon: Option<usize>,
-    /// Of actuators.
+    /// For actuators.
     pub actuator: Option<usize>,
-    /// Of sensors.
+    /// For sensors.
     pub sensor: Option<usize>,
 }

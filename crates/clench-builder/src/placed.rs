@@ -1,4 +1,4 @@
-//! What geoms take from meshes and height fields: their own frame and size, or a primitive that fits.
+//! The use of meshes and height fields by geoms: their own frame and size, or a fitted primitive.
 
 use super::element::Element;
 use super::meshes::{Processed, process};
@@ -14,28 +14,28 @@ use std::sync::Arc;
 
 /// The processed meshes and height fields of a model.
 pub(super) struct Assets<'a> {
-    /// Which geoms collide and which are discarded.
+    /// The geoms that collide and those that are discarded.
     pub(super) uses: GeomUses<'a>,
     names: Names<'a>,
     field_names: Names<'a>,
     pub meshes: Vec<Processed>,
     pub height_fields: Vec<Arc<HeightField>>,
-    /// How elements look.
+    /// The appearance of elements.
     pub palette: Arc<Palette>,
     /// Fit primitives to bounding boxes instead of equivalent boxes.
     fitaabb: bool,
 }
 
-/// A geom in its body, with all that follows from what it refers to.
+/// A geom in its body, with the data from its mesh or height field.
 pub(super) struct PlacedGeom<'a> {
     pub spec: &'a GeomSpec,
     pub pos: Vec3<f64>,
-    /// Of unit length.
+    /// A unit quaternion.
     pub quat: Quat<f64>,
     pub size: Vec3<f64>,
     /// Velocity of the surface at its origin, along its axes: linear, angular.
     pub surfacevel: [f64; 6],
-    /// Radius of a sphere about its origin that holds it; 0 for a plane.
+    /// Radius of its bounding sphere about its origin; 0 for a plane.
     pub(crate) rbound: f64,
     /// For mesh geoms.
     pub mesh: Option<(usize, &'a Processed)>,
@@ -47,11 +47,11 @@ impl<'a> Assets<'a> {
     /// Processes the meshes and height fields of a description.
     ///
     /// # Errors
-    /// Names that are taken; meshes and height fields that cannot be.
+    /// Returns an error if a name is already used, or an asset is invalid.
     pub(super) fn new(builder: &'a ModelBuilder) -> Result<Self, BuildError> {
         let names = Names::new(&builder.meshes)?;
         let uses = GeomUses::of(builder);
-        // Contacts and volumes of sites are those of hulls.
+        // Contacts and volumes of sites use hulls.
         let mut needs_hull = vec![false; builder.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
             let counts = geom.kind == ShapeKind::Mesh && uses.collides(geom);
@@ -90,11 +90,11 @@ impl<'a> Assets<'a> {
         })
     }
 
-    /// Moves them to a model that has all its geoms, without those that no geom has where the visual is discarded.
+    /// Moves the assets to a model that has all its geoms. With `discardvisual`, unused meshes are omitted.
     pub(super) fn keep(self, builder: &ModelBuilder, model: &mut Model) {
         let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
-            // A primitive that was fitted to a mesh keeps it too, as in MuJoCo.
+            // A primitive that was fitted to a mesh also retains it, as in MuJoCo.
             if !self.uses.is_discarded(geom)
                 && let Ok(mesh) = self.names.find(&geom.mesh, geom)
             {
@@ -128,10 +128,10 @@ impl<'a> Assets<'a> {
         model.height_fields = self.height_fields;
     }
 
-    /// The mesh whose hull is a site's volume.
+    /// Returns the mesh whose hull is a site's volume.
     ///
     /// # Errors
-    /// A name that no mesh has, or none where one is needed; a mesh where the site is no mesh.
+    /// Returns an error if the mesh is unknown, missing, or named by a site that is not a mesh.
     pub(super) fn mesh_of_site(
         &self,
         spec: &SiteSpec,
@@ -147,10 +147,10 @@ impl<'a> Assets<'a> {
         }
     }
 
-    /// A geom with what it takes from its mesh or height field.
+    /// Returns a geom with the data from its mesh or height field.
     ///
     /// # Errors
-    /// A name that nothing has; references that its shape has no use for; sizes that are not positive.
+    /// Returns an error if a name is unknown, a reference does not match the shape, or a size is not positive.
     pub(super) fn place(&'a self, spec: &'a GeomSpec) -> Result<PlacedGeom<'a>, BuildError> {
         if !spec.hfield.is_empty() && spec.kind != ShapeKind::HeightField {
             return Err(spec.error("only a geom of type hfield can refer to a height field"));
@@ -189,7 +189,7 @@ impl<'a> PlacedGeom<'a> {
         self.height_field = Some(index);
     }
 
-    /// The mesh itself, or the primitive that fits it, in the mesh's frame.
+    /// Takes the mesh itself, or the primitive that fits it, in the mesh's frame.
     fn take_mesh(
         &mut self,
         index: usize,
@@ -220,7 +220,8 @@ impl<'a> PlacedGeom<'a> {
     }
 }
 
-/// A geom's `surfacevel` (linear, angular) told in another frame, which stands at `offset` in the geom's and is turned by `rotation`.
+/// Transforms a geom's `surfacevel` (linear, angular) to another frame, which is at `offset` in the geom's and rotated
+/// by `rotation`.
 pub fn surfacevel_in_frame(
     surfacevel: &[f64; 6],
     offset: Vec3<f64>,
@@ -231,7 +232,7 @@ pub fn surfacevel_in_frame(
     [x, y, z, a, b, c]
 }
 
-/// The size of a primitive like a box with these half sizes.
+/// Returns the size of a primitive equivalent to a box with these half sizes.
 fn alike(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
     let radius = 0.5 * (half.x + half.y);
     let size = match spec.kind {
@@ -244,7 +245,7 @@ fn alike(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
     Ok(Vec3::from_array(size))
 }
 
-/// The size of the smallest primitive whose bounding box holds one with these half sizes.
+/// Returns the size of the smallest primitive whose bounding box contains one with these half sizes.
 fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
     let radius = half.x.max(half.y);
     let size = match spec.kind {
@@ -258,7 +259,7 @@ fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
 }
 
 fn check_size(spec: &GeomSpec, size: Vec3<f64>) -> Result<(), BuildError> {
-    // MuJoCo asks for a plane's third number, the spacing of its grid, though nothing is computed from it.
+    // MuJoCo requires a plane's third number, the spacing of its grid, though it is unused.
     let used = match spec.kind {
         ShapeKind::Plane => 2..3,
         ShapeKind::Sphere => 0..1,

@@ -1,4 +1,5 @@
-//! Elements that name others: tendons, actuators, equality constraints, contact pairs and keyframes, with MuJoCo's defaults.
+//! Elements that refer to others by name: tendons, actuators, equality constraints, contact pairs and keyframes, with
+//! MuJoCo's defaults.
 
 use super::{AppearanceSpec, HistorySpec, Origin};
 use clench_dynamics::constraint::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
@@ -6,7 +7,7 @@ use clench_dynamics::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
-/// What a tendon is made of, or passes.
+/// An element of the path of a tendon.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WrapSpec {
     /// A joint of a fixed tendon: its position, times a coefficient.
@@ -18,44 +19,44 @@ pub enum WrapSpec {
     },
     /// A site that a spatial tendon passes.
     Site(String),
-    /// A sphere, or a cylinder without ends, that a spatial tendon goes around between two sites.
+    /// A sphere, or an infinite cylinder, around which a spatial tendon wraps between two sites.
     Geom {
         /// The geom.
         geom: String,
-        /// A site on the side where the tendon has to pass. If it is inside the geom, so has the tendon.
+        /// A site on the side where the tendon must pass. If it is inside the geom, the tendon passes inside too.
         side: Option<String>,
     },
-    /// Starts a branch of a spatial tendon, whose length counts divided by this.
+    /// The start of a branch of a spatial tendon, whose length is divided by this.
     Pulley(f64),
 }
 
-/// A tendon: fixed, a weighted sum of joint positions, or spatial, a string through sites and around geoms. What follows from its
-/// length and its gradient is the same for both: limits, springs, dampers, friction, inertia, actuators.
+/// A tendon: fixed, a weighted sum of joint positions, or spatial, a string through sites and around geoms. Both have
+/// limits, springs, dampers, friction, inertia and actuators, which depend only on the length and its gradient.
 #[derive(Clone, Debug)]
 pub struct TendonSpec {
     /// Name, possibly empty.
     pub name: String,
-    /// What it is made of: joints alone, or branches that begin and end with a site.
+    /// Its path: only joints, or branches that begin and end with a site.
     pub path: Vec<WrapSpec>,
     /// Allowed lengths.
     pub range: [f64; 2],
-    /// Whether the range limits the tendon; `None`: if `autolimits` and a range is given.
+    /// True if the range limits the tendon; `None`: if `autolimits` and a range is given.
     pub limited: Option<bool>,
     /// Limits of the total actuator force.
     pub actuatorfrcrange: [f64; 2],
-    /// Whether that range applies; `None` as for `limited`.
+    /// True if that range applies; `None` as for `limited`.
     pub actuatorfrclimited: Option<bool>,
     /// Distance at which the limit constraint appears.
     pub margin: f64,
-    /// Spring stiffness: coefficients of the force's first, second and third power of the stretch.
+    /// Spring stiffness: coefficients of the first, second and third power of the elongation.
     pub stiffness: [f64; 3],
     /// Damping: coefficients of v, v |v| and v³ at the velocity v.
     pub damping: [f64; 3],
-    /// Inertia of changes of the length, for a tendon that goes around no geom.
+    /// Inertia for changes of the length, for a tendon that wraps around no geom.
     pub armature: f64,
-    /// Dead band of the spring; `None`: the length where the springs of joints rest.
+    /// Dead band of the spring; `None`: the length at the rest positions of the joints' springs.
     pub springlength: Option<[f64; 2]>,
-    /// Stretch at which the spring yields, so that its dead band follows; 0 where it never does.
+    /// Elongation at which the spring yields and its dead band follows; 0 for never.
     pub springyield: f64,
     /// Dry friction.
     pub frictionloss: f64,
@@ -67,13 +68,13 @@ pub struct TendonSpec {
     pub solref_friction: [f64; 2],
     /// Dry-friction impedance.
     pub solimp_friction: [f64; 5],
-    /// How it looks.
+    /// Its appearance.
     pub appearance: AppearanceSpec,
-    /// Radius with which it is drawn, m.
+    /// Radius when drawn, m.
     pub width: f64,
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -105,7 +106,7 @@ impl Default for TendonSpec {
     }
 }
 
-/// What an actuator pulls on.
+/// The transmission of an actuator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TransmissionSpec {
     /// A joint, its axes in the child frame for ball and free joints.
@@ -118,19 +119,19 @@ pub enum TransmissionSpec {
     Site(String),
     /// The pose of a site in the frame of another: the gears are directions of position and of rotation in it.
     SiteInFrame {
-        /// The site that moves.
+        /// The moving site.
         site: String,
-        /// The site in whose frame it does.
+        /// The reference site.
         reference: String,
     },
-    /// A slider on the axis z of a site, which a rod of the actuator's `cranklength` joins to a crank's pin.
+    /// A slider on the z axis of a site, connected to a crank's pin by a rod of the actuator's `cranklength`.
     SliderCrank {
         /// The site of the pin.
         crank: String,
         /// The site of the slider's axis.
         slider: String,
     },
-    /// The contacts of a body, which share the force equally: it draws their two sides together.
+    /// The contacts of a body, which share the force equally: it pulls their two sides together.
     Body(String),
 }
 
@@ -139,9 +140,9 @@ pub enum TransmissionSpec {
 pub struct ActuatorSpec {
     /// Name, possibly empty.
     pub name: String,
-    /// What it pulls on.
+    /// Its transmission.
     pub transmission: TransmissionSpec,
-    /// How the control becomes an activation.
+    /// The activation dynamics.
     pub dynamics: DynamicsKind,
     /// Parameters of the dynamics.
     pub dynprm: [f64; 10],
@@ -155,55 +156,55 @@ pub struct ActuatorSpec {
     pub biasprm: [f64; 10],
     /// Damping ratio of a position servo, resolved by the builder into `biasprm[2]`.
     pub dampratio: Option<f64>,
-    /// Share of the joint or tendon range that the control range takes; needs a limited target.
+    /// The control range as a fraction of the joint or tendon range; needs a limited target.
     pub inheritrange: f64,
     /// Scaling of the force onto the transmission's axes.
     pub gear: [f64; 6],
-    /// Coefficients of linear, quadratic and cubic damping that the joint or tendon gets, times the square of the gear.
+    /// Coefficients of linear, quadratic and cubic damping added to the joint or tendon, times the square of the gear.
     pub damping: [f64; 3],
-    /// Inertia that the joint or tendon gets, likewise.
+    /// Inertia added to the joint or tendon, likewise.
     pub armature: f64,
-    /// Which past controls are kept, and how late they arrive.
+    /// The storage and the delay of controls.
     pub history: HistorySpec,
     /// Length of the rod of a slider-crank, m.
     pub cranklength: f64,
-    /// Lengths between which the transmission can be, of use to muscles; where they do not rise they are not given.
+    /// Range of the transmission's length, used by muscles; not given unless it is ascending.
     pub lengthrange: [f64; 2],
     /// Allowed controls.
     pub ctrlrange: [f64; 2],
-    /// Whether it applies; `None`: if `autolimits` and a range is given.
+    /// True if the controls are clamped; `None`: if `autolimits` and a range is given.
     pub ctrllimited: Option<bool>,
-    /// Allowed velocity setpoints of a PID controller; they apply where the range rises.
+    /// Allowed velocity setpoints of a PID controller; they apply if the range is ascending.
     pub velrange: [f64; 2],
     /// Allowed feedforward of a PID controller, likewise.
     pub ffrange: [f64; 2],
-    /// The controls of a PID controller or DC motor, in the order of [`ControlInput`]; `None`: the usual ones, position and
-    /// velocity, or a motor's voltage. Others have one control.
+    /// The controls of a PID controller or DC motor, in the order of [`ControlInput`]; `None`: the default ones,
+    /// position and velocity, or a motor's voltage. Others have one control.
     pub inputs: Option<Vec<ControlInput>>,
     /// Allowed forces.
     pub forcerange: [f64; 2],
-    /// Whether it applies; `None` as for `ctrllimited`.
+    /// True if the force is clamped; `None` as for `ctrllimited`.
     pub forcelimited: Option<bool>,
     /// Allowed activations.
     pub actrange: [f64; 2],
-    /// Whether it applies; `None` as for `ctrllimited`.
+    /// True if the activations are clamped; `None` as for `ctrllimited`.
     pub actlimited: Option<bool>,
-    /// Number of activations; `None`: as many as the dynamics has. Dynamics of the user may have any number.
+    /// Number of activations; `None`: that of the dynamics. Dynamics of the user may have any number.
     pub actdim: Option<usize>,
-    /// Use the activation as of the end of the step.
+    /// True if the activation at the end of the step is used.
     pub actearly: bool,
     /// Group.
     pub group: i32,
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// Where a connect or weld holds its bodies together.
+/// The anchor of a connect or weld.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConnectAnchor {
-    /// Two bodies (the second may be the world, by the empty name) and the anchor in the first body's frame; the
+    /// Two bodies (the second may be the world, by the empty name) and the anchor in the first body's frame. The
     /// builder computes the second anchor from the initial configuration.
     Bodies {
         /// First body.
@@ -213,7 +214,7 @@ pub enum ConnectAnchor {
         /// Anchor in the first body's frame for connect, in the second body's for weld, m.
         anchor: Vec3<f64>,
     },
-    /// Two sites whose frames are to coincide.
+    /// Two sites whose frames must coincide.
     Sites {
         /// First site.
         site1: String,
@@ -222,7 +223,7 @@ pub enum ConnectAnchor {
     },
 }
 
-/// What an equality keeps equal.
+/// The relation that an equality enforces.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EqualityKind {
@@ -239,18 +240,18 @@ pub enum EqualityKind {
     },
     /// One joint follows a quartic of another (or a constant): y − y₀ = Σ coef_k (x − x₀)^k.
     Joint {
-        /// The joint that follows.
+        /// The follower joint.
         joint1: String,
-        /// The joint that leads, if any.
+        /// The leader joint, if any.
         joint2: Option<String>,
         /// Coefficients, constant first.
         polycoef: [f64; 5],
     },
     /// One tendon follows a quartic of another (or a constant).
     Tendon {
-        /// The tendon that follows.
+        /// The follower tendon.
         tendon1: String,
-        /// The tendon that leads, if any.
+        /// The leader tendon, if any.
         tendon2: Option<String>,
         /// Coefficients, constant first.
         polycoef: [f64; 5],
@@ -258,7 +259,7 @@ pub enum EqualityKind {
 }
 
 impl EqualityKind {
-    /// The two bodies or sites, where it holds such.
+    /// Returns the two bodies or sites of a connect or weld.
     pub(super) fn anchor(&self) -> Option<&ConnectAnchor> {
         match self {
             EqualityKind::Connect(anchor) | EqualityKind::Weld { anchor, .. } => Some(anchor),
@@ -272,19 +273,19 @@ impl EqualityKind {
 pub struct EqualitySpec {
     /// Name, possibly empty.
     pub name: String,
-    /// What it keeps equal.
+    /// The relation that it enforces.
     pub kind: EqualityKind,
-    /// On in the initial state.
+    /// True if initially active.
     pub active: bool,
     /// Reference dynamics.
     pub solref: [f64; 2],
     /// Impedance.
     pub solimp: [f64; 5],
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// A geom pair that always collides; what is `None` is mixed from its geoms.
+/// A geom pair that always collides. Parameters that are `None` are mixed from its geoms.
 #[derive(Clone, Debug, Default)]
 pub struct PairSpec {
     /// Name, possibly empty.
@@ -307,9 +308,9 @@ pub struct PairSpec {
     pub margin: Option<f64>,
     /// Gap, m.
     pub gap: Option<f64>,
-    /// Force with which each contact holds on, N.
+    /// Adhesive force of each contact, N.
     pub adhesion: Option<f64>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -322,24 +323,24 @@ pub struct ExcludeSpec {
     pub body1: String,
     /// Second body.
     pub body2: String,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// What a stored state says of one element.
+/// The part of a stored state that belongs to one element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyframePart {
-    /// Which one.
+    /// The element.
     pub element: KeyframeElement,
-    /// Its part of `qpos`, `ctrl` or `mocap_pos`; empty as in the initial state.
+    /// Its part of `qpos`, `ctrl` or `mocap_pos`; empty for the initial state.
     pub first: Vec<f64>,
-    /// Its part of `qvel`, `act` or `mocap_quat`; empty as in the initial state.
+    /// Its part of `qvel`, `act` or `mocap_quat`; empty for the initial state.
     pub second: Vec<f64>,
-    /// Its part of `plastic`; empty as in the initial state.
+    /// Its part of `plastic`; empty for the initial state.
     pub plastic: Vec<f64>,
 }
 
-/// An element that has a part of the state, by its number among those of the model, bodies being in the model's order.
+/// An element with a part of the state, by its index in the model, with bodies in the model's order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyframeElement {
     /// A joint, with positions and velocities.
@@ -352,12 +353,12 @@ pub enum KeyframeElement {
     Tendon(usize),
 }
 
-/// A stored state; what is `None` is as in the initial state.
+/// A stored state; `None` fields are as in the initial state.
 #[derive(Clone, Debug, Default)]
 pub struct KeyframeSpec {
     /// Name, possibly empty.
     pub name: String,
-    /// s.
+    /// Time, s.
     pub time: f64,
     /// Positions (nq).
     pub qpos: Option<Vec<f64>>,
@@ -365,7 +366,7 @@ pub struct KeyframeSpec {
     pub qvel: Option<Vec<f64>>,
     /// Activations (na).
     pub act: Option<Vec<f64>>,
-    /// Where springs that yield rest (nplastic).
+    /// Rest positions of yielding springs (nplastic).
     pub plastic: Option<Vec<f64>>,
     /// Controls (nu).
     pub ctrl: Option<Vec<f64>>,
@@ -373,8 +374,8 @@ pub struct KeyframeSpec {
     pub mocap_pos: Option<Vec<f64>>,
     /// Mocap orientations (4 nmocap).
     pub mocap_quat: Option<Vec<f64>>,
-    /// What is said of single elements, over all that.
+    /// Parts of single elements; they override the fields above.
     pub parts: Vec<KeyframePart>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }

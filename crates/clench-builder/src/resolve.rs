@@ -1,4 +1,4 @@
-//! From names to indices.
+//! Resolution of names to indices.
 
 use super::element::Element;
 use super::model_builder::ModelBuilder;
@@ -13,10 +13,10 @@ pub(super) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    /// From the elements in the model's order.
+    /// Collects the names of elements in the model's order.
     ///
     /// # Errors
-    /// A name that is taken already.
+    /// Returns an error if a name is already used.
     pub(super) fn new<E: Element + 'a>(
         elements: impl IntoIterator<Item = &'a E>,
     ) -> Result<Self, BuildError> {
@@ -33,10 +33,10 @@ impl<'a> Names<'a> {
         })
     }
 
-    /// The index of a name that `user` refers to.
+    /// Returns the index of a name that `user` refers to.
     ///
     /// # Errors
-    /// No element of this kind has that name.
+    /// Returns an error if no element of this kind has that name.
     pub(super) fn find(&self, name: &str, user: &impl Element) -> Result<usize, BuildError> {
         self.indices.get(name).copied().ok_or_else(|| {
             user.error(match name {
@@ -47,7 +47,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Every kind of element that others refer to.
+/// The named elements of every kind that others refer to.
 pub(super) struct AllNames<'a> {
     pub bodies: Names<'a>,
     pub joints: Names<'a>,
@@ -59,10 +59,10 @@ pub(super) struct AllNames<'a> {
 }
 
 impl<'a> AllNames<'a> {
-    /// Names of a model whose bodies come in `order`.
+    /// Collects the names of a model whose bodies come in `order`.
     ///
     /// # Errors
-    /// A name that two elements of one kind share, those included that nothing refers to.
+    /// Returns an error if two elements of one kind share a name, even if nothing refers to it.
     pub(super) fn new(builder: &'a ModelBuilder, order: &[usize]) -> Result<Self, BuildError> {
         let in_order = || order.iter().map(|&b| &builder.bodies[b]);
         let uses = GeomUses::of(builder);
@@ -84,7 +84,7 @@ impl<'a> AllNames<'a> {
     }
 }
 
-/// The first body is the world, whatever else it is called.
+/// Collects the names of bodies. The first is always also the world.
 fn body_names<'a>(bodies: impl Iterator<Item = &'a BodySpec>) -> Result<Names<'a>, BuildError> {
     let mut names = Names::new(bodies)?;
     if let Some(&other) = names.indices.get("world")

@@ -1,4 +1,4 @@
-//! What an author says of sensors.
+//! The author's description of sensors.
 
 use super::{HistorySpec, Origin};
 use clench_dynamics::model::{ContactField, ContactReduction, RayField, SensorData, SensorKind};
@@ -22,7 +22,7 @@ pub enum FrameKind {
 /// A frame by the name of its object.
 #[derive(Clone, Debug)]
 pub struct FrameName {
-    /// What kind of object.
+    /// The kind of object.
     pub kind: FrameKind,
     /// Its name.
     pub name: String,
@@ -47,26 +47,26 @@ pub enum ContactSideName {
     Geom(String),
     /// Any geom of a body.
     Body(String),
-    /// Any geom of a body and all below it.
+    /// Any geom of a body and its descendants.
     Subtree(String),
 }
 
-/// Which contacts a sensor looks for, and what it tells of them.
+/// The contacts that a sensor selects, and the quantities that it reports.
 #[derive(Clone, Debug)]
 pub struct ContactQuerySpec {
-    /// What touches; the normal points from the first to the second.
+    /// The two sides; the normal points from the first to the second.
     pub sides: [ContactSideName; 2],
     /// A site whose volume the contact's position must be in; empty: anywhere.
     pub site: String,
-    /// What is told of each contact, each thing once; nothing: how many there are.
+    /// The quantities reported for each contact, without duplicates; empty: the number of contacts.
     pub fields: Vec<ContactField>,
-    /// Which contacts are told of.
+    /// The selection among the contacts.
     pub reduction: ContactReduction,
-    /// How many.
+    /// The number of reported contacts.
     pub count: usize,
 }
 
-/// Whether there is any contact.
+/// Reports if there is any contact.
 impl Default for ContactQuerySpec {
     fn default() -> Self {
         ContactQuerySpec {
@@ -79,7 +79,8 @@ impl Default for ContactQuerySpec {
     }
 }
 
-/// The object that a sensor is attached to, by name; it must be what its kind's [`Attachment`](clench_dynamics::model::Attachment) says.
+/// The object that a sensor is attached to, by name; it must match its kind's
+/// [`Attachment`](clench_dynamics::model::Attachment).
 #[derive(Clone, Debug, Default)]
 pub enum SensorSubject {
     /// Nothing.
@@ -87,24 +88,25 @@ pub enum SensorSubject {
     Nothing,
     /// A site, joint, tendon, actuator or body.
     Element(String),
-    /// A frame, and perhaps one relative to which it is measured.
+    /// A frame, and an optional reference frame.
     Frame {
-        /// What is measured.
+        /// The measured frame.
         object: FrameName,
-        /// Where from; the world where nothing is said.
+        /// The reference frame; the world if `None`.
         reference: Option<FrameName>,
     },
-    /// Whether an object is inside a site.
+    /// An object that may be inside a site.
     Inside {
         /// The site.
         site: String,
         /// The object.
         object: FrameName,
-        /// Whether its whole extent counts: how far it juts out is measured, m, rather than whether its position is inside. Then it
-        /// is a site, a geom, the geoms of a body (`Inertial`), or those of a body and all below it (`Body`), and all of them are bounded.
+        /// True if the whole object counts: the sensor measures how far it protrudes, m, not whether its position is
+        /// inside. The object is then a site, a geom, the geoms of a body (`Inertial`), or those of a body and its
+        /// descendants (`Body`), all of them bounded.
         enclosed: bool,
     },
-    /// A site as a camera sees it.
+    /// The image of a site in a camera.
     Projection {
         /// The site.
         site: String,
@@ -113,9 +115,9 @@ pub enum SensorSubject {
     },
     /// Rays from a site or a camera.
     Rays {
-        /// Where they go out.
+        /// The source of the rays.
         source: FrameName,
-        /// What is told of each, each thing once; nothing: the distance.
+        /// The quantities reported for each ray, without duplicates; empty: the distance.
         fields: Vec<RayField>,
     },
     /// Two geoms, or all geoms of a body.
@@ -129,7 +131,7 @@ pub enum SensorSubject {
         /// The geom.
         geom: String,
     },
-    /// So many numbers of a user's own, of this kind.
+    /// The given number of a user's own numbers, in this range.
     User(usize, SensorData),
 }
 
@@ -138,27 +140,27 @@ pub enum SensorSubject {
 pub struct SensorSpec {
     /// Name, possibly empty.
     pub name: String,
-    /// What it measures.
+    /// The kind.
     pub kind: SensorKind,
-    /// Of what.
+    /// The measured object.
     pub subject: SensorSubject,
-    /// Bound of its numbers, where positive.
+    /// Limit of its numbers, if positive.
     pub cutoff: f64,
     /// Standard deviation of the noise that the author expects; none is added.
     pub noise: f64,
-    /// Which past values are kept, and how late they are told.
+    /// The storage and the delay of values.
     pub history: HistorySpec,
-    /// How often it measures, s, and when it did so last before time zero; zero: every step, and one period before. MuJoCo's
-    /// `interval`, which only counts where past values are kept.
+    /// Measurement interval, s, and time of the last measurement before time zero; zero: every step, and one period
+    /// before. MuJoCo's `interval`, which only applies if past values are stored.
     pub interval: [f64; 2],
-    /// The user's own numbers, which move nothing.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
 impl SensorSpec {
-    /// A sensor without a name that measures an element.
+    /// Creates a sensor without a name that measures an element.
     pub fn new(kind: SensorKind, element: impl Into<String>) -> Self {
         SensorSpec {
             name: String::new(),
@@ -172,7 +174,7 @@ impl SensorSpec {
             origin: None,
         }
     }
-    /// With a name.
+    /// Sets the name.
     pub fn named(self, name: impl Into<String>) -> Self {
         SensorSpec {
             name: name.into(),

@@ -1,4 +1,4 @@
-//! Sensors: which elements they are attached to, and where their numbers are.
+//! Sensors: the elements that they are attached to, and the ranges of their numbers.
 
 use super::element::Element;
 use super::model_builder::ModelBuilder;
@@ -15,13 +15,14 @@ use clench_dynamics::model::{
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A sensor has at most this many numbers.
+/// The maximum number of values of a sensor.
 const MAX_DIM: usize = 1 << 20;
 
 /// Adds all sensors.
 ///
 /// # Errors
-/// A subject that is not there or not of the kind that the sensor measures; a cutoff where there can be none, negative numbers.
+/// Returns an error if a subject does not exist or has the wrong kind, a cutoff is not allowed, or a number is
+/// negative.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
@@ -44,7 +45,7 @@ pub(super) fn add_all(
         let dim = dim(spec, &target, model)
             .filter(|&dim| dim <= MAX_DIM)
             .ok_or_else(|| spec.error(format!("has more than {MAX_DIM} numbers")))?;
-        // The cutoff of a sensor of distances is how far it searches.
+        // The cutoff of a distance sensor is its search radius.
         let searched = spec.kind.attachment() == Attachment::Geoms;
         let turns = matches!(data, SensorData::Axis | SensorData::Quaternion);
         if spec.cutoff > 0.0 && turns && !searched {
@@ -76,7 +77,7 @@ pub(super) fn add_all(
     Ok(())
 }
 
-/// How many numbers a sensor gives; `None` where they cannot be counted.
+/// Returns the number of values of a sensor; `None` if it overflows.
 fn dim(spec: &SensorSpec, target: &SensorTarget, model: &Model) -> Option<usize> {
     match (&spec.subject, target) {
         (SensorSubject::User(dim, _), _) => Some(*dim),
@@ -185,7 +186,7 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
     }
 }
 
-/// A site, and what may be inside it or must be enclosed by it: then all of that is bounded and convex.
+/// Resolves a site, and the object inside or enclosed by it. If enclosed, both must be bounded and convex.
 fn inside(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTarget, BuildError> {
     let SensorSubject::Inside {
         site,
@@ -226,7 +227,7 @@ fn inside(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
     })
 }
 
-/// A plane and a height field enclose nothing and are not enclosed.
+/// Refuses planes and height fields, which cannot enclose or be enclosed.
 fn require_bounded(
     spec: &SensorSpec,
     element: &str,
@@ -270,7 +271,7 @@ fn find_mesh(spec: &SensorSpec, model: &Model, name: &str) -> Result<usize, Buil
     found.ok_or_else(|| spec.error(format!("there is no mesh \"{name}\"")))
 }
 
-/// What nothing can touch feels nothing.
+/// Checks that the geom's body can collide.
 fn require_collider(spec: &SensorSpec, model: &Model, geom: usize) -> Result<(), BuildError> {
     let body = &model.bodies[model.geoms[geom].body];
     let collides = |geom: &Geom| geom.contype != 0 || geom.conaffinity != 0;

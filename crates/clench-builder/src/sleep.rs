@@ -1,4 +1,4 @@
-//! Kinematic trees: which may sleep, how fast their dofs are, and which begin asleep.
+//! Kinematic trees: their sleep policies, the speed scale of their dofs, and their initial sleep.
 
 use super::check::describe;
 use super::element::Element;
@@ -13,10 +13,11 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_dynamics::{pipeline, sleep};
 
-/// Finds the trees, and decides which may sleep.
+/// Finds the trees, and resolves which may sleep.
 ///
 /// # Errors
-/// A policy for a body that is no root of a tree; one that lets a tree sleep which a tendon moves beside another.
+/// Returns an error for a policy of a body that is not the root of a tree, or one that lets a tree sleep that a tendon
+/// couples to another.
 pub(super) fn add_trees(
     builder: &ModelBuilder,
     order: &[usize],
@@ -35,7 +36,7 @@ pub(super) fn add_trees(
     }
     let mut driven = Vec::new();
     for actuator in &model.actuators {
-        // Of two sites only the first counts, as in MuJoCo.
+        // Only the first of two sites counts, as in MuJoCo.
         let body = match actuator.transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) | Transmission::Rotation(j) => {
                 model.joints[j].body
@@ -86,7 +87,7 @@ pub(super) fn add_trees(
     Ok(())
 }
 
-/// What acts on a tree unseen keeps it awake, if its author did not say otherwise.
+/// Keeps a tree awake that something may move undetected, unless its author set a policy.
 fn keep_awake(tree: &mut KinematicTree) {
     if tree.sleep == SleepPolicy::Auto {
         tree.sleep = SleepPolicy::Never;
@@ -118,7 +119,7 @@ fn find_trees(model: &mut Model) {
     }
 }
 
-/// The tree of which a body is the root.
+/// Returns the tree of which a body is the root.
 fn tree_of_root(model: &Model, body: usize) -> Option<usize> {
     let tree = model.tree_of_body(body)?;
     (model.trees[tree].bodies.start == body).then_some(tree)
@@ -128,11 +129,11 @@ fn not_a_root(spec: &BodySpec) -> BuildError {
     spec.error("has a sleep policy, which only the moving root of a tree can have")
 }
 
-/// Puts the trees to sleep that begin asleep. Islands sleep as a whole: where one tree of an island begins awake, all do, and
-/// a note says so.
+/// Deactivates the trees that begin asleep. Islands sleep as a whole: if one tree of an island begins awake, all do,
+/// and a note reports it.
 ///
 /// # Errors
-/// Options that are out of range.
+/// Returns an error if options are out of range.
 pub(super) fn begin_asleep(model: &mut Model) -> Result<(), BuildError> {
     if !model.flags.sleep {
         return Ok(());
@@ -145,7 +146,7 @@ pub(super) fn begin_asleep(model: &mut Model) -> Result<(), BuildError> {
     let settings = StepSettings::new::<f64>(model, RigidOptions::new())
         .map_err(|wrong| BuildError::new("model", wrong.to_string()))?;
     if settings.flags.constraint && settings.flags.contact && check_supported(model).is_err() {
-        // No simulation can be made of it.
+        // It cannot be simulated.
         return Ok(());
     }
     let (mut state, mut ws) = (State::new(model), Workspace::new(model));

@@ -1,14 +1,14 @@
-//! Volume, centre of mass and inertia of what triangles enclose, as MuJoCo computes them.
+//! Volume, centre of mass and inertia of a triangulated solid, computed as in MuJoCo.
 //!
-//! Each triangle is the base of a pyramid with a common apex, whose volume has the sign of the side on which the apex is; over a
-//! closed surface the sum depends on no apex. A pyramid's centre of mass is 3/4 of the way to its base, and ∫ x xᵀ dV over a
-//! pyramid D, E, F with its apex at the origin is V/20 (Σ_i 2 p_i p_iᵀ + Σ_{i≠j} p_i p_jᵀ); over the triangle alone, it is its
-//! area over 12 times the same. For a shell MuJoCo takes the 3/4 all the same.
+//! Each triangle is the base of a pyramid with a common apex, whose volume has the sign of the side on which the apex
+//! is. Over a closed surface the sum does not depend on the apex. A pyramid's centre of mass is at 3/4 of the path to
+//! its base, and ∫ x xᵀ dV over a pyramid D, E, F with its apex at the origin is V/20 (Σ_i 2 p_i p_iᵀ + Σ_{i≠j} p_i
+//! p_jᵀ); over only the triangle, it is its area over 12 times the same. MuJoCo uses the 3/4 for a shell too.
 
 use super::MeshInertia;
 use clench_math::{Mat3, Vec3};
 
-/// Triangles, and how they are weighed.
+/// Triangles, and their mass distribution.
 pub(super) struct Solid<'a> {
     pub vertices: &'a [Vec3<f64>],
     pub triangles: &'a [[u32; 3]],
@@ -22,7 +22,7 @@ struct Triangle {
     center: Vec3<f64>,
 }
 
-/// Twice the area (m²) below which a triangle counts for nothing (MuJoCo's `mjMINVAL`).
+/// Twice the area (m²) below which a triangle is ignored (MuJoCo's `mjMINVAL`).
 const NO_AREA: f64 = 1e-15;
 
 impl Triangle {
@@ -42,7 +42,7 @@ impl Solid<'_> {
         self.triangles.iter().map(move |corners| corners.map(at))
     }
 
-    /// How much a triangle counts, seen from an apex: volume of its pyramid, or area.
+    /// Returns the weight of a triangle, seen from an apex: volume of its pyramid, or area.
     fn weight(&self, triangle: &Triangle, apex: Vec3<f64>) -> f64 {
         let volume = (triangle.center - apex).dot(triangle.normal) * triangle.area / 3.0;
         match self.spread {
@@ -52,7 +52,7 @@ impl Solid<'_> {
         }
     }
 
-    /// The centroid of the surface, and its area.
+    /// Returns the centroid of the surface, and its area.
     pub(super) fn surface(&self) -> (Vec3<f64>, f64) {
         let mut sum = Vec3::ZERO;
         let mut total = 0.0;
@@ -63,7 +63,7 @@ impl Solid<'_> {
         (sum * (1.0 / total), total)
     }
 
-    /// The centre of mass, and the volume (area of a shell), by pyramids with this apex.
+    /// Returns the centre of mass, and the volume (area of a shell), by pyramids with this apex.
     pub(super) fn center(&self, apex: Vec3<f64>) -> (Vec3<f64>, f64) {
         let mut sum = Vec3::ZERO;
         let mut total = 0.0;
@@ -75,13 +75,14 @@ impl Solid<'_> {
         (sum * (1.0 / total), total)
     }
 
-    /// The inertia of density one about a point, m⁵ (m⁴ of a shell), and the volume (area), by pyramids with their apex there.
+    /// Returns the inertia at unit density about a point, m⁵ (m⁴ for a shell), and the volume (area), by pyramids with
+    /// their apex there.
     pub(super) fn inertia(&self, about: Vec3<f64>) -> (Mat3<f64>, f64) {
         let share = match self.spread {
             MeshInertia::Shell => 1.0 / 12.0,
             _ => 1.0 / 20.0,
         };
-        // xx, yy, zz, xy, xz, yz.
+        // The moments xx, yy, zz, xy, xz, yz.
         let mut moments = [0.0; 6];
         let mut total = 0.0;
         for corners in self.corners() {

@@ -1,4 +1,4 @@
-//! Tendons: their paths, and what follows from them in the initial configuration.
+//! Tendons: their paths, and the quantities that follow from them in the initial configuration.
 
 use super::element::{Element, resolve_range};
 use super::model_builder::ModelBuilder;
@@ -14,8 +14,9 @@ use std::sync::Arc;
 /// Adds all tendons.
 ///
 /// # Errors
-/// A path of nothing, or of joints and sites together; of one joint twice, or of a joint without a scalar position; of branches
-/// that do not begin and end with a site, of geoms that no string can go around. Ranges that do not rise.
+/// Returns an error if a path is empty, mixes joints and sites, repeats a joint, has a joint without a scalar position,
+/// a branch that does not begin and end with a site, or a geom that is no sphere or cylinder, or if a range is not
+/// ascending.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
@@ -100,8 +101,8 @@ fn path(spec: &TendonSpec, names: &AllNames, model: &Model) -> Result<Vec<Wrap>,
     Ok(path)
 }
 
-/// A fixed tendon has joints only. Each branch of a spatial one begins and ends with a site, has two at least, and one
-/// between any two geoms.
+/// Checks a path. A fixed tendon has joints only. Each branch of a spatial one begins and ends with a site, has at
+/// least two, and one between any two geoms.
 fn check_order(spec: &TendonSpec, path: &[Wrap]) -> Result<(), BuildError> {
     let joints = path.iter().filter(|w| matches!(w, Wrap::Joint(_))).count();
     if path.is_empty() {
@@ -135,8 +136,8 @@ fn check_order(spec: &TendonSpec, path: &[Wrap]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// The dofs that change the length of a tendon: of a string those that move two bodies relative to each other between which some
-/// part of it can be straight.
+/// Returns the dofs that change the length of a tendon. For a spatial one they move two bodies relative to each other,
+/// between which a part of it can be straight.
 fn dofs(tendon: &Tendon, model: &Model) -> Vec<u32> {
     let mut dofs = Vec::new();
     for &wrap in &tendon.path {
@@ -160,10 +161,10 @@ fn dofs(tendon: &Tendon, model: &Model) -> Vec<u32> {
     dofs
 }
 
-/// A joint whose position is one number.
+/// Checks that the position of a joint is one number.
 ///
 /// # Errors
-/// A ball or free joint.
+/// Returns an error for a ball or free joint.
 pub(super) fn require_scalar(
     user: &impl Element,
     name: &str,
@@ -204,8 +205,8 @@ fn push_params(spec: &TendonSpec, model: &mut Model) {
     p.tendon_solimp_fri.push(spec.solimp_friction);
 }
 
-/// Fills in the lengths in the initial configuration, and where springs rest: as said, or as long as where the joints' springs
-/// rest, which `rest` computes.
+/// Sets the rest lengths of springs: as specified, or the lengths at the rest positions of the joints' springs, which
+/// `rest` computes.
 pub(super) fn spring_lengths(
     builder: &ModelBuilder,
     rest: impl FnOnce(&Model) -> Positions<f64>,

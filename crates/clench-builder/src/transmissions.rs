@@ -1,4 +1,4 @@
-//! What actuators pull on.
+//! The transmissions of actuators.
 
 use super::element::Element;
 use super::resolve::AllNames;
@@ -6,10 +6,11 @@ use super::{ActuatorSpec, BuildError, TransmissionSpec};
 use clench_dynamics::dynamics::chains::Chains;
 use clench_dynamics::model::{GainKind, Model, Transmission};
 
-/// The target of an actuator.
+/// Returns the transmission of an actuator.
 ///
 /// # Errors
-/// A name that nothing has; a slider-crank without a length; an orientation servo of what does not turn.
+/// Returns an error for an unknown name, a slider-crank without length, or an orientation servo of a target that does
+/// not rotate.
 pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission, BuildError> {
     let site = |name: &String| names.sites.find(name, spec);
     let turns = spec.gain == GainKind::So3;
@@ -47,7 +48,7 @@ pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission
     })
 }
 
-/// Notes which dofs a transmission acts on, for each of its lengths.
+/// Records the dofs that a transmission acts on, for each of its lengths.
 pub(super) fn push_dofs(transmission: Transmission, model: &mut Model) {
     let body = |site: usize| model.sites[site].body;
     let between = |bodies: Chains| -> Vec<u32> {
@@ -76,7 +77,7 @@ pub(super) fn push_dofs(transmission: Transmission, model: &mut Model) {
         Transmission::SiteInFrame(sites) | Transmission::SliderCrank(sites) => {
             between(Chains::new(model, sites.map(body)).without_common())
         }
-        // The contacts of a body can be with anything.
+        // A body can be in contact with any other.
         Transmission::Body(_) => (0..model.nv as u32).collect(),
     };
     model.actuator_dofs.push(dofs);

@@ -1,4 +1,4 @@
-//! The user's own numbers, of which all elements of a kind have as many, as in MuJoCo.
+//! The user's own numbers. All elements of a kind have the same number of them, as in MuJoCo.
 
 use super::BuildError;
 use super::element::Element;
@@ -8,10 +8,10 @@ use clench_dynamics::budget::RAISE;
 use clench_dynamics::model::Model;
 use std::sync::Arc;
 
-/// The widths of a description, none of them open.
+/// Resolves the widths of a description.
 ///
 /// # Errors
-/// An element with more numbers than the description says that there are.
+/// Returns an error if an element has more numbers than the description specifies.
 fn resolve(builder: &ModelBuilder) -> Result<UserWidths, BuildError> {
     let given = builder.user_widths;
     let bodies = || builder.bodies.iter();
@@ -53,10 +53,10 @@ fn width<'a, E: Element + 'a>(
     Ok(Some(given.unwrap_or(most)))
 }
 
-/// Gives all elements of a kind as many numbers, with zeros at the end.
+/// Pads the numbers of all elements of a kind to the same length with zeros.
 ///
 /// # Errors
-/// An element with more than that, or more memory for all than the budget has.
+/// Returns an error if an element has more numbers, or if all need more memory than the budget allows.
 pub(super) fn pad(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
     let widths = resolve(builder)?;
     let mut left = builder.budget.bytes;

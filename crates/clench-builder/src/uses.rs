@@ -1,11 +1,11 @@
-//! What a description says of geoms besides themselves: which collide, and which are only seen and named by nothing else.
+//! The uses of geoms by other elements: geoms that collide, and visual geoms that no other element names.
 
 use super::model_builder::ModelBuilder;
 use super::sensor_specs::{ContactSideName, FrameKind, FrameName, GeomsName, SensorSubject};
 use super::{GeomSpec, WrapSpec};
 use std::collections::HashSet;
 
-/// What a description says of geoms besides themselves.
+/// The uses of geoms by other elements.
 pub(super) struct GeomUses<'a> {
     /// Geoms of explicit pairs.
     paired: HashSet<&'a str>,
@@ -43,12 +43,12 @@ impl<'a> GeomUses<'a> {
         }
     }
 
-    /// Whether it can collide, by its masks or by explicit pairs.
+    /// Returns true if it can collide, by its masks or by explicit pairs.
     pub(super) fn collides(&self, geom: &GeomSpec) -> bool {
         geom.contype != 0 || geom.conaffinity != 0 || has(&self.paired, geom)
     }
 
-    /// Whether it is left out of the model: nothing meets it or names it, and no medium acts on it by itself.
+    /// Returns true if it is omitted from the model: it does not collide, is not named, and no fluid force acts on it.
     pub(super) fn is_discarded(&self, geom: &GeomSpec) -> bool {
         let acts = self.collides(geom) || geom.fluid_ellipsoid;
         self.discardvisual && !acts && !has(&self.named, geom)
@@ -59,7 +59,7 @@ fn has(names: &HashSet<&str>, geom: &GeomSpec) -> bool {
     !geom.name.is_empty() && names.contains(geom.name.as_str())
 }
 
-/// The geoms that a sensor names.
+/// Returns the geoms that a sensor names.
 fn geoms_of(subject: &SensorSubject) -> Vec<&str> {
     let of_frame = |frame: &FrameName| frame.kind == FrameKind::Geom;
     match subject {

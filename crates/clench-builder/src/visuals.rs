@@ -1,18 +1,18 @@
-//! How elements look, by names.
+//! The appearance of elements, by names.
 
 use super::appearance::{AppearanceSpec, MaterialSpec};
 use super::model_builder::ModelBuilder;
 use clench_dynamics::model::{Appearance, Material, Visuals};
 use std::collections::HashMap;
 
-/// The materials and textures of a model, and where each name stands.
+/// The materials and textures of a model, and the index of each name.
 pub(super) struct Palette {
     visuals: Visuals,
     place: HashMap<String, usize>,
 }
 
 impl Palette {
-    /// That of a description.
+    /// Creates the palette of a description.
     pub(super) fn new(builder: &ModelBuilder) -> Self {
         let textures = indices_by_name(builder.textures.iter().map(|texture| &texture.name));
         let material = |spec: &MaterialSpec| Material {
@@ -31,12 +31,12 @@ impl Palette {
         }
     }
 
-    /// What a model has before any element has its appearance.
+    /// Returns the visuals of a model without the appearance of its elements.
     pub(super) fn visuals(&self) -> Visuals {
         self.visuals.clone()
     }
 
-    /// How an element looks, its material found.
+    /// Resolves the material of an element's appearance.
     pub(super) fn resolve(&self, spec: &AppearanceSpec) -> Appearance {
         Appearance {
             rgba: spec.rgba,
@@ -45,7 +45,7 @@ impl Palette {
     }
 }
 
-/// The index of each name; of equal ones the first.
+/// Returns the index of each name; the first if names are equal.
 fn indices_by_name<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
     let mut indices = HashMap::new();
     for (index, name) in names.enumerate() {

@@ -1,8 +1,9 @@
-//! The allocator of the program, which is asked how much a batch takes.
+//! The allocator of the program, which counts the memory of a batch.
 
 use cap::Cap;
 use std::alloc::System;
 
-/// The system's allocator, which also tells how much is allocated: what a batch takes beside its rows is measured.
+/// The system's allocator with a counter of the allocated bytes, which measures the memory of a batch in addition to
+/// its rows.
 #[global_allocator]
 pub(super) static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);

@@ -1,12 +1,12 @@
-//! A model as JSON: what programs ask of `clench inspect --json`. Elements stand in the model's order, so that a place in a list is an
-//! index; what refers to another element gives its index.
+//! A model as JSON, for `clench inspect --json`. Elements are listed in the model's order; references are indices into
+//! these lists.
 
 use clench::Sim;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{Actuator, JointKind, Model, Transmission};
 use serde_json::{Value, json};
 
-/// Sizes, elements, ranges and the options in force.
+/// Returns sizes, elements, ranges and the effective options.
 pub(crate) fn describe(sim: &Sim) -> Value {
     let model = sim.model();
     let names = |names: Vec<&String>| json!(names);

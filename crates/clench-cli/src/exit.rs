@@ -1,9 +1,10 @@
-//! How the program ends.
+//! The exit codes of the program.
 
-/// Exit code of bad input: a model, a state or an option that cannot be used.
+/// The exit code of bad input: a model, a state or an option that cannot be used.
 pub(super) const BAD_INPUT: u8 = 2;
 
-/// The reader of our output has gone, as in `clench … | head`: nothing to complain about.
+/// Returns true if the reader of the output has closed it, as in `clench …
+/// head`; this is not reported.
 pub(super) fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         cause

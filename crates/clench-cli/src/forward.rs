@@ -22,12 +22,12 @@ pub(crate) struct Arguments {
     #[arg(long)]
     step: bool,
 
-    // Last, because its heading in the help holds for all that follows.
+    // Last, because its help heading applies to all following arguments.
     #[command(flatten)]
     model: ModelArguments,
 }
 
-/// Answers every line of standard input; stops with an error that names the line at the first that cannot be used.
+/// Processes every line of standard input; stops at the first invalid one with an error that names the line.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut sim = arguments.model.sim()?;
     let mut out = BufWriter::new(io::stdout().lock());

@@ -1,4 +1,4 @@
-//! `clench inspect`: sizes, tree, options, the constraints that act, and contacts.
+//! `clench inspect`: sizes, tree, options, active constraints, and contacts.
 
 use crate::description::describe;
 use crate::options::ModelArguments;
@@ -25,12 +25,12 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["steps", "contacts"])]
     json: bool,
 
-    // Last, because its heading in the help holds for all that follows.
+    // Last, because its help heading applies to all following arguments.
     #[command(flatten)]
     model: ModelArguments,
 }
 
-/// Prints everything on standard output.
+/// Prints everything to standard output.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut sim = arguments.model.sim()?;
     let mut out = io::stdout().lock();
@@ -132,7 +132,7 @@ fn print_options(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
         sim.params().timestep,
         sim.model().integrator
     )?;
-    // The derived listing, `Settings { name: value, ... }`, one option a line.
+    // The derived listing, `Settings { name: value, ... }`, one option per line.
     let listing = format!("{settings:?}");
     let fields = listing.split_once('{').map_or("", |(_, fields)| fields);
     for field in fields.trim_end_matches('}').split(", ") {
@@ -177,7 +177,7 @@ fn print_constraints(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
     write!(out, "{table}")
 }
 
-/// What a person calls the source of a row: its name, or for a contact the two geoms.
+/// Returns a readable source of a row: its name, or the two geoms of a contact.
 fn source(sim: &Sim, row: &ConstraintRow) -> String {
     let model = sim.model();
     match row.source {
@@ -194,7 +194,7 @@ fn geoms(model: &Model, geoms: [usize; 2]) -> String {
     format!("{a} – {b}")
 }
 
-/// One line a contact. Its second tangent is the normal times the first.
+/// Prints one line per contact. Its second tangent is the cross product of the normal and the first.
 fn print_contacts(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
     let rows = contact_rows(sim.workspace(), 0);
     let (time, count) = (sim.state.time, rows.len());

@@ -1,4 +1,4 @@
-//! Ctrl-C and the request to end: a run stops after the step it is in, and what it has recorded is kept.
+//! SIGINT and SIGTERM: a run stops after the current step, and its record is kept.
 
 use anyhow::Result;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -7,13 +7,13 @@ use std::ffi::c_int;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// What a shell adds to the number of a signal to tell that it ended a program.
+/// The offset that a shell adds to the number of the signal that ended a program.
 const ENDED_BY_SIGNAL: u8 = 128;
 
-/// A signal that asks a run to stop.
+/// A signal that requests a run to stop.
 #[derive(Clone, Copy)]
 pub(crate) struct Signal {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
     number: c_int,
 }
@@ -30,27 +30,27 @@ const SIGNALS: [Signal; 2] = [
 ];
 
 impl Signal {
-    /// The exit code of a run that it stopped.
+    /// Returns the exit code of a run that the signal stopped.
     pub(crate) fn exit_code(self) -> u8 {
         ENDED_BY_SIGNAL + self.number as u8
     }
 }
 
-/// The signals that came since this was made.
+/// The signals received since this was created.
 pub(crate) struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
-    /// Notes signals from now on, where they would have ended the program. A second one ends it at once.
+    /// Registers signals from now on instead of terminating the program. A second signal terminates it immediately.
     ///
     /// # Errors
-    /// A system that does not let signals be noted.
+    /// Returns an error if the system does not allow signal handlers.
     pub(crate) fn listen() -> Result<Self> {
         let (came, last) = (
             Arc::new(AtomicBool::new(false)),
             Arc::new(AtomicUsize::new(0)),
         );
         for signal in SIGNALS {
-            // In this order: the first signal finds `came` unset, and sets it.
+            // The order matters: the first signal finds `came` unset, and sets it.
             let code = c_int::from(signal.exit_code());
             register_conditional_shutdown(signal.number, code, Arc::clone(&came))?;
             register(signal.number, Arc::clone(&came))?;
@@ -59,7 +59,7 @@ impl Interrupt {
         Ok(Interrupt(last))
     }
 
-    /// The last signal, if one came.
+    /// Returns the last signal, if there is one.
     pub(crate) fn signal(&self) -> Option<Signal> {
         let number = self.0.load(Relaxed) as c_int;
         SIGNALS.into_iter().find(|signal| signal.number == number)

@@ -1,11 +1,13 @@
-//! The `clench` program: `view`, `simulate`, `forward` and `inspect` a robot file, `convert` it to MJCF, and say what files may hold (`mjcf`).
+//! The `clench` program: `view`, `simulate`, `forward` and `inspect` a robot file, `convert` it to MJCF, and list the
+//! supported MJCF (`mjcf`).
 //!
-//! One module a subcommand, plus what they share: options that override the file (`options`), files that replace others when
-//! they are whole (`replacement`), signals (`interrupt`), messages (`message`), tables for people (`table`),
-//! NumPy's files (`npy`, `zip`) and the JSON of states and results (`protocol`), which the fuzz targets reach too, with the bounds that they keep
-//! to (`limits`). Physics lives in the library `clench`.
+//! There is one module per subcommand. They share options that override the file (`options`), atomic replacement of
+//! files (`replacement`), signals (`interrupt`), messages (`message`), text tables (`table`), NumPy files (`npy`,
+//! `zip`) and the JSON of states and results (`protocol`) with its limits (`limits`), which the fuzz targets also use.
+//! The physics is in the library `clench`.
 //!
-//! A library, because `rustc` compiles it beside the crates below it, where a program waits for all of them.
+//! This is a library because `rustc` compiles it in parallel to its dependencies, whereas a program waits for all of
+//! them.
 
 #![deny(unreachable_pub)]
 
@@ -81,7 +83,7 @@ enum Command {
     Mjcf(mjcf::Arguments),
 }
 
-/// Runs the program with the arguments of the process, and gives its exit code.
+/// Runs the program with the arguments of the process and returns its exit code.
 #[must_use]
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
@@ -104,7 +106,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The error of a program that was built without a feature: what the feature does, and the command that brings it.
+/// Returns the error of a program that was built without a feature: its purpose, and the command that enables it.
 #[cfg(not(all(feature = "gpu", feature = "render")))]
 fn without(feature: &str, does: &str) -> anyhow::Error {
     anyhow::anyhow!(

@@ -1,23 +1,23 @@
-//! How much one call may ask of the machine, so that a few words on the command line or a small file end in a message and
-//! not in a machine without memory.
+//! Limits on the resources of one call, so that a short command line or a small file causes an error message instead of
+//! exhausting the memory.
 
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use std::fmt::Display;
 
-/// The most steps that are taken where neither --steps nor --time nor --ctrl says how many.
+/// The maximum number of steps if none of --steps, --time and --ctrl defines it.
 pub const MAX_DEFAULT_STEPS: f64 = 1e6;
-/// The most steps that --time may mean: at a microsecond each they take thirty years.
+/// The maximum number of steps of --time: at a microsecond each they take thirty years.
 const MAX_STEPS: f64 = 1e15;
-/// The longest header of an `.npy` file, in bytes: as long as NumPy itself reads one.
+/// The maximum length of the header of an `.npy` file, bytes, as in NumPy.
 pub const MAX_NPY_HEADER: usize = 10_000;
 
-/// Bytes in a gigabyte.
+/// The number of bytes in a gigabyte.
 const GIGABYTE: f64 = 1e9;
-/// The most gigabytes of an array file or a record where nobody says another number.
+/// The default limit of an array file or a record, gigabytes.
 const DEFAULT_MEMORY: f64 = 4.0;
 
-/// How many steps --time means.
+/// Returns the number of steps of --time.
 pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
     let steps = (time / timestep).round();
     ensure!(
@@ -27,7 +27,7 @@ pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
     Ok(steps as usize)
 }
 
-/// How much memory arrays may take.
+/// The memory limit of arrays.
 #[derive(Args)]
 pub struct MemoryArguments {
     /// Most memory that each array file read, and the record, may take, in gigabytes
@@ -36,7 +36,7 @@ pub struct MemoryArguments {
 }
 
 impl MemoryArguments {
-    /// The most bytes of one array file or record.
+    /// Returns the memory limit of one array file or record.
     pub fn limit(&self) -> MemoryLimit {
         MemoryLimit {
             bytes: GIGABYTE * self.max_memory,
@@ -44,7 +44,7 @@ impl MemoryArguments {
     }
 }
 
-/// A number of bytes that is not to be exceeded.
+/// A limit on a number of bytes.
 #[derive(Clone, Copy)]
 pub struct MemoryLimit {
     bytes: f64,
@@ -59,15 +59,15 @@ impl Default for MemoryLimit {
 }
 
 impl MemoryLimit {
-    /// The number.
+    /// Returns the limit in bytes.
     pub fn bytes(&self) -> usize {
         self.bytes as usize
     }
 
-    /// Lets `amount` things of so many bytes each pass if they fit; `what` names them.
+    /// Checks that `amount` objects of `bytes_each` bytes fit; `what` names them.
     ///
     /// # Errors
-    /// Things that do not fit: how many bytes they take, and how many may be taken.
+    /// Returns an error with the needed and the allowed memory if they do not fit.
     pub fn admit(&self, what: impl Display, amount: u64, bytes_each: usize) -> Result<()> {
         let needed = amount as f64 * bytes_each as f64;
         if needed <= self.bytes {

@@ -1,4 +1,4 @@
-//! The `clench` program; see the library beside it.
+//! The `clench` program; see the library of this package.
 
 use std::process::ExitCode;
 

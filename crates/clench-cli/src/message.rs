@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
-/// Writes a line on standard error. That it cannot be written is nothing that anybody could be told, and no reason to stop.
+/// Writes a line to standard error; a failure to write is ignored.
 pub(crate) fn tell(message: impl Display) {
     let _ = writeln!(io::stderr(), "{message}");
 }

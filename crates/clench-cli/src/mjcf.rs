@@ -1,19 +1,20 @@
-//! `clench mjcf`: what of MJCF is supported.
+//! `clench mjcf`: the supported part of MJCF.
 
 use anyhow::Result;
 use clap::Args;
 use clench::formats::supported;
 use std::io::{self, Write};
 
-/// Prints each element of MJCF with the attributes that are read, those that are accepted without effect on motion, those
-/// that are refused (`name=value`: unless they have that value, which does nothing), and the elements that may stand in it.
+/// Prints each element of MJCF with the attributes that are read, those that are accepted without effect on motion,
+/// those that are refused (`name=value`: unless they have that value, which does nothing), and the elements that may
+/// stand in it.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Only this element; `parent/name` where the parent gives it a meaning of its own
     element: Option<String>,
 }
 
-/// Prints everything on standard output.
+/// Prints everything to standard output.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut out = io::stdout().lock();
     let wanted = |element: &str| arguments.element.as_deref().is_none_or(|e| e == element);

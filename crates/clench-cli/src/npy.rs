@@ -1,4 +1,4 @@
-//! NumPy files: arrays in, archives of arrays out.
+//! NumPy files: reading arrays, writing archives of arrays.
 
 use crate::limits::{MAX_NPY_HEADER, MemoryLimit};
 use crate::zip::Archive;
@@ -8,7 +8,7 @@ use std::io::{BufReader, BufWriter, ErrorKind, Read};
 use std::iter;
 use std::path::Path;
 
-/// What a file begins with, before its version.
+/// The first bytes of a file, before its version.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// An (N, width) array of numbers.
@@ -19,15 +19,15 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// N.
+    /// Returns N.
     pub fn count(&self) -> usize {
         self.count
     }
-    /// Row `k`.
+    /// Returns row `k`.
     pub fn row(&self, k: usize) -> &[f64] {
         &self.values[k * self.width..(k + 1) * self.width]
     }
-    /// All numbers, row after row.
+    /// Returns all numbers in row-major order.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -72,14 +72,14 @@ fn read(path: &Path, width: usize, limit: MemoryLimit) -> Result<Rows> {
         );
     }
     Ok(Rows {
-        // An array of no columns still has its number of rows.
+        // An array of no columns still has a number of rows.
         count: usize::try_from(shape[0])?,
         width,
         values,
     })
 }
 
-/// The text before the numbers, which says what they are.
+/// Reads the header text, which describes the numbers.
 fn read_header(file: &mut impl Read) -> Result<String> {
     let cut = "the file is no NumPy array: it ends before its header does";
     let mut start = [0; MAGIC.len() + 2];
@@ -110,11 +110,11 @@ fn read_header(file: &mut impl Read) -> Result<String> {
     Ok(String::from_utf8_lossy(&text).into_owned())
 }
 
-/// What the header says, which is a dictionary as Python writes one.
+/// The header of an array, a Python dictionary literal.
 struct Header<'a> {
-    /// The type of the numbers, as it is written.
+    /// The type of the numbers as written in the header.
     descr: &'a str,
-    /// Whether the first index is the fastest.
+    /// True for column-major order.
     by_columns: bool,
     shape: Vec<u64>,
 }
@@ -144,7 +144,7 @@ impl<'a> Header<'a> {
     }
 }
 
-/// What stands between two brackets around it all.
+/// Returns the text between two enclosing brackets.
 fn between(text: &str, open: char, close: char) -> Option<&str> {
     text.trim().strip_prefix(open)?.strip_suffix(close)
 }
@@ -153,7 +153,7 @@ fn unquoted(text: &str) -> Option<&str> {
     between(text, '\'', '\'').or_else(|| between(text, '"', '"'))
 }
 
-/// The lengths of a shape.
+/// Parses the lengths of a shape.
 fn lengths(tuple: &str) -> Result<Vec<u64>> {
     let lengths = between(tuple, '(', ')').and_then(|inside| {
         let lengths = parts(inside).into_iter().map(str::parse);
@@ -162,7 +162,7 @@ fn lengths(tuple: &str) -> Result<Vec<u64>> {
     lengths.with_context(|| format!("its shape {tuple} is not whole numbers in brackets"))
 }
 
-/// What stands between commas that are outside of all brackets and quotes. The last comma may end the text.
+/// Splits at commas outside of brackets and quotes. The text may end with a comma.
 fn parts(text: &str) -> Vec<&str> {
     let (mut parts, mut start) = (Vec::new(), 0);
     let (mut depth, mut quote) = (0_usize, None);
@@ -185,7 +185,7 @@ fn parts(text: &str) -> Vec<&str> {
     parts
 }
 
-/// So many numbers of a file. Room is made as they come, not for what the header promises.
+/// Reads `count` numbers of a file. Memory grows with the data, not with the promise of the header.
 fn numbers<const N: usize>(
     mut file: impl Read,
     count: u64,
@@ -205,11 +205,11 @@ fn numbers<const N: usize>(
     Ok(values)
 }
 
-/// Numbers that arrays of archives are made of, in 64 bits.
+/// A 64-bit number of an archive's arrays.
 pub trait Number: Copy {
-    /// NumPy's name of the type.
+    /// The NumPy name of the type.
     const DESCR: &'static str;
-    /// The number as it stands in the file.
+    /// Returns the bytes of the number in the file.
     fn to_bytes(self) -> [u8; 8];
 }
 
@@ -227,26 +227,26 @@ impl Number for i64 {
     }
 }
 
-/// An uncompressed zip archive of `.npy` files: what NumPy calls an `.npz`.
+/// An uncompressed zip archive of `.npy` files, which NumPy calls `.npz`.
 pub struct Npz(Archive<BufWriter<File>>);
 
 impl Npz {
-    /// An empty archive in this file, which is empty too.
+    /// Creates an empty archive in this empty file.
     pub fn new(file: File) -> Self {
         Npz(Archive::new(BufWriter::new(file)))
     }
 
-    /// Adds an array of this shape. The values are gone through twice.
+    /// Adds an array of this shape. The values are iterated twice.
     ///
     /// # Errors
-    /// A file that takes no more.
+    /// Returns an error if the file cannot be written.
     pub fn array<T: Number>(
         &mut self,
         name: &str,
         shape: &[usize],
         mut values: impl Iterator<Item = T> + Clone,
     ) -> Result<()> {
-        /// Numbers that are written together.
+        /// The number of values that are written together.
         const TOGETHER: usize = 8192;
         let pieces = iter::from_fn(move || {
             let mut piece = Vec::new();
@@ -259,18 +259,18 @@ impl Npz {
         Ok((self.0).add(&format!("{name}.npy"), iter::once(header).chain(pieces))?)
     }
 
-    /// Ends the archive.
+    /// Finishes the archive.
     ///
     /// # Errors
-    /// A file that takes no more.
+    /// Returns an error if the file cannot be written.
     pub fn finish(self) -> Result<()> {
         Ok(self.0.finish()?)
     }
 }
 
-/// What stands before the numbers of an array, row after row, of this type and shape.
+/// Returns the header of a row-major array of this type and shape.
 fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
-    /// Numbers begin at a multiple of it.
+    /// The alignment of the numbers, bytes.
     const ALIGNMENT: usize = 64;
     const VERSION: [u8; 2] = [1, 0];
     let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
@@ -278,7 +278,7 @@ fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let before = MAGIC.len() + VERSION.len() + size_of::<u16>();
     let whole = (before + text.len() + 1).next_multiple_of(ALIGNMENT);
     let length = whole - before;
-    // Spaces, and the end of the line.
+    // Pad with spaces, and end the line.
     text = format!("{text:<0$}\n", length - 1);
     [
         MAGIC,

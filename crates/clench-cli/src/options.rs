@@ -1,4 +1,4 @@
-//! What all subcommands share: the model, and options that override the file's.
+//! The arguments that all subcommands share: the model, and options that override the file's.
 
 use crate::message::tell;
 use crate::overrides::{HEADING, Overrides};
@@ -8,7 +8,7 @@ use clench::{Budget, Loader, Model, RigidOptions, Sim};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A model file, and how it is read.
+/// The model file and the options of reading it.
 #[derive(Args)]
 pub(crate) struct ModelFile {
     /// Model file (MJCF or URDF)
@@ -41,7 +41,7 @@ pub(crate) struct ModelArguments {
 }
 
 impl ModelFile {
-    /// Loads the model, and says on standard error what the loader wants known.
+    /// Loads the model and prints the loader's notes to standard error.
     pub(crate) fn load(&self) -> Result<Model> {
         let loader = Loader::new()
             .budget(Budget::default().times(self.budget))
@@ -73,7 +73,7 @@ impl ModelArguments {
         Ok((Arc::new(model), self.overrides.0))
     }
 
-    /// A simulation of one environment.
+    /// Creates a simulation of one environment.
     pub(crate) fn sim(&self) -> Result<Sim> {
         let (model, options) = self.load()?;
         Ok(Sim::with_options(model, options)?)

@@ -1,4 +1,4 @@
-//! Flags for the options of the constraint model: each row of their table has one.
+//! Flags for the options of the constraint model, one per row of the table of options.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
@@ -6,10 +6,10 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use clench::RigidOptions;
 use clench::rigid::options::{Argument, MaxContacts, OptionValue, RigidOption};
 
-/// Under which these flags stand in a help text.
+/// The heading of these flags in a help text.
 pub(crate) const HEADING: &str = "Options that override the file";
 
-/// Options that override the file's `<option>`; what is not given stays as the file says.
+/// Options that override the file's `<option>`; options that are not given keep the file's value.
 pub(crate) struct Overrides(pub RigidOptions);
 
 impl Args for Overrides {
@@ -76,7 +76,7 @@ fn value_name(default: OptionValue) -> &'static str {
     }
 }
 
-/// Reads values of the same type as a default.
+/// Returns a parser of values of the same type as a default.
 fn parser(default: OptionValue) -> ValueParser {
     match default {
         OptionValue::Count(_) => (|text: &str| text.parse().map(OptionValue::Count)).into(),

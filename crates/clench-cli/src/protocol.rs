@@ -10,11 +10,11 @@ use clench::rigid::state::kind::{self, Kind};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 
-/// How an element of a state stands in JSON.
+/// The JSON representation of a state's element.
 trait Written: Kind {
-    /// A number, a list of numbers, or a truth value.
+    /// The JSON type: a number, a list of numbers, or a truth value.
     type Json: DeserializeOwned;
-    /// The element.
+    /// Converts the JSON value to the element.
     fn read(json: Self::Json) -> Self::Of<f64>;
 }
 
@@ -63,7 +63,7 @@ macro_rules! declare_line {
     ($($group:ident { $(
         $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
     )* })*) => {
-        /// A state; what is missing keeps the model's default.
+        /// A state; missing fields keep the model's default.
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields, expecting = "a state: an object in braces")]
         pub struct StateLine {
@@ -74,7 +74,7 @@ macro_rules! declare_line {
         }
 
         impl StateLine {
-            /// Sets the fields that there are.
+            /// Sets the given fields.
             fn assign(&mut self, state: &mut State<f64>) -> Result<()> {
                 $($(
                     let given = self.$name.take();
@@ -110,16 +110,16 @@ struct ContactLine {
     solreffriction: [f64; 2],
     solimp: [f64; 5],
     dim: usize,
-    /// Not zero: the contact is listed but makes no constraint; 1: since it is in the gap, 3: since no dof is between its bodies. In these
-    /// two cases sensors still tell of it.
+    /// If not zero, the contact is listed but creates no constraint; 1: it is in the gap, 3: no dof is between its
+    /// bodies. In these two cases sensors still include it.
     #[serde(default)]
     exclude: i32,
     #[serde(default)]
     surfacevel: [f64; 3],
     #[serde(default)]
     adhesion: f64,
-    /// What MuJoCo derives from the rest, and our own `force`: read past, so that a whole mjContact or a contact of a
-    /// result can be passed.
+    /// Fields that MuJoCo derives from the others, and Clench's `force`: ignored, so that a whole mjContact or a
+    /// contact of a result can be passed.
     #[serde(default, rename = "mu")]
     _mu: IgnoredAny,
     #[serde(default, rename = "H")]
@@ -141,16 +141,17 @@ struct ContactLine {
 }
 
 impl StateLine {
-    /// Reads one line of standard input.
+    /// Parses one line of standard input.
     pub fn parse(line: &str) -> Result<StateLine> {
-        // A plain serde error says which column is wrong; the path says which field.
+        // A plain serde error contains the column; the path adds the field.
         let mut json = serde_json::Deserializer::from_str(line);
         let state = serde_path_to_error::deserialize(&mut json)?;
         json.end()?;
         Ok(state)
     }
 
-    /// Sets the state of a simulation that stands at its defaults; gives the contacts that replace collision detection.
+    /// Sets the state of a simulation that is at its defaults and returns the contacts that replace collision
+    /// detection.
     pub fn apply(mut self, sim: &mut Sim) -> Result<Option<Vec<Contact<f64>>>> {
         if let Some(time) = self.time {
             sim.state.time = time;
@@ -168,7 +169,7 @@ impl StateLine {
     }
 }
 
-/// Runs `forward`, with these contacts if there are any given.
+/// Runs `forward`, with the given contacts if there are any.
 pub fn forward(sim: &mut Sim, given: Option<&[Contact<f64>]>) -> Result<()> {
     match given {
         None => sim.forward()?,
@@ -190,7 +191,7 @@ pub struct NextState {
 }
 
 impl NextState {
-    /// Takes a step, with these contacts if there are any given, and takes it back.
+    /// Takes a step, with the given contacts if there are any, and restores the state.
     pub fn after(sim: &mut Sim, given: Option<&[Contact<f64>]>) -> Result<Self> {
         let before = sim.state.clone();
         match given {
@@ -248,7 +249,7 @@ impl ContactLine {
             active: match self.exclude {
                 0 => true,
                 1 => self.dist >= self.includemargin,
-                // Of geoms that move as one, or of which neither has dofs: a mocap body beside the world.
+                // The geoms move as one, or neither has dofs: a mocap body and the world.
                 3 => {
                     let [first, second] = geoms.map(|g| model.bodies[model.geoms[g].body].weld);
                     let stands = |body: usize| model.bodies[body].dofs.is_empty();
@@ -286,11 +287,11 @@ pub struct ResultLine<'a> {
     qfrc_bias: &'a [f64],
     qfrc_passive: &'a [f64],
     qfrc_actuator: &'a [f64],
-    /// What the sensors of the model measured.
+    /// The sensor values.
     #[serde(skip_serializing_if = "<[f64]>::is_empty")]
     sensordata: &'a [f64],
     contacts: Vec<ContactResult>,
-    /// More contacts were found than the options allow: some are left out.
+    /// True if more contacts were found than the options allow, and some were omitted.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     contact_overflow: bool,
     constraints: Vec<RowResult<'a>>,
@@ -309,14 +310,14 @@ struct ContactResult {
     dist: f64,
     pos: [f64; 3],
     frame: [f64; 9],
-    /// The contact makes a force where `dist` is less.
+    /// The distance below which the contact produces a force.
     includemargin: f64,
     dim: usize,
     friction: [f64; 5],
     adhesion: f64,
-    /// Of the second surface less that of the first: along both tangents, about the normal.
+    /// The surface velocity of the second geom minus that of the first: along both tangents, about the normal.
     surfacevel: [f64; 3],
-    /// In the contact frame: normal, two tangents, spin, two rolls.
+    /// The force in the contact frame: normal, two tangents, spin, two rolls.
     force: [f64; 6],
 }
 
@@ -332,7 +333,7 @@ struct RowResult<'a> {
     force: f64,
 }
 
-/// The name of the element that makes a constraint, or its index where it has none.
+/// The name of the element that creates a constraint, or its index if it has none.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Source<'a> {
@@ -350,7 +351,7 @@ struct SolverResult {
 }
 
 impl<'a> ResultLine<'a> {
-    /// What the last `forward` of a simulation computed, and the state one step later if that is known.
+    /// Collects the results of a simulation's last `forward`, and the state one step later if it is given.
     pub fn new(sim: &'a Sim, next: Option<NextState>, mass: bool, jacobian: bool) -> Self {
         let ws = sim.workspace();
         let nv = sim.model().nv;
@@ -425,7 +426,7 @@ impl<'a> RowResult<'a> {
     }
 }
 
-/// A dense row-major matrix as rows; no rows where there are no columns.
+/// Splits a dense row-major matrix into rows; empty if there are no columns.
 fn rows(dense: &[f64], columns: usize) -> Vec<Vec<f64>> {
     dense
         .chunks_exact(columns.max(1))

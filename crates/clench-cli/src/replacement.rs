@@ -1,4 +1,4 @@
-//! Files that take the place of others when they are whole, and not before.
+//! Files that replace existing ones atomically when they are complete.
 
 use anyhow::{Context, Result, ensure};
 use std::ffi::OsStr;
@@ -7,24 +7,24 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process;
 
-/// A file in the making. What stands at its path stays there until [`finish`](Self::finish), whatever happens in between; if
-/// it is never called nothing is left.
+/// A file under construction. An existing file at its path stays until [`finish`](Self::finish); without that call
+/// nothing is left behind.
 pub(crate) enum Replacement {
-    /// A temporary file beside the path, which it takes in the end.
+    /// A temporary file in the folder of the path, to which it is renamed at the end.
     Beside { part: Part, path: PathBuf },
-    /// What is no file on a disk, such as a pipe, has no contents that could be kept, and cannot be replaced.
+    /// A destination that is not a regular file, such as a pipe, and cannot be replaced.
     Direct(File),
 }
 
 impl Replacement {
-    /// Begins a file for `path`. A link there stays, and what it leads to is replaced.
+    /// Begins a file for `path`. A symbolic link stays, and its target is replaced.
     ///
     /// # Errors
-    /// A path at which no file can be made, or one that must not be written.
+    /// Returns an error if no file can be created at the path, or the existing one is write-protected.
     pub(crate) fn begin(path: &Path) -> io::Result<Self> {
         let (path, old) = match fs::canonicalize(path) {
             Ok(path) => {
-                // Replacing asks nothing of the old file, but one that is protected is so for a reason.
+                // Renaming would ignore the write protection of the old file, so check it here.
                 let file = OpenOptions::new().write(true).open(&path)?;
                 let metadata = file.metadata()?;
                 if !metadata.is_file() {
@@ -51,7 +51,7 @@ impl Replacement {
         Ok(Replacement::Beside { part, path })
     }
 
-    /// What to write to.
+    /// Returns the file to write to.
     pub(crate) fn file(&self) -> io::Result<File> {
         match self {
             Replacement::Beside { part, .. } => part.file.try_clone(),
@@ -59,7 +59,7 @@ impl Replacement {
         }
     }
 
-    /// Where it is written, if that is a file on a disk.
+    /// Returns the path that is written to, if it is a regular file.
     #[cfg(feature = "render")]
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {
@@ -68,10 +68,10 @@ impl Replacement {
         }
     }
 
-    /// Puts the file in its place, once all of it is on the disk.
+    /// Renames the file to its path after all data are on the disk.
     ///
     /// # Errors
-    /// A disk that cannot take it; the old file is then as it was.
+    /// Returns an error if writing fails; the old file is then unchanged.
     pub(crate) fn finish(self) -> io::Result<()> {
         match self {
             Replacement::Direct(_) => Ok(()),
@@ -83,16 +83,16 @@ impl Replacement {
     }
 }
 
-/// A file that goes away with this, or when the next one is made for its path if the program is killed: it is locked as long as its
-/// program runs.
+/// A temporary file that is removed on drop or, if the program is killed, when the next one is created for its path: it
+/// is locked while its program runs.
 pub(crate) struct Part {
     file: File,
-    /// Empty once there is nothing to remove.
+    /// The path; empty if there is nothing to remove.
     path: PathBuf,
 }
 
 impl Part {
-    /// An empty file of a name that no other has, with the permissions of ordinary files.
+    /// Creates an empty file with a unique name and the permissions of ordinary files.
     fn create(folder: &Path, name: &OsStr) -> io::Result<Self> {
         let start = format!(".{}.", name.to_string_lossy());
         remove_abandoned(folder, &start);
@@ -101,10 +101,10 @@ impl Part {
         loop {
             let path = folder.join(format!("{start}{process}-{attempt}{PART}"));
             match OpenOptions::new().write(true).create_new(true).open(&path) {
-                // Another program may have taken it for abandoned before it was locked.
+                // Another program may have removed it as abandoned before it was locked.
                 Ok(file) => match file.try_lock() {
                     Err(TryLockError::WouldBlock) => attempt += 1,
-                    // There are disks that know no locks.
+                    // Some file systems do not support locks.
                     _ if path.exists() => return Ok(Part { file, path }),
                     _ => attempt += 1,
                 },
@@ -114,7 +114,7 @@ impl Part {
         }
     }
 
-    /// Gives it another name, at which it stays.
+    /// Renames the file and keeps it on drop.
     fn rename(mut self, path: &Path) -> io::Result<()> {
         fs::rename(&self.path, path)?;
         self.path.clear();
@@ -124,17 +124,17 @@ impl Part {
 
 impl Drop for Part {
     fn drop(&mut self) {
-        // Where it cannot be removed it stays, under a name that tells what it is.
+        // If it cannot be removed, its name identifies it as temporary.
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// What the names of parts end with.
+/// The suffix of temporary files.
 const PART: &str = ".part";
 
-/// Removes parts whose names start so and whose programs were killed: nobody locks them.
+/// Removes unlocked temporary files with this prefix, whose programs were killed.
 fn remove_abandoned(folder: &Path, start: &str) {
-    // What cannot be looked at or removed stays.
+    // Skips files that cannot be opened or removed.
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
@@ -145,13 +145,13 @@ fn remove_abandoned(folder: &Path, start: &str) {
     }
 }
 
-/// Refuses an output that is one of the inputs, be it through links; each path with what gives it.
+/// Rejects an output that is also an input, possibly through links; each path comes with its flag.
 ///
 /// # Errors
-/// The first input that is the output.
+/// Returns an error that names the first input that is the output.
 pub(crate) fn require_other(output: (&str, &Path), inputs: &[(&str, Option<&Path>)]) -> Result<()> {
     let (flag, path) = output;
-    // An output that does not exist yet is no input.
+    // An output that does not exist yet cannot be an input.
     let Ok(place) = fs::canonicalize(path) else {
         return Ok(());
     };

@@ -1,14 +1,14 @@
-//! Columns of text for people.
+//! Text tables.
 
 use std::fmt;
 
-/// A table that makes each column as wide as its widest cell.
+/// A table whose columns are as wide as their widest cell.
 pub(crate) struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table with these column headings.
+    /// Creates a table with these column headings.
     pub(crate) fn new(headings: &[&str]) -> Self {
         Table {
             rows: vec![headings.iter().map(|h| h.to_string()).collect()],

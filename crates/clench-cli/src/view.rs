@@ -15,15 +15,15 @@ use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Frames a second.
+/// The number of frames per second.
 const RATE: f64 = 60.0;
-/// Environments that are side by side at first, if there are as many.
+/// The initial maximum number of environments side by side.
 const AT_FIRST: usize = 16;
-/// The share of the time between frames that may go into steps.
+/// The share of the frame interval that steps may take.
 const STEPPING: f64 = 0.8;
 
-/// Steps the model in real time and shows it in the browser: bodies, contacts, forces, and how the solver does. There one can
-/// pause, step, go back, pull bodies, set controls, and change the solver's options.
+/// Steps the model in real time and shows it in the browser: bodies, contacts, forces, and how the solver does. There
+/// one can pause, step, go back, pull bodies, set controls, and change the solver's options.
 #[derive(Args)]
 #[command(after_help = DETAILS)]
 pub(crate) struct Arguments {
@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     /// Stand still at first
     #[arg(long)]
     paused: bool,
-    /// Show so many environments: one of them, or up to 64 side by side; they differ by --noise or --states
+    /// Show N environments: one of them, or up to 64 side by side; they differ by --noise or --states
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     envs: Option<u32>,
 
@@ -54,12 +54,12 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     memory: MemoryArguments,
 
-    // Last, because its heading in the help holds for all that follows.
+    // Last, because its help heading applies to all following arguments.
     #[command(flatten)]
     model: ModelArguments,
 }
 
-/// The variable of the environment that may hold a token: on the command line every user of the machine could read it.
+/// The environment variable for the token: other users of the machine could read it on the command line.
 const TOKEN: &str = "CLENCH_VIEW_TOKEN";
 
 const DETAILS: &str = "\
@@ -68,7 +68,7 @@ environment variable CLENCH_VIEW_TOKEN, lets an open page find a viewer again th
 On a remote machine: `ssh -L 8000:127.0.0.1:8000 machine` here, `clench view MODEL --no-open --port 8000` there, and open the
 printed address here. Ctrl-C ends it.";
 
-/// Shows the model until a signal comes.
+/// Shows the model until a signal arrives.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let limit = arguments.memory.limit();
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     show(arguments, batch)
 }
 
-/// Steps and shows a simulation or a batch until a signal comes.
+/// Steps and shows a simulation or a batch until a signal arrives.
 fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
     let page = Page::find(|text| tell(text))?;
     let place = ServerOptions {
@@ -117,7 +117,7 @@ fn announce(arguments: &Arguments, server: &Server) {
     }
 }
 
-/// Steps and shows, frame by frame, and does what users do.
+/// Steps and publishes frame by frame, and executes the commands of users.
 fn play<V: Stepped>(mut player: Player<V>, server: &Server, interrupt: &Interrupt) {
     let period = Duration::from_secs_f64(1.0 / RATE);
     let mut last = Instant::now();
@@ -135,7 +135,7 @@ fn play<V: Stepped>(mut player: Player<V>, server: &Server, interrupt: &Interrup
         if server.clients() > 0 {
             match player.frame() {
                 Ok(frame) => server.publish(frame),
-                // One can still go back, or reset.
+                // Users can still rewind or reset.
                 Err(error) => server.tell(&format!("nothing to show: {error}")),
             }
         }

@@ -1,38 +1,38 @@
-//! Archives of uncompressed files, as ZIP has them: each file behind a header of its own, and at the end a directory of all.
+//! ZIP archives of uncompressed files: each file follows its own header, and a directory of all files comes last.
 
 use std::io::{self, Write};
 
-/// In place of a number of 32 bits that stands among those of 64 bits, which ZIP64 adds.
+/// The placeholder of a 32-bit number whose 64-bit value is in a ZIP64 record.
 const ELSEWHERE: u32 = u32::MAX;
-/// In place of a number of 16 bits.
+/// The placeholder of a 16-bit number.
 const ELSEWHERE_SHORT: u16 = u16::MAX;
-/// Marks the field of a file's numbers of 64 bits.
+/// The identifier of the field with the 64-bit numbers of a file.
 const ZIP64: u16 = 1;
-/// The versions of the format that a reader must know: without numbers of 64 bits, and with them.
+/// The required versions of the format: without and with 64-bit numbers.
 const VERSIONS: [u16; 2] = [20, 45];
-/// An archive is one file.
+/// The archive is a single file.
 const DISK: u16 = 0;
 const NO_COMMENT: u16 = 0;
 
-/// The bytes of numbers, one after the other.
+/// Concatenates the bytes of numbers.
 macro_rules! bytes {
     ($($number:expr),* $(,)?) => {
         [$(&$number.to_le_bytes()[..]),*].concat()
     };
 }
 
-/// An archive in the making.
+/// An archive under construction.
 pub(crate) struct Archive<W> {
     to: W,
     position: u64,
     directory: Vec<u8>,
     count: u64,
-    /// Lengths and positions from here on have 64 bits.
+    /// The smallest length or position that is written with 64 bits.
     wide: u64,
 }
 
 impl<W: Write> Archive<W> {
-    /// An archive without files.
+    /// Creates an archive without files.
     pub(crate) fn new(to: W) -> Self {
         Archive {
             to,
@@ -48,10 +48,10 @@ impl<W: Write> Archive<W> {
         self.to.write_all(bytes)
     }
 
-    /// Adds a file of these pieces, which are made twice: the file's length and checksum stand before it.
+    /// Adds a file of these pieces, which are iterated twice: the file's length and checksum precede it.
     ///
     /// # Errors
-    /// An output that takes no more.
+    /// Returns an error if the output cannot be written.
     pub(crate) fn add<P>(&mut self, name: &str, pieces: P) -> io::Result<()>
     where
         P: Iterator<Item: AsRef<[u8]>> + Clone,
@@ -79,7 +79,7 @@ impl<W: Write> Archive<W> {
     /// Writes the directory.
     ///
     /// # Errors
-    /// An output that takes no more.
+    /// Returns an error if the output cannot be written.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         let (start, count) = (self.position, self.count);
         let directory = std::mem::take(&mut self.directory);
@@ -87,7 +87,7 @@ impl<W: Write> Archive<W> {
         let (end, length) = (self.position, directory.len() as u64);
         let narrow = end < self.wide && count < u64::from(ELSEWHERE_SHORT);
         if !narrow {
-            /// What follows the number itself.
+            /// The number of bytes after the length field.
             const LENGTH: u64 = 44;
             const DISK: u32 = 0;
             const DISKS: u32 = 1;
@@ -109,17 +109,17 @@ impl<W: Write> Archive<W> {
     }
 }
 
-/// What is said of a file.
+/// The metadata of a file.
 struct Entry<'a> {
     name: &'a str,
     length: u64,
     checksum: u32,
-    /// Where its header begins.
+    /// The position of the header.
     start: u64,
 }
 
 impl Entry<'_> {
-    /// The header before the file.
+    /// Returns the header that precedes the file.
     fn header(&self, wide: u64) -> Vec<u8> {
         let (numbers, extra) = match self.length < wide {
             true => self.numbers(&[]),
@@ -128,7 +128,7 @@ impl Entry<'_> {
         [b"PK\x03\x04", &numbers[..], self.name.as_bytes(), &extra].concat()
     }
 
-    /// Its part of the directory.
+    /// Returns the entry of the directory.
     fn in_directory(&self, wide: u64) -> Vec<u8> {
         const NO_ATTRIBUTES: [u8; 6] = [0; 6];
         let narrow = self.length.max(self.start) < wide;
@@ -151,11 +151,11 @@ impl Entry<'_> {
         part
     }
 
-    /// What both have, and the field of these numbers of 64 bits.
+    /// Returns the fields that both share, and the extra field of these 64-bit numbers.
     fn numbers(&self, wide: &[u64]) -> (Vec<u8>, Vec<u8>) {
         const NO_FLAGS: u16 = 0;
         const STORED: u16 = 0;
-        /// The beginning of 1980, which is the earliest: the same run gives the same bytes.
+        /// The earliest time, the beginning of 1980: equal runs give equal bytes.
         const TIME: u16 = 0;
         const DATE: u16 = 1 << 5 | 1;
         let (mut length, mut extra) = (self.length as u32, Vec::new());
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use std::io::{Cursor, Read};
 
-    /// Writes an archive whose numbers have 64 bits from `wide` on, and reads it by other means.
+    /// Writes an archive with 64-bit numbers from `wide` on, and reads it with another library.
     fn there_and_back(files: &[(&str, &[u8])], wide: u64) {
         let mut bytes = Vec::new();
         let mut archive = Archive::new(&mut bytes);

@@ -1,4 +1,4 @@
-//! Collision of two shapes, compiled with this crate: the crates that call it do not compile it anew.
+//! Collision of two shapes, compiled once in this crate and not again in its callers.
 
 use crate::{Contacts, Pose, SeparatingAxis, Shape, collide_again};
 use clench_math::{CompiledKernels, KernelTable, Real};
@@ -8,10 +8,11 @@ use std::sync::LazyLock;
 pub type Collide<T> =
     fn(&Shape<T>, &Pose<T>, &Shape<T>, &Pose<T>, T, &mut SeparatingAxis<T>, &mut Contacts<T>);
 
-/// [`collide_again`] as this crate has compiled it, for a number type that [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) gives to tasks.
+/// Returns [`collide_again`] as compiled in this crate, for a number type that
+/// [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) passes to tasks.
 ///
 /// # Panics
-/// Where `T` is another type.
+/// Panics if `T` is another type.
 pub fn compiled_collide<T: Real>() -> Collide<T> {
     // Not generic, so that it is compiled here.
     #[inline(never)]

@@ -1,29 +1,29 @@
-//! What collision finds: contact points, in a small buffer without heap.
+//! Contact points, in a small buffer without heap.
 
 use crate::frame_from_normal;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
-/// The most points that one pair yields: something on a height field, which may touch it in many places.
+/// The maximum number of contact points of a pair, reached by a shape on a height field.
 pub const MAX_POINTS: usize = 32;
-/// The most points that two convex shapes yield: a face of a box on a face of another.
+/// The maximum number of contact points of two convex shapes, reached by two box faces.
 pub const PATCH_POINTS: usize = 8;
 
-/// One point where two shapes touch or are about to.
+/// A point where two shapes touch or are about to touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint<T: Real> {
-    /// Midway between the two surfaces, in world coordinates, m.
+    /// The point midway between the two surfaces, in world coordinates, m.
     pub position: Vec3<T>,
-    /// Rows: the unit normal from the first shape to the second, then two tangents.
+    /// The contact frame. Rows: the unit normal from the first shape to the second, then two tangents.
     pub frame: Mat3<T>,
-    /// Distance between the surfaces along the normal, m; negative where they penetrate.
+    /// The distance between the surfaces along the normal, m; negative where they penetrate.
     pub distance: T,
-    /// In which environments the point exists. Elsewhere the other fields are finite (if poses and sizes are) and
-    /// mean nothing.
+    /// The environments in which the point exists. Elsewhere the other fields are meaningless, but finite if poses and
+    /// sizes are.
     pub active: T::Mask,
 }
 
 impl<T: Real> ContactPoint<T> {
-    /// A point that exists nowhere.
+    /// Returns a point that exists in no environment.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         ContactPoint {
@@ -33,7 +33,7 @@ impl<T: Real> ContactPoint<T> {
             active: T::Mask::splat(false),
         }
     }
-    /// A point whose tangents follow from its normal.
+    /// Creates a point and computes its tangents from its normal.
     #[inline(always)]
     pub(crate) fn new(position: Vec3<T>, normal: Vec3<T>, distance: T, active: T::Mask) -> Self {
         ContactPoint {
@@ -45,7 +45,7 @@ impl<T: Real> ContactPoint<T> {
     }
 }
 
-/// The contact points of one pair: at most [`PATCH_POINTS`], with a height field at most [`MAX_POINTS`].
+/// The contact points of a pair: at most [`PATCH_POINTS`], or [`MAX_POINTS`] with a height field.
 #[derive(Clone, Copy, Debug)]
 pub struct Contacts<T: Real> {
     points: [ContactPoint<T>; MAX_POINTS],
@@ -53,7 +53,7 @@ pub struct Contacts<T: Real> {
 }
 
 impl<T: Real> Contacts<T> {
-    /// No points.
+    /// Creates an empty buffer.
     #[inline(always)]
     pub fn new() -> Self {
         Contacts {
@@ -61,18 +61,18 @@ impl<T: Real> Contacts<T> {
             len: 0,
         }
     }
-    /// Forgets all points.
+    /// Removes all points.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.len = 0;
     }
-    /// The points found, each active in at least one environment. In every environment its points come in the same
-    /// order as if it were alone.
+    /// Returns the points, each active in at least one environment. Their order in an environment does not depend on
+    /// the others.
     #[inline(always)]
     pub fn as_slice(&self) -> &[ContactPoint<T>] {
         &self.points[..self.len]
     }
-    /// Leaves each environment the first of its deepest points.
+    /// Keeps the first of the deepest points of each environment.
     #[inline(always)]
     pub fn keep_deepest(&mut self) {
         if self.len < 2 {
@@ -93,7 +93,7 @@ impl<T: Real> Contacts<T> {
         self.points[0] = deepest;
         self.len = 1;
     }
-    /// The point at `place`, which may be that after the last: there a point is added, which exists nowhere yet.
+    /// Returns the point at index `place`. At the end it first appends a point that exists in no environment.
     #[inline(always)]
     pub(crate) fn slot(&mut self, place: usize) -> &mut ContactPoint<T> {
         if place == self.len {
@@ -102,7 +102,7 @@ impl<T: Real> Contacts<T> {
         }
         &mut self.points[place]
     }
-    /// Adds a point if any environment has it. No pair has more points than there is room for.
+    /// Adds a point that is active in any environment. No pair exceeds the capacity.
     #[inline(always)]
     pub(crate) fn push(&mut self, point: ContactPoint<T>) {
         debug_assert!(self.len < MAX_POINTS);

@@ -1,26 +1,27 @@
-//! How far apart two shapes are.
+//! The signed distance of two shapes.
 
 use crate::{Contacts, Pose, Shape, Terrain, collide, supported};
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// The shortest way between two shapes.
+/// The shortest connection between two shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation<S> {
-    /// Signed, m: negative is how far the shapes must move apart to touch no more.
+    /// The signed distance, m; if negative, the distance to move apart for separation.
     pub distance: S,
     /// The unit vector from the first shape to the second along which the distance is measured.
     pub normal: Vec3<S>,
-    /// The nearest point of each shape, or the deepest where they overlap, in world coordinates, m: `points[1] - points[0]` is
-    /// `distance * normal`. Where faces lie against each other many points are as near, and these are some of them.
+    /// The nearest point of each shape, or the deepest if they overlap, in world coordinates, m: `points[1] -
+    /// points[0]` is `distance * normal`. If many are equally near, as on parallel faces, these are some of them.
     pub points: [Vec3<S>; 2],
 }
 
-/// The signed distance of two shapes, which may come in either order; nothing if they are further apart than `limit` metres
-/// (which may be infinite), if a number is not finite, or if there is no distance: between two planes, two height fields, or a
-/// plane and a height field.
+/// Computes the signed distance of two shapes, in either order. Returns `None` if they are further apart than `limit`
+/// metres (which may be infinite), if a number is not finite, or if the distance is undefined: between two planes, two
+/// height fields, or a plane and a height field.
 ///
-/// The distance is true, to rounding or a billionth of the smaller shape's size, its points to a millionth. A mesh is its hull. A shape that has sunk into
-/// a height field is at least as deep in it as in the ground below any single triangle.
+/// The distance is accurate to rounding or 1e-9 of the smaller shape's size, its points to 1e-6. A mesh is represented
+/// by its convex hull. The depth of a shape in a height field is at least its depth in the ground below any single
+/// triangle.
 ///
 /// ```
 /// use clench_collide::{Pose, Shape, ShapeKind, distance};
@@ -72,7 +73,7 @@ fn double_pose<S: Scalar>(pose: &Pose<S>) -> Pose<f64> {
     }
 }
 
-/// The search, which is compiled once: in double precision.
+/// Searches in double precision; compiled once.
 fn find(
     a: &Shape<f64>,
     pose_a: &Pose<f64>,
@@ -131,5 +132,5 @@ fn find(
     })
 }
 
-/// Where the search over a height field begins, as a share of the distance to its furthest point.
+/// The initial search radius over a height field, as a fraction of the distance to its furthest point.
 const MIN_SEARCH_SHARE: f64 = 1e-3;

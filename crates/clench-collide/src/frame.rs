@@ -1,10 +1,11 @@
-//! Contact frames: a normal, completed by two tangents.
+//! Contact frames: a normal and two tangents.
 //!
-//! Which tangents matters: a friction pyramid has its edges along them. The choice is MuJoCo's (`mju_makeFrame`).
+//! The choice of tangents affects the result: the edges of a friction pyramid lie along them. It follows MuJoCo
+//! (`mju_makeFrame`).
 
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3};
 
-/// The frame of a contact whose first tangent is the y axis made orthogonal to the unit `normal`, or the z axis where
+/// Computes the contact frame whose first tangent is the y axis made orthogonal to the unit `normal`, or the z axis if
 /// the normal is within 60° of the y axis. Rows: normal, tangents.
 #[inline(always)]
 pub fn frame_from_normal<T: Real>(normal: Vec3<T>) -> Mat3<T> {
@@ -21,13 +22,13 @@ pub fn frame_from_normal<T: Real>(normal: Vec3<T>) -> Mat3<T> {
     Mat3::from_rows(n, tangent, n.cross(tangent))
 }
 
-/// The frame of a contact whose first tangent is the unit vector `direction` made orthogonal to the unit `normal`.
+/// Computes the contact frame whose first tangent is the unit vector `direction` made orthogonal to the unit `normal`.
 ///
-/// Where the two are parallel the first tangent is the x axis made orthogonal to the normal, or the y axis where the
-/// normal is near the x axis. (MuJoCo takes the x axis as it is, which is the same for a horizontal floor.)
+/// If the two are parallel, the first tangent is the x axis made orthogonal to the normal, or the y axis if the normal
+/// is near the x axis. (MuJoCo uses the x axis itself, which is the same for a horizontal floor.)
 #[inline(always)]
 pub fn frame_along<T: Real>(normal: Vec3<T>, direction: Vec3<T>) -> Mat3<T> {
-    // Below this length what is left of the direction is mostly rounding error.
+    // Below this length the remainder of the direction is mostly rounding error.
     let least = T::splat(T::Scalar::EPSILON * T::Scalar::new(1e4));
     let mut tangent = across(normal, direction);
     let parallel = tangent.norm_squared().lt(least * least);
@@ -45,7 +46,7 @@ pub fn frame_along<T: Real>(normal: Vec3<T>, direction: Vec3<T>) -> Mat3<T> {
     Mat3::from_rows(normal, tangent, normal.cross(tangent))
 }
 
-/// What is left of `v` without its part along the unit `normal`.
+/// Returns the component of `v` orthogonal to the unit `normal`.
 #[inline(always)]
 fn across<T: Real>(normal: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
     v - normal * normal.dot(v)

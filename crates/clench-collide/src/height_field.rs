@@ -2,10 +2,10 @@
 
 use clench_math::Vec3;
 
-/// A grid of heights over a rectangle, on a base: a solid.
+/// A solid: a grid of heights over a rectangle, on a base.
 ///
-/// Heights are parts of the elevation, between 0 and 1. Rows follow each other along y, columns along x, both from the negative
-/// end; between its four heights a cell is two triangles.
+/// Heights are fractions of the elevation, between 0 and 1. Rows are ordered along y, columns along x, both from the
+/// negative end. The cell between four heights consists of two triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightField {
     rows: usize,
@@ -16,7 +16,7 @@ pub struct HeightField {
     base: f64,
 }
 
-/// A height field that cannot be.
+/// An invalid height field.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum HeightFieldError {
     /// Fewer than two rows or columns.
@@ -25,28 +25,28 @@ pub enum HeightFieldError {
     /// A wrong number of heights.
     #[error("{rows} rows and {columns} columns need {} heights, not {found}", rows.saturating_mul(*columns))]
     WrongCount {
-        /// Rows.
+        /// The number of rows.
         rows: usize,
-        /// Columns.
+        /// The number of columns.
         columns: usize,
-        /// Heights.
+        /// The number of heights.
         found: usize,
     },
-    /// A height that is not a number, or not finite.
+    /// A height is NaN or infinite.
     #[error("height {0} is not a finite number")]
     NotFinite(usize),
-    /// A size that is not positive.
+    /// A size is not positive and finite.
     #[error("size[{0}] must be positive and finite, but is {1}")]
     Size(usize, f64),
 }
 
 impl HeightField {
-    /// A field of rows of heights in any unit, which are brought to parts between the lowest, 0, and the highest, 1 (all 0 where
-    /// they are equal). `size`, in metres: half lengths along x and y, elevation of the highest over the lowest, depth
-    /// of the base below the lowest.
+    /// Creates a field from rows of heights in any unit, which are normalized to 0 for the lowest and 1 for the highest
+    /// (all 0 if they are equal). `size`, in metres: half lengths along x and y, elevation of the highest over the
+    /// lowest, depth of the base below the lowest.
     ///
     /// # Errors
-    /// Counts that do not fit, heights that are not finite, sizes that are not positive.
+    /// Returns an error if counts do not match, or a height or size is invalid.
     pub fn new(
         rows: usize,
         columns: usize,
@@ -82,23 +82,23 @@ impl HeightField {
         })
     }
 
-    /// Rows, along y.
+    /// Returns the number of rows, along y.
     pub fn rows(&self) -> usize {
         self.rows
     }
-    /// Columns, along x.
+    /// Returns the number of columns, along x.
     pub fn columns(&self) -> usize {
         self.columns
     }
-    /// All heights as parts of the elevation, row after row.
+    /// Returns all heights as fractions of the elevation, row by row.
     pub fn heights(&self) -> &[f64] {
         &self.heights
     }
-    /// Half lengths along x and y, elevation, base, m.
+    /// Returns half lengths along x and y, elevation, base, m.
     pub fn size(&self) -> [f64; 4] {
         [self.half[0], self.half[1], self.elevation, self.base]
     }
-    /// A point of the surface, m.
+    /// Returns a grid point of the surface, m.
     pub fn point(&self, row: usize, column: usize) -> Vec3<f64> {
         let along = |index: usize, count: usize, half: f64| {
             half * (2.0 * index as f64 / (count - 1) as f64 - 1.0)
@@ -109,8 +109,8 @@ impl HeightField {
             self.elevation * self.heights[row * self.columns + column],
         )
     }
-    /// The height of the surface over a place in its rectangle, m; beyond an edge that over the nearest place on it. A cell's
-    /// diagonal, between its two triangles, leads from its first corner to its last.
+    /// Returns the height of the surface at a point of the rectangle, m; outside, that at the nearest point of its
+    /// edge. A cell's diagonal, between its two triangles, runs from its first corner to its last.
     pub fn height_at(&self, x: f64, y: f64) -> f64 {
         let cell = |v: f64, half: f64, count: usize| {
             let along =
@@ -128,7 +128,7 @@ impl HeightField {
         };
         self.elevation * part
     }
-    /// The radius of a sphere about the origin that holds it, m (MuJoCo's `geom_rbound`).
+    /// Returns the radius of a sphere about the origin that encloses the field, m (MuJoCo's `geom_rbound`).
     pub fn radius(&self) -> f64 {
         let [x, y] = self.half;
         Vec3::new(x, y, self.elevation.max(self.base)).norm()
@@ -140,7 +140,7 @@ fn normalize(heights: &mut [f64]) {
     let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     for height in heights {
         *height = match high > low {
-            // Halved first, so that no difference overflows.
+            // Halved first to avoid overflow of the differences.
             true => (0.5 * *height - 0.5 * low) / (0.5 * high - 0.5 * low),
             false => 0.0,
         };

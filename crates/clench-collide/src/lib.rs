@@ -1,9 +1,10 @@
-//! Collision detection: shapes and poses in, contact points out. No joints, no bodies.
+//! Collision detection: contact points from shapes and poses. No joints, no bodies.
 //!
-//! [`collide`] finds the contact points of one pair of shapes, [`distance`] how far apart they are, [`protrusion`] how far one juts
-//! out of the other, [`ray`] where a ray hits one, [`near`] and [`BroadPhase`] find the pairs worth asking about. Contacts and rays
-//! are generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or several side by side, where each contact point says in which of them it exists.
-//! Which points a pair yields follows MuJoCo 4.0.
+//! [`collide`] computes the contact points of two shapes, [`distance`] their distance, [`protrusion`] how far one
+//! protrudes from the other, and [`ray`] the first hit of a ray. [`near`] and [`BroadPhase`] find the pairs that may
+//! touch. Contacts and rays are generic over [`Real`](clench_math::Real): one call serves one environment (`f64`) or
+//! several in parallel; each contact point has a mask of its environments. The choice of contact points follows MuJoCo
+//! 4.0.
 //!
 //! ```
 //! use clench_collide::{Contacts, Pose, Shape, ShapeKind, collide};

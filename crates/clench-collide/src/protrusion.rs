@@ -1,41 +1,41 @@
-//! How far one convex shape juts out of another.
+//! The distance by which one convex shape protrudes from another.
 //!
-//! With the support function h(u) of a body, how far it reaches along the unit direction u, the body A juts out of B by
+//! With the support function h(u) of a body, its extent along the unit direction u, the body A protrudes from B by
 //!
 //! ```text
 //! max over unit u of  f(u) = h_A(u) − h_B(u).
 //! ```
 //!
-//! Where that is positive it is the directed Hausdorff distance, how far the point of A that is furthest from B is away from it. Where A lies
-//! inside B it is less the clearance between the surface of A and that of B. The gradient of f is the difference of the two points that reach
-//! furthest along u.
+//! If positive, it is the directed Hausdorff distance: that of B to the furthest point of A. If A lies inside B, it is
+//! minus the clearance between the surfaces. The gradient of f is the difference of the two support points along u.
 //!
-//! f is a difference of convex functions and can have several maxima. MuJoCo 4.0 climbs from the six axes of B and takes the best that it
-//! meets within its bounds; so does this, step by step, since its answers are what a file means: bounds that are tight may stop it short.
+//! f is a difference of convex functions and can have several maxima. MuJoCo 4.0 climbs from the six axes of B and
+//! returns the best value found within its limits. This code repeats it step by step, since models rely on its values:
+//! tight limits may stop it early.
 
 use crate::{Pose, Shape};
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// How far the search for a maximum goes.
+/// The limits of the search for a maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ascent {
-    /// Most directions that are tried from each start; at least one is.
+    /// The maximum number of directions tried from each start; at least one is tried.
     pub iterations: usize,
-    /// Slope, as a share of the value, and angle of a step, rad, below which a climb ends.
+    /// The tolerance that ends a climb: for the slope, relative to the value, and for a step's angle, rad.
     pub tolerance: f64,
 }
 
-/// The angle of a climb's first steps, rad. Each that leads down halves it.
+/// The angle of a climb's first steps, rad. Each step that decreases the value halves it.
 const FIRST_STEP: f64 = 0.5;
-/// Vectors shorter than this have no direction.
+/// The minimum length of a vector that has a direction.
 const LEAST: f64 = 1e-15;
-/// The same of the square of a length.
+/// The square of `LEAST`.
 const LEAST_SQUARED: f64 = LEAST * LEAST;
 
-/// How far `inner` juts out of `outer`, m: negative where it lies inside, by its clearance. Nothing if one of them is not a bounded convex
-/// shape: a plane, a height field, a mesh without a hull.
+/// Computes the distance by which `inner` protrudes from `outer`, m; minus its clearance if it lies inside. Returns
+/// `None` unless both are bounded convex shapes: not a plane, a height field, or a mesh without a hull.
 ///
-/// It may fall short of the truth where the search ends early or finds a lower one of several maxima, and never exceeds it.
+/// The result never exceeds the true value. It is smaller if the search ends early or finds a lower local maximum.
 ///
 /// ```
 /// use clench_collide::{Ascent, Pose, Shape, ShapeKind, protrusion};
@@ -64,8 +64,8 @@ pub fn protrusion<S: Scalar>(
     is_bounded(inner).then(|| highest(furthest, outer, pose_outer, search))?
 }
 
-/// The same of points in place of a shape, in whose coordinates they are: how far the one that is furthest out juts out. Nothing without
-/// points.
+/// Computes the same for points in the coordinates of `pose_points`: the protrusion of the outermost. Returns `None`
+/// without points.
 pub fn protrusion_of_points<S: Scalar>(
     points: &[Vec3<f64>],
     pose_points: &Pose<S>,
@@ -83,10 +83,11 @@ pub fn protrusion_of_points<S: Scalar>(
     (!points.is_empty()).then(|| highest(furthest, outer, pose_outer, search))?
 }
 
-/// The first pose in coordinates of the world turned as the second is.
+/// Returns the first pose in world coordinates rotated to the axes of the second.
 ///
-/// The climbs start along the axes of the outer shape, where whole edges and faces of boxes, cylinders and capsules are furthest. So turned
-/// these axes are exact, and rounding does not choose among the corners, as it does in MuJoCo where the shape itself is turned.
+/// The climbs start along the axes of the outer shape, where whole edges and faces of boxes, cylinders and capsules are
+/// furthest. In the rotated coordinates these axes are exact, so rounding does not choose among the corners, as it does
+/// in MuJoCo, which rotates the shape itself.
 fn turned<S: Scalar>(pose: &Pose<S>, by: &Pose<S>) -> Pose<S> {
     let columns = [0, 1, 2].map(|i| by.rotation.transpose_mul(pose.rotation.column(i)));
     Pose {
@@ -95,8 +96,8 @@ fn turned<S: Scalar>(pose: &Pose<S>, by: &Pose<S>) -> Pose<S> {
     }
 }
 
-/// The largest value of f that climbs from the six axes of a shape meet, with the points of the other that are furthest along directions, all
-/// in the world turned as that shape.
+/// Returns the largest value of f found by climbing from the six axes of `outer`, given the support points of the inner
+/// shape, all in world coordinates rotated to the axes of `outer`.
 fn highest<S: Scalar>(
     furthest_of_inner: impl Fn(Vec3<S>) -> Vec3<S>,
     outer: &Shape<S>,
@@ -119,7 +120,7 @@ fn highest<S: Scalar>(
     Some(best)
 }
 
-/// Whether a shape is a bounded convex body that [`protrusion`] can tell of.
+/// Returns true for a bounded convex body.
 fn is_bounded<S: Scalar>(shape: &Shape<S>) -> bool {
     match shape {
         Shape::Plane(_) | Shape::HeightField(_) => false,
@@ -128,10 +129,11 @@ fn is_bounded<S: Scalar>(shape: &Shape<S>) -> bool {
     }
 }
 
-/// The largest value of f that a climb on the unit sphere meets, with the gradient of f in `offset`.
+/// Returns the largest value of f that a climb on the unit sphere finds; `offset` computes the gradient of f.
 ///
-/// While steps lead up they follow the slope. One that does not is taken back, and a shorter one follows the sum of the slope beyond and
-/// the last direction, which leads along a ridge of f where the slope alone would cross it to and fro.
+/// While steps increase f, they follow the slope. A step that does not is reverted, and a shorter one follows the sum
+/// of the slope found there and the last direction. This follows a ridge of f, which the slope alone would cross back
+/// and forth.
 fn climb<S: Scalar>(offset: impl Fn(Vec3<S>) -> Vec3<S>, start: Vec3<S>, search: Ascent) -> S {
     let (least, tolerance) = (S::new(LEAST), S::new(search.tolerance));
     let mut best = -S::INFINITY;
@@ -165,14 +167,15 @@ fn climb<S: Scalar>(offset: impl Fn(Vec3<S>) -> Vec3<S>, start: Vec3<S>, search:
         }
         let next = summit + along * step;
         if next == summit {
-            break; // The step is less than rounding.
+            break; // The step is smaller than rounding.
         }
         u = next * (S::ONE / next.norm());
     }
     best
 }
 
-/// The point of a shape that is furthest along a unit direction, both in its own coordinates. Of several it is the one that MuJoCo takes.
+/// Returns the point of a shape that is furthest along a unit direction, both in local coordinates. Among several, it
+/// returns the one that MuJoCo chooses.
 fn furthest<S: Scalar>(shape: &Shape<S>, d: Vec3<S>) -> Vec3<S> {
     let toward = |half: S, along: S| if along >= S::ZERO { half } else { -half };
     match shape {

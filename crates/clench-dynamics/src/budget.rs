@@ -1,10 +1,10 @@
-//! How much a model file may ask for.
+//! Limits on the resources of a model file.
 
-/// Bounds on the memory and work that a model file, and each step of its model, may ask for. A few letters of a file can ask for
-/// gigabytes, so a file from elsewhere must not decide alone; a model that is meant to be large is given a larger budget.
+/// Limits on the memory and work of a model file, and of each step of its model. A few letters of a file can request
+/// gigabytes, so an untrusted file is limited. Load a model that is meant to be large with a larger budget.
 ///
-/// Exceeding a bound is an error that names it: a `LoadError` or `BuildError` while a model is
-/// read and built, a [`Fault`](crate::Fault) of the environment while it moves.
+/// Exceeding a limit is an error that names it: a `LoadError` or `BuildError` while a model is read and built, a
+/// [`Fault`](crate::Fault) of the environment while it moves.
 ///
 /// ```
 /// use clench_dynamics::Budget;
@@ -13,17 +13,17 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Memory for reading the files of a model and building it, bytes, as estimated before it is taken; 2 GiB.
+    /// Memory for reading the files of a model and building it, bytes, as estimated before allocation; 2 GiB.
     pub bytes: u64,
-    /// Elements in the files of a model, those in replicas counted once for each; 500 000.
+    /// Elements in the files of a model, with every replica counted; 500 000.
     pub elements: u64,
-    /// Contacts of an environment in a step; 250 000. Pairs of geoms whose bounds meet may be four times as many. How many contacts
-    /// one wants is another matter, and the option `max_contacts`.
+    /// Contacts of an environment in a step; 250 000. Pairs of geoms whose bounds overlap may be four times as many.
+    /// The option `max_contacts` limits contacts separately.
     pub contacts: u64,
-    /// Numbers in one matrix of a step: the mass matrix, the moment arms of actuators, the Jacobian of all contacts, the factor of
-    /// an island's Hessian; 2²⁵, which take 256 MiB.
+    /// Elements of one matrix of a step: the mass matrix, the moment arms of actuators, the Jacobian of all contacts,
+    /// the factor of an island's Hessian; 2²⁵, which take 256 MiB.
     pub matrix: u64,
-    /// Steps of simulation that building a model may take, to find the length ranges of muscles that do not give them; 2 000 000.
+    /// Simulation steps for building a model, to find the length ranges of muscles that do not specify them; 2 000 000.
     pub steps: u64,
 }
 
@@ -40,7 +40,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// No bounds: for files that are known.
+    /// No limits: for trusted files.
     pub const UNLIMITED: Budget = Budget {
         bytes: u64::MAX,
         elements: u64::MAX,
@@ -49,15 +49,15 @@ impl Budget {
         steps: u64::MAX,
     };
 
-    /// Pairs of geoms whose bounds meet in a step.
+    /// Returns the limit of pairs of geoms whose bounds overlap in a step.
     pub fn pairs(&self) -> u64 {
         self.contacts.saturating_mul(4)
     }
 
-    /// Every bound times a factor; a factor that is not positive leaves nothing.
+    /// Multiplies every limit by a factor. A factor that is not positive gives zero limits.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
-        // Conversions from floating point stop at the ends of the range.
+        // Conversions from floating point saturate.
         let scaled = |bound: u64| (bound as f64 * factor) as u64;
         Budget {
             bytes: scaled(self.bytes),
@@ -69,6 +69,6 @@ impl Budget {
     }
 }
 
-/// How to go on where more is meant; the end of each message.
+/// The end of each message: how to raise the limit.
 pub const RAISE: &str =
     "if that is meant, load the model with a larger budget (`Budget`, `budget=` or `--budget`)";

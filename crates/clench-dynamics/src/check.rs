@@ -1,5 +1,5 @@
-//! Checks of what users hand in and of what a step produced. The usual case, that all is well in every lane, is told by a
-//! mask; which number is wrong is looked for only where one is.
+//! Checks of user input and of the results of a step. A mask covers the usual case, that every lane is valid. The
+//! invalid number is searched only if there is one.
 
 use crate::contact::{Contact, Excess};
 use crate::error::{Fault, SimError};
@@ -11,10 +11,10 @@ use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Mat3, Real, Scalar, kernel};
 use clench_solver::Status;
 
-/// Positions, velocities and accelerations beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
+/// The limit of valid positions, velocities and accelerations (MuJoCo's `mjMAXVAL`).
 const MAX_VALUE: f64 = 1e10;
 
-/// How large the numbers of a field may be.
+/// The limit of the numbers of a field.
 #[derive(Clone, Copy)]
 enum Bound {
     /// At most [`MAX_VALUE`].
@@ -33,7 +33,7 @@ impl Bound {
     }
 }
 
-/// The right length and only finite numbers.
+/// Checks that the values have the right length and are finite.
 pub fn check_values<T: Scalar>(
     field: &'static str,
     values: &[T],
@@ -50,10 +50,10 @@ pub fn check_values<T: Scalar>(
     }
 }
 
-/// Refuses an input of another length than the model needs.
+/// Checks that an input has the length that the model needs.
 ///
 /// # Errors
-/// A length that is not `expected`.
+/// Returns an error if the length is not `expected`.
 pub fn check_length(field: &'static str, found: usize, expected: usize) -> Result<(), SimError> {
     if found == expected {
         return Ok(());
@@ -65,12 +65,12 @@ pub fn check_length(field: &'static str, found: usize, expected: usize) -> Resul
     })
 }
 
-/// So many numbers as make up whole parts of `each`.
+/// Checks that the length is a multiple of `each`.
 pub fn check_count(field: &'static str, found: usize, each: usize) -> Result<(), SimError> {
     check_length(field, found, found / each * each)
 }
 
-/// The first number of a lane that is beyond a bound, or none at all.
+/// Returns the first number of a lane that is beyond a limit, if any.
 fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usize, f64)> {
     let value = |i: usize| values[i].lane(lane);
     let most = bound.of::<T::Scalar>();
@@ -78,7 +78,7 @@ fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usi
     Some((index, value(index).to_f64()))
 }
 
-/// A state of the model's lengths.
+/// Checks that a state has the lengths of the model.
 pub fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimError> {
     if s.fits(model) {
         return Ok(());
@@ -93,7 +93,7 @@ macro_rules! declare_inputs {
     ($($group:ident { $(
         $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
     )* })*) => {
-        /// Whether some numbers of a field of the state are beyond its bound.
+        /// Returns true if some numbers of a field of the state are beyond its limit.
         pub fn beyond_bounds<T: Scalar>(field: &str, values: &[T]) -> bool {
             $($(if field == stringify!($name) {
                 return first_beyond(values, 0, Bound::$bound).is_some();
@@ -101,8 +101,8 @@ macro_rules! declare_inputs {
             false
         }
 
-        /// Shows every number of a state but its time to `visit`, of the groups that are wanted: field, its bound, index of the first
-        /// number in the field, numbers.
+        /// Passes every number of a state except its time to `visit`, for the groups that are wanted: field, its limit,
+        /// index of the first number in the field, numbers.
         #[inline(always)]
         fn each_input<T: Real>(
             s: &State<T>,
@@ -121,14 +121,14 @@ macro_rules! declare_inputs {
 }
 crate::state_fields!(declare_inputs);
 
-/// Shows to `visit` what a step must compute within bounds.
+/// Passes the computed quantities that must be within limits to `visit`.
 #[inline(always)]
 fn each_computed<T: Real>(ws: &Workspace<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
     visit("qacc", Bound::Near, &ws.qacc);
     visit("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
 }
 
-/// Shows to `visit` what a step must leave within bounds in the state.
+/// Passes the numbers of the state that a step must leave within limits to `visit`.
 #[inline(always)]
 fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
     visit("qvel", Bound::Near, &state.qvel);
@@ -136,7 +136,7 @@ fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bou
     visit("act", Bound::Finite, &state.act);
 }
 
-/// The lanes in which all numbers are within a bound.
+/// Returns the lanes in which all numbers are within a limit.
 #[inline(always)]
 fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
     let most = bound.of();
@@ -150,7 +150,7 @@ fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
 /// The group of fields that are mostly zero.
 const OCCASIONAL: &str = "occasional";
 
-/// Whether an occasional input is anything but zero.
+/// Returns true if an occasional input is not zero.
 pub fn has_occasional<S: Scalar>(s: &State<S>) -> bool {
     let mut bits = 0;
     each_input(
@@ -166,7 +166,7 @@ pub fn has_occasional<S: Scalar>(s: &State<S>) -> bool {
     bits != 0
 }
 
-/// Whether all occasional inputs are as `wanted`, which is shown some numbers at a time.
+/// Returns true if all occasional inputs satisfy `wanted`, which receives some numbers at a time.
 #[inline(always)]
 pub(crate) fn are_occasional<T: Real>(s: &State<T>, wanted: impl Fn(&[T]) -> bool) -> bool {
     let mut all = true;
@@ -179,7 +179,8 @@ pub(crate) fn are_occasional<T: Real>(s: &State<T>, wanted: impl Fn(&[T]) -> boo
     all
 }
 
-/// The lanes whose state a step can start from. Where `occasional` is false, all [occasional inputs](has_occasional) are zero.
+/// Returns the lanes whose state a step can start from. If `occasional` is false, all [occasional
+/// inputs](has_occasional) are zero.
 #[kernel]
 pub fn good_inputs<T: Real>(s: &State<T>, occasional: bool) -> T::Mask {
     let mut good = T::Mask::splat(true);
@@ -195,7 +196,7 @@ pub fn good_inputs<T: Real>(s: &State<T>, occasional: bool) -> T::Mask {
     good
 }
 
-/// What is wrong with the state of a lane that is not good.
+/// Returns the fault of the state of a lane that is not good.
 pub fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> Fault {
     let time = s.time.lane(lane);
     let mut found = (!time.is_finite()).then_some(("time", 0, time));
@@ -225,13 +226,14 @@ pub fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> Fault {
     }
 }
 
-/// The lanes in which a step or forward went well: accelerations, constraint forces and state within bounds.
+/// Returns the lanes in which a step or forward pass succeeded: accelerations, constraint forces and state within
+/// limits.
 #[inline(always)]
 pub fn good_results<T: Real>(state: &State<T>, ws: &Workspace<T>) -> T::Mask {
     well_computed(ws) & well_moved(state)
 }
 
-/// The lanes in which accelerations and constraint forces are within bounds.
+/// Returns the lanes in which accelerations and constraint forces are within limits.
 #[kernel]
 pub fn well_computed<T: Real>(ws: &Workspace<T>) -> T::Mask {
     let mut good = !ws.singular & !ws.solver.stats().failed() & ws.collision.excess.le(T::ZERO);
@@ -243,7 +245,7 @@ pub fn well_computed<T: Real>(ws: &Workspace<T>) -> T::Mask {
     good
 }
 
-/// The lanes in which the state is within bounds.
+/// Returns the lanes in which the state is within limits.
 #[kernel]
 pub fn well_moved<T: Real>(state: &State<T>) -> T::Mask {
     let mut good = T::Mask::splat(true);
@@ -255,7 +257,8 @@ pub fn well_moved<T: Real>(state: &State<T>) -> T::Mask {
     good
 }
 
-/// What is wrong with what a step from `time` produced in a lane that is not good. The state can be in lanes, or the first of them.
+/// Returns the fault of a step from `time` in a lane that is not good. The state can be in lanes, or be the first of
+/// them.
 pub fn result_fault<S: Real, T: Real>(
     model: &Model,
     time: f64,
@@ -282,7 +285,7 @@ pub fn result_fault<S: Real, T: Real>(
     each_moved(state, |field, bound, values| {
         note(field, first_beyond(values, lane, bound));
     });
-    // Where every number is within bounds, the solver met one that was not.
+    // If every number is within limits, the solver encountered one that was not.
     let (field, index, value) = found.unwrap_or(("gap", 0, f64::NAN));
     Fault::Diverged {
         time,
@@ -293,7 +296,7 @@ pub fn result_fault<S: Real, T: Real>(
     }
 }
 
-/// A contact that a user hands in.
+/// Checks a contact that the user provides.
 pub fn check_contact<T: Scalar>(model: &Model, contact: &Contact<T>) -> Result<(), &'static str> {
     if contact.geoms.iter().any(|&g| g >= model.geoms.len()) {
         return Err("it names a geom that the model does not have");
@@ -323,11 +326,11 @@ pub fn check_contact<T: Scalar>(model: &Model, contact: &Contact<T>) -> Result<(
     check_frame(&contact.frame)
 }
 
-/// By how much the products of a given frame's axes may differ from those of unit vectors at right angles: enough for frames
-/// that were computed in single precision or printed with six digits.
+/// Tolerance of the dot products of the axes of a user's contact frame: large enough for frames that were computed in
+/// single precision or printed with six digits.
 const FRAME_ERROR: f64 = 1e-5;
 
-/// Three unit vectors at right angles to each other, right-handed.
+/// Checks for three orthogonal unit vectors, right-handed.
 fn check_frame<T: Scalar>(frame: &Mat3<T>) -> Result<(), &'static str> {
     let [normal, first, second] = frame.rows;
     let near =

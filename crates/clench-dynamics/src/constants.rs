@@ -1,8 +1,8 @@
-//! Constants that follow from a model's numbers in its initial configuration qpos0 (MuJoCo's `mj_setConst`): subtree masses, inverse
-//! inertias, lengths of tendons, frames of cameras, anchors of equality constraints.
+//! Constants that follow from a model's parameters in its initial configuration qpos0 (MuJoCo's `mj_setConst`): subtree
+//! masses, inverse inertias, tendon lengths, camera frames, anchors of equality constraints.
 //!
-//! The inverse inertia that a constraint with Jacobian J meets is A = J M⁻¹ Jᵀ; MuJoCo's `invweight0` are such numbers at
-//! qpos0, averaged over the directions that belong together. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
+//! The inverse inertia of a constraint with Jacobian J is A = J M⁻¹ Jᵀ. MuJoCo's `invweight0` are such values at qpos0,
+//! averaged over the directions of a group. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
 
 use crate::dynamics::camera::fixed_pose;
 use crate::dynamics::inertia::composite_inertia;
@@ -17,9 +17,9 @@ use crate::{State, Step};
 use clench_math::{Motion, Vec3};
 use clench_solver::{TreeFactor, TreeMatrix};
 
-/// Smallest mass (kg), inertia (kg m²) or inverse that is divided by (MuJoCo's `mjMINVAL`).
+/// The smallest mass (kg), inertia (kg m²) or inverse that is used as a divisor (MuJoCo's `mjMINVAL`).
 pub const MIN_INERTIA: f64 = 1e-15;
-/// The least size of a body, m (as in MuJoCo).
+/// The minimum size of a body, m (as in MuJoCo).
 const MIN_SIZE: f64 = 1e-5;
 
 /// The fields that [`Constants`] sets.
@@ -40,10 +40,10 @@ pub const CONSTANTS: [ParamField; 14] = [
     ParamField::eq_quat2,
 ];
 
-/// A mass matrix that is not positive definite at qpos0, or hardly.
+/// A mass matrix that is singular or nearly singular at qpos0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularMass {
-    /// The dof at which that shows, if it is known.
+    /// The dof with the bad pivot, if it is known.
     pub dof: Option<usize>,
 }
 
@@ -55,7 +55,7 @@ pub struct Constants {
 }
 
 impl SingularMass {
-    /// The error of a simulation, or of an environment of a batch.
+    /// Returns the error of a simulation, or of an environment of a batch.
     pub fn error(self, model: &Model, env: Option<usize>) -> SimError {
         let place = self.dof.map(|dof| {
             let name = &model.joints[model.dofs[dof].joint].name;
@@ -69,19 +69,19 @@ impl SingularMass {
 }
 
 impl Constants {
-    /// The initial configuration of a model with these numbers.
+    /// Computes the initial configuration of a model with these parameters.
     ///
     /// # Errors
-    /// A mass matrix that is not positive definite.
+    /// Returns an error if the mass matrix is not positive definite.
     pub fn new(model: &Model, params: &Params<f64>) -> Result<Self, SingularMass> {
         let pose = pose(model, params, &params.qpos0);
         Self::at(model, params, pose)
     }
 
-    /// The same, with the poses at qpos0.
+    /// Does the same with given poses at qpos0.
     ///
     /// # Errors
-    /// A mass matrix that is not positive definite.
+    /// Returns an error if the mass matrix is not positive definite.
     pub fn at(
         model: &Model,
         params: &Params<f64>,
@@ -102,15 +102,15 @@ impl Constants {
         })
     }
 
-    /// The poses.
+    /// Returns the poses.
     pub fn pose(&self) -> &Positions<f64> {
         &self.pose
     }
 
-    /// Sets the fields of [`CONSTANTS`] to what follows from the others.
+    /// Computes the fields of [`CONSTANTS`] from the others.
     ///
     /// # Errors
-    /// A mass matrix so nearly singular that inverse inertias are not finite.
+    /// Returns an error if the mass matrix is so nearly singular that inverse inertias are not finite.
     pub fn set(&mut self, model: &Model, params: &mut Params<f64>) -> Result<(), SingularMass> {
         params.derive(model, ParamField::body_mass);
         self.set_dof_lengths(model, params);
@@ -130,20 +130,21 @@ impl Constants {
         }
     }
 
-    /// J M⁻¹ Jᵀ for a force of an actuator, one of `Model::nout`.
+    /// Computes J M⁻¹ Jᵀ for actuator output `output` (below `Model::nout`).
     pub fn weight_of_output(&mut self, model: &Model, output: usize) -> f64 {
         let row = transmission::moment(model, &self.pose, output);
         fill(&mut self.row, row);
         self.weight(model)
     }
 
-    /// J M⁻¹ Jᵀ for `row`.
+    /// Computes J M⁻¹ Jᵀ for `row`.
     fn weight(&mut self, model: &Model) -> f64 {
         self.mass.solve_half(&model.tree, &mut self.row);
         self.row.iter().map(|x| x * x).sum()
     }
 
-    /// The largest distance of a body's joints and geoms from its centre of mass, for rotations.
+    /// Sets the lengths of dofs; for rotations the largest distance of a body's joints and geoms from its centre of
+    /// mass.
     fn set_dof_lengths(&self, model: &Model, params: &mut Params<f64>) {
         let pose = &self.pose;
         let mut sizes = vec![0.0f64; model.nbody()];
@@ -193,7 +194,7 @@ impl Constants {
         params.dof_invweight0 = weights;
     }
 
-    /// Mean over the three translations of the centre of mass, and over the three rotations.
+    /// Averages over the three translations of the centre of mass, and over the three rotations.
     fn set_body_weights(&mut self, model: &Model, params: &mut Params<f64>) {
         let Constants { pose, mass, row } = self;
         let mut weights = vec![[0.0; 2]; model.nbody()];
@@ -228,7 +229,7 @@ impl Constants {
         params.tendon_invweight0 = weights.collect();
     }
 
-    /// ‖M⁻¹ Jᵀ‖ of the first force of each actuator, by which muscles scale theirs.
+    /// Computes ‖M⁻¹ Jᵀ‖ of the first force of each actuator, by which muscles scale their force.
     fn set_unit_accelerations(&mut self, model: &Model, params: &mut Params<f64>) {
         let norms = model.actuators.iter().map(|actuator| {
             let arms = transmission::moment(model, &self.pose, actuator.outputs.start);
@@ -239,7 +240,7 @@ impl Constants {
         params.actuator_acc0 = norms.collect();
     }
 
-    /// The frames that cameras that track keep.
+    /// Sets the reference frames of tracking cameras.
     fn set_cameras(&self, model: &Model, params: &mut Params<f64>) {
         let pose = &self.pose;
         let count = model.cameras.len();
@@ -262,7 +263,7 @@ impl Constants {
         }
     }
 
-    /// A connect's second anchor is where its first is at qpos0; sites are where they are.
+    /// Sets the anchors. A connect's second anchor coincides with the first at qpos0; sites are their own anchors.
     fn set_anchors(&self, model: &Model, params: &mut Params<f64>) {
         for (i, equality) in model.equalities.iter().enumerate() {
             match (equality.sites, equality.target) {
@@ -286,7 +287,7 @@ impl Constants {
     }
 }
 
-/// Poses, and all that depends on them alone, at `qpos`.
+/// Computes poses, and everything that depends only on them, at `qpos`.
 pub fn pose(model: &Model, params: &Params<f64>, qpos: &[f64]) -> Positions<f64> {
     let mut state = State::new(model);
     state.qpos.copy_from_slice(qpos);
@@ -297,13 +298,13 @@ pub fn pose(model: &Model, params: &Params<f64>, qpos: &[f64]) -> Positions<f64>
     pos
 }
 
-/// A point of the first body in the coordinates of the second.
+/// Transforms a point from the frame of the first body to that of the second.
 pub fn carry(pose: &Positions<f64>, [from, to]: [usize; 2], point: Vec3<f64>) -> Vec3<f64> {
     let world = pose.xpos[from] + pose.xmat[from] * point;
     pose.xmat[to].transpose_mul(world - pose.xpos[to])
 }
 
-/// J M⁻¹ Jᵀ for a row that is zero but on the path to dof `last`, where `entry` gives it.
+/// Computes J M⁻¹ Jᵀ for a row that is zero except on the path to dof `last`, where `entry` returns it.
 fn weight_along(
     mass: &TreeFactor<f64>,
     row: &mut [f64],
@@ -320,7 +321,7 @@ fn weight_along(
     row.iter().map(|x| x * x).sum()
 }
 
-/// Writes a sparse row.
+/// Writes a sparse row to a dense one.
 fn fill(to: &mut [f64], row: impl Iterator<Item = (usize, f64)>) {
     to.fill(0.0);
     for (dof, entry) in row {
@@ -332,8 +333,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Whether a body's mass alone decides its weights: MuJoCo takes 1/mass for them, in every direction and without armature (its
-/// `body_simple` of level two).
+/// Returns true if a body's weights depend only on its mass: MuJoCo then takes 1/mass in every direction, without
+/// armature (its `body_simple` of level two).
 fn slides_alone(model: &Model, body: usize) -> bool {
     let slides = |j: usize| model.joints[j].kind == JointKind::Slide;
     let body = &model.bodies[body];

@@ -1,4 +1,4 @@
-//! What can go wrong with a simulation.
+//! The errors of a simulation.
 
 use crate::budget::RAISE;
 use crate::contact::UnsupportedPair;
@@ -7,159 +7,159 @@ use crate::options::OptionError;
 use clench_math::Instructions;
 use std::sync::Arc;
 
-/// Why a simulation cannot start, take an input, or go on.
+/// The reason that a simulation cannot start, accept an input, or continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimError {
-    /// An option outside its range.
+    /// An option is outside its range.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// Shapes that may meet and cannot be collided.
+    /// Two shapes may collide, but their pair is not supported.
     #[error(transparent)]
     UnsupportedPair(#[from] UnsupportedPair),
-    /// Something that the integrator `discrete` cannot be combined with.
+    /// The integrator `discrete` is incompatible with a feature of the model.
     #[error(transparent)]
     NotDiscrete(#[from] NotDiscrete),
-    /// An input of the wrong length.
+    /// An input has the wrong length.
     #[error("{field} has {found} numbers where the model needs {expected}")]
     WrongLength {
-        /// Which part of the state.
+        /// The name of the input.
         field: &'static str,
         /// Its length.
         found: usize,
         /// The length that the model needs.
         expected: usize,
     },
-    /// An input out of its range.
+    /// An input is out of its range.
     #[error("{field} is {value}, but must be {range}")]
     OutOfRange {
-        /// What was set.
+        /// The name of the input.
         field: &'static str,
-        /// To what.
+        /// Its value.
         value: f64,
-        /// What it may be.
+        /// The allowed range.
         range: &'static str,
     },
-    /// A parameter that cannot be.
+    /// A parameter is out of its range.
     #[error("{field}[{index}] is {value}, but must be {range}")]
     Parameter {
-        /// Which field of the parameters.
+        /// The field of the parameters.
         field: &'static str,
-        /// Where in it.
+        /// The index in the field.
         index: usize,
-        /// To what it was set.
+        /// Its value.
         value: f64,
-        /// What it may be.
+        /// The allowed range.
         range: &'static str,
     },
-    /// A parameter that cannot be set because it follows from another.
+    /// A parameter cannot be set because it follows from another.
     #[error("{field} follows from {other}: set that")]
     Follows {
-        /// What was set.
+        /// The parameter that was set.
         field: &'static str,
-        /// What to set instead.
+        /// The parameter to set instead.
         other: &'static str,
     },
-    /// Parameters with which the mass matrix is not positive definite in the initial configuration.
+    /// The mass matrix is not positive definite in the initial configuration with these parameters.
     #[error("at qpos0 the mass matrix is not positive definite{}{place}", env.map(|env| format!(" in environment {env}")).unwrap_or_default())]
     SingularMass {
         /// The environment, in a batch.
         env: Option<usize>,
-        /// The joint where that shows, if it is known.
+        /// The joint with the bad pivot, if it is known.
         place: String,
     },
-    /// A name that nothing has.
+    /// No element has the requested name.
     #[error("there is no {kind} \"{name}\"{hint}")]
     Unknown {
-        /// Kind of thing.
+        /// The kind of element.
         kind: &'static str,
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// The nearest name, or all that there are.
+        /// The nearest name, or all existing ones.
         hint: String,
     },
-    /// An element that the model does not have.
+    /// An index is beyond the elements of the model.
     #[error("there is no {kind} {index}: there are {count}")]
     NoSuchElement {
-        /// Kind of element.
+        /// The kind of element.
         kind: &'static str,
-        /// The number asked for.
+        /// The requested index.
         index: usize,
-        /// How many there are.
+        /// The number of elements.
         count: usize,
     },
-    /// Instructions that the processor lacks, or that this precision was not compiled for.
+    /// The processor lacks the instructions, or this precision was not compiled for them.
     #[error(
         "this build has no kernels in this precision for {0:?} instructions on this processor; \
          CLENCH_INSTRUCTIONS=all in the environment of the build compiles all kernels"
     )]
     Instructions(Instructions),
-    /// More memory than there is.
+    /// There is not enough memory.
     #[error("there is no memory for {count} rows of {bytes} bytes")]
     OutOfMemory {
-        /// How many rows.
+        /// The number of rows.
         count: usize,
-        /// How many bytes in each.
+        /// The bytes of each row.
         bytes: usize,
     },
-    /// Threads that cannot be started.
+    /// Threads cannot be started.
     #[error("threads cannot be started: {0}")]
     Threads(String),
-    /// What a device that steps a batch cannot do, or that it failed.
+    /// A device that steps a batch does not support an operation, or failed.
     #[error("{0}")]
     Backend(String),
-    /// A batch or simulation of several threads in a process that was forked from the one that started them: a fork does not copy threads.
+    /// A multi-threaded batch or simulation is used in a forked process: a fork does not copy threads.
     #[error(
         "the threads are of the process that they were started in, which forked: make a batch, or set the threads of a simulation, in \
          each process"
     )]
     Forked,
-    /// A constraint at run time that there is no slot for.
+    /// All slots for constraints at run time are taken.
     #[error(
         "all {most} slots for constraints at run time are taken: remove one, or give the model a larger max_dynamic_constraints"
     )]
     NoFreeSlot {
-        /// How many there are.
+        /// The number of slots.
         most: usize,
     },
-    /// The handle of a constraint that was removed, or that this state does not have.
+    /// The handle is of a constraint that was removed, or that this state does not have.
     #[error(
         "this constraint is not there: it was removed, or the state is one that does not have it"
     )]
     StaleConstraint,
-    /// Bodies or an equality that cannot be held so.
+    /// Bodies or an equality cannot be constrained as requested.
     #[error("{what} cannot be held so: {reason}")]
     CannotHold {
-        /// What was to be held.
+        /// The object to be constrained.
         what: String,
-        /// Why it cannot.
+        /// The reason.
         reason: &'static str,
     },
-    /// Heights of a geom that is no height field.
+    /// The geom is not a height field.
     #[error("geom {geom} is no height field")]
     NoHeightField {
         /// The geom.
         geom: usize,
     },
-    /// Discrete inverse dynamics of a model whose steps have no acceleration of their own.
+    /// Discrete inverse dynamics are undefined for an integrator whose steps have no single acceleration.
     #[error(
         "the integrator RK4 has no discrete acceleration: it mixes those of four states (choose Euler, implicit or implicitfast)"
     )]
     NoDiscreteInverse,
-    /// A given contact that makes no sense.
+    /// A contact that the user provided is invalid.
     #[error("given contact {index}: {reason}")]
     Contact {
-        /// Which contact.
+        /// The index of the contact.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: &'static str,
     },
-    /// A state that cannot be stepped from, or a step that led nowhere.
+    /// A state cannot be stepped from, or a step failed.
     #[error(transparent)]
     Fault(#[from] Fault),
 }
 
 impl SimError {
-    /// Nothing of this kind is called `name`; `names` are those that there are.
+    /// Returns the error for an unknown `name` of a kind; `names` are the existing ones.
     pub fn unknown<'a>(
         kind: &'static str,
         name: &str,
@@ -180,18 +180,18 @@ impl SimError {
     }
 }
 
-/// Why an environment cannot go on. Fields of the state are named, and their numbers counted, as in the rows of a
-/// batch: `xfrc_applied` has six a body, the force first.
+/// The reason that an environment cannot continue. Fields of the state are named, and their numbers indexed, as in the
+/// rows of a batch: `xfrc_applied` has six per body, the force first.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
-    /// An input that is infinite or not a number.
+    /// An input is infinite or not a number.
     #[error("{field}[{index}] is {value}")]
     NotFinite {
-        /// Which part of the state.
+        /// The field of the state.
         field: &'static str,
-        /// Where in it.
+        /// The index in the field.
         index: usize,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
     /// The mass matrix of the configuration is not positive definite.
@@ -200,12 +200,12 @@ pub enum Fault {
         at(place)
     )]
     Singular {
-        /// Time of the state that cannot move on, s.
+        /// Time of the state that cannot advance, s.
         time: f64,
-        /// The joint that moves no mass, with its body and where it was written.
+        /// The joint that moves no mass, with its body and source location.
         place: Option<Arc<str>>,
     },
-    /// The motion left all bounds: a number is not finite, or a position, velocity or acceleration is beyond 1e10 (MuJoCo's
+    /// The motion diverged: a number is not finite, or a position, velocity or acceleration is beyond 1e10 (MuJoCo's
     /// `mjMAXVAL`).
     #[error(
         "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value}{}",
@@ -214,16 +214,16 @@ pub enum Fault {
     Diverged {
         /// Time of the last good state, s.
         time: f64,
-        /// Which quantity.
+        /// The quantity.
         field: &'static str,
-        /// Where in it.
+        /// The index in it.
         index: usize,
-        /// What it became.
+        /// Its value.
         value: f64,
-        /// The joint that it is of, with its body and where it was written.
+        /// The joint that it belongs to, with its body and source location.
         place: Option<Arc<str>>,
     },
-    /// More contacts than the options allow. A `Sim` leaves the rest out and says so; an environment of a
+    /// There are more contacts than the options allow. A `Sim` omits the excess and reports it; an environment of a
     /// batch stops.
     #[error(
         "in the step from t = {time} s there are more contacts than the {limit} that the options allow"
@@ -231,20 +231,20 @@ pub enum Fault {
     ContactOverflow {
         /// Time of the last good state, s.
         time: f64,
-        /// How many may be.
+        /// The maximum number of contacts.
         limit: usize,
     },
-    /// More of something than the model's [`Budget`](crate::Budget) allows.
+    /// A quantity exceeds the model's [`Budget`](crate::Budget).
     #[error("in the step from t = {time} s there are more than {limit} {what}; {RAISE}")]
     OverBudget {
         /// Time of the last good state, s.
         time: f64,
-        /// Of what.
+        /// The quantity.
         what: &'static str,
-        /// How many may be.
+        /// Its maximum.
         limit: u64,
     },
-    /// A device ended a step before its end, as Mesa's software device does after 65,535 turns of loops.
+    /// A device terminated a step early, as Mesa's software device does after 65,535 iterations of loops.
     #[error(
         "in the step from t = {time} s the device ended a loop before its end (Mesa's software device grants 65,535 turns): a card or the \
          processor can do it"
@@ -261,7 +261,7 @@ fn at(place: &Option<Arc<str>>) -> String {
         .map_or_else(String::new, |place| format!(" at {place}"))
 }
 
-/// The error of an element that the model does not have.
+/// Returns the error for an index beyond the elements of the model.
 pub fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
     SimError::NoSuchElement { kind, index, count }
 }

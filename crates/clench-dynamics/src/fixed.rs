@@ -1,28 +1,28 @@
-//! What is fixed to the world: its poses follow from the parameters alone, and are computed once for them.
+//! The poses of bodies that are fixed to the world. They follow from the parameters alone and are computed once.
 
 use crate::model::Model;
 use std::ops::Range;
 use std::slice::from_ref;
 
-/// Whether a workspace holds the poses of what is fixed to the world.
+/// The validity of a workspace's poses of bodies that are fixed to the world.
 #[derive(Clone, Debug)]
 pub struct FixedPoses {
-    /// They are those of the present parameters.
+    /// True if the poses are those of the present parameters.
     known: bool,
-    /// How often they were computed.
+    /// The number of times that they were computed.
     version: u64,
     /// All bodies.
     bodies: Range<usize>,
-    /// Ranges of the bodies whose poses a pass computes where they are known: all but those of trees on the world in which nothing
-    /// moves. The world is among them.
+    /// Ranges of the bodies whose poses a pass computes when the fixed poses are valid: all but those of trees on the
+    /// world in which nothing moves. The world is among them.
     moving: Vec<Range<usize>>,
 }
 
 impl FixedPoses {
-    /// Nothing is known.
+    /// Creates the record with no valid pose.
     pub fn new(model: &Model) -> Self {
         let mut fixed = Vec::from_iter((0..model.nbody()).map(|body| model.is_fixed(body)));
-        // A fixed body on the world with something that moves on it is a part of that tree.
+        // A fixed body on the world that carries a moving body is a part of that tree.
         for (body, moves) in fixed.clone().iter().map(|fixed| !fixed).enumerate() {
             fixed[model.bodies[body].root] &= !moves;
         }
@@ -42,29 +42,29 @@ impl FixedPoses {
         }
     }
 
-    /// Has the next pass compute them, because parameters may have changed.
+    /// Invalidates the poses, because parameters may have changed.
     pub fn forget(&mut self) {
         self.known = false;
     }
 
-    /// Takes note of a pass that computed what was not known.
+    /// Records that a pass computed the invalid poses.
     pub fn note(&mut self) {
         if !self.known {
             (self.known, self.version) = (true, self.version + 1);
         }
     }
 
-    /// Whether they are known.
+    /// Returns true if the poses are valid.
     pub fn known(&self) -> bool {
         self.known
     }
 
-    /// How often they were computed: while this stays the same, so do they.
+    /// Returns the number of times that the poses were computed. They change only with it.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Ranges of the bodies whose poses a pass computes.
+    /// Returns the ranges of the bodies whose poses a pass computes.
     pub fn parts(&self) -> &[Range<usize>] {
         match self.known {
             true => &self.moving,

@@ -1,4 +1,5 @@
-//! Geoms where they are, for whoever asks about them: rays and shapes, in lanes. Contacts have their own way, `contact`.
+//! The geoms at their current poses, for queries by ray or shape, in lanes. Contact detection has its own path,
+//! `contact`.
 
 use crate::contact::shape;
 use crate::model::{Model, Params};
@@ -18,7 +19,7 @@ pub struct Geoms<'a, T: Real> {
 }
 
 impl<'a, T: Real> Geoms<'a, T> {
-    /// Where a geom is.
+    /// Returns the pose of a geom.
     pub fn pose(&self, geom: usize) -> Pose<T> {
         Pose {
             position: self.position.geom_xpos[geom],
@@ -26,7 +27,7 @@ impl<'a, T: Real> Geoms<'a, T> {
         }
     }
 
-    /// The shape of a geom, with a hull even if it does not collide.
+    /// Returns the shape of a geom, with a hull even if it does not collide.
     pub fn solid(&self, geom: usize) -> Shape<'a, T> {
         match self.model.geoms[geom].mesh {
             Some(mesh) => Shape::Mesh(Mesh {
@@ -37,7 +38,7 @@ impl<'a, T: Real> Geoms<'a, T> {
         }
     }
 
-    /// The geom that a ray hits first, by its number, and where; the distance is infinite where it hits none.
+    /// Returns the index of the geom that a ray hits first, and the hit. The distance is infinite where it hits none.
     #[kernel]
     pub fn first_hit(&self, line: &Ray<T>, filter: &RayFilter) -> (T, Hit<T>) {
         let mut best = (
@@ -75,7 +76,7 @@ impl<'a, T: Real> Geoms<'a, T> {
             && filter.excluded_body != Some(geom.body)
     }
 
-    /// Where a ray may meet a geom's bounding sphere before it has gone `within`.
+    /// Returns the lanes in which a ray may hit a geom's bounding sphere within the distance `within`.
     #[inline(always)]
     fn may_hit(&self, geom: usize, ray: &UnitRay<T>, within: T) -> T::Mask {
         if self.model.geoms[geom].kind == ShapeKind::Plane {
@@ -95,19 +96,19 @@ impl<'a, T: Real> Geoms<'a, T> {
     }
 }
 
-/// Which geoms a ray can hit. Those that cannot be seen, it never hits.
+/// The geoms that a ray can hit. A ray never hits invisible geoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayFilter {
-    /// For each group whether its geoms are hit; groups beyond these count as the nearest of them.
+    /// True for each group whose geoms are hit. Groups outside 0 to 5 are clamped.
     pub groups: [bool; 6],
-    /// Whether geoms are hit that are fixed to the world.
+    /// True if geoms that are fixed to the world are hit.
     pub fixed: bool,
-    /// A body whose geoms are not hit, such as the one that a sensor sits on.
+    /// A body whose geoms are not hit, such as that of a sensor.
     pub excluded_body: Option<usize>,
 }
 
 impl Default for RayFilter {
-    /// Everything.
+    /// Hits everything.
     fn default() -> Self {
         RayFilter {
             groups: [true; 6],
@@ -117,13 +118,13 @@ impl Default for RayFilter {
     }
 }
 
-/// Where a ray hits first.
+/// The first hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit<T> {
     /// The geom.
     pub geom: usize,
-    /// From the ray's origin, in lengths of its direction.
+    /// The distance from the ray's origin, in lengths of its direction.
     pub distance: T,
-    /// The unit vector out of the geom there, in world coordinates.
+    /// The outward unit normal of the geom there, in world coordinates.
     pub normal: Vec3<T>,
 }

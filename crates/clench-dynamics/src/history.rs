@@ -1,22 +1,24 @@
-//! Buffers of past values: what is read from one a while later arrives late (MuJoCo manual, modeling chapter, "Delays").
+//! Buffers of past values, which implement delays (MuJoCo manual, modeling chapter, "Delays").
 //!
-//! A buffer is a run of numbers in the `history` of a state: one for its owner, the times of its samples, oldest first, and their
-//! values, sample after sample. Times are counted from the present, so that they are zero or negative and keep their digits however
-//! long a simulation runs. Once a step every buffer drops its oldest sample and takes a new one of the step's start.
+//! A buffer is a range of the `history` of a state: one number for its owner, the times of its samples, oldest first,
+//! and their values, sample after sample. Times are relative to the present, so they are zero or negative and keep
+//! their precision however long a simulation runs. Once a step every buffer drops its oldest sample and adds one taken
+//! at the start of the step.
 //!
-//! A buffer with a period takes samples less often: when its period has passed since the last one was due. When that was is its owner's
-//! number, which counts from the start of the simulation and is a sum of periods, as in MuJoCo, so that rounding decides the same there.
+//! A buffer with a period takes samples less often: when its period has passed since the last due time. The owner's
+//! number stores that due time. It counts from the start of the simulation and is a sum of periods, as in MuJoCo, so
+//! that rounding has the same effect as there.
 
 use crate::model::{History, Interpolation};
 use clench_math::{Mask, Real, Scalar};
 
-/// Times that differ by so little, s, are the same (MuJoCo's `mjMINVAL`).
+/// Times that differ by at most this, s, are equal (MuJoCo's `mjMINVAL`).
 const SAME_TIME: f64 = 1e-15;
-/// In units of the precision of the times.
+/// The same, in units of the precision of the times.
 const SAME_TIME_ROUNDING: f64 = 8.0;
 
 impl History {
-    /// Writes the times of a buffer that is sampled every `step` seconds and has not begun.
+    /// Initializes the times of a buffer that is sampled every `step` seconds.
     pub fn begin<T: Real>(&self, step: f64, numbers: &mut [T]) {
         let n = self.samples;
         for (k, time) in numbers[self.times()].iter_mut().enumerate() {
@@ -24,8 +26,8 @@ impl History {
         }
     }
 
-    /// Writes the times of a buffer that is sampled every `period` seconds, and has been due at `phase` for the last time: each sample was
-    /// taken at the first step that was not before.
+    /// Initializes the times of a buffer that is sampled every `period` seconds and was last due at `phase`. Each
+    /// sample was taken at the first step at or after its due time.
     pub fn begin_periodic<T: Real>(&self, step: f64, [period, phase]: [f64; 2], numbers: &mut [T]) {
         let n = self.samples;
         numbers[self.start] = T::new(phase);
@@ -35,13 +37,13 @@ impl History {
         }
     }
 
-    /// Where a sample is due at a time; always where the period is zero.
+    /// Returns the lanes in which a sample is due at a time; all of them if the period is zero.
     #[inline(always)]
     pub fn is_due<T: Real>(&self, numbers: &[T], period: T, now: T) -> T::Mask {
         !period.gt(T::ZERO) | (numbers[self.start] + period).le(now)
     }
 
-    /// Adds a sample of the present where it is due, and lets `step` seconds pass.
+    /// Adds a sample of the present where it is due, and advances time by `step` seconds.
     #[inline(always)]
     pub(crate) fn push_periodic<T: Real>(
         &self,
@@ -72,7 +74,7 @@ impl History {
         }
     }
 
-    /// Adds a sample of the present, and lets `step` seconds pass.
+    /// Adds a sample of the present, and advances time by `step` seconds.
     #[inline(always)]
     pub fn push<T: Real>(&self, numbers: &mut [T], sample: &[T], step: T) {
         let values = &mut numbers[self.values()];
@@ -87,7 +89,7 @@ impl History {
         }
     }
 
-    /// Reads the buffer at a time counted from the present. Before the oldest and after the newest sample these hold.
+    /// Reads the buffer at a time relative to the present. Outside the samples it returns the oldest or the newest.
     #[inline(always)]
     pub fn read<T: Real>(&self, numbers: &[T], at: T, out: &mut [T]) {
         let (times, values) = (&numbers[self.times()], &numbers[self.values()]);
@@ -112,7 +114,8 @@ impl History {
     }
 }
 
-/// The time between two samples, and which share of it has passed; samples of one time are told apart by one second.
+/// Returns the time between two samples, and the fraction of it that has passed. Samples with equal times count as one
+/// second apart.
 #[inline(always)]
 fn share<T: Real>(times: &[T], k: usize, at: T) -> (T, T) {
     let span = times[k] - times[k - 1];

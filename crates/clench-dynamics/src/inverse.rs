@@ -1,17 +1,18 @@
-//! Inverse dynamics: from the acceleration of a state to the forces that cause it.
+//! Inverse dynamics: computes the forces that cause a given acceleration.
 //!
-//! The constraint forces follow from the acceleration without any search: f = −∇s(J a − aref), block by block (Todorov 2014,
-//! "Convex and analytically-invertible dynamics with contacts and constraints"). What is left of the equation of motion
+//! The constraint forces follow from the acceleration without iteration: f = −∇s(J a − aref), block by block (Todorov
+//! 2014, "Convex and analytically-invertible dynamics with contacts and constraints"). The remainder of the equation of
+//! motion
 //!
 //! ```text
 //! M a + bias = passive + Jᵀ f + τ
 //! ```
 //!
-//! is τ, what actuators and applied forces must give. Forward dynamics with that τ find the same acceleration.
+//! is τ, the sum of actuator and applied forces. Forward dynamics with this τ compute the same acceleration.
 //!
-//! A step does not advance the velocity by the acceleration a that forward dynamics find, where forces are taken at its end: by
-//! a′ with M′ a′ = M a, M′ = M − h ∂τ/∂v as its integrator has it. From (v₁ − v₀)/h = a′ the acceleration a is found first. With the
-//! integrator `discrete` both are the same, and its metric takes the place of M.
+//! If forces are evaluated at the end of a step, the step does not advance the velocity by the acceleration a of
+//! forward dynamics, but by a′ with M′ a′ = M a, where M′ = M − h ∂τ/∂v depends on the integrator. The acceleration a
+//! is first computed from (v₁ − v₀)/h = a′. With the integrator `discrete` both are equal, and its metric replaces M.
 
 use crate::constraint::assemble;
 use crate::contact::detect;
@@ -27,17 +28,17 @@ use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Real, kernel};
 
-/// Which acceleration inverse dynamics are given.
+/// The kind of acceleration that is the input of inverse dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acceleration {
-    /// That which forward dynamics find.
+    /// The acceleration of forward dynamics.
     Continuous,
-    /// That by which a step changes the velocity, (v₁ − v₀) / h.
+    /// The rate at which a step changes the velocity, (v₁ − v₀) / h.
     Discrete,
 }
 
 impl Acceleration {
-    /// Which one a model says is given (MuJoCo's flag `invdiscrete`).
+    /// Returns the kind that a model selects (MuJoCo's flag `invdiscrete`).
     pub fn of(model: &Model) -> Self {
         match model.flags.invdiscrete {
             true => Acceleration::Discrete,
@@ -46,9 +47,9 @@ impl Acceleration {
     }
 }
 
-/// Leaves the acceleration that forward dynamics would find in `ws.qacc`, the constraint forces in `ws.qfrc_constraint` and in
-/// the solver, and in `qfrc_inverse` (nv) the forces along dofs that actuators and users must give for it. The state is that of
-/// `state`; whatever sleeps takes part.
+/// Computes inverse dynamics at `state`. Writes the acceleration of forward dynamics to `ws.qacc`, the constraint
+/// forces to `ws.qfrc_constraint` and the solver, and the required actuator and applied forces along dofs to
+/// `qfrc_inverse` (nv). Sleeping trees take part.
 pub fn inverse<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -82,7 +83,7 @@ pub fn inverse<T: Real>(
     }
 }
 
-/// τ = M a + bias − passive − Jᵀ f.
+/// Computes τ = M a + bias − passive − Jᵀ f.
 #[kernel]
 fn applied_forces<T: Real>(model: &Model, ws: &Workspace<T>, qfrc_inverse: &mut [T]) {
     ws.problem.mass.mul(&model.tree, &ws.qacc, qfrc_inverse);
@@ -91,8 +92,8 @@ fn applied_forces<T: Real>(model: &Model, ws: &Workspace<T>, qfrc_inverse: &mut 
     }
 }
 
-/// Turns the discrete acceleration in `ws.qacc` into the continuous one, M⁻¹ M′ times it. A step of Runge and Kutta has no such M′: its
-/// acceleration is taken as it is.
+/// Converts the discrete acceleration in `ws.qacc` to the continuous one by M⁻¹ M′. A Runge-Kutta step has no such M′:
+/// its acceleration is left unchanged.
 fn make_continuous<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -1,9 +1,10 @@
-//! The step of articulated rigid bodies: [`Model`], the data that never changes while stepping; [`State`], what a user saves and
-//! restores; [`Workspace`], everything derived; and the stages that turn them into the convex problem of `clench-solver` and
-//! integrate its solution.
+//! The step of articulated rigid bodies: [`Model`], the data that never changes while stepping; [`State`], the data
+//! that a user saves and restores; [`Workspace`], everything derived; and the stages that turn them into the convex
+//! problem of `clench-solver` and integrate its solution.
 //!
-//! `clench-builder` makes models. Users of simulations, batches, sensors and queries want `clench-rigid`, which re-exports the public
-//! part of this crate. The rest is open to `clench-builder` and `clench-rigid` and may change with any version.
+//! `clench-builder` makes models. Users of simulations, batches, sensors and queries want `clench-rigid`, which
+//! re-exports the public part of this crate. The rest is internal to `clench-builder` and `clench-rigid` and may change
+//! with any version.
 //!
 //! [`Step`] holds the step as this crate has compiled it for each number type.
 

@@ -1,4 +1,4 @@
-//! The stages of a step. Each reads what those before it left in the workspace.
+//! The stages of a step. Each reads from the workspace the results of the stages before it.
 
 use crate::constraint::constraint_stage;
 use crate::contact::detect;
@@ -31,11 +31,12 @@ use clench_math::Real;
 use clench_solver::TreeMatrix;
 use std::slice::from_ref;
 
-/// A function that evaluates the sensors of a model, after a forward pass and before the state moves on. This crate has no sensors.
+/// A function that evaluates the sensors of a model, after a forward pass and before the state advances. This crate has
+/// no sensors.
 pub type Sensors<T> = fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>);
 
-/// What depends on positions: poses, spatial inertias and dof axes, tendons and transmissions, and the mass matrix with
-/// its factor.
+/// Computes the quantities that depend on positions: poses, spatial inertias and dof axes, tendons and transmissions,
+/// and the mass matrix with its factor.
 pub fn position_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -46,8 +47,8 @@ pub fn position_stage<T: Real>(
     positions(model, params, state, ws);
 }
 
-/// The same, but the poses of what is fixed to the world, and of trees that sleep where they slept in the last pass, are taken from the
-/// workspace: [`Sleep::parts`](sleep::Sleep::parts) leaves them out.
+/// Does the same, but reuses the workspace's poses of bodies that are fixed to the world, and of trees that sleep as in
+/// the last pass, which [`Sleep::parts`](sleep::Sleep::parts) omits.
 fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
     let computed = Computed {
         parts: ws.sleep.parts(&ws.fixed),
@@ -71,7 +72,7 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
     ws.clock.lap(Stage::MassFactorization as usize);
 }
 
-/// Poses of some bodies; tendons and transmissions.
+/// Computes the poses of some bodies, and tendons and transmissions.
 pub fn poses<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -84,7 +85,7 @@ pub fn poses<T: Real>(
     transmissions(model, params, &state.qpos, pos);
 }
 
-/// Poses of some bodies.
+/// Computes the poses of some bodies.
 pub fn body_poses<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -96,7 +97,7 @@ pub fn body_poses<T: Real>(
     com_positions(model, params, computed.parts, pos);
 }
 
-/// The mass matrix at poses, with the inertia of tendons.
+/// Computes the mass matrix at given poses, with the inertia of tendons.
 fn mass_matrix<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -107,7 +108,7 @@ fn mass_matrix<T: Real>(
     add_tendon_inertia(model, params, pos, mass);
 }
 
-/// The energy of a state, whatever the workspace holds, which stays what it is.
+/// Computes the energy of a state, independently of the workspace and without changing it.
 pub fn state_energy<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -122,7 +123,8 @@ pub fn state_energy<T: Real>(
     energy(model, params, position, mass, state)
 }
 
-/// What depends on velocities besides: velocities of bodies, tendons and actuators, passive and bias forces.
+/// Computes the quantities that also depend on velocities: velocities of bodies, tendons and actuators, passive and
+/// bias forces.
 pub(crate) fn velocity_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -138,7 +140,7 @@ pub(crate) fn velocity_stage<T: Real>(
     ws.clock.lap(Stage::Velocity as usize);
 }
 
-/// Actuator forces, the sum of all smooth forces, and the acceleration that they alone would cause.
+/// Computes actuator forces, the sum of all smooth forces, and the unconstrained acceleration.
 pub(crate) fn force_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -157,7 +159,7 @@ pub(crate) fn force_stage<T: Real>(
     ws.clock.lap(Stage::Force as usize);
 }
 
-/// Everything that follows from the state: forward dynamics, and what sensors measure.
+/// Computes everything that follows from the state: forward dynamics and sensors.
 pub fn forward<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -171,7 +173,7 @@ pub fn forward<T: Real>(
     ws.clock.lap(Stage::Sensors as usize);
 }
 
-/// Forward dynamics, up to `ws.qacc` and the constraint forces.
+/// Computes forward dynamics, up to `ws.qacc` and the constraint forces.
 fn forward_dynamics<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -183,8 +185,8 @@ fn forward_dynamics<T: Real>(
     from_forces(model, params, settings, state, ws);
 }
 
-/// The first half of forward dynamics, before controls act: all that depends on positions and velocities alone, contacts included.
-/// (MuJoCo's `mj_step1`.)
+/// Computes the first half of forward dynamics, before controls act: everything that depends only on positions and
+/// velocities, contacts included. (MuJoCo's `mj_step1`.)
 pub fn before_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -213,7 +215,7 @@ pub fn before_forces<T: Real>(
     velocity_stage(model, params, state, ws);
 }
 
-/// The second half of forward dynamics: forces, those of controls among them, and constraints.
+/// Computes the second half of forward dynamics: forces, including those of controls, and constraints.
 fn from_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -229,7 +231,7 @@ fn from_forces<T: Real>(
     }
 }
 
-/// Advances the state by one time step. The next step's solver starts from this one's acceleration.
+/// Advances the state by one time step. The next step's solver starts from this step's acceleration.
 pub fn step<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -249,7 +251,7 @@ pub fn step<T: Real>(
     step_from_forces(model, params, settings, state, ws, sensors);
 }
 
-/// Does a step that finds everything asleep as the last one left it, so that nothing changes but time. Returns whether it was one.
+/// Does the step if everything sleeps as the last step left it, so that only time changes. Returns true if it did.
 pub fn rest<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -265,7 +267,7 @@ pub fn rest<T: Real>(
     rests
 }
 
-/// The rest of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
+/// Does the remainder of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
 pub fn step_from_forces<T: Real>(
     model: &Model,
     params: &Params<T>,

@@ -1,4 +1,4 @@
-//! Joints as error messages name them: by name, with their body and where they were written.
+//! Descriptions of joints for error messages: name, body and source location.
 
 use crate::model::{Integrator, Joint, Model};
 use crate::singular::first_bad_pivot;
@@ -8,8 +8,8 @@ use clench_math::{Real, Scalar};
 use clench_solver::{Tree, TreeMatrix};
 use std::sync::Arc;
 
-/// The joint of a number of the motion: `index` of `field`, in the order of the model's coordinates or dofs. `None` for fields
-/// that are not of joints.
+/// Describes the joint of number `index` of `field`, in the order of the model's coordinates or dofs. Returns `None`
+/// for fields that do not belong to joints.
 pub fn joint_of(model: &Model, field: &str, index: usize) -> Option<Arc<str>> {
     let of_state = FIELDS.iter().find(|known| known.name == field);
     let size = match (of_state, field) {
@@ -23,7 +23,7 @@ pub fn joint_of(model: &Model, field: &str, index: usize) -> Option<Arc<str>> {
     found.map(|joint| describe(model, joint))
 }
 
-/// What errors call a joint: `joint "elbow" of body "arm" (arm.xml:12)`.
+/// Describes a joint for an error message: `joint "elbow" of body "arm" (arm.xml:12)`.
 fn describe(model: &Model, joint: &Joint) -> Arc<str> {
     let body = &model.bodies[joint.body];
     let kind = format!("{:?}", joint.kind).to_lowercase();
@@ -41,7 +41,8 @@ fn describe(model: &Model, joint: &Joint) -> Arc<str> {
     text.into()
 }
 
-/// The joint where the mass matrix of a lane, or the matrix of the implicit integrator, is not positive definite.
+/// Returns the joint where the mass matrix of a lane, or the matrix of the implicit integrator, is not positive
+/// definite.
 pub fn massless<T: Real>(model: &Model, ws: &Workspace<T>, lane: usize) -> Option<Arc<str>> {
     let implicit = || match model.integrator {
         Integrator::Euler | Integrator::ImplicitFast | Integrator::Implicit => {
@@ -54,7 +55,7 @@ pub fn massless<T: Real>(model: &Model, ws: &Workspace<T>, lane: usize) -> Optio
     joint_of(model, "qvel", dof)
 }
 
-/// The dof where the matrix of a lane is not positive definite.
+/// Returns the dof where the matrix of a lane is not positive definite.
 fn bad_pivot<T: Real>(tree: &Tree, matrix: &TreeMatrix<T>, lane: usize) -> Option<usize> {
     let values = matrix.values.iter().map(|x| x.lane(lane).to_f64());
     first_bad_pivot(tree, values.collect())

@@ -1,44 +1,44 @@
-//! Where the time of a step goes.
+//! The time of a step by stage.
 
 use clench_collide::ShapeKind;
 use clench_solver::{SolveClock, SolvePart, Stopwatch};
 use std::time::Duration;
 
-/// A part of a step that the workspace's clock tells apart; the solver's clock tells apart those of a solve.
+/// A part of a step that the workspace's clock measures separately. The solver's clock measures the parts of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Poses, centres of mass, tendons, transmissions.
     Kinematics,
     /// Mass matrix.
     Inertia,
-    /// Its factorization.
+    /// Factorization of the mass matrix.
     MassFactorization,
     /// Pairs of geoms that may touch.
     BroadPhase,
-    /// Where they do, and with what parameters.
+    /// Contact points and their parameters.
     NarrowPhase,
     /// Velocities, passive and bias forces.
     Velocity,
     /// Actuators, the sum of all smooth forces, and their acceleration.
     Force,
-    /// Constraints become blocks of the problem.
+    /// Assembly of the constraints into blocks of the problem.
     Assembly,
-    /// The solve; its parts are listed in its place.
+    /// The solve; a profile lists its parts instead.
     Solve,
-    /// What sensors measure.
+    /// Sensors.
     Sensors,
-    /// From acceleration to the next state.
+    /// Integration of the acceleration to the next state.
     Integration,
-    /// Rows in and out of lanes, and checks.
+    /// Transfer of rows to and from lanes, and checks.
     Rows,
 }
 
 impl Stage {
-    /// How many there are.
+    /// The number of stages.
     pub const COUNT: usize = 12;
 }
 
-/// Times the stages of steps.
+/// The stopwatch of the stages of steps.
 pub type StepClock = Stopwatch<{ Stage::COUNT }>;
 
 /// Time spent by stage, in the order of a step.
@@ -46,25 +46,25 @@ pub type StepClock = Stopwatch<{ Stage::COUNT }>;
 pub struct Profile {
     /// Name and time of each stage; the parts of the solve count as stages.
     pub stages: Vec<(&'static str, Duration)>,
-    /// Where the narrow phase spends its time.
+    /// The time of the narrow phase by kinds of geoms.
     pub pairs: Vec<PairProfile>,
 }
 
-/// What pairs of geoms of two kinds cost.
+/// The cost of pairs of geoms of two kinds.
 #[derive(Clone, Debug)]
 pub struct PairProfile {
     /// The kinds.
     pub kinds: [ShapeKind; 2],
-    /// How many pairs were near enough to be looked at: of environments side by side, in any of them.
+    /// The number of pairs near enough to be tested, in any of the environments of the lanes.
     pub near: u64,
-    /// Of how many there were contacts.
+    /// The number of pairs with contacts.
     pub touching: u64,
-    /// What looking at them took, of the narrow phase's time.
+    /// The time of testing them, part of the narrow phase's time.
     pub time: Duration,
 }
 
 impl Profile {
-    /// What the clocks of steps and of their solves say.
+    /// Returns the profile that the clocks of steps and of their solves measured.
     pub fn new(steps: &StepClock, solves: &SolveClock, pairs: Vec<PairProfile>) -> Self {
         let step = |name, stage| (name, steps.spent()[stage as usize]);
         let part = |name, part| (name, solves.spent()[part as usize]);
@@ -118,7 +118,7 @@ impl Profile {
         }
     }
 
-    /// All stages together.
+    /// Returns the sum of all stages.
     pub fn total(&self) -> Duration {
         self.stages.iter().map(|s| s.1).sum()
     }

@@ -1,23 +1,23 @@
-//! What sensors give.
+//! Sensor readings.
 
 use crate::model::{Model, SensorKind};
 use clench_math::{Force, Motion, Real};
 
-/// What sensors give, and what they are computed from.
+/// The sensor readings and the data that they are computed from.
 #[derive(Clone, Debug)]
 pub struct SensorReadings<T> {
-    /// Whether anybody reads them: else they are not computed.
+    /// True if they are read; else they are not computed.
     pub wanted: bool,
-    /// All numbers, sensor after sensor (nsensordata).
+    /// The readings, sensor after sensor (nsensordata).
     pub data: Vec<T>,
-    /// The same as they are measured, before any delay; empty where no sensor keeps past values.
+    /// The readings before any delay; empty if no sensor stores past values.
     pub measured: Vec<T>,
-    /// Accelerations of bodies and forces between them, where anybody asked for them.
+    /// Accelerations of bodies and forces between them, if requested.
     pub bodies: BodyForces<T>,
 }
 
 impl<T: Real> SensorReadings<T> {
-    /// Zeros.
+    /// Returns zero readings.
     pub fn new(model: &Model) -> Self {
         SensorReadings {
             wanted: false,
@@ -31,24 +31,24 @@ impl<T: Real> SensorReadings<T> {
     }
 }
 
-/// Whether any sensor keeps past values.
+/// Returns true if any sensor stores past values.
 pub fn keeps_past(model: &Model) -> bool {
     model.sensors.iter().any(|sensor| sensor.history.is_some())
 }
 
-/// Accelerations of bodies, and what their joints carry.
+/// Accelerations of bodies, and the forces in their joints.
 #[derive(Clone, Debug)]
 pub struct BodyForces<T> {
-    /// Spatial accelerations about the centre of mass of each body's tree, gravity's upward reaction included (nbody).
+    /// Spatial accelerations about the centre of mass of each body's tree, including gravity's upward reaction (nbody).
     pub cacc: Vec<Motion<T>>,
     /// Force of each body's parent on it through their joints, about the same point (nbody).
     pub cfrc_int: Vec<Force<T>>,
-    /// What acts on each body from outside, six numbers a body.
+    /// External forces on each body, six numbers per body.
     pub external: Vec<T>,
 }
 
 impl<T: Real> BodyForces<T> {
-    /// Room for the bodies of a model that has sensors of them; else none.
+    /// Allocates the arrays if the model has sensors that read them; else they are empty.
     pub fn new(model: &Model) -> Self {
         let mut bodies = BodyForces::default();
         if model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
@@ -57,7 +57,7 @@ impl<T: Real> BodyForces<T> {
         bodies
     }
 
-    /// Makes room for a number of bodies.
+    /// Allocates the arrays for `count` bodies.
     pub fn make_room(&mut self, count: usize) {
         self.cacc.resize(count, Motion::ZERO);
         self.cfrc_int.resize(count, Force::ZERO);
@@ -76,7 +76,7 @@ impl<T> Default for BodyForces<T> {
     }
 }
 
-/// Whether a kind of sensor reads accelerations or forces of bodies.
+/// Returns true if a kind of sensor reads accelerations or forces of bodies.
 pub fn is_needed(kind: SensorKind) -> bool {
     matches!(
         kind,

@@ -1,4 +1,4 @@
-//! What a step is told besides model and state: the options of user and file, decided, and the feature switches.
+//! The settings of a step: the resolved options of user and file, and the feature switches.
 
 use crate::Model;
 use crate::contact::check_supported;
@@ -17,18 +17,18 @@ macro_rules! declare_settings {
             $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
         )*}
     ) => {
-        /// Every choice that a step reads. What the user sets wins over the file, the file over the defaults.
+        /// Every setting that a step reads. User options take precedence over the file, the file over the defaults.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct StepSettings {
-            /// What the solver reads.
+            /// The settings of the solver.
             pub solver: Settings,
-            /// Feature switches of the model, less what the settings turn off.
+            /// Feature switches of the model, except those that the settings turn off.
             pub flags: Flags,
             $( $(#[$doc])* pub $name: $type, )*
         }
 
         impl StepSettings {
-            /// Options where they are set, else defaults; and the flags of the model.
+            /// Takes the options that are set, else defaults, and the flags of the model.
             fn resolve<T: Real>(options: RigidOptions, flags: Flags) -> Self {
                 StepSettings {
                     solver: options.solver().resolve::<T>(),
@@ -45,16 +45,16 @@ macro_rules! declare_settings {
 crate::rigid_options!(declare_settings);
 
 impl StepSettings {
-    /// Decides every option for a simulation of `model` in the number type `T`.
+    /// Resolves every option for a simulation of `model` in the number type `T`.
     ///
     /// # Errors
-    /// An option that is not finite or outside its range.
+    /// Returns an error if an option is not finite or outside its range.
     pub fn new<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, OptionError> {
         let options = user.or(model.options);
         options.check()?;
         let mut settings = StepSettings::resolve::<T>(options, model.flags);
         settings.solver.max_matrix = usize::try_from(model.budget.matrix).unwrap_or(usize::MAX);
-        // A switch of the file is a setting of the file: what the user says about the same thing wins.
+        // A switch of the file is a setting of the file: a user option on the same subject takes precedence.
         if user.disable_constraint.is_none() {
             settings.disable_constraint |= !model.flags.constraint;
         }
@@ -72,10 +72,11 @@ impl StepSettings {
         Ok(settings)
     }
 
-    /// The same for a model whose contacts are then sought.
+    /// Does the same for a model whose contacts are detected.
     ///
     /// # Errors
-    /// As [`new`](Self::new), what the integrator cannot be combined with, and shapes that may meet and cannot be collided.
+    /// Returns the errors of [`new`](Self::new), and one if the integrator is incompatible with a feature, or if a pair
+    /// of shapes that may collide is not supported.
     pub fn supported<T: Real>(model: &Model, user: RigidOptions) -> Result<Self, SimError> {
         let settings = StepSettings::new::<T>(model, user)?;
         check_discrete(model, settings.flags.sleep, settings.solver.islands)?;

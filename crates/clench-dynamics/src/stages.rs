@@ -1,22 +1,23 @@
-//! What the stages before the constraints compute.
+//! The results of the stages before the constraints.
 
 use crate::model::Model;
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 
-/// The same element so many times. Not inlined: workspaces have some two hundred such arrays in every number type.
+/// Returns `count` copies of an element. Not inlined: workspaces have some two hundred such arrays in every number
+/// type.
 #[inline(never)]
 pub fn filled<X: Copy>(element: X, count: usize) -> Vec<X> {
     vec![element; count]
 }
 
-/// Poses of everything, and what depends on positions alone.
+/// Poses, and the quantities that depend only on positions.
 #[derive(Clone, Debug, Default)]
 pub struct Positions<T> {
     /// Body positions (nbody).
     pub xpos: Vec<Vec3<T>>,
     /// Body orientations.
     pub xquat: Vec<Quat<T>>,
-    /// The same as matrices.
+    /// Body orientations as matrices.
     pub xmat: Vec<Mat3<T>>,
     /// Centres of mass.
     pub xipos: Vec<Vec3<T>>,
@@ -36,16 +37,16 @@ pub struct Positions<T> {
     pub site_xpos: Vec<Vec3<T>>,
     /// Site orientations.
     pub site_xmat: Vec<Mat3<T>>,
-    /// Centre of mass of each body and all below it (nbody). That of a body's `root` is the reference point of all
+    /// Centre of mass of each body and its descendants (nbody). That of a body's `root` is the reference point of all
     /// spatial vectors of its tree.
     pub subtree_com: Vec<Vec3<T>>,
-    /// The same times the mass (nbody).
+    /// `subtree_com` times the subtree mass (nbody).
     pub(crate) subtree_moment: Vec<Vec3<T>>,
     /// Motion of each dof at unit velocity (nv).
     pub cdof: Vec<Motion<T>>,
     /// Inertia of each body (nbody).
     pub cinert: Vec<Inertia<T>>,
-    /// Inertia of each body and all below it (nbody).
+    /// Inertia of each body and its descendants (nbody).
     pub crb: Vec<Inertia<T>>,
     /// Tendon lengths (ntendon).
     pub ten_length: Vec<T>,
@@ -58,7 +59,7 @@ pub struct Positions<T> {
 }
 
 impl<T: Real> Positions<T> {
-    /// Room for a model, with every pose at the origin.
+    /// Allocates the arrays of a model, with every pose at the origin.
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let (nj, ng, ns) = (model.joints.len(), model.geoms.len(), model.sites.len());
@@ -91,7 +92,7 @@ impl<T: Real> Positions<T> {
     }
 }
 
-/// What depends on velocities.
+/// The quantities that depend on velocities.
 #[derive(Clone, Debug, Default)]
 pub struct Velocities<T> {
     /// Body velocities (nbody).
@@ -107,29 +108,30 @@ pub struct Velocities<T> {
 /// Forces along dofs (nv each) and of actuators.
 #[derive(Clone, Debug, Default)]
 pub struct Forces<T> {
-    /// Coriolis, centrifugal and gravity: on the left side of the equation of motion.
+    /// Coriolis, centrifugal and gravity forces: on the left side of the equation of motion.
     pub qfrc_bias: Vec<T>,
-    /// Springs.
+    /// Spring forces.
     pub qfrc_spring: Vec<T>,
-    /// Dampers.
+    /// Damper forces.
     pub qfrc_damper: Vec<T>,
     /// Gravity compensation.
     pub qfrc_gravcomp: Vec<T>,
-    /// Fluid.
+    /// Fluid forces.
     pub qfrc_fluid: Vec<T>,
-    /// What contacts that adhere pull with.
+    /// Forces of adhesive contacts.
     pub qfrc_adhesion: Vec<T>,
-    /// All passive forces together.
+    /// The sum of the passive forces.
     pub qfrc_passive: Vec<T>,
-    /// Actuators.
+    /// Actuator forces.
     pub qfrc_actuator: Vec<T>,
-    /// Everything but constraints: passive + actuator + applied − bias.
+    /// The sum of all forces except constraint forces: passive + actuator + applied − bias.
     pub qfrc_smooth: Vec<T>,
     /// Forces of actuators (nout): one each, but three of an orientation servo.
     pub actuator_force: Vec<T>,
-    /// Total force of the actuators of each tendon with a limit on it, after all limits, without cogging and friction of motors (ntendon).
+    /// Total force of the actuators of each tendon with a force limit, after all limits, without cogging and friction
+    /// of motors (ntendon).
     pub ten_actuator_force: Vec<T>,
-    /// Controls as they act: delayed, and within their ranges (nu).
+    /// The effective controls: delayed, and clamped to their ranges (nu).
     pub ctrl: Vec<T>,
     /// Rate of change of each activation (na).
     pub act_dot: Vec<T>,

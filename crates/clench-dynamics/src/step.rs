@@ -1,4 +1,4 @@
-//! The step, compiled with this crate for each number type: the crates above call it and do not compile it anew.
+//! The step, compiled in this crate for each number type. Dependent crates call it without compiling it again.
 
 use crate::dynamics::energy::{Energy, energy};
 use crate::dynamics::integrate::integrate_positions;
@@ -66,16 +66,16 @@ pub struct Step<T: Real> {
 }
 
 impl<T: Real> Step<T> {
-    /// The step of a number type that [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) gives to tasks.
+    /// Returns the step of a number type that [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) passes to tasks.
     ///
     /// # Panics
-    /// Where `T` is another type.
+    /// Panics if `T` is another type.
     pub fn compiled() -> Self {
         compiled().table::<StepTable, T>()
     }
 }
 
-// Not generic, so that all is compiled here.
+// Not generic, so that everything is compiled here.
 #[inline(never)]
 fn compiled() -> &'static CompiledKernels {
     static COMPILED: LazyLock<CompiledKernels> = LazyLock::new(CompiledKernels::new::<StepTable>);

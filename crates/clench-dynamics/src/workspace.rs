@@ -1,4 +1,4 @@
-//! Everything derived from model and state: preallocated, reused, inspectable.
+//! The data derived from model and state: preallocated, reused, inspectable.
 
 use crate::Model;
 use crate::constraint::assembly::ConstraintRecord;
@@ -16,56 +16,56 @@ pub use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real};
 use clench_solver::{Problem, Solver, Threads, TreeFactor, TreeMatrix};
 
-/// Everything derived from model and state.
+/// The data derived from model and state.
 #[derive(Debug)]
 pub struct Workspace<T: Real> {
-    /// Position stage.
+    /// Results of the position stage.
     pub position: Positions<T>,
-    /// Velocity stage.
+    /// Results of the velocity stage.
     pub velocity: Velocities<T>,
-    /// Force stage.
+    /// Results of the force stage.
     pub force: Forces<T>,
     /// Contacts of the position stage, in canonical order.
     pub contacts: Vec<Contact<T>>,
-    /// What the detection of contacts keeps and reports.
+    /// The state and the counters of contact detection.
     pub collision: Collision<T>,
     /// The convex problem: mass matrix and its factor, unconstrained acceleration, constraint blocks.
     pub problem: Problem<T>,
-    /// What each of its blocks and rows comes from.
+    /// The origin of each block and row of the problem.
     pub record: ConstraintRecord<T>,
-    /// Its solver, and the solution.
+    /// The solver of the problem, and the solution.
     pub solver: Solver<T>,
     /// Acceleration (nv).
     pub qacc: Vec<T>,
     /// Constraint forces along dofs (nv).
     pub qfrc_constraint: Vec<T>,
-    /// Whether anybody reads the workspace after a step. If nobody does, a step in which everything sleeps computes nothing.
+    /// True if the workspace is read after a step. Otherwise a step in which everything sleeps computes nothing.
     pub read: bool,
-    /// Which trees are awake.
+    /// The trees that are awake.
     pub sleep: Sleep<T>,
-    /// Whether the poses of what is fixed to the world are known.
+    /// The validity of the poses of bodies that are fixed to the world.
     pub fixed: FixedPoses,
-    /// What sensors measure.
+    /// Sensor readings.
     pub sensors: SensorReadings<T>,
-    /// Scratch of the factorization by articulated bodies (nbody); empty in a model whose mass matrix is factored otherwise.
+    /// Scratch of the articulated-body factorization (nbody); empty in a model whose mass matrix is factored otherwise.
     pub articulated: Vec<ArticulatedInertia<T>>,
-    /// Scratch of the energy of a state, made when it is first asked for.
+    /// Scratch of the energy of a state, allocated on first use.
     pub energy: Option<Box<EnergyScratch<T>>>,
-    /// What the integrator `discrete` adds to the mass matrix.
+    /// The terms that the integrator `discrete` adds to the mass matrix.
     pub metric: Metric<T>,
     /// Scratch of integrators.
     pub integration: Integration<T>,
-    /// The threads that share the work of a step; the solver has them too.
+    /// The threads that share the work of a step; the solver uses them too.
     pub threads: Threads,
-    /// Times the stages of a step while it runs. The solver and the detection of contacts have clocks of their own.
+    /// The clock of the stages of a step. The solver and contact detection have clocks of their own.
     pub clock: StepClock,
-    /// Lanes in which a matrix that had to be positive definite (the mass matrix, or that of an implicit integrator) was
-    /// not: their accelerations mean nothing.
+    /// Lanes in which a matrix that must be positive definite (the mass matrix, or that of an implicit integrator) was
+    /// not. Their accelerations are invalid.
     pub singular: T::Mask,
 }
 
 impl<T: Real> Workspace<T> {
-    /// Room for everything that the model needs.
+    /// Allocates everything that the model needs.
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let zeros = |n: usize| filled(T::ZERO, n);
@@ -115,14 +115,14 @@ impl<T: Real> Workspace<T> {
         }
     }
 
-    /// Has the next pass compute all poses, because what is here was computed from other parameters, or has to be known of a state
-    /// whatever it was computed from.
+    /// Invalidates all poses, so that the next pass computes them. Needed if they were computed from other parameters
+    /// or must follow from a state regardless of earlier passes.
     pub fn forget_poses(&mut self) {
         self.sleep.forget();
         self.fixed.forget();
     }
 
-    /// The mass matrix, whatever metric the problem is solved in.
+    /// Returns the mass matrix, whatever metric the problem is solved in.
     pub fn mass(&self) -> &TreeMatrix<T> {
         match self.metric.acts() {
             true => &self.metric.mass,
@@ -130,7 +130,7 @@ impl<T: Real> Workspace<T> {
         }
     }
 
-    /// The factor of the mass matrix.
+    /// Returns the factor of the mass matrix.
     pub fn mass_factor(&self) -> &TreeFactor<T> {
         match self.metric.acts() {
             true => &self.metric.mass_factor,
@@ -138,25 +138,25 @@ impl<T: Real> Workspace<T> {
         }
     }
 
-    /// Room for the energy of a state.
+    /// Returns the scratch of the energy, allocated on first use.
     pub fn energy_scratch(&mut self, model: &Model) -> &mut EnergyScratch<T> {
         (self.energy).get_or_insert_with(|| Box::new(EnergyScratch::new(model)))
     }
 
-    /// Has threads share the work of steps.
+    /// Sets the threads that share the work of steps.
     pub fn set_threads(&mut self, threads: Threads) {
         self.solver.set_threads(threads.clone());
         self.threads = threads;
     }
 
-    /// Lets the clocks of stages and of solves run, or not.
+    /// Starts or stops the clocks of stages and of solves.
     pub fn run_clocks(&mut self, running: bool) {
         self.clock.run(running);
         self.solver.clock().run(running);
         self.collision.clock.run(running);
     }
 
-    /// Where the time went while the clocks ran.
+    /// Returns the time by stage while the clocks ran.
     pub fn profile(&mut self) -> Profile {
         Profile::new(
             &self.clock,
@@ -166,17 +166,17 @@ impl<T: Real> Workspace<T> {
     }
 }
 
-/// Scratch of the energy of a state: the positions in the workspace are those of its last pass, which others still read.
+/// Scratch of the energy of a state. The positions in the workspace are those of its last pass and are still in use.
 #[derive(Clone, Debug)]
 pub struct EnergyScratch<T> {
     /// Poses of the state.
     pub position: Positions<T>,
-    /// The mass matrix at them.
+    /// The mass matrix at these poses.
     pub mass: TreeMatrix<T>,
 }
 
 impl<T: Real> EnergyScratch<T> {
-    /// Room for a model.
+    /// Allocates the scratch for a model.
     pub fn new(model: &Model) -> Self {
         EnergyScratch {
             position: Positions::new(model),

@@ -1,11 +1,11 @@
-//! Typed reading of attributes, with the errors that MuJoCo gives: too few numbers, too many, not a number.
+//! Typed access to attributes, with MuJoCo's errors: too few numbers, too many, not a number.
 
 use crate::LoadError;
 use crate::document::Element;
 use clench_math::Vec3;
 use std::sync::Arc;
 
-/// Keywords of an attribute and what they stand for.
+/// Keywords of an attribute and their values.
 pub(crate) type Keywords<'a, T> = &'a [(&'a str, T)];
 
 const BOOLEANS: Keywords<bool> = &[("false", false), ("true", true)];
@@ -13,12 +13,12 @@ const TRISTATES: Keywords<Option<bool>> =
     &[("false", Some(false)), ("true", Some(true)), ("auto", None)];
 
 impl Element {
-    /// An error about this element.
+    /// Creates an error about this element.
     pub(crate) fn error(&self, message: impl Into<String>) -> LoadError {
         LoadError::element(&self.origin, self.label(), message)
     }
 
-    /// The element as errors name it: `joint "knee"`.
+    /// Returns the element's label in errors: `joint "knee"`.
     pub(crate) fn label(&self) -> String {
         match self.text("name") {
             Some(name) if !name.is_empty() => format!("{} \"{name}\"", self.tag),
@@ -26,7 +26,7 @@ impl Element {
         }
     }
 
-    /// The text of an attribute.
+    /// Returns the text of an attribute.
     pub(crate) fn text(&self, name: &str) -> Option<&str> {
         #[cfg(test)]
         asked::note(&self.tag, name);
@@ -34,22 +34,22 @@ impl Element {
         found.map(|(_, value)| value.as_str())
     }
 
-    /// The text of an attribute, or nothing.
+    /// Returns the text of an attribute, empty if absent.
     pub(crate) fn string(&self, name: &str) -> String {
         self.text(name).unwrap_or_default().to_owned()
     }
 
-    /// The text of an attribute that must be there.
+    /// Returns the text of a required attribute.
     pub(crate) fn required_text(&self, name: &str) -> Result<&str, LoadError> {
         self.text(name).ok_or_else(|| self.missing(name))
     }
 
-    /// The error of an attribute that must be there.
+    /// Creates the error of a missing required attribute.
     pub(crate) fn missing(&self, name: &str) -> LoadError {
         self.incomplete(format!("the attribute \"{name}\" is required"))
     }
 
-    /// An error about what this element lacks.
+    /// Creates an error about missing content.
     pub(crate) fn incomplete(&self, message: impl Into<String>) -> LoadError {
         LoadError {
             incomplete: true,
@@ -57,7 +57,7 @@ impl Element {
         }
     }
 
-    /// The numbers of an attribute, at most `max`; `None` where it is absent or blank.
+    /// Parses the numbers of an attribute, at most `max`; `None` if it is absent or blank.
     fn parse_numbers(
         &self,
         name: &str,
@@ -88,7 +88,7 @@ impl Element {
         numbers.try_into().map_err(wrong)
     }
 
-    /// Exactly `N` finite numbers.
+    /// Parses exactly `N` finite numbers.
     pub(crate) fn numbers<const N: usize>(
         &self,
         name: &str,
@@ -99,7 +99,7 @@ impl Element {
             .transpose()
     }
 
-    /// Exactly `N` finite numbers that must be there.
+    /// Parses exactly `N` finite numbers of a required attribute.
     pub(crate) fn required_numbers<const N: usize>(
         &self,
         name: &str,
@@ -107,12 +107,12 @@ impl Element {
         self.numbers(name)?.ok_or_else(|| self.missing(name))
     }
 
-    /// Any number of finite numbers.
+    /// Parses any number of finite numbers.
     pub(crate) fn list(&self, name: &str) -> Result<Option<Vec<f64>>, LoadError> {
         self.parse_numbers(name, usize::MAX, false)
     }
 
-    /// Exactly `N` finite numbers, in single precision.
+    /// Parses exactly `N` finite numbers, in single precision.
     pub(crate) fn singles<const N: usize>(
         &self,
         name: &str,
@@ -123,7 +123,7 @@ impl Element {
             .transpose()
     }
 
-    /// Up to `max` finite numbers, in single precision.
+    /// Parses up to `max` finite numbers, in single precision.
     pub(crate) fn list_of_singles(
         &self,
         name: &str,
@@ -144,7 +144,7 @@ impl Element {
             .transpose()
     }
 
-    /// Any numbers at all, also those that are not finite, as a user's own data may be.
+    /// Parses any number of numbers, which may be infinite or NaN, for user data.
     pub(crate) fn any_numbers(&self, name: &str) -> Result<Vec<f64>, LoadError> {
         let words = self.text(name).unwrap_or_default().split_ascii_whitespace();
         let number = |word: &str| {
@@ -154,7 +154,7 @@ impl Element {
         words.map(number).collect()
     }
 
-    /// Overwrites the user's own numbers of an element if it has any.
+    /// Overwrites the user data of an element if present.
     pub(crate) fn set_user(&self, target: &mut Arc<[f64]>) -> Result<(), LoadError> {
         let numbers = self.any_numbers("user")?;
         if !numbers.is_empty() {
@@ -163,7 +163,7 @@ impl Element {
         Ok(())
     }
 
-    /// Overwrites a number if the attribute is there.
+    /// Overwrites a number if the attribute is present.
     pub(crate) fn set_number(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
         if let Some([number]) = self.numbers(name)? {
             *target = number;
@@ -171,7 +171,7 @@ impl Element {
         Ok(())
     }
 
-    /// Refuses single numbers below zero.
+    /// Rejects single numbers below zero.
     pub(crate) fn refuse_negative(&self, names: &[&str]) -> Result<(), LoadError> {
         for name in names {
             if self.numbers(name)?.is_some_and(|[number]| number < 0.0) {
@@ -181,7 +181,7 @@ impl Element {
         Ok(())
     }
 
-    /// Overwrites all of an array if the attribute is there.
+    /// Overwrites an entire array if the attribute is present.
     pub(crate) fn set_numbers<const N: usize>(
         &self,
         name: &str,
@@ -193,7 +193,7 @@ impl Element {
         Ok(())
     }
 
-    /// Overwrites a vector if the attribute is there.
+    /// Overwrites a vector if the attribute is present.
     pub(crate) fn set_vector(&self, name: &str, target: &mut Vec3<f64>) -> Result<(), LoadError> {
         if let Some(numbers) = self.numbers(name)? {
             *target = Vec3::from_array(numbers);
@@ -201,7 +201,7 @@ impl Element {
         Ok(())
     }
 
-    /// Overwrites a range, whose ends may be infinite, if the attribute is there.
+    /// Overwrites a range, whose ends may be infinite, if the attribute is present.
     pub(crate) fn set_range(&self, name: &str, target: &mut [f64; 2]) -> Result<(), LoadError> {
         if let Some(numbers) = self.parse_numbers(name, 2, true)? {
             *target = self.exactly(name, numbers)?;
@@ -209,13 +209,13 @@ impl Element {
         Ok(())
     }
 
-    /// One end of a range, which may be infinite.
+    /// Parses one end of a range, which may be infinite.
     pub(crate) fn range_end(&self, name: &str) -> Result<Option<f64>, LoadError> {
         let numbers = self.parse_numbers(name, 1, true)?;
         Ok(numbers.map(|numbers| numbers[0]))
     }
 
-    /// Overwrites as many leading entries as the attribute gives, 1 to `N`, and says how many.
+    /// Overwrites the leading entries with the attribute's numbers, 1 to `N`, and returns their count.
     pub(crate) fn overlay<const N: usize>(
         &self,
         name: &str,
@@ -226,7 +226,7 @@ impl Element {
         Ok(numbers.len())
     }
 
-    /// As `overlay`, for a value that may be undefined; defining it starts from zeros.
+    /// Like `overlay`, for a value that may be undefined; defining it starts from zeros.
     pub(crate) fn overlay_option<const N: usize>(
         &self,
         name: &str,
@@ -239,7 +239,7 @@ impl Element {
         Ok(())
     }
 
-    /// An integer.
+    /// Parses an integer.
     pub(crate) fn integer(&self, name: &str) -> Result<Option<i32>, LoadError> {
         let words: Vec<&str> = self
             .text(name)
@@ -256,7 +256,7 @@ impl Element {
         }
     }
 
-    /// Overwrites an integer if the attribute is there.
+    /// Overwrites an integer if the attribute is present.
     pub(crate) fn set_integer(&self, name: &str, target: &mut i32) -> Result<(), LoadError> {
         if let Some(number) = self.integer(name)? {
             *target = number;
@@ -264,7 +264,7 @@ impl Element {
         Ok(())
     }
 
-    /// An integer that cannot be negative.
+    /// Parses a nonnegative integer.
     pub(crate) fn count(&self, name: &str) -> Result<Option<usize>, LoadError> {
         let negative = |n: i32| {
             usize::try_from(n).map_err(|_| self.error(format!("{name} cannot be negative")))
@@ -272,7 +272,7 @@ impl Element {
         self.integer(name)?.map(negative).transpose()
     }
 
-    /// Any number of integers.
+    /// Parses any number of integers.
     pub(crate) fn integers(&self, name: &str) -> Result<Vec<i32>, LoadError> {
         let words = self.text(name).unwrap_or_default().split_ascii_whitespace();
         words
@@ -283,7 +283,7 @@ impl Element {
             .collect()
     }
 
-    /// What a keyword stands for.
+    /// Returns the value of a keyword.
     pub(crate) fn keyword<T: Clone>(
         &self,
         name: &str,
@@ -304,7 +304,7 @@ impl Element {
         }
     }
 
-    /// Overwrites by what a keyword stands for if the attribute is there.
+    /// Overwrites a value by that of a keyword if the attribute is present.
     pub(crate) fn set_keyword<T: Clone>(
         &self,
         name: &str,
@@ -317,12 +317,12 @@ impl Element {
         Ok(())
     }
 
-    /// Overwrites a truth value if the attribute is there.
+    /// Overwrites a boolean if the attribute is present.
     pub(crate) fn set_boolean(&self, name: &str, target: &mut bool) -> Result<(), LoadError> {
         self.set_keyword(name, BOOLEANS, target)
     }
 
-    /// Overwrites a "true", "false" or "auto" (`None`) if the attribute is there.
+    /// Overwrites a "true", "false" or "auto" (`None`) if the attribute is present.
     pub(crate) fn set_tristate(
         &self,
         name: &str,
@@ -331,7 +331,7 @@ impl Element {
         self.set_keyword(name, TRISTATES, target)
     }
 
-    /// At most one of these attributes may be there.
+    /// Rejects more than one of these attributes.
     pub(crate) fn at_most_one(&self, names: &[&str]) -> Result<(), LoadError> {
         let given: Vec<&str> = names
             .iter()
@@ -347,7 +347,7 @@ impl Element {
     }
 }
 
-/// Which attributes were asked for, of elements of which name: what readers read.
+/// A record of the attributes that readers query, by element name.
 #[cfg(test)]
 pub(crate) mod asked {
     use std::cell::RefCell;
@@ -361,7 +361,7 @@ pub(crate) mod asked {
         ASKED.with_borrow_mut(|asked| asked.insert((tag.to_owned(), name.to_owned())));
     }
 
-    /// Whether this thread has asked an element of this name for the attribute.
+    /// Returns true if this thread has queried the attribute of an element of this name.
     pub(crate) fn was(tag: &str, name: &str) -> bool {
         ASKED.with_borrow(|asked| asked.contains(&(tag.to_owned(), name.to_owned())))
     }

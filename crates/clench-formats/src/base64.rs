@@ -1,8 +1,8 @@
-//! Bytes as text in base 64 (RFC 4648), as glTF files and the pages of viewers have them.
+//! Base64 encoding (RFC 4648), as used by glTF files and viewer pages.
 
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Four letters for every three bytes; `=` fills up the last four.
+/// Encodes three bytes as four letters each; `=` pads the last group.
 pub fn encode(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(4 * bytes.len().div_ceil(3));
     for three in bytes.chunks(3) {
@@ -17,10 +17,10 @@ pub fn encode(bytes: &[u8]) -> String {
     text
 }
 
-/// The bytes of a text that is written like this and no other way.
+/// Decodes canonical, padded base64.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// Returns a message if the text is invalid.
 pub fn decode(text: &str) -> Result<Vec<u8>, String> {
     if !text.len().is_multiple_of(4) {
         return Err(format!("{} letters are no multiple of 4", text.len()));
@@ -46,7 +46,7 @@ pub fn decode(text: &str) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The place of a letter among all.
+/// Returns the value of a letter.
 fn value(letter: u8) -> Option<u8> {
     Some(match letter {
         b'A'..=b'Z' => letter - b'A',

@@ -1,7 +1,7 @@
-//! The elements of a file, each with the place where it was written.
+//! The elements of a file, each with its source location.
 //!
-//! An owned tree rather than `roxmltree`'s own, because includes splice the elements of several files into one. Nothing here or
-//! in the readers recurses over it, so that a deep file needs no more stack than a flat one.
+//! An owned tree rather than `roxmltree`'s own, because includes splice the elements of several files into one. Neither
+//! this module nor the readers recurse over it, so that a deep file needs no more stack than a flat one.
 
 use crate::LoadError;
 use crate::spending::Spending;
@@ -10,13 +10,15 @@ use clench_builder::Origin;
 use roxmltree::{Document, Node};
 use std::sync::Arc;
 
-/// Deepest nesting of elements, as in MuJoCo.
+/// The maximum nesting depth of elements, as in MuJoCo.
 pub(crate) const MAX_DEPTH: usize = 500;
-/// Most attributes of an element; no element of MJCF has a quarter of them. The parser compares each with all before it.
+/// The maximum number of attributes; no MJCF element has a quarter of them. The parser compares each with all preceding
+/// ones.
 const MAX_ATTRIBUTES: usize = 200;
-/// Most declarations of namespaces, which mean nothing here. The parser copies them from element to element.
+/// The maximum number of namespace declarations, which are ignored here. The parser copies them from element to
+/// element.
 const MAX_NAMESPACES: usize = 20;
-/// What an element or attribute takes while a file is parsed, and after, besides its own text, bytes.
+/// The memory that an element or attribute takes during and after parsing, besides its own text, in bytes.
 const MARK: u64 = 300;
 
 /// An element with its attributes and children; text and comments are dropped.
@@ -26,14 +28,14 @@ pub(crate) struct Element {
     pub attributes: Vec<(String, String)>,
     pub children: Vec<Element>,
     pub origin: Origin,
-    /// Which of the model's [`Sources`](crate::mjcf::source::Sources) it is read with.
+    /// The index in the model's [`Sources`](crate::mjcf::source::Sources) with which it is read.
     pub source: usize,
-    /// The number by which keyframes of an attached model refer to it; 0 where none does.
+    /// The number by which keyframes of an attached model refer to it; 0 if none does.
     pub number: u32,
 }
 
 impl Element {
-    /// An element without children that stands for another, where that one is written.
+    /// Creates an element without children at the location of another.
     pub(crate) fn in_place_of(other: &Element, tag: &str) -> Element {
         Element {
             tag: tag.to_owned(),
@@ -45,7 +47,7 @@ impl Element {
         }
     }
 
-    /// Marks it and all in it as read with a source.
+    /// Sets the source of the element and all its descendants.
     pub(crate) fn set_source(&mut self, source: usize) {
         self.source = source;
         let mut pending: Vec<&mut Element> = self.children.iter_mut().collect();
@@ -56,7 +58,7 @@ impl Element {
     }
 }
 
-/// Children are taken apart one by one: a compiler's own code would recurse.
+/// Drops children iteratively: the compiler-generated drop would recurse.
 impl Drop for Element {
     fn drop(&mut self) {
         let mut pending = std::mem::take(&mut self.children);
@@ -66,13 +68,14 @@ impl Drop for Element {
     }
 }
 
-/// The root element of a file's content.
+/// Parses a file's content and returns its root element.
 ///
-/// Where MuJoCo's parser, TinyXML, takes more than XML allows, so does this. Bytes that are not UTF-8 stand for some character, as they
-/// do in comments of older files.
+/// Accepts what MuJoCo's parser, TinyXML, accepts beyond XML. Invalid UTF-8 is replaced, as it occurs in comments of
+/// older files.
 ///
 /// # Errors
-/// Where it is empty, not well-formed, nested too deeply, has names in a namespace, or is larger than the budget.
+/// Returns an error if the content is empty, not well-formed, nested too deeply, uses namespaced names, or exceeds the
+/// budget.
 pub(crate) fn parse(
     bytes: &[u8],
     file: &Arc<str>,
@@ -94,7 +97,7 @@ pub(crate) fn parse(
     }
 }
 
-/// Why a text is no document.
+/// The reason that a text is not a document.
 enum Failure {
     /// It is not XML.
     Malformed(LoadError),
@@ -121,12 +124,12 @@ fn parse_strictly(
     root.map_err(Failure::Other)
 }
 
-/// Whether a root element is that of a URDF file, in small letters or capitals, as MuJoCo has it.
+/// Returns true if the root element is that of a URDF file, ignoring case as MuJoCo does.
 pub(crate) fn is_urdf(tag: &str) -> bool {
     tag.eq_ignore_ascii_case("robot")
 }
 
-/// What to say about elements below `MAX_DEPTH`.
+/// Returns the error message for elements below `MAX_DEPTH`.
 pub(crate) fn too_deep() -> String {
     format!("elements are nested more than {MAX_DEPTH} deep")
 }
@@ -135,7 +138,7 @@ fn count_newlines(bytes: &[u8]) -> u32 {
     bytes.iter().filter(|&&b| b == b'\n').count() as u32
 }
 
-/// More of something in a text than there may be.
+/// An excess of something in a text, with its location.
 pub(crate) struct Excess {
     line: u32,
     message: String,
@@ -147,10 +150,10 @@ impl std::fmt::Display for Excess {
     }
 }
 
-/// How many elements, attributes, comments and the like a text has at most.
+/// Returns an upper bound on the number of elements, attributes, comments and the like in a text.
 ///
-/// Bounds what the parser does that grows with the square of a file, before it does. A value cannot contain `<`, so a tag has no
-/// more attributes than there are `=` up to the next `<`.
+/// Limits parser work that grows quadratically with the file. A value cannot contain `<`, so a tag has at most as many
+/// attributes as there are `=` up to the next `<`.
 pub(crate) fn count_marks(text: &str) -> Result<u64, Excess> {
     let (mut marks, mut namespaces, mut at) = (0, 0, 0);
     while let Some(found) = text[at..].find('<') {
@@ -188,7 +191,7 @@ pub(crate) fn count_marks(text: &str) -> Result<u64, Excess> {
     Ok(marks)
 }
 
-/// Takes what the parser will, before it does.
+/// Counts the parser's memory before parsing.
 fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(), LoadError> {
     let marks = count_marks(text)
         .map_err(|Excess { line, message }| LoadError::line(file, line, message))?;
@@ -198,20 +201,20 @@ fn check_marks(text: &str, file: &Arc<str>, spending: &mut Spending) -> Result<(
         .map_err(|excess| LoadError::file(file, excess))
 }
 
-/// Turns the parser's elements into ours.
+/// A converter from the parser's elements to `Element`s.
 struct Converter<'a> {
     text: &'a str,
     file: &'a Arc<str>,
-    /// Where lines end, bytes.
+    /// The offsets of line ends, bytes.
     newlines: Vec<usize>,
-    /// Elements may have the prefix of a namespace, which they keep, and attributes in one, which no reader of ours wants.
+    /// True if names may be namespaced: elements retain the prefix, and namespaced attributes are dropped.
     namespaces: bool,
 }
 
 impl Converter<'_> {
-    /// The tree below a node.
+    /// Converts the tree below a node.
     fn convert(&self, root: Node, spending: &mut Spending) -> Result<Element, LoadError> {
-        // The elements that the node is in, the outermost first.
+        // The ancestors of the node, outermost first.
         let mut open: Vec<Element> = Vec::new();
         let mut node = root;
         loop {
@@ -227,7 +230,7 @@ impl Converter<'_> {
                 node = child;
                 continue;
             }
-            // The element is complete, and so are those that end with it.
+            // The element is complete, and so are the ancestors that end with it.
             loop {
                 let (Some(mut parent), Some(above)) = (open.pop(), node.parent_element()) else {
                     return Ok(element);
@@ -243,11 +246,11 @@ impl Converter<'_> {
         }
     }
 
-    /// An element without its children.
+    /// Converts an element without its children.
     ///
     /// # Errors
-    /// Where its name or that of an attribute in an MJCF file has the prefix of a namespace: MJCF has none, and MuJoCo knows no such
-    /// name either. A namespace for all names without a prefix makes no difference.
+    /// Returns an error if an MJCF file uses a namespace prefix in the name of the element or of an attribute: MJCF has
+    /// no namespaces, and MuJoCo rejects such names too. A default namespace has no effect.
     fn element(&self, node: Node) -> Result<Element, LoadError> {
         let start = node.range().start;
         let end = |c: char| c.is_whitespace() || "/>".contains(c);
@@ -278,7 +281,7 @@ impl Converter<'_> {
                 "unknown element <{name}>: its name is in a namespace, and MJCF has none"
             )));
         }
-        // At the root they tell editors where to find a schema.
+        // At the root they point editors to a schema.
         let is_root = node.parent_element().is_none();
         let named = |a: &roxmltree::Attribute| a.namespace().is_some() && !is_root;
         if let Some(attribute) = node.attributes().find(named) {

@@ -1,4 +1,4 @@
-//! Files of heights: PNG images and MuJoCo's binary grids.
+//! Height data files: PNG images and MuJoCo's binary grids.
 
 use crate::image::Image;
 use crate::spending::Spending;
@@ -11,12 +11,12 @@ pub(crate) struct Elevation {
     pub heights: Vec<f64>,
 }
 
-/// Heights that are no further apart than this are equal, in MuJoCo as here.
+/// The largest height range that counts as flat, as in MuJoCo.
 const FLAT: f32 = 1e-14;
 
 impl Elevation {
-    /// The same heights as parts between the lowest, 0, and the highest, 1, in single precision: to its last bit decides what a
-    /// ray meets, and MuJoCo's compiler has no more. Heights that are not finite stay as they are, for the model to refuse.
+    /// Normalizes the heights to 0 (lowest) to 1 (highest), in single precision as in MuJoCo's compiler: their last
+    /// bits affect ray casts. Heights that are not finite are unchanged, for the model to reject.
     pub(crate) fn in_parts(mut self) -> Self {
         let singles = || self.heights.iter().map(|&height| height as f32);
         let low = singles().fold(f32::INFINITY, f32::min);
@@ -35,13 +35,13 @@ impl Elevation {
     }
 }
 
-/// What a height takes in all, bytes: it stands in the builder and in the model, and is a pixel before.
+/// The total memory of a height, bytes: a pixel while reading, then an entry in the builder and in the model.
 pub(crate) const HEIGHT: u64 = 24;
 
-/// Reads an image: white is high. Of a coloured one the red channel counts, of 16 bits the upper 8, as in MuJoCo.
+/// Reads an image; white is high. Uses the red channel, and the upper 8 of 16 bits, as MuJoCo does.
 ///
 /// # Errors
-/// What is wrong with the bytes.
+/// Returns a message if the bytes are invalid.
 pub(crate) fn read_png(bytes: &[u8], spending: &mut Spending) -> Result<Elevation, String> {
     let image = Image::read(bytes, HEIGHT, spending)?;
     Ok(Elevation {
@@ -53,10 +53,10 @@ pub(crate) fn read_png(bytes: &[u8], spending: &mut Spending) -> Result<Elevatio
     })
 }
 
-/// Reads a grid: two `i32`, rows and columns, then an `f32` a height.
+/// Reads a grid: two `i32`, rows and columns, then one `f32` per height.
 ///
 /// # Errors
-/// What is wrong with the bytes.
+/// Returns a message if the bytes are invalid.
 pub(crate) fn read_grid(bytes: &[u8], spending: &mut Spending) -> Result<Elevation, String> {
     let (words, rest) = bytes.as_chunks::<4>();
     let [rows, columns, heights @ ..] = words else {

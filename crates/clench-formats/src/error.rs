@@ -1,28 +1,28 @@
-//! What can be wrong with a model file, and where.
+//! Errors of model files, with their location.
 
 use clench_builder::{BuildError, Origin, shorten};
 use std::sync::Arc;
 
-/// A model file that cannot be loaded: the file, the line, the element, and what is wrong with it.
+/// A model file error: the file, the line, the element and a message.
 ///
 /// Displayed as `robot.xml:12: joint "knee": ...`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.describe())]
 pub struct LoadError {
-    /// The file as the user named it, or as an include found it; empty where the model came from no file.
+    /// The file as named by the user or an include; empty if the model came from no file.
     pub file: Arc<str>,
-    /// Line, counted from one; `None` where the whole file is meant.
+    /// The line, counted from one; `None` if the error concerns the whole file.
     pub line: Option<u32>,
-    /// The element, such as `joint "knee"`; `None` where the whole file is meant.
+    /// The element, such as `joint "knee"`; `None` if the error concerns the whole file.
     pub element: Option<String>,
-    /// What is wrong.
+    /// The error message.
     pub message: String,
-    /// True if the element lacks something that it needs, and all that it says may be right.
+    /// True if the element only lacks something; its attributes may all be valid.
     pub incomplete: bool,
 }
 
 impl LoadError {
-    /// An error about a file as a whole.
+    /// Creates an error about a file as a whole.
     pub(crate) fn file(file: &Arc<str>, message: impl Into<String>) -> Self {
         LoadError {
             file: file.clone(),
@@ -33,7 +33,7 @@ impl LoadError {
         }
     }
 
-    /// An error at a line, before there are elements to speak of.
+    /// Creates an error at a line, before elements are parsed.
     pub(crate) fn line(file: &Arc<str>, line: u32, message: impl Into<String>) -> Self {
         LoadError {
             line: Some(line),
@@ -41,7 +41,7 @@ impl LoadError {
         }
     }
 
-    /// An error about an element.
+    /// Creates an error about an element.
     pub(crate) fn element(origin: &Origin, element: String, message: impl Into<String>) -> Self {
         LoadError {
             element: Some(shorten(&element)),

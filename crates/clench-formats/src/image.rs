@@ -3,32 +3,32 @@
 use crate::spending::Spending;
 use std::io::Cursor;
 
-/// Bytes of an entry of a palette.
+/// The bytes of a palette entry.
 const PALETTE_ENTRY: usize = 3;
 
-/// An image of 8 bits a sample.
+/// An image with 8 bits per sample.
 pub(crate) struct Image {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// The number of rows.
     pub height: usize,
-    /// Samples of a pixel: grey, or red, green and blue, either followed by opacity or not.
+    /// The number of samples of a pixel: grey, or red, green and blue; an opacity may follow.
     pub samples: usize,
     line: usize,
     bytes: Vec<u8>,
 }
 
 impl Image {
-    /// Reads a PNG image, of 16 bits a sample the upper 8. A pixel takes `cost` bytes in all, which are held against the budget first.
+    /// Reads a PNG image, of 16 bits per sample the upper 8. First counts `cost` bytes per pixel against the budget.
     ///
     /// # Errors
-    /// What is wrong with the bytes.
+    /// Returns a message if the bytes are invalid.
     pub(crate) fn read(bytes: &[u8], cost: u64, spending: &mut Spending) -> Result<Self, String> {
         let wrong = |error: png::DecodingError| format!("not a valid PNG image: {error}");
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_transformations(png::Transformations::normalize_to_color8());
         let mut reader = decoder.read_info().map_err(wrong)?;
-        // The decoder takes the entries of a palette for whole.
+        // The decoder assumes that palette entries are complete.
         let palette = reader.info().palette.as_ref().map_or(0, |p| p.len());
         if palette % PALETTE_ENTRY != 0 {
             return Err(format!(
@@ -52,7 +52,7 @@ impl Image {
         })
     }
 
-    /// The pixels of each row, from above.
+    /// Returns the rows of pixels, from the top.
     pub(crate) fn rows(&self) -> impl DoubleEndedIterator<Item = impl Iterator<Item = &[u8]>> {
         let lines = self.bytes.chunks_exact(self.line).take(self.height);
         lines.map(|line| line.chunks_exact(self.samples).take(self.width))

@@ -1,11 +1,11 @@
-//! Model files: readers that turn text into [`ModelBuilder`]s. All parsing and all file errors live here.
+//! Model file readers: they turn text into [`ModelBuilder`]s. All parsing and all file errors live here.
 //!
-//! MJCF, MuJoCo's own format, is read as MuJoCo 4.0 reads it: the same defaults, the same rules, the same rejections.
-//! URDF is read as MuJoCo reads it, too: bodies that no joint moves become part of their parents, what is only seen is left out,
-//! and a joint that mimics another is an equality constraint.
-//! Meshes come from STL, OBJ, MSH, Collada and glTF files, height fields from PNG images and MuJoCo's binary grids.
-//! What an MJCF file can say and this library cannot simulate yet is an error that names file, line and element, never
-//! a silent skip. What has no effect on motion is accepted by an explicit list; colours, textures and lights are kept for viewers.
+//! MJCF, MuJoCo's own format, is read as MuJoCo 4.0 reads it, with the same defaults, rules and rejections. URDF is
+//! also read as MuJoCo reads it: bodies without a joint are merged into their parents, visual geometry is omitted, and
+//! a mimic joint becomes an equality constraint. Meshes come from STL, OBJ, MSH, Collada and glTF files, height fields
+//! from PNG images and MuJoCo's binary grids. An MJCF feature that this library cannot simulate yet is an error that
+//! names file, line and element, never a silent skip. Elements without effect on motion are accepted by an explicit
+//! list; colours, textures and lights are stored for viewers.
 
 #![deny(unreachable_pub)]
 
@@ -30,23 +30,24 @@ use clench_builder::ModelBuilder;
 use clench_dynamics::{Budget, Model};
 use std::path::Path;
 
-/// Loads a model file, within the usual [`Budget`].
+/// Loads a model file with the default [`Budget`].
 ///
 /// # Errors
-/// [`LoadError`] where [`read`] fails or the model cannot be built: dangling names, moving bodies without mass, ...
+/// Returns a [`LoadError`] if [`read`] fails or the model cannot be built, as with dangling names or massless moving
+/// bodies.
 pub fn load(path: impl AsRef<Path>) -> Result<Model, LoadError> {
     load_within(path, Budget::default())
 }
 
-/// Loads a model file that may ask for more memory and work than usual, or for less.
+/// Loads a model file with a custom limit on memory and work.
 ///
 /// # Errors
-/// As [`load`].
+/// See [`load`].
 pub fn load_within(path: impl AsRef<Path>, budget: Budget) -> Result<Model, LoadError> {
     Loader::new().budget(budget).load(path)
 }
 
-/// Loads a model from text; includes are found from the working directory.
+/// Loads a model from text; includes are resolved from the working directory.
 ///
 /// ```
 /// let model = clench_formats::load_str(
@@ -64,15 +65,15 @@ pub fn load_within(path: impl AsRef<Path>, budget: Budget) -> Result<Model, Load
 /// ```
 ///
 /// # Errors
-/// As [`load`]; the file name of an error is empty.
+/// See [`load`]; the file name of an error is empty.
 pub fn load_str(text: &str) -> Result<Model, LoadError> {
     load_str_within(text, Budget::default())
 }
 
-/// Loads a model from text that may ask for more memory and work than usual, or for less.
+/// Loads a model from text with a custom limit on memory and work.
 ///
 /// # Errors
-/// As [`load_str`].
+/// See [`load_str`].
 pub fn load_str_within(text: &str, budget: Budget) -> Result<Model, LoadError> {
     Loader::new().budget(budget).load_str(text)
 }
@@ -80,16 +81,16 @@ pub fn load_str_within(text: &str, budget: Budget) -> Result<Model, LoadError> {
 /// Reads a model file into a builder, before anything is computed.
 ///
 /// # Errors
-/// [`LoadError`] where the file cannot be read, is not well-formed, breaks a rule of the format, or asks for something
-/// that is not supported yet.
+/// Returns a [`LoadError`] if the file cannot be read, is not well-formed, breaks a rule of the format, or uses an
+/// unsupported feature.
 pub fn read(path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
     Loader::new().read(path)
 }
 
-/// Reads a model from text, as [`read`]; includes are found from the working directory.
+/// Reads a model from text, like [`read`]; includes are resolved from the working directory.
 ///
 /// # Errors
-/// As [`read`]; the file name of an error is empty.
+/// See [`read`]; the file name of an error is empty.
 pub fn read_str(text: &str) -> Result<ModelBuilder, LoadError> {
     Loader::new().read_str(text)
 }

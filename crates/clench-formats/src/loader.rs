@@ -1,4 +1,4 @@
-//! Reading a model: its bytes, which format they are in, and what that format's reader is told.
+//! Model loading: reads the bytes, detects the format and configures its reader.
 
 use crate::document;
 use crate::spending::{Memory, Spending, memory_name};
@@ -8,8 +8,8 @@ use clench_dynamics::{Budget, Model};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How model files are loaded: within which [`Budget`], where the packages are that URDF files name, which files are in memory, and
-/// whether what is not supported yet may be left out.
+/// A loader of model files: its [`Budget`], the package folders of URDF files, the files in memory, and whether
+/// unsupported elements may be omitted.
 ///
 /// ```no_run
 /// let model = clench_formats::Loader::new()
@@ -27,28 +27,30 @@ pub struct Loader {
 }
 
 impl Loader {
-    /// The usual budget, and no folders of packages.
+    /// Creates a loader with the default budget and no packages.
     pub fn new() -> Self {
         Loader::default()
     }
 
-    /// What a model may ask for.
+    /// Sets the limit on memory and work.
     #[must_use]
     pub fn budget(mut self, budget: Budget) -> Self {
         self.budget = budget;
         self
     }
 
-    /// Folders that hold packages: `package://NAME/REST` is the file `NAME/REST` in the first of them that has it, or `REST` in
-    /// one that is itself called `NAME`. After them, the folder of the model and those around it are searched in the same way.
+    /// Adds package folders: `package://NAME/REST` is the file `NAME/REST` in the first folder that has it, or `REST`
+    /// in a folder that is itself called `NAME`. The model's folder and its ancestors are searched last, in the same
+    /// way.
     #[must_use]
     pub fn package_path<P: Into<PathBuf>>(mut self, folders: impl IntoIterator<Item = P>) -> Self {
         self.packages.extend(folders.into_iter().map(Into::into));
         self
     }
 
-    /// Frees the base of a URDF robot: the one link that stands on the world gets a free joint, `floating_base`, and keeps its name, pose
-    /// and inertia. A robot whose base has a free joint stays as it is. An MJCF model is refused: its file says `<freejoint/>`.
+    /// Frees the base of a URDF robot: the link fixed to the world gets a free joint, `floating_base`, and retains its
+    /// name, pose and inertia. A base with a free joint is unchanged. An MJCF model is rejected: its file says
+    /// `<freejoint/>`.
     ///
     /// ```
     /// let robot = "<robot name='box'><link name='trunk'><inertial><mass value='2'/>
@@ -62,16 +64,16 @@ impl Loader {
         self
     }
 
-    /// Leaves out of an MJCF model what is not supported yet, where the rest still means the same: plugins, deformable bodies,
-    /// sensors, forces and flags, but no joint, tendon or actuator. `left_out` of the model says what.
+    /// Omits unsupported elements of an MJCF model if the remainder keeps its meaning: plugins, deformable bodies,
+    /// sensors, forces and flags, but no joint, tendon or actuator. `left_out` of the model lists them.
     #[must_use]
     pub fn ignore_unsupported(mut self, ignore: bool) -> Self {
         self.ignore_unsupported = ignore;
         self
     }
 
-    /// Files in memory, by name: meshes, height fields, included and attached models. As in MuJoCo, neither the folders nor the capitals of
-    /// a name count, and these files go before those on disk.
+    /// Adds files in memory, by name: meshes, height fields, included and attached models. As in MuJoCo, folders and
+    /// letter case of a name are ignored, and these files take precedence over those on disk.
     ///
     /// ```
     /// let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4";
@@ -97,10 +99,10 @@ impl Loader {
         self
     }
 
-    /// Loads a model file, MJCF or URDF: its root element says which.
+    /// Loads a model file, MJCF or URDF; the root element determines the format.
     ///
     /// # Errors
-    /// As [`load`](crate::load).
+    /// See [`load`](crate::load).
     pub fn load(&self, path: impl AsRef<Path>) -> Result<Model, LoadError> {
         let path = path.as_ref();
         self.read(path)?.build().map_err(|error| {
@@ -112,10 +114,10 @@ impl Loader {
         })
     }
 
-    /// Loads a model from text; other files are found from the working directory.
+    /// Loads a model from text; other files are resolved from the working directory.
     ///
     /// # Errors
-    /// As [`load`](crate::load); the file name of an error is empty.
+    /// See [`load`](crate::load); the file name of an error is empty.
     pub fn load_str(&self, text: &str) -> Result<Model, LoadError> {
         Ok(self.read_str(text)?.build()?)
     }
@@ -123,7 +125,7 @@ impl Loader {
     /// Reads a model file into a builder, before anything is computed.
     ///
     /// # Errors
-    /// As [`read`](crate::read).
+    /// See [`read`](crate::read).
     pub fn read(&self, path: impl AsRef<Path>) -> Result<ModelBuilder, LoadError> {
         let path = path.as_ref();
         let file = Arc::from(path.to_string_lossy());
@@ -133,10 +135,10 @@ impl Loader {
         self.read_bytes(&bytes, &file, Some(path), &mut spending)
     }
 
-    /// Reads a model from text, as [`read`](Self::read); other files are found from the working directory.
+    /// Reads a model from text, like [`read`](Self::read); other files are resolved from the working directory.
     ///
     /// # Errors
-    /// As [`read`](crate::read); the file name of an error is empty.
+    /// See [`read`](crate::read); the file name of an error is empty.
     pub fn read_str(&self, text: &str) -> Result<ModelBuilder, LoadError> {
         let mut spending = Spending::new(self.budget, self.memory.clone());
         self.read_bytes(text.as_bytes(), &Arc::from(""), None, &mut spending)

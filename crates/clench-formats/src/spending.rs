@@ -1,4 +1,4 @@
-//! A model's files, on disk or in memory, and what they have asked for so far, held against their budget.
+//! A model's files, on disk or in memory, and their budget.
 
 use clench_dynamics::Budget;
 use clench_dynamics::budget::RAISE;
@@ -8,17 +8,17 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Files in memory, by the last part of their names in small letters; they go before those on disk.
+/// Files in memory, by lower-case base name; they take precedence over those on disk.
 pub(crate) type Memory = HashMap<String, Vec<u8>>;
 
-/// What a file in memory is called: as in MuJoCo, neither folders nor capitals count.
+/// Returns the name of a file in memory: as in MuJoCo, folders and letter case are ignored.
 pub(crate) fn memory_name(path: &Path) -> String {
     let text = path.to_string_lossy().replace('\\', "/");
     let last = text.rsplit('/').next().unwrap_or_default();
     last.to_lowercase()
 }
 
-/// A budget and what has been taken from it.
+/// A budget and its consumption so far.
 #[derive(Clone, Debug)]
 pub(crate) struct Spending {
     pub budget: Budget,
@@ -28,7 +28,7 @@ pub(crate) struct Spending {
 }
 
 impl Spending {
-    /// Nothing taken yet.
+    /// Creates an unused budget.
     pub(crate) fn new(budget: Budget, memory: Arc<Memory>) -> Self {
         Spending {
             budget,
@@ -38,10 +38,10 @@ impl Spending {
         }
     }
 
-    /// Takes memory, before it is allocated.
+    /// Counts memory against the budget, before it is allocated.
     ///
     /// # Errors
-    /// What to say where it is more than is left.
+    /// Returns a message if it exceeds the budget.
     pub(crate) fn bytes(&mut self, count: u64) -> Result<(), String> {
         self.bytes = self.bytes.saturating_add(count);
         let most = self.budget.bytes;
@@ -53,10 +53,10 @@ impl Spending {
         }
     }
 
-    /// Takes elements.
+    /// Counts elements against the budget.
     ///
     /// # Errors
-    /// What to say where they are more than are left.
+    /// Returns a message if they exceed the budget.
     pub(crate) fn elements(&mut self, count: u64) -> Result<(), String> {
         self.elements = self.elements.saturating_add(count);
         let most = self.budget.elements;
@@ -68,15 +68,15 @@ impl Spending {
         }
     }
 
-    /// Whether there is a file.
+    /// Returns true if the file exists.
     pub(crate) fn has_file(&self, path: &Path) -> bool {
         self.memory.contains_key(&memory_name(path)) || path.is_file()
     }
 
-    /// What tells a file from others, whatever path leads to it.
+    /// Returns a unique identity of a file, independent of the path to it.
     ///
     /// # Errors
-    /// What to say where there is no such file.
+    /// Returns a message if the file does not exist.
     pub(crate) fn identity(&self, path: &Path) -> Result<PathBuf, String> {
         let name = memory_name(path);
         match self.memory.contains_key(&name) {
@@ -85,10 +85,10 @@ impl Spending {
         }
     }
 
-    /// Reads a file, and takes its length.
+    /// Reads a file and counts its length against the budget.
     ///
     /// # Errors
-    /// What to say where it cannot be read or is too long.
+    /// Returns a message if it is unreadable or too long.
     pub(crate) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
         if let Some(bytes) = self.memory.clone().get(&memory_name(path)) {
             self.bytes(bytes.len() as u64)?;

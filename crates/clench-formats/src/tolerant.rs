@@ -1,9 +1,9 @@
-//! What MuJoCo's XML parser, TinyXML, takes and XML itself does not, put in words that a strict parser takes.
+//! Conversion of text that MuJoCo's XML parser, TinyXML, accepts to strict XML.
 //!
-//! Comments may hold `--`, values may hold `<` and a bare `&`, attributes may touch each other, and whatever stands between elements
-//! does not count, nor do elements after the first. Lines stay where they are, so that errors find them.
+//! Comments may contain `--`, values `<` and a bare `&`, and attributes may follow each other without a space. Text
+//! between elements and elements after the first are ignored. Line numbers are preserved for errors.
 
-/// The text of a file with what only TinyXML takes written as XML has it.
+/// Converts text that TinyXML accepts to strict XML.
 pub(crate) fn strict(text: &str) -> String {
     let mut writer = Writer {
         rest: text.strip_prefix('\u{feff}').unwrap_or(text),
@@ -21,14 +21,14 @@ pub(crate) fn strict(text: &str) -> String {
 struct Writer<'a> {
     rest: &'a str,
     out: String,
-    /// How many elements are open.
+    /// The number of open elements.
     depth: usize,
-    /// The first element has ended.
+    /// True if the first element has ended.
     complete: bool,
 }
 
 impl<'a> Writer<'a> {
-    /// Takes text up to and with its first occurrence of `end`, or all.
+    /// Takes text up to and including the first occurrence of `end`, or all of it.
     fn take(&mut self, end: &str) -> &'a str {
         let length = self
             .rest
@@ -39,12 +39,12 @@ impl<'a> Writer<'a> {
         taken
     }
 
-    /// Drops text but for its ends of lines.
+    /// Drops text except for its line ends.
     fn blank(&mut self, text: &str) {
         self.out.extend(text.chars().filter(|c| *c == '\n'));
     }
 
-    /// The next comment, declaration, element's tag, or text between them.
+    /// Converts the next comment, declaration, tag, or text between them.
     fn piece(&mut self) {
         let rest = self.rest;
         let kinds = [
@@ -55,7 +55,7 @@ impl<'a> Writer<'a> {
         ];
         if let Some((open, close)) = kinds.into_iter().find(|(open, _)| rest.starts_with(open)) {
             if open == "<?" && self.depth > 0 {
-                // A declaration inside of elements is an error for both parsers.
+                // A declaration inside an element is an error for both parsers.
                 let taken = self.take(close);
                 self.out.push_str(taken);
                 return;
@@ -81,7 +81,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A tag, with its values as XML has them.
+    /// Converts a tag, with its values as strict XML.
     fn tag(&mut self) {
         let closes = self.rest.starts_with("</");
         let mut last = ' ';
@@ -102,20 +102,20 @@ impl<'a> Writer<'a> {
                 '"' | '\'' if last == '=' => {
                     let value = &self.rest[at + 1..];
                     let Some(length) = value.find(c) else {
-                        // The strict parser says that the value does not end.
+                        // The strict parser reports that the value does not end.
                         self.out.push_str(&self.rest[at..]);
                         self.rest = "";
                         return;
                     };
                     self.value(&value[..length], c);
-                    // The next attribute may follow at once.
+                    // The next attribute may follow without a space.
                     self.out.push(' ');
                     chars = self.rest.char_indices();
                     chars.find(|(start, _)| *start == at + 1 + length);
                     last = c;
                 }
                 '<' if at > 0 => {
-                    // The tag is not closed: the strict parser says where.
+                    // The tag is not closed: the strict parser reports the location.
                     self.out.push_str(" <");
                     self.rest = &self.rest[at + 1..];
                     return;
@@ -131,7 +131,7 @@ impl<'a> Writer<'a> {
         self.rest = "";
     }
 
-    /// A value in quotes.
+    /// Writes a value in quotes.
     fn value(&mut self, value: &str, quote: char) {
         self.out.push(quote);
         for (at, c) in value.char_indices() {
@@ -147,7 +147,7 @@ impl<'a> Writer<'a> {
         self.out.push(quote);
     }
 
-    /// What stands after the first element: further elements and comments do not count, text is an error.
+    /// Handles the text after the first element: further elements and comments are ignored, text is an error.
     fn end(&mut self) {
         let rest = self.rest.trim_start();
         if self.complete && !rest.starts_with('<') {
@@ -156,7 +156,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Whether a text begins with a reference that XML knows without a declaration: of a character, or one of the five entities.
+/// Returns true if a text begins with a reference that XML predefines: to a character or one of the five entities.
 fn is_reference(text: &str) -> bool {
     let Some(name) = text[1..].split_once(';').map(|(name, _)| name) else {
         return false;

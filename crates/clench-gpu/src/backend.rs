@@ -1,4 +1,4 @@
-//! A batch of `clench-rigid` that a graphics device steps.
+//! A backend of `clench-rigid`'s batch that steps on a graphics device.
 
 use crate::batch::{GpuBatch, GpuOptions};
 use crate::error::{GpuError, GpuFault};
@@ -10,15 +10,15 @@ use clench_rigid::model::Model;
 use clench_rigid::{Batch, BatchOptions, Output, SimError};
 use std::sync::Arc;
 
-/// `count` environments in the model's initial state that a graphics device steps. What users write into rows goes up before a
-/// call, and the states come down after it: once a call, however many steps it has.
+/// Creates a batch of `count` environments in the model's initial state, stepped by a graphics device. Each call
+/// uploads the rows that users wrote and downloads the states once, however many steps it makes.
 ///
-/// Outputs are computed on the device and come down where they are recorded; those that it does not compute are refused.
-/// Questions (Jacobians, rays, inverse kinematics, ...) are answered on the processor, from the rows. `device` is a part of the
-/// name of the device to use; by default it is the first of [`devices`](crate::devices).
+/// The device computes the outputs; those that are recorded are downloaded. Outputs that it does not compute are
+/// refused. Queries (Jacobians, rays, inverse kinematics, ...) run on the processor, from the rows. `device` is a part
+/// of the name of the device to use; the default is the first of [`devices`](crate::devices).
 ///
 /// # Errors
-/// As [`GpuBatch::new`].
+/// Same as [`GpuBatch::new`].
 ///
 /// ```no_run
 /// use clench_rigid::BatchOptions;
@@ -37,7 +37,7 @@ pub fn batch<S: GpuReal>(
     device: Option<&str>,
 ) -> Result<Batch<S>, GpuError> {
     let on_device = GpuOptions {
-        // Who starts over is decided on this side.
+        // The host handles automatic resets.
         options: options.options.autoreset(false),
         device: device.map(str::to_owned),
         general_kernels: false,
@@ -51,7 +51,7 @@ pub fn batch<S: GpuReal>(
     )?)
 }
 
-/// The word of the reports that an output is, if it is one.
+/// Returns the report field that holds an output, if one does.
 fn word(output: Output) -> Option<&'static str> {
     match output {
         Output::contact_count => Some("ncon"),
@@ -61,7 +61,7 @@ fn word(output: Output) -> Option<&'static str> {
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// What became of each environment that took part in a call, by the words of the field `verdict`.
+    /// Collects the outcome of each running environment from the report field `verdict`.
     fn outcomes(
         &self,
         verdict: &str,

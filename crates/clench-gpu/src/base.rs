@@ -1,18 +1,18 @@
-//! What the kernels of a batch were made of.
+//! The data from which the kernels of a batch were built.
 
 use crate::layout::Layout;
 use crate::tables::Tables;
 use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
 
-/// What the kernels were made of, to which all environments must keep.
+/// The data from which the kernels were built; all environments must match it.
 pub(crate) struct Base<S> {
     pub words: Vec<u32>,
     pub constants: String,
     pub layout: Layout,
     pub parameters: Vec<S>,
     pub candidates: Vec<Candidate>,
-    /// Whether the kernels are such as serve any model.
+    /// True if the kernels serve any model.
     pub general_kernels: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Many environments of one model on a graphics device.
+//! Batches of environments of one model on a graphics device.
 
 use crate::base::Base;
 use crate::check::{Simulation, check};
@@ -19,26 +19,28 @@ use std::fmt;
 use std::sync::Arc;
 use zerocopy::IntoBytes;
 
-/// Steps that are handed to the device at a time: enough that it never waits, few enough that no watchdog thinks it hangs.
+/// The number of steps per submission: enough to keep the device busy, few enough not to trigger a watchdog.
 const STEPS_AT_A_TIME: usize = 16;
 
-/// How environments are stepped on a device.
+/// Options of a batch on a graphics device.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GpuOptions {
-    /// Options that go before those of the model. `max_contacts` is the size of the contact pool of an environment; by default as
-    /// many as its pairs can have, but no more than 48 to 128, the fewer the more degrees of freedom there are.
+    /// Options that override those of the model. `max_contacts` is the size of the contact pool of an environment; by
+    /// default, the maximum that its pairs can have, limited to 48 to 128 (fewer for more degrees of freedom).
     pub options: RigidOptions,
     /// A part of the name of the device to use; by default the first of [`devices`](crate::devices).
     pub device: Option<String>,
-    /// Kernels that serve any model, rather than ones made for what this one has: slower, but who looks at many kinds of models waits for
-    /// their compiler once.
+    /// Use kernels that serve any model instead of specialized ones. They are slower, but are compiled only once for
+    /// many kinds of models.
     pub general_kernels: bool,
 }
 
-/// Many environments of one model on a graphics device, in single precision or, where the device has it, in double.
+/// A batch of environments of one model on a graphics device, in single precision or, if the device supports it,
+/// double.
 ///
-/// An environment's results depend on its state alone, and repeat to the bit on the same device and driver. One that cannot go on
-/// keeps its last good state and says why in [`statuses`](Self::statuses); its neighbours do not notice.
+/// Results depend only on the state of an environment, and are bitwise reproducible on the same device and driver. An
+/// environment that fails keeps its last valid state and reports the reason in [`statuses`](Self::statuses), without
+/// affecting others.
 pub struct GpuBatch<S = f32> {
     pub(crate) device: Arc<Device>,
     pub(crate) arrays: Arrays,
@@ -48,14 +50,14 @@ pub struct GpuBatch<S = f32> {
     pub(crate) reports: Fields,
     pub(crate) count: usize,
     pub(crate) bindings: wgpu::BindGroup,
-    /// Parameters of environments, parameter by parameter, environment next to environment; none while all have the model's.
+    /// Per-environment parameters, indexed by parameter, then environment; empty while all have the model's.
     pub(crate) own: Vec<S>,
     pub(crate) base: Base<S>,
     pub(crate) pipelines: Pipelines,
     pub(crate) capacity: Capacity,
     pub(crate) settings: StepSettings,
     model: Arc<Model>,
-    /// The last steps that were handed to the device, on which it may still be working.
+    /// The last submitted steps, which may still be running.
     pending: Option<wgpu::SubmissionIndex>,
 }
 
@@ -69,7 +71,7 @@ impl<S> fmt::Debug for GpuBatch<S> {
     }
 }
 
-/// Gives its memory back at once: the device outlives it.
+/// Frees the memory immediately, because the device outlives the batch.
 impl<S> Drop for GpuBatch<S> {
     fn drop(&mut self) {
         for buffer in self.arrays.all() {
@@ -80,10 +82,11 @@ impl<S> Drop for GpuBatch<S> {
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// `count` environments in the model's initial state.
+    /// Creates `count` environments in the model's initial state.
     ///
     /// # Errors
-    /// No device; a model that cannot be stepped on one yet; options out of range; more environments than the device holds.
+    /// Returns an error if there is no device, the model is unsupported, an option is out of range, or memory is too
+    /// small.
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
         let general_kernels = options.general_kernels;
         let settings = StepSettings::new::<S>(&model, options.options)?;
@@ -183,12 +186,12 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(batch)
     }
 
-    /// Advances all environments that run by so many time steps. What a fault is of one environment shows in
-    /// [`statuses`](Self::statuses). The device is still at the last of them when this returns, so that it need not wait for what comes
-    /// next: whatever reads waits, and so does [`finish`](Self::finish).
+    /// Advances all running environments by the given number of time steps. Faults of single environments are reported
+    /// in [`statuses`](Self::statuses). Returns while the device still computes the last steps; reads and
+    /// [`finish`](Self::finish) wait for them.
     ///
     /// # Errors
-    /// That the device was lost, perhaps in the steps of the call before.
+    /// Returns an error if the device was lost, perhaps in the steps of the previous call.
     pub fn step(&mut self, steps: usize) -> Result<(), GpuError> {
         let mut left = steps;
         while left > 0 {
@@ -204,20 +207,20 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(())
     }
 
-    /// Waits until the device has made all steps.
+    /// Waits until the device has completed all steps.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn finish(&mut self) -> Result<(), GpuError> {
         self.pending
             .take()
             .map_or(Ok(()), |last| self.device.wait(last))
     }
 
-    /// Computes everything that follows from the states, and leaves these alone.
+    /// Computes everything that depends on the states, without changing these.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn forward(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
@@ -225,10 +228,10 @@ impl<S: GpuReal> GpuBatch<S> {
         })
     }
 
-    /// As [`forward`](Self::forward), and notes in `trouble` what went wrong.
+    /// Runs [`forward`](Self::forward) and records failures in `trouble`.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub(crate) fn forward_with_verdict(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
             batch.clear_trouble(encoder);
@@ -237,10 +240,11 @@ impl<S: GpuReal> GpuBatch<S> {
         })
     }
 
-    /// Advances all environments that run by a time step, and tells how long each kernel took by the device's own clock, s, in order.
+    /// Advances all running environments by one time step. Returns the time of each kernel by the device's clock, s, in
+    /// order.
     ///
     /// # Errors
-    /// A device without such a clock; that it was lost.
+    /// Returns an error if the device has no such clock or was lost.
     pub fn time_stages(&mut self) -> Result<Vec<(&'static str, f64)>, GpuError> {
         let kernels = Vec::from_iter(self.step_kernels().cloned());
         let clock = Clock::new(&self.device, kernels.len())?;
@@ -256,19 +260,19 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(names.zip(times).collect())
     }
 
-    /// All environments back to the model's initial state; all run.
+    /// Resets all environments to the model's initial state; all run.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn reset(&mut self) -> Result<(), GpuError> {
         let all: Vec<usize> = (0..self.count).collect();
         self.reset_envs(&all)
     }
 
-    /// Some environments back to the model's initial state; they run.
+    /// Resets the given environments to the model's initial state; they run.
     ///
     /// # Errors
-    /// An environment that is not there; that the device was lost.
+    /// Returns an error if an environment does not exist or the device was lost.
     pub fn reset_envs(&mut self, envs: &[usize]) -> Result<(), GpuError> {
         let mut asked = vec![0u32; self.count];
         for &env in envs {
@@ -299,7 +303,7 @@ impl<S: GpuReal> GpuBatch<S> {
         encoder.finish()
     }
 
-    /// A compute pass of some kernels, timed or not.
+    /// Encodes a compute pass of kernels, optionally timed.
     pub(crate) fn encode<'a>(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -317,13 +321,13 @@ impl<S: GpuReal> GpuBatch<S> {
         kernels.for_each(|kernel| kernel.dispatch(&mut pass));
     }
 
-    /// The kernels of a step, one after the other.
+    /// Returns the kernels of a step in order.
     fn step_kernels(&self) -> impl Iterator<Item = &Pipeline> {
         let pipelines = &self.pipelines;
         let last = pipelines.advance.len() - 1;
         let stages = pipelines.advance.iter().enumerate();
         stages.flat_map(move |(stage, advance)| {
-            // Sensors measure at the start of a step; all else is as the last forward pass leaves it.
+            // Sensors measure at the start of a step; everything else is from the last forward pass.
             let measured = pipelines.sensors.iter().filter(move |_| stage == 0);
             let shown = stage == last || measured.clone().count() > 0;
             let observed = pipelines.observed().filter(move |_| shown).chain(measured);
@@ -336,10 +340,11 @@ impl<S: GpuReal> GpuBatch<S> {
         self.encode(encoder, None, self.step_kernels());
     }
 
-    /// Measures sensors in every step and forward pass from now on: `sensordata` can be read, as those at the start of the last step found it.
+    /// Enables sensors in every subsequent step and forward pass: `sensordata` can be read, with the values from the
+    /// start of the last step.
     ///
     /// # Errors
-    /// A sensor that the device does not read yet; that the device or its driver refuses a kernel.
+    /// Returns an error if the device does not support a sensor yet, or if it or its driver refuses a kernel.
     pub fn measure(&mut self) -> Result<(), GpuError> {
         let model = &self.model;
         if let Some(sensor) = model.sensors.iter().find(|s| !is_read(model, s)) {
@@ -352,10 +357,10 @@ impl<S: GpuReal> GpuBatch<S> {
         self.observe(true)
     }
 
-    /// Computes accelerations of bodies and forces between them in every step from now on, and perhaps sensors.
+    /// Enables accelerations of bodies and forces between them in every subsequent step, and optionally sensors.
     ///
     /// # Errors
-    /// That the device or its driver refuses a kernel.
+    /// Returns an error if the device refuses a kernel.
     pub(crate) fn observe(&mut self, sensors: bool) -> Result<(), GpuError> {
         if sensors {
             let place = 4 * MEASURES as u64;
@@ -366,10 +371,10 @@ impl<S: GpuReal> GpuBatch<S> {
             .observe::<S>(&self.device, self.count, sensors)
     }
 
-    /// Places cameras in every step from now on.
+    /// Enables camera poses in every subsequent step.
     ///
     /// # Errors
-    /// That the device or its driver refuses the kernel.
+    /// Returns an error if the device refuses the kernel.
     pub(crate) fn place_cameras(&mut self) -> Result<(), GpuError> {
         if self.model.cameras.is_empty() {
             return Ok(());
@@ -385,30 +390,30 @@ impl<S: GpuReal> GpuBatch<S> {
         Err(GpuError::NoSuchEnvironment { env, count })
     }
 
-    /// How many environments there are.
+    /// Returns the number of environments.
     pub fn count(&self) -> usize {
         self.count
     }
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
-    /// All options, decided.
+    /// Returns all options, resolved.
     pub fn settings(&self) -> &StepSettings {
         &self.settings
     }
-    /// The device that steps.
+    /// Returns the device.
     pub fn device(&self) -> &DeviceInfo {
         &self.device.info
     }
-    /// Bytes that an environment takes on the device.
+    /// Returns the bytes of an environment on the device.
     pub fn bytes_per_env(&self) -> usize {
         let numbers = [&self.state, &self.work, &self.rows].map(|fields| fields.size);
         size_of::<S>() * numbers.iter().sum::<usize>() + 4 * self.reports.size
     }
 }
 
-/// Whether the largest array of `count` environments, of so many bytes each, is one that kernels can see, and number.
+/// Checks that the largest array of `count` environments of the given bytes each fits a buffer and can be indexed.
 fn check_room(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), GpuError> {
     let largest = sizes.into_iter().max().unwrap_or(0).max(4) as u64;
     let bytes = device.max_buffer().min(4 * u64::from(u32::MAX));

@@ -1,4 +1,4 @@
-//! What of a model the device cannot do yet, as one table. Nothing is ignored: what is not refused here, the kernels do.
+//! Model features that the device does not support yet, in one table. Everything that is not refused here is supported.
 
 use crate::error::{GpuError, Refusal};
 use crate::methods::points_of_pair;
@@ -7,7 +7,7 @@ use clench_rigid::contact::Candidate;
 use clench_rigid::model::{EqualityTarget, Integrator, Model, Sensor};
 use clench_rigid::settings::StepSettings;
 
-/// What a batch is asked to step.
+/// The simulation that a batch is to step.
 pub(crate) struct Simulation<'a> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
@@ -15,7 +15,7 @@ pub(crate) struct Simulation<'a> {
     pub candidates: &'a [Candidate],
 }
 
-/// One thing that cannot be done, and how to find the first element that needs it.
+/// An unsupported feature, and a function that finds the first element that uses it.
 struct Rule {
     reason: &'static str,
     find: fn(&Simulation) -> Option<String>,
@@ -57,10 +57,10 @@ rules! {
     };
 }
 
-/// Refuses what the device cannot do.
+/// Refuses unsupported models.
 ///
 /// # Errors
-/// The first element of each rule that is not kept.
+/// Returns the first element that violates each rule.
 pub(crate) fn check(simulation: &Simulation) -> Result<(), GpuError> {
     let refuse = |rule: &Rule| {
         let element = (rule.find)(simulation)?;

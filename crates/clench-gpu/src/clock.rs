@@ -1,25 +1,25 @@
-//! How long kernels take, by the device's own clock.
+//! Timing of kernels by the device's clock.
 
 use crate::device::Device;
 use crate::error::GpuError;
 use zerocopy::FromBytes;
 
-/// Bytes of a time.
+/// The bytes of a timestamp.
 const TIME: u64 = 8;
 
-/// Looks at the clock before and after each of some compute passes.
+/// Timestamps before and after each of a number of compute passes.
 pub(crate) struct Clock {
     times: wgpu::QuerySet,
-    /// Where the device puts what it saw.
+    /// The buffer of the timestamps.
     seen: wgpu::Buffer,
     passes: usize,
 }
 
 impl Clock {
-    /// For so many passes.
+    /// Creates a clock for `passes` passes.
     ///
     /// # Errors
-    /// A device without a clock.
+    /// Returns an error if the device has no clock.
     pub(crate) fn new(device: &Device, passes: usize) -> Result<Self, GpuError> {
         let features = device.device.features();
         if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
@@ -45,7 +45,7 @@ impl Clock {
         })
     }
 
-    /// What makes a pass the k-th that is timed.
+    /// Returns the timestamp writes of the k-th timed pass.
     pub(crate) fn around(&self, k: usize) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         Some(wgpu::ComputePassTimestampWrites {
             query_set: &self.times,
@@ -54,15 +54,15 @@ impl Clock {
         })
     }
 
-    /// Has the device tell what it saw, after the last pass.
+    /// Writes the timestamps to the buffer, after the last pass.
     pub(crate) fn write(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.times, 0..2 * self.passes as u32, &self.seen, 0);
     }
 
-    /// How long each pass took, s.
+    /// Returns the duration of each pass, s.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub(crate) fn read(&self, device: &Device) -> Result<Vec<f64>, GpuError> {
         let bytes = device.download(&self.seen, 0, 2 * TIME * self.passes as u64)?;
         let period = f64::from(device.queue.get_timestamp_period()) * 1e-9;

@@ -1,6 +1,7 @@
-//! Graphics devices: which there are, and those that this process has taken up for computing.
+//! Graphics devices: those available, and those that this process has opened.
 //!
-//! Batches on one device share it and all kernels that it has compiled: a second batch of a model, or of a like one, waits for no compiler.
+//! Batches on one device share it and its compiled kernels: a second batch of the same or a similar model needs no
+//! compilation.
 
 use crate::error::GpuError;
 use std::collections::HashMap;
@@ -10,15 +11,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 /// A graphics device of this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceInfo {
-    /// Its name, as the driver tells it.
+    /// The name that the driver reports.
     pub name: String,
-    /// What it is: a card, part of the processor, or software.
+    /// The kind: GPU, part of the processor, or software.
     pub kind: String,
-    /// By what it is reached, such as Vulkan, and its driver.
+    /// The API, such as Vulkan, and the driver.
     pub driver: String,
-    /// The largest buffer, bytes: bounds how many environments fit.
+    /// The largest buffer, bytes; it limits the number of environments.
     pub max_buffer: u64,
-    /// Whether it is software that runs on the processor.
+    /// True if it is software that runs on the processor.
     pub software: bool,
 }
 
@@ -54,14 +55,14 @@ fn describe(adapter: &wgpu::Adapter) -> DeviceInfo {
     }
 }
 
-/// The largest array that a kernel can see.
+/// Returns the largest array that a kernel can access.
 fn max_buffer(limits: &wgpu::Limits) -> u64 {
     limits
         .max_buffer_size
         .min(limits.max_storage_buffer_binding_size)
 }
 
-/// All that can compute, cards before software.
+/// Returns all adapters that can compute, GPUs before software.
 fn adapters() -> Vec<wgpu::Adapter> {
     let instance =
         wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
@@ -81,12 +82,12 @@ fn adapters() -> Vec<wgpu::Adapter> {
     found
 }
 
-/// The devices of this machine that can compute, in the order in which they are chosen: cards first, software last.
+/// Returns the devices of this machine that can compute, in order of preference: GPUs first, software last.
 pub fn devices() -> Vec<DeviceInfo> {
     adapters().iter().map(describe).collect()
 }
 
-/// What all kernels are given: the model and the parameters of environments to read, the others to write as well.
+/// Creates the bindings of all kernels: the model and the parameters are read-only, the other arrays writable.
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry = |binding| wgpu::BindGroupLayoutEntry {
         binding,
@@ -109,29 +110,30 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-/// Compiled kernels that a device keeps at most; beyond it forgets all, which batches that have them do not notice.
+/// The maximum number of cached kernels of a device. Beyond it the cache is cleared; batches keep the kernels they
+/// have.
 const MOST_KERNELS: usize = 128;
 
-/// The devices that this process has taken up, by the names that were asked for and what they must be able to do.
+/// The open devices of this process, with the requested names and features.
 struct Taken {
-    /// A process that was forked off has no part in its parent's devices.
+    /// The owner; a forked process cannot use its parent's devices.
     process: u32,
     devices: Vec<(Option<String>, wgpu::Features, Arc<Device>)>,
 }
 
 static TAKEN: Mutex<Option<Taken>> = Mutex::new(None);
 
-/// What a lock guards, also where a thread failed that held it.
+/// Locks a mutex, ignoring poisoning.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Evaluates a function of the devices of this process.
+/// Calls a function with the open devices of this process.
 fn with_taken<T>(use_it: impl FnOnce(&mut Taken) -> T) -> T {
     let mut taken = lock(&TAKEN);
     let process = std::process::id();
     if taken.as_ref().is_none_or(|taken| taken.process != process) {
-        // To give a parent's devices back would wait for threads that only the parent has.
+        // Dropping a parent's devices would wait for threads that exist only in the parent.
         std::mem::forget(taken.take());
     }
     use_it(taken.get_or_insert_with(|| Taken {
@@ -140,29 +142,30 @@ fn with_taken<T>(use_it: impl FnOnce(&mut Taken) -> T) -> T {
     }))
 }
 
-/// A device that was taken up.
+/// An open device.
 pub(crate) struct Device {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub info: DeviceInfo,
     pub limits: wgpu::Limits,
-    /// What went wrong with it, since it was last looked at.
+    /// The first failure since the last check.
     failure: Arc<Mutex<Option<String>>>,
-    /// Why it is lost, if it is.
+    /// The reason for its loss, if it is lost.
     lost: Arc<Mutex<Option<String>>>,
-    /// What its kernels are given.
+    /// The bindings of its kernels.
     pub arrays: wgpu::BindGroupLayout,
     pub pipeline_layout: wgpu::PipelineLayout,
-    /// By their texts; none is one that is being compiled.
+    /// By text; `None` while being compiled.
     kernels: Mutex<HashMap<String, Arc<Mutex<Option<wgpu::ComputePipeline>>>>>,
 }
 
 impl Device {
-    /// The first device whose name contains `name`, whatever the case of its letters; the first of all without one. One that was taken up
-    /// before and is not lost is shared.
+    /// Opens the first device whose name contains `name` (case-insensitive), or the first of all if `None`. An open
+    /// device that is not lost is shared.
     ///
     /// # Errors
-    /// No such device, one without `features` (of which only double precision is asked for), or one that cannot be had.
+    /// Returns an error if there is no such device, it lacks `features` (only double precision is requested), or it
+    /// cannot be opened.
     pub(crate) fn open(
         name: Option<&str>,
         features: wgpu::Features,
@@ -253,24 +256,24 @@ impl Device {
         })
     }
 
-    /// The largest array that a kernel can see, bytes.
+    /// Returns the largest array that a kernel can access, bytes.
     pub(crate) fn max_buffer(&self) -> u64 {
         max_buffer(&self.limits)
     }
 
-    /// Submits commands, and waits until they are done.
+    /// Submits commands and waits for them.
     ///
     /// # Errors
-    /// That the device is lost, or refused something since the last call.
+    /// Returns an error if the device is lost or has refused something since the last call.
     pub(crate) fn submit(&self, commands: wgpu::CommandBuffer) -> Result<(), GpuError> {
         let submission = self.queue.submit([commands]);
         self.wait(submission)
     }
 
-    /// Waits until what was submitted, and all before it, is done.
+    /// Waits for a submission and all before it.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub(crate) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::Wait {
             submission_index: Some(submission),
@@ -286,20 +289,20 @@ impl Device {
         }
     }
 
-    /// Why it is lost, if it is.
+    /// Returns the reason if the device is lost.
     pub(crate) fn loss(&self) -> Option<String> {
         lock(&self.lost).clone()
     }
 
-    /// Frees what is no longer used.
+    /// Frees unused resources.
     pub(crate) fn tidy(&self) {
         let _ = self.device.poll(wgpu::PollType::Poll);
     }
 
-    /// The kernel of a text, as one that was compiled before or as `compile` makes it.
+    /// Returns the kernel of a text from the cache, or compiles it with `compile`.
     ///
     /// # Errors
-    /// Those of `compile`.
+    /// Returns the errors of `compile`.
     pub(crate) fn kernel(
         &self,
         text: String,
@@ -312,7 +315,7 @@ impl Device {
             }
             Arc::clone(kernels.entry(text.clone()).or_default())
         };
-        // Others compile theirs meanwhile; who wants this one waits for it.
+        // Other kernels can be compiled meanwhile; requests for this one wait.
         let mut slot = lock(&slot);
         if let Some(known) = &*slot {
             return Ok(known.clone());
@@ -325,7 +328,7 @@ impl Device {
         GpuError::Lost { device, reason }
     }
 
-    /// An array of so many bytes, all zero, that kernels read and write.
+    /// Creates a zeroed array of the given bytes that kernels read and write.
     pub(crate) fn array(&self, label: &str, bytes: u64) -> wgpu::Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -337,7 +340,7 @@ impl Device {
         })
     }
 
-    /// A small array that kernels only read, with what is in it.
+    /// Creates a small read-only array with the given contents.
     pub(crate) fn constants(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -349,10 +352,10 @@ impl Device {
         buffer
     }
 
-    /// The bytes of a part of an array, on this side of the bus.
+    /// Downloads a part of an array to the host.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub(crate) fn download(
         &self,
         from: &wgpu::Buffer,
@@ -375,7 +378,7 @@ impl Device {
             let _ = tell.send(mapped);
         });
         self.submit(encoder.finish())?;
-        // Another thread that waits for the device may be the one that is told.
+        // Another thread that polls the device may receive the callback.
         let mapped = told.recv().map_err(|e| self.lost(e.to_string()))?;
         mapped.map_err(|e| self.lost(e.to_string()))?;
         let view = copy.get_mapped_range(..);

@@ -1,15 +1,15 @@
-//! What can go wrong with environments on a graphics device, and what to do about it.
+//! Errors and faults of environments on a graphics device, with remedies.
 
 use clench_rigid::SimError;
 use clench_rigid::options::OptionError;
 use std::fmt;
 
-/// Something of a model that the device cannot step yet.
+/// A feature of a model that the device does not support yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// The element, such as `tendon "hamstring"`, and where it was written.
+    /// The element, such as `tendon "hamstring"`, and its source location.
     pub element: String,
-    /// What of it cannot be done.
+    /// The unsupported feature.
     pub reason: &'static str,
 }
 
@@ -19,120 +19,120 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Why environments cannot be made, given something, or stepped.
+/// An error in creating, setting or stepping environments.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GpuError {
-    /// No device at all.
+    /// There is no device.
     #[error(
         "there is no graphics device that can compute: install its driver, or the software device of Mesa (package mesa-vulkan-drivers on Debian and Ubuntu)"
     )]
     NoDevice,
-    /// No device of this name.
+    /// No device has this name.
     #[error("there is no graphics device \"{asked}\"; there are: {known}")]
     NoSuchDevice {
-        /// What was asked for.
+        /// The requested name.
         asked: String,
-        /// The names of those that there are.
+        /// The names of the available devices.
         known: String,
     },
-    /// A device that does not do what is needed.
+    /// The device lacks a required feature.
     #[error("the graphics device \"{device}\" cannot be used: {reason}")]
     Unusable {
-        /// Its name.
+        /// The device's name.
         device: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// A device without double precision, which was asked for.
+    /// Double precision was requested, but the device does not support it.
     #[error(
         "the graphics device \"{device}\" has no double precision: take single precision, or the processor"
     )]
     NoDoublePrecision {
-        /// Its name.
+        /// The device's name.
         device: String,
     },
-    /// The device is gone, or its driver failed.
+    /// The device was lost, or its driver failed.
     #[error(
         "the graphics device \"{device}\" was lost ({reason}): make the batch anew, from states that were read before"
     )]
     Lost {
-        /// Its name.
+        /// The device's name.
         device: String,
-        /// What its driver says.
+        /// The driver's message.
         reason: String,
     },
-    /// More environments than the device holds.
+    /// The environments do not fit the device's memory.
     #[error(
         "the graphics device \"{device}\" has no memory for {count} environments of {bytes} bytes{}",
         at_most(*.most)
     )]
     OutOfMemory {
-        /// Its name.
+        /// The device's name.
         device: String,
-        /// How many were asked for.
+        /// The requested number.
         count: usize,
-        /// What each takes.
+        /// The bytes of each.
         bytes: u64,
-        /// How many its limits allow, if it is they that are exceeded.
+        /// The number that its limits allow, if those are exceeded.
         most: Option<usize>,
     },
-    /// A model that the device cannot step yet: the first thing of each kind.
+    /// The device does not support the model yet: the first element of each kind.
     #[error("this model cannot be stepped on a graphics device yet: {}", joined(.0))]
     Unsupported(Vec<Refusal>),
-    /// A sensor that the device does not read yet.
+    /// The device does not support a sensor yet.
     #[error("{device} cannot read {kind} sensor \"{name}\" yet: sensordata cannot be recorded")]
     Unread {
         /// The device's name.
         device: String,
         /// The sensor's kind.
         kind: &'static str,
-        /// Its name.
+        /// The sensor's name.
         name: String,
     },
-    /// More dofs than the solver factors a Hessian of.
+    /// More dofs than the solver can factor a Hessian for.
     #[error(
         "Newton's method on a graphics device is for up to {most} dofs, but the model has {nv}: the solver CG has no such limit"
     )]
     TooManyDofs {
-        /// How many there may be.
+        /// The maximum.
         most: usize,
-        /// How many there are.
+        /// The number of dofs.
         nv: usize,
     },
-    /// An option outside its range.
+    /// An option is out of range.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// Parameters that would make other kernels.
+    /// The parameters would need different kernels.
     #[error(
         "these parameters cannot differ between environments on a graphics device: they decide what its kernels are made of"
     )]
     Structure,
-    /// What the batch on this side of the bus refuses.
+    /// The batch on the host refused a request.
     #[error(transparent)]
     Sim(#[from] SimError),
-    /// Numbers of the wrong count.
+    /// The number of values is wrong.
     #[error("{field} has {found} numbers where {expected} are needed")]
     WrongLength {
-        /// Of what.
+        /// The field.
         field: String,
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many there should be.
+        /// The expected number.
         expected: usize,
     },
-    /// A number that is infinite or undefined, or beyond 1e10 where it is a position or velocity.
+    /// A number is infinite or NaN, or a position or velocity beyond 1e10.
     #[error("{field}[{index}] of environment {env} is {value}")]
     NotFinite {
-        /// Of what.
+        /// The field.
         field: String,
         /// The environment.
         env: usize,
-        /// Where in its row.
+        /// The index in its row.
         index: usize,
-        /// What it is.
+        /// The value.
         value: f64,
     },
-    /// A name that no field has.
+    /// No field has this name.
     #[error("there is no field \"{name}\" on a graphics device; there are: {known}")]
     Unknown {
         /// The name.
@@ -140,18 +140,18 @@ pub enum GpuError {
         /// All names.
         known: String,
     },
-    /// A field that follows from others.
+    /// The field is derived from others.
     #[error("{field} follows from the state: it can be read only")]
     ReadOnly {
-        /// Which.
+        /// The field.
         field: String,
     },
-    /// An environment that is not there.
+    /// The environment does not exist.
     #[error("there is no environment {env}: there are {count}")]
     NoSuchEnvironment {
-        /// The number asked for.
+        /// The requested index.
         env: usize,
-        /// How many there are.
+        /// The number of environments.
         count: usize,
     },
 }
@@ -174,7 +174,7 @@ fn joined(refusals: &[Refusal]) -> String {
     lines.join("; ")
 }
 
-/// Why an environment stands still.
+/// The reason why an environment has stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum GpuFault {
     /// The mass matrix is not positive definite.
@@ -186,10 +186,10 @@ pub enum GpuFault {
     /// More contacts than the pool holds.
     #[error("there are more contacts than the {limit} of the pool (option max_contacts)")]
     ContactOverflow {
-        /// How many there may be.
+        /// The maximum.
         limit: usize,
     },
-    /// The device ended a loop before its end.
+    /// The device terminated a loop early.
     #[error("the device ended a loop before its end (Mesa's software device grants 65,535 turns)")]
     Unfinished,
 }

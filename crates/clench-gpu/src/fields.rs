@@ -1,27 +1,27 @@
-//! What lies in the memory of the device for each environment, a line a field. Places, sizes, the constants of the kernels, and
-//! the names under which fields are read and written follow from these tables.
+//! The fields of each environment in the device's memory, one per line. Offsets, sizes, the constants of the kernels
+//! and the names for reading and writing are derived from these tables.
 
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity, has_sensor_history};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
 
-/// A field: so many numbers for each environment, from a place on.
+/// A field: `width` numbers per environment, from an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Field {
-    /// Its name; in capitals, its place in the kernels.
+    /// The name; in capitals, its offset in the kernels.
     pub name: &'static str,
-    /// What lies before it.
+    /// The offset.
     pub place: usize,
-    /// How many numbers.
+    /// The number of values.
     pub width: usize,
 }
 
 /// The fields of one buffer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Fields {
-    /// All of them, in order.
+    /// All fields, in order.
     pub list: Vec<Field>,
-    /// Numbers of an environment.
+    /// The numbers per environment.
     pub size: usize,
 }
 
@@ -32,13 +32,13 @@ impl Fields {
         self.size += width;
     }
 
-    /// The field of a name.
+    /// Returns the field with the given name.
     pub(crate) fn find(&self, name: &str) -> Option<Field> {
         self.list.iter().copied().find(|field| field.name == name)
     }
 }
 
-/// Whether the integrator takes Coriolis forces implicitly.
+/// Returns true if the integrator treats Coriolis forces implicitly.
 fn takes_coriolis(m: &Model) -> bool {
     m.integrator == Integrator::Implicit
 }
@@ -56,30 +56,30 @@ macro_rules! fields {
 }
 
 fields! {
-    /// What users set and read: the state, and its inputs. Environment next to environment.
+    /// The fields that users set and read: the state and its inputs. Environments are interleaved.
     state_fields(m, c);
     qpos: m.nq;
     qvel: m.nv;
     act: m.na;
     /// Buffers of past controls.
     history: m.nhistory;
-    /// Where springs that yield rest.
+    /// The rest positions of springs that yield.
     plastic: m.nplastic;
     qacc_warmstart: m.nv;
     ctrl: m.nu();
     qfrc_applied: m.nv;
-    /// The force first, then the torque, of each body.
+    /// The force, then the torque, of each body.
     xfrc_applied: 6 * m.nbody();
     mocap_pos: 3 * m.nmocap;
     mocap_quat: 4 * m.nmocap;
-    /// Zero where an equality is off.
+    /// Zero if an equality is inactive.
     eq_active: m.equalities.len();
-    /// When the first of the steps that are counted began, s.
+    /// The start time of the first counted step, s.
     start_time: 1;
 }
 
 fields! {
-    /// What follows from the state. Environment next to environment.
+    /// The quantities that depend on the state. Environments are interleaved.
     work_fields(m, c);
     xpos: 3 * m.nbody();
     xquat: 4 * m.nbody();
@@ -97,34 +97,34 @@ fields! {
     subtree_com: 3 * m.nbody();
     cinert: 10 * m.nbody();
     crb: 10 * m.nbody();
-    /// Inertias of articulated bodies, where paths are long.
+    /// Articulated-body inertias, if paths are long.
     articulated: 27 * c.articulated;
     cdof: 6 * m.nv;
     cdof_dot: 6 * m.nv;
     cvel: 6 * m.nbody();
-    /// Accelerations of bodies that no joint's acceleration causes.
+    /// The velocity-dependent part of the bodies' accelerations.
     cacc_bias: 6 * m.nbody();
-    /// Those that joints cause.
+    /// The part due to joint accelerations.
     cacc_joints: 6 * m.nbody();
     cacc: 6 * m.nbody();
     cfrc_int: 6 * m.nbody();
     cfrc_ext: 6 * m.nbody();
     contact_force: 6 * m.nbody();
     sensordata: m.nsensordata();
-    /// What sensors measure now, before any delay.
+    /// The current measurements of sensors, before any delay.
     undelayed: if has_sensor_history(m) { m.nsensordata() } else { 0 };
     /// Potential and kinetic energy.
     mechanical_energy: 2;
-    /// Spatial forces of bodies, used up when they are projected.
+    /// Spatial forces of bodies, consumed by their projection.
     cfrc: 6 * m.nbody();
-    /// How forces of the medium on ellipsoids change with velocities, column by column.
+    /// Velocity derivatives of fluid forces on ellipsoids, by column.
     fluid_rates: if m.bodies.iter().any(|b| b.fluid_ellipsoids) { 36 * m.nbody() } else { 0 };
     /// The mass matrix, in the pattern of the tree.
     qm: m.tree.nnz();
-    /// Its LᵀDL, or that of an implicit step.
+    /// Its LᵀDL factor, or that of an implicit step.
     qld: m.tree.nnz();
     qld_inverse: m.nv;
-    /// The upper triangle where an implicit step's is not symmetric, and how forces and axes change with velocities.
+    /// The upper triangle of a nonsymmetric implicit step, and velocity derivatives of forces and axes.
     qld_upper: if takes_coriolis(m) { m.tree.nnz() } else { 0 };
     coriolis_rates: if takes_coriolis(m) { 36 * m.nbody() } else { 0 };
     coriolis_drift: if takes_coriolis(m) { 6 * m.nv } else { 0 };
@@ -139,26 +139,26 @@ fields! {
     actuator_length: m.nout();
     actuator_velocity: m.nout();
     actuator_force: m.nout();
-    /// With how much actuators pull at each tendon whose total is limited.
+    /// The total actuator force on each tendon with a force limit.
     ten_actuator_force: m.tendons.len();
     qfrc_actuator: m.nv;
     qfrc_smooth: m.nv;
     qacc_smooth: m.nv;
-    /// What threads of the narrow phase have for themselves, one after the other.
+    /// The private memory of the threads of the narrow phase, one after another.
     threads: c.threads * thread_fields(m, c).size;
     contacts: CONTACT_SIZE * c.contacts;
     /// The deepest contact of each pair whose distance is measured.
     measured: CONTACT_SIZE * c.measured;
     qacc: m.nv;
     qfrc_constraint: m.nv;
-    /// Of the cost at `qacc`; and L⁻ᵀ times that, where somebody asks for the duality gap.
+    /// The gradient of the cost at `qacc`; and L⁻ᵀ times that, for the duality gap on request.
     gradient: m.nv;
     preconditioned: m.nv;
-    /// How long after the start of the step the present stage is, s.
+    /// The time from the start of the step to the current stage, s.
     offset: 1;
-    /// By Runge–Kutta, which stage comes next.
+    /// The next stage of Runge–Kutta.
     stage: 1;
-    /// The velocity that positions advance by.
+    /// The velocity by which positions advance.
     rate: m.nv;
     mean_rate: m.nv;
     mean_qacc: m.nv;
@@ -166,7 +166,7 @@ fields! {
     start_qvel: m.nv;
     start_act: m.na;
     start_actuator_velocity: m.nout();
-    /// Where tendons that yield were.
+    /// The lengths of yielding tendons at the start of the step.
     start_ten_length: if has_yielding_tendons(m) { m.tendons.len() } else { 0 };
     start_ten_jacobian: if has_yielding_tendons(m) { m.tendon_dofs.len() } else { 0 };
     mean_act_dot: m.na;
@@ -174,15 +174,15 @@ fields! {
 }
 
 fields! {
-    /// What a thread of the narrow phase has for itself, in its part of the field `threads`.
+    /// The private memory of a thread of the narrow phase, in its part of the field `threads`.
     thread_fields(m, c);
-    /// The polytope of overlapping shapes: vertices, faces, sides that are yet to be looked at, faces that are seen, sides of the horizon.
+    /// The polytope of overlapping shapes: vertices, faces, edges to visit, visible faces, horizon edges.
     polytope: 9 * c.polytope[0];
     polytope_face: 12 * c.polytope[1];
     polytope_stack: c.polytope[1] + 4;
     polytope_visible: c.polytope[1];
     polytope_horizon: 3 * c.polytope[1];
-    /// Contacts on terrain while they are gathered.
+    /// Contacts on terrain during collection.
     terrain: c.terrain[0];
     terrain_face: c.terrain[1];
     terrain_patch: c.terrain[2];
@@ -190,69 +190,69 @@ fields! {
 }
 
 fields! {
-    /// The convex problem of an environment: its numbers side by side, as one workgroup solves it.
+    /// The convex problem of an environment, contiguous, because one workgroup solves it.
     row_fields(m, c);
     blocks: BLOCK_SIZE * c.blocks;
     /// The active set of each block.
     active_set: c.blocks;
     row_block: c.rows;
     position: c.rows;
-    /// Until its Jacobian is known, what surfaces move by themselves.
+    /// The velocity of moving surfaces, until the Jacobian is computed.
     velocity: c.rows;
     aref: c.rows;
     damping: c.rows;
-    /// The force with which a row pulls where it would otherwise give none, if any contact adheres.
+    /// The pull of a row whose force would otherwise be zero, if any contact adheres.
     pull: if c.adheres { c.rows } else { 0 };
     r: c.rows;
     d: c.rows;
     shape: c.rows;
-    /// J a − aref; while the rows are assembled, the inverse inertia of each.
+    /// J a − aref; during assembly, the inverse inertia of each row.
     residual: c.rows;
     force: c.rows;
-    /// J p, of the search direction.
+    /// J p, for the search direction p.
     ray: c.rows;
     jacobian: c.rows * m.nv;
-    /// J again, column by column.
+    /// J in column-major order.
     columns: c.rows * m.nv;
     /// W J.
     weighed: c.rows * m.nv;
-    /// Which rows are on pieces with curvature.
+    /// The rows on pieces with curvature.
     stiff: c.rows;
     /// The mass matrix, dense or in the pattern of the tree.
     mass: c.mass;
-    /// The factor of H, and vectors over the dofs, where the workgroup has no room for them.
+    /// The factor of H, and vectors over the dofs, if workgroup memory is too small for them.
     tiles: c.tiles;
     vectors: c.vectors;
 }
 
 fields! {
-    /// Words that report how an environment fares. Environment next to environment.
+    /// The report of an environment, in words. Environments are interleaved.
     report_fields(m, c);
-    /// Whether it runs, or why not.
+    /// `RUNNING`, or the reason why it has stopped.
     status: 1;
-    /// What went wrong in the present step.
+    /// The fault of the current step.
     trouble: 1;
-    /// Of a number that diverged: of which field, where in it, its bits.
+    /// The field, the index and the bits of a number that diverged.
     fault_field: 1;
     fault_index: 1;
     fault_value: 1;
-    /// Whether to start over.
+    /// Nonzero to reset the environment.
     restart: 1;
     /// Steps since the last reset.
     steps: 1;
-    /// How many pairs are near, and which, in canonical order; then, in the place of each, its contacts.
+    /// The number of near pairs, and their indices in canonical order; the contacts of a pair replace its index.
     nnear: 1;
     near_pairs: c.pairs;
-    /// Where in that list pairs are, method by method.
+    /// The positions of pairs in that list, grouped by method.
     near_by_method: c.pairs;
-    /// What went wrong in each thread of the narrow phase.
+    /// The fault of each thread of the narrow phase.
     thread_fault: c.threads;
     ncon: 1;
     nblock: 1;
     nrow: 1;
-    /// Iterations of the last solve, and the bits of the duality gap that they left.
+    /// Iterations of the last solve, and the bits of its duality gap.
     niter: 1;
     solve_gap: 1;
-    /// How it ended, as the codes of `clench_solver::Status`.
+    /// The solve status, as the codes of `clench_solver::Status`.
     solve_status: 1;
 }

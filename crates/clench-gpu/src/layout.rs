@@ -1,6 +1,6 @@
-//! Where things lie in the arrays of a model, how many there are, and its options: numbers that differ from model to model. Kernels read them from
-//! a small array of their own, so that models of one kind share their kernels; what decides of the text of a kernel is a constant, but for kernels
-//! that are to serve any model.
+//! Offsets into the arrays of a model, counts and options: numbers that differ from model to model. Kernels read them
+//! from a small array, so that models of one kind share their kernels. Whatever affects a kernel's text is a constant,
+//! except in kernels that serve any model.
 //!
 //! The texts name them in capitals, like constants.
 
@@ -19,22 +19,22 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Adds a count or a place.
+    /// Adds a count or an offset.
     pub(crate) fn count(&mut self, name: &str, value: usize) {
         self.counts.push((name.to_owned(), value as u32));
     }
 
-    /// Adds what holds or does not.
+    /// Adds a flag.
     pub(crate) fn flag(&mut self, name: &str, value: bool) {
         self.flags.push((name.to_owned(), value));
     }
 
-    /// Adds a number.
+    /// Adds a real number.
     pub(crate) fn real(&mut self, name: &str, value: f64) {
         self.reals.push((name.to_owned(), value));
     }
 
-    /// How the array is declared, in WGSL.
+    /// Returns the WGSL declaration of the array.
     pub(crate) fn declaration(&self) -> String {
         let mut text = "struct Layout {\n".to_owned();
         let counts = self.counts.iter().map(|(name, _)| name);
@@ -47,7 +47,7 @@ impl Layout {
         text + "}\n@group(0) @binding(7) var<uniform> of_model: Layout;\n"
     }
 
-    /// A text in which each name stands for its number in the array.
+    /// Replaces each name in a text by its element of the array.
     pub(crate) fn resolve(&self, text: &str) -> String {
         let counts = self.counts.iter().map(|(name, _)| name.as_str());
         let reals = self.reals.iter().map(|(name, _)| name.as_str());
@@ -60,7 +60,7 @@ impl Layout {
         })
     }
 
-    /// The array: counts and flags, then numbers of a type, aligned as WGSL says.
+    /// Returns the array: counts and flags, then real numbers, aligned as WGSL requires.
     pub(crate) fn bytes<S: Scalar + IntoBytes + Immutable>(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         for (_, count) in &self.counts {

@@ -1,14 +1,15 @@
-//! Environments by the thousand on a graphics device: the step of `clench-rigid`, wholly on the device, in single precision or, where
-//! it has that, in double.
+//! Thousands of environments on a graphics device: the step of `clench-rigid`, entirely on the device, in single or (if
+//! supported) double precision.
 //!
-//! [`batch`] makes a [`clench_rigid::Batch`] that a device steps, with all that a batch has: rows, resets, snapshots, recorded
-//! outputs, queries. [`GpuBatch`] is the device's side of it alone, for those who want nothing to cross the bus unasked. Its kernels (`kernels/*.wgsl`) are sisters of the
-//! kernels of `clench-rigid` and `clench-solver`, stage by stage, and tests compare them so. They run on any vendor's card by
-//! `wgpu`, and on Mesa's software device where there is none. What a model has that they cannot do yet is an error before the
-//! first step. `docs/gpu.md` says how a step is laid out.
+//! [`batch`] creates a [`clench_rigid::Batch`] that a device steps, with all features of a batch: rows, resets,
+//! snapshots, recorded outputs, queries. [`GpuBatch`] is its device part alone, for users who want no implicit
+//! transfers. Its kernels (`kernels/*.wgsl`) are the GPU counterparts of the kernels of `clench-rigid` and
+//! `clench-solver`, stage by stage, and tests compare them so. They run on GPUs of any vendor through `wgpu`, and on
+//! Mesa's software device where there is none. Unsupported features of a model are errors before the first step.
+//! `docs/gpu.md` describes the layout of a step.
 //!
-//! Here live the kernels, the tables that they read, and the arrays they work on. Physics that the processor does too belongs in the
-//! crates below; this one only repeats it.
+//! This crate contains the kernels, the tables that they read, and their arrays. Physics that the processor computes
+//! too belongs in the crates below; this one only repeats it.
 
 #![deny(unreachable_pub)]
 

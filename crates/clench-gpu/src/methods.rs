@@ -1,8 +1,8 @@
-//! By which method the contacts of two shapes are found.
+//! The method that finds the contacts of two shapes.
 
 use clench_collide::{MAX_POINTS, ShapeKind};
 
-/// The ways in which the contacts of two shapes are found.
+/// The methods that find the contacts of two shapes.
 pub(crate) const METHODS: [&str; 10] = [
     "ON_PLANE",
     "SPHERE_SPHERE",
@@ -16,8 +16,8 @@ pub(crate) const METHODS: [&str; 10] = [
     "CONVEX",
 ];
 
-/// How the contacts of a pair of shapes are found, in the order of [`METHODS`], and how many there are at most; none where that is
-/// not there yet. The order of the shapes is that of [`ShapeKind`].
+/// Returns the method for a pair of shapes, as an index into [`METHODS`], and its maximum number of contacts; `None` if
+/// it is not supported yet. The order of the shapes is that of [`ShapeKind`].
 fn method(kinds: [ShapeKind; 2]) -> Option<(usize, usize)> {
     use ShapeKind::{Box, Capsule, Cylinder, Ellipsoid, HeightField, Mesh, Plane, Sphere};
     Some(match kinds {
@@ -46,17 +46,17 @@ fn method(kinds: [ShapeKind; 2]) -> Option<(usize, usize)> {
     })
 }
 
-/// How the contacts of a pair of shapes are found, in the order of [`METHODS`].
+/// Returns the method for a pair of shapes, as an index into [`METHODS`].
 pub(crate) fn method_of_pair(kinds: [ShapeKind; 2]) -> Option<usize> {
     method(kinds).map(|(method, _)| method)
 }
 
-/// Whether the contacts of a pair may have to be found as those of any convex shapes.
+/// Returns true if a pair may need the method for general convex shapes.
 pub(crate) fn may_be_general(kinds: [ShapeKind; 2]) -> bool {
     method_of_pair(kinds).is_some_and(|method| method >= 7)
 }
 
-/// How many points a pair of shapes yields at most; 0 for one that is not there yet.
+/// Returns the maximum number of contacts of a pair of shapes; 0 if it is not supported yet.
 pub(crate) fn points_of_pair(kinds: [ShapeKind; 2]) -> usize {
     method(kinds).map_or(0, |(_, most)| most)
 }

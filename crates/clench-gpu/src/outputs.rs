@@ -1,4 +1,4 @@
-//! Outputs that are worked out on this side of the bus, from what comes down.
+//! Outputs that the host computes from downloaded fields.
 
 use crate::batch::GpuBatch;
 use crate::error::GpuError;
@@ -6,7 +6,7 @@ use crate::precision::GpuReal;
 use clench_math::{Motion, Real, Vec3};
 use clench_rigid::model::RowPattern;
 
-/// Rows of sparse numbers of each environment, each over all `nv` dofs.
+/// Expands sparse rows of each environment to rows over all `nv` dofs.
 fn spread<S: GpuReal>(
     nv: usize,
     (pattern, rows): (&RowPattern, usize),
@@ -24,14 +24,14 @@ fn spread<S: GpuReal>(
     }
 }
 
-/// The vectors of three numbers in a row.
+/// Groups numbers into 3-vectors.
 fn vectors<S: GpuReal>(numbers: &[S]) -> Vec<Vec3<S>> {
     let vectors = numbers.chunks_exact(3);
     vectors.map(|v| Vec3::new(v[0], v[1], v[2])).collect()
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// A row over all dofs for each tendon of each environment.
+    /// Computes a row over all dofs for each tendon of each environment.
     pub(crate) fn tendon_jacobians(&self, rows: &mut [S]) -> Result<(), GpuError> {
         let model = self.model();
         let pattern = (&model.tendon_dofs, model.tendons.len());
@@ -39,7 +39,7 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(())
     }
 
-    /// The same for each output of an actuator.
+    /// Does the same for each actuator output.
     pub(crate) fn moment_arms(&self, rows: &mut [S]) -> Result<(), GpuError> {
         let model = self.model();
         let pattern = (&model.actuator_dofs, model.nout());
@@ -47,7 +47,7 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(())
     }
 
-    /// The power with which all actuators of each environment drive, those that brake left out.
+    /// Computes the total positive power of the actuators of each environment; braking ones are omitted.
     pub(crate) fn driving_powers(&self, rows: &mut [S]) -> Result<(), GpuError> {
         let forces = self.read("actuator_force")?;
         let velocities = self.read("actuator_velocity")?;
@@ -60,7 +60,8 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(())
     }
 
-    /// Three rows over all dofs for each site of each environment: what a part of a dof's motion is at the site.
+    /// Computes three rows over all dofs for each site of each environment: the given part of each dof's motion at the
+    /// site.
     pub(crate) fn site_jacobians(
         &self,
         part: impl Fn(Motion<S>, Vec3<S>) -> Vec3<S>,

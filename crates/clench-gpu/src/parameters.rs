@@ -1,4 +1,4 @@
-//! Parameters that environments have for themselves: the numbers of a model that differs from the batch's in its parameters alone.
+//! Per-environment parameters: the numbers of a model that differs from the batch's only in its parameters.
 
 use crate::batch::GpuBatch;
 use crate::error::GpuError;
@@ -9,10 +9,10 @@ use std::iter::repeat_n;
 use zerocopy::IntoBytes;
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// The parameters of a model that differs from that of this batch in its parameters alone.
+    /// Returns the parameters of a model that differs from the batch's only in these.
     ///
     /// # Errors
-    /// Parameters by which kernels would have to be others: a spring where there was none, a value that is compiled into them.
+    /// Returns an error if they need different kernels: a new spring, or a value that is compiled into them.
     pub(crate) fn parameters_of(&self, model: &Model) -> Result<Vec<S>, GpuError> {
         let (tables, _) = Tables::new::<S>(
             model,
@@ -21,7 +21,7 @@ impl<S: GpuReal> GpuBatch<S> {
             self.base.general_kernels,
         );
         let base = &self.base;
-        // Hulls are made of sizes, once.
+        // Hulls are built from sizes only once.
         let resized = model.params.geom_size != self.model().params.geom_size;
         let alike = tables.constants == base.constants && tables.layout == base.layout;
         if resized || !alike || tables.words != base.words {
@@ -30,10 +30,10 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(tables.numbers_in())
     }
 
-    /// Gives environments parameters of their own.
+    /// Sets the parameters of environments.
     ///
     /// # Errors
-    /// More than the device has room for.
+    /// Returns an error if the device has too little memory.
     pub(crate) fn give_parameters(
         &mut self,
         envs: &[usize],

@@ -1,4 +1,4 @@
-//! The kernels of a batch as the device runs them, and the arrays they share.
+//! The compiled kernels of a batch, and the arrays that they share.
 
 use crate::device::Device;
 use crate::error::GpuError;
@@ -6,31 +6,31 @@ use crate::kernels::{self, Kernel, Preface};
 use crate::precision::Texts;
 use clench_rigid::model::Integrator;
 
-/// A kernel, compiled.
+/// A compiled kernel.
 #[derive(Clone)]
 pub(crate) struct Pipeline {
-    /// Its entry point.
+    /// The entry point.
     pub name: &'static str,
     pipeline: wgpu::ComputePipeline,
     workgroups: [u32; 3],
 }
 
-/// All that a step runs.
+/// The kernels of a step.
 pub(crate) struct Pipelines {
-    /// What stands before the texts.
+    /// The text that precedes all kernels.
     preface: Preface,
-    /// Where cameras are, once somebody asked.
+    /// Camera poses, once requested.
     cameras: Option<Pipeline>,
-    /// Accelerations of bodies and forces between them, once somebody asked.
+    /// Accelerations of bodies and forces between them, once requested.
     body_forces: Option<Pipeline>,
-    /// What rays of sensors meet, if there are any, and what sensors measure, once somebody asked.
+    /// Rays of sensors, if any, and sensors, once requested.
     pub sensors: Vec<Pipeline>,
     pub restart: Pipeline,
-    /// Everything that follows from the state.
+    /// The forward pass.
     pub forward: Vec<Pipeline>,
-    /// How far the last solve may be from the minimum.
+    /// The duality gap of the last solve.
     pub gap: Pipeline,
-    /// Looks at what a forward pass that is no step left.
+    /// Checks the results of a forward pass outside a step.
     pub verdict: Pipeline,
     /// The integrator: one for each forward pass of a step.
     pub advance: Vec<Pipeline>,
@@ -44,9 +44,9 @@ pub(crate) struct Arrays {
     pub work: wgpu::Buffer,
     pub rows: wgpu::Buffer,
     pub reports: wgpu::Buffer,
-    /// The numbers themselves while no environment has parameters of its own.
+    /// The same buffer as `numbers` while no environment has parameters of its own.
     pub parameters: wgpu::Buffer,
-    /// Where all that lies: [`Layout`](crate::layout::Layout).
+    /// The [`Layout`](crate::layout::Layout) of the arrays.
     pub layout: wgpu::Buffer,
 }
 
@@ -67,7 +67,7 @@ impl Arrays {
         ]
     }
 
-    /// What the kernels are given.
+    /// Creates the bindings of the kernels.
     pub(crate) fn bind(&self, device: &Device) -> wgpu::BindGroup {
         let entries: Vec<_> = (0..)
             .zip(self.all())
@@ -85,10 +85,10 @@ impl Arrays {
 }
 
 impl Pipelines {
-    /// Compiles the kernels for `count` environments, behind what belongs before them.
+    /// Compiles the kernels for `count` environments, with the given preface.
     ///
     /// # Errors
-    /// That the device or its driver refuses a kernel.
+    /// Returns an error if the device refuses a kernel.
     pub(crate) fn new<S: Texts>(
         device: &Device,
         preface: Preface,
@@ -127,21 +127,21 @@ impl Pipelines {
         })
     }
 
-    /// What outputs need besides, but for those of sensors.
+    /// Returns the kernels of requested outputs, except sensors.
     pub(crate) fn observed(&self) -> impl Iterator<Item = &Pipeline> {
         self.cameras.iter().chain(&self.body_forces)
     }
 
-    /// A forward pass, and all that somebody asked for.
+    /// Returns the kernels of a forward pass and of all requested outputs.
     pub(crate) fn forward_and_observed(&self) -> impl Iterator<Item = &Pipeline> {
         let observed = self.observed().chain(&self.sensors);
         self.forward.iter().chain(observed)
     }
 
-    /// Compiles what outputs need, if that has not been done.
+    /// Compiles the kernels of outputs, unless they are compiled.
     ///
     /// # Errors
-    /// That the device or its driver refuses a kernel.
+    /// Returns an error if the device refuses a kernel.
     pub(crate) fn observe<S: Texts>(
         &mut self,
         device: &Device,
@@ -161,10 +161,10 @@ impl Pipelines {
         Ok(())
     }
 
-    /// Compiles what places cameras, if that has not been done.
+    /// Compiles the camera kernel, unless it is compiled.
     ///
     /// # Errors
-    /// That the device or its driver refuses the kernel.
+    /// Returns an error if the device refuses the kernel.
     pub(crate) fn place_cameras<S: Texts>(
         &mut self,
         device: &Device,
@@ -178,7 +178,7 @@ impl Pipelines {
     }
 }
 
-/// A kernel, which the device compiles if it does not have it.
+/// Returns a kernel, compiling it unless it is cached.
 fn compile<S: Texts>(
     device: &Device,
     preface: &Preface,
@@ -202,11 +202,11 @@ fn create(device: &Device, kernel: &Kernel, text: &str) -> Result<wgpu::ComputeP
         label: Some(kernel.entry),
         source: wgpu::ShaderSource::Wgsl(text.into()),
     };
-    // To count the turns of every loop takes a card a fifth of a step.
+    // Counting the iterations of every loop costs a GPU a fifth of a step.
     let mut checks = wgpu::ShaderRuntimeChecks::checked();
     checks.force_loop_bounding = false;
-    // SAFETY: every loop of our kernels ends, whatever the numbers: it has a bound, or a count that only grows or only shrinks. All other
-    // checks stay.
+    // SAFETY: every loop of our kernels terminates for any numbers: it has a limit, or a count that only grows or only
+    // shrinks. All other checks stay.
     let module = unsafe { (device.device).create_shader_module_trusted(descriptor, checks) };
     let pipeline = device
         .device
@@ -234,7 +234,7 @@ fn create(device: &Device, kernel: &Kernel, text: &str) -> Result<wgpu::ComputeP
 }
 
 impl Pipeline {
-    /// Appends it to a pass.
+    /// Appends the kernel to a pass.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass) {
         let [x, y, z] = self.workgroups;
         pass.set_pipeline(&self.pipeline);

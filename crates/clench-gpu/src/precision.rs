@@ -1,26 +1,26 @@
-//! The number types that a device computes in, and the texts of the kernels in each.
+//! The number types of device computations, and the kernel texts in each.
 //!
-//! Kernels are written in single precision. Those in double precision are the same texts with other types; what is computed otherwise
-//! (elementary functions, roundings) is in a file for each.
+//! Kernels are written in single precision. The double-precision texts differ only in their types; elementary functions
+//! and roundings have a file for each.
 
 use clench_rigid::batch::Precision;
 use std::borrow::Cow;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
-/// A number type that a device computes in: `f32`, or `f64` where it has double precision.
+/// A number type of device computations: `f32`, or `f64` if the device has double precision.
 pub trait GpuReal: Precision + IntoBytes + FromBytes + Immutable + Texts {}
 impl GpuReal for f32 {}
 impl GpuReal for f64 {}
 
-/// What stands for a type in the texts; outside this crate only its name is known.
+/// The texts of kernels in a number type; only the name is public.
 pub trait Texts {
     /// Elementary functions and roundings.
     #[doc(hidden)]
     const ELEMENTARY: &'static str;
-    /// What a device must be able to do.
+    /// The required device features.
     #[doc(hidden)]
     const FEATURES: wgpu::Features;
-    /// A text with numbers of this type. Literals have none: they become what they meet, or what the text says that they are.
+    /// Converts a text to this type. Literals stay: WGSL infers their type unless the text states it.
     #[doc(hidden)]
     fn text(single: &str) -> Cow<'_, str>;
 }
@@ -43,7 +43,8 @@ impl Texts for f64 {
     }
 }
 
-/// What a type of single precision is in double precision: `f32`, `vec3f` and `mat3x3f` are `f64`, `vec3<f64>` and `mat3x3<f64>`.
+/// Returns the double-precision counterpart of a type: `f32`, `vec3f` and `mat3x3f` become `f64`, `vec3<f64>` and
+/// `mat3x3<f64>`.
 fn type_in_double(word: &str) -> Option<String> {
     if word == "f32" {
         return Some("f64".to_owned());
@@ -56,18 +57,18 @@ fn type_in_double(word: &str) -> Option<String> {
     (is_vector || is_matrix).then(|| format!("{shape}<f64>"))
 }
 
-/// What a word is made of: a name, a keyword, digits.
+/// Returns true for the characters of names, keywords and numbers.
 fn is_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// The words of a text.
+/// Returns the words of a text.
 pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
     let parts = text.split(|c: char| !is_of_word(c));
     parts.filter(|word| !word.is_empty())
 }
 
-/// A text with some of its words replaced.
+/// Replaces words of a text.
 pub(crate) fn replace_words(text: &str, replace: impl Fn(&str) -> Option<String>) -> String {
     let mut result = String::with_capacity(text.len() + text.len() / 4);
     let mut rest = text;

@@ -1,4 +1,4 @@
-//! What the device reports of each environment: words that say whether it runs, why not, and how its solve went.
+//! The report of each environment: its status, its faults, and the status of its solve.
 
 use crate::batch::GpuBatch;
 use crate::error::{GpuError, GpuFault};
@@ -7,40 +7,40 @@ use crate::precision::GpuReal;
 use clench_solver::Status;
 use zerocopy::IntoBytes;
 
-/// How the last solve of an environment went.
+/// The last solve of an environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpuSolve {
-    /// How it ended.
+    /// The solver's status.
     pub status: Status,
-    /// Iterations of Newton's method or of conjugate gradients.
+    /// The iterations of Newton's method or of conjugate gradients.
     pub iterations: usize,
     /// Duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
     pub gap: f32,
-    /// Contacts.
+    /// The number of contacts.
     pub contacts: usize,
-    /// Rows of the convex problem.
+    /// The number of rows of the convex problem.
     pub rows: usize,
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// Why each environment stands still, if it does.
+    /// Returns the fault that stopped each environment, if any.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn statuses(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
         self.faults("status")
     }
 
-    /// What went wrong in each environment's last step or forward pass; nothing where all is well. A forward pass stops no
-    /// environment, so that its faults are not among the [`statuses`](Self::statuses).
+    /// Returns the fault of each environment's last step or forward pass, if any. A forward pass stops no environment,
+    /// so its faults are not among the [`statuses`](Self::statuses).
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn last_faults(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
         self.faults("trouble")
     }
 
-    /// The faults that the codes of a word stand for.
+    /// Decodes a report field into faults.
     pub(crate) fn faults(&self, word: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
         let limit = self.capacity.contacts;
         let fault = |&code: &u32| match code {
@@ -53,18 +53,19 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(self.report(word)?.iter().map(fault).collect())
     }
 
-    /// How many steps each environment has made since its last reset.
+    /// Returns the number of steps of each environment since its last reset.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn steps(&self) -> Result<Vec<u32>, GpuError> {
         self.report("steps")
     }
 
-    /// How the last solve of each environment went; of a step by Runge–Kutta, that of its last stage. Duality gaps are computed now.
+    /// Returns the last solve of each environment; for a Runge–Kutta step, that of its last stage. Computes the duality
+    /// gaps.
     ///
     /// # Errors
-    /// That the device was lost.
+    /// Returns an error if the device was lost.
     pub fn solves(&self) -> Result<Vec<GpuSolve>, GpuError> {
         self.submit(|batch, encoder| {
             batch.encode(encoder, None, [&batch.pipelines.gap].into_iter());
@@ -90,7 +91,7 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok((0..self.count).map(solve).collect())
     }
 
-    /// Lets only those take part in what follows that are `running`, from step 0 on.
+    /// Restricts subsequent calls to the `running` environments, from step 0.
     pub(crate) fn choose(&mut self, running: &[bool]) {
         let code = |&runs: &bool| if runs { 0 } else { ASIDE };
         let codes = Vec::from_iter(running.iter().map(code));
@@ -98,7 +99,7 @@ impl<S: GpuReal> GpuBatch<S> {
         self.write_report("steps", &vec![0; self.count]);
     }
 
-    /// Replaces a word of all environments.
+    /// Writes a report field of all environments.
     pub(crate) fn write_report(&self, name: &str, words: &[u32]) {
         if let Some(field) = self.reports.find(name) {
             let start = 4 * (field.place * self.count) as u64;
@@ -106,7 +107,7 @@ impl<S: GpuReal> GpuBatch<S> {
         }
     }
 
-    /// Forgets what went wrong in a forward pass that was no step.
+    /// Clears the faults of a forward pass outside a step.
     pub(crate) fn clear_trouble(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(field) = self.reports.find("trouble").filter(|_| self.count > 0) {
             let bytes = 4 * self.count as u64;

@@ -1,37 +1,39 @@
-//! Where the solver's memory lies: in that of the workgroup, which is near and small, or with the rows of the environment.
+//! The placement of the solver's memory: in workgroup memory, which is fast and small, or with the rows of the
+//! environment.
 
 use crate::error::GpuError;
 use crate::tables::Capacity;
 use clench_solver::ConstraintSolver;
 use std::fmt::Write;
 
-/// Rows and columns of a tile of H.
+/// The rows and columns of a tile of H.
 const TILE: usize = 16;
-/// Vectors over the dofs, of Newton's method and of conjugate gradients.
+/// The vectors over the dofs, for Newton's method and conjugate gradients.
 const NEWTON_VECTORS: usize = 7;
 const CG_VECTORS: usize = 10;
-/// Newton's method factors Hessians of so many dofs at most.
+/// The maximum number of dofs for Newton's method.
 const MAX_NEWTON_DOFS: usize = 512;
-/// The factor of a Hessian of more dofs would leave so little of a card's memory to other workgroups that few could run side by side.
+/// The maximum number of dofs whose Hessian factor is in workgroup memory. A larger factor would leave a GPU memory for
+/// few concurrent workgroups.
 const MAX_SHARED_DOFS: usize = 96;
-/// Numbers of the two tiles that are multiplied, of the diagonal, and of what threads add up and hand to each other.
+/// The numbers of the two tiles that are multiplied, of the diagonal, and of reductions and exchanges between threads.
 const STAGING: usize = 2 * TILE * 20 + TILE + 4 * 8 + 64;
 
-/// Where a solve keeps what is of the size of the dofs.
+/// The placement of a solve's data whose size depends on the dofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SolverMemory {
     newton: bool,
-    /// Tiles of H in a row, and how many there is room for.
+    /// The tiles of H in a row, and the maximum that the memory is for.
     ntile: usize,
     most: usize,
     share_tiles: bool,
     share_vectors: bool,
 }
 
-/// Refuses more dofs than Newton's method is for.
+/// Checks the number of dofs for Newton's method.
 ///
 /// # Errors
-/// That.
+/// Returns an error if there are too many.
 pub(crate) fn check_dofs(nv: usize, solver: ConstraintSolver) -> Result<(), GpuError> {
     if solver == ConstraintSolver::Newton && nv > MAX_NEWTON_DOFS {
         return Err(GpuError::TooManyDofs {
@@ -43,8 +45,8 @@ pub(crate) fn check_dofs(nv: usize, solver: ConstraintSolver) -> Result<(), GpuE
 }
 
 impl SolverMemory {
-    /// For `nv` dofs, by Newton's method or by conjugate gradients, where a workgroup shares `room` bytes. Kernels that serve any model have
-    /// as much of that as those of the most dofs whose factor is shared.
+    /// Chooses the placement for `nv` dofs and a solver if workgroup memory has `room` bytes. Kernels that serve any
+    /// model use as much of it as those with the most dofs whose factor is shared.
     pub(crate) fn new<S>(
         nv: usize,
         solver: ConstraintSolver,
@@ -63,7 +65,7 @@ impl SolverMemory {
                 share_vectors: true,
             };
             memory.share_vectors = STAGING + memory.vectors() <= room;
-            // One of the tiles that are multiplied is where the last one of the factor will be.
+            // One of the tiles that are multiplied occupies the memory of the last tile of the factor.
             let others = memory.tiles().saturating_sub(TILE * TILE);
             let both = STAGING + memory.vectors() + others;
             memory.share_tiles &= memory.share_vectors && both <= room;
@@ -78,7 +80,7 @@ impl SolverMemory {
         with(ntile)
     }
 
-    /// Numbers of the tiles of a lower triangle; conjugate gradients need none.
+    /// Returns the numbers of the tiles of a lower triangle; zero for conjugate gradients.
     fn tiles(self) -> usize {
         let triangle = TILE * TILE * self.most * (self.most + 1) / 2;
         if self.newton { triangle } else { 0 }
@@ -93,12 +95,12 @@ impl SolverMemory {
         count * TILE * self.most
     }
 
-    /// Whether M is dense as well.
+    /// Returns true if M is also stored densely.
     fn dense_mass(self) -> bool {
         self.newton && TILE * self.most <= MAX_SHARED_DOFS
     }
 
-    /// Sets aside what lies with the rows, for a mass matrix of `nnz` entries and `nv` dofs.
+    /// Reserves the memory with the rows for a mass matrix of `nnz` entries and `nv` dofs.
     pub(crate) fn reserve(self, capacity: &mut Capacity, nnz: usize, nv: usize) {
         capacity.mass = if self.dense_mass() { nv * nv } else { nnz };
         let outside = |shared: bool, size: usize| if shared { 0 } else { size };
@@ -106,12 +108,12 @@ impl SolverMemory {
         capacity.vectors = outside(self.share_vectors, self.vectors());
     }
 
-    /// Tiles of H in a row.
+    /// Returns the tiles of H in a row.
     pub(crate) fn ntile(self) -> usize {
         self.ntile
     }
 
-    /// The constants that tell the kernels. An array that is not used has one element, since it must have some.
+    /// Returns the constants for the kernels. An unused array has one element, the minimum.
     pub(crate) fn constants(self) -> String {
         let mut text = String::new();
         let inside = |shared: bool, size: usize| if shared { size.max(1) } else { 1 };

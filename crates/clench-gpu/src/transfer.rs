@@ -1,6 +1,6 @@
-//! Rows of environments across the bus: named fields, written and read environment by environment.
+//! Transfers of environment rows: named fields, written and read environment by environment.
 //!
-//! On the device a field lies environment next to environment, in rows on this side: what crosses is turned on the way.
+//! The device interleaves the environments of a field; the host stores rows. Transfers transpose.
 
 use crate::batch::GpuBatch;
 use crate::error::GpuError;
@@ -10,11 +10,11 @@ use crate::tables::Tables;
 use clench_rigid::{Model, State};
 use zerocopy::{FromBytes, IntoBytes};
 
-/// Positions and velocities beyond this are no longer those of a motion (MuJoCo's `mjMAXVAL`).
+/// The largest valid position or velocity (MuJoCo's `mjMAXVAL`).
 const MAX_VALUE: f64 = 1e10;
 
 impl Tables {
-    /// Adds the initial state of a model, field after field.
+    /// Adds the initial state of a model, field by field.
     pub(crate) fn initial_state(&mut self, model: &Model, fields: &Fields) {
         let state = State::<f64>::new(model);
         let mut row = Vec::new();
@@ -37,13 +37,14 @@ impl Tables {
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `history`,
-    /// `plastic`, `qacc_warmstart`, `ctrl`, `qfrc_applied`, `xfrc_applied` (of each body the force at its centre of mass first, then the torque, world axes), `mocap_pos`,
-    /// `mocap_quat`, `eq_active` (zero where an equality is off), `start_time` (when the first of the [`steps`](Self::steps) began, s: sensors that are clocks
-    /// count from there).
+    /// Writes a field of the state of all environments, row after row: `qpos`, `qvel`, `act`, `history`, `plastic`,
+    /// `qacc_warmstart`, `ctrl`, `qfrc_applied`, `xfrc_applied` (for each body the force at its centre of mass, then
+    /// the torque, world axes), `mocap_pos`, `mocap_quat`, `eq_active` (zero if an equality is inactive), `start_time`
+    /// (the time of the first of the [`steps`](Self::steps), s, from which clock sensors count).
     ///
     /// # Errors
-    /// A name that no such field has; a wrong count; a number that is not finite, or a position or velocity beyond 1e10.
+    /// Returns an error if no such field exists, the length is wrong, a number is not finite, or a position or velocity
+    /// is beyond 1e10.
     pub fn write(&mut self, name: &str, values: &[S]) -> Result<(), GpuError> {
         let field = self.writable(name)?;
         let expected = field.width * self.count;
@@ -58,10 +59,10 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(())
     }
 
-    /// Writes a field of the state of all environments, of which only those with good numbers will be stepped.
+    /// Writes a state field of all environments, unchecked; the caller must step only environments with valid numbers.
     ///
     /// # Errors
-    /// A name that no field of the state has; a wrong count.
+    /// Returns an error if no state field has this name or the length is wrong.
     pub(crate) fn write_unchecked(&mut self, name: &str, values: &[S]) -> Result<(), GpuError> {
         let field = self.writable(name)?;
         check_length(name, values.len(), field.width * self.count)?;
@@ -78,7 +79,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Writes a field of the state of one environment.
     ///
     /// # Errors
-    /// As [`write`](Self::write), and an environment that is not there.
+    /// Same as [`write`](Self::write); also returns an error if the environment does not exist.
     pub fn write_env(&mut self, env: usize, name: &str, row: &[S]) -> Result<(), GpuError> {
         self.check_env(env)?;
         let field = self.writable(name)?;
@@ -91,12 +92,12 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(())
     }
 
-    /// A field of all environments, row after row: of the state (see [`write`](Self::write)) as it is; else as the last step or
-    /// [`forward`](Self::forward) left it, which after a step is what followed from the state at its start (by Runge–Kutta: at its
-    /// last stage). The names are those of [`names`](Self::names).
+    /// Reads a field of all environments, row after row. A state field (see [`write`](Self::write)) is current; any
+    /// other is as the last step or [`forward`](Self::forward) left it. After a step it belongs to the state at its
+    /// start (Runge–Kutta: at its last stage). The names are those of [`names`](Self::names).
     ///
     /// # Errors
-    /// A name that no field has; that the device was lost.
+    /// Returns an error if no field has this name or the device was lost.
     pub fn read(&self, name: &str) -> Result<Vec<S>, GpuError> {
         let found = [
             (&self.state, &self.arrays.state),
@@ -111,7 +112,7 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(transpose(&numbers, field.width, self.count))
     }
 
-    /// A field of the convex problems. Of its rows only as many mean something as [`solves`](Self::solves) says.
+    /// Reads a field of the convex problems. Only the number of rows that [`solves`](Self::solves) returns is valid.
     fn read_rows(&self, name: &str) -> Result<Vec<S>, GpuError> {
         let Some(field) = self.rows.find(name) else {
             return Err(GpuError::Unknown {
@@ -127,14 +128,14 @@ impl<S: GpuReal> GpuBatch<S> {
         Ok(rows.flat_map(|row| row[part.clone()].to_vec()).collect())
     }
 
-    /// The names of all fields that can be read.
+    /// Returns the names of all fields that can be read.
     pub fn names(&self) -> Vec<&'static str> {
         let fields = [&self.state, &self.work, &self.rows];
         let all = fields.into_iter().flat_map(|fields| &fields.list);
         all.map(|field| field.name).collect()
     }
 
-    /// How many numbers a field has in each environment.
+    /// Returns the numbers of a field in each environment.
     pub fn width(&self, name: &str) -> Option<usize> {
         let fields = [&self.state, &self.work, &self.rows];
         let found = fields.into_iter().find_map(|fields| fields.find(name));
@@ -177,7 +178,7 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 }
 
-/// The numbers in some bytes.
+/// Decodes bytes as numbers.
 fn decode<E: FromBytes + Copy>(bytes: &[u8]) -> Vec<E> {
     let chunks = bytes.chunks_exact(size_of::<E>());
     chunks
@@ -185,7 +186,7 @@ fn decode<E: FromBytes + Copy>(bytes: &[u8]) -> Vec<E> {
         .collect()
 }
 
-/// Turns `height` rows of `width` numbers into `width` rows of `height`, by squares that a cache holds.
+/// Transposes `height` rows of `width` numbers in cache-sized blocks.
 fn transpose<S: GpuReal>(values: &[S], height: usize, width: usize) -> Vec<S> {
     const SIDE: usize = 32;
     let mut turned = vec![S::ZERO; height * width];

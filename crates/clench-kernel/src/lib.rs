@@ -1,23 +1,23 @@
-//! The attribute `#[kernel]`, which compiles a numerical function for the instruction set that its lanes are made of.
-//! Nothing else lives here, for a procedural macro needs a crate of its own; it is used, and explained by examples, as
-//! `clench_math::kernel`.
+//! The attribute `#[kernel]`, which compiles a numerical function for the instruction set of its lanes. A procedural
+//! macro needs a crate of its own; `clench_math::kernel` re-exports it, with examples.
 
 use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
 
-/// Compiles a function for the instruction set of its number type, a generic parameter of the function or of its `impl`
+/// Compiles a function for the instruction set of its number type: a generic parameter of the function or of its `impl`
 /// that must be called `T`.
 ///
-/// The body moves into `T::vectorize(...)`, and what it calls must either be inlined into it (`#[inline(always)]`) or be a
-/// kernel itself: a plain function in between would be compiled for the oldest processor of its architecture, and every
-/// operation on lanes in it would be a call. That costs speed, never correctness. For `f64` and `f32` the attribute keeps the
-/// body a function of its own, which would otherwise be copied into each of its callers.
+/// The body moves into `T::vectorize(...)`. Each function that it calls must either be inlined (`#[inline(always)]`) or
+/// be a kernel itself: a plain function in between would be compiled for the oldest processor of its architecture, with
+/// a call for every operation on lanes. That costs speed, never correctness. For `f64` and `f32` the attribute keeps
+/// the body a separate function, which would otherwise be copied into each of its callers.
 ///
-/// The same goes for closures and what they are passed to. Where they hold operations on lanes, prefer a loop: iterator
-/// adaptors, `std::array::from_fn` and an array's `map` are functions in between when the closure is large. A closure
-/// passed to a function that is always inlined takes the attribute itself: `f(#[inline(always)] |x| x + x)`.
+/// The same applies to closures and the functions that they are passed to. If they contain operations on lanes, prefer
+/// a loop: iterator adaptors, `std::array::from_fn` and an array's `map` are functions in between if the closure is
+/// large. A closure passed to a function that is always inlined takes the attribute itself:
+/// `f(#[inline(always)] |x| x + x)`.
 ///
-/// Mark as kernels the functions that are worth a call: a stage, a product, a factorization. Mark `#[inline(always)]`
-/// what is small beside its call. Each kernel is compiled for every instruction set that it is used with.
+/// Mark functions that are worth a call as kernels: a stage, a product, a factorization. Mark functions that are small
+/// compared with a call `#[inline(always)]`. Each kernel is compiled for every instruction set that it is used with.
 #[proc_macro_attribute]
 pub fn kernel(arguments: TokenStream, function: TokenStream) -> TokenStream {
     if !arguments.is_empty() {

@@ -1,8 +1,8 @@
-//! Plain `f64` rows, as users see them, in and out of lanes.
+//! Conversions between plain rows and lanes.
 
 use crate::Real;
 
-/// Constants, each the same in every lane.
+/// Converts constants, each the same in every lane.
 #[inline(always)]
 pub fn cast<T: Real, const K: usize>(values: [f64; K]) -> [T; K] {
     let mut out = [T::ZERO; K];
@@ -10,7 +10,7 @@ pub fn cast<T: Real, const K: usize>(values: [f64; K]) -> [T; K] {
     out
 }
 
-/// Writes the same row into every lane; both slices have the same length.
+/// Writes the same row into every lane. Both slices must have the same length.
 #[inline(always)]
 pub fn broadcast<T: Real>(row: &[f64], out: &mut [T]) {
     assert_eq!(row.len(), out.len(), "row and lanes differ in length");
@@ -19,7 +19,7 @@ pub fn broadcast<T: Real>(row: &[f64], out: &mut [T]) {
     }
 }
 
-/// Writes one environment's row into lane `lane`; both slices have the same length.
+/// Writes one environment's row into lane `lane`. Both slices must have the same length.
 #[inline(always)]
 pub fn write_lane<T: Real>(row: &[T::Scalar], lane: usize, out: &mut [T]) {
     assert_eq!(row.len(), out.len(), "row and lanes differ in length");
@@ -29,7 +29,7 @@ pub fn write_lane<T: Real>(row: &[T::Scalar], lane: usize, out: &mut [T]) {
     }
 }
 
-/// Reads one environment's row out of lane `lane`; both slices have the same length.
+/// Reads one environment's row from lane `lane`. Both slices must have the same length.
 #[inline(always)]
 pub fn read_lane<T: Real>(values: &[T], lane: usize, row: &mut [T::Scalar]) {
     assert_eq!(row.len(), values.len(), "row and lanes differ in length");

@@ -1,4 +1,4 @@
-//! Kernels that a crate compiles itself, so that the crates above call them instead of compiling them anew.
+//! Kernels that a crate compiles itself, so that dependent crates call them instead of compiling them again.
 
 use crate::lanes::{Instructions, LaneTask};
 use crate::real::{Real, Scalar};
@@ -7,15 +7,16 @@ use std::marker::PhantomData;
 
 /// A table of functions that are generic over the number type.
 pub trait KernelTable {
-    /// The functions of one number type: pointers.
+    /// The functions of one number type, as pointers.
     type Of<T: Real>: Copy + Send + Sync + 'static;
-    /// Names the functions, and so compiles them.
+    /// Returns the functions. Naming them compiles them.
     fn of<T: Real>() -> Self::Of<T>;
 }
 
-/// The tables of every number type that [`Scalar::in_lanes`] gives to tasks.
+/// The tables of every number type that [`Scalar::in_lanes`] passes to tasks.
 ///
-/// The crate that calls [`new`](Self::new) compiles the kernels. Keep the tables in a static of a function that is not generic.
+/// The crate that calls [`new`](Self::new) compiles the kernels. Store the tables in a static of a function that is not
+/// generic.
 pub struct CompiledKernels(Vec<Box<dyn Any + Send + Sync>>);
 
 impl CompiledKernels {
@@ -31,10 +32,10 @@ impl CompiledKernels {
         CompiledKernels(tables)
     }
 
-    /// The table of a number type.
+    /// Returns the table of a number type.
     ///
     /// # Panics
-    /// Where `T` is not one that [`Scalar::in_lanes`] gives to tasks, or `K` is not what the tables were made from.
+    /// Panics if [`Scalar::in_lanes`] does not pass `T` to tasks, or if the tables were not made from `K`.
     pub fn table<K: KernelTable, T: Real>(&self) -> K::Of<T> {
         let mut tables = self.0.iter();
         *(tables.find_map(|table| table.downcast_ref()))
@@ -42,7 +43,7 @@ impl CompiledKernels {
     }
 }
 
-/// Makes the table of a number type.
+/// A task that creates the table of a number type.
 struct Fill<K>(PhantomData<K>);
 
 impl<K: KernelTable, S: Scalar> LaneTask<S> for Fill<K> {

@@ -1,33 +1,34 @@
 //! Principal axes of a symmetric 3 × 3 matrix, for model builders.
 //!
-//! Jacobi's method: while an off-diagonal entry d_ij is worth it, turn the frame about the third axis k by the angle
-//! that zeroes it, tan 2φ = 2 d_ij / (d_ii − d_jj). Each turn removes 2 d_ij² from the off-diagonal sum of squares, and near the
-//! end that sum is squared at every sweep. The frame is kept as a quaternion, so it stays a rotation.
+//! Jacobi's method: while an off-diagonal entry d_ij is not negligible, rotate the frame about the third axis k by the
+//! angle that zeroes it, tan 2φ = 2 d_ij / (d_ii − d_jj). Each rotation removes 2 d_ij² from the off-diagonal sum of
+//! squares, and near the end that sum is squared at every sweep. The frame is stored as a quaternion, so it stays a
+//! rotation.
 //!
-//! Where moments are nearly equal, the rule of stopping decides on the axes between them. Models are compared by their frames,
-//! so the rule is MuJoCo's.
+//! If moments are nearly equal, the stopping rule determines the axes between them. Models are compared by their
+//! frames, so the rule is MuJoCo's.
 
 use crate::{Mat3, Quat, Vec3};
 
-/// Off-diagonal entries below this part of the largest entry count as zero, as in MuJoCo: the size of the turned matrix's
-/// rounding.
+/// Off-diagonal entries below this fraction of the largest entry count as zero, as in MuJoCo: the rounding error of the
+/// rotated matrix.
 const NEGLIGIBLE: f64 = 4e-15;
-/// Moments closer than this part of the largest are equal, and keep their order, as in MuJoCo.
+/// Moments closer than this fraction of the largest entry are equal, and keep their order, as in MuJoCo.
 const EQUAL: f64 = 1e-12;
-/// Jacobi's method needs some ten turns; this bounds it on input that is not finite.
+/// The maximum number of rotations. Jacobi's method needs about ten; this limits it on input that is not finite.
 const MAX_TURNS: usize = 60;
 
-/// The principal moments of a rotational inertia, largest first, and the rotation of its principal frame: columns
-/// of the rotation's matrix are the axes, so `inertia = R diag R^T` (MuJoCo's `mju_eig3`).
+/// Computes the principal moments of a rotational inertia, largest first, and the rotation of its principal frame. The
+/// columns of the rotation's matrix are the axes, so `inertia = R diag R^T` (MuJoCo's `mju_eig3`).
 ///
 /// Only the upper triangle is read. Input that is not finite gives a result that is not finite.
 pub fn principal_axes(inertia: &Mat3<f64>) -> (Vec3<f64>, Quat<f64>) {
     diagonalize(inertia, NEGLIGIBLE, EQUAL)
 }
 
-/// As [`principal_axes`], of an inertia that is known no better than to a part `uncertainty` of its largest entry, such as that
-/// of vertices with few digits: off-diagonal entries below it count as zero, moments closer than it as equal. So axes stay as
-/// they are where nothing asks for others.
+/// Computes [`principal_axes`] of an inertia with a relative `uncertainty` of its largest entry, such as that of
+/// vertices with few digits. Off-diagonal entries below it count as zero, and moments closer than it as equal, so the
+/// axes stay unchanged unless the inertia requires others.
 pub fn rough_principal_axes(inertia: &Mat3<f64>, uncertainty: f64) -> (Vec3<f64>, Quat<f64>) {
     diagonalize(inertia, uncertainty, uncertainty)
 }
@@ -60,7 +61,7 @@ fn largest_entry(m: &Mat3<f64>) -> f64 {
         .fold(0.0, |largest, entry| f64::max(largest, entry.abs()))
 }
 
-/// The turn that zeroes the largest off-diagonal entry, `None` where that is negligible.
+/// Returns the rotation that zeroes the largest off-diagonal entry, `None` if that is negligible.
 fn jacobi_turn(d: &Mat3<f64>, negligible: f64) -> Option<Quat<f64>> {
     let pairs = [(1, 2), (2, 0), (0, 1)];
     let size = |k: usize| d.rows[pairs[k].0][pairs[k].1].abs();
@@ -69,12 +70,12 @@ fn jacobi_turn(d: &Mat3<f64>, negligible: f64) -> Option<Quat<f64>> {
         return None;
     }
     let (i, j) = pairs[k];
-    // The smaller of the two angles, so that the turns die out: |φ| ≤ π/4.
+    // The smaller of the two angles, so that the method converges: |φ| ≤ π/4.
     let difference = d.rows[i][i] - d.rows[j][j];
     let opposite = 2.0 * d.rows[i][j];
     let side = match difference != 0.0 {
         true => opposite * difference,
-        // Both quarter turns serve; MuJoCo's choice decides which axis comes first.
+        // Both quarter turns are valid; MuJoCo's choice determines which axis comes first.
         false if k == 1 => 1.0,
         false => -1.0,
     };
@@ -84,7 +85,7 @@ fn jacobi_turn(d: &Mat3<f64>, negligible: f64) -> Option<Quat<f64>> {
     Some(Quat::from_axis_angle(axis, angle))
 }
 
-/// Swaps neighbours by quarter turns of the frame until the moments fall.
+/// Swaps neighbours by quarter turns of the frame until the moments descend.
 fn sort_descending(
     mut moments: Vec3<f64>,
     mut frame: Quat<f64>,

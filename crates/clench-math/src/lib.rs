@@ -1,7 +1,8 @@
-//! Numbers and small geometry that every kernel shares: [`Real`] (one environment or many side by side),
-//! vectors, rotations, and spatial motion and force vectors. Nothing here knows of bodies, joints or contacts.
+//! Numbers and small geometry that all kernels use: [`Real`] (one environment or several in parallel), vectors,
+//! rotations, and spatial motion and force vectors. This crate has no notion of bodies, joints or contacts.
 //!
-//! A kernel is written once. A [`LaneTask`] runs it for as many environments as the processor takes side by side:
+//! A kernel is written once. A [`LaneTask`] runs it for as many environments in parallel as the processor's registers
+//! hold:
 //!
 //! ```
 //! use clench_math::{Instructions, LaneTask, Real, Scalar, kernel};
@@ -36,11 +37,11 @@
 //! }
 //! ```
 
-// Only lanes need it: their instructions are there when they are there.
+// Only `lanes` needs unsafe code: it calls instructions after detecting them.
 #![deny(unsafe_code)]
 #![deny(unreachable_pub)]
 
-// `#[kernel]` names this crate; inside it too.
+// `#[kernel]` refers to this crate by name, also inside it.
 extern crate self as clench_math;
 
 mod array;

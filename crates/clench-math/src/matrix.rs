@@ -1,12 +1,12 @@
-//! Three-by-three matrices, row by row.
+//! 3 × 3 matrices, stored by rows.
 
 use crate::{Real, Vec3};
 use std::ops::Mul;
 
-/// A 3 × 3 matrix; as a rotation it maps local coordinates to the outer frame, its columns the local axes.
+/// A 3 × 3 matrix. As a rotation it maps local coordinates to the outer frame; its columns are the local axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mat3<T> {
-    /// Rows.
+    /// The rows.
     pub rows: [Vec3<T>; 3],
 }
 
@@ -24,17 +24,17 @@ impl<T: Real> Mat3<T> {
         ],
     };
 
-    /// From three rows.
+    /// Creates a matrix from three rows.
     #[inline(always)]
     pub const fn from_rows(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) -> Self {
         Mat3 { rows: [a, b, c] }
     }
-    /// From three columns.
+    /// Creates a matrix from three columns.
     #[inline(always)]
     pub fn from_columns(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) -> Self {
         Mat3::from_rows(a, b, c).transpose()
     }
-    /// A diagonal matrix.
+    /// Creates a diagonal matrix.
     #[inline(always)]
     pub fn diagonal(d: Vec3<T>) -> Self {
         let o = T::ZERO;
@@ -44,33 +44,33 @@ impl<T: Real> Mat3<T> {
             Vec3::new(o, o, d.z),
         )
     }
-    /// Column `j`.
+    /// Returns column `j`.
     #[inline(always)]
     pub fn column(&self, j: usize) -> Vec3<T> {
         Vec3::new(self.rows[0][j], self.rows[1][j], self.rows[2][j])
     }
-    /// The transpose.
+    /// Returns the transpose.
     #[inline(always)]
     pub fn transpose(&self) -> Self {
         Mat3::from_rows(self.column(0), self.column(1), self.column(2))
     }
-    /// `selfᵀ v` without forming the transpose.
+    /// Computes `selfᵀ v` without forming the transpose.
     #[inline(always)]
     pub fn transpose_mul(&self, v: Vec3<T>) -> Vec3<T> {
         self.rows[0] * v.x + self.rows[1] * v.y + self.rows[2] * v.z
     }
-    /// The same constant matrix in every lane, by rows.
+    /// Creates the same constant matrix in every lane, by rows.
     #[inline(always)]
     pub fn from_f64(m: [[f64; 3]; 3]) -> Self {
         let [a, b, c] = m;
         Mat3::from_rows(Vec3::from_f64(a), Vec3::from_f64(b), Vec3::from_f64(c))
     }
-    /// The determinant.
+    /// Returns the determinant.
     #[inline(always)]
     pub fn determinant(&self) -> T {
         self.rows[0].dot(self.rows[1].cross(self.rows[2]))
     }
-    /// Entry by entry choice.
+    /// Selects entry by entry: `yes` where the mask is true, else `no`.
     #[inline(always)]
     pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         let ([a, b, c], [d, e, f]) = (yes.rows, no.rows);

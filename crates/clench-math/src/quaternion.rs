@@ -3,7 +3,7 @@
 use crate::{Mat3, Real, Vec3, kernel};
 use std::ops::Mul;
 
-/// A quaternion; as a rotation it maps local coordinates to the outer frame.
+/// A quaternion. As a rotation it maps local coordinates to the outer frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quat<T> {
     /// Real part.
@@ -24,25 +24,25 @@ impl<T: Real> Default for Quat<T> {
 }
 
 impl<T: Real> Quat<T> {
-    /// No rotation.
+    /// The identity rotation.
     pub const IDENTITY: Self = Quat::new(T::ONE, T::ZERO, T::ZERO, T::ZERO);
 
-    /// From its four parts.
+    /// Creates a quaternion from its four parts.
     #[inline(always)]
     pub const fn new(w: T, x: T, y: T, z: T) -> Self {
         Quat { w, x, y, z }
     }
-    /// The same constant in every lane, (w, x, y, z).
+    /// Creates the same constant in every lane, (w, x, y, z).
     #[inline(always)]
     pub fn from_f64(q: [f64; 4]) -> Self {
         Quat::new(T::new(q[0]), T::new(q[1]), T::new(q[2]), T::new(q[3]))
     }
-    /// The same quaternion in every lane.
+    /// Creates the same quaternion in every lane.
     #[inline(always)]
     pub fn splat(q: Quat<T::Scalar>) -> Self {
         Quat::new(T::splat(q.w), T::splat(q.x), T::splat(q.y), T::splat(q.z))
     }
-    /// The quaternion of lane `i`.
+    /// Returns the quaternion of lane `i`.
     #[inline(always)]
     pub fn lane(self, i: usize) -> Quat<T::Scalar> {
         Quat::new(
@@ -52,12 +52,12 @@ impl<T: Real> Quat<T> {
             self.z.lane(i),
         )
     }
-    /// The first four numbers of a slice.
+    /// Reads the first four numbers of a slice.
     #[inline(always)]
     pub fn from_slice(q: &[T]) -> Self {
         Quat::new(q[0], q[1], q[2], q[3])
     }
-    /// To an array (w, x, y, z).
+    /// Returns the array (w, x, y, z).
     #[inline(always)]
     pub fn to_array(self) -> [T; 4] {
         [self.w, self.x, self.y, self.z]
@@ -67,21 +67,21 @@ impl<T: Real> Quat<T> {
     pub fn write(self, out: &mut [T]) {
         out[..4].copy_from_slice(&self.to_array());
     }
-    /// The imaginary part.
+    /// Returns the imaginary part.
     #[inline(always)]
     pub fn imaginary(self) -> Vec3<T> {
         Vec3::new(self.x, self.y, self.z)
     }
-    /// Rotation by `angle` radians about a unit axis.
+    /// Creates the rotation by `angle` radians about a unit axis.
     #[inline(always)]
     pub fn from_axis_angle(axis: Vec3<T>, angle: T) -> Self {
         let (s, c) = (angle * T::new(0.5)).sin_cos();
         Quat::new(c, axis.x * s, axis.y * s, axis.z * s)
     }
-    /// The rotation of a rotation matrix (columns: the local axes), to unit length.
+    /// Computes the unit quaternion of a rotation matrix (columns: the local axes).
     ///
-    /// Four rows of 4 q qᵀ can be read off the matrix, each a multiple of q; the row of `w` serves where the trace is
-    /// positive, else that of the largest imaginary part, whose sign is then positive (MuJoCo's `mju_mat2Quat`).
+    /// The matrix gives four rows of 4 q qᵀ, each a multiple of q. The row of `w` is used if the trace is positive,
+    /// else that of the largest imaginary part, whose sign is then positive (MuJoCo's `mju_mat2Quat`).
     #[kernel]
     pub fn from_matrix(m: &Mat3<T>) -> Self {
         let [a, b, c] = m.rows;
@@ -97,10 +97,10 @@ impl<T: Real> Quat<T> {
         let imaginary = Quat::select(a.x.gt(b.y) & a.x.gt(c.z), from_x, y_or_z);
         Quat::select(trace.gt(T::ZERO), from_w, imaginary).normalize()
     }
-    /// The shortest rotation that turns the unit vector `from` into the unit vector `to`.
+    /// Computes the shortest rotation from the unit vector `from` to the unit vector `to`.
     ///
-    /// Opposite vectors leave the axis open: it is then the coordinate axis on which `from` is smallest, made
-    /// perpendicular to `from`; for `from` = z that is x.
+    /// For opposite vectors the axis is the coordinate axis on which `from` is smallest, made perpendicular to `from`;
+    /// for `from` = z it is x.
     #[kernel]
     pub fn from_two_vectors(from: Vec3<T>, to: Vec3<T>) -> Self {
         let half = T::new(0.5);
@@ -109,12 +109,12 @@ impl<T: Real> Quat<T> {
         let axis = Vec3::select(length.lt(T::new(1e-10)), from.any_perpendicular(), axis);
         Quat::new(cosine, axis.x * sine, axis.y * sine, axis.z * sine).normalize()
     }
-    /// The inverse rotation.
+    /// Returns the inverse rotation.
     #[inline(always)]
     pub fn conjugate(self) -> Self {
         Quat::new(self.w, -self.x, -self.y, -self.z)
     }
-    /// Scaled to unit length; the identity where the length is below 1e-15.
+    /// Scales to unit length. Returns the identity if the length is below 1e-15.
     #[inline(always)]
     pub fn normalize(self) -> Self {
         let norm = (self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z).sqrt();
@@ -128,7 +128,7 @@ impl<T: Real> Quat<T> {
         );
         Quat::select(tiny, Quat::IDENTITY, unit)
     }
-    /// Part by part choice.
+    /// Selects part by part: `yes` where the mask is true, else `no`.
     #[inline(always)]
     pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         Quat::new(
@@ -145,7 +145,7 @@ impl<T: Real> Quat<T> {
         let t = u.cross(v) * T::new(2.0);
         v + t * self.w + u.cross(t)
     }
-    /// The rotation matrix of a unit quaternion.
+    /// Returns the rotation matrix of a unit quaternion.
     #[inline(always)]
     pub fn to_matrix(self) -> Mat3<T> {
         let two = T::new(2.0);
@@ -169,7 +169,7 @@ impl<T: Real> Quat<T> {
             ),
         )
     }
-    /// The rotation vector: axis times angle, angle in (−π, π].
+    /// Returns the rotation vector: axis times angle, with the angle in (−π, π].
     #[inline(always)]
     pub fn to_rotation_vector(self) -> Vec3<T> {
         let (axis, sine) = self.imaginary().normalize();
@@ -178,18 +178,19 @@ impl<T: Real> Quat<T> {
         angle = T::select(angle.gt(pi), angle - pi - pi, angle);
         axis * angle
     }
-    /// The local rotation vector that takes `other` to `self`: `other · exp(difference) = self` (MuJoCo's `mju_subQuat`).
+    /// Returns the local rotation vector from `other` to `self`: `other · exp(difference) = self` (MuJoCo's
+    /// `mju_subQuat`).
     #[inline(always)]
     pub fn difference(self, other: Self) -> Vec3<T> {
         (other.conjugate() * self).to_rotation_vector()
     }
-    /// The rotation of a rotation vector (axis times angle, rad).
+    /// Creates the rotation of a rotation vector (axis times angle, rad).
     #[inline(always)]
     pub fn from_rotation_vector(v: Vec3<T>) -> Self {
         let (axis, angle) = v.normalize();
         Quat::from_axis_angle(axis, angle)
     }
-    /// The orientation reached from `self` by turning at a constant local angular velocity (rad/s) for `time` seconds.
+    /// Integrates a constant local angular velocity (rad/s) from `self` for `time` seconds.
     #[inline(always)]
     pub fn integrate(self, angular_velocity: Vec3<T>, time: T) -> Self {
         let (axis, speed) = angular_velocity.normalize();

@@ -1,8 +1,8 @@
-//! The number that kernels are written in.
+//! The number type of kernels.
 //!
-//! A kernel generic over `T: Real` serves one environment (`f64`, `f32`) and many (`Lanes<f64, N>`,
-//! `Lanes<f32, N>`) with the same source. What differs between environments is a [`Mask`] and a
-//! [`select`](Real::select); a branch on [`Mask::any`] keeps the one-environment case as fast as plain code.
+//! A kernel generic over `T: Real` works for one environment (`f64`, `f32`) and for many (`Lanes<f64, N>`,
+//! `Lanes<f32, N>`) with the same source. Differences between environments are expressed by a [`Mask`] and a
+//! [`select`](Real::select). A branch on [`Mask::any`] keeps the one-environment case as fast as plain code.
 
 use crate::{Instructions, LaneTask};
 use std::fmt::Debug;
@@ -25,26 +25,25 @@ pub trait Mask:
     + BitAndAssign
     + BitOrAssign
 {
-    /// The same truth value in every lane.
+    /// Creates the same truth value in every lane.
     fn splat(value: bool) -> Self;
-    /// True where at least one lane is.
+    /// Returns true if at least one lane is true.
     fn any(self) -> bool;
-    /// True where every lane is.
+    /// Returns true if every lane is true.
     fn all(self) -> bool;
-    /// In how many lanes it is true.
+    /// Returns the number of lanes that are true.
     fn count(self) -> usize;
-    /// The truth value of lane `i`.
+    /// Returns the truth value of lane `i`.
     fn lane(self, i: usize) -> bool;
     /// Sets the truth value of lane `i`.
     fn set_lane(&mut self, i: usize, value: bool);
 }
 
-/// A time for each environment, s, in double precision whatever the precision of its other numbers: a clock adds up small
-/// steps, a million times.
+/// A time for each environment, s, always in double precision: a clock adds up small steps, a million times.
 pub trait Clock: Copy + Debug + PartialEq + Send + Sync + 'static {
-    /// The same time in every lane.
+    /// Creates the same time in every lane.
     fn splat(time: f64) -> Self;
-    /// The time of lane `i`.
+    /// Returns the time of lane `i`.
     fn lane(self, i: usize) -> f64;
     /// Sets the time of lane `i`.
     fn set_lane(&mut self, i: usize, time: f64);
@@ -52,12 +51,12 @@ pub trait Clock: Copy + Debug + PartialEq + Send + Sync + 'static {
 
 /// A real number for each environment, with IEEE arithmetic lane by lane.
 ///
-/// Every operation on lanes equals the scalar operation to the bit (which of the NaNs comes out is left open). No fused
-/// multiply-add is ever used, so results do not depend on the processor. `min`, `max` return the second operand where
-/// the comparison fails (NaN included).
+/// Every operation on lanes equals the scalar operation to the bit (except which NaN results). No fused multiply-add is
+/// ever used, so results do not depend on the processor. `min` and `max` return the second operand if the comparison
+/// fails (NaN included).
 ///
-/// On a concrete `f64` or `f32` an inherent method of the same name comes first (`x.sin_cos()` is the standard
-/// library's); kernels are generic, and concrete code that must agree with them writes `Real::sin_cos(x)`.
+/// On a concrete `f64` or `f32` an inherent method of the same name takes precedence (`x.sin_cos()` is the standard
+/// library's). Kernels are generic; concrete code that must agree with them writes `Real::sin_cos(x)`.
 pub trait Real:
     Copy
     + Debug
@@ -77,94 +76,96 @@ pub trait Real:
 {
     /// The type of one lane: `f64` or `f32`.
     type Scalar: Scalar;
-    /// One truth value a lane.
+    /// One truth value per lane.
     type Mask: Mask;
-    /// One time a lane.
+    /// One time per lane.
     type Clock: Clock;
-    /// How many environments share this number.
+    /// The number of environments in this number.
     const LANES: usize;
     /// Zero.
     const ZERO: Self;
     /// One.
     const ONE: Self;
 
-    /// Runs a closure compiled for the instructions that these lanes are made of; [`kernel`](crate::kernel) wraps whole
-    /// functions so.
+    /// Runs a closure compiled for the instructions of these lanes; [`kernel`](crate::kernel) does so for whole
+    /// functions.
     fn vectorize<R>(kernel: impl FnOnce() -> R) -> R;
 
-    /// The same for a closure whose loops run over contiguous numbers, so that the registers of this processor can be filled even where a
-    /// number is a scalar. The choice changes no result: nothing is fused or summed in another order.
+    /// Does the same for a closure whose loops run over contiguous numbers, so that it fills the registers of this
+    /// processor even if a number is a scalar. Results do not depend on the choice: nothing is fused or summed in
+    /// another order.
     fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R;
 
-    /// The same constant in every lane, rounded to the lane's precision.
+    /// Creates the same constant in every lane, rounded to the lane's precision.
     fn new(value: f64) -> Self;
-    /// The same value in every lane.
+    /// Creates the same value in every lane.
     fn splat(value: Self::Scalar) -> Self;
-    /// The value of lane `i`.
+    /// Returns the value of lane `i`.
     fn lane(self, i: usize) -> Self::Scalar;
     /// Sets the value of lane `i`.
     fn set_lane(&mut self, i: usize, value: Self::Scalar);
 
-    /// The lanes of many numbers, number after number.
+    /// Returns the lanes of many numbers, number after number.
     fn as_scalars(values: &[Self]) -> &[Self::Scalar];
-    /// The lanes of many numbers, to be written.
+    /// Returns the lanes of many numbers for writing.
     fn as_scalars_mut(values: &mut [Self]) -> &mut [Self::Scalar];
 
-    /// `self < other`.
+    /// Computes `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`.
+    /// Computes `self <= other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self > other`.
+    /// Computes `self > other`.
     fn gt(self, other: Self) -> Self::Mask;
-    /// `self >= other`.
+    /// Computes `self >= other`.
     fn ge(self, other: Self) -> Self::Mask;
-    /// `self == other`.
+    /// Computes `self == other`.
     fn eq(self, other: Self) -> Self::Mask;
-    /// Neither infinite nor NaN.
+    /// Returns true in lanes that are neither infinite nor NaN.
     fn is_finite(self) -> Self::Mask;
-    /// `yes` where the mask is true, `no` elsewhere.
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// Absolute value.
+    /// Computes the absolute value.
     fn abs(self) -> Self;
-    /// Square root, correctly rounded.
+    /// Computes the square root, correctly rounded.
     fn sqrt(self) -> Self;
-    /// The smaller of two.
+    /// Returns the smaller of two.
     fn min(self, other: Self) -> Self;
-    /// The larger of two.
+    /// Returns the larger of two.
     fn max(self, other: Self) -> Self;
-    /// The magnitude of `self` with the sign of `sign`.
+    /// Returns the magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
-    /// Largest integer not above.
+    /// Returns the largest integer not above `self`.
     fn floor(self) -> Self;
 
-    /// 2 to the power `self`, an integer within the exponents of normal numbers (−1022..=1023, in `f32`
-    /// −126..=127); any other argument gives an unspecified number.
+    /// Computes 2 to the power `self`, an integer within the exponents of normal numbers (−1022..=1023, in `f32`
+    /// −126..=127). Any other argument gives an unspecified number.
     fn exp2_integer(self) -> Self;
-    /// (k, m) with `self` = 2ᵏ m and m in [√½, √2), for a positive normal number; any other argument gives
+    /// Returns (k, m) with `self` = 2ᵏ m and m in [√½, √2), for a positive normal number. Any other argument gives
     /// unspecified numbers.
     fn split_exponent(self) -> (Self, Self);
 
-    /// Sine and cosine of an angle in radians, to about one unit in the last place up to 10⁶ rad (10⁵ in `f32`).
+    /// Computes sine and cosine of an angle in radians, to about one unit in the last place up to 10⁶ rad (10⁵ in
+    /// `f32`).
     ///
-    /// Beyond, the error is at most that of an argument off by its own last place; past 2⁵⁰ rad (2²¹), where that place
-    /// is worth a quarter of a radian, the angle counts as 0. Infinity and NaN give NaN.
+    /// Beyond, the error is at most that of an argument off by one unit in its last place. Past 2⁵⁰ rad (2²¹), where
+    /// that unit is a quarter of a radian, the angle counts as 0. Infinity and NaN give NaN.
     fn sin_cos(self) -> (Self, Self);
-    /// Angle of the point (`x`, `self`), in [−π, π], rad; signed zeros and infinities as in IEEE 754.
+    /// Computes the angle of the point (`x`, `self`), in [−π, π], rad; signed zeros and infinities as in IEEE 754.
     fn atan2(self, x: Self) -> Self;
-    /// Exponential.
+    /// Computes the exponential.
     fn exp(self) -> Self;
-    /// Natural logarithm; −∞ at zero, NaN below.
+    /// Computes the natural logarithm; −∞ at zero, NaN below.
     fn ln(self) -> Self;
-    /// `self` ≥ 0 raised to a real power; NaN below zero. Anything to the power 0 is 1.
+    /// Raises `self` ≥ 0 to a real power; NaN below zero. Anything to the power 0 is 1.
     fn powf(self, exponent: Self) -> Self;
 
-    /// Sine of an angle in radians.
+    /// Computes the sine of an angle in radians.
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
-    /// Cosine of an angle in radians.
+    /// Computes the cosine of an angle in radians.
     #[inline(always)]
     fn cos(self) -> Self {
         self.sin_cos().1
@@ -174,7 +175,7 @@ pub trait Real:
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
-    /// The square.
+    /// Computes the square.
     #[inline(always)]
     fn squared(self) -> Self {
         self * self
@@ -185,10 +186,10 @@ pub trait Real:
 pub trait Scalar:
     Real<Scalar = Self, Mask = bool, Clock = f64> + PartialOrd + std::fmt::Display
 {
-    /// The number type that one environment is computed in: the scalar itself, or lanes of it, which then all hold the same numbers.
-    /// Its values may exist only where the instructions [`ALONE`](Self::ALONE) are available.
+    /// The number type for computing one environment: the scalar itself, or lanes of it that all hold the same numbers.
+    /// Its values may exist only if the instructions [`ALONE`](Self::ALONE) are available.
     type Alone: Real<Scalar = Self>;
-    /// The instructions that [`Alone`](Self::Alone) is made of.
+    /// The instructions of [`Alone`](Self::Alone).
     const ALONE: Instructions;
     /// The distance from 1 to the next larger number.
     const EPSILON: Self;
@@ -198,11 +199,11 @@ pub trait Scalar:
     const MAX: Self;
     /// The smallest positive normal number.
     const MIN_POSITIVE: Self;
-    /// Binary digits of the mantissa, the implicit one included: 53 or 24.
+    /// The number of binary digits of the mantissa, including the implicit one: 53 or 24.
     const DIGITS: u32;
-    /// Widens (or keeps) the value.
+    /// Converts the value to `f64`.
     fn to_f64(self) -> f64;
-    /// Runs a task in lanes of these instructions; `None` if the processor lacks them.
+    /// Runs a task in lanes of these instructions; `None` if they are not available.
     fn in_lanes<K: LaneTask<Self>>(instructions: Instructions, task: K) -> Option<K::Output>;
 }
 

@@ -7,22 +7,22 @@ use crate::{Instructions, LaneTask};
 
 macro_rules! scalar {
     ($t:ident, $bits:ident, $layout:ident, $alone:ty, $instructions:expr) => {
-        /// How the bits of a number are used.
+        /// The bit layout of a number.
         pub(crate) mod $layout {
-            /// Bits of the fraction.
+            /// The number of bits of the fraction.
             pub(crate) const FRACTION: u32 = $t::MANTISSA_DIGITS - 1;
-            /// Ones where the fraction is.
+            /// The mask of the fraction.
             pub(crate) const FRACTION_MASK: $bits = (1 << FRACTION) - 1;
-            /// What is added to an exponent before it is stored.
+            /// The bias of a stored exponent.
             pub(crate) const BIAS: $bits = $t::MAX_EXP as $bits - 1;
-            /// 1.5 × 2^FRACTION: added to a small integer, it leaves that integer in the low bits of the fraction.
+            /// 1.5 × 2^FRACTION. Added to a small integer, it leaves that integer in the low bits of the fraction.
             pub(crate) const INTEGERS: $t = ((3 as $bits) << (FRACTION - 1)) as $t;
-            /// The same, and the bias of an exponent that was added as stored.
+            /// The same plus the bias of a stored exponent.
             pub(crate) const BIASED_INTEGERS: $t = INTEGERS + BIAS as $t;
             /// √½.
             pub(crate) const ROOT_HALF: $bits = (std::f64::consts::FRAC_1_SQRT_2 as $t).to_bits();
-            /// Added to the bits of a number it multiplies it by √2, so to speak: the exponent then steps at √½ · 2ᵏ, and the
-            /// fraction is 0 there.
+            /// Added to the bits of a number, it roughly multiplies it by √2: the exponent then steps at √½ · 2ᵏ, and
+            /// the fraction is 0 there.
             pub(crate) const TO_ROOT_HALF: $bits = (1 as $t).to_bits() - ROOT_HALF;
         }
         const _: () = {
@@ -38,7 +38,7 @@ macro_rules! scalar {
 
                 #[inline(always)]
                 fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {
-                    // One copy a kernel: inlined, kernels made scalar code three times as large, and slower.
+                    // One copy per kernel: inlined kernels made scalar code three times as large, and slower.
                     #[inline(never)]
                     fn run<R>(kernel: impl FnOnce() -> R) -> R {
                         kernel()

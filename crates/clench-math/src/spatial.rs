@@ -1,7 +1,7 @@
 //! Spatial algebra: motion and force vectors and rigid-body inertia about one common point, in world axes.
 //!
-//! Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2. A motion pairs an angular velocity with the
-//! velocity of the body point at the reference point; a force pairs the moment about that point with a linear force.
+//! Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2. A motion is an angular velocity and the velocity
+//! of the body point at the reference point; a force is the moment about that point and a linear force.
 
 use crate::{Mat3, Quat, Real, Vec3};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -9,18 +9,18 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 /// A spatial motion vector: velocity, acceleration or joint axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<T> {
-    /// Angular part, rad/s.
+    /// The angular part, rad/s.
     pub angular: Vec3<T>,
-    /// Linear part at the reference point, m/s.
+    /// The linear part at the reference point, m/s.
     pub linear: Vec3<T>,
 }
 
 /// A spatial force vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Force<T> {
-    /// Moment about the reference point, N m.
+    /// The moment about the reference point, N m.
     pub angular: Vec3<T>,
-    /// Linear force, N.
+    /// The linear force, N.
     pub linear: Vec3<T>,
 }
 
@@ -32,12 +32,12 @@ macro_rules! spatial_vector {
                 angular: Vec3::ZERO,
                 linear: Vec3::ZERO,
             };
-            /// From the angular and the linear part.
+            /// Creates a vector from the angular and the linear part.
             #[inline(always)]
             pub const fn new(angular: Vec3<T>, linear: Vec3<T>) -> Self {
                 $name { angular, linear }
             }
-            /// (angular, linear) as six numbers.
+            /// Returns (angular, linear) as six numbers.
             #[inline(always)]
             pub fn to_array(self) -> [T; 6] {
                 let (a, l) = (self.angular, self.linear);
@@ -91,7 +91,7 @@ spatial_vector!(Motion);
 spatial_vector!(Force);
 
 impl<T: Real> Motion<T> {
-    /// The motion whose component `c` of (angular, linear) is one, the others zero.
+    /// Returns the motion whose component `c` of (angular, linear) is one and whose others are zero.
     #[inline(always)]
     pub fn component(c: usize) -> Self {
         let mut motion = Self::ZERO;
@@ -102,12 +102,12 @@ impl<T: Real> Motion<T> {
         }
         motion
     }
-    /// Power of a force along this motion, W.
+    /// Computes the power of a force along this motion, W.
     #[inline(always)]
     pub fn dot(self, f: Force<T>) -> T {
         self.angular.dot(f.angular) + self.linear.dot(f.linear)
     }
-    /// Rate of change of the motion `m` when carried along by `self` (`self × m`).
+    /// Computes the rate of change of the motion `m` when it moves with `self` (`self × m`).
     #[inline(always)]
     pub fn cross(self, m: Motion<T>) -> Motion<T> {
         Motion::new(
@@ -115,7 +115,7 @@ impl<T: Real> Motion<T> {
             self.angular.cross(m.linear) + self.linear.cross(m.angular),
         )
     }
-    /// Rate of change of the force `f` when carried along by `self` (`self ×* f`).
+    /// Computes the rate of change of the force `f` when it moves with `self` (`self ×* f`).
     #[inline(always)]
     pub fn cross_force(self, f: Force<T>) -> Force<T> {
         Force::new(
@@ -123,12 +123,12 @@ impl<T: Real> Motion<T> {
             self.angular.cross(f.linear),
         )
     }
-    /// The velocity of the point at `offset` from the reference point.
+    /// Returns the velocity of the point at `offset` from the reference point.
     #[inline(always)]
     pub fn velocity_at(self, offset: Vec3<T>) -> Vec3<T> {
         self.linear + self.angular.cross(offset)
     }
-    /// The same motion told in a frame that stands at `offset` and is turned by `rotation`: about its origin, along its axes.
+    /// Expresses the motion in a frame at `offset` that is rotated by `rotation`: about its origin, along its axes.
     #[inline(always)]
     pub fn in_frame(self, offset: Vec3<T>, rotation: Quat<T>) -> Self {
         let back = rotation.conjugate();
@@ -142,24 +142,24 @@ impl<T: Real> Motion<T> {
 /// Rigid-body inertia about a reference point: rotational inertia (symmetric), first moment and mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertia<T> {
-    /// Rotational inertia about the reference point: xx, yy, zz, xy, xz, yz, kg m².
+    /// The rotational inertia about the reference point: xx, yy, zz, xy, xz, yz, kg m².
     pub rotational: [T; 6],
-    /// Mass times the offset of the centre of mass from the reference point, kg m.
+    /// The mass times the offset of the centre of mass from the reference point, kg m.
     pub moment: Vec3<T>,
-    /// Mass, kg.
+    /// The mass, kg.
     pub mass: T,
 }
 
 impl<T: Real> Inertia<T> {
-    /// No body at all.
+    /// The zero inertia.
     pub const ZERO: Self = Inertia {
         rotational: [T::ZERO; 6],
         moment: Vec3::ZERO,
         mass: T::ZERO,
     };
 
-    /// A body of principal moments `diagonal` along the columns of `axes`, its centre of mass at `offset` from the
-    /// reference point.
+    /// Creates the inertia of a body with principal moments `diagonal` along the columns of `axes`, and its centre of
+    /// mass at `offset` from the reference point.
     #[inline(always)]
     pub fn from_principal(diagonal: Vec3<T>, axes: &Mat3<T>, offset: Vec3<T>, mass: T) -> Self {
         let r = &axes.rows;
@@ -179,7 +179,7 @@ impl<T: Real> Inertia<T> {
             mass,
         }
     }
-    /// The rotational inertia times a vector.
+    /// Multiplies the rotational inertia by a vector.
     #[inline(always)]
     pub fn rotate(&self, v: Vec3<T>) -> Vec3<T> {
         let [xx, yy, zz, xy, xz, yz] = self.rotational;
@@ -193,7 +193,7 @@ impl<T: Real> Inertia<T> {
 
 impl<T: Real> Mul<Motion<T>> for Inertia<T> {
     type Output = Force<T>;
-    /// Momentum of the body moving at `m` (or the force that accelerates it so).
+    /// Computes the momentum of the body moving at `m` (or the force that gives it the acceleration `m`).
     #[inline(always)]
     fn mul(self, m: Motion<T>) -> Force<T> {
         Force::new(

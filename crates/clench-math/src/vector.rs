@@ -1,9 +1,9 @@
-//! Three-vectors.
+//! Three-dimensional vectors.
 
 use crate::{Real, kernel};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-/// A vector in space, in metres, newtons or whatever the context says.
+/// A vector in space; its unit depends on the context.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3<T> {
     /// First coordinate.
@@ -15,40 +15,40 @@ pub struct Vec3<T> {
 }
 
 impl<T: Real> Vec3<T> {
-    /// The origin.
+    /// The zero vector.
     pub const ZERO: Self = Vec3::new(T::ZERO, T::ZERO, T::ZERO);
 
-    /// From coordinates.
+    /// Creates a vector from its coordinates.
     #[inline(always)]
     pub const fn new(x: T, y: T, z: T) -> Self {
         Vec3 { x, y, z }
     }
-    /// The same constant vector in every lane.
+    /// Creates the same constant vector in every lane.
     #[inline(always)]
     pub fn from_f64(v: [f64; 3]) -> Self {
         Vec3::new(T::new(v[0]), T::new(v[1]), T::new(v[2]))
     }
-    /// The same vector in every lane.
+    /// Creates the same vector in every lane.
     #[inline(always)]
     pub fn splat(v: Vec3<T::Scalar>) -> Self {
         Vec3::new(T::splat(v.x), T::splat(v.y), T::splat(v.z))
     }
-    /// The vector of lane `i`.
+    /// Returns the vector of lane `i`.
     #[inline(always)]
     pub fn lane(self, i: usize) -> Vec3<T::Scalar> {
         Vec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
     }
-    /// From an array.
+    /// Creates a vector from an array.
     #[inline(always)]
     pub fn from_array(v: [T; 3]) -> Self {
         Vec3::new(v[0], v[1], v[2])
     }
-    /// To an array.
+    /// Returns the coordinates as an array.
     #[inline(always)]
     pub fn to_array(self) -> [T; 3] {
         [self.x, self.y, self.z]
     }
-    /// The first three numbers of a slice.
+    /// Reads the first three numbers of a slice.
     #[inline(always)]
     pub fn from_slice(v: &[T]) -> Self {
         Vec3::new(v[0], v[1], v[2])
@@ -58,12 +58,12 @@ impl<T: Real> Vec3<T> {
     pub fn write(self, out: &mut [T]) {
         out[..3].copy_from_slice(&self.to_array());
     }
-    /// Inner product.
+    /// Computes the inner product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
-    /// Vector product.
+    /// Computes the vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Vec3::new(
@@ -72,22 +72,22 @@ impl<T: Real> Vec3<T> {
             self.x * o.y - self.y * o.x,
         )
     }
-    /// Product coordinate by coordinate.
+    /// Computes the product coordinate by coordinate.
     #[inline(always)]
     pub fn scale_by(self, o: Self) -> Self {
         Vec3::new(self.x * o.x, self.y * o.y, self.z * o.z)
     }
-    /// Squared length.
+    /// Computes the squared length.
     #[inline(always)]
     pub fn norm_squared(self) -> T {
         self.dot(self)
     }
-    /// Length.
+    /// Computes the length.
     #[inline(always)]
     pub fn norm(self) -> T {
         self.norm_squared().sqrt()
     }
-    /// Coordinate-wise choice.
+    /// Selects coordinate by coordinate: `yes` where the mask is true, else `no`.
     #[inline(always)]
     pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         Vec3::new(
@@ -96,8 +96,8 @@ impl<T: Real> Vec3<T> {
             T::select(mask, yes.z, no.z),
         )
     }
-    /// A unit vector perpendicular to the unit vector `self`: the coordinate axis on which `self` is smallest (the
-    /// first of equals), less its part along `self`.
+    /// Returns a unit vector perpendicular to the unit vector `self`: the coordinate axis on which `self` is smallest
+    /// (the first of equals), minus its part along `self`.
     #[kernel]
     pub fn any_perpendicular(self) -> Self {
         let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
@@ -107,8 +107,8 @@ impl<T: Real> Vec3<T> {
         let axis = Vec3::select(x.le(y) & x.le(z), unit_x, y_or_z);
         (axis - self * self.dot(axis)).normalize().0
     }
-    /// The unit vector along `self` and the length; the x axis where the length is below 1e-15
-    /// (MuJoCo's `mjMINVAL`).
+    /// Returns the unit vector along `self` and the length; the x axis if the length is below 1e-15 (MuJoCo's
+    /// `mjMINVAL`).
     #[inline(always)]
     pub fn normalize(self) -> (Self, T) {
         let norm = self.norm();

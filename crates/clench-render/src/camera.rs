@@ -1,31 +1,31 @@
-//! From where a picture is taken.
+//! The cameras of images.
 
 use clench::math::Real;
 use clench::rigid::{Precision, Sim};
 
-/// How far about its middle a plane is looked at, where there is nothing else, m.
+/// The half size of the visible part of a plane if there is nothing else, m.
 const PLANE: f64 = 1.0;
 
-/// A camera that belongs to no model: it looks at a point from a distance and a direction, MuJoCo's free camera.
+/// A camera independent of the model, which looks at a point from a distance and a direction: MuJoCo's free camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeCamera {
-    /// The point in the middle of the picture, m.
+    /// The point at the centre of the image, m.
     pub lookat: [f64; 3],
-    /// How far from it, m.
+    /// The distance from the point, m.
     pub distance: f64,
-    /// Direction of view about the vertical: 0 looks along x, 90 along y, degrees.
+    /// The viewing direction about the vertical, degrees: 0 looks along x, 90 along y.
     pub azimuth: f64,
-    /// Direction of view above the horizon; negative looks down, degrees.
+    /// The viewing direction above the horizon, degrees; negative looks down.
     pub elevation: f64,
-    /// Vertical field of view, degrees.
+    /// The vertical field of view, degrees.
     pub fovy: f64,
 }
 
 impl FreeCamera {
-    /// One that sees all that can move, or all where nothing can.
+    /// Creates a camera that shows all movable geoms, or all geoms if none is movable.
     ///
     /// # Errors
-    /// A state that cannot be evaluated.
+    /// Returns an error if the state cannot be evaluated.
     pub fn of_all<T: Precision>(sim: &mut Sim<T>) -> Result<Self, clench::SimError> {
         let places = sim.output("geom_xpos")?;
         let (model, params) = (sim.model(), sim.params());
@@ -58,28 +58,28 @@ impl FreeCamera {
     }
 }
 
-/// Which way a picture is taken.
+/// The selection of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
-    /// By a camera of the model.
+    /// A camera of the model.
     Camera(usize),
-    /// By one of the user's.
+    /// A free camera.
     Free(FreeCamera),
 }
 
-/// A camera in place.
+/// A camera with its pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {
     pub eye: [f32; 3],
-    /// To the right, upwards and backwards: unit vectors.
+    /// The unit vectors to the right, upwards and backwards.
     pub axes: [[f32; 3]; 3],
-    /// Half the height of the picture at the distance 1, or, with parallel lines of sight, in metres.
+    /// Half the height of the image at distance 1 or, for an orthographic camera, in metres.
     pub half: f32,
     pub parallel: bool,
 }
 
 impl View {
-    /// Where it looks from now.
+    /// Returns the present pose of the camera.
     pub(crate) fn place<T: Precision>(
         &self,
         sim: &mut Sim<T>,
@@ -109,7 +109,7 @@ impl View {
     }
 }
 
-/// Half the height of a picture.
+/// Returns half the height of an image.
 fn half(fovy: f64, parallel: bool) -> f32 {
     match parallel {
         true => 0.5 * fovy as f32,
@@ -142,8 +142,8 @@ impl FreeCamera {
 }
 
 impl Placed {
-    /// The matrix that takes points of the world to the picture, column by column. Depth is 1 at the distance `near` and falls to 0
-    /// at infinity (for parallel lines of sight at `far`), which keeps single precision even.
+    /// Returns the column-major matrix from the world to the image. Depth is 1 at the distance `near` and falls to 0 at
+    /// infinity (for an orthographic camera at `far`), which distributes single precision evenly.
     pub(crate) fn matrix(&self, aspect: f32, near: f32, far: f32) -> [[f32; 4]; 4] {
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let rows: Vec<[f32; 4]> = (self.axes.iter())

@@ -1,4 +1,4 @@
-//! The textures that a picture is drawn into, and how pixels are read from them.
+//! The textures that an image is drawn into, and reading their pixels.
 
 use crate::device::Gpu;
 use crate::passes::{DEPTH, DISTANCES, GEOMS, PICTURE, SAMPLES};
@@ -7,10 +7,10 @@ use wgpu::{
     TextureFormat, TextureUsages, TextureView,
 };
 
-/// Rows of pixels are copied in multiples of so many bytes.
+/// The alignment of the rows of a copy, bytes.
 const ROW: u32 = 256;
 
-/// The textures of one size of pictures.
+/// The textures of one image size.
 pub struct Canvas {
     pub size: [u32; 2],
     pub samples: TextureView,
@@ -22,7 +22,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// The textures of pictures of a size.
+    /// Creates the textures of an image size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
         let view =
             |format, samples| texture(gpu, size, format, samples).create_view(&Default::default());
@@ -38,7 +38,7 @@ impl Canvas {
     }
 }
 
-/// Copies a texture to where it can be read.
+/// Copies a texture to a readable buffer.
 pub(crate) fn copy(gpu: &Gpu, encoder: &mut CommandEncoder, from: &Texture) -> Buffer {
     let size = from.size();
     let row = (4 * size.width).next_multiple_of(ROW);
@@ -63,7 +63,7 @@ pub(crate) fn copy(gpu: &Gpu, encoder: &mut CommandEncoder, from: &Texture) -> B
     buffer
 }
 
-/// The pixels of a copy.
+/// Returns the pixels of a copy.
 pub(crate) fn read(copy: &Buffer, [width, _]: [u32; 2]) -> Vec<[u8; 4]> {
     let row = (4 * width).next_multiple_of(ROW) as usize;
     let Ok(bytes) = copy.get_mapped_range(..) else {
@@ -75,7 +75,7 @@ pub(crate) fn read(copy: &Buffer, [width, _]: [u32; 2]) -> Vec<[u8; 4]> {
         .collect()
 }
 
-/// A texture that is drawn into, and read or sampled unless a pixel has several samples.
+/// Creates a render target; with one sample per pixel it can also be read and sampled.
 pub(crate) fn texture(
     gpu: &Gpu,
     [width, height]: [u32; 2],

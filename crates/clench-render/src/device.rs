@@ -1,26 +1,26 @@
-//! The device that draws.
+//! The GPU that draws.
 
 use wgpu::{
     Adapter, Backends, Device, DeviceDescriptor, Instance, InstanceDescriptor, Limits,
     PowerPreference, Queue, RequestAdapterOptions,
 };
 
-/// Why nothing can be drawn.
+/// An error of drawing.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// No device, and what to do about it.
+    /// There is no device; includes a remedy.
     #[error(
         "there is no device that draws: neither a graphics card with Vulkan, Metal or Direct3D 12, nor Mesa's, which needs no card; \
          on Debian and Ubuntu install the package mesa-vulkan-drivers ({0})"
     )]
     NoDevice(String),
-    /// The device is there and fails.
+    /// The device failed.
     #[error("the device that draws, {0}, failed: {1}")]
     Failed(String, String),
-    /// A size that no picture can have.
+    /// The size of the image is out of range.
     #[error("a picture of {0} x {1} pixels cannot be drawn: each side has from 1 to {2} pixels")]
     Size(u32, u32, u32),
-    /// A camera that the model does not have.
+    /// The camera does not exist in the model.
     #[error("there is no camera {0}, only {1}")]
     NoCamera(usize, usize),
     /// The state cannot be evaluated.
@@ -36,10 +36,10 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// The fastest device there is, else one that computes on the processor.
+    /// Opens the fastest GPU, or else a software device.
     ///
     /// # Errors
-    /// That there is none, or that it does not start.
+    /// Returns an error if there is none, or it does not start.
     pub fn open() -> Result<Self, RenderError> {
         let instance = Instance::new(InstanceDescriptor {
             backends: Backends::PRIMARY,

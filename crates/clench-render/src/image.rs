@@ -1,16 +1,16 @@
-//! What was drawn.
+//! The result of drawing.
 
-/// A picture: rows from the top, pixels from the left.
+/// An image: rows from the top, pixels from the left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// The number of rows.
     pub height: usize,
-    /// Red, green and blue of each pixel, sRGB.
+    /// The red, green and blue of each pixel, sRGB.
     pub rgb: Vec<u8>,
-    /// Distance of what each pixel shows, along the direction in which the camera looks, m; infinite where it shows nothing.
+    /// The distance of the surface at each pixel, along the viewing direction, m; infinite for the background.
     pub depth: Vec<f32>,
-    /// The geom that each pixel shows, −1 for none.
+    /// The geom at each pixel, −1 for none.
     pub geoms: Vec<i32>,
 }

@@ -1,4 +1,4 @@
-//! What is drawn now: geoms, sites and tendons, each with its pose, colour and surface, as the shader reads them.
+//! The drawn items: geoms, sites and tendons, each with its pose, colour and surface, as the shader reads them.
 
 use clench::Model;
 use clench::collide::ShapeKind;
@@ -7,7 +7,7 @@ use clench::rigid::readout::TendonLine;
 use clench::rigid::{Precision, Sim};
 use clench_view::surfaces::texture;
 
-/// Numbers of one thing that is drawn; see the shader.
+/// The parameters of one drawn item; see the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Item {
@@ -17,7 +17,7 @@ pub(crate) struct Item {
     pub texture: [f32; 4],
 }
 
-/// What is drawn of every geom of a model and then of every site, without poses.
+/// Returns the items of every geom of a model and then of every site, without poses.
 pub(crate) fn of_model(model: &Model) -> Vec<Item> {
     let visuals = &model.visuals;
     let geoms = visuals.geoms.iter().enumerate().map(|(g, &appearance)| {
@@ -32,8 +32,9 @@ pub(crate) fn of_model(model: &Model) -> Vec<Item> {
     geoms.chain(sites).collect()
 }
 
-/// The ground of a picture, as on the viewer's page: lines on the lowest plane of the world, or below a model that has no ground. A floor
-/// with a picture needs none. Returns an item for the latter, which goes behind geoms and sites.
+/// Adds the ground of an image, as on the viewer's page: grid lines on the lowest plane of the world, or below a model
+/// that has no ground. A floor with a texture needs none. Returns an item in the case without ground, which follows
+/// geoms and sites.
 pub(crate) fn add_ground(
     model: &Model,
     items: &mut [Item],
@@ -67,7 +68,7 @@ pub(crate) fn add_ground(
     })
 }
 
-/// The lowest height of what moves, or of all where nothing does, m, as far as sizes say.
+/// Returns the approximate lowest height of the movable geoms, or of all if none is movable, m.
 pub(crate) fn lowest<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimError> {
     let poses = poses_of(sim, "geom_xpos", "geom_xmat")?;
     let model = sim.model();
@@ -87,7 +88,7 @@ pub(crate) fn lowest<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimE
     Ok(if low.is_finite() { low } else { 0.0 })
 }
 
-/// What is drawn of an element. Where it has no material it shines as MuJoCo lets it.
+/// Returns the item of an element. Without a material it has MuJoCo's default highlights.
 fn item_of(model: &Model, appearance: Appearance) -> Item {
     let visuals = &model.visuals;
     let material = appearance.material.and_then(|m| visuals.materials.get(m));
@@ -106,7 +107,7 @@ fn item_of(model: &Model, appearance: Appearance) -> Item {
     }
 }
 
-/// The poses of all geoms now, then of all sites, column by column.
+/// Returns the present poses of all geoms, then of all sites, in column-major order.
 pub(crate) fn poses<T: Precision>(
     sim: &mut Sim<T>,
 ) -> Result<Vec<[[f32; 4]; 4]>, clench::SimError> {
@@ -144,20 +145,20 @@ fn poses_of<T: Precision>(
         .collect())
 }
 
-/// Straight parts of tendons now, for a cylinder along z of radius 1 and half the length 1.
+/// Returns the present straight segments of tendons, for a cylinder along z of radius 1 and half length 1.
 pub(crate) fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, clench::SimError> {
     sim.refresh()?;
     let model = sim.model();
     let item = |TendonLine { tendon, ends }| {
         let [from, to] = ends;
         let mut item = item_of(model, model.visuals.tendons[tendon]);
-        // Pictures do not lie on strings.
+        // Textures do not apply to tendons.
         item.texture = [0.0; 4];
         let radius = model.visuals.tendon_width[tendon] as f32;
         let along = [0, 1, 2].map(|k| 0.5 * (to[k] - from[k]));
         let half = along.iter().map(|x| x * x).sum::<f32>().sqrt();
         let ahead = along.map(|x| x / half.max(1e-9));
-        // Any direction that is not along the tendon.
+        // Any direction that is not parallel to the tendon.
         let other = if ahead[2].abs() < 0.9 {
             [0.0, 0.0, 1.0]
         } else {

@@ -1,9 +1,10 @@
-//! Pictures of simulations, drawn without a window: on any graphics card, or by Mesa on the processor.
+//! Images of simulations, drawn without a window: on any GPU, or by Mesa on the CPU.
 //!
-//! A [`Renderer`] has the shapes of a model on the device and draws an [`Image`] of a simulation from a [`View`]: colours, and
-//! where wanted distances and the geoms that are seen. The module `triangles` makes shapes of geoms, [`camera`] the way of looking.
+//! A [`Renderer`] stores the shapes of a model on the device and draws an [`Image`] of a simulation from a [`View`]:
+//! colours, and optionally distances and the visible geoms. The module `triangles` creates the shapes of geoms,
+//! [`camera`] the views.
 //!
-//! No physics here, and no files: what is done with a picture is its user's business.
+//! This crate contains no physics and writes no files.
 
 #![deny(unreachable_pub)]
 

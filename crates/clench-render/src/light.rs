@@ -1,4 +1,4 @@
-//! What the shader is told of the camera and the light, and the shadow of the sun or of a light.
+//! The camera and light parameters of the shader, and the shadow of the sun or of a light.
 
 use crate::camera::Placed;
 use crate::device::Gpu;
@@ -7,20 +7,20 @@ use clench::rigid::model::{Light, LightKind, Visuals};
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, TextureView};
 use zerocopy::IntoBytes;
 
-/// Pixels of a side of the sun's shadow.
+/// The number of pixels of a side of the shadow map.
 pub(crate) const SHADOW: u32 = 2048;
-/// Nearest thing that is seen, over the size of the model.
+/// The distance of the near plane over the size of the model.
 const NEAR: f32 = 0.003;
-/// How far a plane without end reaches, over the size of the model.
+/// The size of an infinite plane over the size of the model.
 pub(crate) const FAR: f32 = 300.0;
-/// How far shadows reach from the middle, over the size of the model.
+/// The radius of the shadowed region over the size of the model.
 pub(crate) const REACH: f32 = 2.2;
-/// Towards the sun.
+/// The direction to the sun.
 const TO_SUN: [f32; 3] = [0.150, -0.551, 0.821];
-/// Behind everything, as on the viewer's page.
+/// The background colour, as on the viewer's page.
 pub(crate) const SKY: [f32; 3] = [0.875, 0.902, 0.933];
 
-/// What the shader is told of a picture.
+/// The parameters of an image in the shader.
 #[repr(C)]
 #[derive(Clone, Copy, IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Uniforms {
@@ -48,18 +48,18 @@ pub(crate) struct Lamp {
     attenuation: [f32; 4],
 }
 
-/// What lights a picture.
+/// The lighting of an image.
 pub(crate) struct Lighting {
     pub lamps: Vec<Lamp>,
-    /// What the light that casts the shadow sees, if one of the model's does.
+    /// The view of the model's light that casts the shadow, if there is one.
     shadow: Option<Placed>,
-    /// From everywhere, from the camera, and the highlights of that.
+    /// The sum of ambient light, the headlight's diffuse light and its highlights.
     head: [[f32; 3]; 3],
 }
 
 impl Lighting {
-    /// Of the lights of a model where they are now: place and direction of each. Of those that cast shadows the first does; what is
-    /// around `centre`, within `reach`, is in it.
+    /// Collects the lights of a model with the present position and direction of each. The first light that casts
+    /// shadows is used; its shadow covers the region around `centre` within `reach`.
     pub(crate) fn new(
         visuals: &Visuals,
         places: &[[[f64; 3]; 2]],
@@ -110,13 +110,13 @@ fn lamp(light: &Light, place: &[[f64; 3]; 2], casts: bool) -> Lamp {
     }
 }
 
-/// What a light sees of the things around a centre.
+/// Returns the view of a light of the region around a centre.
 fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> Placed {
     let [pos, dir] = place.map(narrow);
     let away = [0, 1, 2].map(|k| centre[k] - pos[k]);
     match light.properties.kind {
         LightKind::Directional => far_away(centre, dir.map(|x| -x), reach),
-        // A cone of a right angle and more would not be seen at once.
+        // A cone of a right angle or more would not fit into one view.
         LightKind::Spot => Placed {
             eye: pos,
             axes: axes(dir.map(|x| -x)),
@@ -133,7 +133,7 @@ fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> 
 }
 
 impl Uniforms {
-    /// Of a picture of things of a size around a centre, m.
+    /// Creates the parameters of an image of a region around a centre with a size, m.
     pub(crate) fn new(
         camera: &Placed,
         aspect: f32,
@@ -176,7 +176,7 @@ impl Uniforms {
     }
 }
 
-/// What lights things: the sun's shadow.
+/// Creates the bind group of the shadow map.
 pub(crate) fn light_group(gpu: &Gpu, passes: &Passes, shadow: &TextureView) -> BindGroup {
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         compare: Some(wgpu::CompareFunction::GreaterEqual),
@@ -200,7 +200,7 @@ pub(crate) fn light_group(gpu: &Gpu, passes: &Passes, shadow: &TextureView) -> B
     })
 }
 
-/// What a light far away sees around a point, of which this is the direction towards the light.
+/// Returns the view of a distant light around a point; `to_light` is the direction to the light.
 fn far_away(centre: [f32; 3], to_light: [f32; 3], reach: f32) -> Placed {
     Placed {
         eye: [0, 1, 2].map(|k| centre[k] + 3.0 * reach * to_light[k]),
@@ -210,11 +210,11 @@ fn far_away(centre: [f32; 3], to_light: [f32; 3], reach: f32) -> Placed {
     }
 }
 
-/// To the right, upwards and backwards.
+/// Returns the axes to the right, upwards and backwards.
 fn axes(back: [f32; 3]) -> [[f32; 3]; 3] {
     let [x, y, z] = back;
     let flat = (x * x + y * y).sqrt();
-    // Straight up or down any direction is to the right.
+    // For a vertical view any horizontal direction serves as the right.
     let right = match flat > 1e-6 {
         true => [-y / flat, x / flat, 0.0],
         false => [1.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! The three ways in which things are drawn: into the sun's shadow, into the picture, and as distances and numbers of geoms.
+//! The three passes: the shadow map, the colours, and the distances with geom indices.
 
 use crate::triangles::Vertex;
 use wgpu::{
@@ -14,10 +14,10 @@ pub(crate) const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 pub(crate) const GEOMS: TextureFormat = TextureFormat::R32Sint;
 pub(crate) const DISTANCES: TextureFormat = TextureFormat::R32Float;
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
-/// Samples of a pixel.
+/// The number of samples of a pixel.
 pub(crate) const SAMPLES: u32 = 4;
 
-/// The pipelines, and what they need.
+/// The pipelines and their layouts.
 pub(crate) struct Passes {
     pub scene: BindGroupLayout,
     pub light: BindGroupLayout,
@@ -28,7 +28,7 @@ pub(crate) struct Passes {
     pub facts: RenderPipeline,
 }
 
-/// What differs between pipelines.
+/// The settings that differ between pipelines.
 struct Way<'a> {
     vertex: &'a str,
     fragment: Option<&'a str>,
@@ -40,7 +40,7 @@ struct Way<'a> {
 }
 
 impl Passes {
-    /// For models that have lights, or for those where it is day.
+    /// Creates the pipelines for models with their own lights, or for daylight.
     pub(crate) fn new(device: &Device, own_lights: bool) -> Self {
         let constants = [("own_lights", f64::from(u8::from(own_lights)))];
         let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
@@ -139,7 +139,7 @@ fn light_layout(device: &Device) -> BindGroupLayout {
     })
 }
 
-/// A picture on a plane, one on a cube, and how they are read.
+/// Returns the layout of a plane texture, a cube texture and their sampler.
 fn texture_layout(device: &Device) -> BindGroupLayout {
     let picture = |view_dimension| BindingType::Texture {
         sample_type: TextureSampleType::Float { filterable: true },
@@ -182,7 +182,7 @@ fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline
                 attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3],
             })],
         },
-        // Meshes of files have their corners in any order: both sides are drawn.
+        // The vertices of mesh files have an arbitrary order, so both sides are drawn.
         primitive: PrimitiveState::default(),
         depth_stencil: Some(DepthStencilState {
             format: DEPTH,

@@ -1,18 +1,18 @@
-// What is drawn of each geom: its picture with light and shadow, or its distance and number.
+// Draws geoms: their colours with light and shadow, or their distances and indices.
 
 struct View {
-    // From the world to the picture, and from the world to the sun's.
+    // The transforms from the world to the image and to the shadow map.
     camera: mat4x4<f32>,
     sun: mat4x4<f32>,
     eye: vec4<f32>,
-    // Where the camera looks; 1 in w for parallel lines of sight.
+    // The viewing direction; 1 in w for an orthographic camera.
     ahead: vec4<f32>,
-    // Towards the sun; in w the size of a texel of its shadow, in the shadow's picture.
+    // The direction to the sun; in w the size of a texel of the shadow map, in texture coordinates.
     to_sun: vec4<f32>,
     sky: vec4<f32>,
-    // Distances between which things fade into the sky, and how far what is shaded is from what shades it.
+    // The distances between which items fade into the sky, and the normal offset of shadow lookups.
     fog: vec4<f32>,
-    // What all lights of the model give everywhere, the headlight's diffuse light and its highlights.
+    // The ambient light of all lights, the headlight's diffuse light and its highlights.
     ambient: vec4<f32>,
     head: vec4<f32>,
     head_specular: vec4<f32>,
@@ -20,11 +20,11 @@ struct View {
 
 // A light of the model.
 struct Light {
-    // Where it is; 0 in w for a spot, 1 for a directional one, 2 for a point.
+    // The position; w is 0 for a spot, 1 for a directional light, 2 for a point light.
     place: vec4<f32>,
-    // Where it shines; in w the cosine of the angle to which a spot shines.
+    // The direction; in w the cosine of the cutoff angle of a spot.
     dir: vec4<f32>,
-    // Of each of three colours in w: the exponent of a spot, whether this one casts the shadow, nothing.
+    // The w components of the three colours: the exponent of a spot, 1 if the light casts the shadow, unused.
     ambient: vec4<f32>,
     diffuse: vec4<f32>,
     specular: vec4<f32>,
@@ -34,9 +34,9 @@ struct Light {
 struct Item {
     pose: mat4x4<f32>,
     color: vec4<f32>,
-    // Strength and sharpness of highlights, emission, number of the geom.
+    // Strength and sharpness of highlights, emission, index of the geom.
     surface: vec4<f32>,
-    // The kind of its texture: 0 none, 1 a plane's, 2 a cube's. The distance of the lines of a grid on it, m, or 0; 1 where these are all of it.
+    // The texture kind: 0 none, 1 plane, 2 cube. The spacing of its grid lines, m, or 0; 1 if only the lines are drawn.
     texture: vec4<f32>,
 }
 
@@ -49,9 +49,9 @@ struct Item {
 @group(2) @binding(1) var cube: texture_cube<f32>;
 @group(2) @binding(2) var picture_sampler: sampler;
 
-// Whether the model has lights. A device that compiles for many pixels at once computes both sides of a condition that it does not know.
+// True if the model has lights. An override constant lets a device that evaluates both sides of a condition skip one.
 override own_lights: bool;
-// The most parts into which a pixel is cut where it lies on a plane's picture.
+// The maximum number of parts of a pixel in a plane texture.
 const MOST_PARTS = 8.0;
 
 struct Corner {
@@ -84,7 +84,7 @@ fn shadow_corner(@location(0) place: vec3<f32>, @builtin(instance_index) item: u
     return view.sun * items[item].pose * vec4(place, 1.0);
 }
 
-// Screens show sRGB; light adds up in linear numbers.
+// Screens show sRGB; light is added in linear values.
 fn linear(color: vec3<f32>) -> vec3<f32> {
     return pow(color, vec3(2.2));
 }
@@ -93,8 +93,9 @@ fn shown(color: vec3<f32>) -> vec3<f32> {
     return pow(color, vec3(1.0 / 2.2));
 }
 
-// The mean of a plane's picture under a pixel whose sides lie on it as these two ways. The longer way is cut into parts as long as the other,
-// so that a ground is sharp from the side. Samplers can do this too, but Mesa's visits every texel under a pixel: for minutes at the horizon.
+// The mean of a plane texture under a pixel whose sides are these two vectors in the texture. The longer side is
+// divided into parts as long as the other, so that a ground is sharp at grazing angles. Anisotropic samplers can do
+// this too, but Mesa's visits every texel under a pixel, which takes minutes at the horizon.
 fn plane_color(at: vec2<f32>, across: vec2<f32>, down: vec2<f32>) -> vec3<f32> {
     let size = vec2<f32>(textureDimensions(plane));
     let lengths = vec2(length(across * size), length(down * size));
@@ -110,7 +111,7 @@ fn plane_color(at: vec2<f32>, across: vec2<f32>, down: vec2<f32>) -> vec3<f32> {
     return sum / parts;
 }
 
-// The color of a texture, in linear numbers.
+// The color of a texture, in linear values.
 fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
     if (kind == 1.0) {
         return plane_color(at.xy, across.xy, down.xy);
@@ -121,10 +122,10 @@ fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3
     return vec3(1.0);
 }
 
-// The color of the lines of a ground, and how much of what is below they cover.
+// The color of grid lines, and their opacity.
 const GRID = vec4(0.596, 0.635, 0.682, 0.42);
 
-// The share of a pixel that lines of a grid cover: a pixel wide, and gone where they are close to each other.
+// The share of a pixel that grid lines cover: they are one pixel wide, and vanish where they are close to each other.
 fn grid_cover(place: vec2<f32>, cell: f32) -> f32 {
     let at = place / max(cell, 1e-6);
     let wide = fwidth(at);
@@ -132,7 +133,7 @@ fn grid_cover(place: vec2<f32>, cell: f32) -> f32 {
     return select(0.0, GRID.a * max(lines.x, lines.y), cell > 0.0);
 }
 
-// The share that comes through of the light that casts the shadow, from nine places beside each other.
+// The unshadowed share of the light that casts the shadow, from nine adjacent samples.
 fn sunlight(place: vec3<f32>, normal: vec3<f32>) -> f32 {
     let texel = view.to_sun.w;
     let seen = view.sun * vec4(place + normal * view.fog.z, 1.0);
@@ -151,7 +152,7 @@ fn sunlight(place: vec3<f32>, normal: vec3<f32>) -> f32 {
     return sum / 9.0;
 }
 
-// The light of a model that has none of its own: a sun, a sky and a little from the camera.
+// The lighting of a model without lights: a sun, a sky and a little light from the camera.
 fn daylight(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let to_sun = view.to_sun.xyz;
     let facing = max(dot(normal, to_sun), 0.0);
@@ -164,17 +165,17 @@ fn daylight(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3
     let middle = normalize(to_sun + to_eye);
     let shine = surface.x * pow(max(dot(normal, middle), 0.0), 4.0 + 120.0 * surface.y) * facing;
     let light = color * (sky + front_light + 0.72 * facing * sun + surface.z) + vec3(0.24 * shine * sun);
-    // Bright parts become white by and by.
+    // Bright parts become white gradually.
     return light / (1.0 + 0.18 * max(light.r, max(light.g, light.b)));
 }
 
-// How bright the highlight of a light is (Blinn and Phong).
+// The brightness of the highlight of a light (Blinn and Phong).
 fn highlight(surface: vec4<f32>, normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
     let middle = normalize(to_light + to_eye);
     return surface.x * pow(max(dot(normal, middle), 0.0), max(128.0 * surface.y, 1.0));
 }
 
-// The light of a model's own lights, which add up in the numbers that a screen shows, as in OpenGL and so in MuJoCo.
+// The lighting by a model's lights, added in sRGB values, as in OpenGL and so in MuJoCo.
 fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     var matte = view.ambient.rgb + surface.z;
     var shine = vec3(0.0);
@@ -184,7 +185,7 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
     if (head > 0.0) {
         shine += view.head_specular.rgb * highlight(surface, normal, to_head, to_eye);
     }
-    // Of the one light that casts the shadow, once instead of in every turn.
+    // For the one light that casts the shadow, computed once instead of in every iteration.
     let through = sunlight(place, normal);
     for (var k = 0u; k < u32(view.ambient.w); k++) {
         let light = lights[k];
@@ -221,7 +222,7 @@ fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
     let distance = length(to_eye);
     to_eye = select(to_eye / distance, -view.ahead.xyz, view.ahead.w > 0.0);
     var normal = normalize(in.normal);
-    // Whatever way its corners are in order: what is seen is outside.
+    // Independent of the winding: the visible side is the outside.
     normal = select(normal, -normal, dot(normal, to_eye) < 0.0);
     var light = vec3(0.0);
     if (own_lights) {

@@ -1,4 +1,4 @@
-//! The pictures of a model on the device, each with all its smaller sizes.
+//! The textures of a model on the GPU, with mipmaps.
 
 use crate::device::Gpu;
 use crate::passes::{PICTURE, Passes};
@@ -12,18 +12,18 @@ use wgpu::{
     TextureViewDimension,
 };
 
-/// Sides of a cube.
+/// The number of sides of a cube.
 const SIDES: usize = 6;
 
-/// The textures that are on something, and the one that is nothing.
+/// The textures in use, and a blank one.
 pub(crate) struct Textures {
-    /// By the model's numbers; none of those that nothing has.
+    /// The textures by their index in the model; `None` if unused.
     of_model: Vec<Option<BindGroup>>,
     nothing: BindGroup,
 }
 
 impl Textures {
-    /// Brings what geoms and sites have to the device.
+    /// Uploads the textures of geoms and sites.
     pub(crate) fn new(gpu: &Gpu, passes: &Passes, model: &Model) -> Self {
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: wgpu::AddressMode::Repeat,
@@ -63,7 +63,7 @@ impl Textures {
         }
     }
 
-    /// That of an element.
+    /// Returns the texture of an element.
     pub(crate) fn of(&self, model: &Model, appearance: Appearance) -> &BindGroup {
         let index = surfaces::texture(model, appearance);
         let found = index.and_then(|index| self.of_model.get(index)?.as_ref());
@@ -98,7 +98,7 @@ fn plane(gpu: &Gpu, pixels: &Pixels) -> TextureView {
     upload(gpu, [pixels.width, pixels.height], &[&pixels.rgb])
 }
 
-/// Six squares below each other, or one for all sides.
+/// Creates a cube from six squares below each other, or one for all sides.
 fn cube(gpu: &Gpu, pixels: &Pixels) -> TextureView {
     let width = pixels.width;
     let square = 3 * width * width;
@@ -109,7 +109,7 @@ fn cube(gpu: &Gpu, pixels: &Pixels) -> TextureView {
     upload(gpu, [width; 2], &std::array::from_fn::<_, SIDES, _>(side))
 }
 
-/// Pictures of one size, with all smaller sizes. One that is too large for the device comes in a smaller size.
+/// Uploads images of one size, with mipmaps. An image that is too large for the device is reduced.
 fn upload(gpu: &Gpu, size: [usize; 2], layers: &[&[u8]]) -> TextureView {
     let most = gpu.device.limits().max_texture_dimension_2d as usize;
     let mut first = size;
@@ -153,7 +153,7 @@ fn upload(gpu: &Gpu, size: [usize; 2], layers: &[&[u8]]) -> TextureView {
     })
 }
 
-/// A picture in one of its sizes.
+/// A mipmap level of an image.
 struct Level {
     size: [usize; 2],
     rgba: Vec<u8>,
@@ -168,7 +168,7 @@ impl Level {
         }
     }
 
-    /// Half as wide and high: each pixel is the mean of four, or of two at the end of an odd side.
+    /// Returns the next level: each pixel is the mean of four, or of two at the end of an odd side.
     fn half(&self) -> Self {
         let [width, height] = self.size;
         let size = self.size.map(|side| (side / 2).max(1));

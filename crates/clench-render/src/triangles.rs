@@ -1,4 +1,4 @@
-//! Triangles of the shapes of geoms, in their frames, wound so that they are seen from outside.
+//! Triangles of the shapes of geoms, in the geom frames, wound counterclockwise as seen from outside.
 
 use clench::Model;
 use clench::collide::ShapeKind;
@@ -6,23 +6,23 @@ use clench::rigid::model::{Mesh, Params, TextureKind};
 use clench_view::surfaces::{texture, texture_scale};
 use std::f32::consts::PI;
 
-/// Parts of a circle.
+/// The number of segments of a circle.
 const AROUND: usize = 72;
-/// Parts of a quarter of a circle from the equator to a pole.
+/// The number of segments from the equator to a pole.
 const UPWARDS: usize = 18;
 
-/// A corner of a triangle.
+/// A vertex of a triangle.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Vertex {
     pub place: [f32; 3],
     pub normal: [f32; 3],
-    /// The place in a picture that lies on the shape: x across and y down, or a direction in a cube of pictures.
+    /// The texture coordinates: x across and y down, or a direction in a cube texture.
     pub texcoord: [f32; 3],
 }
 
 impl Vertex {
-    /// A corner without a place in a picture yet.
+    /// Creates a vertex without texture coordinates.
     fn new(place: [f32; 3], normal: [f32; 3]) -> Self {
         Vertex {
             place,
@@ -32,7 +32,7 @@ impl Vertex {
     }
 }
 
-/// The triangles of a geom; an infinite plane is so large.
+/// Returns the triangles of a geom; `far` is the size of an infinite plane.
 pub(crate) fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Vec<Vertex> {
     let described = &model.geoms[geom];
     let size = params.geom_size[geom];
@@ -57,12 +57,12 @@ pub(crate) fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32
     shape
 }
 
-/// Those of a plane that reaches so far.
+/// Returns the triangles of a plane of size `far`.
 pub(crate) fn ground(far: f32) -> Vec<Vertex> {
     primitive(ShapeKind::Plane, [0.0; 3], far)
 }
 
-/// The triangles of a site.
+/// Returns the triangles of a site.
 pub(crate) fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<Vertex> {
     let (kind, size) = (model.sites[site].kind, params.site_size[site]);
     let appearance = model.visuals.sites[site];
@@ -73,7 +73,7 @@ pub(crate) fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<V
     shape
 }
 
-/// The triangles of what has no asset; an infinite plane is so large.
+/// Returns the triangles of a shape without an asset; `far` is the size of an infinite plane.
 fn primitive(kind: ShapeKind, size: [f32; 3], far: f32) -> Vec<Vertex> {
     match kind {
         ShapeKind::Plane => plane(size, far),
@@ -86,7 +86,7 @@ fn primitive(kind: ShapeKind, size: [f32; 3], far: f32) -> Vec<Vertex> {
     }
 }
 
-/// Gives each corner its place in a texture; see [`texture_scale`].
+/// Sets the texture coordinates of each vertex; see [`texture_scale`].
 fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
     for vertex in shape {
         let [x, y, z] = [0, 1, 2].map(|k| scale[k] * vertex.place[k]);
@@ -97,12 +97,12 @@ fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
     }
 }
 
-/// A cylinder along z of radius 1 and half the length 1, of which tendons are made.
+/// Returns a cylinder along z of radius 1 and half length 1, for tendon segments.
 pub(crate) fn string() -> Vec<Vertex> {
     cylinder(1.0, 1.0)
 }
 
-/// Four corners, counterclockwise from outside, as two triangles.
+/// Appends four vertices, counterclockwise from outside, as two triangles.
 fn quad(out: &mut Vec<Vertex>, corners: [Vertex; 4]) {
     let [a, b, c, d] = corners;
     out.extend([a, b, c, a, c, d]);
@@ -144,9 +144,9 @@ fn plane(size: [f32; 3], far: f32) -> Vec<Vertex> {
     out
 }
 
-/// An ellipsoid of these half axes, whose halves are `half` above and below the middle and joined by a cylinder.
+/// Returns an ellipsoid of these half axes, whose halves are shifted by `half` along z and joined by a cylinder.
 fn round(axes: [f32; 3], half: f32) -> Vec<Vertex> {
-    // Latitudes from pole to pole; the equator comes twice, at both ends of the cylinder.
+    // Latitudes from pole to pole; the equator occurs twice, at both ends of the cylinder.
     let rows: Vec<(f32, f32)> = (0..=UPWARDS)
         .map(|k| (-half, 0.5 * PI * (k as f32 / UPWARDS as f32 - 1.0)))
         .chain((0..=UPWARDS).map(|k| (half, 0.5 * PI * k as f32 / UPWARDS as f32)))
@@ -244,7 +244,7 @@ fn mesh(mesh: &Mesh) -> Vec<Vertex> {
     mesh.faces.iter().enumerate().flat_map(triangle).collect()
 }
 
-/// The ground of a height field with the sides and the bottom of its base.
+/// Returns the surface of a height field with the sides and the bottom of its base.
 fn terrain(field: &clench::collide::HeightField) -> Vec<Vertex> {
     let (rows, columns) = (field.rows(), field.columns());
     let [x, y, elevation, base] = field.size().map(|x| x as f32);

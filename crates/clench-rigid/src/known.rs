@@ -1,23 +1,23 @@
-//! Whether what the workspace holds was computed from the present state, or is stale.
+//! The validity of the results in the workspace for the present state.
 
 use clench_dynamics::state::State;
 use clench_math::{Quat, Scalar, Vec3};
 
-/// How far the computation from a state has come.
+/// The extent of the results computed from a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Extent {
     /// Nothing is computed.
     Nothing,
-    /// What the position stage computes.
+    /// The results of the position stage.
     Positions,
-    /// All that a forward pass computes.
+    /// All results of a forward pass.
     Everything,
 }
 
-/// How much the workspace holds, and the positions and velocities that it was computed from.
+/// The extent of the results in the workspace, and the positions and velocities from which they were computed.
 ///
-/// What a step computed from the state at its start counts as known at its end, as in MuJoCo. Once anyone writes other positions or
-/// velocities it is stale.
+/// Results of the state at the start of a step are valid at its end, as in MuJoCo. Writing other positions or
+/// velocities makes them stale.
 #[derive(Clone, Debug)]
 pub(crate) struct Known<T> {
     extent: Extent,
@@ -28,7 +28,6 @@ pub(crate) struct Known<T> {
 }
 
 impl<T: Scalar> Known<T> {
-    /// Nothing is known.
     pub(crate) fn new() -> Self {
         Known {
             extent: Extent::Nothing,
@@ -39,12 +38,12 @@ impl<T: Scalar> Known<T> {
         }
     }
 
-    /// Marks everything as stale.
+    /// Marks all results as stale.
     pub(crate) fn forget(&mut self) {
         self.extent = Extent::Nothing;
     }
 
-    /// Notes what was computed. It is known as long as nobody writes to this state.
+    /// Records the extent of the results. They are valid until this state is modified.
     pub(crate) fn note(&mut self, extent: Extent, state: &State<T>) {
         self.extent = extent;
         self.qpos.clone_from(&state.qpos);
@@ -53,12 +52,12 @@ impl<T: Scalar> Known<T> {
         self.mocap_quat.clone_from(&state.mocap_quat);
     }
 
-    /// Whether everything is known of the state that was noted last.
+    /// Returns true if all results of the last recorded state are valid.
     pub(crate) fn holds_everything(&self) -> bool {
         self.extent == Extent::Everything
     }
 
-    /// How much is known of this state.
+    /// Returns the extent of valid results of this state.
     pub(crate) fn extent(&self, state: &State<T>) -> Extent {
         let placed = self.qpos == state.qpos
             && self.mocap_pos == state.mocap_pos
@@ -70,7 +69,7 @@ impl<T: Scalar> Known<T> {
         }
     }
 
-    /// Whether the velocities are those for which anything was last noted.
+    /// Returns true if the velocities equal the last recorded ones.
     pub(crate) fn same_velocities(&self, state: &State<T>) -> bool {
         self.qvel == state.qvel
     }

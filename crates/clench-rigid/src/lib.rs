@@ -1,8 +1,8 @@
-//! Articulated rigid bodies: a [`Sim`] moves one environment, a [`Batch`] as many as memory holds, with sensors, queries, inverse
-//! kinematics and what is recorded.
+//! Articulated rigid bodies: a [`Sim`] simulates one environment, a [`Batch`] many, with sensors, queries, inverse
+//! kinematics and recorded outputs.
 //!
-//! The [`Model`], the [`State`] and the step between two states are those of `clench-dynamics`; [`builder`] makes models. File formats
-//! live in `clench-formats`, not here.
+//! The [`Model`], the [`State`] and the step are defined in `clench-dynamics`; [`builder`] creates models. File formats
+//! are in `clench-formats`.
 
 #![deny(unreachable_pub, unsafe_code)]
 
@@ -32,6 +32,6 @@ pub use ik::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask};
 pub use output::Output;
 pub use query::Anchor;
 pub use sim::{DynamicConstraint, Sim};
-// Tables that other crates expand.
+// Macro tables for other crates.
 #[doc(hidden)]
 pub use clench_dynamics::{rigid_options, state_fields};

@@ -1,5 +1,5 @@
-//! What a step computed, in MuJoCo's terms: constraint rows with the edges of pyramids spelled out, contact forces, dense
-//! matrices. For looking at, not for stepping: everything here allocates.
+//! The results of a step in MuJoCo's terms: constraint rows with pyramid edges, contact forces, dense matrices. For
+//! inspection, not for stepping: all functions allocate.
 
 mod blocks;
 mod light;
@@ -21,34 +21,34 @@ use clench_math::{Mask, Real, Scalar};
 use clench_solver::{Block, Cost, Partition};
 use std::array::from_fn;
 
-/// One constraint row as MuJoCo's `efc` arrays have it.
+/// One constraint row as in MuJoCo's `efc` arrays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstraintRow {
-    /// Where it comes from.
+    /// The source of the constraint.
     pub source: ConstraintSource,
-    /// Shape of its cost.
+    /// The shape of its cost.
     pub cost: Cost,
-    /// Which row of its constraint, edges of a pyramid counted one by one.
+    /// The index of the row in its constraint; pyramid edges count one by one.
     pub row: usize,
     /// Position: violation of an equality, signed distance of a limit or contact, zero for friction.
     pub pos: f64,
-    /// Distance at which it begins to act.
+    /// Distance below which it acts.
     pub margin: f64,
     /// Rate of change of the position.
     pub vel: f64,
-    /// Acceleration that it asks for.
+    /// Reference acceleration.
     pub aref: f64,
     /// Weight D = 1 / R of its cost.
     pub d: f64,
     /// Impedance.
     pub impedance: f64,
-    /// Dry friction, zero for all else.
+    /// Dry friction, otherwise zero.
     pub frictionloss: f64,
     /// Force.
     pub force: f64,
 }
 
-/// The constraint rows of lane `lane` in the last constraint stage.
+/// Returns the constraint rows of lane `lane` in the last constraint stage.
 pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ConstraintRow> {
     let mut rows = Vec::new();
     for (index, block) in active_blocks(ws, lane) {
@@ -87,7 +87,7 @@ pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Constrain
     rows
 }
 
-/// The Jacobian of lane `lane`, dense (rows as in [`constraint_rows`] × nv), row-major.
+/// Returns the dense Jacobian of lane `lane` (rows as in [`constraint_rows`] × nv), row-major.
 pub fn jacobian<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
     let nv = ws.problem.nv();
     let mut dense = Vec::new();
@@ -110,20 +110,20 @@ pub fn jacobian<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
     dense
 }
 
-/// The mass matrix of lane `lane`, dense (nv × nv).
+/// Returns the dense mass matrix of lane `lane` (nv × nv).
 pub fn mass_matrix<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<f64> {
     let dense = ws.mass().to_dense(ws.problem.tree());
     dense.iter().map(|x| x.lane(lane).to_f64()).collect()
 }
 
-/// The force of contact `contact` of lane `lane` in the contact frame: along normal and tangents (N), about normal and
-/// tangents (N m). Zero where it is no constraint. It acts on the second geom; its negative on the first.
+/// Returns the force of contact `contact` of lane `lane` in the contact frame: along normal and tangents (N), about
+/// normal and tangents (N m). It acts on the second geom, its negative on the first. Zero without constraint.
 pub fn contact_force<T: Real>(ws: &Workspace<T>, contact: usize, lane: usize) -> [f64; 6] {
     let found = ws.contacts.get(contact).and_then(|c| of_contact(ws, c));
     found.map_or([0.0; 6], |force| force.map(|f| f.lane(lane).to_f64()))
 }
 
-/// A contact in plain numbers.
+/// A contact in scalar values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRow {
     /// The geoms; the normal points from the first to the second.
@@ -136,21 +136,21 @@ pub struct ContactRow {
     pub pos: [f64; 3],
     /// Rows: normal, first tangent, second tangent.
     pub frame: [[f64; 3]; 3],
-    /// The constraint exists where `dist` is less, m; that of a contact that adheres also beyond.
+    /// The constraint exists if `dist` is less, m; that of an adhesive contact also beyond.
     pub includemargin: f64,
-    /// Force with which it holds on, N.
+    /// Adhesion force, N.
     pub adhesion: f64,
-    /// Velocity of the second surface less that of the first along the tangents, m/s, and about the normal, rad/s.
+    /// Velocity of the second surface minus that of the first along the tangents, m/s, and about the normal, rad/s.
     pub surfacevel: [f64; 3],
     /// Two slides, spin, two rolls.
     pub friction: [f64; 5],
     /// See [`contact_force`].
     pub force: [f64; 6],
-    /// The same in world axes: force (N), torque about `pos` (N m).
+    /// The same force in world axes: force (N), torque about `pos` (N m).
     pub wrench: [f64; 6],
 }
 
-/// The contacts of lane `lane` that the last collision stage found.
+/// Returns the contacts of lane `lane` from the last collision stage.
 pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> {
     let found = (ws.contacts.iter().enumerate()).filter(|(_, c)| c.active.lane(lane));
     let number = |x: T| x.lane(lane).to_f64();
@@ -175,7 +175,8 @@ pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> 
     found.map(row).collect()
 }
 
-/// Which island each tree belongs to in lane `lane` (ntree), named by its lowest tree; none where no constraint acts.
+/// Returns the island of each tree in lane `lane` (ntree), identified by its lowest tree; `None` for a tree without
+/// constraints.
 pub fn islands<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Option<usize>> {
     let mut partition = Partition::default();
     partition.find(&ws.problem);
@@ -190,7 +191,7 @@ pub fn islands<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Option<usize>> {
     of_tree
 }
 
-/// A row to show: a row of the block, or an edge of a pyramid, y₀ ± μ_j y_j.
+/// An output row: a row of the block, or an edge of a pyramid, y₀ ± μ_j y_j.
 struct PyramidEdge {
     base: usize,
     added: Option<(usize, f64)>,

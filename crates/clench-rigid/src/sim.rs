@@ -30,51 +30,51 @@ use clench_math::{Mask, Real, read_lane};
 use clench_solver::LaneStats;
 use std::sync::Arc;
 
-/// A model in motion: a state, and what follows from it.
+/// A model and its state, with the results computed from them.
 ///
-/// [`state`](Self::state) is open to be read and written between steps; lengths and numbers are checked before they are
-/// used, so bad input is an error and never a panic. What a step or [`forward`](Self::forward) computed is read from
-/// [`workspace`](Self::workspace), or in MuJoCo's terms from [`readout`](crate::readout).
+/// [`state`](Self::state) may be read and written between steps. Lengths and values are checked before they are used,
+/// so invalid input is an error and never a panic. The results of a step or of [`forward`](Self::forward) are in
+/// [`workspace`](Self::workspace), and in MuJoCo's terms in [`readout`](crate::readout).
 #[derive(Debug)]
 pub struct Sim<T: Precision = f64> {
-    /// What the next step depends on.
+    /// The state that the next step starts from.
     pub state: State<T>,
     model: Arc<Model>,
     params: Params<T::Alone>,
     options: RigidOptions,
     settings: StepSettings,
     ws: Workspace<T::Alone>,
-    /// Room for the state where it is computed in lanes.
+    /// Memory for the state if it is computed in lanes.
     room: Room<T>,
-    /// Room for other numbers in that type.
+    /// Memory for other values in that type.
     numbers: Vec<T::Alone>,
     initial: State<T>,
-    /// What the present step writes of the state, as it was before.
+    /// The part of the state that a step writes, as it was before the present step.
     last_good: State<T>,
     known: Known<T>,
-    /// Whether the workspace holds the first half of a step, and nothing after it.
+    /// True if the workspace holds the first half of a step and nothing after it.
     halfway: bool,
     resets: u64,
-    /// The serial number of the constraint that was last added at run time.
+    /// The serial number of the last constraint that was added at run time.
     pub(crate) last_serial: u32,
-    /// The workspace of inverse dynamics, made when they are first asked for: [`workspace`](Self::workspace) stays as it is.
+    /// The workspace of inverse dynamics, created on demand, so that [`workspace`](Self::workspace) does not change.
     inverse_ws: Option<Box<Workspace<T::Alone>>>,
 }
 
 impl<T: Precision> Sim<T> {
-    /// A simulation in the model's initial state, with the model's options.
+    /// Creates a simulation in the model's initial state, with the model's options.
     ///
     /// # Errors
-    /// Options out of range; shapes that may meet and cannot be collided; single precision in a program compiled for another
-    /// processor.
+    /// Returns an error if an option is out of range, if a possible collision is not supported, or if the processor
+    /// lacks the compiled instructions.
     pub fn new(model: Arc<Model>) -> Result<Self, SimError> {
         Sim::with_options(model, RigidOptions::new())
     }
 
-    /// A simulation with options that go before those of the model.
+    /// Creates a simulation with options that override those of the model.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// See [`new`](Self::new).
     pub fn with_options(model: Arc<Model>, options: RigidOptions) -> Result<Self, SimError> {
         if !T::ALONE.available() {
             return Err(SimError::Instructions(T::ALONE));
@@ -106,18 +106,18 @@ impl<T: Precision> Sim<T> {
 
     /// Advances the state by one time step.
     ///
-    /// With the option `autoreset` a step that cannot be done starts over from the initial state, controls and applied forces
-    /// included, and counts in [`resets`](Self::resets).
+    /// With the option `autoreset`, a step that fails is repeated from the initial state, including controls and
+    /// applied forces, and is counted in [`resets`](Self::resets).
     ///
     /// # Errors
-    /// A state of wrong lengths or with numbers that are not finite; a motion that diverges (numbers that are not finite, or
-    /// positions, velocities or accelerations beyond 1e10) or a mass matrix that is singular. The state is then as before
-    /// the step.
+    /// Returns an error if the state has wrong lengths or values that are not finite, if the motion diverges (values
+    /// that are not finite, or positions, velocities or accelerations beyond 1e10), or if the mass matrix is singular.
+    /// The state is then as before the step.
     pub fn step(&mut self) -> Result<(), SimError> {
         self.with_autoreset(Self::try_step)
     }
 
-    /// Does a step or forward pass. If it meets a fault and the option `autoreset` is on, it is done again from the initial state.
+    /// Runs a step or forward pass. After a fault with the option `autoreset`, it is repeated from the initial state.
     fn with_autoreset(
         &mut self,
         pass: impl Fn(&mut Self) -> Result<(), SimError>,
@@ -156,11 +156,10 @@ impl<T: Precision> Sim<T> {
         result
     }
 
-    /// Computes everything that follows from the state, and leaves the state alone, but for a reset as in
-    /// [`step`](Self::step).
+    /// Computes all results of the state without changing it, except for a reset as in [`step`](Self::step).
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn forward(&mut self) -> Result<(), SimError> {
         self.with_autoreset(Self::try_forward)
     }
@@ -175,7 +174,7 @@ impl<T: Precision> Sim<T> {
         result
     }
 
-    /// Notes that a step or forward pass computed everything, or that it failed and what it computed means nothing.
+    /// Records that a step or forward pass computed all results, or that it failed and its results are invalid.
     fn note(&mut self, result: &Result<(), SimError>) {
         self.halfway = false;
         match result {
@@ -184,34 +183,35 @@ impl<T: Precision> Sim<T> {
         }
     }
 
-    /// Computes what follows from the state where that is not known: before the first step or [`forward`](Self::forward), and
-    /// after someone wrote positions, velocities, mocap poses or parameters, or reset the simulation. Nothing is done where it is
-    /// known; after a step that is, as in MuJoCo, what follows from the state at its start. Controls and applied forces that were
-    /// written count from the next step or forward pass on.
+    /// Computes the results of the state if they are stale: before the first step or [`forward`](Self::forward), and
+    /// after positions, velocities, mocap poses or parameters were written or the simulation was reset. Otherwise it
+    /// does nothing; after a step, the results are those of the state at its start, as in MuJoCo. New controls and
+    /// applied forces take effect in the next step or forward pass.
     ///
-    /// Queries such as [`ray`](Self::ray) and [`output`](Self::output) do so themselves; call it before you look at the
+    /// Queries such as [`ray`](Self::ray) and [`output`](Self::output) call it themselves. Call it before you read the
     /// [`workspace`](Self::workspace) or [`contacts`](Self::contacts).
     ///
     /// # Errors
-    /// As [`step`](Self::step); nothing is reset.
+    /// See [`step`](Self::step); nothing is reset.
     pub fn refresh(&mut self) -> Result<(), SimError> {
         self.require(Extent::Everything)
     }
 
-    /// Computes what follows from the present positions, also where what followed from those before the last step would do.
+    /// Computes the results of the present positions, even if those of the positions before the last step count as
+    /// valid.
     pub(crate) fn refresh_positions(&mut self) -> Result<(), SimError> {
         self.known.forget();
         self.require(Extent::Positions)
     }
 
-    /// Marks everything that was computed as stale, because parameters changed.
+    /// Marks all results as stale, because parameters changed.
     fn forget(&mut self) {
         self.halfway = false;
         self.known.forget();
         self.ws.forget_poses();
     }
 
-    /// Computes what the workspace must hold for the present state, unless it holds it already.
+    /// Computes the required results for the present state unless the workspace holds them.
     pub(crate) fn require(&mut self, wanted: Extent) -> Result<(), SimError> {
         if wanted <= self.known.extent(&self.state) {
             return Ok(());
@@ -240,7 +240,7 @@ impl<T: Precision> Sim<T> {
         Err(check::input_fault(&self.model, &self.state, 0).into())
     }
 
-    /// Finds the fault in what a step from `time` computed, if there is one.
+    /// Returns the fault in the results of a step from `time`, if there is one.
     fn check_result(&self, time: f64) -> Result<(), SimError> {
         if T::good_results(&self.state, &self.ws) {
             return Ok(());
@@ -248,19 +248,19 @@ impl<T: Precision> Sim<T> {
         Err(check::result_fault(&self.model, time, &self.state, &self.ws, 0).into())
     }
 
-    /// As [`forward`](Self::forward), but with these contacts instead of detected ones. A contact takes part where it is
+    /// Runs [`forward`](Self::forward) with these contacts instead of detected ones. A contact is included if it is
     /// `active` and `dist < includemargin`.
     ///
     /// # Errors
-    /// As [`step`](Self::step), and contacts that make no sense.
+    /// Returns an error as [`step`](Self::step) does, or if a contact is invalid.
     pub fn forward_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
         self.with_contacts(contacts, Self::forward)
     }
 
-    /// As [`step`](Self::step), but with these contacts instead of detected ones, in every stage of the integrator.
+    /// Runs [`step`](Self::step) with these contacts instead of detected ones, in every stage of the integrator.
     ///
     /// # Errors
-    /// As [`forward_with_contacts`](Self::forward_with_contacts).
+    /// See [`forward_with_contacts`](Self::forward_with_contacts).
     pub fn step_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
         self.with_contacts(contacts, Self::step)
     }
@@ -283,16 +283,16 @@ impl<T: Precision> Sim<T> {
         result
     }
 
-    /// Back to the model's initial state.
+    /// Resets the state to the model's initial state.
     pub fn reset(&mut self) {
         self.state.copy_from(&self.initial);
         self.known.forget();
     }
 
-    /// To a keyframe of the model; what a keyframe does not hold is as in the initial state.
+    /// Resets the state to a keyframe of the model. Other fields get their initial values.
     ///
     /// # Errors
-    /// A keyframe that the model does not have.
+    /// Returns an error if there is no such keyframe.
     pub fn reset_to_keyframe(&mut self, index: usize) -> Result<(), SimError> {
         let Some(key) = self.model.keyframes.get(index) else {
             return Err(no_such("keyframe", index, self.model.keyframes.len()));
@@ -306,7 +306,7 @@ impl<T: Precision> Sim<T> {
     /// Sets the controls (nu).
     ///
     /// # Errors
-    /// A wrong length or a number that is not finite; the controls are then as before.
+    /// Returns an error if the length is wrong or a value is not finite; the controls are then unchanged.
     pub fn set_ctrl(&mut self, ctrl: &[T]) -> Result<(), SimError> {
         check_values("ctrl", ctrl, self.state.ctrl.len())?;
         self.state.ctrl.copy_from_slice(ctrl);
@@ -316,7 +316,7 @@ impl<T: Precision> Sim<T> {
     /// Sets the positions (nq) and the velocities (nv).
     ///
     /// # Errors
-    /// A wrong length or a number that is not finite; the state is then as before.
+    /// Returns an error if a length is wrong or a value is not finite; the state is then unchanged.
     pub fn set_configuration(&mut self, qpos: &[T], qvel: &[T]) -> Result<(), SimError> {
         check_values("qpos", qpos, self.model.nq)?;
         check_values("qvel", qvel, self.model.nv)?;
@@ -325,10 +325,10 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Switches an equality constraint on or off.
+    /// Activates or deactivates an equality constraint.
     ///
     /// # Errors
-    /// An equality that the model does not have.
+    /// Returns an error if there is no such equality.
     pub fn set_equality_active(&mut self, equality: usize, active: bool) -> Result<(), SimError> {
         let count = self.model.equalities.len();
         let Some(switch) = self.state.eq_active.get_mut(equality) else {
@@ -338,54 +338,55 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
-    /// The options that the user set.
+    /// Returns the user's options.
     pub fn options(&self) -> RigidOptions {
         self.options
     }
-    /// All options, decided.
+    /// Returns all resolved options.
     pub fn settings(&self) -> &StepSettings {
         &self.settings
     }
-    /// What was computed last, by a step, forward pass or [`refresh`](Self::refresh). After a step, positions and contacts are
-    /// those at its start. Numbers are in the type that the environment is computed in, of which lane 0 counts.
+    /// Returns the results of the last step, forward pass or [`refresh`](Self::refresh). After a step, positions and
+    /// contacts are those at its start. Values have the number type that the environment is computed in; read lane 0.
     pub fn workspace(&self) -> &Workspace<T::Alone> {
         &self.ws
     }
-    /// The contacts that were found last, by a step, forward pass or [`refresh`](Self::refresh). [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
+    /// Returns the contacts of the last step, forward pass or [`refresh`](Self::refresh).
+    /// [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
     pub fn contacts(&self) -> &[Contact<T::Alone>] {
         &self.ws.contacts
     }
-    /// How the last solve went.
+    /// Returns the statistics of the last solve.
     pub fn stats(&self) -> LaneStats {
         self.ws.solver.stats().lane(0)
     }
-    /// How many steps and forward passes started over from the initial state, with the option `autoreset`.
+    /// Returns the number of steps and forward passes repeated by the option `autoreset`.
     pub fn resets(&self) -> u64 {
         self.resets
     }
-    /// Whether the last step or forward found more contacts than the options allow, and left some out.
+    /// Returns true if the last step or forward pass found more contacts than the options allow, and omitted some.
     pub fn contact_overflow(&self) -> bool {
         self.ws.collision.overflow.lane(0)
     }
 
-    /// The mass matrix, dense (nv × nv), where bodies are as in [`refresh`](Self::refresh).
+    /// Returns the dense mass matrix (nv × nv) at the poses of [`refresh`](Self::refresh).
     ///
     /// # Errors
-    /// As [`refresh`](Self::refresh).
+    /// See [`refresh`](Self::refresh).
     pub fn mass_matrix(&mut self) -> Result<Vec<f64>, SimError> {
         self.require(Extent::Positions)?;
         Ok(readout::mass_matrix(&self.ws, 0))
     }
 
-    /// An output of the last step or forward, by its name in [`Output`]; one that is not known is computed, as
-    /// [`refresh`](Self::refresh) says.
+    /// Returns an output of the last step or forward pass, by its name in [`Output`]. See [`refresh`](Self::refresh)
+    /// for stale outputs.
     ///
     /// # Errors
-    /// A name that no output has; a state as [`step`](Self::step) refuses it.
+    /// Returns an error if the name is unknown, or if [`step`](Self::step) would refuse the state.
     pub fn output(&mut self, name: &str) -> Result<Vec<T>, SimError> {
         let output = Output::find(name)?;
         if output == Output::energy {
@@ -399,7 +400,7 @@ impl<T: Precision> Sim<T> {
         Ok(values.iter().map(|value| value.lane(0)).collect())
     }
 
-    /// Shows to `reader` what outputs are read from.
+    /// Calls `reader` with the data that outputs are read from.
     pub(crate) fn read<R>(&mut self, reader: impl FnOnce(&mut Source<T::Alone>) -> R) -> R {
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
         alone::read(&self.state, &mut self.room, |state| {
@@ -412,7 +413,7 @@ impl<T: Precision> Sim<T> {
         })
     }
 
-    /// Lets `compute` change numbers in the type that the environment is computed in.
+    /// Calls `compute` to change values in the number type that the environment is computed in.
     pub(crate) fn change(
         &mut self,
         values: &mut [T],
@@ -426,12 +427,12 @@ impl<T: Precision> Sim<T> {
         self.numbers = numbers;
     }
 
-    /// Computes what the joints of bodies carry, once all is known that a forward pass computes.
+    /// Computes the joint reactions on bodies from the results of a forward pass.
     pub(crate) fn update_body_forces(&mut self) {
         self.read(T::body_forces);
     }
 
-    /// Inverse dynamics of the present state, in a workspace of their own, so that what is known stays.
+    /// Computes inverse dynamics of the present state in a separate workspace, so that other results stay valid.
     pub(crate) fn invert(
         &mut self,
         qacc: &[T],
@@ -455,19 +456,19 @@ impl<T: Precision> Sim<T> {
         }
     }
 
-    /// Lets the clocks of a step's stages run, or not.
+    /// Starts or stops the clocks of a step's stages.
     pub fn run_clocks(&mut self, running: bool) {
         self.ws.run_clocks(running);
     }
-    /// Where the time of steps went while the clocks ran.
+    /// Returns the time of each stage while the clocks ran.
     pub fn profile(&mut self) -> Profile {
         self.ws.profile()
     }
 
-    /// The mechanical energy of the state, J. The [`workspace`](Self::workspace) is then as before.
+    /// Returns the mechanical energy of the state, J. The [`workspace`](Self::workspace) does not change.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
         self.check_present()?;
         let (model, params) = (&self.model, &self.params);

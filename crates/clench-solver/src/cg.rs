@@ -1,34 +1,34 @@
 //! Conjugate gradients, preconditioned by the mass matrix (Polak–Ribière).
 //!
-//! The direction starts anew from −M⁻¹g where β would be negative, and where consecutive gradients are far from orthogonal
+//! The direction restarts from −M⁻¹g if β would be negative, or if consecutive gradients are far from orthogonal
 //! (Powell, *Restart procedures for the conjugate gradient method*, 1977):
 //!
 //! ```text
 //! |gᵀM⁻¹g_prev| ≥ 0.2 gᵀM⁻¹g
 //! ```
 //!
-//! Over a quadratic they would be orthogonal. Where they are not, the cost has changed its piece on the way, and the old
-//! direction is conjugate for a Hessian that no longer holds.
+//! On a quadratic they are orthogonal. If they are not, the cost has changed its piece, and the old direction is
+//! conjugate with respect to an outdated Hessian.
 
 use crate::descent::{Convergence, Direction, SolverState};
 use crate::iterate::{Iterate, dot};
 use crate::{Problem, Settings};
 use clench_math::{Real, kernel};
 
-/// Powell's bound: consecutive gradients that overlap by this part of the new one are far from orthogonal.
+/// Powell's limit: consecutive gradients whose overlap is this fraction of the new one are far from orthogonal.
 const OVERLAP: f64 = 0.2;
 
-/// Two consecutive gradients, and their images under M⁻¹.
+/// The last two gradients, and their images under M⁻¹.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cg<T> {
-    /// The gradient that the last direction was made from.
+    /// The gradient from which the last direction was computed.
     gradient: Vec<T>,
-    /// M⁻¹ times that one.
+    /// M⁻¹ times that gradient.
     last: Vec<T>,
-    /// M⁻¹ times the present one, and whether it is known.
+    /// M⁻¹ times the current gradient, and true if it is up to date.
     preconditioned: Vec<T>,
     fresh: bool,
-    /// Whether there was a direction in this solve.
+    /// True once this solve has computed a direction.
     started: bool,
 }
 
@@ -63,7 +63,7 @@ impl<T: Real> Direction<T> for Cg<T> {
         self.fresh = false;
     }
 
-    /// The next direction needs M⁻¹g anyway, so the gap costs a product.
+    /// Computes the duality gap. The next direction needs M⁻¹g anyway, so the gap costs only an inner product.
     #[inline(always)]
     fn gap(&mut self, problem: &Problem<T>, iterate: &Iterate<T>) -> T {
         std::mem::swap(&mut self.last, &mut self.preconditioned);

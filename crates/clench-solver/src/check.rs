@@ -1,4 +1,4 @@
-//! What a problem must be to be solved, and what is wrong with one that is not.
+//! Validation of problems.
 
 use crate::error::ProblemError;
 use crate::{Block, Cost, Problem, TreeFactor};
@@ -15,11 +15,11 @@ impl<T: Real> Problem<T> {
         }
     }
 
-    /// Checks everything that a solve relies on: lengths, finite numbers, a positive definite M, and for each block the
-    /// range of its parameters. A solve itself does not check, so that a caller that builds blocks by rule pays nothing.
+    /// Checks everything that a solve relies on: lengths, finite numbers, a positive definite M, and the parameter
+    /// ranges of each block. A solve itself does not check, so that a caller that constructs valid blocks pays nothing.
     ///
     /// # Errors
-    /// The first thing found wrong.
+    /// Returns the first error found.
     pub fn check(&self) -> Result<(), ProblemError> {
         self.check_sizes()?;
         for (what, values) in [
@@ -70,10 +70,10 @@ fn check_finite<T: Real>(what: &'static str, values: &[T]) -> Result<(), Problem
     Ok(())
 }
 
-/// How far D may be from 1 / R, and the rows of an elliptic block from their common scale.
+/// The relative tolerance of D against 1 / R, and of the rows of an elliptic block against their common scale.
 const CONSISTENT: f64 = 1e-4;
 
-/// The ranges of a block's parameters, lane by lane; a lane without the constraint has D = 0.
+/// Checks the ranges of a block's parameters, lane by lane; a lane without the constraint has D = 0.
 fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
     for lane in 0..T::LANES {
         let at = |values: &[T], row: usize| values[row].lane(lane).to_f64();

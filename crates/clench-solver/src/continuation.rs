@@ -1,31 +1,31 @@
-//! Very stiff elliptic cones are approached through softer ones.
+//! Continuation: very stiff elliptic cones are approached through softer ones.
 //!
-//! Along a stiff cone's surface the cost is a narrow curved valley: a Newton step leaves it, the next one spends itself on
-//! coming back, and hundreds are needed. The minimiser of a softer problem lies in a wider valley and close to where the
-//! stiffer one's begins. So where the stiffness of some cone, relative to its inertia A = J M⁻¹ Jᵀ, is beyond what contacts
-//! of MuJoCo's impedances have (R = A (1 − d)/d with d ≤ 0.9999), R starts at least as large as a part of A, and falls in
-//! stages to its own value. Only the last stage, the problem itself, can end a solve.
+//! Along a stiff cone's surface the cost is a narrow curved valley: a Newton step leaves it, the next one only returns
+//! to it, and hundreds are needed. The minimiser of a softer problem lies in a wider valley, close to the start of the
+//! stiffer one. So if the stiffness of some cone, relative to its inertia A = J M⁻¹ Jᵀ, exceeds that of contacts with
+//! MuJoCo's impedances (R = A (1 − d)/d with d ≤ 0.9999), R starts at no less than a fraction of A and decreases in
+//! stages to its own value. Only the last stage, the original problem, can end a solve.
 
 use crate::jacobian::BlockIndex;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, kernel};
 
-/// A D above which a cone is very stiff.
+/// The value of A D above which a cone is very stiff.
 const STIFF: f64 = 2e4;
-/// A D of the first stage, and by how much it grows from one to the next.
+/// A D of the first stage, and its growth factor from one stage to the next.
 const FIRST: f64 = 10.0;
 const STAGE: f64 = 10.0;
-/// A stage is over when an improvement falls below this part of the cost.
+/// A stage ends when an improvement falls below this fraction of the cost.
 const SETTLED: f64 = 1e-9;
 
-/// How much softer the cones are at present.
+/// The current softening of the cones.
 #[derive(Clone, Debug)]
 pub(crate) struct Continuation<T: Real> {
     /// An estimate of A for each elliptic block, at the index of its entry in the active set.
     inverse_inertia: Vec<T>,
-    /// The part of A that is added to R; zero in lanes that solve the problem itself.
+    /// The fraction of A that is added to R; zero in lanes that solve the original problem.
     level: T,
-    /// Largest A D.
+    /// The largest A D.
     stiffest: T,
 }
 
@@ -40,13 +40,13 @@ impl<T: Real> Default for Continuation<T> {
 }
 
 impl<T: Real> Continuation<T> {
-    /// Solves the problem itself.
+    /// Switches to the original problem.
     #[inline(always)]
     pub(crate) fn reset(&mut self) {
         self.level = T::ZERO;
     }
 
-    /// Starts with the first stage in those lanes of `mask` that have a very stiff cone; returns them.
+    /// Starts the first stage in the lanes of `mask` that have a very stiff cone; returns these lanes.
     #[kernel]
     pub fn start(&mut self, problem: &Problem<T>, mask: T::Mask) -> T::Mask {
         self.stiffest = T::ZERO;
@@ -57,7 +57,7 @@ impl<T: Real> Continuation<T> {
             .iter()
             .filter(|b| b.cost == Cost::Elliptic)
         {
-            // Σ j² / M_ii is what A would be without coupling between dofs.
+            // Σ j² / M_ii is the value of A without coupling between dofs.
             let mut sum = T::ZERO;
             for (&dof, &j) in problem
                 .jacobian
@@ -75,13 +75,13 @@ impl<T: Real> Continuation<T> {
         stiff
     }
 
-    /// The lanes that do not solve the problem itself yet.
+    /// Returns the lanes that do not solve the original problem yet.
     #[inline(always)]
     pub(crate) fn active(&self) -> T::Mask {
         self.level.gt(T::ZERO)
     }
 
-    /// Moves to the next stage where this one is over; returns those lanes.
+    /// Moves to the next stage in the lanes whose stage has ended; returns these lanes.
     #[inline(always)]
     pub(crate) fn advance(&mut self, improvement: T, cost: T) -> T::Mask {
         let over = self.active() & !improvement.gt(T::new(SETTLED) * cost);
@@ -91,7 +91,7 @@ impl<T: Real> Continuation<T> {
         over
     }
 
-    /// What is added to R of block `b`.
+    /// Returns the value added to R of block `b`.
     #[inline(always)]
     pub(crate) fn of(&self, b: &BlockIndex) -> T {
         if b.cost == Cost::Elliptic && self.active().any() {

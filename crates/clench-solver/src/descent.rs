@@ -1,4 +1,4 @@
-//! The loop that Newton and CG share: direction, exact line search, step, and the stopping conditions.
+//! The iteration loop of Newton and CG: direction, exact line search, step, and the stopping conditions.
 
 use crate::costs::Totals;
 use crate::iterate::{Iterate, dot};
@@ -7,17 +7,17 @@ use crate::ray::Ray;
 use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status, Threads};
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// How an algorithm chooses where to search.
+/// A method that computes search directions.
 pub(crate) trait Direction<T: Real> {
-    /// Whether a full step is the minimiser of the current quadratic piece.
+    /// True if a full step is the minimiser of the current quadratic piece.
     const NEWTON: bool;
-    /// How many iterations without noticeable progress are too many.
+    /// The number of iterations without noticeable progress that ends a solve.
     const PATIENCE: f64;
-    /// Called once before the iterations of a solve. False where that would take larger matrices than the settings allow.
+    /// Prepares for the iterations of a solve. Returns false if that needs larger matrices than the settings allow.
     fn prepare(&mut self, problem: &Problem<T>, settings: &Settings) -> bool;
-    /// Forgets what it has learned in the lanes of `mask`, whose iterate or problem was changed.
+    /// Discards the stored state in the lanes of `mask`, whose iterate or problem was changed.
     fn restart(&mut self, mask: T::Mask);
-    /// The duality gap at the iterate, for a method that stops by it.
+    /// Computes the duality gap at the iterate, for a method that stops by it.
     fn gap(&mut self, problem: &Problem<T>, iterate: &Iterate<T>) -> T;
     /// Writes the next direction into `state.ray`, which holds the last one.
     fn find(
@@ -28,41 +28,41 @@ pub(crate) trait Direction<T: Real> {
     );
 }
 
-/// The memory of a descent: where it is, where it looks, and what it reports.
+/// The state of a descent: iterate, search direction and statistics.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SolverState<T: Real> {
     pub iterate: Iterate<T>,
     pub ray: Ray<T>,
     pub stats: SolveStats<T>,
     pub clock: SolveClock,
-    /// Who shares the work on a large Hessian.
+    /// The threads that share the work on a large Hessian.
     pub threads: Threads,
 }
 
-/// Where each lane stands.
+/// The convergence state of each lane.
 pub(crate) struct Convergence<T: Real> {
-    /// Lanes still iterating.
+    /// The lanes that are still iterating.
     pub live: T::Mask,
-    /// Lanes whose Hessian is that of the last iteration: no piece changed, none is curved.
+    /// The lanes whose Hessian is that of the last iteration: no piece changed, none is curved.
     pub same_hessian: T::Mask,
-    /// Lanes in which some block is on a curved piece.
+    /// The lanes in which some block is on a curved piece.
     pub curved: T::Mask,
-    /// Smallest gradient norm so far, and iterations since it fell noticeably.
+    /// The smallest gradient norm so far, and the number of iterations since it decreased noticeably.
     best: T,
     idle: T,
-    /// Lanes that were refreshed when they first seemed stuck.
+    /// The lanes that were refreshed when they first seemed stuck.
     refreshed: T::Mask,
-    /// 1 / (mean inertia × nv), by which gradients and improvements are scaled.
+    /// 1 / (mean inertia × nv), the scale of gradients and improvements.
     scale: T,
     tolerance: T,
 }
 
-/// An improvement below this many times the rounding error of the cost tells nothing.
+/// An improvement below this many times the rounding error of the cost is negligible.
 const NEGLIGIBLE: f64 = 4.0;
-/// A gradient has to fall to this part of the best so far to count as progress.
+/// A gradient counts as progress if it is below this fraction of the best so far.
 const NOTICEABLE: f64 = 0.7;
 
-/// Minimises, from the better of `warmstart` and the unconstrained acceleration.
+/// Minimises the cost, starting from the better of `warmstart` and the unconstrained acceleration.
 #[kernel]
 pub(crate) fn minimise<T: Real, D: Direction<T>>(
     problem: &Problem<T>,
@@ -162,8 +162,7 @@ impl<T: Real> Convergence<T> {
             stats,
         );
         self.end(!constrained(problem), Status::Unconstrained, stats);
-        // Newton is trusted for its forces as well: the gap alone, a bound in cost, would let
-        // stiff ones be wrong.
+        // Newton must also give accurate forces; a small gap bounds only the cost, so stiff forces could be wrong.
         let mut proven = self.live;
         if D::NEWTON {
             proven &= stats.gradient.le(self.tolerance);
@@ -174,7 +173,7 @@ impl<T: Real> Convergence<T> {
         }
     }
 
-    /// Takes a step into the statistics.
+    /// Adds a step to the statistics.
     #[inline(always)]
     fn record(&self, step: Step<T>, totals: Totals<T>, norm: T, stats: &mut SolveStats<T>) {
         let live = self.live;
@@ -214,8 +213,8 @@ impl<T: Real> Convergence<T> {
             direction.restart(moved);
         }
 
-        // A full Newton step over a quadratic stretch ends at the minimum: the size of that step
-        // says nothing more.
+        // A full Newton step within one quadratic piece ends at its minimum, so the size of that step carries no
+        // information.
         let exact = self.same_hessian & T::Mask::splat(D::NEWTON);
         let converged = if D::NEWTON {
             let settled = stats.improvement.le(self.tolerance) | exact;
@@ -225,7 +224,7 @@ impl<T: Real> Convergence<T> {
             gap.le(self.tolerance)
         };
         self.end(converged, Status::Converged, stats);
-        // There a gradient that the rounding of its terms explains is as small as this precision can tell.
+        // At this minimum, a gradient that rounding of its terms explains is zero to working precision.
         let minimum = self.live & exact & !in_continuation;
         if minimum.any() {
             let rounding = iterate.rounding(problem, &mut ray.mass_direction);
@@ -236,13 +235,13 @@ impl<T: Real> Convergence<T> {
         let negligible = step.improvement.le(rounding) | exact;
         let idle = self.idles(norm, negligible, T::new(D::PATIENCE));
         let stuck = self.live & !in_continuation & (step.alpha.eq(T::ZERO) | idle);
-        // The precision is not to blame where a search was not allowed to reach a lower cost.
+        // Stopping is not due to the precision if the search was not allowed to reach a lower cost.
         let cut = stuck & step.cut & step.alpha.eq(T::ZERO);
         self.end(cut & self.refreshed, Status::IterationLimit, stats);
         self.end(stuck & self.refreshed, Status::NoProgress, stats);
         let again = stuck & self.live;
         if again.any() {
-            // A second chance, without the rounding that steps have added up.
+            // Retry once without the accumulated rounding of the steps.
             iterate.refresh(problem, again, ray);
             self.reevaluate(problem, iterate, again);
             self.refreshed |= again;
@@ -250,8 +249,7 @@ impl<T: Real> Convergence<T> {
         }
     }
 
-    /// Whether the gradient has not fallen noticeably for too many iterations of negligible
-    /// improvement.
+    /// Returns true if the gradient has not decreased noticeably for too many iterations of negligible improvement.
     #[inline(always)]
     fn idles(&mut self, norm: T, negligible: T::Mask, patience: T) -> T::Mask {
         let fell = norm.lt(T::new(NOTICEABLE) * self.best);
@@ -260,7 +258,7 @@ impl<T: Real> Convergence<T> {
         self.idle.ge(patience)
     }
 
-    /// Evaluates again after the lanes of `mask` were changed by more than a step.
+    /// Reevaluates after the lanes of `mask` were changed by more than a step.
     #[kernel]
     fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) {
         let totals = iterate.evaluate(problem);
@@ -282,7 +280,7 @@ impl<T: Real> Convergence<T> {
         } = state;
         let in_continuation = iterate.continuation.active();
         if in_continuation.any() {
-            // Cut short on the way: what is reported is true of the problem itself.
+            // The iterations ended during continuation: report the values of the original problem.
             iterate.continuation.reset();
             iterate.evaluate(problem);
             let norm = iterate.differentiate(problem);
@@ -292,8 +290,8 @@ impl<T: Real> Convergence<T> {
     }
 }
 
-/// The duality gap ½ gᵀM⁻¹g. The cost less ½ |a|²_M is convex, so the cost exceeds its minimum by
-/// at most this.
+/// Computes the duality gap ½ gᵀM⁻¹g. The cost minus ½ |a|²_M is convex, so the cost exceeds its minimum by at most
+/// this.
 #[kernel]
 fn gap<T: Real>(problem: &Problem<T>, iterate: &Iterate<T>, scratch: &mut Vec<T>) -> T {
     scratch.clear();
@@ -302,7 +300,7 @@ fn gap<T: Real>(problem: &Problem<T>, iterate: &Iterate<T>, scratch: &mut Vec<T>
     T::new(0.5) * dot(scratch, scratch)
 }
 
-/// The lanes in which some constraint acts.
+/// Returns the lanes in which some constraint acts.
 #[inline(always)]
 fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
     problem
@@ -311,7 +309,7 @@ fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
         .fold(T::Mask::splat(false), |mask, d| mask | d.gt(T::ZERO))
 }
 
-/// Mean inertia × nv.
+/// Computes mean inertia × nv.
 #[inline(always)]
 pub(crate) fn trace<T: Real>(problem: &Problem<T>) -> T {
     let tree = problem.tree();

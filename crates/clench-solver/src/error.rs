@@ -1,9 +1,9 @@
-//! What is wrong with a problem that is not one.
+//! The errors of an invalid problem.
 
-/// Why a problem is not one.
+/// The reason why a problem is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
-    /// Tree numbering.
+    /// A parent does not precede its child.
     #[error("dof {dof} has parent {parent}, which does not come before it")]
     ParentAfterChild {
         /// The child.
@@ -11,38 +11,38 @@ pub enum ProblemError {
         /// Its parent.
         parent: usize,
     },
-    /// A slice of the wrong length.
+    /// An array has the wrong length.
     #[error("{what} has {found} entries where {expected} are needed")]
     WrongLength {
-        /// Which array.
+        /// The array.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length it needs.
+        /// The required length.
         expected: usize,
     },
-    /// An infinite or undefined number.
+    /// A number is infinite or NaN.
     #[error("{what} is not finite at entry {index} (lane {lane})")]
     NotFinite {
-        /// Which array.
+        /// The array.
         what: &'static str,
-        /// Where in it.
+        /// The index in the array.
         index: usize,
-        /// Which lane.
+        /// The lane.
         lane: usize,
     },
-    /// The mass matrix cannot be factored.
+    /// The mass matrix is not positive definite.
     #[error("the mass matrix is not positive definite (lane {lane})")]
     MassNotPositiveDefinite {
-        /// Which lane.
+        /// The lane.
         lane: usize,
     },
-    /// A block that makes no sense.
+    /// A constraint block is invalid.
     #[error("constraint block {block}: {reason}")]
     Block {
-        /// Which block.
+        /// The index of the block.
         block: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: &'static str,
     },
 }

@@ -1,12 +1,11 @@
-//! Islands: trees that no constraint couples are separate problems.
+//! Islands: trees that no constraint couples are solved as separate problems.
 //!
-//! Each island is copied into a compact problem of its own and solved as if nothing else existed: fewer iterations where
-//! another island is hard, smaller factors, and a stop rule in its own scale. Trees on which no constraint acts are not
-//! touched at all.
+//! Each island is copied into a compact problem and solved independently: fewer iterations if another island is hard,
+//! smaller factors, and a stopping rule in its own scale. Trees on which no constraint acts are not processed at all.
 //!
-//! Lanes have islands of their own. Those that have the same one solve it side by side, and the blocks of all other lanes
-//! are absent from its problem; so it does not matter to a lane what its neighbours have. Where few lanes have an island,
-//! each solves it in scalars, which is faster and gives the same bits.
+//! Each lane has its own islands. Lanes with the same island solve it in parallel, and its problem omits the blocks of
+//! all other lanes, so neighbours do not affect a lane's result. If few lanes have an island, each solves it in
+//! scalars, which is faster and gives the same bits.
 
 use crate::partition::{Island, Lists, Partition};
 use crate::problem::{Part, Problem};
@@ -23,17 +22,17 @@ pub(crate) struct Islands<T: Real> {
     partition: Partition<T>,
     lists: TreeLists,
     slots: Slots<T>,
-    /// For islands that are solved in scalars.
+    /// For islands solved in scalars.
     scalar: Slot<T::Scalar>,
 }
 
-/// What belongs to each tree.
+/// The dofs and blocks of each tree.
 #[derive(Clone, Debug, Default)]
 struct TreeLists {
     dofs: Lists,
-    /// The blocks whose first dof is the tree's.
+    /// The blocks whose first dof is in the tree.
     blocks: Lists,
-    /// The index of each dof in the island that was listed last of those that have it.
+    /// The index of each dof in the last listed island that contains it.
     local: Vec<u32>,
 }
 
@@ -41,19 +40,19 @@ struct TreeLists {
 #[derive(Clone, Debug, Default)]
 struct Slots<T: Real> {
     slots: Vec<Slot<T>>,
-    /// The slot of each tree that has been an island by itself. Solved in turn, trees of one shape share that of the first of them: its
-    /// patterns stay as they are, and it stays in the processor's caches.
+    /// The slot of each tree that has formed an island by itself. Trees of one shape that are solved one after the
+    /// other share the slot of the first: its patterns do not change, and it stays in the processor's caches.
     single: Vec<Option<u32>>,
-    /// For each tree the first one of the same shape.
+    /// For each tree, the first one of the same shape.
     alike: Vec<u32>,
-    /// The forest that `single` and `alike` are about.
+    /// The forest that `single` and `alike` refer to.
     tree: Option<Arc<Tree>>,
-    /// Those of the first island of several trees, of the second and so on, and how many are taken.
+    /// The slots of islands of several trees, in order, and the number in use.
     several: Vec<u32>,
     taken: usize,
 }
 
-/// A solve of all islands: what it reads.
+/// The inputs of a solve of all islands.
 pub(crate) struct Job<'a, T: Real> {
     pub problem: &'a Problem<T>,
     pub settings: &'a Settings,
@@ -61,9 +60,9 @@ pub(crate) struct Job<'a, T: Real> {
     pub threads: &'a Threads,
 }
 
-/// Whether so many lanes solve an island of so many dofs faster side by side than one after the other in scalars. With
-/// AVX-512 a solve in lanes was measured to take 1.35 times as long as one in scalars for an arm and a box (12 dofs), twice
-/// for a stack of five (30), 2.8 times for a tower of ten (60), 4.5 times for a pile of 200 bodies.
+/// Returns true if `lanes` lanes solve an island of `dofs` dofs faster in parallel than one after the other in scalars.
+/// Measured with AVX-512, a solve in lanes takes 1.35 times as long as one in scalars for an arm and a box (12 dofs),
+/// twice for a stack of five (30), 2.8 times for a tower of ten (60), 4.5 times for a pile of 200 bodies.
 fn worth_lanes<T: Real>(lanes: usize, dofs: usize) -> bool {
     const MIN_LANES: usize = 2;
     const DOFS_A_LANE: usize = 48;
@@ -73,7 +72,7 @@ fn worth_lanes<T: Real>(lanes: usize, dofs: usize) -> bool {
 }
 
 impl<T: Real> Islands<T> {
-    /// Finds the islands of `problem`; true if they are worth solving by parts.
+    /// Computes the islands of `problem`. Returns true if solving them separately pays.
     pub(crate) fn find(&mut self, problem: &Problem<T>) -> bool {
         self.partition.find(problem);
         !self.partition.is_whole()
@@ -90,7 +89,7 @@ impl<T: Real> Islands<T> {
         }
     }
 
-    /// Solves the islands of a single environment, which have no dof in common, on all threads.
+    /// Solves the islands of a single environment, which share no dof, on all threads.
     fn solve_at_once(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
         let (partition, lists, slots) = (&self.partition, &mut self.lists, &mut self.slots);
         for island in partition.islands() {
@@ -114,7 +113,7 @@ impl<T: Real> Islands<T> {
         }
     }
 
-    /// Solves the islands one after the other: those that several lanes have side by side.
+    /// Solves the islands one after the other, each in parallel over the lanes that have it.
     fn solve_in_turn(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
         let (partition, lists) = (&self.partition, &mut self.lists);
         for island in partition.islands() {
@@ -189,7 +188,7 @@ impl TreeLists {
         }
     }
 
-    /// Lists in a slot the dofs of an island and the blocks that act on it in some lanes.
+    /// Lists in a slot the dofs of an island and the blocks that act on it in `lanes`.
     fn list<T: Real, F: Real>(
         &mut self,
         partition: &Partition<T>,
@@ -221,7 +220,7 @@ impl TreeLists {
 }
 
 impl<T: Real> Slots<T> {
-    /// Gives out all slots anew.
+    /// Releases all slots for a new solve.
     fn start(&mut self, tree: &Arc<Tree>) {
         let known = self
             .tree
@@ -237,12 +236,12 @@ impl<T: Real> Slots<T> {
         self.restart();
     }
 
-    /// Gives out the slots of the same islands again.
+    /// Restarts the assignment for the same islands.
     fn restart(&mut self) {
         self.taken = 0;
     }
 
-    /// The slot of the next island, once the one before is done.
+    /// Returns the slot for the next island, once the previous one is done.
     fn take(&mut self, trees: &[u32]) -> usize {
         match *trees {
             [tree] => self.take_single(self.alike[tree as usize]),
@@ -250,7 +249,7 @@ impl<T: Real> Slots<T> {
         }
     }
 
-    /// The slot of the next island that is its own as long as all are solved.
+    /// Returns a slot for the next island that no other island uses until all are solved.
     fn take_own(&mut self, trees: &[u32]) -> usize {
         let slot = match *trees {
             [tree] => self.take_single(tree),
@@ -275,7 +274,7 @@ impl<T: Real> Slots<T> {
         self.ensure(self.several[self.taken - 1])
     }
 
-    /// The index of a slot, which is made if it is the next new one.
+    /// Returns the index of a slot, creating it if it is new.
     fn ensure(&mut self, slot: u32) -> usize {
         if slot as usize == self.slots.len() {
             self.slots.push(Slot::default());

@@ -1,4 +1,4 @@
-//! The iterate: what changes during a solve.
+//! The iterate: the state that changes during a solve.
 
 use crate::Problem;
 use crate::continuation::Continuation;
@@ -7,7 +7,7 @@ use crate::jacobian::{BlockIndex, Jacobian};
 use crate::ray::Ray;
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// A point, and everything that follows from it.
+/// A point, and the quantities derived from it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Iterate<T: Real> {
     /// a.
@@ -22,13 +22,13 @@ pub(crate) struct Iterate<T: Real> {
     pub qfrc_constraint: Vec<T>,
     /// g = M (a − a_unc) − Jᵀ f.
     pub gradient: Vec<T>,
-    /// Which piece of its cost each row or edge is on.
+    /// The piece of its cost that each row or edge is on.
     pub active_set: Vec<T>,
     pub continuation: Continuation<T>,
 }
 
 impl<T: Real> Iterate<T> {
-    /// Starts from `warmstart` where it costs less than the unconstrained acceleration; returns the totals there.
+    /// Starts from `warmstart` if it costs less than the unconstrained acceleration; returns the totals there.
     #[kernel]
     pub fn start(
         &mut self,
@@ -43,7 +43,7 @@ impl<T: Real> Iterate<T> {
         }
     }
 
-    /// Moves to an acceleration, as if that were the unconstrained one; returns the totals of the constraints there.
+    /// Moves to an acceleration, as if it were the unconstrained one; returns the totals of the constraints there.
     #[kernel]
     pub fn place(&mut self, problem: &Problem<T>, qacc: &[T]) -> Totals<T> {
         let (nv, nrow) = (problem.nv(), problem.nrow());
@@ -66,7 +66,8 @@ impl<T: Real> Iterate<T> {
         self.evaluate(problem)
     }
 
-    /// Moves to `warm` in the lanes where it costs less than here, where `totals` was taken; returns the totals.
+    /// Moves to `warm` in the lanes in which it costs less than the current point, whose totals are `totals`. Returns
+    /// the totals.
     #[kernel]
     fn better_of(
         &mut self,
@@ -75,7 +76,7 @@ impl<T: Real> Iterate<T> {
         totals: Totals<T>,
         ray: &mut Ray<T>,
     ) -> Totals<T> {
-        // The ray from here to there: its end is the candidate.
+        // The ray from the current point to `warm`.
         ray.direction.clear();
         ray.direction.extend_from_slice(warm);
         subtract(&mut ray.direction, &self.qacc);
@@ -99,11 +100,11 @@ impl<T: Real> Iterate<T> {
         self.evaluate(problem)
     }
 
-    /// Computes M (a − a_unc) and J a − aref anew in the lanes of `mask`, without the rounding that steps have added up. The
-    /// gradient is lost.
+    /// Recomputes M (a − a_unc) and J a − aref in the lanes of `mask`, without the accumulated rounding of the steps.
+    /// The gradient is overwritten.
     #[kernel]
     pub fn refresh(&mut self, problem: &Problem<T>, mask: T::Mask, ray: &mut Ray<T>) {
-        // Not in the ray's direction: conjugate gradients go on from it in the other lanes.
+        // Not stored in the ray's direction, which conjugate gradients still need in the other lanes.
         let displacement = &mut self.gradient;
         displacement.copy_from_slice(&self.qacc);
         subtract(displacement, &problem.qacc_smooth);
@@ -116,7 +117,7 @@ impl<T: Real> Iterate<T> {
         blend(mask, &mut self.residual, &ray.rows);
     }
 
-    /// The cost parameters of a block, softened as the present stage of continuation asks.
+    /// Returns the cost parameters of a block, softened for the current stage of continuation.
     #[inline(always)]
     pub(crate) fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
         Rows {
@@ -125,7 +126,7 @@ impl<T: Real> Iterate<T> {
         }
     }
 
-    /// Evaluates every block at the residual: forces, the active set, and the constraints' part of the cost.
+    /// Evaluates every block at the residual: forces, the active set, and the cost of the constraints.
     #[kernel]
     pub fn evaluate(&mut self, problem: &Problem<T>) -> Totals<T> {
         let mut totals = Totals::new();
@@ -165,7 +166,7 @@ impl<T: Real> Iterate<T> {
         square.sqrt()
     }
 
-    /// The norm of the rounding errors of the gradient: forces that press against each other cancel in it.
+    /// Computes the norm of the rounding errors of the gradient, in which opposing forces cancel.
     #[kernel]
     pub fn rounding(&self, problem: &Problem<T>, sizes: &mut Vec<T>) -> T {
         sizes.clear();
@@ -177,13 +178,14 @@ impl<T: Real> Iterate<T> {
         T::splat(T::Scalar::EPSILON) * dot(sizes, sizes).sqrt()
     }
 
-    /// The lanes in which acceleration and residuals are finite. (A one-sided cost of NaN is zero, so costs do not show it.)
+    /// Returns the lanes in which the acceleration and the residuals are finite. (The one-sided cost of NaN is zero, so
+    /// costs do not show it.)
     #[inline(always)]
     pub(crate) fn is_finite(&self) -> T::Mask {
         all_finite(&self.qacc) & all_finite(&self.residual)
     }
 
-    /// ½ (a − a_unc)ᵀ M (a − a_unc).
+    /// Computes ½ (a − a_unc)ᵀ M (a − a_unc).
     #[inline(always)]
     pub(crate) fn inertial_cost(&self, problem: &Problem<T>) -> T {
         let mut sum = T::ZERO;
@@ -199,7 +201,7 @@ impl<T: Real> Iterate<T> {
     }
 }
 
-/// The lanes in which all of `x` is finite.
+/// Returns the lanes in which all of `x` is finite.
 #[inline(always)]
 pub(crate) fn all_finite<T: Real>(x: &[T]) -> T::Mask {
     let mut finite = T::Mask::splat(true);
@@ -209,7 +211,7 @@ pub(crate) fn all_finite<T: Real>(x: &[T]) -> T::Mask {
     finite
 }
 
-/// x·y.
+/// Computes x·y.
 #[inline(always)]
 pub(crate) fn dot<T: Real>(x: &[T], y: &[T]) -> T {
     let mut sum = T::ZERO;

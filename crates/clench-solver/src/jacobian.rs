@@ -1,19 +1,19 @@
 //! The constraint Jacobian as an operator: J x, Jᵀ f, and Jᵀ W J added to a Hessian.
 //!
-//! The solver asks for nothing else, so that rows need not be stored where another form is cheaper.
+//! The solver needs nothing else, so rows need not be stored if another form is cheaper.
 
 use crate::costs::{Form, MAX_DIM, Weight};
 use crate::{Cost, Tree};
 use clench_math::{Real, array, kernel};
 use std::ops::Range;
 
-/// Where a block lies in the pools.
+/// The location of a block in the pools.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockIndex {
     pub cost: Cost,
     pub dim: usize,
     pub ndof: usize,
-    /// First row, first dof entry, first Jacobian value, first entry of the active set.
+    /// The first row, first dof entry, first Jacobian value and first entry of the active set.
     pub row: usize,
     pub dof: usize,
     pub value: usize,
@@ -25,23 +25,24 @@ impl BlockIndex {
     pub(crate) fn rows(&self) -> Range<usize> {
         self.row..self.row + self.dim
     }
-    /// Its entries of the active set.
+    /// Returns its entries of the active set.
     #[inline(always)]
     pub(crate) fn active_range(&self) -> Range<usize> {
         self.active_start..self.active_start + crate::costs::active_len(self.cost, self.dim)
     }
 }
 
-/// What the solver needs of J.
+/// The operations on J that the solver needs.
 pub(crate) trait Jacobian<T: Real> {
-    /// `out = J x`.
+    /// Computes `out = J x`.
     fn mul(&self, x: &[T], out: &mut [T]);
-    /// `out += Jᵀ f`.
+    /// Computes `out += Jᵀ f`.
     fn add_transposed(&self, f: &[T], out: &mut [T]);
-    /// `out += |J|ᵀ |f|`: the size of what `Jᵀ f` sums up.
+    /// Computes `out += |J|ᵀ |f|`, the magnitude of the terms of `Jᵀ f`.
     fn add_transposed_sizes(&self, f: &[T], out: &mut [T]);
-    /// `hessian += Jᵀ W J`, in a pattern that holds an entry for each two dofs of a block, or those rows of it that it holds. `weigh`
-    /// writes the Hessian block of a constraint. (Inlined: the caller chooses the instructions.)
+    /// Computes `hessian += Jᵀ W J` in a pattern that has an entry for any two dofs of a block, or in the rows that the
+    /// pattern contains. `weigh` writes the Hessian block of a constraint. (Inlined, so the caller chooses the
+    /// instruction set.)
     fn add_gram(
         &self,
         weigh: impl FnMut(&BlockIndex, &mut Weight<T>) -> Form,
@@ -50,30 +51,31 @@ pub(crate) trait Jacobian<T: Real> {
     );
 }
 
-/// Where the entries of a symmetric matrix are stored.
+/// The storage pattern of a symmetric matrix.
 pub(crate) trait Pattern {
-    /// Whether it holds the rows of any of these dofs.
+    /// Returns true if the pattern contains the rows of any of these dofs.
     #[inline(always)]
     fn holds_any(&self, _dofs: &[u32]) -> bool {
         true
     }
-    /// Calls `act` for parts of the lower triangle over `dofs`, ascending, that cover those of its rows which are held.
+    /// Calls `act` for parts of the lower triangle over `dofs` (ascending) that cover the rows contained in the
+    /// pattern.
     fn each_part(&self, dofs: &[u32], act: impl FnMut(&Part));
 }
 
-/// Entries of some rows, by their places among the dofs, in columns that are stored next to each other.
+/// Entries of some rows, by index in the dofs, in columns that are stored contiguously.
 pub(crate) struct Part {
     pub rows: Range<usize>,
-    /// The columns, if `triangle` is not set; else each row ends with its diagonal.
+    /// The columns. If `triangle` is set, each row ends with its diagonal instead.
     pub columns: Range<usize>,
     pub triangle: bool,
-    /// Where the first entry is, and how much further that of the next row.
+    /// The offset of the first entry, and the stride from one row to the next.
     pub place: usize,
     pub stride: usize,
 }
 
 impl Part {
-    /// The columns of a row, and where its first entry is.
+    /// Returns the columns of a row, and the offset of its first entry.
     #[inline(always)]
     pub(crate) fn row(&self, row: usize) -> (Range<usize>, usize) {
         let end = if self.triangle {
@@ -148,7 +150,7 @@ impl<T: Real> StoredRows<T> {
             .resize(block.value + block.dim * block.ndof, T::ZERO);
     }
 
-    /// Appends a copy of another problem's block with these `values`, at the row and the entry of the active set that are given; its dofs
+    /// Appends a copy of another problem's block with these `values`, at the given row and active-set entry. Its dofs
     /// may be numbered in another order.
     #[inline(always)]
     pub(crate) fn push_copy<L: Copy>(
@@ -169,7 +171,7 @@ impl<T: Real> StoredRows<T> {
         });
         self.dofs.extend(dofs);
         let dofs = &mut self.dofs[dof..];
-        // Of two trees that which came first there may come second here.
+        // Two trees may have the opposite order here.
         let descends = |pair: &[u32]| pair[0] > pair[1];
         let first = dofs.windows(2).position(descends).map_or(0, |k| k + 1);
         dofs.rotate_left(first);
@@ -190,7 +192,7 @@ impl<T: Real> StoredRows<T> {
         }
     }
 
-    /// Puts the columns of the last block into the order of their dofs.
+    /// Sorts the columns of the last block by dof.
     #[inline(always)]
     fn sort_last(&mut self) {
         let Some(b) = self.blocks.last() else { return };
@@ -222,7 +224,7 @@ impl<T: Real> StoredRows<T> {
         &mut self.values[b.value..b.value + b.dim * b.ndof]
     }
 
-    /// The rows of a block whose number is known to the compiler.
+    /// Returns the rows of a block; their number is known at compile time.
     #[inline(always)]
     fn rows<const DIM: usize>(&self, b: &BlockIndex) -> [&[T]; DIM] {
         let values = self.values(b);
@@ -285,7 +287,7 @@ impl<T: Real> StoredRows<T> {
     }
 }
 
-/// Adds to each value the product of its column of some rows with a column of weights.
+/// Adds to each value the product of its column of `rows` with the column `weights`.
 #[inline(always)]
 fn add_weighted<T: Real, const DIM: usize>(
     weights: &[T; DIM],
@@ -294,7 +296,7 @@ fn add_weighted<T: Real, const DIM: usize>(
 ) {
     let mut column = 0;
     while column < values.len() {
-        // As many as a free body has, which fill registers even of one environment.
+        // Six columns are those of a free body; they fill registers even in a single environment.
         column += match values.len() - column {
             6.. => add_columns::<T, DIM, 6>(weights, rows, values, column),
             2.. => add_columns::<T, DIM, 2>(weights, rows, values, column),
@@ -303,7 +305,7 @@ fn add_weighted<T: Real, const DIM: usize>(
     }
 }
 
-/// The same for N columns; returns their number.
+/// Does the same for N columns; returns N.
 #[inline(always)]
 fn add_columns<T: Real, const DIM: usize, const N: usize>(
     weights: &[T; DIM],
@@ -325,7 +327,7 @@ fn add_columns<T: Real, const DIM: usize, const N: usize>(
     N
 }
 
-/// W j for one column of a block.
+/// Computes W j for one column of a block.
 #[inline(always)]
 fn weigh_column<T: Real, const DIM: usize>(
     weight: &Weight<T>,
@@ -367,7 +369,7 @@ fn weigh_column<T: Real, const DIM: usize>(
     }
 }
 
-/// Runs an expression with the constant `$dim` standing for a number of rows.
+/// Evaluates an expression with the constant `$dim` set to a number of rows.
 macro_rules! with_dim {
     ($value:expr, $dim:ident => $body:expr) => {
         match $value {
@@ -400,7 +402,7 @@ macro_rules! with_dim {
 }
 
 impl<T: Real> StoredRows<T> {
-    /// `out += Jᵀ f` of some of the blocks.
+    /// Computes `out += Jᵀ f` for some of the blocks.
     #[kernel]
     pub(crate) fn add_transposed_of(&self, blocks: &[BlockIndex], f: &[T], out: &mut [T]) {
         for b in blocks {

@@ -5,11 +5,11 @@
 //! ```
 //!
 //! A [`Problem`] holds M in the sparsity of a kinematic [`Tree`], the unconstrained acceleration and the constraint
-//! blocks; a [`Solver`] finds the acceleration and the constraint forces. Nothing here knows of bodies, joints or
-//! contacts: what a constraint asks for arrives as J, aref, D and one of five [`Cost`]s.
+//! blocks. A [`Solver`] computes the acceleration and the constraint forces. This crate has no notion of bodies, joints
+//! or contacts: a constraint is given by J, aref, D and one of five [`Cost`]s.
 
 #![deny(unreachable_pub)]
-// Kernels walk several arrays by the same row or column; an index says so better than a chain of zips.
+// Kernels traverse several arrays by the same row or column; an index is clearer than a chain of zips.
 #![allow(clippy::needless_range_loop)]
 
 mod cg;

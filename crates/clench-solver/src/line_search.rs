@@ -1,12 +1,13 @@
 //! The exact line search.
 //!
-//! Along a ray the cost is convex, piecewise quadratic but for elliptic cones, and its derivatives are analytic. So its
-//! minimiser is the root of an increasing function, found by Newton's method kept inside a bracket, across as many piece
-//! changes as lie on the way. J p and M p are computed once for the ray; an evaluation touches rows only.
+//! Along a ray the cost is convex, piecewise quadratic except for elliptic cones, and its derivatives are analytic. So
+//! its minimiser is the root of an increasing function. A bracketed Newton's method finds it, across any number of
+//! piece changes along the ray. J p and M p are computed once per ray; an evaluation touches only rows.
 //!
-//! Forces that press against each other cancel in the slope, and would leave rounding where they are large. So the slope is
-//! that at the start, which the gradient gives, plus how much each constraint's part has grown, and the cost is its tangent at the
-//! start plus how far each part has risen above its own: sums of terms of one sign, which keep their digits.
+//! Opposing forces cancel in the slope, and would leave rounding errors if they are large. So the slope is computed as
+//! the slope at the start, known from the gradient, plus the growth of each constraint's part. The cost is the tangent
+//! at the start plus the rise of each part above its own tangent. Both are sums of terms of one sign, which do not
+//! cancel.
 
 use crate::costs::{BlockCost, Slope, with_cost};
 use crate::iterate::{Iterate, add_scaled, dot};
@@ -15,38 +16,40 @@ use crate::ray::Ray;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// Where a line search ended.
+/// The result of a line search.
 #[derive(Clone, Copy)]
 pub(crate) struct Step<T: Real> {
-    /// Step length; 0 where no step reduces the cost.
+    /// The step length; 0 if no step reduces the cost.
     pub alpha: T,
-    /// Reduction of the cost, ≥ 0.
+    /// The reduction of the cost, ≥ 0.
     pub improvement: T,
-    /// Evaluations of the derivatives.
+    /// The number of evaluations of the derivatives.
     pub evaluations: T,
-    /// Lanes in which the evaluations ran out before the search had closed in on a point.
+    /// The lanes in which the evaluations ran out before the search converged.
     pub cut: T::Mask,
 }
 
-/// How precisely a ray is searched.
+/// The precision of a line search.
 #[derive(Clone, Copy)]
 pub(crate) struct Precision<T> {
-    /// Most evaluations. With none the search ends at its first guess, unless the cost has risen there.
+    /// The maximum number of evaluations. With 0 the search ends at its first guess, unless the cost is higher there.
     pub evaluations: usize,
     /// The slope counts as zero below this times the length of p.
     pub slope: T,
 }
 
-/// How precisely a root is worth finding whatever the tolerance, over the square root of the working precision: a slope
-/// relative to the slope at 0, or a step relative to α. The next iteration corrects what is left.
+/// The precision to which a root is computed regardless of the tolerance, over the square root of the working
+/// precision: a slope relative to the slope at 0, or a step relative to α. The next iteration corrects the remaining
+/// error.
 const RESOLUTION: f64 = 0.01;
-/// What a tolerance may accept at most (Wolfe's conditions; Nocedal & Wright 2006, §3.1): a slope of this part of the slope
-/// at 0, and a decrease of at least this part of what the slope at 0 promises.
+/// The limits of what a tolerance may accept (Wolfe's conditions; Nocedal & Wright 2006, §3.1): a slope of at most this
+/// fraction of the slope at 0, and a decrease of at least this fraction of the one that the slope at 0 predicts.
 const CURVATURE: f64 = 0.1;
 const DECREASE: f64 = 1e-4;
 
 impl<T: Real> Ray<T> {
-    /// Computes M p, J p and the second derivative of what is quadratic everywhere, for the direction already set.
+    /// Computes M p, J p and the second derivative of the parts that are quadratic everywhere, for the current
+    /// direction.
     #[kernel]
     pub fn prepare(&mut self, problem: &Problem<T>) {
         self.mass_direction.resize(problem.nv(), T::ZERO);
@@ -72,7 +75,7 @@ impl<T: Real> Ray<T> {
         add_scaled(&mut iterate.residual, alpha, &self.rows);
     }
 
-    /// How much steeper the cost is at α than at 0, and its second derivative at α.
+    /// Computes the increase of the slope from 0 to α, and the second derivative at α.
     #[kernel]
     fn slope(&self, problem: &Problem<T>, iterate: &Iterate<T>, alpha: T) -> Slope<T> {
         let mut slope = Slope {
@@ -86,7 +89,7 @@ impl<T: Real> Ray<T> {
         slope
     }
 
-    /// Cost at α less cost at 0, where its derivative is `start`.
+    /// Computes the cost at α minus the cost at 0, where its derivative is `start`.
     #[kernel]
     fn change(&self, problem: &Problem<T>, iterate: &Iterate<T>, start: T, alpha: T) -> T {
         let mut sum = T::new(0.5) * alpha * alpha * self.second;
@@ -97,8 +100,8 @@ impl<T: Real> Ray<T> {
         alpha * start + sum
     }
 
-    /// Finds the minimiser along the ray in the lanes of `live`. `newton` says that the direction is Newton's, so that 1 is
-    /// the first guess; otherwise the guess comes from the derivatives at 0.
+    /// Computes the minimiser along the ray in the lanes of `live`. If `newton` is true, the direction is Newton's and
+    /// the first guess is 1; otherwise the guess comes from the derivatives at 0.
     #[kernel]
     pub fn search(
         &self,
@@ -138,7 +141,8 @@ impl<T: Real> Ray<T> {
             step.evaluations += count(open);
             let steepness = first.abs();
             open &= steepness.gt(exact);
-            // However loose the tolerance, the cost has to fall: beyond a kink the slope can be small where it has risen.
+            // The cost must decrease, however loose the tolerance: beyond a kink the slope can be small although the
+            // cost has risen.
             let near = open & steepness.le(loose);
             if near.any() {
                 let change = self.change(problem, iterate, start, bracket.alpha);
@@ -153,7 +157,7 @@ impl<T: Real> Ray<T> {
         step.cut = open & (bracket.high - bracket.low).gt(resolution);
         step.alpha = T::select(descends, bracket.alpha, T::ZERO);
         let mut reached = self.change(problem, iterate, start, step.alpha);
-        // Only a search cut short can end above its start (elsewhere, what looks like it is rounding); the low end of its
+        // Only a truncated search can end above its start (elsewhere an apparent rise is rounding); the low end of its
         // bracket does not.
         let worse = open & reached.gt(T::ZERO);
         if worse.any() {
@@ -169,19 +173,19 @@ impl<T: Real> Ray<T> {
     }
 }
 
-/// The blocks whose Hessian is not the same everywhere.
+/// Returns the blocks whose Hessian is not constant.
 #[inline(always)]
 fn piecewise<T: Real>(problem: &Problem<T>) -> impl Iterator<Item = &BlockIndex> {
     let blocks = problem.jacobian.blocks.iter();
     blocks.filter(|b| b.cost != Cost::Quadratic)
 }
 
-/// The interval that holds the root, and the point to evaluate next.
+/// The interval that contains the root, and the next point to evaluate.
 struct Bracket<T> {
     low: T,
     high: T,
     alpha: T,
-    /// Length of the step before the last, to see whether Newton's method makes headway.
+    /// The length of the step before the last, to check the progress of Newton's method.
     step: T,
     last_step: T,
 }
@@ -199,7 +203,8 @@ impl<T: Real> Bracket<T> {
         }
     }
 
-    /// Takes in the slope at `alpha` and moves `alpha`, in the lanes of `open`; returns those where it moved noticeably.
+    /// Updates the bracket with the slope at `alpha` and moves `alpha`, in the lanes of `open`. Returns the lanes in
+    /// which it moved noticeably.
     #[inline(always)]
     fn narrow(&mut self, (first, second): (T, T), resolution: T, open: T::Mask) -> T::Mask {
         let falling = first.lt(T::ZERO);

@@ -1,7 +1,7 @@
-//! Accelerations in a metric that has terms beside M.
+//! Accelerations in a metric that has terms in addition to M.
 //!
-//! The matrix of the motion is M̂ = M + Σ s j jᵀ, a term for each of the last blocks of a problem
-//! ([`Problem::begin_metric_terms`]). With J the rows √s jᵀ of all terms, Woodbury's identity says
+//! The matrix of the motion is M̂ = M + Σ s j jᵀ, with one term for each of the last blocks of a problem
+//! ([`Problem::begin_metric_terms`]). With J the rows √s jᵀ of all terms, Woodbury's identity gives
 //!
 //! ```text
 //! M̂⁻¹ q = x − M⁻¹Jᵀ (I + J M⁻¹ Jᵀ)⁻¹ J x        x = M⁻¹ q
@@ -11,13 +11,13 @@ use crate::iterate::dot;
 use crate::{Problem, Tree, TreeFactor, TreeMatrix};
 use clench_math::{Real, kernel};
 
-/// Memory for one problem's terms.
+/// Memory for the terms of one problem.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MetricTerms<T> {
-    /// Jᵀ and M⁻¹Jᵀ, nv numbers a term.
+    /// Jᵀ and M⁻¹Jᵀ, nv numbers per term.
     rows: Vec<T>,
     responses: Vec<T>,
-    /// I + J M⁻¹ Jᵀ, which has the pattern of a chain: it is dense.
+    /// I + J M⁻¹ Jᵀ. It is dense, so its pattern is a chain.
     chain: Tree,
     gram: TreeMatrix<T>,
     factor: TreeFactor<T>,
@@ -26,8 +26,8 @@ pub(crate) struct MetricTerms<T> {
 }
 
 impl<T: Real> MetricTerms<T> {
-    /// a_unc + M̂⁻¹ q, where `qacc` holds the forces q before. `force` gets what each term pulls with in some lanes:
-    /// −s (jᵀa − jᵀa_unc).
+    /// Computes a_unc + M̂⁻¹ q in `qacc`, which holds the forces q on entry. In `lanes`, writes the force of each term
+    /// to `force`: −s (jᵀa − jᵀa_unc).
     #[kernel]
     pub(crate) fn accelerate(
         &mut self,

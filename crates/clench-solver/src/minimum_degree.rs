@@ -1,21 +1,21 @@
-//! The order in which coupled trees are eliminated from a Hessian.
+//! The elimination order of coupled trees in a Hessian.
 //!
-//! Eliminating a tree couples all trees that it was coupled with. In a heap of many bodies that is what a factorization costs, so
-//! the tree with the fewest neighbours goes next (minimum degree: Tinney & Walker 1967; George & Liu 1989). Between equals the
-//! one of lower number does: the order depends on the couplings alone.
+//! Eliminating a tree couples all its neighbours. In a heap of many bodies this dominates the cost of a factorization,
+//! so the tree with the fewest neighbours is eliminated next (minimum degree: Tinney & Walker 1967; George & Liu 1989).
+//! Ties go to the lower number, so the order depends only on the couplings.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A graph of trees, and its order of elimination.
+/// A graph of trees, and its elimination order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MinimumDegree {
-    /// The trees that each tree is coupled with, ascending. The list of a tree that is eliminated is not changed any more.
+    /// The neighbours of each tree, ascending. The list of an eliminated tree does not change any more.
     neighbors: Vec<Vec<u32>>,
-    /// Degrees and numbers of trees, the lowest first. A tree whose degree changes is entered again; an entry whose degree is no longer
-    /// the tree's is passed over.
+    /// Degrees and numbers of trees, the lowest first. A tree whose degree changes is pushed again; entries with an
+    /// outdated degree are skipped.
     queue: BinaryHeap<Reverse<(u32, u32)>>,
-    /// The place of each tree in the order.
+    /// The index of each tree in the order.
     rank: Vec<u32>,
     merged: Vec<u32>,
 }
@@ -24,7 +24,7 @@ pub(crate) struct MinimumDegree {
 const NOT_ELIMINATED: u32 = u32::MAX;
 
 impl MinimumDegree {
-    /// `count` trees, of which none is coupled.
+    /// Resets the graph to `count` uncoupled trees.
     pub(crate) fn clear(&mut self, count: usize) {
         self.neighbors.truncate(count);
         self.neighbors.iter_mut().for_each(Vec::clear);
@@ -40,7 +40,7 @@ impl MinimumDegree {
         }
     }
 
-    /// The rank of each tree: the first to be eliminated has rank 0.
+    /// Computes the rank of each tree; the first to be eliminated has rank 0.
     pub(crate) fn ranks(&mut self) -> &[u32] {
         let count = self.neighbors.len();
         self.rank.clear();
@@ -60,7 +60,7 @@ impl MinimumDegree {
         &self.rank
     }
 
-    /// Couples all neighbours of a tree, and takes it out of their lists.
+    /// Couples all neighbours of a tree, and removes it from their lists.
     fn eliminate(&mut self, tree: usize) {
         let clique = std::mem::take(&mut self.neighbors[tree]);
         for &one in &clique {
@@ -68,7 +68,7 @@ impl MinimumDegree {
             merge(own, &clique, &mut self.merged);
             self.merged
                 .retain(|&other| other != one && other as usize != tree);
-            // Copied, not swapped: each list keeps its own memory, so that the same graph needs no more the next time.
+            // Copied, not swapped: each list keeps its own memory, so the same graph needs no allocation the next time.
             own.clone_from(&self.merged);
             self.queue.push(Reverse((own.len() as u32, one)));
         }
@@ -76,7 +76,7 @@ impl MinimumDegree {
     }
 }
 
-/// The union of two ascending lists, ascending.
+/// Writes the union of two ascending lists, ascending.
 pub(crate) fn merge(a: &[u32], b: &[u32], out: &mut Vec<u32>) {
     out.clear();
     let (mut a, mut b) = (a, b);

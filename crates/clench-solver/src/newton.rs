@@ -1,7 +1,7 @@
-//! Newton's direction: −H⁻¹ g with the Hessian of the pieces that the iterate is on.
+//! Newton's direction −H⁻¹ g, with the Hessian of the pieces that the iterate is on.
 //!
-//! The factor is kept from one iteration to the next. Where no piece changed it still holds; where few did, it is updated
-//! by a rank-one change for each; else it is rebuilt. Each lane decides for itself, by its own changes alone.
+//! The factor is reused from one iteration to the next. If no piece changed it is still valid; if few did, it is
+//! updated by a rank-one change for each; otherwise it is rebuilt. Each lane decides by its own changes only.
 
 use crate::costs::{BlockCost, with_cost};
 use crate::descent::{Convergence, Direction, SolverState};
@@ -10,17 +10,17 @@ use crate::iterate::Iterate;
 use crate::{Problem, Settings, SolvePart, SolveStats, Switch};
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// Holds the factored Hessian.
+/// Newton's method, with the factored Hessian.
 #[derive(Clone, Debug)]
 pub(crate) struct Newton<T: Real> {
     hessian: Hessian<T>,
-    /// The active set of the factored Hessian, and the lanes in which it can be updated: factored, and not curved.
+    /// The active set of the factored Hessian, and the lanes in which it can be updated: factored and not curved.
     active_set: Vec<T>,
     updatable: T::Mask,
 }
 
-/// More rank-one changes than this are not worth updating for. Measured on a humanoid of 23 dofs: a solve with 4 to 10
-/// contacts, cold or warm, takes 17 to 24% less time with it than with a factorization in every iteration.
+/// The maximum number of rank-one changes for which an update pays. Measured on a humanoid of 23 dofs: a solve with 4
+/// to 10 contacts, cold or warm, takes 17 to 24% less time with updates than with a factorization in every iteration.
 const MAX_UPDATES: f64 = 4.0;
 
 impl<T: Real> Default for Newton<T> {
@@ -38,7 +38,8 @@ impl<T: Real> Direction<T> for Newton<T> {
     const PATIENCE: f64 = 2.0;
 
     fn prepare(&mut self, problem: &Problem<T>, settings: &Settings) -> bool {
-        // On trees sparse was faster, by 4% (half-cheetah, 9 dofs) to 18% (humanoid, 23 dofs); a single chain has nothing to gain.
+        // On trees sparse was faster, by 4% (half-cheetah, 9 dofs) to 18% (humanoid, 23 dofs); a single chain gains
+        // nothing.
         let chain = problem.nv() * (problem.nv() + 1) / 2;
         let dense = match settings.sparse_solve {
             Switch::On => false,
@@ -55,7 +56,8 @@ impl<T: Real> Direction<T> for Newton<T> {
         self.updatable &= !mask;
     }
 
-    /// Newton stops by gradient and improvement: the forces of stiff constraints are off by more than a small gap tells.
+    /// Returns infinity: Newton stops by gradient and improvement, because a small gap does not imply accurate forces
+    /// of stiff constraints.
     #[inline(always)]
     fn gap(&mut self, _: &Problem<T>, _: &Iterate<T>) -> T {
         T::splat(T::Scalar::INFINITY)
@@ -113,7 +115,8 @@ impl<T: Real> Direction<T> for Newton<T> {
 }
 
 impl<T: Real> Newton<T> {
-    /// Updates the factor in those lanes of `mask` where few pieces changed; returns where that worked.
+    /// Updates the factor in the lanes of `mask` in which few pieces changed; returns the lanes in which that
+    /// succeeded.
     #[kernel]
     fn update(
         &mut self,

@@ -1,19 +1,19 @@
 //! Removes the slow slip that soft friction allows.
 //!
-//! After the solve, friction forces alone are solved again without regularization (R = 0), normal forces fixed:
+//! After the solve, only the friction forces are solved again without regularization (R = 0), with fixed normal forces:
 //!
 //! ```text
 //! minimise over the friction forces f:  ½ fᵀ A f + fᵀ b,    A = J M⁻¹ Jᵀ,    A f + b = J a(f) − aref
 //! ```
 //!
 //! by Gauss–Seidel sweeps, block by block: dry friction within ±η; elliptic friction within its ellipse; in a pyramid,
-//! each pair of opposing edges with their sum σ fixed, which leaves friction along one row free within ±μ σ. The
-//! acceleration a is carried along, so that an update costs one row of J and one of M⁻¹Jᵀ. As in MuJoCo, the
-//! regularization cost that is dropped counts towards the first sweep's improvement.
+//! each pair of opposing edges with its sum σ fixed, so that friction along one row is free within ±μ σ. The
+//! acceleration a is updated along the way, so an update costs one row of J and one of M⁻¹Jᵀ. As in MuJoCo, the dropped
+//! regularization cost counts towards the first sweep's improvement.
 //!
-//! Where the metric has terms beside M, MuJoCo's sweeps see another matrix in its place
-//! ([`Problem::noslip_factor`]): the acceleration that is carried along is a_unc + M'⁻¹Jᵀf, and what the forces do in the
-//! whole metric is found once they stand.
+//! If the metric has terms in addition to M, MuJoCo's sweeps use another matrix instead ([`Problem::noslip_factor`]).
+//! The acceleration is then a_unc + M'⁻¹Jᵀf during the sweeps, and the effect of the forces in the whole metric is
+//! computed after them.
 
 use crate::costs::MAX_DIM;
 use crate::iterate::{Iterate, dot};
@@ -22,32 +22,32 @@ use crate::metric_terms::MetricTerms;
 use crate::{Cost, Problem, Settings, SolveStats};
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// Newton steps for the multiplier of an ellipse: it converges quadratically from below.
+/// The maximum number of Newton steps for the multiplier of an ellipse, which converges quadratically from below.
 const MULTIPLIER_STEPS: usize = 20;
 
-/// One block's share of A, and M⁻¹Jᵀ of its friction rows.
+/// One block's part of A, and M⁻¹Jᵀ of its friction rows.
 #[derive(Clone, Debug)]
 struct Friction<T> {
     block: BlockIndex,
-    /// First friction row within the block.
+    /// The first friction row within the block.
     first: usize,
     a: [[T; MAX_DIM]; MAX_DIM],
     response: usize,
 }
 
-/// Memory of the sweeps.
+/// The memory of the sweeps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Noslip<T> {
     frictions: Vec<Friction<T>>,
-    /// M⁻¹Jᵀ, one row of nv for each friction row.
+    /// M⁻¹Jᵀ, one row of nv numbers for each friction row.
     responses: Vec<T>,
     terms: MetricTerms<T>,
-    /// The acceleration at which the solve ended, in a metric.
+    /// The acceleration at the end of the solve, in a metric.
     solved: Vec<T>,
 }
 
 impl<T: Real> Noslip<T> {
-    /// Runs the sweeps on the solved `iterate`. `edges` holds the edge forces of pyramids and is kept up to date.
+    /// Runs the sweeps on the solved `iterate`. `edges` holds the edge forces of pyramids and is updated.
     #[kernel]
     pub fn run(
         &mut self,
@@ -91,7 +91,7 @@ impl<T: Real> Noslip<T> {
             .add_transposed(&iterate.force, &mut iterate.qfrc_constraint);
     }
 
-    /// Replaces the acceleration in the metric by the one that sweeps begin with.
+    /// Replaces the acceleration in the metric by the initial one of the sweeps.
     #[inline(always)]
     fn leave_metric(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>) {
         if problem.noslip_factor.is_empty() {
@@ -105,7 +105,7 @@ impl<T: Real> Noslip<T> {
         }
     }
 
-    /// Finds what the forces that the sweeps have found do in the metric, in the lanes that have friction.
+    /// Computes the effect of the final forces in the metric, in the lanes that have friction.
     #[inline(always)]
     fn return_to_metric(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, lanes: T::Mask) {
         if problem.noslip_factor.is_empty() {
@@ -170,7 +170,7 @@ impl<T: Real> Noslip<T> {
         });
     }
 
-    /// Improves one block's friction in the lanes of `live`; returns by how much the objective fell.
+    /// Improves one block's friction in the lanes of `live`; returns the decrease of the objective.
     #[inline(always)]
     fn update(
         &self,
@@ -216,7 +216,7 @@ impl<T: Real> Noslip<T> {
 }
 
 impl<T: Real> Friction<T> {
-    /// What the friction forces should be, from all forces of the block and its friction rows' J a − aref.
+    /// Computes the target friction forces from all forces of the block and the J a − aref of its friction rows.
     #[inline(always)]
     fn target(
         &self,
@@ -232,7 +232,7 @@ impl<T: Real> Friction<T> {
         if block.cost == Cost::Elliptic {
             return on_ellipse(a, &residual, &force[1..], &shape[1..], force[0]);
         }
-        // Rows are solved one after the other, each seeing what those before it changed.
+        // Rows are solved one after the other, each with the changes of those before it.
         let mut target = [T::ZERO; MAX_DIM];
         let count = block.dim - first;
         for j in 0..count {
@@ -254,7 +254,7 @@ impl<T: Real> Friction<T> {
     }
 }
 
-/// Jᵀ f of the constraints, without what terms of the metric pull with.
+/// Computes Jᵀ f of the constraints, without the forces of the metric's terms.
 #[inline(always)]
 fn pull_of_constraints<T: Real>(problem: &Problem<T>, force: &[T], out: &mut [T]) {
     out.fill(T::ZERO);
@@ -262,7 +262,7 @@ fn pull_of_constraints<T: Real>(problem: &Problem<T>, force: &[T], out: &mut [T]
     problem.jacobian.add_transposed_of(constraints, force, out);
 }
 
-/// J a − aref of a block's friction rows.
+/// Computes J a − aref of a block's friction rows.
 #[inline(always)]
 fn residual<T: Real>(
     problem: &Problem<T>,
@@ -282,17 +282,18 @@ fn residual<T: Real>(
     residual
 }
 
-/// The best force of one row within ±bound.
+/// Computes the optimal force of one row within ±bound.
 #[inline(always)]
 fn within<T: Real>(force: T, residual: T, a: T, bound: T) -> T {
     let free = T::select(a.gt(T::ZERO), force - residual / a, T::ZERO);
     free.clamp(-bound, bound)
 }
 
-/// The best friction within Σ (f_j / μ_j)² ≤ normal².
+/// Computes the optimal friction within Σ (f_j / μ_j)² ≤ normal².
 ///
-/// In g = f / μ the ellipse is a ball of radius r, and g minimises ½ gᵀBg + gᵀc with B = diag(μ) A diag(μ). Outside the
-/// ball, g(λ) = −(B + λ I)⁻¹ c with |g(λ)| = r: Newton's method on 1/r − 1/|g|, nearly linear in λ.
+/// In g = f / μ the ellipse is a ball of radius r, and g minimises ½ gᵀBg + gᵀc with B = diag(μ) A diag(μ). If the
+/// minimiser is outside the ball, g(λ) = −(B + λ I)⁻¹ c with |g(λ)| = r: Newton's method on 1/r − 1/|g|, nearly linear
+/// in λ.
 #[inline(always)]
 fn on_ellipse<T: Real>(
     a: &[[T; MAX_DIM]; MAX_DIM],
@@ -336,7 +337,7 @@ fn on_ellipse<T: Real>(
         }
         lambda = T::select(open, lambda + step, lambda);
     }
-    // Exactly onto the ball what rounding left outside.
+    // Scales back onto the ball if rounding left g outside.
     let length = dot(&g[..n], &g[..n]).sqrt();
     let shrink = T::select(length.gt(radius), radius / length, T::ONE);
     let mut force = [T::ZERO; MAX_DIM];
@@ -346,7 +347,7 @@ fn on_ellipse<T: Real>(
     force
 }
 
-/// g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
+/// Computes g = −(B + λ I)⁻¹ c, with |g|² and −½ d|g|²/dλ = gᵀ (B + λ I)⁻¹ g.
 #[kernel]
 fn shifted_minimum<T: Real>(
     b: &[[T; MAX_DIM]; MAX_DIM],
@@ -355,7 +356,7 @@ fn shifted_minimum<T: Real>(
     floor: T,
     n: usize,
 ) -> ([T; MAX_DIM], T, T) {
-    // Cholesky of B + λ I; pivots that rounding has consumed are replaced by its size.
+    // Cholesky factorization of B + λ I; pivots lost to rounding are replaced by `floor`.
     let mut l = *b;
     for j in 0..n {
         let mut pivot = l[j][j] + lambda;
@@ -399,7 +400,7 @@ fn shifted_minimum<T: Real>(
     (g, dot(&g[..n], &g[..n]), dot(&half[..n], &half[..n]))
 }
 
-/// ½ Σ R f² over all rows of constraints, for pyramids over their edges.
+/// Computes ½ Σ R f² over all rows of constraints, for pyramids over their edges.
 #[inline(always)]
 fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) -> T {
     let mut sum = T::ZERO;
@@ -417,7 +418,7 @@ fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) 
     T::new(0.5) * sum
 }
 
-/// Splits the friction of each pyramid row over its two edges, whose sum is as it was.
+/// Splits the friction of each pyramid row over its two edges, whose sum does not change.
 #[inline(always)]
 fn write_edges<T: Real>(problem: &Problem<T>, force: &[T], edges: &mut [T]) {
     for b in problem

@@ -1,10 +1,10 @@
-//! Which trees form an island, in each lane.
+//! The partition of the trees into islands, in each lane.
 //!
-//! A block couples the trees of its dofs in the lanes in which it acts. What is coupled, directly or through others, is an
-//! island. It is written as a list of trees: ascending, and in an order that fills little of the Hessian where there are
-//! many. That list follows from the lane alone, so lanes with the same list can share a problem.
+//! A block couples the trees of its dofs in the lanes in which it acts. Trees coupled directly or through others form
+//! an island. It is stored as a list of trees: ascending, or, with many trees, in an order that fills little of the
+//! Hessian. The list depends only on the lane, so lanes with the same list can share a problem.
 //!
-//! Others than the solver ask for it too: what sleeps, sleeps by islands.
+//! Sleeping also uses the partition: bodies sleep by island.
 
 use crate::Problem;
 use crate::minimum_degree::MinimumDegree;
@@ -17,32 +17,32 @@ use std::ops::Range;
 pub struct Island<T: Real> {
     /// The lanes that have it.
     pub lanes: T::Mask,
-    /// Its lowest tree.
+    /// The lowest tree.
     first: u32,
-    /// Where its trees are listed.
+    /// The range of its trees in the list of all.
     trees: Range<usize>,
 }
 
 /// The islands of all lanes.
 #[derive(Clone, Debug)]
 pub struct Partition<T: Real> {
-    /// Lanes in which each block acts.
+    /// The lanes in which each block acts.
     acting: Vec<T::Mask>,
-    /// Lanes in which some block acts on each tree.
+    /// The lanes in which some block acts on each tree.
     constrained: Vec<T::Mask>,
     couplings: Vec<Coupling<T>>,
-    /// The distinct islands, by their lowest tree, and the trees of all of them.
+    /// The distinct islands, ordered by their lowest tree, and the trees of all of them.
     islands: Vec<Island<T>>,
     trees: Vec<u32>,
     /// The islands of each lowest tree.
     by_first: Lists,
-    /// Union-find over the trees of a lane, the lowest leads; the trees of each leader.
+    /// Union-find over the trees of a lane, with the lowest as leader; the trees of each leader.
     leader: Vec<u32>,
     by_leader: Lists,
     elimination: MinimumDegree,
-    /// The order of elimination of each lane.
+    /// The elimination order of each lane.
     orders: Vec<Order>,
-    /// The trees of a block, those of an island.
+    /// The trees of a block, then those of an island.
     members: Vec<u32>,
 }
 
@@ -53,7 +53,7 @@ struct Coupling<T: Real> {
     lanes: T::Mask,
 }
 
-/// An order of elimination, kept while the couplings of its lane stay: those of a heap at rest seldom change.
+/// An elimination order, reused while the couplings of its lane do not change: those of a heap at rest seldom do.
 #[derive(Clone, Debug, Default)]
 struct Order {
     trees: usize,
@@ -62,7 +62,7 @@ struct Order {
     ranks: Vec<u32>,
 }
 
-/// Islands of more trees are ordered so that eliminating them fills little; smaller ones have little to gain.
+/// Islands with more trees are ordered to reduce fill; smaller ones would gain little.
 const MAX_ASCENDING: usize = 8;
 
 impl<T: Real> Default for Partition<T> {
@@ -84,7 +84,7 @@ impl<T: Real> Default for Partition<T> {
 }
 
 impl<T: Real> Partition<T> {
-    /// Finds the islands of `problem`.
+    /// Computes the islands of `problem`.
     pub fn find(&mut self, problem: &Problem<T>) {
         self.survey(problem);
         self.islands.clear();
@@ -96,32 +96,34 @@ impl<T: Real> Partition<T> {
         self.islands.sort_unstable_by_key(|island| island.first);
     }
 
-    /// The distinct islands, by their lowest tree: those of a lane in the order in which it has them alone.
+    /// Returns the distinct islands, ordered by their lowest tree. The islands of one lane have the same order as if it
+    /// were solved alone.
     pub fn islands(&self) -> &[Island<T>] {
         &self.islands
     }
 
-    /// The trees of an island, in the order in which they stand in its problem.
+    /// Returns the trees of an island, in their order in its problem.
     pub fn trees(&self, island: &Island<T>) -> &[u32] {
         &self.trees[island.trees.clone()]
     }
 
-    /// The lanes in which some block acts on a tree.
+    /// Returns the lanes in which some block acts on a tree.
     pub fn constrained(&self, tree: usize) -> T::Mask {
         self.constrained[tree]
     }
 
-    /// Whether the trees of an island are in ascending order.
+    /// Returns true if the trees of an island are in ascending order.
     pub(crate) fn is_ascending(&self, island: &Island<T>) -> bool {
         island.trees.len() <= MAX_ASCENDING
     }
 
-    /// The lanes in which each block acts.
+    /// Returns the lanes in which each block acts.
     pub(crate) fn acting(&self) -> &[T::Mask] {
         &self.acting
     }
 
-    /// Whether the problem is a single small island, in all lanes and with all of its blocks: then it need not be copied.
+    /// Returns true if the problem is a single small island, in all lanes and with all its blocks, so that it need not
+    /// be copied.
     pub(crate) fn is_whole(&self) -> bool {
         let [island] = &self.islands[..] else {
             return false;
@@ -132,7 +134,7 @@ impl<T: Real> Partition<T> {
             && self.acting.iter().all(|lanes| lanes.all())
     }
 
-    /// Notes where blocks act and what they couple.
+    /// Records the lanes in which blocks act and the trees that they couple.
     #[kernel]
     fn survey(&mut self, problem: &Problem<T>) {
         let tree = problem.tree();
@@ -192,7 +194,7 @@ impl<T: Real> Partition<T> {
                     self.order(lane);
                     ordered = true;
                 }
-                // The tree to be eliminated first comes last.
+                // The tree that is eliminated first comes last.
                 let ranks = &self.orders[lane].ranks;
                 (self.members).sort_unstable_by_key(|&tree| Reverse(ranks[tree as usize]));
             }
@@ -209,7 +211,7 @@ impl<T: Real> Partition<T> {
         t as u32
     }
 
-    /// Finds the order in which to eliminate the trees of a lane.
+    /// Computes the elimination order of the trees of a lane.
     fn order(&mut self, lane: usize) {
         let trees = self.constrained.len();
         self.orders.resize_with(T::LANES, Order::default);
@@ -253,7 +255,7 @@ impl<T: Real> Partition<T> {
     }
 }
 
-/// Notes that a block couples two trees. Contacts of the same bodies follow each other.
+/// Records that a block couples two trees. Contacts of the same bodies are consecutive.
 #[inline(always)]
 fn couple<T: Real>(couplings: &mut Vec<Coupling<T>>, trees: [u32; 2], lanes: T::Mask) {
     match couplings.last_mut() {
@@ -273,13 +275,13 @@ pub(crate) struct Lists {
 const END: u32 = u32::MAX;
 
 impl Lists {
-    /// An empty list for each of `keys` keys.
+    /// Resets to an empty list for each of `keys` keys.
     pub(crate) fn clear(&mut self, keys: usize) {
         self.head.clear();
         self.head.resize(keys, END);
     }
 
-    /// Puts `item`, which is in no list yet, before those of `key`.
+    /// Prepends `item`, which is in no list yet, to the list of `key`.
     pub(crate) fn push_front(&mut self, key: u32, item: u32) {
         if self.next.len() <= item as usize {
             self.next.resize(item as usize + 1, END);
@@ -288,7 +290,7 @@ impl Lists {
         self.head[key as usize] = item;
     }
 
-    /// The list of `key`.
+    /// Returns the list of `key`.
     pub(crate) fn iter(&self, key: u32) -> impl Iterator<Item = u32> {
         let some = |item: u32| (item != END).then_some(item);
         std::iter::successors(some(self.head[key as usize]), move |&item| {

@@ -1,14 +1,14 @@
-//! A problem from plain arrays, for use without trees, bodies or joints.
+//! Problems from plain arrays, without trees, bodies or joints.
 
 use crate::check::check_length;
 use crate::{Cost, Problem, ProblemError, Tree};
 use clench_math::{Mask, Real};
 use std::sync::Arc;
 
-/// One constraint block as plain arrays; see [`BlockMut`](crate::BlockMut) for the meaning of each.
+/// A constraint block as plain arrays; see [`BlockMut`](crate::BlockMut) for their meaning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlainBlock<T> {
-    /// Shape of the cost.
+    /// The shape of the cost.
     pub cost: Cost,
     /// J, dim × nv row-major.
     pub jacobian: Vec<T>,
@@ -21,11 +21,11 @@ pub struct PlainBlock<T> {
 }
 
 impl<T: Real> Problem<T> {
-    /// A problem from a dense mass matrix (nv × nv row-major, symmetric: its lower triangle is read), the unconstrained
-    /// acceleration (length nv) and blocks, checked and ready to be solved.
+    /// Creates a problem from a dense mass matrix (nv × nv row-major, symmetric; its lower triangle is read), the
+    /// unconstrained acceleration (length nv) and blocks. The problem is checked and ready to be solved.
     ///
     /// # Errors
-    /// Arrays of the wrong length, and whatever [`check`](Self::check) finds.
+    /// Returns an error if an array has the wrong length, or any error of [`check`](Self::check).
     pub fn from_arrays(
         mass: &[T],
         qacc_smooth: &[T],

@@ -1,4 +1,4 @@
-//! The problem: what stays constant during a solve.
+//! The problem: the data that stay constant during a solve.
 
 use crate::costs::{Cost, MAX_DIM, Rows};
 use crate::jacobian::{BlockIndex, StoredRows};
@@ -9,7 +9,7 @@ use clench_math::{Real, kernel};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The convex problem. Blocks stay in the order in which they were pushed.
+/// The convex problem. Blocks keep the order in which they were pushed.
 #[derive(Clone, Debug)]
 pub struct Problem<T> {
     pub(crate) tree: Arc<Tree>,
@@ -17,8 +17,8 @@ pub struct Problem<T> {
     pub mass: TreeMatrix<T>,
     /// The factorization of M; see [`factor_mass`](Self::factor_mass).
     pub mass_factor: TreeFactor<T>,
-    /// The factorization of the matrix that `noslip` uses in place of M, where the metric has couplings: MuJoCo's sweeps see only their
-    /// diagonal. Empty where the sweeps use M itself.
+    /// The factorization of the matrix that `noslip` uses in place of M if the metric has couplings: MuJoCo's sweeps
+    /// use only their diagonal. Empty if the sweeps use M itself.
     pub noslip_factor: TreeFactor<T>,
     /// Unconstrained acceleration a_unc = M⁻¹ τ, length nv.
     pub qacc_smooth: Vec<T>,
@@ -27,35 +27,35 @@ pub struct Problem<T> {
     pub(crate) r: Vec<T>,
     pub(crate) d: Vec<T>,
     pub(crate) shape: Vec<T>,
-    /// Length of the active set.
+    /// The length of the active set.
     pub(crate) nactive: usize,
-    /// How many blocks are constraints. Those after them are terms of the metric.
+    /// The number of blocks that are constraints. Later blocks are terms of the metric.
     pub(crate) nconstraint: Option<usize>,
     /// The first block that was pushed with an impossible size.
     pub(crate) malformed: Option<(usize, &'static str)>,
 }
 
-/// Which part of a problem to copy.
+/// The part of a problem to copy.
 pub(crate) struct Part<'a, T: Real> {
-    /// Complete trees; of dofs, a parent comes before its children.
+    /// The dofs of complete trees; a parent precedes its children.
     pub dofs: &'a [u32],
-    /// Maps a dof to its place in `dofs`.
+    /// Maps a dof to its index in `dofs`.
     pub local: &'a [u32],
     pub blocks: &'a [u32],
-    /// The lanes in which each block of the whole acts, and those that have this part: in all others its blocks are absent,
-    /// with zeros for a Jacobian so that nothing that a lane holds there can spoil it.
+    /// The lanes in which each block of the whole acts, and the lanes that have this part. In all others its blocks are
+    /// absent, with a zero Jacobian, so that the contents of those lanes have no effect.
     pub acting: &'a [T::Mask],
     pub lanes: T::Mask,
 }
 
-/// A new block to be filled in: every slice starts as zeros.
+/// A new block to be filled in; every slice starts as zeros.
 #[derive(Debug)]
 pub struct BlockMut<'a, T> {
     /// J, dim × ndofs row-major.
     pub jacobian: &'a mut [T],
-    /// What the constraint asks of J a; per row.
+    /// The reference value of J a; per row.
     pub aref: &'a mut [T],
-    /// Regularization R > 0; per row.
+    /// The regularization R > 0; per row.
     pub r: &'a mut [T],
     /// D = 1 / R per row, or 0 in lanes that have no such constraint (J, aref and R stay finite there).
     pub d: &'a mut [T],
@@ -63,16 +63,16 @@ pub struct BlockMut<'a, T> {
     pub shape: &'a mut [T],
 }
 
-/// A block as it lies in the problem.
+/// A block of the problem.
 #[derive(Clone, Copy, Debug)]
 pub struct Block<'a, T> {
-    /// Shape of its cost.
+    /// The shape of its cost.
     pub cost: Cost,
-    /// Its first row among all rows.
+    /// The index of its first row in the problem.
     pub row: usize,
-    /// Number of rows.
+    /// The number of rows.
     pub dim: usize,
-    /// The dofs it acts on, ascending.
+    /// The dofs on which it acts, ascending.
     pub dofs: &'a [u32],
     /// J, dim × ndofs row-major.
     pub jacobian: &'a [T],
@@ -87,14 +87,14 @@ pub struct Block<'a, T> {
 }
 
 impl<T> Block<'_, T> {
-    /// Its rows among all rows of the problem.
+    /// Returns the range of its rows in the problem.
     pub fn rows(&self) -> Range<usize> {
         self.row..self.row + self.dim
     }
 }
 
 impl<T: Real> Problem<T> {
-    /// A problem without constraints, with zero mass: fill `mass` and `qacc_smooth`, then call
+    /// Creates a problem without constraints and with zero mass. Fill `mass` and `qacc_smooth`, then call
     /// [`factor_mass`](Self::factor_mass).
     pub fn new(tree: Arc<Tree>) -> Self {
         Problem {
@@ -114,24 +114,24 @@ impl<T: Real> Problem<T> {
         }
     }
 
-    /// The sparsity of M.
+    /// Returns the sparsity of M.
     pub fn tree(&self) -> &Arc<Tree> {
         &self.tree
     }
-    /// Number of dofs.
+    /// Returns the number of dofs.
     pub fn nv(&self) -> usize {
         self.tree.nv()
     }
-    /// Number of constraint rows.
+    /// Returns the number of constraint rows.
     pub fn nrow(&self) -> usize {
         self.aref.len()
     }
-    /// Number of constraint blocks.
+    /// Returns the number of constraint blocks.
     pub fn nblock(&self) -> usize {
         self.jacobian.blocks.len()
     }
 
-    /// Factors `mass` into `mass_factor`. False in lanes where it is not positive definite.
+    /// Factors `mass` into `mass_factor`. Returns false in lanes in which it is not positive definite.
     pub fn factor_mass(&mut self) -> T::Mask {
         self.mass_factor.factor(&self.tree, &self.mass)
     }
@@ -148,20 +148,20 @@ impl<T: Real> Problem<T> {
         self.malformed = None;
     }
 
-    /// From here on the blocks that are pushed are terms ½ D (J a − aref)² of the metric: M with the sum of their D JᵀJ is the matrix
-    /// of the motion, and aref = J a_unc. `noslip` tells them from constraints.
+    /// Marks the blocks pushed from here on as terms ½ D (J a − aref)² of the metric: the matrix of the motion is M
+    /// plus the sum of their D JᵀJ, and aref = J a_unc. `noslip` distinguishes them from constraints.
     pub fn begin_metric_terms(&mut self) {
         self.nconstraint = Some(self.nblock());
     }
 
-    /// The blocks that are constraints, and those that are terms of the metric.
+    /// Returns the blocks that are constraints, and those that are terms of the metric.
     pub(crate) fn constraints_and_terms(&self) -> (&[BlockIndex], &[BlockIndex]) {
         let blocks = &self.jacobian.blocks;
         blocks.split_at(self.nconstraint.unwrap_or(blocks.len()))
     }
 
-    /// Appends a block of `dim` rows (1 to 6) that acts on `dofs` (ascending) and returns it to be filled in.
-    /// A block of impossible size is reported by the solve.
+    /// Appends a block of `dim` rows (1 to 6) that acts on `dofs` (ascending) and returns it to be filled in. A solve
+    /// reports an error for a block of impossible size.
     pub fn push(&mut self, cost: Cost, dim: usize, dofs: &[u32]) -> BlockMut<'_, T> {
         if let (None, Err(reason)) = (self.malformed, check_size(cost, dim, dofs, self.nv())) {
             self.malformed = Some((self.nblock(), reason));
@@ -186,10 +186,10 @@ impl<T: Real> Problem<T> {
         self.last_block_mut()
     }
 
-    /// The block that was pushed last.
+    /// Returns the block that was pushed last.
     ///
     /// # Panics
-    /// A problem without blocks.
+    /// Panics if the problem has no blocks.
     pub fn last_block_mut(&mut self) -> BlockMut<'_, T> {
         let last = self.jacobian.blocks[self.jacobian.blocks.len() - 1];
         let rows = last.rows();
@@ -202,12 +202,12 @@ impl<T: Real> Problem<T> {
         }
     }
 
-    /// The blocks in the order in which they were pushed.
+    /// Returns the blocks in the order in which they were pushed.
     pub fn blocks(&self) -> impl ExactSizeIterator<Item = Block<'_, T>> {
         self.jacobian.blocks.iter().map(|b| self.view(b))
     }
 
-    /// Block `i`.
+    /// Returns block `i`.
     pub fn block(&self, i: usize) -> Block<'_, T> {
         self.view(&self.jacobian.blocks[i])
     }
@@ -227,7 +227,7 @@ impl<T: Real> Problem<T> {
         }
     }
 
-    /// The cost parameters of one block.
+    /// Returns the cost parameters of one block.
     #[inline(always)]
     pub(crate) fn rows(&self, b: &BlockIndex) -> Rows<'_, T> {
         let rows = b.rows();
@@ -239,7 +239,7 @@ impl<T: Real> Problem<T> {
         }
     }
 
-    /// Becomes a part of `whole`.
+    /// Copies a part of `whole` into this problem.
     pub(crate) fn gather<L: Real>(
         &mut self,
         whole: &Problem<L>,
@@ -252,7 +252,7 @@ impl<T: Real> Problem<T> {
         let same =
             self.nv() == dofs.len() && (0..dofs.len()).all(|i| self.tree.parent(i) == parent(i));
         if !same {
-            // The tree of a gathered problem is nobody else's, but for the empty one it starts with.
+            // Only this problem owns the tree of a gathered problem, except the empty one it starts with.
             let ascending = Arc::make_mut(&mut self.tree).rebuild(dofs.len(), parent);
             debug_assert!(
                 ascending.is_ok(),
@@ -320,7 +320,7 @@ impl<T: Real> Problem<T> {
     }
 }
 
-/// Whether a block over these dofs can be stored and indexed at all.
+/// Checks that a block over these dofs can be stored and indexed.
 pub(crate) fn check_size(
     cost: Cost,
     dim: usize,

@@ -1,6 +1,6 @@
 //! A search direction, with its images under M and J.
 
-/// A search direction with what the line search needs of it.
+/// A search direction, and its products for the line search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ray<T> {
     /// p.
@@ -9,6 +9,6 @@ pub(crate) struct Ray<T> {
     pub mass_direction: Vec<T>,
     /// J p.
     pub rows: Vec<T>,
-    /// The second derivative of what is quadratic everywhere: inertia and equalities.
+    /// The second derivative of the parts that are quadratic everywhere: inertia and equalities.
     pub second: T,
 }

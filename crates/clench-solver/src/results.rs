@@ -1,4 +1,4 @@
-//! What a solve gives out.
+//! The results of a solve.
 
 use crate::iterate::all_finite;
 use crate::slot::Slot;
@@ -43,7 +43,7 @@ impl<T: Real> Results<T> {
         }
     }
 
-    /// Takes the results of a problem that was solved as a whole.
+    /// Copies the results of a problem that was solved as a whole.
     pub(crate) fn set(&mut self, work: &Workspace<T>) {
         let iterate = &work.state.iterate;
         self.stats = work.state.stats;
@@ -53,7 +53,7 @@ impl<T: Real> Results<T> {
         copy(&mut self.qfrc_constraint, &iterate.qfrc_constraint);
     }
 
-    /// Adds those of an island of `problem` in some lanes that have it; `acting` are the lanes in which blocks act.
+    /// Adds the results of an island of `problem` in `lanes`; `acting` holds the lanes in which each block acts.
     #[kernel]
     pub fn add<F: Real>(
         &mut self,
@@ -96,7 +96,7 @@ fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
     to.extend_from_slice(from);
 }
 
-/// Takes `from` in the lanes of `mask`.
+/// Copies `from` in the lanes of `mask`.
 #[inline(always)]
 fn blend<T: Real>(mask: T::Mask, to: &mut T, from: T) {
     *to = T::select(mask, from, *to);

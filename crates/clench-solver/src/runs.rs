@@ -1,8 +1,8 @@
-//! Dofs that follow each other: what belongs to them lies in one piece.
+//! Runs of consecutive dofs, whose data are contiguous.
 
 use std::ops::Range;
 
-/// The longest runs of consecutive numbers in a list, in its order.
+/// Returns the longest runs of consecutive numbers in a list, in its order.
 pub(crate) fn runs(mut dofs: &[u32]) -> impl Iterator<Item = Range<usize>> {
     std::iter::from_fn(move || {
         let first = *dofs.first()? as usize;

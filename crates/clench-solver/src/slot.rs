@@ -1,4 +1,4 @@
-//! The memory in which one island is solved.
+//! The memory for solving one island.
 
 use crate::Tree;
 use crate::problem::Problem;
@@ -6,12 +6,12 @@ use crate::workspace::Workspace;
 use clench_math::Real;
 use std::sync::Arc;
 
-/// Memory for an island.
+/// Memory for one island.
 #[derive(Clone, Debug)]
 pub(crate) struct Slot<F: Real> {
-    /// Whether an island of the present solve has it.
+    /// True if an island of the current solve uses it.
     pub taken: bool,
-    /// Its dofs in the whole problem, in the order that they have here; its blocks, ascending.
+    /// The island's dofs, as numbered in the whole problem and in local order; its blocks, ascending.
     pub dofs: Vec<u32>,
     pub blocks: Vec<u32>,
     pub problem: Problem<F>,

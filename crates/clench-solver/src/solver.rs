@@ -1,6 +1,6 @@
-//! The solver: which parts of a problem are solved together, and where the results lie.
+//! The solver: selects the parts of a problem that are solved together, and stores the results.
 //!
-//! Solves are compiled with this crate: a crate that steps simulations calls them, and does not compile them anew.
+//! Solves are compiled with this crate; a crate that steps simulations calls them without compiling them again.
 
 use crate::check::check_length;
 use crate::descent::SolverState;
@@ -15,9 +15,9 @@ use crate::{
 use clench_math::{CompiledKernels, KernelTable, Real};
 use std::sync::LazyLock;
 
-/// Solves [`Problem`]s; keeps its memory between solves.
+/// Solves [`Problem`]s and reuses its memory between solves.
 ///
-/// A solve allocates nothing once problems of this size have been seen.
+/// A solve does not allocate once problems of this size have been solved.
 #[derive(Clone, Debug)]
 pub struct Solver<T: Real> {
     results: Results<T>,
@@ -27,16 +27,17 @@ pub struct Solver<T: Real> {
 }
 
 impl<T: Real> Solver<T> {
-    /// A solver, with memory for the results of problems over `tree`. The crate that calls this compiles the solver for `T`.
+    /// Creates a solver with memory for the results of problems over `tree`. The calling crate compiles the solver for
+    /// `T`.
     pub fn new(tree: &Tree) -> Self {
         Self::with_kernels(tree, SolverKernels::of_caller())
     }
 
-    /// The same in a number type that [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) gives to tasks: this crate has compiled the
-    /// solver for it.
+    /// Creates a solver in a number type that [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) passes to tasks. This
+    /// crate has compiled the solver for it.
     ///
     /// # Panics
-    /// Where `T` is another type.
+    /// Panics if `T` is another type.
     pub fn compiled(tree: &Tree) -> Self {
         Self::with_kernels(tree, SolverKernels::of_this_crate())
     }
@@ -55,16 +56,17 @@ impl<T: Real> Solver<T> {
         }
     }
 
-    /// Has threads share the work of solves from now on: islands, and the Hessian of a large one. Results stay the same to the bit. (Of
-    /// lanes, islands are solved one after the other.)
+    /// Sets the threads that share the work of later solves: islands, and the Hessian of a large one. Results stay the
+    /// same to the bit. (With lanes, islands are solved one after the other.)
     pub fn set_threads(&mut self, threads: Threads) {
         self.whole.state.threads = threads;
     }
 
-    /// Minimises. `warmstart` (length nv) is taken where it costs less than the unconstrained acceleration.
+    /// Solves the problem. `warmstart` (length nv) is used if it costs less than the unconstrained acceleration.
     ///
     /// # Errors
-    /// A warm start of the wrong length, or arrays or blocks of the problem that have impossible sizes.
+    /// Returns an error if the warm start has the wrong length, or arrays or blocks of the problem have impossible
+    /// sizes.
     pub fn solve(
         &mut self,
         problem: &Problem<T>,
@@ -106,17 +108,18 @@ impl<T: Real> Solver<T> {
         Ok(())
     }
 
-    /// The constraint forces at an acceleration (length nv) that is known, whatever the unconstrained one: what
-    /// [`force`](Self::force), [`qfrc_constraint`](Self::qfrc_constraint) and [`edge_forces`](Self::edge_forces) then give.
-    /// Nothing is minimised, and the statistics are those of no solve.
+    /// Computes the constraint forces at a given acceleration (length nv), independent of the unconstrained one.
+    /// [`force`](Self::force), [`qfrc_constraint`](Self::qfrc_constraint) and [`edge_forces`](Self::edge_forces) then
+    /// return them. Nothing is minimised, and the statistics are reset.
     ///
     /// # Errors
-    /// An acceleration of the wrong length, or arrays or blocks of the problem that have impossible sizes.
+    /// Returns an error if the acceleration has the wrong length, or arrays or blocks of the problem have impossible
+    /// sizes.
     pub fn evaluate(&mut self, problem: &Problem<T>, qacc: &[T]) -> Result<(), ProblemError> {
         (self.kernels.evaluate)(self, problem, qacc)
     }
 
-    /// As [`TreeFactor::factor`], by the code that this solver runs.
+    /// Calls [`TreeFactor::factor`] as compiled for this solver.
     pub fn factor(
         &self,
         factor: &mut TreeFactor<T>,
@@ -134,20 +137,21 @@ impl<T: Real> Solver<T> {
         Ok(())
     }
 
-    /// The minimiser: generalized acceleration, length nv.
+    /// Returns the minimiser: the generalized acceleration, length nv.
     pub fn qacc(&self) -> &[T] {
         &self.results.qacc
     }
-    /// Constraint force of each row in block coordinates (for a pyramid: contact-frame rows, the sum of its edges).
+    /// Returns the constraint force of each row in block coordinates (for a pyramid: contact-frame rows, the sum of its
+    /// edges).
     pub fn force(&self) -> &[T] {
         &self.results.force
     }
-    /// Jᵀ f, length nv.
+    /// Returns Jᵀ f, length nv.
     pub fn qfrc_constraint(&self) -> &[T] {
         &self.results.qfrc_constraint
     }
-    /// Forces along the 2 (dim − 1) edges of pyramid `block` of the problem last solved, in the order y₀ + μ₁y₁,
-    /// y₀ − μ₁y₁, y₀ + μ₂y₂, ...; empty for other costs.
+    /// Returns the forces along the 2 (dim − 1) edges of pyramid `block` of the last solved problem, in the order y₀ +
+    /// μ₁y₁, y₀ − μ₁y₁, y₀ + μ₂y₂, ...; empty for other costs.
     pub fn edge_forces(&self, problem: &Problem<T>, block: usize) -> &[T] {
         let b = &problem.jacobian.blocks[block];
         if b.cost == Cost::Pyramid {
@@ -156,11 +160,11 @@ impl<T: Real> Solver<T> {
             &[]
         }
     }
-    /// Where the time of solves goes once it runs, by [`SolvePart`](crate::stopwatch::SolvePart).
+    /// Returns the clock, which measures the time of solves by [`SolvePart`](crate::stopwatch::SolvePart) once it runs.
     pub fn clock(&mut self) -> &mut SolveClock {
         &mut self.whole.state.clock
     }
-    /// Statistics of the last solve.
+    /// Returns the statistics of the last solve.
     pub fn stats(&self) -> &SolveStats<T> {
         &self.results.stats
     }
@@ -171,7 +175,7 @@ type Solve<T> =
 type Evaluate<T> = fn(&mut Solver<T>, &Problem<T>, &[T]) -> Result<(), ProblemError>;
 type Factor<T> = fn(&mut TreeFactor<T>, &Tree, &TreeMatrix<T>) -> <T as Real>::Mask;
 
-/// What a [`Solver`] runs.
+/// The functions that a [`Solver`] runs.
 #[derive(Clone, Copy, Debug)]
 struct SolverKernels<T: Real> {
     solve: Solve<T>,
@@ -180,7 +184,7 @@ struct SolverKernels<T: Real> {
 }
 
 impl<T: Real> SolverKernels<T> {
-    /// Those of the caller's crate.
+    /// Returns the kernels compiled in the caller's crate.
     fn of_caller() -> Self {
         SolverKernels {
             solve: Solver::run,
@@ -189,7 +193,7 @@ impl<T: Real> SolverKernels<T> {
         }
     }
 
-    /// Those of this crate.
+    /// Returns the kernels compiled in this crate.
     fn of_this_crate() -> Self {
         compiled().table::<SolverTable, T>()
     }
@@ -204,7 +208,7 @@ impl KernelTable for SolverTable {
     }
 }
 
-/// Not generic, so that it is compiled here.
+/// Returns the compiled kernels; not generic, so that it is compiled here.
 #[inline(never)]
 fn compiled() -> &'static CompiledKernels {
     static COMPILED: LazyLock<CompiledKernels> = LazyLock::new(CompiledKernels::new::<SolverTable>);

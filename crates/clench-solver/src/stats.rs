@@ -1,26 +1,26 @@
-//! What a solve reports.
+//! The status and statistics of a solve.
 
 use crate::transfer::Transfer;
 use clench_math::{Real, Scalar};
 
-/// How a solve ended.
+/// The status of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Status {
-    /// No constraint acts: the unconstrained acceleration is the answer.
+    /// No constraint acts; the result is the unconstrained acceleration.
     #[default]
     Unconstrained,
-    /// The starting point was proven good enough, by the duality gap, before any iteration.
+    /// The duality gap proved the starting point good enough before any iteration.
     Proven,
-    /// Newton: gradient and last improvement are below the tolerance, or a full step over a purely quadratic stretch ended
-    /// there. CG: the duality gap is below it.
+    /// Newton: the gradient and the last improvement are below the tolerance, or a full step within one quadratic piece
+    /// ended there. CG: the duality gap is below the tolerance.
     Converged,
-    /// The working precision allows no further progress. With a tolerance of zero this is success.
+    /// The working precision allows no further progress. With a tolerance of zero this counts as success.
     NoProgress,
-    /// The iteration limit came first, or that of a line search before it found a lower cost.
+    /// The solve reached its iteration limit, or a line search reached its own before it found a lower cost.
     IterationLimit,
-    /// A number became infinite or undefined; the result of this lane is not usable.
+    /// A number became infinite or NaN; the result of this lane is not usable.
     NonFinite,
-    /// The problem needs larger matrices than the settings allow; it was not solved.
+    /// The problem was not solved because it needs larger matrices than the settings allow.
     TooLarge,
 }
 
@@ -35,7 +35,7 @@ impl Status {
         Status::TooLarge,
     ];
 
-    /// Its name in output, such as "no_progress".
+    /// Returns the name used in output, such as "no_progress".
     pub fn name(self) -> &'static str {
         match self {
             Status::Unconstrained => "unconstrained",
@@ -54,36 +54,36 @@ impl Status {
     }
 }
 
-/// Statistics of a solve, one value a lane.
+/// The statistics of a solve, one value per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SolveStats<T> {
-    /// Iterations; over islands, the most.
+    /// The number of iterations; over islands, the maximum.
     pub iterations: T,
-    /// Gradient norm over mean inertia × nv; over islands, the largest.
+    /// The gradient norm over mean inertia × nv; over islands, the maximum.
     pub gradient: T,
-    /// Last cost improvement over mean inertia × nv; over islands, the largest.
+    /// The last cost improvement over mean inertia × nv; over islands, the maximum.
     pub improvement: T,
-    /// Duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
+    /// The duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
     pub gap: T,
-    /// How often a constraint changed its piece, in all iterations.
+    /// The number of changes of a constraint's piece in all iterations.
     pub active_set_changes: T,
-    /// Line-search evaluations.
+    /// The number of line-search evaluations.
     pub ls_evaluations: T,
-    /// Hessians factored from scratch.
+    /// The number of Hessians factored from scratch.
     pub factorizations: T,
-    /// Rank-one updates of a factored Hessian.
+    /// The number of rank-one updates of a factored Hessian.
     pub updates: T,
-    /// Sweeps of noslip.
+    /// The number of noslip sweeps; over islands, the maximum.
     pub noslip_iterations: T,
-    /// Separately solved parts; 1 where islands are not used and constraints act.
+    /// The number of separately solved parts; 1 if constraints act but islands are not used.
     pub islands: T,
     pub(crate) status: T,
 }
 
-/// [`SolveStats`] of one lane.
+/// The [`SolveStats`] of one lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaneStats {
-    /// How the solve ended; over islands, the worst.
+    /// The status of the solve; over islands, the worst.
     pub status: Status,
     /// See [`SolveStats`].
     pub iterations: usize,
@@ -108,7 +108,7 @@ pub struct LaneStats {
 }
 
 impl<T: Real> SolveStats<T> {
-    /// Takes in the statistics of another island in the lanes that have it.
+    /// Adds the statistics of another island in the lanes that have it.
     #[inline(always)]
     pub(crate) fn combine<F: Real>(
         &mut self,
@@ -116,7 +116,7 @@ impl<T: Real> SolveStats<T> {
         lanes: T::Mask,
         transfer: impl Transfer<T, F>,
     ) {
-        // Codes of the status ascend from good to bad.
+        // Status codes ascend from good to bad.
         for (worst, other) in [
             (&mut self.iterations, other.iterations),
             (&mut self.gradient, other.gradient),
@@ -138,18 +138,18 @@ impl<T: Real> SolveStats<T> {
         }
     }
 
-    /// How lane `lane` ended.
+    /// Returns the status of lane `lane`.
     pub fn status(&self, lane: usize) -> Status {
         Status::ALL[self.status.lane(lane).to_f64() as usize]
     }
 
-    /// The lanes that ended as [`Status::NonFinite`] or [`Status::TooLarge`].
+    /// Returns the lanes that ended with [`Status::NonFinite`] or [`Status::TooLarge`].
     #[inline(always)]
     pub fn failed(&self) -> T::Mask {
         self.status.ge(Status::NonFinite.code())
     }
 
-    /// The statistics of lane `lane`.
+    /// Returns the statistics of lane `lane`.
     pub fn lane(&self, lane: usize) -> LaneStats {
         let count = |x: T| x.lane(lane).to_f64() as usize;
         let value = |x: T| x.lane(lane).to_f64();

@@ -1,11 +1,11 @@
-//! Where the time goes: a stopwatch that is compiled in and costs a branch a lap while it does not run.
+//! A stopwatch for the parts of a computation; while stopped it costs one branch per lap.
 
 use std::time::{Duration, Instant};
 
-/// Time spent in each of `N` parts.
+/// The time spent in each of `N` parts.
 #[derive(Clone, Debug)]
 pub struct Stopwatch<const N: usize> {
-    /// The last lap's end, if it runs.
+    /// The end of the last lap, if running.
     since: Option<Instant>,
     running: bool,
     spent: [Duration; N],
@@ -22,18 +22,18 @@ impl<const N: usize> Default for Stopwatch<N> {
 }
 
 impl<const N: usize> Stopwatch<N> {
-    /// Lets it run, or not; the times spent so far stay.
+    /// Starts or stops the stopwatch; the accumulated times stay.
     pub fn run(&mut self, running: bool) {
         self.running = running;
         self.since = None;
     }
 
-    /// Whether it runs.
+    /// Returns true if the stopwatch runs.
     pub fn is_running(&self) -> bool {
         self.running
     }
 
-    /// Begins a first lap.
+    /// Begins the first lap.
     #[inline(always)]
     pub fn start(&mut self) {
         if self.running {
@@ -41,7 +41,7 @@ impl<const N: usize> Stopwatch<N> {
         }
     }
 
-    /// Ends a lap, whose time goes to `part`, and begins the next.
+    /// Ends a lap, adds its time to `part`, and begins the next.
     #[inline(always)]
     pub fn lap(&mut self, part: usize) {
         if self.running {
@@ -57,47 +57,47 @@ impl<const N: usize> Stopwatch<N> {
         }
     }
 
-    /// Runs if another does.
+    /// Starts or stops the stopwatch like `other`.
     pub fn run_as(&mut self, other: &Self) {
         if self.running != other.running {
             self.run(other.running);
         }
     }
 
-    /// Takes the time that another has measured.
+    /// Moves the time that `other` has measured into this one.
     pub fn absorb(&mut self, other: &mut Self) {
         for (spent, other) in self.spent.iter_mut().zip(&mut other.spent) {
             *spent += std::mem::take(other);
         }
     }
 
-    /// The time spent in each part.
+    /// Returns the time spent in each part.
     pub fn spent(&self) -> &[Duration; N] {
         &self.spent
     }
 }
 
-/// What a solve spends its time on.
+/// The timed parts of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolvePart {
-    /// The better of two starting points, and whether it is good enough already.
+    /// The choice of the starting point, and the check whether it is good enough.
     Start,
-    /// H.
+    /// The assembly of H.
     Hessian,
-    /// Its factorization, or an update of it.
+    /// The factorization of H, or its update.
     Factorization,
-    /// The direction.
+    /// The computation of the direction.
     Direction,
-    /// How far to go along it.
+    /// The line search.
     LineSearch,
-    /// Costs and gradient at the new point, and whether to stop there.
+    /// Costs and gradient at the new point, and the stopping conditions.
     Evaluation,
 }
 
 impl SolvePart {
-    /// How many there are.
+    /// The number of parts.
     pub const COUNT: usize = 6;
 }
 
-/// Times the parts of solves.
+/// A stopwatch for the parts of solves.
 pub type SolveClock = Stopwatch<{ SolvePart::COUNT }>;

@@ -1,7 +1,7 @@
 //! Threads that share the work of one problem.
 //!
-//! Who does which part is decided while they run, and changes no result: each number is computed by one of them, from numbers that are complete,
-//! by the same operations in the same order as by one thread alone.
+//! The assignment of work to threads is decided at run time and does not affect results: each number is computed by one
+//! thread, from complete inputs, by the same operations in the same order as on a single thread.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder, Yield};
 use std::hint::spin_loop;
@@ -10,21 +10,21 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{available_parallelism, yield_now};
 
-/// Some threads, or the caller's alone. Clones share them.
+/// A pool of threads, or the calling thread only. Clones share the pool.
 #[derive(Clone, Debug, Default)]
 pub struct Threads {
     pool: Option<Arc<ThreadPool>>,
-    /// The process that they are of.
+    /// The process that started them.
     process: u32,
-    /// How many of them the machine has processors for.
+    /// The number of them for which the machine has processors.
     at_once: usize,
 }
 
 impl Threads {
-    /// So many threads; up to one is the caller's, and starts none.
+    /// Creates `count` threads. With 0 or 1 the calling thread is used and none is started.
     ///
     /// # Errors
-    /// Threads that the system does not start.
+    /// Returns an error if the system does not start the threads.
     pub fn new(count: usize) -> Result<Threads, ThreadPoolBuildError> {
         if count <= 1 {
             return Ok(Threads::default());
@@ -40,13 +40,13 @@ impl Threads {
         })
     }
 
-    /// Whether they are of another process, from which this one forked: a fork does not copy threads, and who called them would wait for
-    /// ever.
+    /// Returns true if the threads belong to a process from which this one forked. A fork does not copy threads, so a
+    /// call to them would wait for ever.
     pub fn are_lost(&self) -> bool {
         self.pool.is_some() && self.process != std::process::id()
     }
 
-    /// How many there are.
+    /// Returns the number of threads.
     #[inline(always)]
     pub fn count(&self) -> usize {
         self.pool
@@ -54,7 +54,7 @@ impl Threads {
             .map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Does `work` on one of the threads, where what it forks begins at once.
+    /// Runs `work` on one of the threads, where forked work starts immediately.
     pub fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
@@ -62,15 +62,16 @@ impl Threads {
         }
     }
 
-    /// As [`enter`](Self::enter), for work that forks many times, each time for less than a millisecond: the other threads do not fall asleep until it
-    /// is done, as far as there are processors for them. Waking a thread took 60 µs where it was measured.
+    /// Works like [`enter`](Self::enter), for work that forks many times, each time for less than a millisecond. The
+    /// other threads stay awake until it is done, as far as there are processors for them. Waking a thread was measured
+    /// to take 60 µs.
     pub fn enter_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let Some(pool) = &self.pool else {
             return work();
         };
         let done = AtomicBool::new(false);
         let finish = || {
-            // It is set after a panic too.
+            // It is also set after a panic.
             let _set = SetOnDrop(&done);
             work()
         };
@@ -78,7 +79,7 @@ impl Threads {
         pool.join(finish, wait).0
     }
 
-    /// Does both, at once if another thread is free.
+    /// Runs both closures, in parallel if another thread is free.
     pub(crate) fn join(&self, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
         match &self.pool {
             Some(pool) => {
@@ -99,7 +100,8 @@ impl Threads {
         }
     }
 
-    /// Calls `work` once for each thread, all at once as far as threads are free: it has to end whoever else takes part.
+    /// Calls `work` once for each thread, in parallel as far as threads are free. It must finish regardless of which
+    /// other threads take part.
     pub(crate) fn on_each(&self, work: impl Fn() + Sync) {
         match &self.pool {
             Some(pool) => pool.install(|| repeat(0..self.count(), &work)),
@@ -108,8 +110,8 @@ impl Threads {
     }
 }
 
-/// Halves the items until they are single, so that whoever is free takes half of what is left. (Unlike rayon's own loops it cuts as
-/// far as it can: items are few and large.)
+/// Splits the items in halves down to single ones, so that a free thread takes half of the remaining work. (Rayon's own
+/// loops do not split as far; here items are few and large.)
 fn fork<I: Send>(items: &mut [I], work: &(impl Fn(&mut I) + Sync)) {
     match items {
         [] => {}
@@ -121,7 +123,7 @@ fn fork<I: Send>(items: &mut [I], work: &(impl Fn(&mut I) + Sync)) {
     }
 }
 
-/// Does what the other threads have forked until they are done.
+/// Runs the work that other threads have forked until they are done.
 fn stay_awake(done: &AtomicBool) {
     let mut idle = 0;
     while !done.load(Ordering::Acquire) {
@@ -133,11 +135,11 @@ fn stay_awake(done: &AtomicBool) {
     }
 }
 
-/// A pause between two looks at what another thread has to do first, after so many looks in vain.
+/// Pauses between two polls of another thread's progress, after `looks` polls without success.
 pub(crate) fn pause(looks: usize) {
-    /// Looking without a pause would keep taking the cache line from the thread that writes it.
+    /// Polling without a pause would keep taking the cache line from the thread that writes it.
     const SPINS: usize = 16;
-    /// After so many looks, some hundred microseconds, the operating system may run other threads here.
+    /// After this many polls, some hundred microseconds, the operating system may run other threads here.
     const MAX_SPINNING_LOOKS: usize = 1000;
     match looks < MAX_SPINNING_LOOKS {
         true => (0..SPINS).for_each(|_| spin_loop()),

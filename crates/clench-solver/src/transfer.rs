@@ -1,18 +1,18 @@
-//! How numbers get from a problem into the problem of an island, and results back: all lanes side by side, or one alone.
+//! Transfers numbers from a problem into the problem of an island, and results back: in all lanes, or in one.
 
 use clench_math::Real;
 
-/// From numbers `T` to numbers `F` and back.
+/// Converts numbers `T` to numbers `F` and back.
 pub(crate) trait Transfer<T: Real, F: Real>: Copy {
-    /// A number of the whole problem.
+    /// Takes a number of the whole problem.
     fn take(self, x: T) -> F;
-    /// `x` in `lanes`, which hold the lanes that this is for; `absent` in the others.
+    /// Takes `x` in `lanes`, which include the lanes of this transfer, and `absent` in the others.
     fn take_in(self, lanes: T::Mask, x: T, absent: T) -> F;
-    /// A result, in the lanes that this is for.
+    /// Returns a result, valid in the lanes of this transfer.
     fn put(self, x: F) -> T;
 }
 
-/// All lanes.
+/// The transfer of all lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct AllLanes;
 
@@ -31,7 +31,7 @@ impl<T: Real> Transfer<T, T> for AllLanes {
     }
 }
 
-/// This lane.
+/// The transfer of one lane.
 #[derive(Clone, Copy)]
 pub(crate) struct OneLane(pub usize);
 

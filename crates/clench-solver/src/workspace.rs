@@ -1,4 +1,4 @@
-//! One problem, solved whole: the memory of a solve.
+//! The memory of a solve of one whole problem.
 
 use crate::cg::Cg;
 use crate::costs::Pyramid;
@@ -20,7 +20,7 @@ pub(crate) struct Workspace<T: Real> {
 }
 
 impl<T: Real> Workspace<T> {
-    /// Minimises, then removes slip where the settings ask for it.
+    /// Minimises, then removes slip if the settings request it.
     #[kernel]
     pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
         let Workspace {
@@ -36,7 +36,7 @@ impl<T: Real> Workspace<T> {
         }
         self.find_edge_forces(problem);
         let SolverState { iterate, stats, .. } = &mut self.state;
-        // It holds a response of all dofs to each row.
+        // Noslip stores a response of all dofs to each row.
         let responses = problem.nrow().saturating_mul(problem.nv());
         if settings.noslip_iterations > 0 && responses > settings.max_matrix {
             stats.status = Status::TooLarge.code();
@@ -47,7 +47,7 @@ impl<T: Real> Workspace<T> {
         }
     }
 
-    /// The constraint forces at an acceleration, and Jᵀ f. No minimum is looked for.
+    /// Computes the constraint forces at an acceleration, and Jᵀ f. Nothing is minimised.
     #[kernel]
     pub fn evaluate(&mut self, problem: &Problem<T>, qacc: &[T]) {
         let SolverState { iterate, stats, .. } = &mut self.state;
@@ -57,7 +57,7 @@ impl<T: Real> Workspace<T> {
         self.find_edge_forces(problem);
     }
 
-    /// The forces along the edges of pyramids, from the residuals.
+    /// Computes the forces along the edges of pyramids from the residuals.
     #[inline(always)]
     fn find_edge_forces(&mut self, problem: &Problem<T>) {
         self.edges.resize(problem.nactive, T::ZERO);

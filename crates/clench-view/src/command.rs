@@ -1,131 +1,132 @@
-//! What a user does in the page.
+//! The commands that a user gives in the page.
 
 use clench::Model;
 use clench::prelude::FrictionCone;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// An action of a user in the page. [`read`](Self::read) takes it from a JSON object whose `do` is its name.
+/// An action of a user in the page. [`read`](Self::read) parses it from a JSON object whose `do` is its name.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Command {
-    /// Stand still, or go on.
+    /// Pauses or resumes the simulation.
     Pause {
-        /// Whether to stand still.
+        /// True to pause.
         on: bool,
     },
-    /// Take steps, and stand still.
+    /// Takes steps, then pauses.
     Step {
-        /// How many, at most [`MAX_STEPS`].
+        /// The number of steps, at most [`MAX_STEPS`].
         count: u32,
     },
-    /// Back to the initial state.
+    /// Resets to the initial state.
     Reset {},
-    /// To a keyframe.
+    /// Resets to a keyframe.
     Keyframe {
-        /// Which.
+        /// The index of the keyframe.
         index: usize,
     },
-    /// Simulated over real time.
+    /// Sets the ratio of simulated to real time.
     Speed {
-        /// From [`SPEEDS`]; 0 for as fast as can be.
+        /// The ratio, within [`SPEEDS`]; 0 for as fast as possible.
         factor: f64,
     },
-    /// Set a control.
+    /// Sets a control.
     Control {
-        /// Which.
+        /// The index of the control.
         index: usize,
-        /// Its value.
+        /// The value.
         value: f64,
     },
-    /// Set a position coordinate of a slide or hinge, at rest.
+    /// Sets a position coordinate of a slide or hinge joint, with zero velocity.
     Position {
-        /// Which coordinate.
+        /// The index of the coordinate in `qpos`.
         index: usize,
-        /// Its value.
+        /// The value.
         value: f64,
     },
-    /// Switch an equality constraint.
+    /// Enables or disables an equality constraint.
     Equality {
-        /// Which.
+        /// The index of the constraint.
         index: usize,
-        /// Whether it is on.
+        /// True to enable it.
         on: bool,
     },
-    /// Draw a body somewhere by a spring.
+    /// Pulls a body to a target by a spring.
     Drag {
-        /// Which body.
+        /// The index of the body.
         body: usize,
-        /// The point that is drawn, in the body's frame, m.
+        /// The attachment point in the body frame, m.
         point: [f64; 3],
-        /// Where to, m.
+        /// The target, m.
         target: [f64; 3],
     },
-    /// Turn a body by a spring.
+    /// Rotates a body to a target orientation by a torsional spring.
     Turn {
-        /// Which body.
+        /// The index of the body.
         body: usize,
-        /// The orientation that it is turned to, a quaternion with w first.
+        /// The target orientation, a quaternion with w first.
         target: [f64; 4],
     },
-    /// Let the body go.
+    /// Releases the body.
     Release {},
-    /// Set an option of the solver.
+    /// Sets options of the solver.
     Options {
-        /// Whether friction cones are elliptic.
+        /// True for elliptic friction cones.
         elliptic: Option<bool>,
-        /// Most iterations.
+        /// The maximum number of iterations.
         iterations: Option<usize>,
-        /// Tolerance.
+        /// The tolerance.
         tolerance: Option<f64>,
-        /// Most sweeps of noslip.
+        /// The maximum number of noslip iterations.
         noslip_iterations: Option<usize>,
     },
-    /// Choose environments of a batch.
+    /// Selects environments of a batch.
     Show {
-        /// The one whose numbers are shown, and that is touched.
+        /// The environment that is plotted and interacted with.
         env: usize,
-        /// The first of those side by side.
+        /// The first environment of those side by side.
         first: usize,
-        /// How many are side by side, at most [`MAX_SIDE_BY_SIDE`]; 1 for `env` alone.
+        /// The number of environments side by side, at most [`MAX_SIDE_BY_SIDE`]; 1 for `env` only.
         count: usize,
     },
-    /// Back to a moment of the last ten seconds.
+    /// Rewinds within the last ten seconds.
     Rewind {
-        /// How long ago, s of simulated time.
+        /// The time to go back, s of simulated time.
         seconds: f64,
     },
-    /// To a moment of the last ten seconds, from which one can come forward again as long as no step is taken.
+    /// Goes to a moment of the last ten seconds; later moments stay available until the next step.
     Moment {
-        /// Its time, s of simulated time.
+        /// The time, s of simulated time.
         time: f64,
     },
 }
 
-/// The most steps of one command.
+/// The maximum number of steps of one command.
 pub const MAX_STEPS: u32 = 1000;
-/// The most environments that are seen at once.
+/// The maximum number of environments that are shown at once.
 pub const MAX_SIDE_BY_SIDE: usize = 64;
-/// The least and the most that a speed can be.
+/// The range of the speed factor.
 pub const SPEEDS: [f64; 2] = [0.01, 100.0];
-/// The most iterations that an option can be.
+/// The maximum number of iterations that an option accepts.
 const MAX_ITERATIONS: usize = 10_000;
-/// Nothing is drawn farther than this, m.
+/// The limit on coordinates, m, and on rewind times, s.
 const FAR: f64 = 1e6;
 
 impl Command {
-    /// The command of this name with these fields; none where either is unknown, or a field is missing or of another type.
+    /// Parses the command of this name with these fields. Returns `None` if the name or a field is unknown, or a field
+    /// is missing or of another type.
     ///
-    /// The caller takes the name out of the object: `serde(tag)` would do it with three times the code.
+    /// The caller removes the name from the object: `serde(tag)` would take three times the code.
     pub fn read(name: String, fields: Map<String, Value>) -> Option<Self> {
         let tagged = Map::from_iter([(name, Value::Object(fields))]);
         Command::deserialize(Value::Object(tagged)).ok()
     }
 
-    /// Refuses what a model, or so many environments of it, does not have and numbers that make no sense.
+    /// Validates indices against a model with `envs` environments, and the ranges of numbers.
     ///
     /// # Errors
-    /// What is wrong.
+    /// Returns a message if a value is out of range.
     pub fn check(&self, model: &Model, envs: usize) -> Result<(), String> {
         let below = |kind: &str, index: usize, count: usize| match index < count {
             true => Ok(()),
@@ -190,7 +191,7 @@ impl Command {
     }
 }
 
-/// The cone of a switch.
+/// Returns the friction cone that the switch selects.
 pub(crate) fn cone(elliptic: bool) -> FrictionCone {
     match elliptic {
         true => FrictionCone::Elliptic,

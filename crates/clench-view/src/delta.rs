@@ -1,20 +1,21 @@
-//! What of a frame differs from the one before it, so that what does not move is not sent again.
+//! The difference between two consecutive frames; unchanged rows are not sent again.
 //!
-//! A delta has the head of a frame with the letters `CLND` in place of `CLNF`: flags, time, number of sections, how many rows each has.
-//! Then comes each section: 0 (u32) and nothing where it is as before; 1 and a bit a row, in words of 32 bits from the lowest bit on,
-//! and the rows whose bit is set, where it has as many rows as before; 2 and all rows otherwise.
+//! A delta has the header of a frame with the letters `CLND` instead of `CLNF`: flags, time, number of sections, row
+//! count of each section. Each section follows: 0 (u32) if it is unchanged; if the row count is unchanged, 1, a bitmask
+//! of changed rows in 32-bit words from the lowest bit on, and the changed rows; otherwise 2 and all rows.
 
 use crate::frame::{MAGIC, SECTIONS};
 
-/// What a delta begins with.
+/// The first bytes of a delta.
 pub const DELTA: [u8; 4] = *b"CLND";
 
-/// Bytes of a number.
+/// The size of a number, bytes.
 const NUMBER: usize = 4;
-/// Letters, flags, time and the number of sections.
+/// The size of the letters, flags, time and number of sections, bytes.
 const HEAD: usize = 20;
 
-/// The bytes that turn one frame into the next; `None` where the frame itself is as short, or either is none.
+/// Returns the bytes that turn one frame into the next; `None` if the frame itself is not longer, or either input is
+/// not a frame.
 pub fn delta(before: &[u8], now: &[u8]) -> Option<Vec<u8>> {
     let (old, new) = (sections(before)?, sections(now)?);
     let mut bytes = Vec::from(DELTA);
@@ -33,7 +34,7 @@ pub fn delta(before: &[u8], now: &[u8]) -> Option<Vec<u8>> {
     (bytes.len() < now.len()).then_some(bytes)
 }
 
-/// The rows of each section of a frame.
+/// Splits a frame into the rows of each section.
 fn sections(frame: &[u8]) -> Option<Vec<&[u8]>> {
     let counts = frame.get(HEAD..HEAD + NUMBER * SECTIONS.len())?;
     let mut rest = &frame[HEAD + counts.len()..];
@@ -47,7 +48,7 @@ fn sections(frame: &[u8]) -> Option<Vec<&[u8]>> {
     frame.starts_with(&MAGIC).then_some(found)
 }
 
-/// Appends which rows of so many bytes differ, and those rows.
+/// Appends the bitmask of the rows of `row` bytes that differ, and those rows.
 fn changed_rows(row: usize, old: &[u8], new: &[u8], bytes: &mut Vec<u8>) {
     let pairs = || old.chunks_exact(row).zip(new.chunks_exact(row));
     let differs: Vec<bool> = pairs().map(|(old, new)| old != new).collect();

@@ -1,32 +1,32 @@
-//! Springs that draw a body to where the user points, or turn it.
+//! Springs that pull a body to the point that the user selects, or rotate it.
 //!
-//! Per unit of the mass m that the body resists a force with, the spring has the rate k = 100 s⁻² and critical damping, so that
-//! light and heavy bodies follow alike: f = m (k (target − p) − 2 √k ṗ), at the point p of the body. m is the inverse of the
-//! body's mean inverse weight in the initial configuration, `body_invweight0`. What turns has the same rate and damping about the
-//! centre of mass, with the inverse of the rotational inverse weight in the place of m: τ = I (k θ − 2 √k ω), where θ is the rotation
-//! vector that is left.
+//! Per unit of the effective mass m of the body, the spring has the stiffness k = 100 s⁻² and critical damping, so that
+//! light and heavy bodies respond equally: f = m (k (target − p) − 2 √k ṗ), at the point p of the body. m is the
+//! inverse of the body's mean inverse weight in the initial configuration, `body_invweight0`. The torsional spring has
+//! the same stiffness and damping about the centre of mass, with the inverse rotational weight: τ = I (k θ − 2 √k ω),
+//! where θ is the remaining rotation vector.
 
 use clench::math::{Force, Quat, Real, Scalar, Vec3};
 use clench::rigid::{Precision, Sim, Workspace};
 
-/// The spring's rate over mass, s⁻².
+/// The spring's stiffness over mass, s⁻².
 const RATE: f64 = 100.0;
 
-/// A spring between a point of a body and one of the world.
+/// A spring between a point of a body and a point of the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drag {
     /// The body.
     pub body: usize,
-    /// The point in the body's frame, m.
+    /// The point in the body frame, m.
     pub point: [f64; 3],
-    /// Where it is drawn to, m.
+    /// The target, m.
     pub target: [f64; 3],
     /// The force of the last step, N.
     force: [f64; 3],
 }
 
 impl Drag {
-    /// A spring that has not pulled yet.
+    /// Creates a spring with zero force.
     pub fn new(body: usize, point: [f64; 3], target: [f64; 3]) -> Self {
         Drag {
             body,
@@ -36,7 +36,7 @@ impl Drag {
         }
     }
 
-    /// Writes the spring's force into the applied forces of the body, in place of what is there.
+    /// Sets the applied force of the body to the spring's force.
     pub fn apply<T: Precision>(&mut self, sim: &mut Sim<T>) {
         let (model, ws) = (sim.model(), sim.workspace());
         let body = self.body;
@@ -55,12 +55,12 @@ impl Drag {
         sim.state.xfrc_applied[body] = Force::new(narrow(torque), narrow(force));
     }
 
-    /// Takes the force away.
+    /// Clears the applied force.
     pub fn release<T: Precision>(&self, sim: &mut Sim<T>) {
         sim.state.xfrc_applied[self.body] = Force::ZERO;
     }
 
-    /// As a frame shows it: the body, the point in the world, where it is drawn to, the force.
+    /// Returns the row of a frame: the body, the point in the world, the target, the force.
     pub(crate) fn row<T: Real>(&self, ws: &Workspace<T>) -> [f32; 10] {
         let mut row = [self.body as f32; 10];
         let place = wide(at(ws, self.body, self.point)).to_array();
@@ -77,14 +77,14 @@ impl Drag {
 pub struct Turn {
     /// The body.
     pub body: usize,
-    /// The orientation that it is turned to; w first, of length 1.
+    /// The target orientation, a unit quaternion with w first.
     pub target: [f64; 4],
     /// The torque of the last step, N m.
     torque: [f64; 3],
 }
 
 impl Turn {
-    /// A spring that has not turned yet.
+    /// Creates a spring with zero torque.
     pub fn new(body: usize, target: [f64; 4]) -> Self {
         Turn {
             body,
@@ -93,7 +93,7 @@ impl Turn {
         }
     }
 
-    /// Writes the spring's torque into the applied forces of the body, in place of what is there.
+    /// Sets the applied force of the body to the spring's torque.
     pub fn apply<T: Precision>(&mut self, sim: &mut Sim<T>) {
         let (model, ws) = (sim.model(), sim.workspace());
         let compliance = model.params.body_invweight0[self.body][1];
@@ -107,12 +107,12 @@ impl Turn {
         sim.state.xfrc_applied[self.body] = Force::new(narrow(torque), Vec3::ZERO);
     }
 
-    /// Takes the torque away.
+    /// Clears the applied torque.
     pub fn release<T: Precision>(&self, sim: &mut Sim<T>) {
         sim.state.xfrc_applied[self.body] = Force::ZERO;
     }
 
-    /// The rotation from where the body is to where it shall be, in world axes, rad.
+    /// Returns the rotation from the current to the target orientation, in world axes, rad.
     fn left<T: Real>(&self, ws: &Workspace<T>) -> Vec3<f64> {
         let now = ws.position.xquat[self.body]
             .to_array()
@@ -121,7 +121,7 @@ impl Turn {
         from_now.to_rotation_vector()
     }
 
-    /// As a frame shows it: the body, its centre of mass, what is left to turn, the torque.
+    /// Returns the row of a frame: the body, its centre of mass, the remaining rotation, the torque.
     pub(crate) fn row<T: Real>(&self, ws: &Workspace<T>) -> [f32; 10] {
         let mut row = [self.body as f32; 10];
         let place = wide(ws.position.xipos[self.body]).to_array();
@@ -134,13 +134,13 @@ impl Turn {
     }
 }
 
-/// A point of a body in the world.
+/// Returns the world position of a point of a body.
 fn at<T: Real>(ws: &Workspace<T>, body: usize, point: [f64; 3]) -> Vec3<T> {
     let turned = ws.position.xquat[body].rotate(narrow(Vec3::from_array(point)));
     ws.position.xpos[body] + turned
 }
 
-/// A vector of lane 0.
+/// Converts lane 0 of a vector.
 fn wide<T: Real>(v: Vec3<T>) -> Vec3<f64> {
     Vec3::from_array(v.to_array().map(|x| x.lane(0).to_f64()))
 }

@@ -1,7 +1,8 @@
-//! Where everything is at one moment, what pushes on what, and how the solver did: bytes that the page reads as they are.
+//! Frames: poses, forces and solver statistics of one moment, as bytes that the page reads without conversion.
 //!
-//! A frame is, in little-endian order: the letters `CLNF`, flags (u32), the time in seconds (f64), the number of sections
-//! (u32), how many rows each has (u32 each), then the rows of all sections in order, in f32. [`SECTIONS`] says what they are.
+//! A frame is, in little-endian order: the letters `CLNF`, flags (u32), the time in seconds (f64), the number of
+//! sections (u32), the row count of each section (u32 each), then the rows of all sections in order, in f32.
+//! [`SECTIONS`] lists the sections.
 
 use crate::drag::{Drag, Turn};
 use crate::marks::Mark;
@@ -13,62 +14,62 @@ use clench::rigid::readout::{ContactRow, Push, contact_rows, islands, light_plac
 use clench::rigid::{Precision, Sim, Workspace};
 use std::time::Duration;
 
-/// What a frame begins with.
+/// The first bytes of a frame.
 pub const MAGIC: [u8; 4] = *b"CLNF";
-/// The flag of a simulation that stands still.
+/// The flag of a paused simulation.
 pub const PAUSED: u32 = 1;
 
 /// A part of a frame: rows of equal width.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// Its name, by which the page finds it.
+    /// The name by which the page finds the section.
     pub name: &'static str,
-    /// Numbers in a row.
+    /// The number of values in a row.
     pub width: usize,
 }
 
-/// How the last step went; the numbers that are plotted.
+/// The timing of the last step, which the page plots.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
-    /// What a step takes.
+    /// The duration of a step.
     pub step: Duration,
-    /// Simulated over real time.
+    /// The ratio of simulated to real time.
     pub speed: f64,
-    /// How it splits over [`STAGES`](crate::stages::STAGES).
+    /// The duration of each of [`STAGES`](crate::stages::STAGES).
     pub stages: StageTimes,
 }
 
-/// What a frame tells about the viewing of a simulation: timing, what users hold and draw, which environments are shown.
+/// The state of the viewer that a frame includes: timing, springs, marks, selected environments.
 #[derive(Default)]
 pub struct FrameExtras<'a> {
-    /// Bits, see [`PAUSED`].
+    /// Flags, see [`PAUSED`].
     pub flags: u32,
-    /// How the last step went.
+    /// The timing of the last step.
     pub timing: Timing,
     /// The spring that drags a body.
     pub drag: Option<&'a Drag>,
     /// The spring that turns a body.
     pub turn: Option<&'a Turn>,
-    /// The first and last time, s, to which one can come back.
+    /// The first and last time that rewinding can reach, s.
     pub past: Option<[f64; 2]>,
-    /// What users draw.
+    /// The marks of the user.
     pub marks: Vec<&'a Mark>,
-    /// The environment of a batch whose contacts are shown, and the first of those side by side.
+    /// The environment of a batch whose contacts are shown, and the first environment of those side by side.
     pub chosen: Option<[usize; 2]>,
-    /// The environments of a batch that are seen, and why each cannot go on, if it cannot.
+    /// The shown environments of a batch, each with the reason if it cannot continue.
     pub envs: Vec<(usize, Option<String>)>,
-    /// Poses of the bodies of all of these, where more than one is seen.
+    /// The poses of the bodies of all shown environments, if there is more than one.
     pub poses: Vec<f32>,
 }
 
 impl FrameExtras<'_> {
-    /// Adds the poses of one more environment. Where they cannot be computed its last ones are told.
+    /// Appends the poses of an environment; its last poses if they cannot be computed.
     pub fn add_poses<T: Precision>(&mut self, sim: &mut Sim<T>) {
         let _ = sim.refresh();
         bodies(sim.workspace(), &mut self.poses);
     }
 
-    /// All texts, in order: those of marks, then those of environments.
+    /// Returns all texts in order: those of marks, then those of environments.
     fn texts(&self) -> impl Iterator<Item = &str> {
         let faults = self
             .envs
@@ -78,7 +79,7 @@ impl FrameExtras<'_> {
     }
 }
 
-/// What a frame shows.
+/// The content of a frame.
 struct Shown<'a, T: Precision> {
     sim: &'a Sim<T>,
     energy: [f64; 2],
@@ -94,7 +95,7 @@ macro_rules! sections {
             $(Section { name: stringify!($name), width: $width },)*
         ];
 
-        /// Appends all sections; how many rows each has.
+        /// Appends all sections and returns the row count of each.
         fn write_sections<T: Precision>($shown: &Shown<T>, numbers: &mut Vec<f32>) -> Vec<u32> {
             let mut counts = Vec::with_capacity(SECTIONS.len());
             $({
@@ -112,19 +113,21 @@ sections! {
     s, out;
     /// Position and orientation of each body.
     bodies: 7 => bodies(s.sim.workspace(), out);
-    /// Contacts: position, normal and two tangents, force along these, distance, sliding friction, both geoms, dimensions.
+    /// Contacts: position, normal and two tangents, force along these, distance, sliding friction, both geoms,
+    /// dimensions.
     contacts: 20 => contact_rows(s.sim.workspace(), 0).iter().for_each(|row| contact(row, out));
-    /// Constraints but contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, size of its force.
+    /// Constraints except contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, norm of
+    /// the force.
     constraints: 3 => constraints(s.sim.workspace(), out);
-    /// What constraints but contacts push on: kind as in `constraints`, element, body, where, force, torque.
+    /// Forces of constraints except contacts: kind as in `constraints`, element, body, position, force, torque.
     pushes: 12 => s.pushes.iter().for_each(|push| out.extend(push_numbers(push)));
-    /// The island of each tree, by its lowest tree; -1 where no constraint acts.
+    /// The island of each tree, by the lowest index of its trees; -1 if no constraint acts on the tree.
     islands: 1 => out.extend(islands(s.sim.workspace(), 0).iter().map(|first| first.map_or(-1.0, |tree| tree as f32)));
-    /// Cameras: position, and as columns the axes to the right, upwards and backwards.
+    /// Cameras: position, and the right, up and backward axes as columns.
     cameras: 12 => s.cameras.iter().for_each(|row| out.extend(row));
-    /// Lights: position, and the direction along which each shines.
+    /// Lights: position and direction.
     lights: 6 => out.extend(light_places(s.sim.model(), s.sim.workspace()).as_flattened().as_flattened().iter().map(|&x| x as f32));
-    /// Straight parts of tendons: the tendon, both ends.
+    /// Straight segments of tendons: the tendon, both ends.
     spans: 7 => tendon_lines(s.sim, out);
     /// Position coordinates of the state.
     qpos: 1 => narrow(&s.sim.state.qpos, out);
@@ -132,41 +135,41 @@ sections! {
     qvel: 1 => narrow(&s.sim.state.qvel, out);
     /// Controls.
     ctrl: 1 => narrow(&s.sim.state.ctrl, out);
-    /// Which equalities are on.
+    /// The activity of each equality constraint.
     eq_active: 1 => out.extend(s.sim.state.eq_active.iter().map(|&on| f32::from(u8::from(on))));
-    /// Which trees sleep: not below zero.
+    /// The sleep state of each tree: at least zero if it sleeps.
     asleep: 1 => narrow(&s.sim.state.tree_asleep, out);
-    /// What sensors measure.
+    /// Sensor values.
     sensors: 1 => narrow(&s.sim.workspace().sensors.data, out);
-    /// The spring that drags a body: the body, the point, where it is drawn to, the force.
+    /// The spring that drags a body: the body, the point, the target, the force.
     drag: 10 => out.extend(s.extras.drag.into_iter().flat_map(|drag| drag.row(s.sim.workspace())));
-    /// The spring that turns a body: the body, where its centre of mass is, what is left to turn (rad, along the axis), the torque.
+    /// The spring that turns a body: the body, its centre of mass, the remaining rotation vector (rad), the torque.
     turn: 10 => out.extend(s.extras.turn.into_iter().flat_map(|turn| turn.row(s.sim.workspace())));
-    /// The first and last time, s, to which one can come back.
+    /// The first and last time that rewinding can reach, s.
     past: 2 => out.extend(s.extras.past.iter().flatten().map(|&time| time as f32));
-    /// Plotted: iterations, log10 of the duality gap and of the gradient, deepest penetration (m), contacts, potential
-    /// and kinetic energy (J), time of a step (µs), simulated over real time.
+    /// Plotted values: iterations, log10 of the duality gap and of the gradient, maximum penetration (m), contacts,
+    /// potential and kinetic energy (J), duration of a step (µs), ratio of simulated to real time.
     plots: 9 => plots(s, out);
-    /// The time of each stage of a step (µs), in the order of `STAGES`.
+    /// The duration of each stage of a step (µs), in the order of `STAGES`.
     stages: 1 => out.extend(s.extras.timing.stages.iter().map(|time| 1e6 * time.as_secs_f32()));
-    /// What users draw: kind (0 sphere, 1 line, 2 arrow, 3 text), both ends, radius, colour and opacity.
+    /// Marks of the user: kind (0 sphere, 1 line, 2 arrow, 3 text), both ends, radius, colour and opacity.
     marks: 12 => s.extras.marks.iter().for_each(|mark| out.extend(mark.row()));
-    /// The environment of a batch whose contacts these are, and the first of those that are seen.
+    /// The environment of a batch whose contacts are shown, and the first of the shown ones.
     chosen: 1 => out.extend(s.extras.chosen.iter().flatten().map(|&env| env as f32));
-    /// The environments of a batch that are seen: number, and whether it cannot go on.
+    /// The shown environments of a batch: index, and 1 if it cannot continue.
     envs: 2 => out.extend(s.extras.envs.iter().flat_map(|(env, why)| [*env as f32, f32::from(u8::from(why.is_some()))]));
-    /// Position and orientation of each body of each of these, where more than one is seen.
+    /// Position and orientation of each body of each shown environment, if there is more than one.
     poses: 7 => out.extend(&s.extras.poses);
-    /// How many letters the text of each mark and of each environment has, which says why it cannot go on.
+    /// The character counts of the text of each mark, then of the fault message of each environment.
     texts: 1 => out.extend(s.extras.texts().map(|text| text.chars().count() as f32));
-    /// The letters of all of these, as code points.
+    /// The characters of these texts, as code points.
     letters: 1 => out.extend(s.extras.texts().flat_map(str::chars).map(|letter| u32::from(letter) as f32));
 }
 
-/// The bytes of the frame of a simulation as it is now.
+/// Encodes the present state of a simulation as a frame.
 ///
 /// # Errors
-/// A state that cannot be evaluated.
+/// Returns an error if the state cannot be evaluated.
 pub fn encode<T: Precision>(sim: &mut Sim<T>, extras: &FrameExtras) -> Result<Vec<u8>, SimError> {
     sim.refresh()?;
     let energy = sim.energy()?;
@@ -216,7 +219,7 @@ fn contact(row: &ContactRow, out: &mut Vec<f32>) {
     out.extend([row.geoms[0] as f32, row.geoms[1] as f32, row.dim as f32]);
 }
 
-/// The kind of a constraint as a frame has it; none of contacts.
+/// Returns the kind of a constraint in a frame; `None` for contacts.
 fn kind(source: ConstraintSource) -> Option<f32> {
     match source.kind() {
         "equality" | "dynamic" => Some(0.0),
@@ -244,7 +247,7 @@ fn cameras<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[f32; 12]>, SimError> {
     }
     let (places, turns) = (sim.output("cam_xpos")?, sim.output("cam_xmat")?);
     let row = |(place, turn): (&[T], &[T])| {
-        // The matrix comes row by row.
+        // The matrix is stored in row-major order.
         let axes = (0..9).map(|k| turn[3 * (k % 3) + k / 3]);
         let mut row = [0.0; 12];
         for (to, from) in row.iter_mut().zip(place.iter().copied().chain(axes)) {
@@ -269,7 +272,7 @@ fn constraints<T: Real>(ws: &Workspace<T>, out: &mut Vec<f32>) {
     }
 }
 
-/// Appends the straight parts of all tendons where a simulation computed them last: the tendon, both ends.
+/// Appends the straight segments of all tendons as last computed: the tendon, both ends.
 fn tendon_lines<T: Precision>(sim: &Sim<T>, out: &mut Vec<f32>) {
     for line in sim.tendon_lines() {
         out.push(line.tendon as f32);
@@ -277,7 +280,7 @@ fn tendon_lines<T: Precision>(sim: &Sim<T>, out: &mut Vec<f32>) {
     }
 }
 
-/// Gaps and gradients below this are drawn as this.
+/// The lower limit of plotted gaps and gradients.
 const LEAST: f64 = 1e-20;
 
 fn plots<T: Precision>(s: &Shown<T>, out: &mut Vec<f32>) {

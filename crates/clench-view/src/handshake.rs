@@ -1,17 +1,17 @@
-//! The answer to a WebSocket's handshake: SHA-1 of the browser's key, as RFC 6455 asks for. It proves that WebSockets are spoken here, and
-//! keeps no secret.
+//! The reply to a WebSocket handshake: SHA-1 of the browser's key, as RFC 6455 requires. It proves that the server
+//! supports WebSockets and protects no secret.
 
 use clench::formats::base64;
 
-/// What the standard appends to every key.
+/// The suffix that the standard appends to every key.
 const WEBSOCKET: &[u8] = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11";
 
-/// `Sec-WebSocket-Accept` for a `Sec-WebSocket-Key`.
+/// Returns the `Sec-WebSocket-Accept` value of a `Sec-WebSocket-Key`.
 pub(crate) fn accept_key(key: &str) -> String {
     base64::encode(&sha1(&[key.as_bytes(), WEBSOCKET].concat()))
 }
 
-/// SHA-1 of a message (FIPS 180-4).
+/// Computes SHA-1 of a message (FIPS 180-4).
 fn sha1(message: &[u8]) -> [u8; 20] {
     let mut padded = message.to_vec();
     padded.push(0x80);

@@ -1,21 +1,21 @@
-//! As much of HTTP/1.1 as a page and a WebSocket need: the head of a request, checked, and a reply.
+//! The subset of HTTP/1.1 that a page and a WebSocket need: a validated request head, and a reply.
 //!
-//! A page on the web may try to reach a viewer that runs on its reader's machine. It does not know the token; and where the
-//! browser tells that the request comes from another page (`Origin`), or under a name that is not this machine's (`Host`, after the
-//! attacker's name came to mean this machine), it is refused before the token is looked at.
+//! A page on the web may try to reach a viewer on its reader's machine. It does not know the token. In addition, a
+//! request is refused before the token is checked if the browser reports that it comes from another page (`Origin`), or
+//! under a name that is not this machine's (`Host`, after DNS rebinding).
 
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-/// The longest head of a request, bytes.
+/// The maximum length of the head of a request, bytes.
 const MAX_HEAD: usize = 16 * 1024;
-/// The most header fields of a request.
+/// The maximum number of header fields of a request.
 const MAX_FIELDS: usize = 64;
-/// A request's head must have come by then.
+/// The time limit for the head of a request.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What a request asks for.
+/// The content of a valid request.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Request {
     /// The page.
@@ -24,7 +24,7 @@ pub(crate) enum Request {
     Socket(String),
 }
 
-/// A request that is not answered as it wants: its status and what is said.
+/// A refused request: the status and the text of the reply.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Refusal(pub &'static str, pub &'static str);
 
@@ -42,16 +42,16 @@ const NO_TOKEN: Refusal = Refusal(
 );
 const UNKNOWN: Refusal = Refusal("404 Not Found", "There is nothing here.");
 const METHOD: Refusal = Refusal("405 Method Not Allowed", "Only GET is allowed.");
-/// For one client too many.
+/// The reply to a client above the maximum number.
 pub(crate) const CROWDED: Refusal = Refusal(
     "503 Service Unavailable",
     "Too many pages look at this viewer already.",
 );
 
-/// Reads the head of a request and checks it.
+/// Reads and validates the head of a request.
 ///
 /// # Errors
-/// A connection that breaks or is too slow; inside, a request that is refused.
+/// Returns an error if the connection breaks or is too slow; the inner result is an error if the request is refused.
 pub(crate) fn read_request(
     stream: &mut TcpStream,
     token: &str,
@@ -87,7 +87,7 @@ fn parse(head: &[u8], token: &str, anywhere: bool) -> Result<Request, Refusal> {
     let field = |name: &str| {
         let mut found = (request.headers.iter()).filter(|f| f.name.eq_ignore_ascii_case(name));
         let first = found.next()?;
-        // Of a field that comes twice, nobody knows which one counts.
+        // A duplicated field is ambiguous.
         let text = std::str::from_utf8(first.value).ok()?.trim();
         found.next().is_none().then_some(text)
     };
@@ -134,8 +134,8 @@ fn parse(head: &[u8], token: &str, anywhere: bool) -> Result<Request, Refusal> {
     }
 }
 
-/// Whether a `Host` names this machine: a loopback address or name, and any address by its number for a server that
-/// listens to other machines.
+/// Returns true if a `Host` names this machine: a loopback address or name, or any numeric address if the server
+/// accepts other machines.
 fn is_ours(host: &str, anywhere: bool) -> bool {
     let name = match host.rsplit_once(':') {
         Some((name, port)) if port.bytes().all(|b| b.is_ascii_digit()) => name,
@@ -148,7 +148,7 @@ fn is_ours(host: &str, anywhere: bool) -> bool {
     }
 }
 
-/// Compares all of both, so that the time it takes tells nothing.
+/// Compares in a time that does not depend on the first difference.
 fn same_token(given: &str, token: &str) -> bool {
     let differing = given.bytes().zip(token.bytes()).map(|(a, b)| a ^ b);
     given.len() == token.len() && differing.fold(0, |all, bits| all | bits) == 0
@@ -157,15 +157,15 @@ fn same_token(given: &str, token: &str) -> bool {
 /// Sends the page.
 ///
 /// # Errors
-/// A connection that breaks.
+/// Returns an error if the connection breaks.
 pub(crate) fn send_page(stream: &mut TcpStream, html: &str) -> io::Result<()> {
     send(stream, "200 OK", "text/html; charset=utf-8", html)
 }
 
-/// Says why a request is refused.
+/// Sends the reason of a refusal.
 ///
 /// # Errors
-/// A connection that breaks.
+/// Returns an error if the connection breaks.
 pub(crate) fn send_refusal(
     stream: &mut TcpStream,
     Refusal(status, text): &Refusal,

@@ -1,4 +1,4 @@
-//! What users of the page have chosen, and what they do to a simulation, whoever steps it.
+//! The choices of the page's users and their effect on a simulation, independent of the code that steps it.
 
 use crate::command::{Command, cone};
 use crate::drag::{Drag, Turn};
@@ -9,34 +9,34 @@ use clench::math::Real;
 use clench::rigid::{Precision, Sim};
 use clench::{RigidOptions, SimError};
 
-/// Which environments of a batch are seen.
+/// The selected environments of a batch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
-    /// The one whose contacts and numbers are shown, and that is touched.
+    /// The environment that is plotted and interacted with.
     pub env: usize,
-    /// The first of those side by side.
+    /// The first environment of those side by side.
     pub first: usize,
-    /// How many are side by side; 1 for the chosen one alone.
+    /// The number of environments side by side; 1 for `env` only.
     pub count: usize,
 }
 
-/// What users of the page have chosen.
+/// The choices of the page's users.
 pub struct Interaction {
-    /// Whether the simulation stands still.
+    /// True if the simulation is paused.
     pub paused: bool,
-    /// Simulated over real time; 0 for as fast as can be.
+    /// The ratio of simulated to real time; 0 for as fast as possible.
     pub factor: f64,
-    /// Which environments are seen.
+    /// The selected environments.
     pub selection: Selection,
-    /// The spring that pulls, and the environment that it pulls in.
+    /// The active spring and its environment.
     drag: Option<(usize, Hold)>,
 }
 
-/// What a user does with a body.
+/// A spring on a body.
 enum Hold {
-    /// Pulls it.
+    /// Pulls the body.
     Pull(Drag),
-    /// Turns it.
+    /// Rotates the body.
     Turn(Turn),
 }
 
@@ -57,7 +57,7 @@ impl Hold {
 }
 
 impl Interaction {
-    /// Nothing touched yet.
+    /// Creates the state before any command.
     pub fn new(paused: bool) -> Self {
         Interaction {
             paused,
@@ -71,10 +71,10 @@ impl Interaction {
         }
     }
 
-    /// Lets the spring pull with the force that it has now, if there is one. To be called before each step.
+    /// Applies the present force of the spring, if there is one. Call it before each step.
     ///
     /// # Errors
-    /// A state that cannot be evaluated.
+    /// Returns an error if the state cannot be evaluated.
     pub fn pull<V: Viewed>(&mut self, viewed: &mut V) -> Result<(), SimError> {
         match &mut self.drag {
             None => Ok(()),
@@ -86,10 +86,10 @@ impl Interaction {
         }
     }
 
-    /// Lets go of what is pulled.
+    /// Releases the body.
     ///
     /// # Errors
-    /// An environment that is no longer there.
+    /// Returns an error if the environment no longer exists.
     pub fn release<V: Viewed>(&mut self, viewed: &mut V) -> Result<(), SimError> {
         match self.drag.take() {
             None => Ok(()),
@@ -100,10 +100,10 @@ impl Interaction {
         }
     }
 
-    /// Does what a user did. Steps and the way back are the business of whoever steps.
+    /// Executes a command. The caller handles steps and rewinding.
     ///
     /// # Errors
-    /// Why it cannot be done; nothing has changed then.
+    /// Returns the reason if the command fails; nothing has changed then.
     pub fn apply<V: Viewed>(&mut self, viewed: &mut V, command: Command) -> Result<(), String> {
         command.check(viewed.model(), viewed.envs())?;
         self.carry_out(viewed, command)
@@ -185,10 +185,10 @@ impl Interaction {
         Ok(())
     }
 
-    /// The bytes of a frame of what is now; `past` are the first and last time, s, to which one can come back.
+    /// Encodes a frame of the present state; `past` are the first and last time that rewinding can reach, s.
     ///
     /// # Errors
-    /// A state that cannot be evaluated.
+    /// Returns an error if the state cannot be evaluated.
     pub fn frame<V: Viewed>(
         &self,
         viewed: &mut V,

@@ -1,11 +1,11 @@
-//! The viewer: a page in the browser that shows a simulation and lets users touch it.
+//! The viewer: a page in the browser that shows a simulation and lets users interact with it.
 //!
-//! [`scene`] says what there is to draw, [`surfaces`] how pictures lie on it, [`frame`] where it is now and what pushes on what;
-//! viewers, recordings and films share them. [`Server`] hands a page, a scene and frames to browsers, and their [`Command`]s to whoever steps the simulation:
-//! [`Player`], which steps it itself in real time, or a loop of the user's with a [`PassiveViewer`]. What commands do is the same
-//! in both, in [`interaction`]. The page itself stands in `web/`.
+//! [`scene`] describes the elements to draw, [`surfaces`] their textures, [`frame`] their poses and the forces;
+//! viewers, recordings and films share them. [`Server`] sends a page, a scene and frames to browsers, and passes their
+//! [`Command`]s to the code that steps the simulation: [`Player`], which steps it in real time, or the user's own loop
+//! with a [`PassiveViewer`]. [`interaction`] implements the commands for both. The source of the page is in `web/`.
 //!
-//! No physics here, and nothing about the layout of the page.
+//! This crate contains no physics and does not define the layout of the page.
 
 #![deny(unreachable_pub)]
 

@@ -1,69 +1,70 @@
-//! What users draw into a scene themselves: spheres, lines, arrows and words, each for a while.
+//! Marks that users draw into a scene: spheres, lines, arrows and texts, each with a lifetime.
 
 use std::iter;
 
-/// The most marks at a time: what a loop draws and never takes away must not fill the memory.
+/// The maximum number of marks; it limits the memory of a loop that draws without clearing.
 pub const MAX_MARKS: usize = 10_000;
-/// The most characters of a text.
+/// The maximum number of characters of a text.
 pub const MAX_TEXT: usize = 200;
 
-/// What a mark is, in world coordinates, m.
+/// The shape of a mark, in world coordinates, m.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkShape {
     /// A sphere.
     Sphere {
-        /// Its centre.
+        /// The centre.
         center: [f64; 3],
-        /// Its radius.
+        /// The radius.
         radius: f64,
     },
     /// A straight line.
     Line {
-        /// One end.
+        /// The first end.
         from: [f64; 3],
-        /// The other.
+        /// The second end.
         to: [f64; 3],
-        /// Half its thickness.
+        /// Half the thickness.
         radius: f64,
     },
     /// An arrow.
     Arrow {
-        /// Where it begins.
+        /// The tail.
         from: [f64; 3],
-        /// Its tip.
+        /// The tip.
         to: [f64; 3],
-        /// Half the thickness of its shaft.
+        /// Half the thickness of the shaft.
         radius: f64,
     },
-    /// Words that face the camera, in one size on the screen wherever they are.
+    /// A text that faces the camera, with a constant size on the screen.
     Text {
-        /// Their middle.
+        /// The centre of the text.
         at: [f64; 3],
-        /// What they say.
+        /// The text.
         text: String,
     },
 }
 
-/// A drawing of a user's.
+/// A mark that a user draws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// What it is.
+    /// The shape.
     pub shape: MarkShape,
     /// Red, green, blue and opacity, each from 0 to 1.
     pub rgba: [f32; 4],
-    /// For how long it is seen, s of simulated time; with 0 until what comes next has been shown.
+    /// The lifetime, s of simulated time; with 0 the mark is shown once.
     pub lifetime: f64,
 }
 
-/// The marks that are seen, each with the simulated time at which it was first shown.
+/// The visible marks, each with the simulated time at which it was first shown.
 #[derive(Clone, Debug, Default)]
 pub struct Marks(Vec<(Mark, Option<f64>)>);
 
 impl Marks {
-    /// Draws one more.
+    /// Adds a mark.
     ///
     /// # Errors
-    /// Numbers that are not finite, or a lifetime below 0; a text that is too long; too many marks.
+    /// Returns an error if a number is not finite, a colour is not within 0 to 1, the lifetime is negative, the text is
+    /// too long or there are too many marks.
     pub fn add(&mut self, mark: Mark) -> Result<(), String> {
         let (from, to, radius) = mark.place();
         let numbers = from.into_iter().chain(to).chain([radius]);
@@ -88,13 +89,13 @@ impl Marks {
         Ok(())
     }
 
-    /// Takes all away.
+    /// Removes all marks.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Those that are seen at a time, s: what is over by then goes away. A time before the one at which a mark was first shown is
-    /// that of a simulation that was set back, and ends it too.
+    /// Returns the marks that are visible at a time, s, and removes expired ones. A time before a mark was first shown
+    /// means that the simulation was reset, and removes the mark too.
     pub fn at(&mut self, time: f64) -> impl Iterator<Item = &Mark> + Clone {
         self.0.retain_mut(|(mark, born)| {
             let begin = *born.get_or_insert(time);
@@ -103,14 +104,14 @@ impl Marks {
         self.0.iter().map(|(mark, _)| mark)
     }
 
-    /// Takes those away that are seen only once.
+    /// Removes the marks that are shown only once.
     pub fn shown(&mut self) {
         self.0.retain(|(mark, _)| mark.lifetime > 0.0);
     }
 }
 
 impl Mark {
-    /// Both ends and the radius.
+    /// Returns both ends and the radius.
     fn place(&self) -> ([f64; 3], [f64; 3], f64) {
         match self.shape {
             MarkShape::Sphere { center, radius } => (center, center, radius),
@@ -121,7 +122,7 @@ impl Mark {
         }
     }
 
-    /// What it says.
+    /// Returns the text; empty for other shapes.
     pub(crate) fn text(&self) -> &str {
         match &self.shape {
             MarkShape::Text { text, .. } => text,
@@ -129,7 +130,7 @@ impl Mark {
         }
     }
 
-    /// As a frame shows it, but for its text.
+    /// Returns the row of a frame, without the text.
     pub(crate) fn row(&self) -> [f32; 12] {
         let kind = match self.shape {
             MarkShape::Sphere { .. } => 0.0,

@@ -1,7 +1,7 @@
-//! The page that browsers load: one HTML document with its script in it.
+//! The page that browsers load: one HTML document that includes its script.
 //!
-//! It is built from `web/` by Node and embedded when this crate is compiled, if it was there by then. In a checkout where it
-//! was not, it is built when it is first needed.
+//! Node builds it from `web/`. A page that exists when this crate is compiled is embedded; otherwise a checkout builds
+//! it on first use.
 
 use flate2::read::GzDecoder;
 use std::io::Read;
@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{fs, io};
 
-/// The page that was there when this crate was compiled, by gzip; empty if none was.
+/// The page that existed when this crate was compiled, compressed by gzip; empty if there was none.
 const EMBEDDED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/page.html.gz"));
-/// The folder of its source.
+/// The source folder of the page.
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web");
 
-/// Where data stand in a page: between these, and nothing in the page itself.
+/// The markers around the data of a recording; nothing stands between them in the page itself.
 const BEFORE_DATA: &str = "<script id=\"recording\" type=\"application/json\">";
 const AFTER_DATA: &str = "</script>";
 
@@ -22,24 +22,24 @@ const AFTER_DATA: &str = "</script>";
 #[derive(Clone, Debug)]
 pub struct Page(String);
 
-/// No page could be had.
+/// An error of finding the page.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
-    /// It was not built, and its source is not here.
+    /// The page was not built, and its source is not available.
     #[error(
         "the viewer's page is not part of this build: build it with `npm ci && npm run build` in web/ and compile again"
     )]
     NotBuilt,
-    /// A program that builds it cannot be started.
+    /// A program of the build cannot be started.
     #[error(
         "the viewer's page has to be built once, which needs Node.js 20 or later with npm: {0}; install it, \
          on Debian with `apt-get install nodejs npm`"
     )]
     NoNode(io::Error),
-    /// A program that builds it failed.
+    /// A program of the build failed.
     #[error("`{0}` failed in {1}:\n{2}")]
     Failed(String, PathBuf, String),
-    /// What was built has no place for the data of a recording: its source was another version's.
+    /// The page lacks the markers for data because another version built it.
     #[error(
         "the viewer's page was built by another version: build it with `npm ci && npm run build` in web/ and compile again"
     )]
@@ -47,16 +47,17 @@ pub enum PageError {
     /// The embedded page cannot be decompressed.
     #[error("the viewer's page in this program is damaged ({0}): compile it again")]
     Damaged(io::Error),
-    /// What was built cannot be read.
+    /// The page cannot be read.
     #[error("{0}: {1}")]
     Unreadable(PathBuf, io::Error),
 }
 
 impl Page {
-    /// The embedded page, else the one in the source folder, which is built first if it is not there; `tell` is told when.
+    /// Returns the embedded page, or else the one in the source folder, which is built first if it is missing; `tell`
+    /// receives a message before a build.
     ///
     /// # Errors
-    /// That there is none, and what to do about it.
+    /// Returns an error with a remedy if no page is available.
     pub fn find(tell: impl Fn(&str)) -> Result<Self, PageError> {
         if !EMBEDDED.is_empty() {
             let mut text = String::new();
@@ -79,10 +80,10 @@ impl Page {
         Page::of(text.map_err(|error| PageError::Unreadable(built, error))?)
     }
 
-    /// The page of this text.
+    /// Creates a page from HTML.
     ///
     /// # Errors
-    /// A text without a place for data.
+    /// Returns an error if the text lacks the markers for data.
     pub fn of(text: impl Into<String>) -> Result<Self, PageError> {
         let text = text.into();
         let place = format!("{BEFORE_DATA}{AFTER_DATA}");
@@ -92,22 +93,22 @@ impl Page {
         }
     }
 
-    /// Its HTML.
+    /// Returns the HTML.
     pub fn html(&self) -> &str {
         &self.0
     }
 
-    /// The page with data in it, which it shows instead of connecting to a server.
+    /// Returns the page with embedded data, which it shows instead of connecting to a server.
     pub(crate) fn with_data(&self, json: &str) -> String {
-        // A script ends at `</`, wherever that stands.
+        // In HTML, any `</` could end a script.
         let data = json.replace("</", "<\\/");
         (self.0).replacen(BEFORE_DATA, &format!("{BEFORE_DATA}{data}"), 1)
     }
 
-    /// The data that such a page has.
+    /// Returns the data embedded in such a page.
     pub(crate) fn data(html: &str) -> Option<&str> {
         let (_, rest) = html.split_once(BEFORE_DATA)?;
-        // JSON may hold `<\/` wherever it holds `</`.
+        // In JSON, `<\/` is equivalent to `</`.
         let (data, _) = rest.split_once(AFTER_DATA)?;
         (!data.is_empty()).then_some(data)
     }

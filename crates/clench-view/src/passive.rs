@@ -1,4 +1,4 @@
-//! A viewer beside a loop that steps the simulation itself: the loop calls it between steps.
+//! A viewer for a loop that steps the simulation itself: the loop calls it between steps.
 
 use crate::command::Command;
 use crate::frame::Timing;
@@ -10,42 +10,42 @@ use crate::{Page, Scene, ServeError, Server, ServerOptions};
 use clench::SimError;
 use std::time::{Duration, Instant};
 
-/// Time between frames while a page looks.
+/// The interval between frames while a page is connected.
 const PERIOD: Duration = Duration::from_micros(16_667);
-/// Time between frames while none does, so that one that comes finds something.
+/// The interval between frames while no page is connected, so that a new one finds a frame.
 const IDLE_PERIOD: Duration = Duration::from_millis(500);
-/// How long a loop that stands still waits before it looks again at what users do.
+/// The interval between polls of the commands while the loop is paused.
 const REST: Duration = Duration::from_millis(10);
-/// A loop that is later than this, s, is no longer waited for: it does not make up for it.
+/// The maximum delay that the loop compensates, s.
 const LATE: f64 = 0.1;
-/// A loop that is further ahead than this, s, has jumped to another time or was told another speed.
+/// The lead of the loop, s, above which it is assumed to have jumped in time or to have a new speed.
 const MAX_AHEAD: f64 = 10.0;
 
-/// A server, what its users do, and what is drawn for them.
+/// A server, the state of its users and their marks.
 pub struct PassiveViewer {
     server: Server,
-    /// What users have chosen.
+    /// The choices of the users.
     pub interaction: Interaction,
-    /// What is drawn beside the scene.
+    /// The marks drawn in addition to the scene.
     pub marks: Marks,
-    /// Turns of the loop that users have asked for while it stands still.
+    /// The loop iterations that users have requested while it is paused.
     steps: u32,
-    /// Real and simulated time from which on both are compared.
+    /// The real and simulated time from which both are compared.
     anchor: Option<(Instant, f64)>,
     published: Option<Instant>,
-    /// When the loop went on, and its simulated time then.
+    /// The real and simulated time at which the loop resumed.
     left: Option<(Instant, f64)>,
     timing: Timing,
     stages: StageClock,
-    /// How many steps the loop has taken since `stages` last read the profile.
+    /// The number of steps since `stages` last read the profile.
     unread_steps: u32,
 }
 
 impl PassiveViewer {
-    /// A server for what is viewed, which shows its present state as is chosen at first.
+    /// Starts a server for a simulation and publishes its present state.
     ///
     /// # Errors
-    /// Where one cannot listen, and why.
+    /// Returns an error if the server cannot listen.
     pub fn start<V: Viewed>(
         options: &ServerOptions,
         page: Page,
@@ -72,16 +72,17 @@ impl PassiveViewer {
         Ok(viewer)
     }
 
-    /// The server.
+    /// Returns the server.
     pub fn server(&self) -> &Server {
         &self.server
     }
 
-    /// Does what users did since the last call, and shows what is now if that is due. Then the loop may go on, or it should wait
-    /// so long and call again: because users let it stand still, or because it is ahead of the time that they chose.
+    /// Executes the commands since the last call and publishes a frame if one is due. Returns `None` if the loop may
+    /// continue; otherwise the time to wait before the next call, because users paused it or because it is ahead of the
+    /// selected speed.
     ///
     /// # Errors
-    /// A state that cannot be pulled at.
+    /// Returns an error if the state cannot be evaluated for the spring.
     pub fn sync<V: Viewed>(&mut self, viewed: &mut V) -> Result<Option<Duration>, SimError> {
         let env = self.interaction.selection.env;
         self.measure(viewed, env);
@@ -105,16 +106,16 @@ impl PassiveViewer {
         Ok(wait)
     }
 
-    /// Leaves what is viewed as it would be without a viewer: nothing pulls at it, and no clock runs.
+    /// Removes the effect of the viewer: the spring is released and the clocks stop.
     ///
     /// # Errors
-    /// An environment that is no longer there.
+    /// Returns an error if the environment no longer exists.
     pub fn leave<V: Viewed>(&mut self, viewed: &mut V) -> Result<(), SimError> {
         viewed.run_clocks(false);
         self.interaction.release(viewed)
     }
 
-    /// Shows what is now.
+    /// Publishes a frame of the present state.
     pub fn show<V: Viewed>(&mut self, viewed: &mut V) {
         self.published = Some(Instant::now());
         if self.unread_steps > 0 {
@@ -146,7 +147,7 @@ impl PassiveViewer {
         }
     }
 
-    /// Measures how long the loop was away, and how far it came.
+    /// Measures the duration and the number of steps since the loop resumed.
     fn measure<V: Viewed>(&mut self, viewed: &V, env: usize) {
         let Some((when, before)) = self.left.take() else {
             return;
@@ -162,7 +163,7 @@ impl PassiveViewer {
         }
     }
 
-    /// How long the loop should wait at a simulated time, if it should.
+    /// Returns the time that the loop should wait at a simulated time, if any.
     fn wait(&mut self, time: f64) -> Option<Duration> {
         if self.interaction.paused {
             self.anchor = None;

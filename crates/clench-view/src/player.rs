@@ -1,4 +1,4 @@
-//! Steps a simulation in real time and does what users do in the page.
+//! Steps a simulation in real time and executes the commands of users.
 
 use crate::command::Command;
 use crate::frame::Timing;
@@ -10,26 +10,26 @@ use clench::{SimError, State};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// How far back one can go, s of simulated time.
+/// The rewind interval, s of simulated time.
 const REMEMBERED: f64 = 10.0;
-/// States that are remembered, at most.
+/// The maximum number of stored states.
 const MOMENTS: usize = 1200;
 
-/// A simulation, or a batch, that moves by itself.
+/// A simulation or a batch that is stepped in real time.
 pub struct Player<V: Stepped> {
     viewed: V,
     interaction: Interaction,
-    /// Simulated time that is due, s.
+    /// The simulated time that is due, s.
     due: f64,
     past: VecDeque<State<V::Scalar>>,
-    /// The remembered moment that is looked at: those after it are forgotten with the next step.
+    /// The index of the stored state that is shown; the next step discards those after it.
     at: Option<usize>,
     timing: Timing,
     stages: StageClock,
 }
 
 impl<V: Stepped> Player<V> {
-    /// A simulation that begins to move, or stands still at first.
+    /// Creates a player that runs, or is paused at first.
     pub fn new(mut viewed: V, paused: bool) -> Self {
         viewed.run_clocks(true);
         Player {
@@ -43,20 +43,20 @@ impl<V: Stepped> Player<V> {
         }
     }
 
-    /// The simulation.
+    /// Returns the simulation.
     pub fn viewed(&self) -> &V {
         &self.viewed
     }
 
-    /// What users have chosen.
+    /// Returns the choices of the users.
     pub fn interaction(&mut self) -> &mut Interaction {
         &mut self.interaction
     }
 
-    /// The bytes of a frame of what is now.
+    /// Encodes a frame of the present state.
     ///
     /// # Errors
-    /// A state that cannot be evaluated.
+    /// Returns an error if the state cannot be evaluated.
     pub fn frame(&mut self) -> Result<Vec<u8>, SimError> {
         let nothing = &mut Marks::default();
         let ends = self.past.front().zip(self.past.back());
@@ -65,15 +65,15 @@ impl<V: Stepped> Player<V> {
         (self.interaction).frame(&mut self.viewed, self.timing, past, nothing)
     }
 
-    /// The simulated time of the environment that is looked at, s.
+    /// Returns the simulated time of the selected environment, s.
     fn time(&self) -> f64 {
         self.viewed.time(self.interaction.selection.env)
     }
 
-    /// Takes the steps that are due after so much real time, but stops after `budget`.
+    /// Takes the steps that are due after `passed` real time, but stops after `budget`.
     ///
     /// # Errors
-    /// A motion that diverges; the simulation then stands still at its last good state.
+    /// Returns an error if the motion diverges; the simulation then pauses at its last good state.
     pub fn advance(&mut self, passed: Duration, budget: Duration) -> Result<(), SimError> {
         if self.interaction.paused {
             return Ok(());
@@ -93,7 +93,7 @@ impl<V: Stepped> Player<V> {
             self.timing.step = start.elapsed() / steps;
             self.timing.stages = self.stages.mean_since_last(&self.viewed.profile(), steps);
         }
-        // What could not be done in time is not made up for.
+        // Steps that exceed the budget are dropped.
         self.due = self.due.clamp(0.0, timestep);
         self.timing.speed = (self.time() - before) / passed.as_secs_f64().max(1e-9);
         Ok(())
@@ -112,7 +112,7 @@ impl<V: Stepped> Player<V> {
         done
     }
 
-    /// Keeps the state if enough time has passed since the last that was kept.
+    /// Stores the state if enough time has passed since the last stored one.
     fn remember(&mut self) {
         let time = self.time();
         let due = |last: &State<V::Scalar>| time >= last.time + REMEMBERED / MOMENTS as f64;
@@ -124,10 +124,10 @@ impl<V: Stepped> Player<V> {
         }
     }
 
-    /// Does what a user did, if the model has what it needs.
+    /// Executes a command.
     ///
     /// # Errors
-    /// Why it cannot be done; nothing has changed then.
+    /// Returns the reason if the command fails; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<(), String> {
         command.check(self.viewed.model(), self.viewed.envs())?;
         let said = |error: SimError| error.to_string();
@@ -148,20 +148,20 @@ impl<V: Stepped> Player<V> {
         }
     }
 
-    /// To the last remembered state that is not after a time, s, standing still there. The present is remembered too, so that one can
-    /// come forward again.
+    /// Goes to the last stored state that is not after a time, s, and pauses. Stores the present state too, so that
+    /// later moments stay available.
     fn go_to(&mut self, time: f64) -> Result<(), SimError> {
         self.interaction.paused = true;
         self.interaction.release(&mut self.viewed)?;
         if self.at.is_none() {
             let now = self.time();
-            // What was changed by hand since it was remembered.
+            // The user may have changed the state since it was stored.
             if self.past.back().is_some_and(|last| last.time >= now) {
                 self.past.pop_back();
             }
             self.past.extend(self.viewed.moment());
         }
-        // Pages tell times in single precision.
+        // Pages store times in single precision.
         let until = time + 0.5 * self.viewed.model().params.timestep;
         let at = self.past.iter().rposition(|moment| moment.time <= until);
         let at = at.unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Frames that are kept, and the page that replays them from a file.
+//! Recorded frames and the page that replays them from a file.
 
 use crate::frame::{FrameExtras, MAGIC, SECTIONS, encode};
 use crate::marks::Marks;
@@ -8,43 +8,43 @@ use clench::formats::base64;
 use clench::rigid::{Precision, Sim};
 use serde_json::{Value, json};
 
-/// What happened in a simulation, moment by moment.
+/// The frames of a simulation.
 pub struct Recording {
-    /// As the page reads it.
+    /// The scene as the page reads it.
     scene: Value,
-    /// Frames as base 64, each on its own.
+    /// The frames in base 64, encoded separately.
     frames: Vec<String>,
     bytes: usize,
     limit: usize,
 }
 
-/// Why a frame could not be kept.
+/// An error of recording a frame.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The simulation has no frame to give.
+    /// The state of the simulation cannot be evaluated.
     #[error(transparent)]
     Sim(#[from] SimError),
-    /// It would be larger than allowed.
+    /// The recording would exceed the limit.
     #[error("a recording of {0} frames takes all of the {1} MB that it may: record fewer of them")]
     Full(usize, usize),
 }
 
-/// Why a page cannot be read as a recording.
+/// An error of reading a recording from a page.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// There is none in it, or it was cut off.
+    /// The page contains no recording, or a truncated one.
     #[error("this is no page of Clench with a whole recording in it")]
     None,
-    /// The frames mean something else.
+    /// The format of the frames is of another version.
     #[error("this recording was made by another version of Clench; it can be opened in a browser")]
     Version,
-    /// It is larger than allowed.
+    /// The recording exceeds the limit.
     #[error("this recording is larger than the {0} MB that it may be")]
     Full(usize),
 }
 
 impl Recording {
-    /// An empty recording of so many bytes at most.
+    /// Creates an empty recording of at most `limit` bytes.
     pub fn new(scene: Scene, limit: usize) -> Self {
         Recording {
             scene: json!(scene.passive()),
@@ -54,24 +54,24 @@ impl Recording {
         }
     }
 
-    /// How many frames there are.
+    /// Returns the number of frames.
     pub fn len(&self) -> usize {
         self.frames.len()
     }
-    /// Whether there is none.
+    /// Returns true if there is no frame.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 
-    /// Whether the frames of a scene can be appended to those that are here.
+    /// Returns true if frames of the scene can be appended.
     pub fn is_of(&self, scene: Scene) -> bool {
         self.scene == json!(scene.passive())
     }
 
-    /// Keeps what is now, with what users draw.
+    /// Records the present state with the marks.
     ///
     /// # Errors
-    /// A state that cannot be evaluated; a recording that is full.
+    /// Returns an error if the state cannot be evaluated or the recording is full.
     pub fn append<T: Precision>(
         &mut self,
         sim: &mut Sim<T>,
@@ -92,21 +92,21 @@ impl Recording {
         Ok(())
     }
 
-    /// The times of the frames, s.
+    /// Returns the times of the frames, s.
     pub fn times(&self) -> Vec<f64> {
         self.frames.iter().filter_map(|frame| time(frame)).collect()
     }
 
-    /// One HTML document that replays it without a server.
+    /// Returns an HTML document that replays the recording without a server.
     pub fn to_html(&self, page: &Page) -> String {
         let data = json!({"scene": self.scene, "frames": self.frames});
         page.with_data(&data.to_string())
     }
 
-    /// The recording in such a document, of so many bytes at most.
+    /// Reads the recording of such a document, of at most `limit` bytes.
     ///
     /// # Errors
-    /// A document without one, or with one that this version could not have written.
+    /// Returns an error if the document contains no recording, one of another version, or one above the limit.
     pub fn from_html(html: &str, limit: usize) -> Result<Self, ReadError> {
         let data = Page::data(html).ok_or(ReadError::None)?;
         let mut data: Value = serde_json::from_str(data).map_err(|_| ReadError::None)?;
@@ -138,9 +138,9 @@ impl Recording {
     }
 }
 
-/// The time of a frame, if it is one.
+/// Returns the time of a frame; `None` if it is invalid.
 fn time(frame: &str) -> Option<f64> {
-    // Sixteen bytes are the first of these letters.
+    // 24 characters of base 64 are more than the first sixteen bytes.
     let head = base64::decode(frame.get(..24)?).ok()?;
     let time = head.get(8..16)?.try_into().ok()?;
     head.starts_with(&MAGIC).then_some(f64::from_le_bytes(time))

@@ -1,4 +1,4 @@
-//! What there is to draw: everything of a model that stays as it is while it moves. The page reads it as JSON.
+//! The scene: the constant part of a model's appearance. The page reads it as JSON.
 
 use crate::frame::SECTIONS;
 use crate::stages::STAGES;
@@ -14,14 +14,14 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// What there is to draw. Poses are relative to bodies, quaternions have w first, lengths are in metres.
+/// The elements to draw. Poses are relative to bodies, quaternions have w first, lengths are in metres.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scene {
     name: String,
     timestep: f64,
-    /// Names and widths of the sections of frames, in order.
+    /// The names and widths of the sections of frames, in order.
     sections: Vec<Value>,
-    /// Names of the stages of a step whose times are in frames.
+    /// The names of the stages whose times are in frames.
     stages: [&'static str; STAGES.len()],
     bodies: Vec<Value>,
     geoms: Vec<Value>,
@@ -39,18 +39,18 @@ pub struct Scene {
     height_fields: Vec<Value>,
     materials: Vec<Value>,
     textures: Vec<Value>,
-    /// The tree of each body, where one moves it.
+    /// The tree of each movable body.
     trees: Vec<Option<usize>>,
-    /// Whether commands reach a simulation.
+    /// True if commands reach a simulation.
     active: bool,
-    /// Whether one can go back in time.
+    /// True if the simulation can be rewound.
     rewinds: bool,
-    /// How many environments there are.
+    /// The number of environments.
     envs: usize,
 }
 
 impl Scene {
-    /// The scene of a model.
+    /// Creates the scene of a model.
     pub fn new(model: &Model) -> Self {
         Scene {
             name: model.name.clone(),
@@ -102,7 +102,7 @@ impl Scene {
         }
     }
 
-    /// The scene of so many environments, each of which moves by itself.
+    /// Returns the scene of `envs` independent environments.
     pub fn of_envs(self, envs: usize) -> Self {
         Scene {
             envs,
@@ -111,7 +111,7 @@ impl Scene {
         }
     }
 
-    /// The same for a simulation that does not keep where it has been.
+    /// Returns the scene of a simulation that stores no past states.
     pub fn without_past(self) -> Self {
         Scene {
             rewinds: false,
@@ -119,7 +119,7 @@ impl Scene {
         }
     }
 
-    /// The same for a page whose commands reach no simulation.
+    /// Returns the scene of a page whose commands reach no simulation.
     pub fn passive(self) -> Self {
         Scene {
             active: false,
@@ -127,9 +127,9 @@ impl Scene {
         }
     }
 
-    /// As the page reads it.
+    /// Returns the scene as JSON for the page.
     pub fn to_json(&self) -> String {
-        // Numbers, texts and lists of them: nothing that JSON could not hold.
+        // Numbers, texts and lists of them always serialize.
         serde_json::to_string(self).unwrap_or_default()
     }
 }
@@ -143,12 +143,12 @@ fn body(model: &Model, b: usize) -> Value {
         "inertia": p.body_inertia[b].to_array(),
         "ipos": p.body_ipos[b].to_array(),
         "iquat": p.body_iquat[b].to_array(),
-        // Whether a force can move it.
+        // True if a force can move it.
         "free": p.body_invweight0[b][0] > 0.0,
     })
 }
 
-/// The word of MJCF for a shape.
+/// Returns the MJCF keyword of a shape.
 fn shape(kind: ShapeKind) -> &'static str {
     match kind {
         ShapeKind::Plane => "plane",
@@ -175,12 +175,12 @@ fn placed(
         "size": size.to_array(),
         "rgba": model.visuals.rgba(appearance),
         "material": appearance.material,
-        // How coordinates become places in a texture.
+        // The factor from coordinates to texture coordinates.
         "scale": surfaces::texture_scale(model, appearance, kind, size),
     })
 }
 
-/// The entries of both objects.
+/// Merges the entries of both objects.
 fn merged(mut first: Value, second: Value) -> Value {
     if let (Value::Object(first), Value::Object(second)) = (&mut first, second) {
         first.extend(second);
@@ -212,7 +212,7 @@ fn site(model: &Model, s: usize) -> Value {
     let (site, p) = (&model.sites[s], &model.params);
     let (mut pos, mut quat) = (p.site_pos[s], p.site_quat[s]);
     if let Some(mesh) = site.mesh {
-        // The page has meshes about their centres of mass, a site has them in their author's coordinates.
+        // The page stores meshes about their centres of mass, a site uses the author's coordinates.
         let mesh = &model.meshes[mesh];
         pos += quat.rotate(mesh.pos);
         quat = quat * mesh.quat;
@@ -311,7 +311,7 @@ fn tendon(model: &Model, t: usize) -> Value {
     })
 }
 
-/// Vertices and triangles of a mesh, and the triangles of its hull where it has one.
+/// Encodes vertices and triangles of a mesh, and the triangles of its hull if it has one.
 fn surface(mesh: &Mesh) -> Value {
     let numbers = |points: &[Vec3<f64>]| {
         let numbers = points.iter().flat_map(|v| v.to_array());
@@ -319,7 +319,7 @@ fn surface(mesh: &Mesh) -> Value {
     };
     let corners = |faces: &[[u32; 3]]| packed(faces.iter().flatten().map(|i| i.to_le_bytes()));
     let hull = mesh.hull.as_ref().map(|hull| {
-        // Faces are polygons; a fan of triangles draws each.
+        // Each polygonal face is drawn as a fan of triangles.
         let fans = (0..hull.face_count()).flat_map(|f| {
             let corners = hull.corners(f);
             let pairs = corners.windows(2).skip(1);
@@ -337,14 +337,14 @@ fn surface(mesh: &Mesh) -> Value {
     })
 }
 
-/// The texture coordinates of each corner of each triangle, where a mesh has any.
+/// Encodes the texture coordinates of each corner of each triangle, if the mesh has any.
 fn texcoords(mesh: &Mesh) -> Option<String> {
     let corners = mesh.face_texcoords.as_flattened().iter();
     let places = corners.flat_map(|&corner| mesh.texcoords[corner as usize]);
     (!mesh.texcoords.is_empty()).then(|| packed(places.map(f32::to_le_bytes)))
 }
 
-/// Numbers of four bytes each, in base 64.
+/// Encodes numbers of four bytes each in base 64.
 fn packed(numbers: impl Iterator<Item = [u8; 4]>) -> String {
     base64::encode(&numbers.flatten().collect::<Vec<u8>>())
 }
@@ -362,7 +362,7 @@ fn materials(visuals: &Visuals) -> Vec<Value> {
     visuals.materials.iter().map(material).collect()
 }
 
-/// The pictures of textures that something has; others are empty.
+/// Encodes the textures; the images of unused ones are empty.
 fn textures(model: &Model) -> Vec<Value> {
     let visuals = &model.visuals;
     let seen = visuals.geoms.iter().chain(&visuals.sites);

@@ -1,4 +1,4 @@
-//! Listens, lets browsers in, and hands each the newest frame.
+//! A server that accepts browsers and sends each the latest frame.
 
 use crate::command::Command;
 use crate::handshake::accept_key;
@@ -17,20 +17,20 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use tungstenite::{Bytes, Utf8Bytes};
 
-/// The most connections at a time.
+/// The maximum number of connections.
 pub(crate) const MAX_CLIENTS: usize = 64;
-/// The most commands that wait.
+/// The maximum number of pending commands.
 const MAX_COMMANDS: usize = 1024;
 
-/// Where a server listens.
+/// The address and token of a server.
 #[derive(Clone, Debug)]
 pub struct ServerOptions {
-    /// Name or address; only 127.0.0.1, where this is not changed, keeps other machines out.
+    /// The name or address; only the default 127.0.0.1 excludes other machines.
     pub host: String,
-    /// Port; 0 for any that is free.
+    /// The port; 0 for any free port.
     pub port: u16,
-    /// What the address must tell; a random one is made if none is given. One that stays the same lets pages find a server again
-    /// that was started anew.
+    /// The token that the URL must contain; `None` for a random one. With a fixed token, pages find a restarted server
+    /// again.
     pub token: Option<String>,
 }
 
@@ -44,10 +44,10 @@ impl Default for ServerOptions {
     }
 }
 
-/// Characters of a token that is given.
+/// The valid lengths of a given token.
 const TOKEN_LENGTHS: RangeInclusive<usize> = 16..=128;
 
-/// The token that is given, if others could not guess it and it fits into an address; else a random one.
+/// Validates the given token, which must be hard to guess and fit into a URL; otherwise creates a random one.
 fn token(given: Option<&str>) -> Result<String, ServeError> {
     if let Some(token) = given {
         let plain = token
@@ -63,42 +63,43 @@ fn token(given: Option<&str>) -> Result<String, ServeError> {
     Ok(random.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// A server that cannot start.
+/// An error of starting a server.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// The port is taken, or may not be used; the host is none of this machine's.
+    /// The port is in use or not permitted, or the host does not belong to this machine.
     #[error("cannot listen at {host}, port {port}: {error}")]
     Listen {
-        /// As asked for.
+        /// The requested host.
         host: String,
-        /// As asked for.
+        /// The requested port.
         port: u16,
-        /// What the system says.
+        /// The error of the system.
         error: io::Error,
     },
-    /// A token that others could guess, or that does not fit into an address.
+    /// The token is easy to guess, or does not fit into a URL.
     #[error("the viewer's token must have 16 to 128 letters, digits, - and _")]
     Token,
-    /// The system gives no random numbers, or no threads.
+    /// The system provides no random numbers or no threads.
     #[error("the viewer cannot start: {0}")]
     System(String),
 }
 
-/// A page, served to browsers as long as this lives.
+/// A server of the page; dropping it stops it.
 pub struct Server {
     shared: Arc<Shared>,
     commands: Mutex<Receiver<Command>>,
     address: SocketAddr,
     listener: Option<JoinHandle<()>>,
-    /// The process that the threads are of.
+    /// The process that owns the threads.
     process: u32,
 }
 
 impl Server {
-    /// Listens.
+    /// Starts listening.
     ///
     /// # Errors
-    /// A place where one cannot listen; a token that is none; a system without random numbers.
+    /// Returns an error if the address cannot be used, the token is invalid or the system lacks random numbers or
+    /// threads.
     pub fn start(options: &ServerOptions, page: Page, scene: &Scene) -> Result<Self, ServeError> {
         let refused = |error| ServeError::Listen {
             host: options.host.clone(),
@@ -139,7 +140,7 @@ impl Server {
         })
     }
 
-    /// Where browsers find it, with the token.
+    /// Returns the URL for browsers, with the token.
     pub fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
@@ -148,17 +149,17 @@ impl Server {
         format!("http://{address}/?token={}", self.shared.token)
     }
 
-    /// Whether it listens to this machine alone.
+    /// Returns true if only this machine can connect.
     pub fn is_local(&self) -> bool {
         !self.shared.anywhere
     }
 
-    /// How many connections there are.
+    /// Returns the number of connections.
     pub fn clients(&self) -> usize {
         self.shared.clients.load(Relaxed)
     }
 
-    /// Shows a frame to all browsers, as soon as each is ready for one.
+    /// Publishes a frame to all browsers; each receives it when it is ready.
     pub fn publish(&self, frame: Vec<u8>) {
         let mut news = self.shared.news();
         news.number += 1;
@@ -167,14 +168,14 @@ impl Server {
         self.shared.changed.notify_all();
     }
 
-    /// Tells all browsers something, such as why a simulation has stopped.
+    /// Sends a message to all browsers, such as why a simulation has stopped.
     pub fn tell(&self, text: &str) {
         let mut news = self.shared.news();
         news.said += 1;
         news.message = json!({ "error": text }).to_string().into();
     }
 
-    /// What users have done since this was last called.
+    /// Returns the commands since the last call.
     pub fn commands(&self) -> Vec<Command> {
         let commands = self.commands.lock();
         commands
@@ -186,7 +187,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // After a fork the child has no thread to wait for, and the server is its parent's.
+        // After a fork the child has no thread to join, and its parent owns the server.
         if process::id() != self.process {
             return;
         }
@@ -205,7 +206,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
         if shared.closing.load(Relaxed) {
             return;
         }
-        // One that is gone already is nobody's loss.
+        // A connection that is closed already is skipped.
         let Ok(mut stream) = stream else { continue };
         if shared.clients.fetch_add(1, Relaxed) >= MAX_CLIENTS {
             shared.clients.fetch_sub(1, Relaxed);
@@ -214,14 +215,14 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
             continue;
         }
         let guest = Guest(Arc::clone(shared));
-        // Without a thread to serve it the guest is dropped, and its place is free again.
+        // If the thread cannot start, the guest is dropped, which releases its slot.
         let _ = thread::Builder::new()
             .name("clench-view client".to_owned())
             .spawn(move || guest.serve(stream));
     }
 }
 
-/// A connection that counts.
+/// A counted connection.
 struct Guest(Arc<Shared>);
 
 impl Drop for Guest {
@@ -231,7 +232,7 @@ impl Drop for Guest {
 }
 
 impl Guest {
-    /// Serves it to its end. A connection that breaks is over; nobody needs to know.
+    /// Serves the connection until it ends. Errors of the connection are ignored.
     fn serve(self, mut stream: TcpStream) {
         let shared = &*self.0;
         let Ok(request) = http::read_request(&mut stream, &shared.token, shared.anywhere) else {

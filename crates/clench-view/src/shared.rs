@@ -1,4 +1,4 @@
-//! What the connections to browsers share with the server.
+//! State that the connections to browsers share with the server.
 
 use crate::Page;
 use crate::command::Command;
@@ -9,7 +9,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tungstenite::{Bytes, Utf8Bytes};
 
-/// What all connections share.
+/// The shared state of all connections.
 pub(crate) struct Shared {
     pub page: Page,
     pub scene: Utf8Bytes,
@@ -22,7 +22,7 @@ pub(crate) struct Shared {
     pub closing: AtomicBool,
 }
 
-/// What is newest, each with its number.
+/// The latest frame and message, each with its sequence number.
 #[derive(Clone)]
 pub(crate) struct News {
     pub number: u64,
@@ -36,7 +36,7 @@ impl Shared {
         self.news.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is newest, once there is a frame after this one or a while has passed.
+    /// Waits for a frame after this one, up to [`HEARTBEAT`], and returns the latest.
     pub(crate) fn newer_than(&self, seen: u64) -> News {
         let old = |news: &mut News| news.number <= seen && !self.closing.load(Relaxed);
         let waited = (self.changed).wait_timeout_while(self.news(), HEARTBEAT, old);
@@ -45,5 +45,5 @@ impl Shared {
     }
 }
 
-/// A browser that asks for a frame gets the old one again when no new one has come for so long.
+/// The time after which a browser receives the old frame again if there is no new one.
 pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);

@@ -1,5 +1,5 @@
-//! One browser's connection: it asks for the next frame when it has drawn the last, so that a slow one misses frames and delays
-//! nobody.
+//! The connection of one browser: it requests the next frame when it has drawn the last, so that a slow one skips
+//! frames and delays no other.
 
 use crate::command::Command;
 use crate::delta::delta;
@@ -13,23 +13,23 @@ use std::time::Duration;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, WebSocket};
 
-/// The longest message of a browser, bytes.
+/// The maximum length of a browser's message, bytes.
 const MAX_MESSAGE: usize = 16 * 1024;
-/// How often a connection without messages looks whether the server goes.
+/// The interval at which an idle connection checks if the server closes.
 const LOOK: Duration = Duration::from_millis(500);
-/// A browser that takes nothing for so long is given up.
+/// The time after which a browser that accepts no data is disconnected.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What a browser sends: an object whose `do` says what it asks.
+/// A message of a browser: an object whose `do` is its kind.
 enum Said {
-    /// The next frame, or what has changed in it since the last one that came.
+    /// Requests the next frame, or its difference from the last one received.
     Next { changes: bool },
-    /// To be done by whoever steps the simulation.
+    /// A command for the code that steps the simulation.
     Command(Command),
 }
 
 impl Said {
-    /// None where it is no object of either kind.
+    /// Parses a message; `None` if it is invalid.
     fn read(text: &str) -> Option<Self> {
         let mut object: Map<String, Value> = serde_json::from_str(text).ok()?;
         let Value::String(name) = object.remove("do")? else {
@@ -44,10 +44,10 @@ impl Said {
     }
 }
 
-/// Serves a browser after the handshake, until one of both goes.
+/// Serves a browser after the handshake, until the browser or the server closes.
 ///
 /// # Errors
-/// A connection that breaks.
+/// Returns an error if the connection breaks.
 pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(LOOK))?;
@@ -58,7 +58,7 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
     socket.send(Message::Text(shared.scene.clone()))?;
     let (mut seen, mut told) = (0, 0);
-    // What this browser has got last, whatever it missed before.
+    // The last frame that this browser received; it may have skipped others.
     let mut last = Bytes::new();
     loop {
         let message = match socket.read() {
@@ -105,7 +105,7 @@ fn refuse(socket: &mut WebSocket<TcpStream>, why: &str) -> Result<(), Error> {
     socket.send(Message::text(json!({ "error": why }).to_string()))
 }
 
-/// Nothing came in time.
+/// Returns true if the read timed out.
 fn is_pause(error: &io::Error) -> bool {
     matches!(
         error.kind(),

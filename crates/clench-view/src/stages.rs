@@ -1,9 +1,9 @@
-//! How the time of a step splits over the stages that the page plots. Each of them is the sum of some stages of a [`Profile`].
+//! The stages of a step that the page plots. Each is the sum of some stages of a [`Profile`].
 
 use clench::rigid::profile::Profile;
 use std::time::Duration;
 
-/// The stages that are plotted, in the order of a step.
+/// The plotted stages, in the order of a step.
 pub const STAGES: [&str; 6] = [
     "kinematics",
     "collision",
@@ -13,7 +13,7 @@ pub const STAGES: [&str; 6] = [
     "rest",
 ];
 
-/// The stages of a [`Profile`] that each of [`STAGES`] is the sum of.
+/// The stages of a [`Profile`] that sum to each of [`STAGES`].
 const PARTS: [&[&str]; STAGES.len()] = [
     &["kinematics", "inertia", "mass factorization"],
     &["collision broad", "collision narrow"],
@@ -34,7 +34,7 @@ const PARTS: [&[&str]; STAGES.len()] = [
 /// The time of each of [`STAGES`], summed over all threads.
 pub type StageTimes = [Duration; STAGES.len()];
 
-/// Turns the totals of a [`Profile`], which grow from step to step, into the time of a step.
+/// Converts the cumulative totals of a [`Profile`] into the time of a step.
 #[derive(Clone, Debug, Default)]
 pub struct StageClock {
     /// The totals at the last call.
@@ -42,7 +42,7 @@ pub struct StageClock {
 }
 
 impl StageClock {
-    /// The mean time of each stage over the `steps` that were taken since the last call.
+    /// Returns the mean time of each stage over the `steps` taken since the last call.
     pub fn mean_since_last(&mut self, profile: &Profile, steps: u32) -> StageTimes {
         let mut totals = StageTimes::default();
         for (name, time) in &profile.stages {

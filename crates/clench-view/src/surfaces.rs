@@ -1,11 +1,11 @@
-//! How pictures lie on geoms, for the page and for pictures without one.
+//! The mapping of textures to geoms, for the page and for the renderer.
 
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::math::Vec3;
 use clench::rigid::model::{Appearance, Pixels, Texture, TextureKind};
 
-/// The texture of an element, if its material has one that lies on surfaces.
+/// Returns the texture of an element, if its material has one that is not a sky.
 pub fn texture(model: &Model, appearance: Appearance) -> Option<usize> {
     let visuals = &model.visuals;
     let material = visuals.materials.get(appearance.material?)?;
@@ -13,11 +13,11 @@ pub fn texture(model: &Model, appearance: Appearance) -> Option<usize> {
     (visuals.textures.get(texture)?.kind != TextureKind::Sky).then_some(texture)
 }
 
-/// What the coordinates of a point of a geom, in its frame, are multiplied by to find its place in a texture, as MuJoCo's renderer
-/// has it (`render_gl3.c`): on a plane it is (x − ½, −y − ½), where one stands for the whole picture; in a cube around the geom it is
-/// the direction (x, y, z). Meshes with texture coordinates of their own do not need it for a plane.
+/// Returns the factors from the coordinates of a point in the geom frame to texture coordinates, as in MuJoCo's
+/// renderer (`render_gl3.c`): on a plane (x − ½, −y − ½), where 1 is the whole image; in a cube around the geom the
+/// direction (x, y, z). For planar textures, meshes with their own texture coordinates do not need it.
 ///
-/// `size` are the half sizes of the shape, as `geom_size` has them.
+/// `size` contains the half sizes of the shape, as in `geom_size`.
 pub fn texture_scale(
     model: &Model,
     appearance: Appearance,
@@ -36,7 +36,7 @@ pub fn texture_scale(
         ShapeKind::Cylinder => [x, x, y],
         _ => [x, y, z],
     };
-    // A side without end has no size that pictures could fit.
+    // An infinite side has no size to fit a texture to.
     let half = half.map(|half| if half > 0.0 { half } else { 1.0 });
     let is_given = matches!(kind, ShapeKind::Mesh | ShapeKind::HeightField);
     match visuals.textures[texture].kind {
@@ -55,13 +55,13 @@ pub fn texture_scale(
     }
 }
 
-/// The picture of a texture as a PNG image.
+/// Encodes the texture as a PNG image.
 pub fn png(texture: &Texture) -> Vec<u8> {
     let Pixels { width, height, rgb } = &*texture.pixels();
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, *width as u32, *height as u32);
     encoder.set_color(png::ColorType::Rgb);
-    // Nothing can fail that writes to memory; a picture without pixels is none.
+    // Writing to memory cannot fail; a texture without pixels gives an empty image.
     let written = (encoder.write_header()).and_then(|mut writer| writer.write_image_data(rgb));
     written.map_or(Vec::new(), |()| bytes)
 }

@@ -1,4 +1,4 @@
-//! What can be looked at: a simulation, or the environments of a batch, each as a simulation of its own.
+//! The objects that can be viewed: a simulation, or the environments of a batch as one simulation each.
 
 use clench::rigid::profile::Profile;
 use clench::rigid::{Precision, Sim};
@@ -6,34 +6,34 @@ use clench::{Batch, EnvStatus, Model, RigidOptions, SimError, State};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What can be looked at and touched.
+/// A simulation or batch that can be viewed and modified.
 pub trait Viewed {
-    /// Its numbers.
+    /// The scalar type.
     type Scalar: Precision;
 
-    /// Its model.
+    /// Returns the model.
     fn model(&self) -> &Arc<Model>;
 
-    /// How many environments there are.
+    /// Returns the number of environments.
     fn envs(&self) -> usize;
 
-    /// The simulated time of an environment, s.
+    /// Returns the simulated time of an environment, s.
     fn time(&self, env: usize) -> f64;
 
-    /// Asks about an environment.
+    /// Calls a function with the simulation of an environment.
     ///
     /// # Errors
-    /// An environment that is not there.
+    /// Returns an error if the environment does not exist.
     fn ask<R>(
         &mut self,
         env: usize,
         ask: impl FnOnce(&mut Sim<Self::Scalar>) -> R,
     ) -> Result<R, SimError>;
 
-    /// Asks about environments one after the other.
+    /// Calls a function with each environment of a range in order.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
+    /// See [`ask`](Self::ask).
     fn ask_each(
         &mut self,
         envs: Range<usize>,
@@ -46,50 +46,50 @@ pub trait Viewed {
     /// Changes the state of an environment.
     ///
     /// # Errors
-    /// An environment that is not there; why it cannot be changed.
+    /// Returns an error if the environment does not exist or the change fails.
     fn change(
         &mut self,
         env: usize,
         change: impl FnOnce(&mut Sim<Self::Scalar>) -> Result<(), SimError>,
     ) -> Result<(), SimError>;
 
-    /// Lets an environment begin anew, or at a keyframe.
+    /// Resets an environment to the initial state or to a keyframe.
     ///
     /// # Errors
-    /// An environment or keyframe that is not there.
+    /// Returns an error if the environment or keyframe does not exist.
     fn reset(&mut self, env: usize, keyframe: Option<usize>) -> Result<(), SimError>;
 
-    /// The options.
+    /// Returns the options.
     fn options(&self) -> RigidOptions;
 
     /// Sets the options of all environments.
     ///
     /// # Errors
-    /// Options out of range.
+    /// Returns an error if an option is out of range.
     fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError>;
 
-    /// Why an environment cannot go on, if it cannot.
+    /// Returns the reason if an environment cannot continue.
     fn fault(&self, env: usize) -> Option<String>;
 
-    /// Lets the clocks of a step's stages run, or not.
+    /// Starts or stops the clocks of a step's stages.
     fn run_clocks(&mut self, running: bool);
 
-    /// Where the time of steps went while the clocks ran.
+    /// Returns the time of the stages while the clocks ran.
     fn profile(&mut self) -> Profile;
 }
 
-/// What the viewer itself can step.
+/// A simulation or batch that the viewer can step.
 pub trait Stepped: Viewed {
     /// Takes a step.
     ///
     /// # Errors
-    /// A motion that diverges; nothing has changed then.
+    /// Returns an error if the motion diverges; nothing has changed then.
     fn step(&mut self) -> Result<(), SimError>;
 
-    /// What one can come back to, where that is kept.
+    /// Returns a copy of the state to rewind to, if supported.
     fn moment(&self) -> Option<State<Self::Scalar>>;
 
-    /// Back to a moment.
+    /// Restores a state.
     fn go_back(&mut self, moment: &State<Self::Scalar>);
 }
 
@@ -190,7 +190,7 @@ impl<S: Precision> Viewed for Batch<S> {
         let Some(first) = envs.clone().next() else {
             return Ok(());
         };
-        // One simulation stands for all in turn.
+        // One simulation is reused for all environments.
         let mut sim = self.sim(first)?;
         envs.into_iter().try_for_each(|env| {
             self.copy_to_sim(env, &mut sim)?;
@@ -245,7 +245,7 @@ impl<S: Precision> Stepped for Batch<S> {
         self.step().map(drop)
     }
 
-    /// A thousand environments, ten seconds of them, would fill the memory.
+    /// Returns `None`: ten seconds of a thousand environments would exceed the memory.
     fn moment(&self) -> Option<State<S>> {
         None
     }

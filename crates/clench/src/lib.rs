@@ -1,13 +1,14 @@
 //! MuJoCo's constraint model in Rust: load a robot, step it, read its contact forces.
 //!
-//! Every constraint of a scene (contacts, joint limits, dry friction, equalities) enters one convex problem, solved once
-//! a step for the accelerations that satisfy them all together, softly. What follows is a tour from a file to a force.
+//! All constraints of a scene (contacts, joint limits, dry friction, equalities) form one convex problem. Each step
+//! solves it once for the accelerations that satisfy all of them together, softly. The sections below lead from a file
+//! to a force.
 //!
 //! # Load and step
 //!
-//! [`load`] reads an MJCF file, [`load_str`] the same from text; names, units and defaults are MuJoCo's. A [`Model`]
-//! never changes, so simulations share it. A [`Sim`] is a model in motion: its [`State`] is open to be read and written
-//! between steps.
+//! [`load`] reads an MJCF file and [`load_str`] MJCF text; names, units and defaults are those of MuJoCo. A [`Model`]
+//! is immutable, so simulations share it. A [`Sim`] simulates a model; you can read and write its [`State`] between
+//! steps.
 //!
 //! ```
 //! use clench::prelude::*;
@@ -36,7 +37,7 @@
 //!
 //! # Read contacts and forces
 //!
-//! What a step computed stands in its [`workspace`](Sim::workspace); [`rigid::readout`] turns that into MuJoCo's terms.
+//! The results of a step are in its [`workspace`](Sim::workspace); [`rigid::readout`] returns them in MuJoCo's terms.
 //!
 //! ```
 //! use clench::{prelude::*, rigid::readout};
@@ -69,7 +70,7 @@
 //!
 //! # Set options
 //!
-//! What a user sets wins over the file's `<option>`, the file over its format's defaults.
+//! Options set by the user take precedence over the file's `<option>`, and the file over its format's defaults.
 //!
 //! ```
 //! # use clench::prelude::*;
@@ -84,8 +85,8 @@
 //!
 //! # Build a model by hand
 //!
-//! What a file says can be said in Rust: [`rigid::builder`] holds a description with public fields, and setters for what
-//! is said most often.
+//! You can also describe a model in Rust: [`rigid::builder`] has a description with public fields, and setters for the
+//! most common ones.
 //!
 //! ```
 //! use clench::prelude::*;
@@ -110,9 +111,10 @@
 //!
 //! # Step thousands at once
 //!
-//! A [`Batch`] steps many environments of one model side by side, on all processors. States and outputs are plain rows, one an
-//! environment; each environment moves as a `Sim` alone would, to the bit, and can have parameters of its own. One that cannot
-//! go on keeps its last good state and says why, until it is reset; its neighbours do not notice.
+//! A [`Batch`] steps many environments of one model in parallel, on all processors. States and outputs are plain rows,
+//! one per environment. Each environment moves exactly as in a single `Sim`, to the bit, and can have its own
+//! parameters. An environment that fails keeps its last good state and reports the reason until it is reset; the others
+//! are not affected.
 //!
 //! ```
 //! # use clench::prelude::*;
@@ -155,7 +157,7 @@
 //!
 //! # When something is wrong
 //!
-//! A mistake in a file is an error that says where it is, and bad input never panics.
+//! A mistake in a file is an error with its location, and bad input never panics.
 //!
 //! ```
 //! let error = clench::load_str("<mujoco>\n  <option timestop='0.001'/>\n</mujoco>").unwrap_err();
@@ -193,7 +195,7 @@ pub use clench_rigid::{
 #[doc = include_str!("../../../README.md")]
 struct Readme;
 
-/// What most programs need: `use clench::prelude::*`.
+/// The most common items: `use clench::prelude::*`.
 pub mod prelude {
     pub use crate::{
         Batch, BatchOptions, Controls, EnvStatus, Fault, LoadError, Model, RigidOptions, SaveModel,

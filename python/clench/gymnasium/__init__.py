@@ -1,7 +1,7 @@
 """Gymnasium environments over one batch.
 
-Importing this module registers gymnasium's eleven MuJoCo v5 tasks under names of ours. As vector environments all of
-their copies live in one :class:`clench.Batch`::
+Importing this module registers gymnasium's eleven MuJoCo v5 tasks under the prefix ``clench/``. In a vector
+environment, all copies are simulated by one :class:`clench.Batch`::
 
     import clench.gymnasium
     import gymnasium
@@ -13,12 +13,12 @@ their copies live in one :class:`clench.Batch`::
     env = gymnasium.make("clench/Humanoid-v5")
 
 Observations, rewards, infos, random initial states and keyword arguments are gymnasium's. The model files are read from
-the installed gymnasium package; its own ``mujoco`` extra is not needed. Beyond gymnasium's arguments each task takes
-those of :class:`BatchEnv`: ``precision``, ``device``, ``threads``, ``options`` and ``autoreset_mode``. With ``render_mode="rgb_array"``
-``render`` gives pictures, drawn without a window; there is no other mode.
+the installed gymnasium package; its own ``mujoco`` extra is not needed. In addition to gymnasium's arguments each task
+takes ``precision``, ``device``, ``threads``, ``options`` and ``autoreset_mode`` of :class:`BatchEnv`. With
+``render_mode="rgb_array"``, ``render`` returns pictures, drawn without a window; there is no other mode.
 
-A task of your own is a class that says over all environments at once what is observed, what it is worth, and when it is
-over::
+A custom task is a class that defines, over all environments at once, the observation, the reward, and the end of an
+episode::
 
     import numpy as np
     from clench.gymnasium import BatchEnv
@@ -42,9 +42,9 @@ over::
 
     envs = Balance(num_envs=256)
 
-Spaces follow from the model and from what ``observe`` returns. Derived quantities, such as positions of bodies, are
-named in ``outputs`` and read from ``self.batch``; :class:`BatchEnv` has the rest. A single environment of the same task
-is two lines, and names are given as gymnasium does it::
+Spaces are derived from the model and from the result of ``observe``. Derived quantities, such as positions of bodies,
+are named in ``outputs`` and read from ``self.batch``; see :class:`BatchEnv` for the rest. A single environment of the
+same task takes two lines, and names are registered as in gymnasium::
 
     class BalanceEnv(clench.gymnasium.SingleEnv):
         task = Balance

@@ -1,4 +1,4 @@
-"""A vector environment over one batch: the base class of tasks."""
+"""The base class of tasks: a vector environment over one batch."""
 
 from __future__ import annotations
 
@@ -24,71 +24,71 @@ from clench.gymnasium.task_methods import TaskMethods
 Array = NDArray[Any]
 
 
-class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignore[misc]  # One random generator an environment.
+class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignore[misc]  # One random generator per environment.
     """Many environments of one model, stepped together.
 
-    A task derives from this class, names a model, and says over all environments at once what is observed
-    (:meth:`observe`), what it is worth (:meth:`reward`) and when it is over (:meth:`terminated`, :meth:`truncated`), from the
-    arrays of :attr:`batch`. What these methods return is copied: they may return views.
+    A task derives from this class, names a model, and defines over all environments at once the observation
+    (:meth:`observe`), the reward (:meth:`reward`) and the end of an episode (:meth:`terminated`, :meth:`truncated`),
+    from the arrays of :attr:`batch`. The results of these methods are copied: they may be views.
 
-    Each parameter can also be an attribute of the derived class; what is given here wins.
+    Each parameter can also be an attribute of the derived class; an argument takes precedence.
 
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     model : clench.Model or str or os.PathLike
         The model, the path of its file, or the text of an MJCF file.
     frame_skip : int
-        Steps of the simulator in a step of the environment.
+        Number of simulation steps per environment step.
     max_episode_steps : int, optional
-        After how many steps an episode is truncated; None or -1 for no such limit.
+        Number of steps after which an episode is truncated; None or -1 for no limit.
     outputs : sequence of str
-        Derived quantities that the task reads from :attr:`batch`, such as ``"xpos"``: see ``clench.OUTPUTS``.
+        Derived quantities that the task reads from :attr:`batch`, such as ``"xpos"``; see ``clench.OUTPUTS``.
     precision : {"64", "32"}, optional
-        Bits of the numbers that the simulator computes with: "64" on the processor and "32" on a graphics device unless given.
+        Bits of the simulator's numbers; by default "64" on the CPU and "32" on a GPU.
     device : str
-        What steps: "cpu", "gpu", or "gpu:" and a part of a name that ``clench.devices()`` lists. All of :attr:`outputs` must be such
-        as the device computes.
+        The device that steps: "cpu", "gpu", or "gpu:" and a part of a name that ``clench.devices()`` lists. The device
+        must be able to compute all of :attr:`outputs`.
     threads : int, optional
-        Threads that the environments are spread over; as many as the machine has unless given.
+        Number of threads of the simulation; by default that of the machine.
     options : clench.RigidOptions, optional
-        Options that win over those of the model's file.
+        Options that take precedence over those of the model's file.
     autoreset_mode : gymnasium.vector.AutoresetMode or str
-        When an environment whose episode ended starts anew: with the next step, in the same step, or only by
-        :meth:`reset`.
+        The time of resets after the end of an episode: with the next step, in the same step, or only by :meth:`reset`.
     render_mode : {None, "rgb_array"}
-        What :meth:`render` gives: pictures, drawn without a window.
+        The result of :meth:`render`: pictures, drawn without a window.
     render_size : tuple of int
         Width and height of pictures, pixels.
     render_camera : str or int or clench.FreeCamera, optional
-        The camera that takes them; unless given the model's camera ``track``, as in Gymnasium, or where it has none one that sees
-        all that moves.
+        The camera of the pictures; by default the model's camera ``track``, as in Gymnasium, or, if it has none, a view
+        of everything that moves.
 
     Attributes
     ----------
     batch : clench.Batch
-        The environments. States are live, ``batch.qpos`` is (n, nq); outputs are as of the last forward pass, that is
-        of the start of the last step of the simulator (with RK4 its last stage), or of the reset.
+        The environments. States are live, ``batch.qpos`` is (n, nq); outputs are those of the last forward pass, that
+        is of the start of the last simulation step (with RK4 its last stage), or of the reset.
     fresh : ndarray
-        Booleans (n,): environments that no step followed yet since their reset.
+        Booleans (n,): True for environments that have not been stepped since their reset.
     elapsed : ndarray
-        Integers (n,): steps since each environment's reset, in `reward` and what comes after it this step included.
+        Integers (n,): the number of steps since each environment's reset; in `reward` and later methods the current
+        step is included.
     timestep, dt : float
-        Seconds that a step of the simulator, and one of the environment, takes.
+        Duration of a simulation step, and of an environment step, s.
     init_qpos, init_qvel : ndarray
-        The state that the model starts from, (nq,) and (nv,).
+        The initial state of the model, (nq,) and (nv,).
     failure_reward : float
-        The reward of a step in which the simulation of an environment failed.
+        The reward of a step in which the simulation of an environment fails.
 
     Notes
     -----
-    An environment whose simulation fails, because a number overflows or a control is absurd, ends its episode: it is
+    An environment whose simulation fails, for example by an overflow or an extreme control, ends its episode: it is
     ``terminated``, its observation is that of the last good state, and ``info`` has ``failed`` (True) and ``fault``
-    (why).
+    (the reason).
 
-    Every environment has a random generator of its own, seeded as ``gymnasium.vector.SyncVectorEnv`` does it. So what
-    happens in one never depends on the others.
+    Every environment has its own random generator, seeded as in ``gymnasium.vector.SyncVectorEnv``. Environments are
+    therefore independent of each other.
     """
 
     model: Model | str | PathLike[str]
@@ -175,12 +175,12 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         self._generators: list[np.random.Generator | None] = [None] * num_envs
         self._seeds: list[int | None] = [None] * num_envs
 
-    # What gymnasium asks.
+    # The API of gymnasium.
 
     @property
     def single_observation_space(self) -> Space[Any]:
-        """The space of one observation: of the shape and dtype of what :meth:`observe` returns, without bounds but for bytes; a
-        ``Dict`` where that is arrays by name."""
+        """The space of one observation: it has the shape and dtype of the result of :meth:`observe`, without bounds
+        except for bytes; a ``Dict`` if that is a mapping."""
         if self._single_observation_space is None:
             if not self.started and self.batch.outputs:
                 self.batch.forward()
@@ -202,7 +202,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     def observation_space(self, space: Space[Any]) -> None:
         self._observation_space = space
 
-    # Worked out when first asked for, since a task may set what observe() needs after this class is initialised.
+    # Computed on demand, since a task may set attributes that observe() needs after this class is initialised.
     _single_observation_space: Space[Any] | None = None
     _observation_space: Space[Any] | None = None
 
@@ -214,22 +214,22 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         Parameters
         ----------
         seed : int or sequence of int, optional
-            Environment ``i`` is seeded with ``seed + i`` or ``seed[i]``. Where there is none, generators go on; those
-            that have never been seeded take a seed from the system.
+            Environment ``i`` is seeded with ``seed + i`` or ``seed[i]``. Without a seed, generators continue; those
+            that were never seeded are seeded by the system.
         options : dict, optional
-            ``reset_mask``: booleans (n,), which environments to reset. All of them unless given.
+            ``reset_mask``: booleans (n,), True for the environments to reset; by default all.
 
         Returns
         -------
         observations : ndarray or dict of str to ndarray
-            Of all environments, (n, ...).
+            The observations of all environments, (n, ...).
         infos : dict
-            Of those that were reset.
+            The infos of the environments that were reset.
 
         Raises
         ------
         clench.SimulationError
-            An initial state that cannot be simulated.
+            If an initial state cannot be simulated.
         """
         self._check_open()
         mask = checked_mask(options, self.num_envs)
@@ -251,8 +251,8 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         Parameters
         ----------
         actions : array_like
-            Actions (n, ...), controls (n, nu) unless the task says otherwise (:meth:`control`). Controls are clamped as the model
-            says, and not otherwise.
+            Actions (n, ...), by default controls (n, nu); a task can change that (:meth:`control`). Controls are
+            clamped only as the model specifies.
 
         Returns
         -------
@@ -263,14 +263,14 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         terminations, truncations : ndarray
             (n,) bool.
         infos : dict
-            As in every vector environment of gymnasium, with ``failed`` and ``fault`` where a simulation failed.
+            As in every vector environment of gymnasium, with ``failed`` and ``fault`` if a simulation failed.
 
         Raises
         ------
         ValueError
-            Actions of another shape or dtype, not finite, or not among those that there are.
+            If the actions have another shape or dtype, are not finite, or are not in the space.
         gymnasium.error.ResetNeeded
-            Before the first reset; without autoreset, also when an environment is over.
+            Before the first reset; without autoreset, also if the episode of an environment has ended.
         """
         self._check_ready()
         action = checked_action(actions, self.action_space, self._name)
@@ -302,10 +302,10 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         return self.observation(), rewards, terminations, truncations, infos
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Lets go of the batch, its threads and its memory; a constructor that failed has none."""
+        """Releases the batch, its threads and its memory. If the constructor failed, there is no batch."""
         self.__dict__.pop("batch", None)
 
-    # How it works.
+    # Implementation.
 
     @property
     def _name(self) -> str:
@@ -321,7 +321,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
             raise ResetNeeded(f"{self._name}: call reset() before step()")
 
     def _restart(self, mask: Array) -> Mapping[str, Array]:
-        """Puts the environments in ``mask`` at the start of an episode; the reset's infos over all environments."""
+        """Starts an episode of the environments in ``mask``; returns the reset's infos over all environments."""
         batch, qpos, qvel = self.batch, self.batch.qpos, self.batch.qvel
         batch.reset(mask)
         envs = np.flatnonzero(mask)
@@ -342,7 +342,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         return self._checked_info(self.reset_info())
 
     def advance(self, action: Array) -> tuple[Array, Array, Array, list[vector_infos.Group]]:
-        """A step of every environment, without resets: rewards, terminations, truncations, and infos."""
+        """Steps every environment, without resets: returns rewards, terminations, truncations, and infos."""
         batch, n = self.batch, self.num_envs
         batch.ctrl[...] = self.control(action)
         self.before_step()
@@ -369,7 +369,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         return rewards, terminations, truncations, about
 
     def observation(self) -> Any:
-        """What is observed, in arrays of its own."""
+        """Returns the observation, in separate arrays."""
         return observed.checked(self.observe(), self.num_envs, f"{self._name}: observe()")
 
     def _checked_info(self, info: Mapping[str, Array]) -> Mapping[str, Array]:

@@ -1,4 +1,4 @@
-"""What comes in from outside, checked: actions, seeds, reset options, and what tasks return."""
+"""Validation of external data: actions, seeds, reset options, and results of tasks."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ Array = NDArray[Any]
 
 
 def check_action_space(space: Any, name: str) -> None:
-    """Refuses spaces whose actions are no arrays of numbers."""
+    """Rejects spaces whose actions are not arrays of numbers."""
     if not isinstance(space, (Box, Discrete, MultiDiscrete, MultiBinary)):
         what = type(space).__name__
         raise TypeError(f"{name}: single_action_space must be a Box, Discrete, MultiDiscrete or MultiBinary, not {what}")
 
 
 def checked_action(action: Any, space: Space[Any], name: str) -> Array:
-    """The action as finite float64, or where a space has only some actions as int64, of the shape of that space.
+    """Converts an action to finite float64, or to int64 for a discrete space, of the shape of the space.
 
     Parameters
     ----------
     action : array_like
-        What was given as action.
+        The action.
     space : gymnasium.spaces.Space
-        The space of actions, of one environment or of all. What a ``Box`` bounds is not looked at.
+        The space of actions, of one environment or of all. The bounds of a ``Box`` are ignored.
     name : str
-        How messages call the environment.
+        The name of the environment in messages.
 
     Returns
     -------
     ndarray
-        The same numbers; the array itself where it is of that dtype already.
+        The same numbers; the array itself if it has that dtype already.
 
     Raises
     ------
     ValueError
-        Another shape, a dtype that holds no such numbers, a number that is not finite, or an action that is not in a space of
-        only some.
+        If the shape differs, the dtype cannot hold such numbers, a number is not finite, or the action is not in a
+        discrete space.
     """
     try:
         array = np.asarray(action)
@@ -66,7 +66,7 @@ def checked_action(action: Any, space: Space[Any], name: str) -> Array:
 
 
 def checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
-    """A seed an environment, as ``gymnasium.vector.SyncVectorEnv`` spreads them: ``seed``, ``seed + 1``, ..."""
+    """Returns one seed per environment, as ``gymnasium.vector.SyncVectorEnv`` does: ``seed``, ``seed + 1``, ..."""
     if seed is None:
         return [None] * count
     if isinstance(seed, (int, np.integer)):
@@ -78,14 +78,14 @@ def checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[i
 
 
 def check_options(options: Mapping[str, Any] | None, known: Sequence[str]) -> None:
-    """Refuses reset options that nothing would look at."""
+    """Rejects unknown reset options."""
     for name in options or ():
         if name not in known:
             raise ValueError(f"no reset option `{name}`; there is {', '.join(known) if known else 'none'}")
 
 
 def checked_mask(options: Mapping[str, Any] | None, count: int) -> Array:
-    """Which environments ``options["reset_mask"]`` names; all where there is none."""
+    """Returns the mask ``options["reset_mask"]``; by default it is True for all environments."""
     check_options(options, ("reset_mask",))
     if options is None or "reset_mask" not in options:
         return np.ones(count, dtype=np.bool_)
@@ -102,7 +102,7 @@ def checked_mask(options: Mapping[str, Any] | None, count: int) -> Array:
 
 
 def rows(values: Any, count: int, what: str) -> Array:
-    """The values as an array with a row an environment."""
+    """Converts values to an array with one row per environment."""
     array = np.asarray(values)
     if array.shape[:1] != (count,):
         raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count}, ...)")
@@ -110,7 +110,7 @@ def rows(values: Any, count: int, what: str) -> Array:
 
 
 def one_each(values: Any, count: int, dtype: type[np.generic], what: str) -> Array:
-    """A copy of the values, one an environment, of that dtype."""
+    """Copies values, one per environment, to an array with that dtype."""
     array = np.array(values, dtype=dtype)
     if array.shape != (count,):
         raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count},)")
@@ -118,7 +118,7 @@ def one_each(values: Any, count: int, dtype: type[np.generic], what: str) -> Arr
 
 
 def one_or_all(values: Any, shape: tuple[int, int], what: str) -> Array:
-    """Rows of that shape: as given, or one row for all."""
+    """Returns rows of that shape: the given rows, or one row repeated."""
     array = np.asarray(values)
     if array.shape not in (shape, shape[1:]):
         raise ValueError(f"{what} is an array of shape {array.shape}, expected {shape} or {shape[1:]}")

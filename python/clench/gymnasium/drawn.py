@@ -12,7 +12,7 @@ Array = NDArray[Any]
 
 
 class Drawn:
-    """What draws the environments of a batch, in the mode ``rgb_array``."""
+    """Renders the environments of a batch, in the mode ``rgb_array``."""
 
     num_envs: int
     batch: Batch
@@ -22,12 +22,12 @@ class Drawn:
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
 
     def render(self) -> tuple[Array, ...] | None:
-        """Draws every environment in its present state.
+        """Renders every environment in its current state.
 
         Returns
         -------
         tuple of ndarray or None
-            Their pictures (height, width, 3), uint8; None where ``render_mode`` is None.
+            Their pictures (height, width, 3), uint8; None if ``render_mode`` is None.
         """
         if self.render_mode is None:
             return None

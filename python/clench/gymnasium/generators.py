@@ -1,4 +1,5 @@
-"""The random generators of a batch of environments: one each, so that what happens in one never depends on the others."""
+"""The random generators of a batch of environments: one for each, so that environments are independent of each
+other."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from gymnasium.utils import seeding
 
 
 class Generators:
-    """As in gymnasium's ``SyncVectorEnv`` there is one generator an environment; its base class knows one for all."""
+    """One generator per environment, as in gymnasium's ``SyncVectorEnv``; its base class has one for all."""
 
     num_envs: int
     _generators: list[np.random.Generator | None]
@@ -19,7 +20,7 @@ class Generators:
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:
-        """The random generators, one an environment; :meth:`generator` gives out one of them."""
+        """The random generators, one per environment; :meth:`generator` returns one of them."""
         return tuple(self.generator(env) for env in range(self.num_envs))
 
     @np_random.setter
@@ -30,17 +31,17 @@ class Generators:
 
     @property
     def np_random_seed(self) -> tuple[int | None, ...]:
-        """What they were seeded with."""
+        """The seeds of the generators."""
         self.np_random
         return tuple(self._seeds)
 
     def generator(self, env: SupportsIndex) -> np.random.Generator:
-        """The random generator of one environment; one that was never seeded takes a seed from the system.
+        """Returns the random generator of one environment; if it was never seeded, the system seeds it.
 
         Parameters
         ----------
         env : int
-            Which environment.
+            The index of the environment.
         """
         index = operator.index(env)
         generator = self._generators[index]

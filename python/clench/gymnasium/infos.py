@@ -1,7 +1,7 @@
 """Infos in the form of gymnasium's vector environments.
 
-Each key holds an array with a row an environment, and the key with an underscore before it a mask: which rows mean
-anything. Rows without a meaning are zero, or None among objects.
+Each key stores an array with one row per environment, and the key with a leading underscore stores the mask of valid
+rows. Invalid rows are zero, or None for objects.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ from clench.gymnasium.observed import of_one
 Array = NDArray[Any]
 
 Group: TypeAlias = tuple[Mapping[str, Array], Array]
-"""Arrays over all environments by name, and the mask of the environments that they are about."""
+"""Arrays over all environments by name, and the mask of their valid environments."""
 
 
 def add(infos: dict[str, Any], values: Mapping[str, Array], mask: Array) -> None:
-    """Puts the rows in ``mask`` of each array into ``infos``, over what is there; nothing where ``mask`` is empty.
+    """Copies the rows in ``mask`` of each array into ``infos``, and replaces existing values; does nothing if ``mask``
+    is empty.
 
     Parameters
     ----------
     infos : dict
-        What is added to. It holds copies afterwards, never the arrays themselves.
+        The infos to extend. They store copies, never the arrays themselves.
     values : mapping of str to ndarray
         Arrays (n, ...) over all environments.
     mask : ndarray
@@ -45,18 +46,18 @@ def add(infos: dict[str, Any], values: Mapping[str, Array], mask: Array) -> None
 
 
 def add_final(infos: dict[str, Any], observation: Any, groups: list[Group], done: Array) -> None:
-    """Adds how the episodes in ``done`` ended: ``final_obs`` and ``final_info``.
+    """Adds the last observations and infos of the episodes in ``done``: ``final_obs`` and ``final_info``.
 
     Parameters
     ----------
     infos : dict
-        What is added to.
+        The infos to extend.
     observation : ndarray or dict of str to ndarray
-        The last observations (n, ...); rows of them are given out, so they must belong to nobody else.
+        The last observations (n, ...). Rows of them are returned to the user, so they must not be shared.
     groups : list of Group
         The infos of the last steps.
     done : ndarray
-        Booleans (n,): whose episode ended.
+        Booleans (n,): True for environments whose episode ended.
     """
     last = np.full(done.shape, None, dtype=np.object_)
     for env in np.flatnonzero(done).tolist():

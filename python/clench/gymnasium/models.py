@@ -1,4 +1,4 @@
-"""Models for environments: where they come from, and the actions that they take."""
+"""Models of environments, and their action spaces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from clench import Model
 
 
 def loaded(model: Model | str | PathLike[str]) -> Model:
-    """The model itself, or that of a file's path or of an MJCF file's text, which begins with ``<``."""
+    """Returns the model itself, or loads it from a path or from the text of an MJCF file, which begins with ``<``."""
     if isinstance(model, Model):
         return model
     if isinstance(model, str) and model.lstrip().startswith("<"):
@@ -22,7 +22,7 @@ def loaded(model: Model | str | PathLike[str]) -> Model:
 
 
 def action_space(model: Model) -> Box:
-    """The ranges of a model's controls, float32 as gymnasium's; no bounds where a control has none."""
+    """Returns the ranges of a model's controls, float32 as in gymnasium; a control without a range has no bounds."""
     limited = model.actuator_ctrllimited.astype(np.bool_)
     low = np.where(limited, model.actuator_ctrlrange[:, 0], -np.inf)
     high = np.where(limited, model.actuator_ctrlrange[:, 1], np.inf)
@@ -30,17 +30,17 @@ def action_space(model: Model) -> Box:
 
 
 def gymnasium_model(xml_file: str) -> Path:
-    """The file that a task's ``xml_file`` means, as gymnasium reads it.
+    """Finds the file of a task's ``xml_file``, as gymnasium does.
 
     Parameters
     ----------
     xml_file : str
-        A path that starts with ``/``, ``.`` or ``~``, or the name of a file among those that gymnasium brings.
+        A path that starts with ``/``, ``.`` or ``~``, or the name of a model file of gymnasium.
 
     Raises
     ------
     FileNotFoundError
-        There is no such file.
+        If the file does not exist.
     """
     path = Path(xml_file).expanduser()
     if not (path.is_absolute() or xml_file.startswith(".")):

@@ -1,4 +1,4 @@
-"""What is observed: an array, or arrays by name, with a row an environment."""
+"""Observations: an array, or arrays by name, with one row per environment."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from clench.gymnasium.checks import rows
 Array = NDArray[Any]
 
 Observation: TypeAlias = Array | Mapping[str, Array]
-"""What a task observes: an array (n, ...), or arrays (n, ...) by name."""
+"""The observation of a task: an array (n, ...), or arrays (n, ...) by name."""
 
-# Dtypes that stay as they are: numbers of either precision, and those of pictures. All others become float64.
+# Dtypes that are not converted: floats of either precision, and bytes of pictures. All others become float64.
 _KEPT = ("float64", "float32", "uint8")
 
 
 def checked(values: Any, count: int, what: str) -> Any:
-    """A copy of what a task observed.
+    """Copies the observation of a task.
 
     Parameters
     ----------
     values : ndarray or mapping of str to ndarray
-        What the task returned.
+        The observation that the task returned.
     count : int
-        How many environments there are.
+        Number of environments.
     what : str
-        How messages call it.
+        Its name in messages.
 
     Returns
     -------
     ndarray or dict of str to ndarray
-        The same in arrays of their own, float64, float32 or uint8.
+        The same values in separate arrays, float64, float32 or uint8.
 
     Raises
     ------
     ValueError
-        An array without a row an environment, or whose rows are single numbers.
+        If an array does not have one row per environment, or its rows are single numbers.
     """
     if isinstance(values, Mapping):
         return {str(key): _array(value, count, f"{what}, `{key}`,") for key, value in values.items()}
@@ -55,12 +55,12 @@ def _array(values: Any, count: int, what: str) -> Array:
 
 
 def space(sample: Any) -> Space[Any]:
-    """The space of one environment's part of what was observed: without bounds, but for bytes.
+    """Creates the space of one environment's part of an observation: without bounds, except for bytes.
 
     Parameters
     ----------
     sample : ndarray or dict of str to ndarray
-        What `checked` returned.
+        The result of `checked`.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def space(sample: Any) -> Space[Any]:
 
 
 def of_one(observation: Any, env: int) -> Any:
-    """One environment's part of what was observed: views."""
+    """Returns one environment's part of an observation, as views."""
     if isinstance(observation, Mapping):
         return {key: value[env] for key, value in observation.items()}
     return observation[env]

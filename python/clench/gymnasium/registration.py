@@ -1,10 +1,10 @@
-"""The names under which gymnasium finds the tasks."""
+"""Registration of the tasks with gymnasium."""
 
 from __future__ import annotations
 
 import gymnasium
 
-# Name, steps of an episode, and the mean return at which gymnasium counts the task as learnt.
+# Name, steps per episode, and gymnasium's reward threshold, the mean return at which the task counts as solved.
 _TASKS: tuple[tuple[str, str, int, float | None], ...] = (
     ("Ant", "ant", 1000, 6000.0),
     ("HalfCheetah", "half_cheetah", 1000, 4800.0),
@@ -21,7 +21,8 @@ _TASKS: tuple[tuple[str, str, int, float | None], ...] = (
 
 
 def register_tasks() -> None:
-    """Registers ``clench/Ant-v5`` and the others, each as single and as vector environment; again, it does nothing."""
+    """Registers ``clench/Ant-v5`` and the others, each as single and as vector environment. Repeated calls have no
+    effect."""
     for name, module, max_episode_steps, reward_threshold in _TASKS:
         if f"clench/{name}-v5" not in gymnasium.registry:
             gymnasium.register(

@@ -1,4 +1,5 @@
-"""Environments of one batch for the algorithms of Stable-Baselines3, which must be installed (``pip install 'clench[sb3]'``).
+"""Environments of one batch for the algorithms of Stable-Baselines3, which must be installed (``pip install
+'clench[sb3]'``).
 
 ::
 
@@ -8,7 +9,7 @@
     envs = Balance(num_envs=64, autoreset_mode="SameStep")
     PPO("MlpPolicy", BatchVecEnv(envs)).learn(100_000)
 
-All environments step in one call, where its ``DummyVecEnv`` of single ones would step one after the other.
+All environments step in one call, whereas its ``DummyVecEnv`` steps single environments one after the other.
 """
 
 from __future__ import annotations
@@ -29,10 +30,11 @@ __all__ = ["BatchVecEnv"]
 
 
 class BatchVecEnv(VecEnv):
-    """A vector environment of Gymnasium's kind as one of Stable-Baselines3's.
+    """An adapter from a Gymnasium vector environment to Stable-Baselines3.
 
-    Where an episode ends, the next begins in the same step, and ``info`` has ``terminal_observation`` and
-    ``TimeLimit.truncated``, as that package wants it. Its wrappers, such as ``VecMonitor`` and ``VecNormalize``, go around it.
+    When an episode ends, the next begins in the same step, and ``info`` has ``terminal_observation`` and
+    ``TimeLimit.truncated``, as that package requires. Its wrappers, such as ``VecMonitor`` and ``VecNormalize``, can be
+    applied to it.
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ class BatchVecEnv(VecEnv):
     Raises
     ------
     ValueError
-        Environments with another ``autoreset_mode``, or whose discrete actions are not counted from 0.
+        If the environments have another ``autoreset_mode``, or discrete actions that do not start at 0.
     """
 
     def __init__(self, envs: BatchEnv) -> None:
@@ -72,7 +74,7 @@ class BatchVecEnv(VecEnv):
         return observations
 
     def step_async(self, actions: Array) -> None:
-        """Takes the actions (n, ...) of the next step."""
+        """Stores the actions (n, ...) of the next step."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Any, Array, Array, list[dict[str, Any]]]:
@@ -87,7 +89,7 @@ class BatchVecEnv(VecEnv):
         dones : ndarray
             (n,) bool.
         infos : list of dict
-            One an environment.
+            One per environment.
         """
         observations, rewards, terminations, truncations, infos = self.envs.step(self._actions)
         final = infos.pop("final_obs", None)
@@ -102,15 +104,15 @@ class BatchVecEnv(VecEnv):
         return observations, rewards.astype(np.float32), dones, each
 
     def close(self) -> None:
-        """Lets go of the batch."""
+        """Releases the batch."""
         self.envs.close()
 
     def get_images(self) -> Sequence[Array | None]:
-        """Pictures of all environments (height, width, 3), uint8; None where ``render_mode`` is None."""
+        """Renders pictures of all environments (height, width, 3), uint8; None if ``render_mode`` is None."""
         return self.envs.render() or [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """An attribute of the environments, which is the same for all."""
+        """Returns an attribute of the environments, which is the same for all."""
         return [getattr(self.envs, attr_name) for _ in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
@@ -119,18 +121,18 @@ class BatchVecEnv(VecEnv):
         Raises
         ------
         ValueError
-            Some of the environments: they share their attributes.
+            If only some of the environments are chosen: they share their attributes.
         """
         if len(list(self._get_indices(indices))) != self.num_envs:
             raise ValueError("environments of one batch share their attributes: set that of all")
         setattr(self.envs, attr_name, value)
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """Refuses: methods of a batch of environments are about all of them at once; call them on `envs`."""
+        """Raises an error: methods of a batch apply to all environments at once; call them on `envs`."""
         raise NotImplementedError(f"environments of one batch have no methods of their own: call `envs.{method_name}`")
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """That no environment is wrapped by itself."""
+        """Returns False for each environment: none is wrapped separately."""
         return [False for _ in self._get_indices(indices)]
 
     def _each(self, infos: dict[str, Any]) -> list[dict[str, Any]]:
@@ -138,5 +140,5 @@ class BatchVecEnv(VecEnv):
 
     @staticmethod
     def _of(infos: dict[str, Any], env: int) -> dict[str, Any]:
-        """What infos of all say of one environment."""
+        """Returns the infos of one environment."""
         return {key: value[env] for key, value in infos.items() if f"_{key}" in infos and infos[f"_{key}"][env]}

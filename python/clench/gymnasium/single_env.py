@@ -1,4 +1,4 @@
-"""One environment of a task, as ``gymnasium.make`` gives it out."""
+"""Single environments of a task, as ``gymnasium.make`` returns them."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ Array = NDArray[Any]
 
 
 class SingleEnv(gymnasium.Env[Any, Array]):
-    """A vector environment of one, seen as a single environment.
+    """A single environment, implemented by a vector environment of one.
 
-    A derived class names the :attr:`task`; that is all it has to do.
+    A derived class only has to define the :attr:`task`.
 
     Parameters
     ----------
     **kwargs
-        What the task takes. ``threads`` is 1 unless given.
+        The arguments of the task. ``threads`` is 1 by default.
 
     Attributes
     ----------
     task : type of BatchEnv
         The task.
     vector : BatchEnv
-        The vector environment behind it, with ``num_envs`` 1.
+        The underlying vector environment, with ``num_envs`` 1.
     dt : float
-        Seconds that a step takes.
+        Duration of a step, s.
     """
 
     task: ClassVar[type[BatchEnv]]
@@ -56,9 +56,9 @@ class SingleEnv(gymnasium.Env[Any, Array]):
         Parameters
         ----------
         seed : int, optional
-            Seeds the random generator; it goes on where there is none.
+            The seed of the random generator; without one, the generator continues.
         options : dict, optional
-            None is known.
+            No option is supported.
 
         Returns
         -------
@@ -77,7 +77,8 @@ class SingleEnv(gymnasium.Env[Any, Array]):
         Parameters
         ----------
         action : array_like
-            An action, controls (nu,) unless the task says otherwise. Controls are clamped as the model says, and not otherwise.
+            An action, by default controls (nu,); a task can change that. Controls are clamped only as the model
+            specifies.
 
         Returns
         -------
@@ -85,12 +86,12 @@ class SingleEnv(gymnasium.Env[Any, Array]):
         reward : float
         terminated, truncated : bool
         info : dict
-            With ``failed`` and ``fault`` where the simulation failed.
+            With ``failed`` and ``fault`` if the simulation failed.
 
         Raises
         ------
         ValueError
-            An action of another shape or dtype, not finite, or not among those that there are.
+            If the action has another shape or dtype, is not finite, or is not in the space.
         gymnasium.error.ResetNeeded
             Before the first reset.
         """
@@ -110,11 +111,12 @@ class SingleEnv(gymnasium.Env[Any, Array]):
 
     @property
     def sim(self) -> Sim:
-        """A simulation of its own in the present state, which can be asked and stepped without moving the environment."""
+        """A separate simulation in the current state, which can be queried and stepped without changing the
+        environment."""
         return self.vector.batch.sim(0)
 
     def set_state(self, qpos: ArrayLike, qvel: ArrayLike) -> None:
-        """Sets positions and velocities, as gymnasium's ``MujocoEnv.set_state``; the episode goes on from there.
+        """Sets positions and velocities, like gymnasium's ``MujocoEnv.set_state``; the episode continues from there.
 
         Parameters
         ----------
@@ -126,9 +128,9 @@ class SingleEnv(gymnasium.Env[Any, Array]):
         Raises
         ------
         ValueError
-            Wrong shapes.
+            If a shape is wrong.
         clench.SimulationError
-            A state that cannot be simulated.
+            If the state cannot be simulated.
         """
         batch = self.vector.batch
         given = np.asarray(qpos), np.asarray(qvel)
@@ -141,16 +143,16 @@ class SingleEnv(gymnasium.Env[Any, Array]):
             raise SimulationError(f"{self}: cannot go on from there: {batch.fault(0)}")
 
     def render(self) -> Array | None:
-        """Draws the environment.
+        """Renders the environment.
 
         Returns
         -------
         ndarray or None
-            Its picture (height, width, 3), uint8; None where ``render_mode`` is None.
+            Its picture (height, width, 3), uint8; None if ``render_mode`` is None.
         """
         pictures = self.vector.render()
         return None if pictures is None else pictures[0]
 
     def close(self) -> None:
-        """Lets go of the batch."""
+        """Releases the batch."""
         self.vector.close()

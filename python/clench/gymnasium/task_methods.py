@@ -1,4 +1,4 @@
-"""What a task says of its environments: the methods that it defines, each over all of them at once."""
+"""The methods that a task defines, each over all environments at once."""
 
 from __future__ import annotations
 
@@ -16,70 +16,73 @@ Array = NDArray[Any]
 
 
 class TaskMethods(Generators):
-    """What a task defines, and what holds where it does not."""
+    """The methods that a task defines, with their defaults."""
 
     init_qpos: Array
     init_qvel: Array
 
     def observe(self) -> Observation:
-        """What is observed, as a function of the arrays of :attr:`batch` alone: an array (n, ...), or arrays (n, ...) by name.
+        """Returns the observation, a function of only the arrays of :attr:`batch`: an array (n, ...), or arrays (n,
+        ...) by name.
 
-        Numbers that are not of single precision, nor bytes (uint8, as in pictures), are made float64.
+        Values that are neither single precision nor bytes (uint8, as in pictures) are converted to float64.
         """
         raise NotImplementedError(f"{type(self).__name__} must define observe()")
 
     def reward(self, action: Array) -> Array:
-        """What the step was worth, (n,).
+        """Returns the rewards of the step, (n,).
 
-        Called once a step, when the simulator is done, before :meth:`terminated` and :meth:`info`: they may use what
-        was worked out here.
+        It is called once per step, after the simulation and before :meth:`terminated` and :meth:`info`: they may use
+        its intermediate results.
 
         Parameters
         ----------
         action : ndarray
-            The actions (n, ...), as :meth:`control` gets them. Not to be written to.
+            The actions (n, ...), as passed to :meth:`control`. Read-only.
         """
         raise NotImplementedError(f"{type(self).__name__} must define reward(action)")
 
     def control(self, action: Array) -> Array:
-        """The controls that actions mean, (n, nu). The actions themselves unless defined.
+        """Converts actions to controls (n, nu). By default they are the same.
 
-        A task whose actions are others also has the attribute ``single_action_space``, of the class or set before the constructor
-        of this class: a ``Box`` of any shape, a ``Discrete``, ``MultiDiscrete`` or ``MultiBinary``.
+        A task with other actions also has the attribute ``single_action_space``, of the class or set before the
+        constructor of this class: a ``Box`` of any shape, a ``Discrete``, ``MultiDiscrete`` or ``MultiBinary``.
 
         Parameters
         ----------
         action : ndarray
-            The actions (n, ...): float64 of a ``Box``, else int64. Not to be written to.
+            The actions (n, ...): float64 for a ``Box``, else int64. Read-only.
         """
         return action
 
     def terminated(self) -> Array:
-        """Whose episode is over, (n,) booleans. Nobody's unless defined."""
+        """Returns booleans (n,): True if the episode has terminated. By default none has."""
         return np.zeros(self.num_envs, dtype=np.bool_)
 
     def truncated(self) -> Array:
-        """Whose episode is cut short, (n,) booleans, besides those that reach ``max_episode_steps``. Nobody's unless defined.
+        """Returns booleans (n,): True if the episode is truncated, in addition to those that reach
+        ``max_episode_steps``. By default none is.
 
-        Called after :meth:`terminated`.
+        It is called after :meth:`terminated`.
         """
         return np.zeros(self.num_envs, dtype=np.bool_)
 
     def info(self) -> Mapping[str, Array]:
-        """More about the step: arrays (n, ...) by name. Nothing unless defined."""
+        """Returns more data about the step: arrays (n, ...) by name. By default there are none."""
         return {}
 
     def reset_info(self) -> Mapping[str, Array]:
-        """The same about the states that resets lead to."""
+        """Returns more data about the states after a reset."""
         return {}
 
     def before_step(self) -> None:
-        """Called with the controls set, before the simulator steps: the place to keep what the step will change."""
+        """Called with the controls set, before the simulator steps. Override it to store values that the step will
+        change."""
 
     def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array] | State:
-        """Where an episode of one environment starts. The initial state of the model unless defined.
+        """Returns the initial state of an episode of one environment. By default it is the initial state of the model.
 
-        Not asked where :meth:`initial_states` is defined.
+        It is not called if :meth:`initial_states` is defined.
 
         Parameters
         ----------
@@ -89,23 +92,24 @@ class TaskMethods(Generators):
         Returns
         -------
         qpos, qvel : ndarray
-            Positions (nq,) and velocities (nv,); or a `State`, such as ``sim.state``, of which everything counts.
+            Positions (nq,) and velocities (nv,); or a complete `State`, such as ``sim.state``.
         """
         return self.init_qpos, self.init_qvel
 
     def initial_states(self, envs: NDArray[np.intp]) -> tuple[Array, Array] | State:
-        """Where episodes start, of all environments that are reset at once. What :meth:`initial_state` says of each unless defined.
+        """Returns the initial states of all environments that are reset at once. By default it calls
+        :meth:`initial_state` for each.
 
         Parameters
         ----------
         envs : ndarray
-            Integers (k,): which environments. Random numbers of environment ``i`` come from ``generator(i)``.
+            Integers (k,): the environments. Random numbers of environment ``i`` come from ``generator(i)``.
 
         Returns
         -------
         qpos, qvel : ndarray
-            Positions (k, nq) and velocities (k, nv); or (nq,) and (nv,), where all start from the same; or a `State`, of one or of k
-            environments.
+            Positions (k, nq) and velocities (k, nv); or (nq,) and (nv,), if all start from the same; or a `State`, of
+            one or of k environments.
         """
         starts = [self.initial_state(self.generator(env)) for env in envs.tolist()]
         states = [start for start in starts if isinstance(start, State)]
@@ -115,14 +119,15 @@ class TaskMethods(Generators):
         return np.array([qpos for qpos, _ in pairs]), np.array([qvel for _, qvel in pairs])
 
     def on_reset(self, mask: Array) -> None:
-        """Called when environments start an episode, with their states set and before anything is observed.
+        """Called when environments start an episode, with their states set and before the first observation.
 
-        The place for goals, parameters of environments (``batch.randomize``), welds (``batch.add_weld``), poses of mocap bodies, or
-        states of many environments at once: what it writes to the arrays of :attr:`batch` is where they start.
+        Override it to set goals, parameters of environments (``batch.randomize``), welds (``batch.add_weld``), poses of
+        mocap bodies, or states of many environments at once: they start from the values that it writes to the arrays of
+        :attr:`batch`.
 
         Parameters
         ----------
         mask : ndarray
-            Booleans (n,): which environments; ``numpy.flatnonzero(mask)`` are their indices. Random numbers of environment ``i`` come
-            from ``generator(i)``.
+            Booleans (n,): True for the environments that start; ``numpy.flatnonzero(mask)`` are their indices. Random
+            numbers of environment ``i`` come from ``generator(i)``.
         """

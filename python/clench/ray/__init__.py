@@ -1,4 +1,5 @@
-"""A batch whose environments are spread over the machines of a Ray cluster, which must be installed (``pip install 'clench[ray]'``).
+"""A batch whose environments are distributed over the machines of a Ray cluster. Ray must be installed (``pip install
+'clench[ray]'``).
 
 ::
 
@@ -11,13 +12,14 @@
         batch.step(10)
         print(batch.qpos.mean(axis=0))
 
-`Batch` here has the face of `clench.Batch`: an environment moves as there, to the bit, on however many machines. A worker that
-dies is replaced: the new one begins with the last snapshot of the lost one and does again what came after it, so that the run ends
-with the same bits as without the death.
+`Batch` has the API of `clench.Batch`: an environment moves identically, to the bit, on any number of machines. A worker
+that dies is replaced: the new one starts from the last snapshot of the lost one and repeats the later calls, so that
+the run ends with the same bits as without the failure.
 
-What stands here: the driver's side (`batch.py`, with what is asked in `asked.py` and what is tied at run time in `tied.py`; one
-worker as the driver sees it in `worker.py`), what a worker runs (`shard.py`), arrays that are kept here and there (`mirror.py`), and
-answers that travel (`answers.py`). No physics, and nothing that imports ``ray`` before it is used.
+The modules are the driver's side (`batch.py`, with queries in `asked.py` and dynamic constraints in `tied.py`;
+`worker.py` represents one worker), the code that a worker runs (`shard.py`), arrays that driver and workers share
+(`mirror.py`), and results that are sent between machines (`answers.py`). There is no physics, and ``ray`` is imported
+only on use.
 """
 
 from clench.ray.answers import IkResult, RayHits

@@ -1,4 +1,4 @@
-"""Answers of many numbers, as arrays that travel between machines: the fields of `clench.RayHits` and `clench.IkResult`."""
+"""Query results that are sent between machines as arrays: the fields of `clench.RayHits` and `clench.IkResult`."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ class _Rows:
 
     @classmethod
     def of(cls, answer: Any) -> Self:
-        """Copies of the arrays of an answer of `clench.Batch`."""
+        """Copies the arrays of a result of `clench.Batch`."""
         return cls(*(np.asarray(getattr(answer, field.name)) for field in fields(cls)))  # type: ignore[arg-type]
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """The rows of one part below those of the other."""
+        """Concatenates the rows of all parts."""
         names = [field.name for field in fields(cls)]  # type: ignore[arg-type]
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 @dataclass(frozen=True)
 class RayHits(_Rows):
-    """What rays hit first, in each environment.
+    """The first hits of rays, in each environment.
 
     Attributes
     ----------
     geom : ndarray
-        The geom (n, k), int64; −1 where a ray hits nothing.
+        The geom (n, k), int64; −1 if a ray hits nothing.
     distance : ndarray
-        From the ray's origin, in lengths of its direction (n, k); infinite where it hits nothing.
+        From the ray's origin, in lengths of its direction (n, k); infinite if it hits nothing.
     normal : ndarray
-        Unit vectors out of the geom there, in world coordinates (n, k, 3).
+        Outward unit normals of the geom there, in world coordinates (n, k, 3).
     """
 
     geom: NDArray[np.int64]
@@ -49,20 +49,20 @@ class RayHits(_Rows):
 
 @dataclass(frozen=True)
 class IkResult(_Rows):
-    """What inverse kinematics found, in each environment.
+    """The results of inverse kinematics, in each environment.
 
     Attributes
     ----------
     qpos : ndarray
         The positions (n, nq).
     errors : ndarray
-        What is left of each goal (n, goals), m and rad.
+        The remaining error of each goal (n, goals), m and rad.
     iterations : ndarray
-        How many iterations it took (n).
+        The number of iterations (n).
     status : ndarray
-        Why each ended (n), codes of `clench.IkStatus`.
+        The outcome (n), codes of `clench.IkStatus`.
     reached : ndarray
-        Whether every goal but postures is within the tolerance (n), bool.
+        True if all goals except postures are within the tolerance (n), bool.
     """
 
     qpos: Array

@@ -1,4 +1,4 @@
-"""What a batch on a cluster answers by asking all of its workers, and the elements through which it can be read and set."""
+"""Queries of a batch on a cluster that involve all workers, and views of its elements."""
 
 from __future__ import annotations
 
@@ -16,80 +16,81 @@ Array = NDArray[Any]
 
 
 class Asked:
-    """Questions whose answers are rows of environments, and views of elements."""
+    """Queries whose results are rows of environments, and views of elements."""
 
     model: clench.Model
     _parts: list[slice]
 
     def _query(self, method: str, *arguments: Any, **chosen: Any) -> list[Any]:
-        """What each worker answers."""
+        """Returns the result of each worker."""
         raise NotImplementedError
 
     def _gather(self, method: str, *arguments: Any, **chosen: Any) -> Array:
-        """The same as rows, those of one worker below those of the other."""
+        """Returns the concatenated rows of all workers' results."""
         return np.concatenate(self._query(method, *arguments, **chosen))
 
     def _query_each(self, method: str, arguments: Sequence[tuple[Any, ...]], chosen: dict[str, Any]) -> list[Any]:
-        """What each worker answers to arguments of its own, and keywords that all share."""
+        """Returns the result of each worker for its own arguments and shared keywords."""
         raise NotImplementedError
 
     def _split(self, values: ArrayLike | None, dimensions: int, name: str) -> list[Array | None]:
-        """Rows for each worker, where there is one an environment; else the same for all."""
+        """Splits rows among the workers if there is one per environment; else each worker gets the same."""
         raise NotImplementedError
 
     def param(self, field: str) -> Array:
-        """The numbers of a parameter as each environment has them: a copy, after an axis over environments."""
+        """Returns a copy of a parameter's values in every environment, after an axis of environments."""
         return self._gather("param", field)
 
     def output(self, name: str) -> Array:
-        """A recorded output, with environments as first axis: a copy."""
+        """Returns a copy of a recorded output, with environments as first axis."""
         return self._gather("copied_output", name)
 
     def sensor(self, which: str | SupportsIndex) -> Array:
-        """What one sensor measured in every environment, of ``sensordata``, which must be recorded: a copy."""
+        """Returns a copy of the values of one sensor in every environment, from ``sensordata``, which must be
+        recorded."""
         sensor = self.model.sensor(which)
         return self.output("sensordata")[:, sensor.adr : sensor.adr + sensor.dim]
 
     def mass_matrix(self) -> Array:
-        """Joint-space mass matrices (n, nv, nv)."""
+        """Computes joint-space mass matrices (n, nv, nv)."""
         return self._gather("mass_matrix")
 
     def jacobian(self, **chosen: str | SupportsIndex) -> Array:
-        """Jacobians of an object, (n, 2, 3, nv); see `clench.Batch.jacobian`."""
+        """Computes Jacobians of an object, (n, 2, 3, nv); see `clench.Batch.jacobian`."""
         return self._gather("jacobian", **chosen)
 
     def subtree_jacobian(self, body: str | SupportsIndex) -> Array:
-        """Jacobians of the centre of mass of a body and all below it, (n, 3, nv)."""
+        """Computes Jacobians of the centre of mass of a body's subtree, (n, 3, nv)."""
         return self._gather("subtree_jacobian", body)
 
     def velocity(self, *, local: bool = False, **chosen: str | SupportsIndex) -> Array:
-        """Velocities of an object, (n, 2, 3), m/s and rad/s; see `clench.Batch.velocity`."""
+        """Computes velocities of an object, (n, 2, 3), m/s and rad/s; see `clench.Batch.velocity`."""
         return self._gather("velocity", local=local, **chosen)
 
     def acceleration(self, *, local: bool = False, **chosen: str | SupportsIndex) -> Array:
-        """Accelerations of an object, (n, 2, 3), m/s² and rad/s²; see `clench.Batch.acceleration`."""
+        """Computes accelerations of an object, (n, 2, 3), m/s² and rad/s²; see `clench.Batch.acceleration`."""
         return self._gather("acceleration", local=local, **chosen)
 
     def mul_mass(self, x: ArrayLike) -> Array:
-        """Products M x (n, nv) of the mass matrices with vectors (n, nv), or with one (nv,)."""
+        """Computes products M x (n, nv) of the mass matrices with vectors (n, nv), or with one (nv,)."""
         return self._gather_rows("mul_mass", [(x, 2, "x")])
 
     def solve_mass(self, x: ArrayLike) -> Array:
-        """Products M⁻¹ x (n, nv), of vectors (n, nv), or of one (nv,)."""
+        """Computes products M⁻¹ x (n, nv), of vectors (n, nv), or of one (nv,)."""
         return self._gather_rows("solve_mass", [(x, 2, "x")])
 
     def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> Array:
-        """Forces along dofs (n, nv) that cause accelerations (n, nv); see `clench.Batch.inverse`."""
+        """Computes forces along dofs (n, nv) that cause accelerations (n, nv); see `clench.Batch.inverse`."""
         return self._gather_rows("inverse", [(qacc, 2, "qacc")], discrete=discrete)
 
     def distance(
         self, geom1: str | SupportsIndex, geom2: str | SupportsIndex, limit: SupportsFloat | None = None
     ) -> Array:
-        """How far apart two geoms are in each environment (n), m; see `clench.Batch.distance`."""
+        """Computes the distance of two geoms in each environment (n), m; see `clench.Batch.distance`."""
         return self._gather("distance", geom1, geom2, limit)
 
     def rays(self, origins: ArrayLike, directions: ArrayLike, **chosen: Any) -> RayHits:
-        """What rays hit first, in each environment; see `clench.Batch.rays`.
+        """Casts rays in each environment; see `clench.Batch.rays`.
 
         Parameters
         ----------
@@ -102,19 +103,20 @@ class Asked:
         return RayHits.joined(self._query_each("rays", rows, chosen))
 
     def heights(self, hfield: str | SupportsIndex, places: ArrayLike, **chosen: str | SupportsIndex) -> Array:
-        """Heights of terrain (n, k), m, at places for all environments (k, 2) or each (n, k, 2); see `clench.Batch.heights`."""
+        """Computes heights of terrain (n, k), m, at places for all environments (k, 2) or each (n, k, 2); see
+        `clench.Batch.heights`."""
         rows = [(hfield, *places) for places in self._rows([(places, 3, "places")])]
         return np.concatenate(self._query_each("heights", rows, dict(chosen)))
 
     def ik(self, targets: Iterable[Target], *, start: ArrayLike | None = None, **search: Any) -> IkResult:
-        """Positions that bring objects to their goals; see `clench.Batch.ik`.
+        """Solves inverse kinematics in each environment; see `clench.Batch.ik`.
 
         Parameters
         ----------
         targets : iterable of FrameTarget, ComTarget or PostureTarget
             Goals, for all environments or each.
         start : array_like, optional
-            Where the search begins, for all (nq) or each (n, nq) environment; by default in the present positions.
+            Initial positions, for all (nq) or each (n, nq) environment; by default the current ones.
         **search
             The other keywords of `clench.Batch.ik`.
         """
@@ -124,7 +126,7 @@ class Asked:
         return IkResult.joined(self._query_each("ik", rows, search))
 
     def _goals_of_parts(self, target: Target) -> list[Target]:
-        """A goal for each worker, with the rows of its environments."""
+        """Returns a target for each worker, with the rows of its environments."""
         fields = target_fields(target)
         of_environments = {name: fields[name] for name in ("position", "quat", "qpos") if fields.get(name) is not None}
         rows = {name: self._split(values, 2, name) for name, values in of_environments.items()}
@@ -132,28 +134,28 @@ class Asked:
         return [type(target)(**fields | {name: values[part] for name, values in rows.items()}) for part in parts]
 
     def _rows(self, arguments: Sequence[tuple[ArrayLike, int, str]]) -> list[tuple[Array | None, ...]]:
-        """Arguments for each worker, of which each may have a row an environment."""
+        """Returns arguments for each worker; each may have one row per environment."""
         return list(zip(*(self._split(*argument) for argument in arguments)))
 
     def _gather_rows(self, method: str, arguments: Sequence[tuple[ArrayLike, int, str]], **chosen: Any) -> Array:
         return np.concatenate(self._query_each(method, self._rows(arguments), chosen))
 
-    # What one environment answers, from its state, on this machine.
+    # Queries about one environment, computed from its state on this machine.
 
     def sim(self, env: SupportsIndex) -> clench.Sim:
-        """A simulation of one environment, in its state and with its parameters; it goes its own way."""
+        """Returns a separate simulation of one environment, with its state and parameters."""
         raise NotImplementedError
 
     def contacts(self, env: SupportsIndex) -> clench.Contacts:
-        """The contacts of an environment in its present state, see `clench.Batch.contacts`."""
+        """Computes the contacts of an environment in its current state; see `clench.Batch.contacts`."""
         return self._computed(env).contacts
 
     def constraints(self, env: SupportsIndex) -> clench.Constraints:
-        """The constraint rows of an environment in its present state, see `clench.Batch.constraints`."""
+        """Computes the constraint rows of an environment in its current state; see `clench.Batch.constraints`."""
         return self._computed(env).constraints
 
     def render(self, env: SupportsIndex, width: SupportsIndex = 640, height: SupportsIndex = 480, **how: Any) -> Array:
-        """A picture of an environment in its present state, see `clench.Batch.render`."""
+        """Renders a picture of an environment in its current state; see `clench.Batch.render`."""
         return self.sim(env).render(width, height, **how)
 
     def _computed(self, env: SupportsIndex) -> clench.Sim:
@@ -163,55 +165,55 @@ class Asked:
 
     @property
     def status(self) -> NDArray[np.int8]:
-        """Whether each environment runs (n), and if not why: codes of `clench.EnvStatus`."""
+        """The status of each environment (n): codes of `clench.EnvStatus`."""
         return self._gather("all_status")
 
     @property
     def running(self) -> NDArray[np.bool_]:
-        """Which environments run (n)."""
+        """True for each environment that is running (n)."""
         running: NDArray[np.bool_] = self.status == clench.EnvStatus.RUNNING
         return running
 
     @property
     def resets(self) -> NDArray[np.int64]:
-        """How often each environment started over from the initial state (n), with the option `autoreset`."""
+        """The number of restarts of each environment from the initial state (n), with the option `autoreset`."""
         return self._gather("all_resets")
 
     @property
     def params(self) -> clench.Parameters:
-        """All parameters by name, see `clench.Parameters`."""
+        """All parameters by name; see `clench.Parameters`."""
         return clench.Parameters(self)  # type: ignore[arg-type]
 
-    # Elements, with what belongs to each: see `clench.ElementView`. Parts of the state are live.
+    # Views of elements; see `clench.ElementView`. Parts of the state are live.
 
     def body(self, which: str | SupportsIndex) -> clench.BodyView:
-        """A body, by name or index."""
+        """Returns a body, by name or index."""
         return clench.BodyView(self, which)  # type: ignore[arg-type]
 
     def joint(self, which: str | SupportsIndex) -> clench.JointView:
-        """A joint, by name or index."""
+        """Returns a joint, by name or index."""
         return clench.JointView(self, which)  # type: ignore[arg-type]
 
     def geom(self, which: str | SupportsIndex) -> clench.GeomView:
-        """A geom, by name or index."""
+        """Returns a geom, by name or index."""
         return clench.GeomView(self, which)  # type: ignore[arg-type]
 
     def site(self, which: str | SupportsIndex) -> clench.SiteView:
-        """A site, by name or index."""
+        """Returns a site, by name or index."""
         return clench.SiteView(self, which)  # type: ignore[arg-type]
 
     def tendon(self, which: str | SupportsIndex) -> clench.TendonView:
-        """A tendon, by name or index."""
+        """Returns a tendon, by name or index."""
         return clench.TendonView(self, which)  # type: ignore[arg-type]
 
     def camera(self, which: str | SupportsIndex) -> clench.CameraView:
-        """A camera, by name or index."""
+        """Returns a camera, by name or index."""
         return clench.CameraView(self, which)  # type: ignore[arg-type]
 
     def equality(self, which: str | SupportsIndex) -> clench.EqualityView:
-        """An equality, by name or index."""
+        """Returns an equality, by name or index."""
         return clench.EqualityView(self, which)  # type: ignore[arg-type]
 
     def actuator(self, which: str | SupportsIndex) -> clench.ActuatorView:
-        """An actuator, by name or index."""
+        """Returns an actuator, by name or index."""
         return clench.ActuatorView(self, which)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""The driver's side of a batch that is spread over a cluster."""
+"""The driver's side of a batch that is distributed over a cluster."""
 
 from __future__ import annotations
 
@@ -26,49 +26,49 @@ _STATE = tuple(field.name for field in dataclasses.fields(clench.State))
 class Batch(Asked, Tied):
     """Many environments of one model, on the machines of a Ray cluster.
 
-    The face is that of `clench.Batch`. Arrays of the state (``qpos``, ``ctrl``, ...) can be read and written as there: what is
-    written goes to the workers with the next call, and those that were ever asked for come back with each. Recorded outputs are
-    fetched when they are asked for, and are copies. The environments are parts of one after the other, and it does not matter to the
-    bit how many workers there are, nor whether one dies.
+    The API is that of `clench.Batch`. Arrays of the state (``qpos``, ``ctrl``, ...) are read and written in the same
+    way: changes are sent to the workers with the next call, and arrays that were ever read are returned by each call.
+    Recorded outputs are fetched on demand, and are copies. The environments are split into consecutive parts; the
+    number of workers, or the death of one, does not change a bit of the result.
 
     Parameters
     ----------
     model : clench.Model
-        The model of all environments. One that was loaded from a file is read from the same path by every worker; where there is no
-        such path, ``clench.ModelSpec.from_file(path).build()`` is a model that takes its files along.
+        The model of all environments. If it was loaded from a file, every worker reads the same path; if the workers
+        have no such path, use ``clench.ModelSpec.from_file(path).build()``, a model that includes its files.
     n_envs : int
-        How many environments.
+        Number of environments.
     precision : {"64", "32"}
         Bits of every number.
     threads : int, optional
-        Threads of each worker, for which Ray keeps as many processors; by default what the cluster has, shared evenly.
+        Threads of each worker, for which Ray reserves as many CPUs; by default an equal share of the cluster's CPUs.
     options : clench.RigidOptions, optional
-        Options that go before those of the model.
+        Options that take precedence over those of the model.
     record : sequence of str
-        Outputs to keep, see `record`.
+        Outputs to record; see `record`.
     workers : int, optional
-        How many workers; by default one a machine of the cluster.
+        Number of workers; by default one per machine of the cluster.
     snapshot_every : int
-        Time steps after which a worker hands over what it would be begun with anew. Fewer cost more, and bring less to do again after a
-        death. None is taken of a worker while one of its environments stands still.
+        Time steps between snapshots, from which a lost worker is restored. A smaller number costs more time, but fewer
+        steps are repeated after a failure. None is taken of a worker with a failed environment.
 
     Attributes
     ----------
     model : clench.Model
-        The model, without the numbers that environments have for themselves.
+        The model, without the parameters that are set per environment.
     n_envs : int
-        How many environments.
+        Number of environments.
     precision : str
         Bits of every number, "64" or "32".
 
     Raises
     ------
     ImportError
-        Ray is not installed.
+        If Ray is not installed.
     ValueError
-        What `clench.Batch` refuses, or less than one worker.
+        If `clench.Batch` rejects an argument, or there is less than one worker.
     clench.ClenchError
-        Workers die as soon as they are there.
+        If workers die immediately after their start.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class Batch(Asked, Tied):
         if parts < 1 or operator.index(snapshot_every) < 1:
             raise ValueError("there must be at least one worker, and a step between snapshots")
         own = max(1, int(ray.cluster_resources().get("CPU", 1)) // parts) if threads is None else operator.index(threads)
-        # What is wrong with the arguments is told here, before any worker starts.
+        # Invalid arguments are reported here, before any worker starts.
         self._one = clench.Batch(model, 1, precision, 1, options=options, record=record)
         self.model = model
         self.n_envs = count
@@ -113,21 +113,21 @@ class Batch(Asked, Tied):
         Returns
         -------
         int
-            How many environments failed in this call.
+            Number of environments that failed in this call.
         """
         steps = operator.index(n)
         return sum(self._ask(lambda worker, _: worker.send_steps(steps, "step", steps, watched=self._mirror.names)))
 
     def forward(self, mask: ArrayLike | None = None) -> int:
-        """Computes the recorded outputs that follow from the states; see `clench.Batch.forward`."""
+        """Computes the recorded outputs from the states; see `clench.Batch.forward`."""
         return sum(self._change("forward", self._split_mask(mask)))
 
     def reset(self, mask: ArrayLike | None = None, keyframe: str | SupportsIndex | None = None) -> None:
-        """Puts environments into their initial state, or that of a keyframe; see `clench.Batch.reset`."""
+        """Resets environments to the initial state or to a keyframe; see `clench.Batch.reset`."""
         self._change("reset", [(*chosen, keyframe) for chosen in self._split_mask(mask)])
 
     def revive(self, mask: ArrayLike | None = None) -> None:
-        """Lets environments run on from the states in their rows; see `clench.Batch.revive`."""
+        """Sets environments running again from the states in their rows; see `clench.Batch.revive`."""
         self._change("revive", self._split_mask(mask))
 
     def rollout(
@@ -137,18 +137,19 @@ class Batch(Asked, Tied):
         record: Sequence[str] = ("qpos", "qvel"),
         steps: SupportsIndex | None = None,
     ) -> dict[str, Array]:
-        """Steps all running environments and records outputs after each step; see `clench.Batch.rollout`, which also takes functions.
+        """Steps all running environments and records outputs after each step; see `clench.Batch.rollout`, which also
+        accepts functions.
 
         Parameters
         ----------
         initial : State or array_like, optional
-            States to start from: a `State`; or one row for all (1 + nq + nv + na) or a row each (n, ...).
+            Initial states: a `State`; or one row for all (1 + nq + nv + na) or a row each (n, ...).
         ctrl : array_like, optional
             Controls of each step, for all (steps, nu) or each (n, steps, nu) environment.
         record : sequence of str
             Outputs to record.
         steps : int, optional
-            How many steps; needed only without `ctrl`.
+            Number of steps; required only without `ctrl`.
 
         Returns
         -------
@@ -173,24 +174,24 @@ class Batch(Asked, Tied):
     def randomize(
         self, field: str, values: ArrayLike, envs: ArrayLike | None = None, *, consistent: bool | np.bool_ = False
     ) -> None:
-        """Gives environments numbers of their own in place of the model's; see `clench.Batch.randomize`.
+        """Gives environments their own values of a parameter; see `clench.Batch.randomize`.
 
         Parameters
         ----------
         field : str
             A parameter of the model.
         values : array_like
-            The whole field for each environment: its shape in the model after an axis over environments.
+            The whole field for each environment: its shape in the model after an axis of environments.
         envs : array_like of int, optional
-            Which environments; by default all.
+            Indices of environments; by default all.
         consistent : bool, optional
-            Whether to compute the constants that follow, as `set_constants` does.
+            True to compute the dependent constants, as `set_constants` does.
         """
         chosen = self._chosen(envs)
         rows = np.asarray(values)
         if rows.shape[:1] != chosen.shape:
             raise ValueError(f"{field} has shape {rows.shape}, but must have a row for each of {chosen.size} environments")
-        # All or nothing, though the workers do not know of each other.
+        # The change is all or nothing, although the workers are independent.
         for row in rows:
             self._one.randomize(field, row[np.newaxis])
         arguments = []
@@ -202,18 +203,18 @@ class Batch(Asked, Tied):
             self.set_constants(np.isin(np.arange(self.n_envs), chosen))
 
     def set_constants(self, mask: ArrayLike | None = None) -> None:
-        """Computes the constants that follow from the parameters of environments; see `clench.Batch.set_constants`.
+        """Computes the constants that depend on the parameters of environments; see `clench.Batch.set_constants`.
 
         Parameters
         ----------
         mask : array_like of bool, optional
-            Which environments (n); by default all.
+            Mask of environments (n); by default all.
         """
         self._change("set_constants", self._split_mask(mask))
 
     @property
     def options(self) -> clench.RigidOptions:
-        """The options that were given. Assigning others counts from the next step or forward on."""
+        """The options that were set. Assigned options take effect at the next step or forward."""
         return self._one.options
 
     @options.setter
@@ -223,7 +224,8 @@ class Batch(Asked, Tied):
 
     @property
     def state(self) -> clench.State:
-        """A copy of what the next step of every environment depends on, parameters apart; can be assigned."""
+        """A copy of everything that the next step of every environment depends on, except parameters. It can be
+        assigned."""
         each = self._query("get_state")
         return clench.State(**{name: np.concatenate([getattr(state, name) for state in each]) for name in _STATE})
 
@@ -232,20 +234,21 @@ class Batch(Asked, Tied):
         self.set_state(state)
 
     def set_state(self, state: clench.State, envs: ArrayLike | None = None) -> None:
-        """Brings some environments to a state, and lets them run; see `clench.Batch.set_state`.
+        """Sets the state of some environments, and sets them running; see `clench.Batch.set_state`.
 
         Parameters
         ----------
         state : State
-            One for all of them, such as ``sim.state``, or of as many environments as there are in `envs`.
+            A single state for all of them, such as ``sim.state``, or one with as many environments as there are in
+            `envs`.
         envs : array_like of int, optional
-            Which environments; by default all.
+            Indices of environments; by default all.
         """
         chosen = self._chosen(envs)
         one = state.qpos.ndim == 1
         if not one and any(len(values) != chosen.size for values in state._arrays().values()):
             raise ValueError(f"a state of {chosen.size} environments is needed")
-        # All or nothing, though the workers do not know of each other.
+        # The change is all or nothing, although the workers are independent.
         self._one.state = state if one else state[:1]
         arguments = []
         for part in self._parts:
@@ -254,12 +257,12 @@ class Batch(Asked, Tied):
         self._change("set_state", arguments)
 
     def sim(self, env: SupportsIndex) -> clench.Sim:
-        """A simulation of one environment, in its state and with its parameters; it goes its own way.
+        """Returns a separate simulation of one environment, with its state and parameters.
 
         Raises
         ------
         IndexError
-            An environment that there is not.
+            If the environment does not exist.
         """
         sim: clench.Sim = self._of_env("sim", env)
         return sim
@@ -267,7 +270,7 @@ class Batch(Asked, Tied):
     # Outputs.
 
     def record(self, *names: str) -> None:
-        """Keeps outputs from now on, beside those that are kept already; see `clench.Batch.record`."""
+        """Records outputs from now on, in addition to those that are recorded already; see `clench.Batch.record`."""
         self._one.record(*names)
         self._change("record", [names] * len(self._workers))
 
@@ -277,7 +280,7 @@ class Batch(Asked, Tied):
         return self._one.outputs
 
     def fault(self, env: SupportsIndex) -> str | None:
-        """Why an environment cannot go on; None if it runs."""
+        """Returns the reason why an environment failed; None if it is running."""
         fault: str | None = self._of_env("fault", env)
         return fault
 
@@ -285,16 +288,16 @@ class Batch(Asked, Tied):
 
     @property
     def workers(self) -> list[tuple[str, int]]:
-        """The name of the machine and the number of the process of each worker."""
+        """The host name and the process id of each worker."""
         return self._query("where")
 
     @property
     def replaced(self) -> int:
-        """How many workers died, and were replaced."""
+        """The number of workers that died and were replaced."""
         return sum(worker.replaced for worker in self._workers)
 
     def close(self) -> None:
-        """Ends the workers. The batch cannot be used any longer."""
+        """Terminates the workers. The batch can no longer be used."""
         for worker in self._workers:
             worker.close()
         self._workers = []
@@ -343,7 +346,8 @@ class Batch(Asked, Tied):
         return self._workers
 
     def _ask(self, send: Callable[[Worker, int], Any]) -> list[Any]:
-        """Asks all workers, after what was written here, and waits for them; what they answer, or the first error."""
+        """Calls all workers, after sending local changes, and waits for them; returns their results, or raises the
+        first error."""
         workers = self._open()
         calls = []
         for part, worker in enumerate(workers):
@@ -362,20 +366,20 @@ class Batch(Asked, Tied):
         return results
 
     def _query(self, method: str, *arguments: Any, **chosen: Any) -> list[Any]:
-        """Asks what changes nothing."""
+        """Makes a query that changes nothing."""
         return self._query_each(method, [arguments] * len(self._parts), chosen)
 
     def _query_each(self, method: str, arguments: Sequence[tuple[Any, ...]], chosen: dict[str, Any]) -> list[Any]:
-        """The same, with arguments for each worker."""
+        """Makes a query with separate arguments for each worker."""
         return self._ask(lambda worker, part: worker.send(method, *arguments[part], chosen=chosen))
 
     def _change(self, method: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Lets each worker do something that changes it."""
+        """Makes a call that changes the workers."""
         names = self._mirror.names
         return self._ask(lambda worker, part: worker.send(method, *arguments[part], changes=True, watched=names))
 
     def _of_env(self, method: str, env: SupportsIndex) -> Any:
-        """Asks about one environment."""
+        """Makes a query about one environment."""
         index = operator.index(env)
         if not 0 <= index < self.n_envs:
             raise IndexError(f"environments go from 0 to {self.n_envs}, without it")
@@ -392,7 +396,7 @@ class Batch(Asked, Tied):
         return [(array[part],) for part in self._parts]
 
     def _split(self, values: ArrayLike | None, dimensions: int, name: str) -> list[Array | None]:
-        """Rows for each worker, where there is one an environment; else the same for all."""
+        """Splits rows among the workers if there is one per environment; else each worker gets the same."""
         if values is None:
             return [None] * len(self._parts)
         array = np.asarray(values)

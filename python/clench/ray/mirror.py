@@ -1,4 +1,4 @@
-"""Arrays of the state that live here as well as with the workers: what is written here goes there before the next call."""
+"""Arrays of the state that exist here and in the workers: local changes are sent before the next call."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ Array = NDArray[Any]
 
 
 class Mirror:
-    """Fields of the state of all environments, those that were asked for.
+    """The fields of the state of all environments that were requested.
 
     Parameters
     ----------
     parts : sequence of slice
-        Which environments each worker has.
+        The environments of each worker.
     """
 
     def __init__(self, parts: Sequence[slice]) -> None:
@@ -30,28 +30,29 @@ class Mirror:
         return tuple(self._arrays)
 
     def get(self, name: str) -> Array | None:
-        """The array of a field, the same object as long as the batch lives; None where it was not asked for yet."""
+        """Returns the array of a field, the same object during the life of the batch; None if it was not requested
+        yet."""
         return self._arrays.get(name)
 
     def add(self, name: str, rows: Array) -> Array:
-        """Keeps a field from now on; what the workers have is `rows`."""
+        """Mirrors a field from now on; `rows` are the values of the workers."""
         self._arrays[name], self._known[name] = rows, rows.copy()
         return rows
 
     def written(self, part: int) -> dict[str, Array]:
-        """What was written here since a worker knew of it: copies of the rows of whole fields."""
+        """Returns copies of the rows of whole fields that were written here since the last exchange with a worker."""
         rows = self._parts[part]
         changed = {}
         for name, array in self._arrays.items():
             own, known = array[rows], self._known[name][rows]
-            # Bits, for NaN is a number that one can write.
+            # Compare bits, since NaN is a value that can be written.
             if own.tobytes() != known.tobytes():
                 known[...] = own
                 changed[name] = own.copy()
         return changed
 
     def update(self, part: int, fields: Mapping[str, Array]) -> None:
-        """Takes over what a worker has now."""
+        """Stores the current values of a worker."""
         rows = self._parts[part]
         for name, values in fields.items():
             self._arrays[name][rows] = values

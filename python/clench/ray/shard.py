@@ -1,4 +1,4 @@
-"""What a worker runs: a batch of its own environments, which does what it is told, call by call."""
+"""The code that a worker runs: a batch of its own environments, controlled by calls."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ Array = NDArray[Any]
 class Shard:
     """A part of the environments.
 
-    Everything that happens to it is a call of :meth:`run`. The same calls in the same order lead to the same bits, which is what the
-    replacement of a lost worker relies on.
+    Every change is a call of :meth:`run`. The same calls in the same order give the same bits; the replacement of a
+    lost worker relies on that.
     """
 
     _batch: clench.Batch
@@ -30,30 +30,30 @@ class Shard:
     def run(
         self, method: str, arguments: tuple[Any, ...], chosen: dict[str, Any], watched: Sequence[str]
     ) -> tuple[Any, dict[str, Array]]:
-        """Does a call.
+        """Executes a call.
 
         Parameters
         ----------
         method : str
-            One of this class, or else of the batch.
+            A method of this class, or else of the batch.
         arguments : tuple
-            What it takes.
+            Its positional arguments.
         chosen : dict
-            The keywords that it takes.
+            Its keyword arguments.
         watched : sequence of str
-            Fields of the state that are wanted as they are afterwards.
+            Fields of the state to return after the call.
 
         Returns
         -------
         object
-            What the call returned, or the exception that it raised.
+            The result of the call, or the exception that it raised.
         dict of str to ndarray
             Copies of the fields.
         """
         try:
             own = getattr(self, f"_{method}", None)
             result = (own or getattr(self._batch, method))(*arguments, **chosen)
-        except Exception as error:  # It belongs to whoever asked, on another machine.
+        except Exception as error:  # It is reported to the caller on another machine.
             return error, {}
         return result, {name: getattr(self._batch, name).copy() for name in watched}
 
@@ -62,7 +62,8 @@ class Shard:
         self._batch = clench.Batch(model, n_envs, precision, threads, options=options, record=record)
 
     def _snapshot(self) -> bytes | None:
-        """What :meth:`_restore` begins with; None while an environment stands still, which no pickle of a batch remembers."""
+        """Returns the data for :meth:`_restore`; None while an environment has failed, since pickles of a batch do not
+        store that."""
         if not self._batch.running.all():
             return None
         return pickle.dumps((self._batch, self._all_resets()))
@@ -75,7 +76,7 @@ class Shard:
             getattr(self._batch, name)[...] = values
 
     def _read(self) -> None:
-        """Nothing but what is watched is wanted."""
+        """Does nothing: it only returns the watched fields."""
 
     def _get_state(self) -> clench.State:
         return self._batch.state

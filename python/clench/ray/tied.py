@@ -1,4 +1,4 @@
-"""Constraints that come and go while a batch on a cluster runs: each worker adds and removes those of its own environments."""
+"""Constraints that are added to and removed from a batch on a cluster: each worker handles its own environments."""
 
 from __future__ import annotations
 
@@ -13,34 +13,37 @@ Which = str | SupportsIndex
 
 
 class Tied:
-    """As `clench.Batch` does it; but where one worker refuses, what the others did stays."""
+    """Implements dynamic constraints as in `clench.Batch`; but if one worker fails, the changes of the others
+    remain."""
 
     n_envs: int
     _parts: list[slice]
 
     def _change(self, method: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Lets each worker do something that changes it."""
+        """Makes a call that changes the workers."""
         raise NotImplementedError
 
     def add_weld(self, body1: Which, body2: Which, envs: ArrayLike | None = None) -> NDArray[np.int64]:
-        """Holds two bodies together as they lie now, in some environments; what `remove` takes (len(envs)). See `clench.Batch.add_weld`."""
+        """Welds two bodies in their current relative pose, in some environments; returns codes for `remove`
+        (len(envs)). See `clench.Batch.add_weld`."""
         return self._tie("add_weld", envs, lambda _: (body1, body2))
 
     def add_connect(
         self, body1: Which, body2: Which, anchor: ArrayLike, envs: ArrayLike | None = None
     ) -> NDArray[np.int64]:
-        """Holds a point of the first body (3) to the second, in some environments. See `clench.Batch.add_connect`."""
+        """Connects a point of the first body (3) to the second, in some environments. See
+        `clench.Batch.add_connect`."""
         return self._tie("add_connect", envs, lambda _: (body1, body2, anchor))
 
     def remove(self, constraints: ArrayLike, envs: ArrayLike | None = None) -> None:
-        """Lets go of what was added at run time, a constraint for each of some environments."""
+        """Removes dynamic constraints, one for each of some environments."""
         codes = np.asarray(constraints)
         if codes.shape != self._chosen(envs).shape:
             raise ValueError(f"constraints has shape {codes.shape}, but must have one for each of the environments")
         self._tie("remove", envs, lambda here: (codes[here],))
 
     def weld_here(self, which: Which, envs: ArrayLike | None = None) -> None:
-        """Lets a weld or connect of the model hold its bodies as they lie now, in some environments."""
+        """Makes a weld or connect of the model hold its bodies in their current relative pose, in some environments."""
         self._tie("weld_here", envs, lambda _: (which,))
 
     def set_equality(self, which: Which, active: bool | np.bool_ | ArrayLike) -> None:
@@ -51,7 +54,7 @@ class Tied:
         self._change("set_equality", [(which, switch[part] if switch.ndim else active) for part in self._parts])
 
     def _chosen(self, envs: ArrayLike | None) -> Array:
-        """Indices of environments."""
+        """Returns the indices of environments."""
         chosen = np.arange(self.n_envs) if envs is None else np.asarray(envs)
         if chosen.ndim != 1 or chosen.dtype.kind not in "iu":
             raise ValueError("envs must be a list of indices")
@@ -62,7 +65,7 @@ class Tied:
     def _tie(
         self, method: str, envs: ArrayLike | None, arguments: Callable[[Array], tuple[Any, ...]]
     ) -> NDArray[np.int64]:
-        """Does something with chosen environments, wherever they are; what is answered for each, in their order."""
+        """Makes a call for chosen environments, on any worker; returns the result for each, in their order."""
         chosen = self._chosen(envs)
         heres = [(part.start <= chosen) & (chosen < part.stop) for part in self._parts]
         inside = [chosen[here] - part.start for here, part in zip(heres, self._parts)]

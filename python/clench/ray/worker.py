@@ -1,7 +1,7 @@
-"""A worker as the driver sees it: calls go there, and where it dies another takes its place.
+"""The driver's representation of a worker: it forwards calls, and replaces a worker that dies.
 
-The state of a worker is its last snapshot and what was asked of it since, the journal; both are kept here. So a worker that is lost is
-made anew on whatever machine has room: the new one takes the snapshot, and does the journal again.
+The state of a worker is its last snapshot and the journal of later calls; the driver stores both. A lost worker is
+therefore restored on any machine with free capacity: the new one loads the snapshot, and repeats the journal.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from typing import Any
 from clench.errors import ClenchError
 from clench.ray.shard import Array, Shard
 
-# How many workers may die in a row over one call before that call is taken to be what kills them.
+# The number of consecutive deaths of workers in one call after which the call is considered the cause.
 _TRIES = 3
 
 
 def ray_module() -> Any:
-    """Ray.
+    """Imports Ray.
 
     Raises
     ------
     ImportError
-        It is not installed.
+        If Ray is not installed.
     """
     try:
         return importlib.import_module("ray")
@@ -35,14 +35,14 @@ def ray_module() -> Any:
 
 @dataclass
 class Call:
-    """Something that was asked of a worker."""
+    """A call of a worker."""
 
     method: str
     arguments: tuple[Any, ...]
     chosen: Mapping[str, Any]
     watched: Sequence[str]
     answer: Any = None
-    """Where Ray puts what it returns; another place when it is done again."""
+    """Ray's reference to the result; it is replaced if the call is repeated."""
 
 
 class Worker:
@@ -51,18 +51,18 @@ class Worker:
     Parameters
     ----------
     packed : bytes
-        What the part is made of, see `Shard`.
+        The arguments of the part; see `Shard`.
     threads : int
-        Processors that Ray keeps for it.
+        CPUs that Ray reserves for it.
     snapshot_every : int
         Time steps between snapshots.
 
     Attributes
     ----------
     journal : list of Call
-        What was asked since the last snapshot that changes something, the snapshot itself first.
+        The calls since the last snapshot that change the part, the snapshot itself first.
     replaced : int
-        How often another took its place.
+        The number of replacements.
     """
 
     def __init__(self, packed: bytes, threads: int, snapshot_every: int) -> None:
@@ -84,20 +84,20 @@ class Worker:
         changes: bool = False,
         watched: Sequence[str] = (),
     ) -> Call:
-        """Asks for something, without waiting for it.
+        """Starts a call, without waiting for it.
 
         Parameters
         ----------
         method : str
-            See `Shard.run`.
+            As for `Shard.run`.
         *arguments
-            What it takes.
+            The positional arguments.
         chosen : mapping
-            The keywords that it takes.
+            The keyword arguments.
         changes : bool
-            Whether it leaves the part different, so that it must be done again after a death.
+            True if the call changes the part, so that it must be repeated after a death.
         watched : sequence of str
-            See `Shard.run`.
+            As for `Shard.run`.
         """
         call = Call(method, arguments, chosen, watched)
         if changes:
@@ -106,9 +106,9 @@ class Worker:
         return call
 
     def send_steps(self, steps: int, method: str, *arguments: Any, watched: Sequence[str] = ()) -> Call:
-        """Asks for so many time steps, with a snapshot before them where one is due.
+        """Starts a number of time steps, with a snapshot before them if one is due.
 
-        Snapshots are taken there and nowhere else, since steps compute all recorded outputs anew, which snapshots do not hold.
+        Snapshots are taken only here, since steps recompute all recorded outputs, which snapshots do not store.
         """
         before = None
         if self._steps >= self._every:
@@ -121,19 +121,19 @@ class Worker:
         return call
 
     def receive(self, call: Call) -> tuple[Any, dict[str, Array]]:
-        """Waits for what was asked.
+        """Waits for a call.
 
         Returns
         -------
         object
             The result, or an exception that the worker raised.
         dict of str to ndarray
-            What was watched.
+            The watched fields.
 
         Raises
         ------
         ClenchError
-            One worker after the other died over it.
+            If one worker after the other died during the call.
         """
         for _ in range(_TRIES):
             try:
@@ -146,11 +146,11 @@ class Worker:
         raise ClenchError(f"{_TRIES} workers died one after the other over the call `{call.method}`") from death
 
     def close(self) -> None:
-        """Ends it."""
+        """Terminates the worker."""
         self._ray.kill(self._actor)
 
     def _take_snapshot(self, call: Call) -> None:
-        """With the snapshot that came before a call, what was asked earlier need not be known any longer."""
+        """Stores the snapshot that preceded a call, and discards the earlier calls."""
         if self._snapshot is None or self._snapshot[1] is not call:
             return
         answer, self._snapshot = self._snapshot[0], None
@@ -160,7 +160,7 @@ class Worker:
             self.journal[:since] = [Call("restore", (packed,), {}, ())]
 
     def _replace(self, call: Call) -> None:
-        """Puts another in the place of one that died."""
+        """Replaces a worker that died."""
         self._ray.kill(self._actor)
         self._actor = self._new_actor()
         self.replaced += 1
@@ -171,7 +171,7 @@ class Worker:
             call.answer = self._submit(call)
 
     def _new_actor(self) -> Any:
-        # A task that is lost is not tried again by Ray: what comes after the snapshot must be done in order.
+        # Ray must not retry a lost task: the calls after the snapshot must be repeated in order.
         remote = self._ray.remote(num_cpus=self._threads, max_restarts=0, scheduling_strategy="SPREAD")(Shard)
         return remote.remote()
 
@@ -179,6 +179,6 @@ class Worker:
         return self._actor.run.remote(call.method, call.arguments, dict(call.chosen), tuple(call.watched))
 
     def _deaths(self) -> tuple[type[BaseException], ...]:
-        """What Ray raises where a worker, or the machine with its results, is no more."""
+        """Returns the exceptions that Ray raises if a worker, or the machine with its results, is lost."""
         errors = self._ray.exceptions
         return errors.RayActorError, errors.ObjectLostError, errors.WorkerCrashedError

@@ -1,4 +1,4 @@
-//! Constraints at run time in environments of a batch.
+//! Constraints that are added at run time in environments of a batch.
 
 use super::{AnyBatch, Batch};
 use crate::arrays::{indices, numbers, require_shape};
@@ -11,7 +11,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 impl Batch {
-    /// The environments of these indices, all where there are none.
+    /// Returns the given environment indices, or all if there are none.
     pub(super) fn chosen(&self, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         match envs {
             Some(envs) => indices("envs", envs, self.n_envs),
@@ -24,7 +24,7 @@ impl Batch {
     }
 }
 
-/// Constraints as numbers for Python.
+/// Converts constraints to integer codes.
 fn codes<'py>(py: Python<'py>, added: Vec<DynamicConstraint>) -> Bound<'py, PyArray1<i64>> {
     let codes = added.into_iter();
     PyArray1::from_iter(py, codes.map(|added| added.to_code().cast_signed()))
@@ -32,24 +32,24 @@ fn codes<'py>(py: Python<'py>, added: Vec<DynamicConstraint>) -> Bound<'py, PyAr
 
 #[pymethods]
 impl Batch {
-    /// Hold two bodies together as they lie now, in some environments: as `Sim.add_weld`.
+    /// Welds two bodies in their current relative pose, in some environments; see `Sim.add_weld`.
     ///
     /// Parameters
     /// ----------
     /// body1, body2 : str or int
     ///     The bodies, by name or index.
     /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    ///     Indices of environments; by default all.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     For each of them, in their order, what `remove` takes, int64.
+    ///     The constraint in each of these environments, in their order, as codes for `remove`, int64.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     As `Sim.add_weld`. All states are then as before.
+    ///     As for `Sim.add_weld`. The states do not change then.
     #[pyo3(signature = (body1, body2, envs = None))]
     fn add_weld<'py>(
         &self,
@@ -65,7 +65,7 @@ impl Batch {
         Ok(codes(py, added.map_err(sim_error)?))
     }
 
-    /// Hold two points together in some environments: as `Sim.add_connect`.
+    /// Connects two bodies at a point in some environments; see `Sim.add_connect`.
     ///
     /// Parameters
     /// ----------
@@ -74,12 +74,12 @@ impl Batch {
     /// anchor : array_like
     ///     A point in the frame of the first body (3), m.
     /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    ///     Indices of environments; by default all.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     For each of them, in their order, what `remove` takes, int64.
+    ///     The constraint in each of these environments, in their order, as codes for `remove`, int64.
     #[pyo3(signature = (body1, body2, anchor, envs = None))]
     fn add_connect<'py>(
         &self,
@@ -99,19 +99,19 @@ impl Batch {
         Ok(codes(py, added.map_err(sim_error)?))
     }
 
-    /// Let go of what `add_weld` or `add_connect` holds, in some environments.
+    /// Removes constraints that `add_weld` or `add_connect` added, in some environments.
     ///
     /// Parameters
     /// ----------
     /// constraints : array_like of int
-    ///     What they returned, a number for each of the environments.
+    ///     The codes that they returned, one for each of the environments.
     /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    ///     Indices of environments; by default all.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     Constraints that are not there. All states are then as before.
+    ///     If a constraint does not exist. The states do not change then.
     #[pyo3(signature = (constraints, envs = None))]
     fn remove(
         &self,
@@ -129,14 +129,15 @@ impl Batch {
         each!(&mut *guard, batch => batch.remove(&envs, &constraints)).map_err(sim_error)
     }
 
-    /// Let a weld or connect of the model hold its bodies as they lie now, in some environments: as `Sim.weld_here`.
+    /// Makes a weld or connect of the model hold its bodies in their current relative pose, in some environments; see
+    /// `Sim.weld_here`.
     ///
     /// Parameters
     /// ----------
     /// which : str or int
     ///     The equality, by name or index.
     /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    ///     Indices of environments; by default all.
     #[pyo3(signature = (which, envs = None))]
     fn weld_here(&self, which: &Bound<'_, PyAny>, envs: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let equality = Kind::Equality.find(self.model.get().inner(), which)?;
@@ -145,8 +146,8 @@ impl Batch {
         each!(&mut *guard, batch => batch.weld_here(&envs, equality)).map_err(sim_error)
     }
 
-    /// list of int : For each environment the serial number of the last constraint that was added at run time; for pickles, see
-    /// `clench._pickle`.
+    /// list of int : The serial number of the last constraint that was added at run time in each environment, for
+    /// pickles; see `clench._pickle`.
     #[getter(_last_serials)]
     fn last_serials(&self) -> PyResult<Vec<u32>> {
         let guard = lock(&self.inner, "batch")?;

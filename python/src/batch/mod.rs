@@ -28,7 +28,7 @@ pub(crate) enum AnyBatch {
     F32(clench::Batch<f32>),
 }
 
-/// Evaluates an expression about a batch of whichever precision.
+/// Evaluates an expression about a batch of either precision.
 macro_rules! each {
     ($any:expr, $batch:ident => $value:expr) => {
         match $any {
@@ -46,42 +46,43 @@ mod queries;
 mod run;
 mod status;
 
-/// Many environments of one model, stepped side by side on all processors.
+/// Many environments of one model, stepped in parallel on all CPU cores.
 ///
-/// Environment i moves as a `Sim` alone would in the same precision, to the bit. One that cannot go on keeps its last good state
-/// and says why in `status` and `fault`; its neighbours do not notice.
+/// Environment i moves exactly as a single `Sim` would in the same precision, to the bit. An environment that fails
+/// keeps its last good state and reports the reason in `status` and `fault`; the others are not affected.
 ///
-/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) have the environments as their first axis, and are live: a step works on their
-/// very memory. Outputs that are recorded are live too, and can be read by their names: ``batch.cvel``.
+/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) have the environments as their first axis. They are live: they
+/// share memory with the simulation. Recorded outputs are live too, and can be read by name: ``batch.cvel``.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The model of all environments.
 /// n_envs : int
-///     How many environments.
+///     Number of environments.
 /// precision : {"64", "32"}, optional
-///     Bits of every number: "64" on the processor and "32" on a graphics device unless given.
+///     Bits of every number; by default "64" on the CPU and "32" on a GPU.
 /// threads : int, optional
-///     How many threads step; by default as many as there are processors. Results do not depend on it.
+///     Number of threads; by default the number of CPU cores. Results do not depend on it.
 /// options : RigidOptions, optional
-///     Options that go before those of the model.
+///     Options that take precedence over those of the model.
 /// record : sequence of str
-///     Outputs to keep, see `record`.
+///     Outputs to record; see `record`.
 /// device : str
-///     What steps: "cpu"; "gpu", the first graphics device of this machine, or "gpu:" and a part of the name of one that
-///     `devices` lists. A device computes the outputs that are recorded; many have no double precision, or a slow one. What is written into arrays
-///     goes to it before a call, and the states come back after it; options stay what they are. Questions, such as Jacobians, are
-///     answered by the processor.
+///     The device that steps: "cpu"; "gpu", the first GPU of this machine; or "gpu:" and a part of a name that
+///     `devices` lists. A GPU computes the recorded outputs; many GPUs have slow double precision or none. Arrays are
+///     copied to it before a call, and the states back after it; options do not change. The CPU computes queries, such
+///     as Jacobians.
 ///
 /// Raises
 /// ------
 /// RuntimeError
-///     No graphics device, or one that cannot be used.
+///     If there is no GPU, or it cannot be used.
 /// ValueError
-///     What of the model a graphics device cannot step yet, or that it has no double precision; options out of range, shapes that may meet and cannot be collided, names that no output has.
+///     If the GPU cannot step the model yet or has no double precision, an option is out of range, shapes that can
+///     collide have no collision function, or no output has a name.
 /// MemoryError
-///     More environments than memory holds.
+///     If memory is insufficient for the environments.
 #[pyclass(frozen, extends = StateViews, module = "clench")]
 pub(crate) struct Batch {
     inner: Arc<Mutex<AnyBatch>>,
@@ -179,17 +180,17 @@ impl Batch {
         Ok(names)
     }
 
-    /// A simulation of one environment, in its state and with its parameters.
+    /// Returns a simulation of one environment, with its state and parameters.
     ///
     /// Parameters
     /// ----------
     /// env : int
-    ///     Which environment.
+    ///     The index of the environment.
     ///
     /// Returns
     /// -------
     /// Sim
-    ///     It goes its own way: no memory is shared.
+    ///     A separate simulation: no memory is shared.
     fn sim<'py>(&self, py: Python<'py>, env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Sim>> {
         let env = self.env(env)?;
         let guard = lock(&self.inner, "batch")?;
@@ -201,10 +202,10 @@ impl Batch {
         Bound::new(py, Sim::wrap(py, sim.map_err(sim_error)?, model)?)
     }
 
-    /// State : A copy of what the next step of every environment depends on, parameters apart.
+    /// State : A copy of everything that the next step of every environment depends on, except parameters.
     ///
-    /// Assigning one brings all environments there, to the bit, and lets all of them run. That of a `Sim`, or of one environment
-    /// (``batch.state[env]``), brings all to the same state.
+    /// Assigning a state restores all environments, to the bit, and sets all of them running. The state of a `Sim`, or
+    /// of one environment (``batch.state[env]``), is copied to all.
     #[getter]
     fn state<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let _guard = lock(&this.get().inner, "batch")?;
@@ -220,21 +221,22 @@ impl Batch {
         each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
     }
 
-    /// Bring some environments to a state, and let them run.
+    /// Sets the state of some environments, and sets them running.
     ///
     /// Parameters
     /// ----------
     /// state : State
-    ///     One for all of them, such as ``sim.state``, or of as many environments as there are in `envs`.
+    ///     A single state for all of them, such as ``sim.state``, or one with as many environments as there are in
+    ///     `envs`.
     /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    ///     Indices of environments; by default all.
     ///
     /// Raises
     /// ------
     /// IndexError
-    ///     An environment that there is not.
+    ///     If an environment does not exist.
     /// ValueError
-    ///     A state of another model, or of another number of environments. All states are then as before.
+    ///     If the state is of another model or of another number of environments. The states do not change then.
     #[pyo3(name = "set_state", signature = (state, envs = None))]
     fn bring_to(
         this: &Bound<'_, Self>,
@@ -254,13 +256,13 @@ impl Batch {
         each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
     }
 
-    /// Model : The model, without the numbers that environments have for themselves.
+    /// Model : The model, without the parameters that are set per environment.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<Model> {
         self.model.clone_ref(py)
     }
 
-    /// RigidOptions : The options that were given. Assigning others counts from the next step or forward on.
+    /// RigidOptions : The options that were set. Assigned options take effect at the next step or forward.
     #[getter]
     fn options(&self) -> PyResult<RigidOptions> {
         let guard = lock(&self.inner, "batch")?;
@@ -275,7 +277,7 @@ impl Batch {
         each!(&mut *guard, batch => batch.set_options(options.0)).map_err(sim_error)
     }
 
-    /// int : How many environments there are.
+    /// int : Number of environments.
     #[getter]
     fn n_envs(&self) -> usize {
         self.n_envs
@@ -287,7 +289,7 @@ impl Batch {
         self.precision.name()
     }
 
-    /// str : What steps: "cpu", or "gpu:" and the name of a graphics device.
+    /// str : The device that steps: "cpu", or "gpu:" and the name of the GPU.
     #[getter]
     fn device(&self) -> PyResult<String> {
         let guard = lock(&self.inner, "batch")?;
@@ -295,19 +297,19 @@ impl Batch {
         Ok(name.map_or_else(|| "cpu".to_owned(), |name| format!("gpu:{name}")))
     }
 
-    /// int : How many threads step.
+    /// int : Number of threads.
     #[getter]
     fn threads(&self) -> usize {
         self.threads
     }
 
-    /// int : How many environments a thread steps side by side.
+    /// int : Number of environments that a thread steps side by side.
     #[getter]
     fn lanes(&self) -> usize {
         self.lanes
     }
 
-    /// int : Bytes that an environment takes: its state, parameters of its own, recorded outputs.
+    /// int : Memory per environment in bytes: its state, its own parameters and recorded outputs.
     #[getter]
     fn bytes_per_env(&self) -> PyResult<usize> {
         let guard = lock(&self.inner, "batch")?;
@@ -332,32 +334,32 @@ impl Batch {
 }
 
 impl Batch {
-    /// The batch itself, which other threads may use.
+    /// Returns the batch itself, which other threads may use.
     pub(crate) fn inner(&self) -> &Mutex<AnyBatch> {
         &self.inner
     }
 
-    /// The same, to be kept.
+    /// Returns a shared reference to the batch.
     pub(crate) fn shared(&self) -> &Arc<Mutex<AnyBatch>> {
         &self.inner
     }
 
-    /// The Python object of the model.
+    /// Returns the Python object of the model.
     pub(crate) fn py_model(&self) -> &Py<Model> {
         &self.model
     }
 
-    /// The model, without the numbers that environments have for themselves.
+    /// Returns the model, without the parameters that are set per environment.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
         self.model.get().inner()
     }
 
-    /// How many environments there are.
+    /// Returns the number of environments.
     pub(crate) fn count(&self) -> usize {
         self.n_envs
     }
 
-    /// The view of an output, if it is recorded, up to date but while another thread steps this batch.
+    /// Returns the view of an output if it is recorded, up to date unless another thread is stepping this batch.
     fn fresh(&self, py: Python<'_>, output: Output) -> PyResult<Option<Py<PyAny>>> {
         let view = self.recorded.get(py, output)?;
         if view.is_some()
@@ -370,7 +372,7 @@ impl Batch {
         Ok(view)
     }
 
-    /// An environment, by its index.
+    /// Converts an index to that of an environment.
     fn env(&self, index: &Bound<'_, PyAny>) -> PyResult<usize> {
         let found = match index.extract::<usize>() {
             Err(error) if !error.is_instance_of::<PyOverflowError>(index.py()) => {
@@ -384,7 +386,7 @@ impl Batch {
         found.ok_or_else(missing)
     }
 
-    /// All environments, where no mask is given.
+    /// Converts a mask; by default it covers all environments.
     fn mask(&self, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<bool>> {
         given.map_or_else(
             || Ok(vec![true; self.n_envs]),
@@ -392,7 +394,7 @@ impl Batch {
         )
     }
 
-    /// Records outputs beside those that are recorded already.
+    /// Records outputs in addition to those that are recorded already.
     fn keep(&self, py: Python<'_>, names: &[String]) -> PyResult<()> {
         let mut guard = lock(&self.inner, "batch")?;
         let keeper = self.keeper.bind(py);

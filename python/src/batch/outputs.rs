@@ -11,12 +11,13 @@ use pyo3::types::{PySlice, PyTuple};
 
 #[pymethods]
 impl Batch {
-    /// Keeps outputs from now on, beside those that are kept already.
+    /// Records outputs from now on, in addition to those that are recorded already.
     ///
-    /// They are computed at once. Every step and forward leaves them as of its last forward pass, as MuJoCo leaves its fields: those
-    /// that follow from positions are of the start of the last time step (with the Runge-Kutta integrator, of its last stage).
-    /// Where positions, velocities, mocap poses or parameters of an environment were written since, asking for an output by
-    /// name (`output`, ``batch.xpos``) computes that environment's anew. Rows of environments that do not run stay as they are.
+    /// They are computed immediately. Every step and forward leaves them as of its last forward pass, like MuJoCo's
+    /// fields: those that depend on positions are of the start of the last time step (with the Runge-Kutta integrator,
+    /// of its last stage). If positions, velocities, mocap poses or parameters of an environment were written since,
+    /// reading an output by name (`output`, ``batch.xpos``) recomputes that environment's values. Rows of environments
+    /// that are not running do not change.
     ///
     /// Parameters
     /// ----------
@@ -34,46 +35,46 @@ impl Batch {
         PyTuple::new(py, outputs.iter().map(|output| output.name()))
     }
 
-    /// A recorded output.
+    /// Returns a recorded output.
     ///
     /// Parameters
     /// ----------
     /// name : str
-    ///     Its name.
+    ///     The name of the output.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     A live view that cannot be written, with environments as first axis.
+    ///     A live read-only view, with environments as first axis.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     An output that is not recorded.
+    ///     If the output is not recorded.
     fn output(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
         let output = Output::find(name).map_err(sim_error)?;
         let view = self.fresh(py, output)?;
         view.ok_or_else(|| PyValueError::new_err(not_recorded(name)))
     }
 
-    /// What one sensor measured in every environment: its part of `sensordata`, which must be recorded.
+    /// Returns the values of one sensor in every environment: its part of `sensordata`, which must be recorded.
     ///
     /// Parameters
     /// ----------
     /// which : str or int
-    ///     Its name or index.
+    ///     The name or index of the sensor.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     A live view that cannot be written, with environments as first axis.
+    ///     A live read-only view, with environments as first axis.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A name that no sensor has, or `sensordata` is not recorded.
+    ///     If no sensor has the name, or `sensordata` is not recorded.
     /// IndexError
-    ///     A number that is negative or too large.
+    ///     If the index is negative or too large.
     fn sensor<'py>(
         &self,
         py: Python<'py>,

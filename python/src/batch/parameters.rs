@@ -9,11 +9,11 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Batch {
-    /// Gives environments numbers of their own in place of the model's.
+    /// Gives environments their own values of a parameter in place of the model's.
     ///
-    /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
-    /// quaternions and axes are normalized. The numbers stay when an environment is reset. The other constants that follow, such
-    /// as the inverse inertias by which constraints are scaled, stay the model's unless ``consistent`` is set (see
+    /// Directly dependent fields are updated too (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from
+    /// ``geom_size``); quaternions and axes are normalized. A reset keeps the values. The other dependent constants,
+    /// such as the inverse inertias that scale constraints, stay the model's unless ``consistent`` is set (see
     /// `set_constants`).
     ///
     /// Parameters
@@ -21,18 +21,19 @@ impl Batch {
     /// field : str
     ///     A parameter of the model, such as ``"body_mass"`` or ``"geom_friction"``; see `clench.PARAMETERS`.
     /// values : array_like
-    ///     The whole field for each environment: its shape in the model after an axis over environments.
+    ///     The whole field for each environment: its shape in the model after an axis of environments.
     /// envs : array_like of int, optional
-    ///     Which environments; by default all.
+    ///     Indices of environments; by default all.
     /// consistent : bool, optional
-    ///     Whether to compute the constants that follow, as `set_constants` does. Of several fields set one after the other, only
-    ///     the last needs it.
+    ///     True to compute the dependent constants, as `set_constants` does. If several fields are set in sequence,
+    ///     only the last call needs it.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have; all is then as before. With
-    ///     ``consistent``, also a mass matrix that is not positive definite; the field is then set and the constants are as before.
+    ///     If no parameter has the name, the shape is wrong, or a value is invalid for the field; nothing changes then.
+    ///     With ``consistent``, also if a mass matrix is not positive definite; the field is then set and the constants
+    ///     do not change.
     #[pyo3(signature = (field, values, envs = None, *, consistent = false))]
     fn randomize(
         &self,
@@ -55,23 +56,23 @@ impl Batch {
         })
     }
 
-    /// Computes the constants that follow from the parameters of environments in the initial configuration ``qpos0``, as
-    /// MuJoCo's ``mj_setConst`` does: the inverse inertias ``body_invweight0``, ``dof_invweight0`` and ``tendon_invweight0`` by
-    /// which constraints are scaled, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, frames of cameras (``cam_pos0``,
-    /// ``cam_poscom0``, ``cam_mat0``), second anchors of connects, anchors at sites.
+    /// Computes the constants that depend on the parameters of environments in the initial configuration ``qpos0``, as
+    /// MuJoCo's ``mj_setConst`` does: the inverse inertias ``body_invweight0``, ``dof_invweight0`` and
+    /// ``tendon_invweight0`` that scale constraints, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, frames of
+    /// cameras (``cam_pos0``, ``cam_poscom0``, ``cam_mat0``), second anchors of connects, anchors at sites.
     ///
-    /// Call it after masses, inertias, positions or armatures have changed, unless constraints are to stay as soft as those of
-    /// the original model.
+    /// Call it after masses, inertias, positions or armatures have changed, unless constraints should keep the softness
+    /// of the original model.
     ///
     /// Parameters
     /// ----------
     /// mask : array_like of bool, optional
-    ///     Which environments (n); by default all.
+    ///     Mask of environments (n); by default all.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     An environment whose mass matrix is not positive definite. All is then as before.
+    ///     If the mass matrix of an environment is not positive definite. Nothing changes then.
     #[pyo3(signature = (mask = None))]
     fn set_constants(&self, py: Python<'_>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let chosen = self.mask(mask)?;
@@ -80,7 +81,7 @@ impl Batch {
         each!(&mut *guard, batch => py.detach(|| batch.set_constants(&envs)).map_err(sim_error))
     }
 
-    /// The numbers of a parameter as each environment has them.
+    /// Returns the values of a parameter in every environment.
     ///
     /// Parameters
     /// ----------
@@ -90,7 +91,7 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     A copy: the field's shape in the model after an axis over environments.
+    ///     A copy: the field's shape in the model after an axis of environments.
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
         let shape = self.model.get().param_shape(field)?;
         let guard = lock(&self.inner, "batch")?;

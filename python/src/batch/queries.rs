@@ -1,4 +1,4 @@
-//! What a batch answers about environments: contacts and constraints of one, geoms and inertia of all.
+//! Queries of a batch: contacts and constraints of one environment, geoms and inertia of all.
 
 use super::{AnyBatch, Batch};
 use crate::arrays::{numbers, require_finite, require_shape};
@@ -15,7 +15,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PySlice;
 
-/// Asks one simulation about every environment in turn.
+/// Queries one simulation about every environment in turn.
 fn ask_all<S: Precision, R>(
     batch: &clench::Batch<S>,
     mut ask: impl FnMut(usize, &mut clench::Sim<S>) -> Result<R, SimError>,
@@ -31,7 +31,7 @@ fn ask_all<S: Precision, R>(
     (0..=last).map(each).collect()
 }
 
-/// Vectors of finite numbers for every environment: one for all (3) or a row each (n, 3).
+/// Reads vectors of finite numbers for every environment: one for all (3) or one row each (n, 3).
 fn vectors(name: &str, value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[f64; 3]>> {
     let array = numbers::<f64>(name, value)?;
     if array.ndim() != 1 {
@@ -47,12 +47,12 @@ fn vectors(name: &str, value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[
 
 #[pymethods]
 impl Batch {
-    /// The contacts of an environment in its present state.
+    /// Computes the contacts of an environment in its current state.
     ///
     /// Parameters
     /// ----------
     /// env : int
-    ///     Which environment.
+    ///     The index of the environment.
     ///
     /// Returns
     /// -------
@@ -61,7 +61,7 @@ impl Batch {
     /// Raises
     /// ------
     /// SimulationError
-    ///     A state from which no step can start.
+    ///     If no step can start from the state.
     fn contacts<'py>(
         &self,
         py: Python<'py>,
@@ -76,12 +76,12 @@ impl Batch {
         })
     }
 
-    /// The constraint rows of an environment in its present state, with their forces.
+    /// Computes the constraint rows of an environment in its current state, with their forces.
     ///
     /// Parameters
     /// ----------
     /// env : int
-    ///     Which environment.
+    ///     The index of the environment.
     ///
     /// Returns
     /// -------
@@ -90,7 +90,7 @@ impl Batch {
     /// Raises
     /// ------
     /// SimulationError
-    ///     A state from which no step can start.
+    ///     If no step can start from the state.
     fn constraints<'py>(
         &self,
         py: Python<'py>,
@@ -105,7 +105,7 @@ impl Batch {
         })
     }
 
-    /// The joint-space mass matrix of every environment at its present positions.
+    /// Computes the joint-space mass matrix of every environment at its current positions.
     ///
     /// Returns
     /// -------
@@ -121,29 +121,29 @@ impl Batch {
         Ok(PyArray1::from_vec(py, all).reshape(shape)?.into_any())
     }
 
-    /// What a ray hits first in every environment, at its present positions.
+    /// Finds the first hit of a ray in every environment, at its current positions.
     ///
-    /// What can be hit is as of `Sim.ray`.
+    /// The geoms that can be hit are those of `Sim.ray`.
     ///
     /// Parameters
     /// ----------
     /// origin : array_like
-    ///     Where the ray begins, for all (3) or each (n, 3) environment, m.
+    ///     Origin of the ray, for all (3) or each (n, 3) environment, m.
     /// direction : array_like
-    ///     Where it leads, (3) or (n, 3). Its length is the unit of distances.
+    ///     Direction of the ray, (3) or (n, 3). Its length is the unit of distances.
     /// groups : array_like of int, optional
-    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
+    ///     The groups of geoms, 0 to 5, that can be hit; by default all.
     /// fixed : bool
-    ///     Whether geoms can be hit that are fixed to the world.
+    ///     True if rays can hit geoms that are fixed to the world.
     /// exclude_body : str or int, optional
     ///     A body, by name or index, whose geoms are not hit.
     ///
     /// Returns
     /// -------
     /// distance : numpy.ndarray
-    ///     From the origin, in lengths of the direction (n), float64; infinite where nothing is hit.
+    ///     From the origin, in lengths of the direction (n), float64; infinite if nothing is hit.
     /// geom : numpy.ndarray
-    ///     The geoms (n), int64; -1 where nothing is hit.
+    ///     The geoms (n), int64; -1 if nothing is hit.
     #[pyo3(signature = (origin, direction, *, groups = None, fixed = true, exclude_body = None))]
     #[allow(clippy::type_complexity)] // Two arrays.
     fn ray<'py>(
@@ -179,7 +179,8 @@ impl Batch {
         ))
     }
 
-    /// How far apart two geoms are in every environment, at its present positions, whatever they collide with.
+    /// Computes the distance of two geoms in every environment, at its current positions, regardless of collision
+    /// filters.
     ///
     /// Parameters
     /// ----------
@@ -191,7 +192,8 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Signed distances (n), m, float64; infinite beyond the limit and where there is no distance, as of two planes.
+    ///     Signed distances (n), m, float64; infinite beyond the limit and if the distance is not defined, as for two
+    ///     planes.
     #[pyo3(signature = (geom1, geom2, limit = None))]
     fn distance<'py>(
         &self,
@@ -225,7 +227,7 @@ impl Batch {
     /// which : str or int
     ///     The equality, by name or index.
     /// active : bool or array_like of bool
-    ///     Whether it acts, in all or each (n) environment. `eq_active` shows all switches.
+    ///     True to make it active, for all or each (n) environment. `eq_active` shows all switches.
     fn set_equality(
         this: &Bound<'_, Self>,
         which: &Bound<'_, PyAny>,

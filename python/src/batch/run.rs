@@ -1,4 +1,4 @@
-//! How a batch moves: steps, forward passes, resets and rollouts.
+//! Steps, forward passes, resets and rollouts of a batch.
 
 use super::{AnyBatch, Batch};
 use crate::busy::{in_portions, lock};
@@ -16,26 +16,27 @@ use pyo3::types::PyDict;
 impl Batch {
     /// Advances every running environment.
     ///
-    /// Other Python threads run meanwhile; what they write to the arrays of this batch meets the step half-way. With the option
-    /// `autoreset` an environment that diverges does the step from the initial state instead, controls and applied forces
-    /// included, which counts in `resets`.
+    /// Other Python threads run meanwhile; their writes to the arrays of this batch can take effect in the middle of
+    /// the step. With the option `autoreset`, an environment that diverges does the step from the initial state
+    /// instead, which includes controls and applied forces, and counts it in `resets`.
     ///
     /// Parameters
     /// ----------
     /// n : int
-    ///     How many time steps, with the same controls and applied forces.
+    ///     Number of time steps, with the same controls and applied forces.
     ///
     /// Returns
     /// -------
     /// int
-    ///     How many environments failed in this call.
+    ///     Number of environments that failed in this call.
     ///
     /// Raises
     /// ------
     /// BusyError
     ///     While another thread is in a call of this batch.
     /// ClenchError
-    ///     In a process forked from the one that made this batch, if it has several threads: a fork does not copy them.
+    ///     In a process forked from the one that created this batch, if it has several threads: a fork does not copy
+    ///     them.
     #[pyo3(signature = (n = Count(1)), text_signature = "($self, n=1)")]
     fn step(&self, py: Python<'_>, n: Count) -> PyResult<usize> {
         let mut guard = lock(&self.inner, "batch")?;
@@ -49,17 +50,17 @@ impl Batch {
         Ok(failed)
     }
 
-    /// Computes the recorded outputs that follow from the states, and leaves the states alone.
+    /// Computes the recorded outputs from the states, and does not change the states.
     ///
     /// Parameters
     /// ----------
     /// mask : array_like of bool, optional
-    ///     Which environments (n); by default all. The outputs of the others stay as they are.
+    ///     Mask of environments (n); by default all. The outputs of the others do not change.
     ///
     /// Returns
     /// -------
     /// int
-    ///     How many environments failed in this call.
+    ///     Number of environments that failed in this call.
     #[pyo3(signature = (mask = None))]
     fn forward(&self, py: Python<'_>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
         let chosen = self.mask(mask)?;
@@ -69,12 +70,12 @@ impl Batch {
         Ok(summary.map_err(sim_error)?.failed)
     }
 
-    /// Puts environments into their initial state, or that of a keyframe, and lets them run.
+    /// Resets environments to the initial state or to a keyframe, and sets them running.
     ///
     /// Parameters
     /// ----------
     /// mask : array_like of bool, optional
-    ///     Which environments (n); by default all.
+    ///     Mask of environments (n); by default all.
     /// keyframe : str or int, optional
     ///     A keyframe of the model, by name or index.
     #[pyo3(signature = (mask = None, keyframe = None))]
@@ -99,12 +100,12 @@ impl Batch {
         done.map_err(sim_error)
     }
 
-    /// Lets environments run on from the states in their rows.
+    /// Sets environments running again from the states in their rows.
     ///
     /// Parameters
     /// ----------
     /// mask : array_like of bool, optional
-    ///     Which environments (n); by default all.
+    ///     Mask of environments (n); by default all.
     #[pyo3(signature = (mask = None))]
     fn revive(&self, mask: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let chosen = self.mask(mask)?;
@@ -115,26 +116,28 @@ impl Batch {
 
     /// Steps all running environments and records outputs after each step.
     ///
-    /// Other Python threads run meanwhile. Ctrl-C is looked at now and then: it ends the rollout with a `RuntimeWarning`, and what
-    /// was recorded until then is returned.
+    /// Other Python threads run meanwhile. Ctrl-C is checked periodically: it ends the rollout with a `RuntimeWarning`,
+    /// and the steps recorded so far are returned. With a function for `ctrl` the batch may be a step further.
     ///
     /// Parameters
     /// ----------
     /// initial : State or array_like, optional
-    ///     States to start from: a `State`, of a `Sim` for all environments or of the batch, of which everything counts; or one row for all
-    ///     (1 + nq + nv + na) or a row each (n, ...): time, positions, velocities, activations, with which the solver starts anew, so that what
-    ///     comes out depends on no earlier step. All environments then run. By default they go on from where they are.
+    ///     Initial states: a complete `State`, of a `Sim` for all environments or of the batch; or one row for all (1 +
+    ///     nq + nv + na) or a row each (n, ...) with time, positions, velocities and activations. Rows clear the
+    ///     solver's warm start, so that the result does not depend on earlier steps. All environments are set running.
+    ///     By default they continue from their current states.
     /// ctrl : array_like or callable, optional
-    ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`, which
-    ///     stay as they are in any case. A function is called before each step with its number, from 0 on; it may read and call
-    ///     the batch, and returns the controls of all (nu) or each (n, nu) environment, or None for those in `ctrl`.
+    ///     Controls of each step, for all (steps, nu) or each (n, steps, nu) environment. By default those in `ctrl`,
+    ///     which do not change in any case. A function is called before each step with the step's index, from 0; it may
+    ///     read and call the batch, and returns the controls of all (nu) or each (n, nu) environment, or None for those
+    ///     in `ctrl`.
     /// record : sequence of str
-    ///     Outputs to record, see `clench.OUTPUTS`.
+    ///     Outputs to record; see `clench.OUTPUTS`.
     /// steps : int, optional
-    ///     How many steps; needed only where `ctrl` is no array.
+    ///     Number of steps; required only if `ctrl` is not an array.
     /// progress : bool or callable, optional
-    ///     True shows the progress in a line on stderr. A function is called every fraction of a second, and at the end, with
-    ///     the steps done and the steps in all; an exception that it raises ends the rollout.
+    ///     True shows the progress in a line on stderr. A function is called every fraction of a second, and at the
+    ///     end, with the number of steps done and the total; an exception that it raises ends the rollout.
     ///
     /// Returns
     /// -------
@@ -144,9 +147,9 @@ impl Batch {
     /// Raises
     /// ------
     /// ValueError
-    ///     Wrong shapes; names that no output has. The states are then as before.
+    ///     If a shape is wrong, or no output has a name. The states do not change then.
     /// TypeError
-    ///     A progress that is neither a bool nor a function.
+    ///     If `progress` is neither a bool nor a function.
     #[pyo3(signature = (initial = None, ctrl = None, record = None, steps = None, *, progress = None),
            text_signature = "($self, initial=None, ctrl=None, record=('qpos', 'qvel'), steps=None, *, progress=None)")]
     fn rollout<'py>(

@@ -1,4 +1,4 @@
-//! Which environments run.
+//! The status of environments.
 
 use super::{AnyBatch, Batch};
 use crate::busy::lock;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Batch {
-    /// numpy.ndarray : Whether each environment runs (n), and if not why: codes of `EnvStatus`, int8. A copy.
+    /// numpy.ndarray : Status of each environment (n): codes of `EnvStatus`, int8. A copy.
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let guard = lock(&self.inner, "batch")?;
@@ -16,7 +16,7 @@ impl Batch {
         Ok(PyArray1::from_iter(py, codes))
     }
 
-    /// numpy.ndarray : Which environments run (n), bool. A copy.
+    /// numpy.ndarray : True for each environment that is running (n), bool. A copy.
     #[getter]
     fn running<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let guard = lock(&self.inner, "batch")?;
@@ -25,8 +25,8 @@ impl Batch {
         Ok(PyArray1::from_iter(py, runs))
     }
 
-    /// numpy.ndarray : How often each environment started over from the initial state (n), with the option `autoreset`, int64. A
-    /// copy.
+    /// numpy.ndarray : Number of restarts of each environment from the initial state (n), with the option `autoreset`,
+    /// int64. A copy.
     #[getter]
     fn resets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let guard = lock(&self.inner, "batch")?;
@@ -35,12 +35,12 @@ impl Batch {
         Ok(PyArray1::from_iter(py, counts))
     }
 
-    /// Why an environment cannot go on.
+    /// Returns the reason why an environment failed.
     ///
     /// Parameters
     /// ----------
     /// env : int
-    ///     Which environment.
+    ///     The index of the environment.
     ///
     /// Returns
     /// -------
@@ -56,7 +56,7 @@ impl Batch {
     }
 }
 
-/// The code of `clench.EnvStatus`.
+/// Returns the code of `clench.EnvStatus`.
 fn code(status: &EnvStatus) -> i8 {
     match status {
         EnvStatus::Running => 0,

@@ -1,4 +1,4 @@
-//! How many elements a model has.
+//! The numbers of elements of a model.
 
 use super::Model;
 use pyo3::prelude::*;
@@ -26,12 +26,12 @@ impl Model {
     fn nactuator(&self) -> usize {
         self.0.actuators.len()
     }
-    /// int : Number of forces of actuators: one each, but three of an orientation servo.
+    /// int : Number of actuator forces: one per actuator, but three for an orientation servo.
     #[getter]
     fn nout(&self) -> usize {
         self.0.nout()
     }
-    /// int : Numbers in the buffers of delayed actuators.
+    /// int : Size of the buffers of delayed actuators.
     #[getter]
     fn nhistory(&self) -> usize {
         self.0.nhistory
@@ -41,7 +41,7 @@ impl Model {
     fn na(&self) -> usize {
         self.0.na
     }
-    /// int : Numbers that say where springs that yield rest.
+    /// int : Number of values that store the rest positions of plastic springs.
     #[getter]
     fn nplastic(&self) -> usize {
         self.0.nplastic
@@ -81,7 +81,7 @@ impl Model {
     fn neq(&self) -> usize {
         self.0.equalities.len()
     }
-    /// int : How many constraints can be added at run time beside each other.
+    /// int : Maximum number of simultaneous constraints that are added at run time.
     #[getter]
     fn max_dynamic_constraints(&self) -> usize {
         self.0.max_dynamic_constraints
@@ -91,7 +91,7 @@ impl Model {
     fn nsensor(&self) -> usize {
         self.0.sensors.len()
     }
-    /// int : Numbers that all sensors give.
+    /// int : Number of values of all sensors.
     #[getter]
     fn nsensordata(&self) -> usize {
         self.0.nsensordata()

@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::kind::Kind;
 use pyo3::prelude::*;
 
-/// What is said of each method that finds an element.
+/// The docstring of a method that finds an element.
 macro_rules! named {
     ($kind:literal) => {
         concat!(
@@ -26,22 +26,22 @@ macro_rules! named {
 
 #[pymethods]
 impl Model {
-    /// Names of all elements of a kind.
+    /// Returns the names of all elements of a kind.
     ///
     /// Parameters
     /// ----------
     /// kind : {"body", "joint", "geom", "site", "camera", "tendon", "actuator", "sensor", "equality", "keyframe", "pair", "mesh", "hfield"}
-    ///     What to name.
+    ///     The kind of elements.
     ///
     /// Returns
     /// -------
     /// list of str
-    ///     In the order of their indices; empty where an element has no name.
+    ///     The names in the order of the indices; empty if an element has no name.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     Another kind.
+    ///     If the kind does not exist.
     fn names(&self, kind: &str) -> PyResult<Vec<&str>> {
         Ok(Kind::of_name(kind)?.names(&self.0))
     }

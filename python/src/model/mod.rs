@@ -20,11 +20,11 @@ use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-/// A model: what never changes while stepping, shared by the simulations of it.
+/// A model: the constant data that its simulations share.
 ///
-/// Its numbers and structure are attributes with MuJoCo's names, such as `body_mass`, `jnt_range` or `geom_bodyid`, given
-/// as arrays that cannot be written to; ``dir(model)`` lists all. Types are MuJoCo's integer codes, and -1 is the index of
-/// nothing. Units are SI.
+/// Its numbers and structure are attributes with MuJoCo's names, such as `body_mass`, `jnt_range` or `geom_bodyid`, as
+/// read-only arrays; ``dir(model)`` lists all. Types are MuJoCo's integer codes, and the index -1 stands for no
+/// element. Units are SI.
 ///
 /// Examples
 /// --------
@@ -34,16 +34,16 @@ use std::sync::{Arc, Mutex};
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Model(Arc<clench::Model>, Source, Mutex<Option<Renderer>>);
 
-/// What a model was loaded from, and how: what pickles hold of it.
+/// The source of a model and the arguments of its loading, which pickles store.
 struct Source {
-    /// Which of the static methods loaded it.
+    /// The static method that loaded the model.
     method: &'static str,
-    /// What it was given.
+    /// The arguments of the method.
     arguments: Py<PyDict>,
 }
 
 impl Model {
-    /// A model, after a warning about what was left out of it.
+    /// Wraps a model, after a warning about omitted elements.
     fn told(py: Python<'_>, model: clench::Model, source: Source) -> PyResult<Self> {
         if !model.left_out.is_empty() {
             let category = py.get_type::<PyUserWarning>();
@@ -54,18 +54,18 @@ impl Model {
         Ok(Model(Arc::new(model), source, Mutex::default()))
     }
 
-    /// The model itself.
+    /// Returns the model itself.
     pub(crate) fn inner(&self) -> &Arc<clench::Model> {
         &self.0
     }
 
-    /// What draws pictures of it; none before the first.
+    /// Returns the renderer; none before the first picture.
     #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing draws"))]
     pub(crate) fn renderer(&self) -> &Mutex<Option<Renderer>> {
         &self.2
     }
 
-    /// The shape of the parameter of that name.
+    /// Returns the shape of the parameter with this name.
     pub(crate) fn param_shape(&self, field: &str) -> PyResult<Vec<usize>> {
         let field = ParamField::find(field).map_err(sim_error)?;
         Ok(field.shape(&self.0))
@@ -74,25 +74,26 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// Load a model from a file, MJCF or URDF.
+    /// Loads a model from an MJCF or URDF file.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     The file; its root element says which format it has. What it includes is found from its folder.
+    ///     The file; its root element determines the format. Included files are found relative to its folder.
     /// budget : float
-    ///     How many times the usual memory and work the model may ask for, in loading and in each step. Usual are 2 GiB, 500 000
-    ///     elements, 250 000 contacts, 2**25 numbers in a matrix, 2 000 000 steps to find length ranges.
+    ///     Factor on the default limits of memory and work, for loading and for each step. The defaults are 2 GiB, 500
+    ///     000 elements, 250 000 contacts, 2**25 numbers in a matrix, 2 000 000 steps to find length ranges.
     /// package_path : sequence of str or os.PathLike
-    ///     Folders that hold packages, by which URDF files name meshes (``package://NAME/...``). After them, the folder of the file and
-    ///     those around it are searched.
+    ///     Folders with packages, for mesh names in URDF files (``package://NAME/...``). The folder of the file and its
+    ///     parent folders are searched after them.
     /// max_dynamic_constraints : int
-    ///     How many constraints can be added at run time beside each other (`Sim.add_weld`).
+    ///     Maximum number of simultaneous constraints that are added at run time (`Sim.add_weld`).
     /// floating : bool
-    ///     Free the base of a URDF robot: the one link that stands on the world gets a free joint, ``floating_base``.
+    ///     True to free the base of a URDF robot: the one link that is attached to the world gets a free joint,
+    ///     ``floating_base``.
     /// ignore_unsupported : bool
-    ///     Leave out of an MJCF model what is not supported yet, where the rest still means the same: plugins, deformable bodies,
-    ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`left_out` say what.
+    ///     True to omit unsupported parts of an MJCF model if the rest keeps its meaning: plugins, deformable bodies,
+    ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`left_out` list them.
     ///
     /// Returns
     /// -------
@@ -101,7 +102,7 @@ impl Model {
     /// Raises
     /// ------
     /// LoadError
-    ///     A file that cannot be read, is not well-formed, or asks for something that cannot be, or for more than the budget.
+    ///     If the file cannot be read, is not well-formed, requests something impossible, or exceeds the budget.
     #[staticmethod]
     #[pyo3(signature = (path, *, budget = 1.0, package_path = Vec::new(), floating = false, ignore_unsupported = false,
                         max_dynamic_constraints = Count(8)),
@@ -116,7 +117,7 @@ impl Model {
         max_dynamic_constraints: Count,
     ) -> PyResult<Self> {
         let arguments = PyDict::new(py);
-        // A path that has no absolute form cannot be read either, which the loader says.
+        // A path without an absolute form cannot be read either; the loader reports that.
         let absolute = std::path::absolute(&path);
         arguments.set_item("path", absolute.as_ref().unwrap_or(&path))?;
         arguments.set_item("budget", budget)?;
@@ -138,23 +139,23 @@ impl Model {
         Model::told(py, model, source)
     }
 
-    /// Load a model from the text of an MJCF or URDF file.
+    /// Loads a model from the text of an MJCF or URDF file.
     ///
     /// Parameters
     /// ----------
     /// text : str
-    ///     What the file would contain. What it includes is found from the working directory.
+    ///     The contents of the file. Included files are found relative to the working directory.
     /// budget : float
-    ///     As of :meth:`from_file`.
+    ///     As for :meth:`from_file`.
     /// max_dynamic_constraints : int
-    ///     As of :meth:`from_file`.
+    ///     As for :meth:`from_file`.
     /// floating : bool
-    ///     As of :meth:`from_file`.
+    ///     As for :meth:`from_file`.
     /// ignore_unsupported : bool
-    ///     As of :meth:`from_file`.
+    ///     As for :meth:`from_file`.
     /// assets : dict of str to bytes
-    ///     Files in memory that the text names: meshes, height fields, included and attached models. Folders and capitals of the names do
-    ///     not count.
+    ///     Files in memory that the text names: meshes, height fields, included and attached models. Folders and letter
+    ///     case of the names are ignored.
     ///
     /// Returns
     /// -------
@@ -163,7 +164,7 @@ impl Model {
     /// Raises
     /// ------
     /// LoadError
-    ///     A text that is not well-formed, or asks for something that cannot be, or for more than the budget.
+    ///     If the text is not well-formed, requests something impossible, or exceeds the budget.
     #[staticmethod]
     #[pyo3(signature = (text, *, budget = 1.0, floating = false, ignore_unsupported = false, assets = HashMap::new(), max_dynamic_constraints = Count(8)),
            text_signature = "(text, *, budget=1.0, floating=False, ignore_unsupported=False, assets={}, max_dynamic_constraints=8)")]
@@ -201,7 +202,7 @@ impl Model {
         Model::told(py, model, source)
     }
 
-    /// Refuse a text for what it says, though not for what it lacks: nothing is built, and names may lead nowhere.
+    /// Rejects an invalid text, but not an incomplete one: nothing is built, and names may be undefined.
     #[staticmethod]
     fn _check(py: Python<'_>, text: &str, assets: HashMap<String, Vec<u8>>) -> PyResult<()> {
         let loader = clench::Loader::new().assets(assets);
@@ -212,10 +213,11 @@ impl Model {
         }
     }
 
-    /// The model as an MJCF file that stands alone.
+    /// Returns the model as a self-contained MJCF file.
     ///
-    /// Every number is resolved: inertials, limits and poses are explicit, angles radians, meshes and height fields in the file. It loads
-    /// to the same model, here and in MuJoCo; what is computed while it loads may differ in the last digits.
+    /// Every number is resolved: inertials, limits and poses are explicit, angles are in radians, meshes and height
+    /// fields are in the file. It loads to the same model, here and in MuJoCo; values computed during loading may
+    /// differ in the last digits.
     ///
     /// Returns
     /// -------
@@ -224,7 +226,7 @@ impl Model {
     /// Raises
     /// ------
     /// ValueError
-    ///     What MJCF cannot say, such as a floor of time constants that acts.
+    ///     If MJCF cannot express something, such as a floor of time constants that acts.
     ///
     /// Examples
     /// --------
@@ -236,7 +238,7 @@ impl Model {
         text.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// What pickles hold: how the model was loaded, and a checksum of what came out.
+    /// Returns the data of a pickle: how the model was loaded, and a checksum of the result.
     fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = this.py();
         let Source { method, arguments } = &this.get().1;
@@ -246,11 +248,11 @@ impl Model {
             .call1((this, method, arguments))
     }
 
-    /// Itself: a model never changes.
+    /// Returns the model itself, since it never changes.
     fn __copy__(this: Py<Self>) -> Py<Self> {
         this
     }
-    /// Itself: a model never changes.
+    /// Returns the model itself, since it never changes.
     #[pyo3(signature = (_memo, /))]
     fn __deepcopy__(this: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         this
@@ -261,17 +263,17 @@ impl Model {
     fn name(&self) -> &str {
         &self.0.name
     }
-    /// list of str : What the loader thinks worth telling, such as a solver that it replaced.
+    /// list of str : Remarks of the loader, such as a solver that it replaced.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.0.notes.clone()
     }
-    /// list of str : What was left out because it is not supported yet, each with its place in the file.
+    /// list of str : Omitted unsupported parts, each with its location in the file.
     #[getter]
     fn left_out(&self) -> Vec<String> {
         self.0.left_out.clone()
     }
-    /// The user's array of numbers with this name (MJCF's ``custom/numeric``).
+    /// Returns the user's array of numbers with this name (MJCF's ``custom/numeric``).
     ///
     /// Parameters
     /// ----------
@@ -284,7 +286,7 @@ impl Model {
     /// Raises
     /// ------
     /// KeyError
-    ///     A name that the model does not have.
+    ///     If the model does not have the name.
     fn numeric<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let found = self
             .0
@@ -292,7 +294,7 @@ impl Model {
             .ok_or_else(|| unknown("numeric", name))?;
         Ok(PyArray1::from_slice(py, found))
     }
-    /// The user's text with this name (MJCF's ``custom/text``).
+    /// Returns the user's text with this name (MJCF's ``custom/text``).
     ///
     /// Parameters
     /// ----------
@@ -305,11 +307,11 @@ impl Model {
     /// Raises
     /// ------
     /// KeyError
-    ///     A name that the model does not have.
+    ///     If the model does not have the name.
     fn text(&self, name: &str) -> PyResult<&str> {
         self.0.text(name).ok_or_else(|| unknown("text", name))
     }
-    /// The user's list of elements with this name (MJCF's ``custom/tuple``).
+    /// Returns the user's list of elements with this name (MJCF's ``custom/tuple``).
     ///
     /// Parameters
     /// ----------
@@ -318,12 +320,12 @@ impl Model {
     /// Returns
     /// -------
     /// list of tuple
-    ///     For each element its kind in MJCF's words, its name, and the number that goes with it.
+    ///     For each element its kind with MJCF's name, its name, and its number.
     ///
     /// Raises
     /// ------
     /// KeyError
-    ///     A name that the model does not have.
+    ///     If the model does not have the name.
     fn custom_tuple(&self, name: &str) -> PyResult<Vec<(&str, &str, f64)>> {
         let found = self.0.tuple(name).ok_or_else(|| unknown("tuple", name))?;
         let entries = found.iter();
@@ -336,7 +338,7 @@ impl Model {
     fn options(&self) -> RigidOptions {
         RigidOptions(self.0.options)
     }
-    /// str : How time advances: "Euler", "implicitfast", "implicit", "discrete" or "RK4".
+    /// str : The integrator: "Euler", "implicitfast", "implicit", "discrete" or "RK4".
     #[getter]
     fn integrator(&self) -> &'static str {
         match self.0.integrator {
@@ -380,7 +382,7 @@ impl Model {
     }
 }
 
-/// The error of a name of the user's data that the model does not have.
+/// Returns the error that the model does not have this name among the user's data.
 fn unknown(kind: &str, name: &str) -> PyErr {
     PyKeyError::new_err(format!("the model has no {kind} \"{name}\""))
 }

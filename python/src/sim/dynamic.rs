@@ -1,4 +1,4 @@
-//! Constraints that are added and removed while a simulation runs.
+//! Constraints that are added and removed at run time.
 
 use super::Sim;
 use crate::busy::lock;
@@ -9,7 +9,7 @@ use crate::row_sim::{AnySim, RowSim, each_sim};
 use clench::{DynamicConstraint, Precision};
 use pyo3::prelude::*;
 
-/// What `change` does to a simulation in the state of its rows, and the rows afterwards.
+/// Applies `change` to a simulation in the state of its rows, and updates the rows.
 fn change<S: Precision, R>(
     own: &mut RowSim<S>,
     change: impl FnOnce(&mut clench::Sim<S>) -> Result<R, clench::SimError>,
@@ -21,9 +21,10 @@ fn change<S: Precision, R>(
 
 #[pymethods]
 impl Sim {
-    /// Hold two bodies together as they lie now, as a weld does: what a suction gripper grips.
+    /// Welds two bodies in their current relative pose, as a suction gripper does.
     ///
-    /// The constraint is part of the state: `state` saves it, a reset removes it. It is as soft as MuJoCo's welds are by default.
+    /// The constraint is part of the state: `state` saves it, a reset removes it. It has the softness of MuJoCo's
+    /// default weld.
     ///
     /// Parameters
     /// ----------
@@ -33,12 +34,13 @@ impl Sim {
     /// Returns
     /// -------
     /// int
-    ///     What `remove` takes.
+    ///     The constraint, for `remove`.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     Twice the same body; bodies that nothing moves; no free slot (see ``max_dynamic_constraints`` of `Model.from_file`).
+    ///     If both bodies are the same or both are static, or there is no free slot (see ``max_dynamic_constraints`` of
+    ///     `Model.from_file`).
     fn add_weld(&self, body1: &Bound<'_, PyAny>, body2: &Bound<'_, PyAny>) -> PyResult<u64> {
         let model = self.model.get().inner();
         let (body1, body2) = (
@@ -50,19 +52,20 @@ impl Sim {
         Ok(added?.to_code())
     }
 
-    /// Hold two points together, as a connect does: a ball joint. Otherwise as `add_weld`.
+    /// Connects two bodies at a point, as a ball joint does. Otherwise it is like `add_weld`.
     ///
     /// Parameters
     /// ----------
     /// body1, body2 : str or int
     ///     The bodies, by name or index.
     /// anchor : array_like
-    ///     A point in the frame of the first body (3), m; the other is the point of the second body that lies there now.
+    ///     A point in the frame of the first body (3), m; it is connected to the point of the second body that
+    ///     coincides with it now.
     ///
     /// Returns
     /// -------
     /// int
-    ///     What `remove` takes.
+    ///     The constraint, for `remove`.
     fn add_connect(
         &self,
         body1: &Bound<'_, PyAny>,
@@ -82,24 +85,24 @@ impl Sim {
         Ok(added?.to_code())
     }
 
-    /// Let go of what `add_weld` or `add_connect` holds.
+    /// Removes a constraint that `add_weld` or `add_connect` added.
     ///
     /// Parameters
     /// ----------
     /// constraint : int
-    ///     What they returned.
+    ///     The number that they returned.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A constraint that is not there: it was removed, or the state is one that does not have it.
+    ///     If the constraint does not exist: it was removed, or is not part of the current state.
     fn remove(&self, constraint: u64) -> PyResult<()> {
         let constraint = DynamicConstraint::from_code(constraint);
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => change(own, |sim| sim.remove(constraint)))
     }
 
-    /// list of int : What was added at run time and is there, as `remove` takes it.
+    /// list of int : The constraints that were added at run time and exist now, as numbers for `remove`.
     #[getter]
     fn dynamic_constraints(&self) -> PyResult<Vec<u64>> {
         let mut guard = lock(&self.inner, "simulation")?;
@@ -109,10 +112,10 @@ impl Sim {
         })
     }
 
-    /// Let a weld or connect of the model hold its bodies as they lie now, and switch it on.
+    /// Makes a weld or connect of the model hold its bodies in their current relative pose, and switches it on.
     ///
-    /// The pose goes into the parameters of this simulation (``eq_anchor1`` and ``eq_quat1`` of a weld, ``eq_anchor2`` of a connect),
-    /// which are no part of the state; the switch goes into the state.
+    /// The pose is written into the parameters of this simulation (``eq_anchor1`` and ``eq_quat1`` of a weld,
+    /// ``eq_anchor2`` of a connect), which are not part of the state; the switch is part of the state.
     ///
     /// Parameters
     /// ----------
@@ -122,14 +125,14 @@ impl Sim {
     /// Raises
     /// ------
     /// ValueError
-    ///     An equality of another kind.
+    ///     If the equality is of another kind.
     fn weld_here(&self, which: &Bound<'_, PyAny>) -> PyResult<()> {
         let equality = Kind::Equality.find(self.model.get().inner(), which)?;
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => change(own, |sim| sim.weld_here(equality)))
     }
 
-    /// int : The serial number of the last constraint that was added at run time; for pickles, see `clench._pickle`.
+    /// int : The serial number of the last constraint that was added at run time, for pickles; see `clench._pickle`.
     #[getter(_last_serial)]
     fn last_serial(&self) -> PyResult<u32> {
         let guard = lock(&self.inner, "simulation")?;

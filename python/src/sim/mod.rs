@@ -23,7 +23,7 @@ use pyo3::prelude::*;
 use pyo3::types::PySlice;
 use std::sync::{Arc, Mutex};
 
-/// Where the numbers of a sensor are in `sensordata`.
+/// Returns the range of a sensor's values in `sensordata`.
 pub(crate) fn sensor_numbers<'py>(
     py: Python<'py>,
     model: &clench::Model,
@@ -38,29 +38,29 @@ pub(crate) fn sensor_numbers<'py>(
     ))
 }
 
-/// A model in motion: one environment.
+/// A simulation of a model: one environment.
 ///
-/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) are live: write them between steps. What follows from the state is read as
-/// copies: outputs by their names, such as ``sim.xpos`` (see `clench.OUTPUTS`), `contacts`, `constraints`, and what `ray`,
-/// `distance` and `mass_matrix` answer. After a step they are, as in MuJoCo, those of the step's start. Where nothing is known
-/// yet, or positions, velocities, mocap poses or parameters were written since, they are computed from the present state when you
-/// ask. Controls and applied forces that you write count from the next step or `forward` on.
+/// State arrays (``qpos``, ``qvel``, ``ctrl``, ...) are live: write them between steps. Derived quantities are read as
+/// copies: outputs by name, such as ``sim.xpos`` (see `clench.OUTPUTS`), `contacts`, `constraints`, and the results of
+/// `ray`, `distance` and `mass_matrix`. After a step they are, as in MuJoCo, those of the step's start. Before the
+/// first step, or if positions, velocities, mocap poses or parameters were written since, they are computed from the
+/// current state on demand. New controls and applied forces take effect at the next step or `forward`.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The model.
 /// options : RigidOptions, optional
-///     Options that go before those of the model.
+///     Options that take precedence over those of the model.
 /// precision : {"64", "32"}
 ///     Bits of every number.
 /// threads : int
-///     How many threads share the work of each step; see `threads`.
+///     Number of threads that share the work of each step; see `threads`.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     Options or a number of threads out of range; shapes that may meet and cannot be collided.
+///     If an option or the number of threads is out of range, or shapes that can collide have no collision function.
 #[pyclass(frozen, extends = StateViews, module = "clench")]
 pub(crate) struct Sim {
     inner: Arc<Mutex<AnySim>>,
@@ -69,27 +69,27 @@ pub(crate) struct Sim {
 }
 
 impl Sim {
-    /// The simulation itself, which other threads may use.
+    /// Returns the simulation itself, which other threads may use.
     pub(crate) fn inner(&self) -> &Mutex<AnySim> {
         &self.inner
     }
 
-    /// The same, to be kept.
+    /// Returns a shared reference to the simulation.
     pub(crate) fn shared(&self) -> &Arc<Mutex<AnySim>> {
         &self.inner
     }
 
-    /// The Python object of the model.
+    /// Returns the Python object of the model.
     pub(crate) fn py_model(&self) -> &Py<Model> {
         &self.model
     }
 
-    /// The model, without the numbers that this simulation has for itself.
+    /// Returns the model, without the parameters that are set in this simulation.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
         self.model.get().inner()
     }
 
-    /// The Python object of a simulation.
+    /// Creates the Python object of a simulation.
     pub(crate) fn wrap(
         py: Python<'_>,
         sim: AnySim,
@@ -133,24 +133,26 @@ impl Sim {
         Sim::wrap(py, sim, own)
     }
 
-    /// Advances the state.
+    /// Advances the simulation.
     ///
     /// Other Python threads run meanwhile.
     ///
     /// Parameters
     /// ----------
     /// n : int
-    ///     How many time steps, with the same controls and applied forces but for what `control` writes.
+    ///     Number of time steps, with the same controls and applied forces except for changes by `control`.
     /// control : callable, optional
-    ///     Called in each step with this simulation, when what depends on its positions and velocities is known, and before forces are
-    ///     computed: it writes `ctrl` or applied forces. What it returns does not count; what it raises ends the call.
+    ///     A function that is called in each step with this simulation, after the quantities that depend on positions
+    ///     and velocities are computed, and before forces are: it writes `ctrl` or applied forces. Its return value is
+    ///     ignored; an exception ends the call.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     Numbers that are not finite in the state; a motion that diverges (also positions, velocities or accelerations beyond
-    ///     1e10); a singular mass matrix. The state is then as before the step that failed. With the option `autoreset` the step
-    ///     is done from the initial state instead, controls and applied forces included, and counts in `resets`.
+    ///     If the state is not finite, the motion diverges (also if positions, velocities or accelerations exceed
+    ///     1e10), or the mass matrix is singular. The state is then that before the failed step. With the option
+    ///     `autoreset`, the step is done from the initial state instead, which includes controls and applied forces,
+    ///     and counts in `resets`.
     /// BusyError
     ///     While another thread is in a call of this simulation.
     #[pyo3(signature = (n = Count(1), control = None), text_signature = "($self, n=1, control=None)")]
@@ -171,12 +173,13 @@ impl Sim {
         })
     }
 
-    /// The first half of a step: all that depends on positions and velocities alone, which can then be read; ``mj_step1``.
+    /// Does the first half of a step: computes all quantities that depend only on positions and velocities, which can
+    /// then be read; like ``mj_step1``.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     As `step`.
+    ///     As for `step`.
     fn step1(&self, py: Python<'_>) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         let any = &mut *guard;
@@ -184,15 +187,16 @@ impl Sim {
             .map_err(sim_error)
     }
 
-    /// The second half of a step, with the controls and applied forces that are set by now; ``mj_step2``, with any integrator.
+    /// Does the second half of a step, with the current controls and applied forces; like ``mj_step2``, but with any
+    /// integrator.
     ///
-    /// After `step1` both are a `step`, to the bit. Where something else was written in between, or nothing was begun, the whole step
-    /// is done here.
+    /// After `step1`, the two halves equal a `step`, to the bit. If anything else was written in between, or `step1`
+    /// was not called, it does the whole step.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     As `step`.
+    ///     As for `step`.
     fn step2(&self, py: Python<'_>) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         let any = &mut *guard;
@@ -200,12 +204,12 @@ impl Sim {
             .map_err(sim_error)
     }
 
-    /// Computes everything that follows from the state, and leaves the state alone.
+    /// Computes everything that depends on the state, and does not change the state.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     As `step`.
+    ///     As for `step`.
     fn forward(&self, py: Python<'_>) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         let any = &mut *guard;
@@ -213,12 +217,12 @@ impl Sim {
             .map_err(sim_error)
     }
 
-    /// Back to the initial state, or to a keyframe.
+    /// Resets the simulation to the initial state or to a keyframe.
     ///
     /// Parameters
     /// ----------
     /// keyframe : str or int, optional
-    ///     A keyframe of the model, by name or index. What it does not hold is as in the initial state.
+    ///     A keyframe of the model, by name or index. Quantities that it does not store are as in the initial state.
     #[pyo3(signature = (keyframe = None))]
     fn reset(&self, keyframe: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
@@ -227,22 +231,22 @@ impl Sim {
         each_sim!(&mut *guard, own => own.reset(key)).map_err(sim_error)
     }
 
-    /// An output of the last step or forward, or of the state.
+    /// Returns an output of the last step or forward, or of the state.
     ///
     /// Parameters
     /// ----------
     /// name : str
-    ///     Its name, see `clench.OUTPUTS`.
+    ///     The name of the output; see `clench.OUTPUTS`.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray or float
-    ///     A copy that cannot be written.
+    ///     A read-only copy.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A name that no output has.
+    ///     If no output has the name.
     fn output<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let output = Output::find(name).map_err(sim_error)?;
         let shape = output.shape(self.model.get().inner());
@@ -257,24 +261,24 @@ impl Sim {
         })
     }
 
-    /// What one sensor measured: its part of `sensordata`.
+    /// Returns the values of one sensor: its part of `sensordata`.
     ///
     /// Parameters
     /// ----------
     /// which : str or int
-    ///     Its name or index.
+    ///     The name or index of the sensor.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     A copy that cannot be written.
+    ///     A read-only copy.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A name that no sensor has.
+    ///     If no sensor has the name.
     /// IndexError
-    ///     A number that is negative or too large.
+    ///     If the index is negative or too large.
     fn sensor<'py>(
         &self,
         py: Python<'py>,
@@ -298,21 +302,21 @@ impl Sim {
         Ok(names)
     }
 
-    /// SolverStats : How the last solve went; with the Runge-Kutta integrator, that of the last stage.
+    /// SolverStats : Statistics of the last solve; with the Runge-Kutta integrator, of the last stage.
     #[getter]
     fn solver_stats(&self) -> PyResult<SolverStats> {
         let guard = lock(&self.inner, "simulation")?;
         Ok(each_sim!(&*guard, own => own.sim.stats()).into())
     }
 
-    /// int : How many steps and forward passes started over from the initial state, with the option `autoreset`.
+    /// int : Number of steps and forward passes that restarted from the initial state, with the option `autoreset`.
     #[getter]
     fn resets(&self) -> PyResult<u64> {
         let guard = lock(&self.inner, "simulation")?;
         Ok(each_sim!(&*guard, own => own.sim.resets()))
     }
 
-    /// bool : Whether the last step or forward found more contacts than `max_contacts` allows, and left some out.
+    /// bool : True if the last step or forward found more contacts than `max_contacts` allows, and dropped some.
     #[getter]
     fn contact_overflow(&self) -> PyResult<bool> {
         let guard = lock(&self.inner, "simulation")?;
@@ -326,7 +330,7 @@ impl Sim {
     /// which : str or int
     ///     The equality, by name or index.
     /// active : bool
-    ///     Whether it acts. `eq_active` shows all switches.
+    ///     True to make it active. `eq_active` shows all switches.
     fn set_equality(
         this: &Bound<'_, Self>,
         which: &Bound<'_, PyAny>,
@@ -336,9 +340,9 @@ impl Sim {
         this.getattr("eq_active")?.set_item(index, active)
     }
 
-    /// State : A copy of what the next step depends on, parameters apart.
+    /// State : A copy of everything that the next step depends on, except parameters.
     ///
-    /// Assigning one brings the simulation there, to the bit.
+    /// Assigning a state restores it, to the bit.
     #[getter]
     fn state<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let _guard = lock(&this.get().inner, "simulation")?;
@@ -357,7 +361,7 @@ impl Sim {
         self.model.clone_ref(py)
     }
 
-    /// RigidOptions : The options that were given. Assigning others counts from the next step or forward on.
+    /// RigidOptions : The options that were set. Assigned options take effect at the next step or forward.
     #[getter]
     fn options(&self) -> PyResult<RigidOptions> {
         let guard = lock(&self.inner, "simulation")?;
@@ -370,8 +374,9 @@ impl Sim {
         each_sim!(&mut *guard, own => own.sim.set_options(options.0)).map_err(sim_error)
     }
 
-    /// int : How many threads share the work of each step and forward pass, 1 to 1024. Results do not depend on it. It pays for scenes of
-    /// many bodies, whose steps take a millisecond or more; for many environments there is `Batch`.
+    /// int : Number of threads that share the work of each step and forward pass, 1 to 1024. Results do not depend on
+    /// it. More threads help for scenes of many bodies, whose steps take a millisecond or more; use `Batch` for many
+    /// environments.
     #[getter]
     fn threads(&self) -> PyResult<usize> {
         let guard = lock(&self.inner, "simulation")?;

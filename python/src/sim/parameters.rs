@@ -10,10 +10,11 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Sim {
-    /// Replaces the numbers of a parameter for this simulation alone.
+    /// Replaces the values of a parameter in this simulation only.
     ///
-    /// What follows directly is computed with it (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from ``geom_size``);
-    /// quaternions and axes are normalized. All else that follows stays as it is until `set_constants`.
+    /// Directly dependent fields are updated too (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from
+    /// ``geom_size``); quaternions and axes are normalized. Other dependent constants do not change until
+    /// `set_constants`.
     ///
     /// Parameters
     /// ----------
@@ -25,7 +26,7 @@ impl Sim {
     /// Raises
     /// ------
     /// ValueError
-    ///     A name that no parameter has, a wrong shape, or numbers that the field cannot have. All is then as before.
+    ///     If no parameter has the name, the shape is wrong, or a value is invalid for the field. Nothing changes then.
     fn set_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let shape = self.model.get().param_shape(field)?;
         let mut guard = lock(&self.inner, "simulation")?;
@@ -35,24 +36,25 @@ impl Sim {
         })
     }
 
-    /// Computes the constants that follow from the parameters in the initial configuration ``qpos0``, as MuJoCo's
+    /// Computes the constants that depend on the parameters in the initial configuration ``qpos0``, as MuJoCo's
     /// ``mj_setConst`` does: subtree masses, the inverse inertias ``body_invweight0``, ``dof_invweight0`` and
-    /// ``tendon_invweight0`` by which constraints are scaled, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, frames of
-    /// cameras (``cam_pos0``, ``cam_poscom0``, ``cam_mat0``), second anchors of connects, anchors at sites. The state stays as it is.
+    /// ``tendon_invweight0`` that scale constraints, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, frames of
+    /// cameras (``cam_pos0``, ``cam_poscom0``, ``cam_mat0``), second anchors of connects, anchors at sites. The state
+    /// does not change.
     ///
-    /// Call it after masses, inertias, positions or armatures have changed, unless constraints are to stay as soft as those of
-    /// the original model.
+    /// Call it after masses, inertias, positions or armatures have changed, unless constraints should keep the softness
+    /// of the original model.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A mass matrix that is not positive definite. All is then as before.
+    ///     If the mass matrix is not positive definite. Nothing changes then.
     fn set_constants(&self) -> PyResult<()> {
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => own.sim.set_constants().map_err(sim_error))
     }
 
-    /// The numbers of a parameter as this simulation uses them.
+    /// Returns the values of a parameter in this simulation.
     ///
     /// Parameters
     /// ----------
@@ -62,7 +64,7 @@ impl Sim {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     A copy in the shape that the field has in the model.
+    ///     A copy in the field's shape in the model.
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
         let shape = self.model.get().param_shape(field)?;
         let guard = lock(&self.inner, "simulation")?;

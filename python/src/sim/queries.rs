@@ -1,4 +1,4 @@
-//! What a simulation answers about its contacts, constraints and geoms.
+//! Queries of a simulation about contacts, constraints and geoms.
 
 use super::Sim;
 use crate::busy::lock;
@@ -15,21 +15,21 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Sim {
-    /// Contacts : The contacts, at the positions that queries see (see `Sim`).
+    /// Contacts : The contacts, at the positions that queries use (see `Sim`).
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Contacts>> {
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => Contacts::of(py, own.refreshed().map_err(sim_error)?))
     }
 
-    /// Constraints : The constraint rows, with their forces, in the state that queries see (see `Sim`).
+    /// Constraints : The constraint rows, with their forces, in the state that queries use (see `Sim`).
     #[getter]
     fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Constraints>> {
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => Constraints::of(py, own.refreshed().map_err(sim_error)?))
     }
 
-    /// The joint-space mass matrix, of the positions that queries see (see `Sim`).
+    /// Computes the joint-space mass matrix at the positions that queries use (see `Sim`).
     ///
     /// Returns
     /// -------
@@ -43,22 +43,22 @@ impl Sim {
         Ok(PyArray1::from_vec(py, values).reshape([nv, nv])?.into_any())
     }
 
-    /// The geom that a ray hits first, where geoms are as queries see them (see `Sim`).
+    /// Finds the first hit of a ray, in the poses that queries use (see `Sim`).
     ///
-    /// As MuJoCo's ``mj_ray``: planes are hit from above and within their size (where that is positive), meshes on their
-    /// own triangles, from either side; a ray that begins inside another shape hits it where it leaves, and rays pass through what
-    /// cannot be seen (colours of opacity 0).
+    /// It works like MuJoCo's ``mj_ray``: planes are hit from above and within their size (if it is positive), meshes
+    /// on their own triangles, from either side; a ray that starts inside another shape hits it where it exits, and
+    /// rays pass through invisible geoms (colours of opacity 0).
     ///
     /// Parameters
     /// ----------
     /// origin : array_like
-    ///     Where the ray begins (3,), m.
+    ///     Origin of the ray (3,), m.
     /// direction : array_like
-    ///     Where it leads (3,). Its length is the unit of `RayHit.distance`.
+    ///     Direction of the ray (3,). Its length is the unit of `RayHit.distance`.
     /// groups : array_like of int, optional
-    ///     The groups of geoms, 0 to 5, that can be hit; all of them if not given.
+    ///     The groups of geoms, 0 to 5, that can be hit; by default all.
     /// fixed : bool
-    ///     Whether geoms can be hit that are fixed to the world.
+    ///     True if rays can hit geoms that are fixed to the world.
     /// exclude_body : str or int, optional
     ///     A body, by name or index, whose geoms are not hit.
     ///
@@ -87,9 +87,9 @@ impl Sim {
         })
     }
 
-    /// How far apart two geoms are, where queries see them (see `Sim`), whatever they collide with.
+    /// Computes the distance of two geoms, in the poses that queries use (see `Sim`), regardless of collision filters.
     ///
-    /// As MuJoCo's ``mj_geomDistance``. A mesh counts as its convex hull.
+    /// It is like MuJoCo's ``mj_geomDistance``. A mesh is replaced by its convex hull.
     ///
     /// Parameters
     /// ----------
@@ -101,7 +101,8 @@ impl Sim {
     /// Returns
     /// -------
     /// Separation or None
-    ///     None if they are further apart than the limit, or have no distance: two planes or height fields, or a mesh that is flat.
+    ///     None if they are further apart than the limit, or their distance is not defined: two planes or height
+    ///     fields, or a flat mesh.
     #[pyo3(signature = (geom1, geom2, limit = None))]
     fn distance(
         &self,

@@ -1,4 +1,4 @@
-//! What a program draws into the picture itself.
+//! Objects that a program draws into the picture.
 
 use super::{Viewer, vector};
 use crate::arrays::shaped;
@@ -6,7 +6,7 @@ use clench_view::{Mark, MarkShape};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The colour of what is given none.
+/// The default colour.
 const PINK: [f32; 4] = [0.84, 0.2, 0.55, 1.0];
 
 impl Viewer {
@@ -44,7 +44,7 @@ impl Viewer {
     /// rgba : array_like, optional
     ///     Colour and opacity (4,), each from 0 to 1.
     /// lifetime : float
-    ///     How long it is seen, s of simulated time; with 0 until the next `sync` has shown it.
+    ///     Duration of display, s of simulated time; 0 for until the next `sync` has shown it.
     #[pyo3(signature = (center, radius = 0.02, *, rgba = None, lifetime = 0.0))]
     fn draw_sphere(
         &self,
@@ -87,7 +87,7 @@ impl Viewer {
     /// Parameters
     /// ----------
     /// start, end : array_like
-    ///     Where it begins, and its tip, in the world (3,), m.
+    ///     The tail and the tip in the world (3,), m.
     /// radius : float
     ///     Half the thickness of its shaft, m.
     /// rgba : array_like, optional
@@ -107,12 +107,12 @@ impl Viewer {
         self.draw(MarkShape::Arrow { from, to, radius }, rgba, lifetime)
     }
 
-    /// Writes words that face the camera.
+    /// Draws text that faces the camera.
     ///
     /// Parameters
     /// ----------
     /// at : array_like
-    ///     Their middle in the world (3,), m.
+    ///     The centre of the text in the world (3,), m.
     /// text : str
     ///     At most 200 characters.
     /// rgba : array_like, optional
@@ -131,7 +131,7 @@ impl Viewer {
         self.draw(MarkShape::Text { at, text }, rgba, lifetime)
     }
 
-    /// Takes away what was drawn.
+    /// Removes everything that was drawn.
     fn clear_draws(&self) -> PyResult<()> {
         self.open(|viewer| viewer.marks.clear())
     }

@@ -1,4 +1,4 @@
-//! `clench.Viewer`: a page in the browser beside a loop in Python.
+//! `clench.Viewer`: a page in the browser for a loop in Python.
 
 mod draws;
 
@@ -16,13 +16,13 @@ use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard};
 use std::thread::sleep;
 
-/// The page that is part of this package, else one that is built now where it can be.
+/// Returns the page that is part of this package, else one that is built now, if possible.
 ///
 /// # Errors
-/// `clench.ClenchError` that says what to do.
+/// Returns a `clench.ClenchError` that says what to do.
 pub(crate) fn page(py: Python<'_>) -> PyResult<Page> {
     let tell = |text: &str| {
-        // Without standard error nobody can be told, and nobody needs to be.
+        // A message without standard error is dropped.
         let _ = Python::attach(|py| {
             let stderr = py.import("sys")?.getattr("stderr")?;
             stderr
@@ -33,13 +33,13 @@ pub(crate) fn page(py: Python<'_>) -> PyResult<Page> {
     (py.detach(|| Page::find(tell))).map_err(|error| ClenchError::new_err(error.to_string()))
 }
 
-/// A page in the browser that shows a simulation while a loop of one's own steps it.
+/// A page in the browser that shows a simulation while a Python loop steps it.
 ///
-/// `clench.view` makes one. Users of the page can let the loop stand still or go step by step, pull at bodies, set controls and
-/// joints, switch equalities, reset, and choose how fast time goes; all of it happens in `sync`, which the loop calls between
-/// steps. Without a viewer a simulation pays nothing for it, and with one that nobody looks at hardly anything.
+/// `clench.view` creates one. Users of the page can pause the loop or single-step it, drag bodies, set controls and
+/// joints, switch equalities, reset, and choose the speed; all of it happens in `sync`, which the loop calls between
+/// steps. Without a viewer there is no cost to a simulation, and hardly any with a viewer that no page shows.
 ///
-/// In a Jupyter notebook a viewer as the last value of a cell is seen there.
+/// In a Jupyter notebook, a viewer as the last value of a cell is displayed there.
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Viewer {
     target: Target,
@@ -53,7 +53,7 @@ impl Viewer {
         lock(&self.state, "viewer")
     }
 
-    /// Does something with a viewer that is open.
+    /// Calls `work` with the viewer if it is open.
     fn open<R>(&self, work: impl FnOnce(&mut PassiveViewer) -> R) -> PyResult<R> {
         let mut guard = self.lock()?;
         let open = guard.as_mut();
@@ -62,7 +62,7 @@ impl Viewer {
     }
 }
 
-/// One of so many environments.
+/// Returns an error if there is no environment with this index.
 pub(crate) fn check_env(env: usize, envs: usize) -> PyResult<()> {
     if env < envs {
         return Ok(());
@@ -71,7 +71,7 @@ pub(crate) fn check_env(env: usize, envs: usize) -> PyResult<()> {
     Err(PyIndexError::new_err(text))
 }
 
-/// A factor that users of the page can choose too.
+/// Validates a speed factor; the range is that of the page.
 fn check_speed(speed: f64) -> PyResult<f64> {
     let [low, high] = SPEEDS;
     if speed == 0.0 || (low..=high).contains(&speed) {
@@ -128,23 +128,23 @@ impl Viewer {
         })
     }
 
-    /// Shows what is now, and does what users of the page did since the last call.
+    /// Shows the current state, and applies the actions of the page's users since the last call.
     ///
-    /// A pull at a body is written into `xfrc_applied`, in place of what is there, until the body is let go. A frame goes out at
-    /// most sixty times a second, and only where a page asks for it, so that `sync` can be called after each step.
+    /// A pull on a body is written into `xfrc_applied`, and replaces its value, until the body is released. A frame is
+    /// sent at most sixty times a second, and only if a page requests it, so that `sync` can be called after each step.
     ///
     /// Parameters
     /// ----------
     /// block : bool
-    ///     Whether to wait while a user of the page lets the simulation stand still (until it goes on, or one step is asked for),
-    ///     and while it is ahead of real time times `speed`. Without it `paused` tells what users want.
+    ///     True to wait while a user of the page has paused the simulation (until it continues, or one step is
+    ///     requested), and while it is ahead of real time times `speed`. Otherwise `paused` reports the users' choice.
     ///
     /// Raises
     /// ------
     /// SimulationError
-    ///     A state that cannot be evaluated, and is pulled at.
+    ///     If the state cannot be evaluated while a body is pulled.
     /// BusyError
-    ///     While another thread is in a call of what is shown.
+    ///     While another thread is in a call of the simulation or batch.
     #[pyo3(signature = (*, block = true))]
     fn sync(&self, py: Python<'_>, block: bool) -> PyResult<()> {
         loop {
@@ -163,7 +163,7 @@ impl Viewer {
         }
     }
 
-    /// Ends the viewer: pages that show it say so. What is pulled at is let go.
+    /// Closes the viewer; its pages report that. Bodies that are pulled are released.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
         let Some(mut viewer) = self.lock()?.take() else {
             return Ok(());
@@ -183,26 +183,26 @@ impl Viewer {
         self.close(py)
     }
 
-    /// bool : Whether it was closed.
+    /// bool : True if the viewer was closed.
     #[getter]
     fn closed(&self) -> PyResult<bool> {
         Ok(self.lock()?.is_none())
     }
 
-    /// str : Where browsers find it; with the token without which nobody is let in.
+    /// str : The address for browsers, with the token that grants access.
     #[getter]
     fn url(&self) -> &str {
         &self.url
     }
 
-    /// int : How many connections of pages there are.
+    /// int : Number of connections of pages.
     #[getter]
     fn clients(&self) -> PyResult<usize> {
         let guard = self.lock()?;
         Ok(guard.as_ref().map_or(0, |viewer| viewer.server().clients()))
     }
 
-    /// bool : Whether the loop should stand still. Users of the page set it too.
+    /// bool : True if the loop should pause. Users of the page set it too.
     #[getter]
     fn paused(&self) -> PyResult<bool> {
         self.open(|viewer| viewer.interaction.paused)
@@ -213,7 +213,8 @@ impl Viewer {
         self.open(|viewer| viewer.interaction.paused = paused)
     }
 
-    /// float : Simulated over real time, which `sync` holds the loop to; 0 for as fast as it goes. Users of the page set it too.
+    /// float : The ratio of simulated to real time that `sync` maintains; 0 for as fast as possible. Users of the page
+    /// set it too.
     #[getter]
     fn speed(&self) -> PyResult<f64> {
         self.open(|viewer| viewer.interaction.factor)
@@ -225,7 +226,8 @@ impl Viewer {
         self.open(|viewer| viewer.interaction.factor = speed)
     }
 
-    /// int : The environment whose contacts and numbers are shown, and that is touched. Users of the page set it too.
+    /// int : The environment whose contacts and numbers are shown, and with which users interact. Users of the page set
+    /// it too.
     #[getter]
     fn env(&self) -> PyResult<usize> {
         self.open(|viewer| viewer.interaction.selection.env)
@@ -242,9 +244,9 @@ impl Viewer {
     /// Parameters
     /// ----------
     /// count : int
-    ///     How many, at most 64; 1 for the chosen one alone.
+    ///     Number of environments, at most 64; 1 for only the chosen one.
     /// first : int
-    ///     The first of them.
+    ///     The index of the first one.
     #[pyo3(signature = (count, first = 0))]
     fn show_grid(&self, count: usize, first: usize) -> PyResult<()> {
         check_env(first, self.envs)?;

@@ -1,4 +1,4 @@
-//! Drawing pictures and films.
+//! Rendering of images and videos.
 
 use super::Arguments;
 use crate::interrupt::Interrupt;
@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
 
-/// Draws what is asked for.
+/// Renders the requested image or video.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let inputs = [
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What a file holds.
+/// The format of a file.
 #[derive(Clone, Copy)]
 enum Form {
     Png,
@@ -89,7 +89,7 @@ fn context(path: &Path) -> String {
     format!("--out {}", path.display())
 }
 
-/// A renderer that takes pictures of one kind.
+/// A renderer with fixed image settings.
 struct Camera<'a> {
     renderer: &'a mut Renderer,
     picture: Picture,
@@ -101,7 +101,7 @@ impl Camera<'_> {
     }
 }
 
-/// A simulation, and how many steps it has made: its own time begins where its start says, and anew where it starts over.
+/// A simulation with a counter of its steps: its own time may start at another value, and restart.
 struct Motion {
     sim: Sim<f64>,
     steps: usize,
@@ -109,10 +109,10 @@ struct Motion {
 }
 
 impl Motion {
-    /// Steps until so many seconds have passed since the start.
+    /// Steps until `time` seconds have passed since the start.
     ///
     /// # Errors
-    /// A step that cannot be made, or a signal that asks the program to end.
+    /// Returns an error if a step fails or a signal requests termination.
     fn advance(&mut self, time: f64) -> Result<()> {
         let steps = steps_in(time, self.sim.params().timestep)?;
         while self.steps < steps {
@@ -137,7 +137,7 @@ fn write_png(to: impl Write, image: &Image) -> Result<()> {
     Ok(())
 }
 
-/// Takes pictures of a motion, so many a second.
+/// Renders a motion at `rate` images per second.
 fn film(
     motion: &mut Motion,
     camera: &mut Camera,
@@ -152,10 +152,10 @@ fn film(
     Ok(())
 }
 
-/// Pictures a second of a film in a GIF, which counts hundredths of a second.
+/// The frame rate of a GIF, which counts hundredths of a second.
 const GIF_RATE: f64 = 25.0;
 
-/// Writes a film that repeats; each of its pictures has colours of its own.
+/// Writes a video that repeats; each of its images has its own palette.
 fn write_gif(to: impl Write, motion: &mut Motion, camera: &mut Camera, time: f64) -> Result<()> {
     let side =
         |pixels: u32| u16::try_from(pixels).context("a film has at most 65535 pixels a side");
@@ -171,10 +171,10 @@ fn write_gif(to: impl Write, motion: &mut Motion, camera: &mut Camera, time: f64
     Ok(())
 }
 
-/// Pictures a second of a film in an MP4.
+/// The frame rate of an MP4.
 const MP4_RATE: f64 = 30.0;
 
-/// Lets ffmpeg write a film. It gets the pictures as they are, and looks for its best encoder itself.
+/// Writes a video by ffmpeg, which receives the raw images and selects the encoder.
 fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f64) -> Result<()> {
     let Some(path) = to.path() else {
         bail!("a film as .mp4 has to be a file on a disk");
@@ -183,7 +183,7 @@ fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f
     let mut encoder = Command::new("ffmpeg")
         .args(["-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"])
         .args(["-s", &format!("{width}x{height}"), "-r", &MP4_RATE.to_string(), "-i", "-"])
-        // What players show has sides of even length and half as many colours.
+        // Common players require sides of even length and subsampled colours.
         .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"])
         .args(["-movflags", "+faststart", "-f", "mp4"])
         .arg(path)
@@ -210,7 +210,7 @@ fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f
     shown
 }
 
-/// The camera of a name or an index.
+/// Finds a camera by name or index.
 fn find_camera(model: &Model, key: &str) -> Result<usize> {
     let cameras = &model.cameras;
     if let Some(index) = cameras.iter().position(|camera| camera.name == key) {

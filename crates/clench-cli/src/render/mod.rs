@@ -1,4 +1,4 @@
-//! `clench render`: pictures and films of a model, without a window.
+//! `clench render`: images and videos of a model, without a window.
 
 #[cfg(feature = "render")]
 mod draw;
@@ -9,11 +9,11 @@ use crate::simulate::StartArguments;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Draws a model without a window: a picture (`.png`) of its initial state, or a film (`.gif`, or `.mp4` by the program ffmpeg) of its
-/// motion. Cameras of the file are honoured; without one all that moves is seen.
+/// Draws a model without a window: a picture (`.png`) of its initial state, or a film (`.gif`, or `.mp4` by the program
+/// ffmpeg) of its motion. Cameras of the file are honoured; without one all that moves is seen.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Where to: `.png`, `.gif` or `.mp4`
+    /// File to write: `.png`, `.gif` or `.mp4`
     #[arg(long, value_name = "OUT")]
     pub(super) out: PathBuf,
     /// Pixels in a row
@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pub(super) memory: MemoryArguments,
 
-    // Last, because its heading in the help holds for all that follows.
+    // Last, because its help heading applies to all following arguments.
     #[command(flatten)]
     pub(super) model: ModelArguments,
 }
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
 #[cfg(feature = "render")]
 pub(crate) use draw::run;
 
-/// Says how to get a program that draws.
+/// Returns an error that explains how to build with rendering.
 #[cfg(not(feature = "render"))]
 pub(crate) fn run(_: &Arguments) -> anyhow::Result<std::process::ExitCode> {
     Err(crate::without("render", "draws pictures and films"))

@@ -1,4 +1,4 @@
-//! What `clench simulate` is told.
+//! The arguments of `clench simulate`.
 
 use super::start::StartArguments;
 use crate::limits::MemoryArguments;
@@ -11,9 +11,9 @@ use std::path::PathBuf;
 
 /// Steps the model from its initial state, or a keyframe, and prints a summary: speed of stepping alone, contacts and
 /// solver iterations a step, the worst duality gap (how far a solution's cost may lie above the minimum, proven), the
-/// worst penetration, and the energy drift where nothing in the model adds or removes energy. Of a batch also: how unlike
-/// its environments are, memory, and the environments that failed, if any did. A word says what the run is worth, see below;
-/// what is wrong with it also comes as warnings on standard error.
+/// worst penetration, and the energy drift where nothing in the model adds or removes energy. Of a batch also: how
+/// unlike its environments are, memory, and the environments that failed, if any did. A word says what the run is
+/// worth, see below; what is wrong with it also comes as warnings on standard error.
 #[derive(Args)]
 #[command(after_help = DETAILS)]
 pub(crate) struct Arguments {
@@ -26,9 +26,10 @@ pub(crate) struct Arguments {
     /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
     #[arg(long, value_name = "FILE.npy")]
     pub(super) ctrl: Option<PathBuf>,
-    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`) in place of an old file once all is done;
-    /// of one environment also a page that replays the run in a browser (`.html`), likewise, or poses, shapes, forces and plots as
-    /// messages for Foxglove (`.mcap`), which can be read up to the last second wherever the run ends
+    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`) in place of an old file
+    /// once all is done; of one environment also a page that replays the run in a browser (`.html`), likewise, or
+    /// poses, shapes, forces and plots as messages for Foxglove (`.mcap`), which can be read up to the last second
+    /// wherever the run ends
     #[arg(long, value_name = "OUT")]
     pub(super) record: Option<PathBuf>,
     /// Record every K-th step
@@ -53,7 +54,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pub(super) memory: MemoryArguments,
 
-    // Last, because its heading in the help holds for all that follows.
+    // Last, because its help heading applies to all following arguments.
     #[command(flatten)]
     pub(super) model: ModelArguments,
 }
@@ -94,20 +95,21 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-/// How many environments there are, and how they are stepped.
+/// The number of environments and the options of stepping them.
 #[derive(Args)]
 #[command(next_help_heading = "Many environments")]
 pub(crate) struct BatchArguments {
-    /// Step so many environments as a batch
+    /// Step N environments as a batch
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     pub envs: Option<u32>,
-    /// Threads of a batch [default: as many as processors], or that share each step of one environment alone [default: 1]
+    /// Threads of a batch [default: as many as processors], or that share each step of one environment alone [default:
+    /// 1]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
-    /// How the environments of a batch lie side by side [default: what is fastest here]
+    /// Layout of the environments of a batch [default: the fastest here]
     #[arg(long, ignore_case = true, requires = "envs")]
     pub(super) instructions: Option<InstructionsName>,
-    /// What steps a batch: the processor, or (of programs with the feature `gpu`) a graphics device
+    /// Device that steps a batch: the processor, or (with the feature `gpu`) a graphics device
     #[arg(long, value_name = "DEVICE", default_value = "cpu", requires = "envs")]
     pub device: DeviceName,
     /// Leave the environments of a batch in order, where those of like contacts would be put side by side
@@ -115,7 +117,7 @@ pub(crate) struct BatchArguments {
     pub(super) no_grouping: bool,
 }
 
-/// What steps environments.
+/// The device that steps environments.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DeviceName {
     Cpu,
@@ -123,7 +125,7 @@ pub(crate) enum DeviceName {
 }
 
 impl BatchArguments {
-    /// The first flag that says how a processor steps, if any was given.
+    /// Returns the first given flag that applies only to the CPU.
     #[cfg(feature = "gpu")]
     pub(crate) fn of_processor(&self) -> Option<&'static str> {
         let flags = [

@@ -1,4 +1,4 @@
-//! A run of many environments side by side.
+//! A run of a batch of environments.
 
 use super::arguments::Arguments;
 use super::energy::{EnergyAccount, STEPS_BETWEEN_CHECKS};
@@ -19,11 +19,11 @@ use clench::{Batch, RigidOptions};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Steps of environments that a batch takes at a call, after which signals are looked at: about a second's work.
+/// The number of environment steps per call, after which signals are checked: about one second of work.
 const ENV_STEPS_A_CALL: usize = 1 << 19;
-/// Steps that it takes at least: so many are done before environments are grouped anew.
+/// The minimum number of steps per call: environments are regrouped only between calls.
 const MIN_STEPS_A_CALL: usize = 8;
-/// How many failed environments a report names.
+/// The maximum number of failed environments that a report lists.
 const NAMED_FAILURES: usize = 10;
 
 fn name(instructions: Instructions) -> &'static str {
@@ -36,7 +36,7 @@ fn name(instructions: Instructions) -> &'static str {
     }
 }
 
-/// Steps many environments side by side.
+/// Steps a batch of environments.
 pub(crate) fn run<S: Precision>(
     arguments: &Arguments,
     run: &Run,
@@ -72,7 +72,7 @@ pub(crate) fn run<S: Precision>(
         let energy = (account.is_some() && is_checked).then_some("energy");
         let outputs = Vec::from_iter(recorded.chain(energy));
         heap.taken_by(|| batch.record(&outputs))?;
-        // What is asked between calls is no part of stepping.
+        // Queries between calls are not counted.
         batch.run_clocks(arguments.profile);
         let begin = Instant::now();
         let recording = heap.taken_by(|| batch.rollout(range.len(), controls, traced))?;
@@ -99,11 +99,11 @@ pub(crate) fn run<S: Precision>(
     Ok(report)
 }
 
-/// Takes the steps of a call into the account of energy, and what they led to if that was looked at.
+/// Adds the steps of a call to the energy account, and checks the resulting energies if they were recorded.
 fn watch<S: Precision>(account: &mut EnergyAccount, recording: &Recording<S>, batch: &Batch<S>) {
     if let Some(powers) = recording.get("actuator_power") {
         for (env, powers) in powers.iter().enumerate() {
-            // Steps that were not done are no numbers.
+            // Steps that were not taken are NaN.
             let done = powers.iter().map(|x| x.to_f64()).filter(|x| !x.is_nan());
             account.supply(env, done.sum());
         }
@@ -116,8 +116,8 @@ fn watch<S: Precision>(account: &mut EnergyAccount, recording: &Recording<S>, ba
     }
 }
 
-/// How many of `steps` steps the environment that came furthest has done, and its time, s; `start` are the times at which they
-/// started.
+/// Returns the number of steps, at most `steps`, and the simulated time, s, of the environment that advanced furthest;
+/// `start` are the initial times.
 fn done<S: Precision>(batch: &Batch<S>, start: &[f64], steps: usize) -> (usize, f64) {
     let timestep = batch.model().params.timestep;
     if batch.statuses().contains(&EnvStatus::Running) {
@@ -131,7 +131,7 @@ fn done<S: Precision>(batch: &Batch<S>, start: &[f64], steps: usize) -> (usize, 
     ((furthest / timestep).round() as usize, furthest)
 }
 
-/// What a batch takes of the heap, in bytes.
+/// The heap memory of a batch, bytes.
 #[derive(Default)]
 struct Heap {
     taken: usize,
@@ -139,7 +139,7 @@ struct Heap {
 }
 
 impl Heap {
-    /// Does something and notes what it took, or gave back.
+    /// Runs `work` and records the memory that it allocated or freed.
     fn taken_by<R>(&mut self, work: impl FnOnce() -> R) -> R {
         let before = ALLOCATOR.allocated();
         let result = work();
@@ -150,7 +150,7 @@ impl Heap {
     }
 }
 
-/// The potential and the kinetic energy of each environment, J.
+/// Returns the potential and kinetic energy of each environment, J.
 fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Vec<[f64; 2]>> {
     heap.taken_by(|| batch.record(&["energy"]))?;
     let energies = batch.output("energy").map(|rows| {
@@ -161,7 +161,7 @@ fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Vec<[
     Ok(energies.unwrap_or_default())
 }
 
-/// The largest change of energy of all environments.
+/// Returns the change of energy with the largest magnitude over all environments.
 fn drift(start: &[[f64; 2]], end: &[[f64; 2]]) -> Option<f64> {
     let total = |energies: &[f64; 2]| energies.iter().sum::<f64>();
     let changes = end
@@ -171,7 +171,7 @@ fn drift(start: &[[f64; 2]], end: &[[f64; 2]]) -> Option<f64> {
     changes.max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
-/// The figures of a run of so many steps.
+/// Builds the report of a run.
 fn report<S: Precision>(
     batch: &Batch<S>,
     (steps, simulated_time): (usize, f64),
@@ -233,7 +233,7 @@ fn report<S: Precision>(
     }
 }
 
-/// The environments that cannot go on.
+/// Returns the failed environments.
 fn failures<S: Precision>(batch: &Batch<S>) -> Vec<Failure> {
     let failed = |(env, status): (usize, &EnvStatus)| match status {
         EnvStatus::Running => None,

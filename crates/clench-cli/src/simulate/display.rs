@@ -1,4 +1,4 @@
-//! The figures of a run for people: the same lines in the same order, whatever the model. A batch has three more.
+//! The report of a run as text: the same lines in the same order for every model. A batch has three more.
 
 use super::report::{BatchReport, PairReport, Report, StageReport};
 use crate::table::Table;

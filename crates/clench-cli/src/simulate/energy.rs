@@ -1,27 +1,28 @@
-//! Energy that comes from nowhere.
+//! Detection of spurious energy.
 //!
-//! Without actuators, a model's mechanical energy can only fall: joints, contacts and fluids take from it. What actuators put in
-//! is added up, and energy that rises by more than that is judged against what errors and the softness of constraints bring
-//! about in a sound run: some of the kinetic energy, by the integrator, and a little at rest, as where geoms begin inside each other.
+//! Without actuators, a model's mechanical energy can only decrease: joints, contacts and fluids dissipate it. The work
+//! of actuators is accumulated. An increase of energy beyond that work is compared with the errors of a sound run: a
+//! share of the kinetic energy, by the integrator, and a small energy at rest, by soft constraints, such as geoms that
+//! overlap initially.
 
 use clench::Model;
 use std::ops::Range;
 
-/// Steps between two comparisons of the energy with what was supplied.
+/// The number of steps between energy checks.
 pub(crate) const STEPS_BETWEEN_CHECKS: usize = 50;
 
-/// The share of the kinetic energy that an integrator may get wrong.
+/// The share of the kinetic energy attributed to integration errors.
 const KINETIC_SHARE: f64 = 0.2;
-/// How often the energy that has an explanation may come again without one: the power of actuators is added up step by step,
+/// The factor by which the energy may exceed the explained energy: the power of actuators is integrated step by step,
 /// which is coarse.
 const ALLOWANCE: f64 = 2.0;
-/// Earth's gravity, m/s²: what lifting costs in any model, also in one without gravity.
+/// Earth's gravity, m/s²; the scale of lifting work in any model, also in one without gravity.
 const GRAVITY: f64 = 9.81;
 
 /// The energy of the environments of a run.
 pub(crate) struct EnergyAccount {
     timestep: f64,
-    /// What lifting each body by its own radius of gyration would cost, J: what is little for this model.
+    /// The work of lifting each body by its radius of gyration, J: a small energy for this model.
     little: f64,
     envs: Vec<Account>,
     worst: Option<Growth>,
@@ -30,23 +31,23 @@ pub(crate) struct EnergyAccount {
 struct Account {
     start: f64,
     supplied: f64,
-    /// Whether it once rose too far.
+    /// True if the energy once rose too far.
     grown: bool,
 }
 
-/// The largest energy that came from nowhere.
+/// The largest spurious energy.
 #[derive(Clone, Copy)]
 pub(crate) struct Growth {
     pub env: usize,
-    /// By how much the mechanical energy rose, J.
+    /// The increase of the mechanical energy, J.
     pub growth: f64,
-    /// What actuators had put in, J.
+    /// The work of the actuators, J.
     pub supplied: f64,
 }
 
 impl EnergyAccount {
-    /// An account of environments that start with these energies, potential and kinetic, in J. None for a model to which others
-    /// than actuators may give energy: mocap bodies, gravity compensation, wind.
+    /// Opens an account of environments with these initial potential and kinetic energies, J. Returns `None` if sources
+    /// other than actuators may supply energy: mocap bodies, gravity compensation, wind.
     pub(crate) fn open(model: &Model, start: impl IntoIterator<Item = [f64; 2]>) -> Option<Self> {
         if !is_closed(model) {
             return None;
@@ -60,7 +61,7 @@ impl EnergyAccount {
         let bodies = p.body_mass.iter().zip(&p.body_inertia).skip(1);
         let lift = |(&mass, inertia): (&f64, &clench::math::Vec3<f64>)| {
             let trace: f64 = inertia.to_array().iter().sum();
-            // A radius of gyration r has m r² = tr(I) / 2.
+            // A radius of gyration r satisfies m r² = tr(I) / 2.
             GRAVITY * (0.5 * mass * trace).sqrt()
         };
         Some(EnergyAccount {
@@ -71,12 +72,12 @@ impl EnergyAccount {
         })
     }
 
-    /// Takes in the power, W, that the actuators of an environment put in during a step.
+    /// Adds the actuator power, W, of an environment during a step.
     pub(crate) fn supply(&mut self, env: usize, power: f64) {
         self.envs[env].supplied += self.timestep * power;
     }
 
-    /// Compares the potential and kinetic energy, J, of an environment with what was supplied to it.
+    /// Compares the potential and kinetic energy, J, of an environment with the supplied energy.
     pub(crate) fn check(&mut self, env: usize, [potential, kinetic]: [f64; 2]) {
         let account = &mut self.envs[env];
         let (growth, supplied) = (potential + kinetic - account.start, account.supplied);
@@ -93,21 +94,22 @@ impl EnergyAccount {
         }
     }
 
-    /// How many environments once had energy from nowhere, and the most of it.
+    /// Returns the number of environments that had spurious energy, and its maximum.
     pub(crate) fn grown(&self) -> Option<(usize, Growth)> {
         let count = self.envs.iter().filter(|account| account.grown).count();
         self.worst.map(|worst| (count, worst))
     }
 }
 
-/// Whether nobody but actuators gives energy to a model.
+/// Returns true if only actuators supply energy to the model.
 fn is_closed(model: &Model) -> bool {
     let p = &model.params;
     let still = p.wind.to_array().iter().all(|&v| v == 0.0);
     model.nmocap == 0 && p.body_gravcomp.iter().all(|&g| g == 0.0) && still
 }
 
-/// The next range of steps to take at once: up to the next that is recorded, is looked at, or ends the run.
+/// Returns the next range of steps to take at once: up to the next step that is recorded or checked, or the end of the
+/// run.
 pub(crate) fn next_steps(
     done: usize,
     steps: usize,

@@ -1,4 +1,4 @@
-//! A run of many environments on a graphics device.
+//! A run of a batch on a GPU.
 
 use super::arguments::Arguments;
 use super::record::BATCH_OUTPUTS;
@@ -13,50 +13,50 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Steps of a call, after which signals are asked for.
+/// The number of steps per call, after which signals are checked.
 const STEPS_A_CALL: usize = 64;
-/// How many failed environments a report names.
+/// The maximum number of failed environments that a report lists.
 const NAMED_FAILURES: usize = 10;
 
-/// The figures of a finished run.
+/// The report of a finished run.
 #[derive(Serialize)]
 pub(crate) struct GpuReport {
-    /// `ok`, `interrupted` or `failed`, where an environment did.
+    /// `ok`, `interrupted`, or `failed` if an environment failed.
     status: &'static str,
     device: String,
-    /// Wall time of stepping alone, s.
+    /// The wall time of stepping, s.
     seconds: f64,
     steps: usize,
     envs: usize,
-    /// Bits of a number.
+    /// The number of bits of a floating-point number.
     precision: usize,
     nv: usize,
     simulated_time: f64,
     steps_per_second: f64,
     bytes_per_env: usize,
-    /// Over environments, of the last solve.
+    /// The mean over environments, of the last solve.
     iterations_mean: f64,
     contacts_mean: f64,
-    /// Rows of the record, if there is one.
+    /// The number of rows of the record, if there is one.
     recorded_rows: Option<usize>,
     failed_envs: usize,
-    /// The first of them.
+    /// The first failed environments.
     failures: Vec<Failure>,
-    /// Positions of the first environment at the end.
+    /// The final positions of the first environment.
     qpos: Vec<f64>,
 }
 
 impl GpuReport {
-    /// Whether some environment failed.
+    /// Returns true if an environment failed.
     pub(crate) fn failed(&self) -> bool {
         self.failed_envs > 0
     }
 }
 
-/// Lists the devices, in the order in which they are chosen.
+/// Lists the devices in the order of preference.
 ///
 /// # Errors
-/// That there are none.
+/// Returns an error if there is none.
 pub(crate) fn list() -> Result<()> {
     let all = clench_gpu::devices();
     ensure!(!all.is_empty(), GpuError::NoDevice);
@@ -64,10 +64,10 @@ pub(crate) fn list() -> Result<()> {
     Ok(())
 }
 
-/// Steps many environments on the first device, in the precision of its numbers.
+/// Steps a batch on the first device, in the precision `S`.
 ///
 /// # Errors
-/// No device; a model or an argument that is not for one.
+/// Returns an error if there is no device, or it does not support the model or an argument.
 pub(super) fn run<S: GpuReal>(
     arguments: &Arguments,
     run: &Run,

@@ -1,4 +1,4 @@
-//! A record as MCAP: messages that reach the file while the run goes on.
+//! An MCAP record: messages that are written during the run.
 
 use super::record::RecordOptions;
 use crate::message::tell;
@@ -11,15 +11,15 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-/// How the name of such a record ends.
+/// The file name extension of such a record.
 pub(crate) const EXTENSION: &str = "mcap";
 
-/// A file of messages in the making. It stands at its place from the beginning: what is in it can be read even if the program is killed.
+/// An MCAP file under construction at its final path: it can be read even if the program is killed.
 pub(crate) struct MessageRecorder {
     path: PathBuf,
     recorder: McapRecorder<BufWriter<File>>,
     every: usize,
-    /// Why the file takes no more, if so.
+    /// The reason if the file can no longer be written.
     full: Option<String>,
 }
 
@@ -28,7 +28,7 @@ fn context(path: &Path) -> String {
 }
 
 impl MessageRecorder {
-    /// An empty record in place of an old one.
+    /// Creates an empty record, replacing an old one.
     pub(crate) fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let path = options.path.to_path_buf();
         let file = File::create(&path).with_context(|| context(&path))?;
@@ -41,7 +41,8 @@ impl MessageRecorder {
         })
     }
 
-    /// Records what `steps` steps led to, if it is wanted. Where the file takes no more, that is told once and the run goes on.
+    /// Records the state after `steps` steps if it is due. If the file cannot be written, prints one message and lets
+    /// the run continue.
     pub(crate) fn after_steps<T: Precision>(
         &mut self,
         steps: usize,
@@ -65,7 +66,7 @@ impl MessageRecorder {
         }
     }
 
-    /// Writes the rest; how many moments there are.
+    /// Writes the remaining data and returns the number of moments.
     pub(crate) fn write(self) -> Result<usize> {
         let moments = self.recorder.len();
         if let Some(error) = self.full {

@@ -1,6 +1,6 @@
 //! `clench simulate`: step a model through time and summarise the run.
 //!
-//! One environment goes through [`single`], many through [`batch`]; both give a [`report`].
+//! A single environment is stepped by [`single`], several by [`batch`]; both return a [`report`].
 
 mod arguments;
 mod batch;
@@ -36,7 +36,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Runs the simulation, writes the record, prints the summary.
+/// Runs the simulation, writes the record and prints the summary.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let envs = arguments.batch.envs;
@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Some(envs), Bits::Double) => batch::run::<f64>(arguments, &run, envs, options)?,
         (Some(envs), Bits::Single) => batch::run::<f32>(arguments, &run, envs, options)?,
     };
-    // A run that was over before the signal came was not interrupted.
+    // A signal after the end of the run does not count.
     let signal =
         (run.interrupt.signal()).filter(|_| report.failure.is_none() && report.steps < steps);
     if signal.is_some() {
@@ -104,7 +104,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Runs on a graphics device.
+/// Runs on a GPU.
 #[cfg(feature = "gpu")]
 fn on_device(
     arguments: &Arguments,
@@ -124,7 +124,7 @@ fn on_device(
     Ok(code.map_or(ExitCode::SUCCESS, ExitCode::from))
 }
 
-/// Lists the graphics devices of this machine.
+/// Lists the GPUs of this machine.
 #[cfg(feature = "gpu")]
 pub(crate) fn list_devices() -> Result<()> {
     gpu::list()
@@ -156,7 +156,7 @@ fn print(arguments: &Arguments, report: &(impl Serialize + ToString)) -> Result<
     written.context("standard output")
 }
 
-/// How many steps a run has, where a file of controls has so many rows.
+/// Returns the number of steps of a run; `rows` is the row count of the controls, if given.
 fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> Result<usize> {
     let wanted = match (arguments.steps, arguments.time) {
         (Some(steps), _) => steps,

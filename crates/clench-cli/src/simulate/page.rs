@@ -1,4 +1,4 @@
-//! A record that is a page: it replays the run in a browser, without a server.
+//! A record as a page that replays the run in a browser, without a server.
 
 use super::messages::{self, MessageRecorder};
 use super::record::{RecordOptions, Recorder};
@@ -11,21 +11,21 @@ use clench_view::{Marks, Page, RecordError, Recording, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// How the name of such a record ends.
+/// The file name extension of such a record.
 const EXTENSION: &str = "html";
 
-/// The record of one environment, in the form that its name asks for.
+/// The record of one environment, in the format that its file name selects.
 pub(crate) enum RunRecorder {
-    /// NumPy's arrays.
+    /// NumPy arrays.
     Arrays(Recorder),
-    /// A page.
+    /// An HTML page.
     Page(Box<PageRecorder>),
-    /// Messages.
+    /// MCAP messages.
     Messages(Box<MessageRecorder>),
 }
 
 impl RunRecorder {
-    /// An empty record.
+    /// Creates an empty record.
     pub(crate) fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let end = options.path.extension();
         let ends = |name: &str| end.is_some_and(|end| end.eq_ignore_ascii_case(name));
@@ -40,7 +40,7 @@ impl RunRecorder {
         Recorder::create(options, model).map(RunRecorder::Arrays)
     }
 
-    /// Appends what `steps` steps led to, if it is wanted.
+    /// Appends the state after `steps` steps if it is due.
     pub(crate) fn after_steps<T: Precision>(
         &mut self,
         steps: usize,
@@ -54,7 +54,7 @@ impl RunRecorder {
         Ok(())
     }
 
-    /// Writes the record; how many rows or frames it has.
+    /// Writes the record and returns the number of its rows or frames.
     pub(crate) fn write(self) -> Result<usize> {
         match self {
             RunRecorder::Arrays(recorder) => recorder.write(),
@@ -64,14 +64,14 @@ impl RunRecorder {
     }
 }
 
-/// A page in the making.
+/// A page under construction.
 pub(crate) struct PageRecorder {
     path: PathBuf,
     file: Replacement,
     page: Page,
     recording: Recording,
     every: usize,
-    /// Why no more is recorded, if so.
+    /// The reason if recording has stopped.
     full: Option<String>,
 }
 
@@ -93,8 +93,8 @@ impl PageRecorder {
         })
     }
 
-    /// Records what `steps` steps led to, if it is wanted. Where the record has all the memory that it may, that is told once and the
-    /// run goes on.
+    /// Records the state after `steps` steps if it is due. If the record has reached its memory limit, prints one
+    /// message and lets the run continue.
     fn after_steps<T: Precision>(&mut self, steps: usize, sim: &mut Sim<T>) -> Result<()> {
         if !steps.is_multiple_of(self.every) || self.full.is_some() {
             return Ok(());

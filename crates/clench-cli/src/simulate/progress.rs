@@ -1,25 +1,25 @@
-//! How far a run is: a line on standard error, if that is a terminal.
+//! The progress of a run: a line on standard error, if that is a terminal.
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// The line appears after so long, and changes as often.
+/// The delay before the line appears, and its update interval.
 const PERIOD: Duration = Duration::from_millis(500);
-/// Letters of the bar.
+/// The width of the bar, characters.
 const BAR: usize = 20;
 
-/// A line that is written anew as a run goes on, and goes away with this.
+/// A line that is updated during a run and cleared on drop.
 pub(super) struct Progress {
     total: usize,
     start: Instant,
     shown: Instant,
-    /// Letters that are on the terminal.
+    /// The number of characters on the terminal.
     letters: usize,
     terminal: bool,
 }
 
 impl Progress {
-    /// Nothing of so many steps is done.
+    /// Starts the progress of `total` steps.
     pub(super) fn new(total: usize) -> Self {
         let start = Instant::now();
         Progress {
@@ -31,7 +31,7 @@ impl Progress {
         }
     }
 
-    /// So many steps are done.
+    /// Reports that `steps` steps are done.
     pub(super) fn reach(&mut self, steps: usize) {
         if self.terminal && self.shown.elapsed() >= PERIOD {
             self.shown = Instant::now();
@@ -39,11 +39,11 @@ impl Progress {
         }
     }
 
-    /// Writes a line over the last one. Spaces cover what it leaves of that: not every terminal knows commands.
+    /// Overwrites the last line. Spaces cover its remainder: not every terminal supports escape sequences.
     fn show(&mut self, line: &str) {
         let covered = self.letters;
         self.letters = line.len();
-        // That it cannot be written is no reason to stop.
+        // A failure to write is ignored.
         let _ = write!(io::stderr(), "\r{line:<covered$}");
     }
 }
@@ -57,7 +57,7 @@ impl Drop for Progress {
     }
 }
 
-/// What is told of a run that has taken so many steps in this time.
+/// Returns the line of a run that has taken `steps` steps in this time.
 fn line(elapsed: Duration, steps: usize, total: usize) -> String {
     let seconds = elapsed.as_secs_f64();
     let share = steps as f64 / total.max(1) as f64;
@@ -69,7 +69,7 @@ fn line(elapsed: Duration, steps: usize, total: usize) -> String {
     format!("{elapsed} [{bar:<BAR$}] {steps}/{total} steps, {speed:.0}/s, {left} left")
 }
 
-/// Hours, minutes and seconds.
+/// Formats a time as hours, minutes and seconds.
 fn clock(time: Duration) -> String {
     let seconds = time.as_secs();
     let [hours, minutes, seconds] = [seconds / 3600, seconds / 60 % 60, seconds % 60];

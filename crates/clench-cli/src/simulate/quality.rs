@@ -1,24 +1,25 @@
-//! What a run is worth, in a word and in warnings.
+//! The quality of a run: a word and warnings.
 
 use super::energy::EnergyAccount;
 use clench::Model;
 use clench::rigid::batch::Quality;
 use clench::rigid::constraint::ConstraintSource;
 
-/// Deep contacts in so small a share of the steps are an incident and not the run.
+/// The share of steps up to which deep contacts are tolerated.
 const FEW_DEEP: f64 = 0.01;
-/// So are violations: many models start beyond a limit of theirs, and come back within a few steps.
+/// The share of steps up to which violations are tolerated: many models start beyond a limit and return within a few
+/// steps.
 const FEW_VIOLATED: f64 = 0.05;
-/// Solves that stop at the iteration limit in so small a share of the steps change little.
+/// The share of steps up to which solves at the iteration limit are tolerated.
 const FEW_UNCONVERGED: f64 = 0.01;
-/// Larger numbers are written with an exponent.
+/// The threshold above which numbers are written with an exponent.
 const LONG: f64 = 1e6;
 
 /// The verdict on a run.
 pub(crate) struct Verdict {
-    /// `good`, or the gravest that can be said against it.
+    /// `good`, or the most severe defect.
     pub word: &'static str,
-    /// All that can be said against it, the gravest first.
+    /// All defects, the most severe first.
     pub warnings: Vec<String>,
 }
 
@@ -103,7 +104,7 @@ fn source(model: &Model, source: ConstraintSource) -> String {
     element(kind, source.name(model), source.index())
 }
 
-/// What a person calls an element: its name, or its number where it has none.
+/// Returns the name of an element, or its kind and index if it has none.
 fn element(kind: &str, name: &str, index: usize) -> String {
     match name {
         "" => format!("{kind} {index}"),

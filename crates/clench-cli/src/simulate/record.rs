@@ -1,4 +1,4 @@
-//! Rows of what happened after every K-th step, for an `.npz` file.
+//! Rows of the state after every K-th step, for an `.npz` file.
 
 use super::summary::worst_penetration;
 use crate::limits::MemoryLimit;
@@ -10,27 +10,27 @@ use clench::rigid::Precision;
 use clench::{Batch, Model, Sim};
 use std::path::{Path, PathBuf};
 
-/// The outputs of a batch that a record holds beside states.
+/// The outputs of a batch that a record contains in addition to states.
 pub(crate) const BATCH_OUTPUTS: [&str; 2] = ["contact_count", "solver_iterations"];
 
-/// How the name of a record must end.
+/// The required file name extension of a record.
 const EXTENSION: &str = "npz";
 
-/// What a record is to be.
+/// The options of a record.
 pub(crate) struct RecordOptions<'a> {
-    /// Its file.
+    /// The path of the file.
     pub path: &'a Path,
-    /// Each so many-th step has a row.
+    /// The number of steps between rows.
     pub every: usize,
-    /// Rows of the whole run.
+    /// The number of rows of the whole run.
     pub rows: usize,
-    /// How much memory it may take.
+    /// The memory limit.
     pub limit: MemoryLimit,
 }
 
 impl RecordOptions<'_> {
-    /// A record of these columns, with room for all rows of so many environments: a path that cannot be written, or a lack of
-    /// memory, should not cost the user a run.
+    /// Creates a record of these columns with memory for all rows of `envs` environments, so that an unwritable path or
+    /// a lack of memory shows before the run.
     fn begin(&self, envs: usize, batch: bool, columns: Vec<Column>) -> Result<Record> {
         let context = || format!("--record {}", self.path.display());
         ensure!(
@@ -65,14 +65,14 @@ impl RecordOptions<'_> {
     }
 }
 
-/// Numbers of one name.
+/// A named column of numbers.
 struct Column {
     name: &'static str,
-    /// How many numbers a row has; none for a number that stands alone.
+    /// The number of values in a row; `None` for a scalar.
     size: Option<usize>,
-    /// Whether they are integers.
+    /// True if the values are integers.
     whole: bool,
-    /// How many environments have numbers of their own: all, or one for all.
+    /// The number of environments with separate values: all, or one for all.
     envs: usize,
     values: Vec<f64>,
 }
@@ -101,7 +101,7 @@ impl Column {
             ..Column::number(name)
         }
     }
-    /// Which trees sleep, where any may.
+    /// Creates the column of sleep states, if any tree may sleep.
     fn asleep(model: &Model) -> Option<Self> {
         let trees = model.tree_asleep0.len();
         let column = Column {
@@ -118,7 +118,8 @@ impl Column {
         self.size.unwrap_or(1)
     }
 
-    /// The numbers environment by environment, where they came step by step, of `rows` steps and `envs` environments.
+    /// Iterates over the values, stored step by step, environment by environment, for `rows` steps and `envs`
+    /// environments.
     fn by_env(&self, rows: usize, envs: usize) -> impl Iterator<Item = f64> + Clone {
         let width = self.width();
         (0..envs * rows * width).map(move |i| {
@@ -129,14 +130,14 @@ impl Column {
     }
 }
 
-/// A record in the making.
+/// A record under construction.
 struct Record {
     path: PathBuf,
     file: Replacement,
     every: usize,
     rows: usize,
     envs: usize,
-    /// Whether arrays have an axis of environments.
+    /// True if arrays have an axis of environments.
     batch: bool,
     columns: Vec<Column>,
 }
@@ -146,7 +147,7 @@ impl Record {
         steps.is_multiple_of(self.every)
     }
 
-    /// Appends a row: the numbers of the first column, which are times, and of each of the others.
+    /// Appends a row: the times as the first column, then each of the others.
     fn push<'a, S: Scalar>(&mut self, times: &[f64], others: impl IntoIterator<Item = &'a [S]>) {
         let mut columns = self.columns.iter_mut();
         if let Some(first) = columns.next() {
@@ -158,8 +159,8 @@ impl Record {
         self.rows += 1;
     }
 
-    /// Writes the arrays, each with rows as an axis, before it that of environments if there is one, and puts the file in its
-    /// place. How many rows there are.
+    /// Writes the arrays with axes of environments (if present) and rows, finishes the file, and returns the number of
+    /// rows.
     fn write(self) -> Result<usize> {
         let (rows, envs) = (self.rows, self.envs);
         let context = || format!("--record {}", self.path.display());
@@ -188,12 +189,12 @@ impl Record {
 
 /// The record of one environment.
 ///
-/// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts`, `penetration`, `iterations`, `gradient`,
-/// `improvement`, `gap`, `status` (n), and where the model may sleep `tree_asleep` (n, ntree).
+/// Arrays: `time` (n), `qpos` (n, nq), `qvel` (n, nv), `ctrl` (n, nu), `contacts`, `penetration`, `iterations`,
+/// `gradient`, `improvement`, `gap`, `status` (n), and where the model may sleep `tree_asleep` (n, ntree).
 pub(crate) struct Recorder(Record);
 
 impl Recorder {
-    /// An empty record.
+    /// Creates an empty record.
     pub(crate) fn create(options: &RecordOptions, model: &Model) -> Result<Self> {
         let mut columns = vec![
             Column::number("time"),
@@ -212,7 +213,7 @@ impl Recorder {
         options.begin(1, false, columns).map(Recorder)
     }
 
-    /// Appends the state that `steps` steps led to, if it is wanted, and the statistics of the last one's solve.
+    /// Appends the state after `steps` steps, if it is due, and the statistics of the last solve.
     pub(crate) fn after_steps<T: Precision>(&mut self, steps: usize, sim: &Sim<T>) {
         if !self.0.wants(steps) {
             return;
@@ -235,26 +236,26 @@ impl Recorder {
         self.0.push(&[state.time], row.iter().map(Vec::as_slice));
     }
 
-    /// Writes the record; how many rows it has.
+    /// Writes the record and returns the number of rows.
     pub(crate) fn write(self) -> Result<usize> {
         self.0.write()
     }
 }
 
-/// The record of a batch. Numbers come step by step and are written environment by environment.
+/// The record of a batch. Values are collected step by step and written environment by environment.
 ///
 /// Arrays: `time` (envs, n), `qpos` (envs, n, nq), `qvel` (envs, n, nv), `ctrl` (envs, n, nu), `contacts`, `iterations`
 /// (envs, n), and where the model may sleep `tree_asleep` (envs, n, ntree).
 pub(crate) struct BatchRecorder(Record);
 
 impl BatchRecorder {
-    /// An empty record.
+    /// Creates an empty record.
     pub(crate) fn create(options: &RecordOptions, model: &Model, envs: usize) -> Result<Self> {
         let mut columns = vec![
             Column::number("time").of_each(envs),
             Column::of_row("qpos", model.nq).of_each(envs),
             Column::of_row("qvel", model.nv).of_each(envs),
-            // The same in all environments.
+            // Equal in all environments.
             Column::of_row("ctrl", model.nu()),
             Column::count("contacts").of_each(envs),
             Column::count("iterations").of_each(envs),
@@ -263,7 +264,7 @@ impl BatchRecorder {
         options.begin(envs, true, columns).map(BatchRecorder)
     }
 
-    /// Appends the states that `steps` steps led to, if they are wanted, and what the last step gave out; `ctrl` are its
+    /// Appends the states after `steps` steps, if they are due, and the outputs of the last step; `ctrl` are its
     /// controls.
     pub(crate) fn after_steps<S: Precision>(&mut self, steps: usize, batch: &Batch<S>, ctrl: &[S]) {
         if !self.0.wants(steps) {
@@ -281,7 +282,7 @@ impl BatchRecorder {
         self.0.push(state.time.as_slice(), others);
     }
 
-    /// Writes the record; how many rows it has.
+    /// Writes the record and returns the number of rows.
     pub(crate) fn write(self) -> Result<usize> {
         self.0.write()
     }

@@ -1,34 +1,34 @@
-//! The figures of a run, as text and as JSON.
+//! The report of a run, as text and as JSON.
 
 use clench::collide::ShapeKind;
 use clench::rigid::profile::{PairProfile, Profile};
 use serde::Serialize;
 use std::time::Duration;
 
-/// The figures of a finished run. Means and counts are over steps of environments.
+/// The report of a finished run. Means and counts are over steps of environments.
 #[derive(Serialize)]
 pub(crate) struct Report {
-    /// `ok`, `iteration_limit` (some solve stopped at its limit), `contact_overflow` (some step left contacts out), `reset`
-    /// (some step diverged and started over), `interrupted`, `failed`, or `record_failed` (all went well but the record).
+    /// `ok`, `iteration_limit` (a solve stopped at its limit), `contact_overflow` (a step omitted contacts), `reset` (a
+    /// step diverged and restarted), `interrupted`, `failed`, or `record_failed` (only writing the record failed).
     pub status: &'static str,
-    /// What the run is worth in a word, see [`verdict`](super::quality::verdict).
+    /// The quality as one word, see [`verdict`](super::quality::verdict).
     pub quality: &'static str,
-    /// What can be said against it.
+    /// The detected defects.
     pub warnings: Vec<String>,
-    /// Wall time of stepping alone, s.
+    /// The wall time of stepping, s.
     pub seconds: f64,
-    /// Steps that every environment that did not fail has done; if all failed, those of the one that came furthest.
+    /// The number of steps of every environment that did not fail; if all failed, of the one that advanced furthest.
     pub steps: usize,
     pub envs: usize,
     pub threads: usize,
-    /// Bits of a number.
+    /// The number of bits of a floating-point number.
     pub precision: usize,
-    /// How environments lie side by side.
+    /// The instruction set.
     pub instructions: &'static str,
     pub nv: usize,
-    /// Seconds that these environments went through.
+    /// The simulated time of these environments, s.
     pub simulated_time: f64,
-    /// Steps of environments in a second of wall time.
+    /// The number of environment steps per second of wall time.
     pub steps_per_second: f64,
     pub real_time_factor: f64,
     pub iterations_mean: f64,
@@ -36,33 +36,34 @@ pub(crate) struct Report {
     pub contacts_max: u64,
     pub gap_max: f64,
     pub penetration_max: f64,
-    /// Steps whose solve stopped at the iteration limit.
+    /// The number of steps whose solve stopped at the iteration limit.
     pub unconverged_steps: u64,
-    /// Steps that found more contacts than the options allow, and went on. An environment of a batch fails instead.
+    /// The number of steps that found more contacts than the options allow, and continued. An environment of a batch
+    /// fails instead.
     pub overflow_steps: u64,
-    /// Steps that started over from the initial state because the simulation diverged, with `--autoreset`.
+    /// The number of steps that diverged and restarted from the initial state, with `--autoreset`.
     pub resets: u64,
-    /// Change of the mechanical energy over the run, J, the largest of all environments; only where nothing adds or removes
-    /// energy.
+    /// The change of the mechanical energy over the run, J, the largest of all environments; `None` unless the model
+    /// conserves energy.
     pub energy_drift: Option<f64>,
     #[serde(flatten)]
     pub batch: Option<BatchReport>,
-    /// Where the time went, if that was asked for.
+    /// The time of the stages, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<StageReport>>,
-    /// Where the narrow phase spends its time, with the profile.
+    /// The time of the narrow phase by pairs of kinds, with the profile.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pairs: Option<Vec<PairReport>>,
-    /// Rows of the record, if there is one.
+    /// The number of rows of the record, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded_rows: Option<usize>,
-    /// What went wrong, if something did.
+    /// The reason of a failure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
 impl Report {
-    /// Takes over how many rows a record has, if there is one and it could be written; that it could not is the least of failures.
+    /// Sets the number of rows of the record, or the error of writing it, which has the lowest priority among failures.
     pub(crate) fn take_record(&mut self, recorded: anyhow::Result<Option<usize>>) {
         match recorded {
             Ok(rows) => self.recorded_rows = rows,
@@ -75,32 +76,32 @@ impl Report {
     }
 }
 
-/// What only a batch has.
+/// The statistics of a batch.
 #[derive(Serialize)]
 pub(crate) struct BatchReport {
-    /// Environments that a thread steps side by side.
+    /// The number of environments that a thread steps side by side.
     pub lanes: usize,
     pub bytes_per_env: usize,
-    /// What a thread needs beside, whatever the number of environments.
+    /// The additional memory of a thread, independent of the number of environments.
     pub scratch_bytes_per_thread: usize,
-    /// How many environments failed.
+    /// The number of failed environments.
     pub failed_envs: usize,
-    /// The first of them.
+    /// The first failed environments.
     pub failures: Vec<Failure>,
     pub divergence: DivergenceReport,
 }
 
-/// An environment that could not go on.
+/// A failed environment.
 #[derive(Serialize)]
 pub(crate) struct Failure {
     pub env: usize,
     pub reason: String,
 }
 
-/// How unlike environments side by side were.
+/// The divergence among environments side by side.
 #[derive(Serialize)]
 pub(crate) struct DivergenceReport {
-    /// The share of lanes at work in an iteration of the solver.
+    /// The share of active lanes in an iteration of the solver.
     pub live_share: f64,
     pub iterations_per_group: f64,
     pub slots_per_group: f64,
@@ -110,24 +111,24 @@ pub(crate) struct DivergenceReport {
 #[derive(Serialize)]
 pub(crate) struct StageReport {
     pub stage: &'static str,
-    /// Processor time a step and environment.
+    /// The processor time per step and environment.
     pub microseconds: f64,
-    /// Of the time of all stages.
+    /// The share of the time of all stages.
     pub percent: f64,
 }
 
-/// Pairs of geoms of two kinds; numbers are means over steps of environments.
+/// The pairs of geoms of two kinds; numbers are means over steps of environments.
 #[derive(Serialize)]
 pub(crate) struct PairReport {
     pub kinds: [String; 2],
-    /// Pairs that were near enough to be looked at: of environments side by side, in any of them.
+    /// The number of pairs that the narrow phase tested: of environments side by side, in any of them.
     pub near: f64,
-    /// Pairs with contacts.
+    /// The number of pairs with contacts.
     pub touching: f64,
     pub microseconds: f64,
 }
 
-/// The pairs of a profile of so many steps of environments, the most expensive first.
+/// Returns the pairs of a profile of `env_steps` environment steps, the most expensive first.
 pub(crate) fn pairs(profile: &Profile, env_steps: u64) -> Vec<PairReport> {
     let steps = env_steps.max(1) as f64;
     let kind = |kind: ShapeKind| format!("{kind:?}").to_lowercase();
@@ -142,8 +143,8 @@ pub(crate) fn pairs(profile: &Profile, env_steps: u64) -> Vec<PairReport> {
     reports
 }
 
-/// The stages of a profile of so many steps of environments. The rest of what threads spent, `total`, comes last:
-/// between steps, or idle.
+/// Returns the stages of a profile of `env_steps` environment steps. The remainder of the threads' `total` time,
+/// between steps or idle, comes last.
 pub(crate) fn stages(profile: &Profile, total: Duration, env_steps: u64) -> Vec<StageReport> {
     let elsewhere = total.saturating_sub(profile.total());
     let whole = (profile.total() + elsewhere).as_secs_f64();

@@ -1,4 +1,4 @@
-//! The loop that takes a batch through a run, wherever it is stepped.
+//! The loop of a batch run, independent of the device that steps it.
 
 use super::energy::next_steps;
 use super::progress::Progress;
@@ -11,22 +11,22 @@ use clench::rigid::Precision;
 use clench::rigid::batch::Controls;
 use std::ops::Range;
 
-/// A run of a batch: how many steps it takes at a call, the controls that it is given and the record that it leaves.
+/// A batch run: the number of steps per call, the controls and the record.
 pub(super) struct Rollout<'a, S> {
     run: &'a Run<'a>,
-    /// The most steps of a call.
+    /// The maximum number of steps of a call.
     most: usize,
-    /// Steps between two rows of the record, if there is one.
+    /// The number of steps between rows of the record, if there is one.
     every: Option<usize>,
     recorder: Option<BatchRecorder>,
     controls: Option<Vec<S>>,
 }
 
 impl<'a, S: Precision> Rollout<'a, S> {
-    /// A run that takes at most `most` steps at a call.
+    /// Prepares a run that takes at most `most` steps per call.
     ///
     /// # Errors
-    /// A record that cannot be made.
+    /// Returns an error if the record cannot be created.
     pub(super) fn new(run: &'a Run<'a>, envs: usize, most: usize) -> Result<Self> {
         let recorder = (run.record.as_ref())
             .map(|options| BatchRecorder::create(options, &run.model, envs))
@@ -40,16 +40,16 @@ impl<'a, S: Precision> Rollout<'a, S> {
         })
     }
 
-    /// Whether there is a record.
+    /// Returns true if there is a record.
     pub(super) fn records(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Steps a batch until the run is over, no environment runs any more or a signal comes, and writes the record. `call` takes the
-    /// steps of a range under controls and returns how many environments still run.
+    /// Steps a batch until the run is complete, no environment is running or a signal arrives, and writes the record.
+    /// `call` takes the steps of a range with the controls and returns the number of running environments.
     ///
     /// # Errors
-    /// That of `call`, with how many rows were recorded before: they are kept.
+    /// Returns the error of `call` with the number of rows recorded before, which are written.
     pub(super) fn take(
         mut self,
         batch: &mut Batch<S>,
@@ -82,7 +82,7 @@ impl<'a, S: Precision> Rollout<'a, S> {
         })
     }
 
-    /// Writes what was recorded before an error, and says so with it.
+    /// Writes the rows recorded before an error, and adds their number to the error.
     fn keep(self, error: Error) -> Error {
         match self.write() {
             Ok(Some(rows)) => error.context(format!("{rows} rows were recorded before the end")),
@@ -96,9 +96,9 @@ impl<'a, S: Precision> Rollout<'a, S> {
     }
 }
 
-/// What a run did.
+/// The result of a run.
 pub(super) struct Taken {
     pub(super) steps: usize,
-    /// Rows of the record, if there is one, or why it could not be written.
+    /// The number of rows of the record, if there is one, or the error of writing it.
     pub(super) recorded_rows: Result<Option<usize>>,
 }

@@ -1,4 +1,4 @@
-//! What a run is told, read and checked.
+//! The validated input of a run.
 
 use super::record::RecordOptions;
 use super::start::Starts;
@@ -7,7 +7,7 @@ use crate::npy::Rows;
 use clench::Model;
 use std::sync::Arc;
 
-/// What a run is told, read and checked.
+/// The validated input of a run.
 pub(super) struct Run<'a> {
     pub(super) model: Arc<Model>,
     pub(super) starts: Starts<'a>,

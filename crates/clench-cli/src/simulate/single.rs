@@ -1,4 +1,4 @@
-//! A run of one environment.
+//! A run of a single environment.
 
 use super::arguments::Arguments;
 use super::energy::{EnergyAccount, STEPS_BETWEEN_CHECKS};
@@ -14,7 +14,7 @@ use clench::{RigidOptions, Sim};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Steps one environment alone.
+/// Steps a single environment.
 pub(crate) fn run<T: Precision>(
     arguments: &Arguments,
     run: &Run,
@@ -38,7 +38,7 @@ pub(crate) fn run<T: Precision>(
             let ctrl = sim.state.ctrl.iter_mut().zip(rows.row(step));
             ctrl.for_each(|(to, &from)| *to = T::new(from));
         }
-        // What is asked between steps is no part of them.
+        // Queries between steps are not counted.
         sim.run_clocks(arguments.profile);
         let start = Instant::now();
         let result = sim.step();
@@ -74,7 +74,7 @@ pub(crate) fn run<T: Precision>(
     Ok(report)
 }
 
-/// Takes a step into the account of energy.
+/// Adds a step to the energy account.
 fn watch<T: Precision>(account: &mut EnergyAccount, step: usize, sim: &mut Sim<T>) -> Result<()> {
     if sim.model().nu() > 0 {
         let power = sim.output("actuator_power")?;

@@ -1,4 +1,4 @@
-//! The states that a run starts from: the model's or a keyframe, then given positions and velocities, then noise.
+//! The initial states of a run: the model's or a keyframe, then given positions and velocities, then noise.
 
 use crate::limits::MemoryLimit;
 use crate::npy::{Rows, read_rows};
@@ -12,7 +12,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::path::{Path, PathBuf};
 
-/// Where a run starts.
+/// The initial state of a run.
 #[derive(Args)]
 #[command(next_help_heading = "Initial states")]
 pub(crate) struct StartArguments {
@@ -30,7 +30,7 @@ pub(crate) struct StartArguments {
     seed: u64,
 }
 
-/// The states that the environments of a run start from.
+/// The initial states of the environments of a run.
 pub(crate) struct Starts<'a> {
     model: &'a Model,
     keyframe: Option<usize>,
@@ -40,12 +40,12 @@ pub(crate) struct Starts<'a> {
 }
 
 impl StartArguments {
-    /// The file of initial states, if there is one.
+    /// Returns the file of initial states, if there is one.
     pub(crate) fn states(&self) -> Option<&Path> {
         self.states.as_deref()
     }
 
-    /// Looks everything up for a run of so many environments.
+    /// Reads and validates the initial states for `envs` environments.
     pub(crate) fn starts<'a>(
         &self,
         model: &'a Model,
@@ -80,7 +80,7 @@ impl StartArguments {
 }
 
 impl Starts<'_> {
-    /// Brings a simulation to where environment 0 starts.
+    /// Sets a simulation to the initial state of environment 0.
     pub(crate) fn start<T: Precision>(&self, sim: &mut Sim<T>) -> Result<()> {
         if let Some(key) = self.keyframe {
             sim.reset_to_keyframe(key)?;
@@ -91,7 +91,7 @@ impl Starts<'_> {
         Ok(())
     }
 
-    /// Brings all environments of a batch to where they start.
+    /// Sets all environments of a batch to their initial states.
     pub(crate) fn start_all<S: Precision>(&self, batch: &mut Batch<S>) -> Result<()> {
         for env in 0..batch.count() {
             if let Some(key) = self.keyframe {
@@ -109,7 +109,8 @@ impl Starts<'_> {
         Ok(())
     }
 
-    /// Positions and velocities of environment `env`, whose state is that of the model or the keyframe.
+    /// Applies the given state and the noise of environment `env` to the positions and velocities of the model or
+    /// keyframe.
     fn place(&self, env: usize, qpos: &mut [f64], qvel: &mut [f64]) {
         if let Some(rows) = &self.states {
             let (positions, velocities) = rows.row(env).split_at(self.model.nq);
@@ -127,21 +128,21 @@ impl Starts<'_> {
     }
 }
 
-/// The same numbers in the precision of a simulation.
+/// Converts numbers to the precision of a simulation.
 pub(super) fn narrow<S: Scalar>(values: &[f64]) -> Vec<S> {
     values.iter().map(|&x| S::new(x)).collect()
 }
 
-/// The same numbers in double precision.
+/// Converts numbers to double precision.
 pub(super) fn widen<S: Scalar>(values: &[S]) -> Vec<f64> {
     values.iter().map(|x| x.to_f64()).collect()
 }
 
-/// Numbers drawn uniformly from -1 to 1, by PCG-XSL-RR 128/64.
+/// A generator of numbers uniform in -1 to 1, by PCG-XSL-RR 128/64.
 struct Noise(Pcg64);
 
 impl Noise {
-    /// The stream of a seed, from its number `start` on.
+    /// Creates the stream of a seed, advanced by `start` numbers.
     fn new(seed: u64, start: usize) -> Self {
         let mut generator = Pcg64::seed_from_u64(seed);
         generator.advance(start as u128);
@@ -154,10 +155,10 @@ impl Noise {
     }
 }
 
-/// The keyframe of a name or an index.
+/// Finds a keyframe by name or index.
 ///
 /// # Errors
-/// That the model has none such, and which it has.
+/// Returns an error that lists the keyframes if there is none such.
 fn find_keyframe(model: &Model, key: &str) -> Result<usize> {
     let keyframes = &model.keyframes;
     if let Some(k) = keyframes.iter().position(|k| k.name == key) {

@@ -1,4 +1,4 @@
-//! What is noted of the steps of one environment.
+//! The statistics of the steps of one environment.
 
 use super::quality::Verdict;
 use super::report::Report;
@@ -7,7 +7,7 @@ use clench::rigid::batch::Quality;
 use clench::rigid::{Precision, SimError};
 use clench::{Model, Sim};
 
-/// Accumulates over the steps of a run.
+/// The statistics accumulated over a run.
 pub(crate) struct Summary {
     iterations: usize,
     contacts: usize,
@@ -18,7 +18,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// Starts at the simulation's present state.
+    /// Starts with the simulation's present state.
     pub(crate) fn new<T: Precision>(sim: &mut Sim<T>) -> Result<Self, SimError> {
         let start_energy = energy(sim)?.iter().sum();
         Ok(Summary {
@@ -31,7 +31,7 @@ impl Summary {
         })
     }
 
-    /// Takes note of a step.
+    /// Records a step.
     pub(crate) fn after_step<T: Precision>(&mut self, sim: &Sim<T>) {
         self.quality.note(sim);
         self.iterations += sim.stats().iterations;
@@ -39,17 +39,17 @@ impl Summary {
         self.overflows += u64::from(sim.contact_overflow());
     }
 
-    /// Takes note of the error that ended the run in step `step`.
+    /// Records the error that ended the run in step `step`.
     pub(crate) fn failed(&mut self, step: usize, error: &SimError) {
         self.failure = Some(format!("step {step}: {error}"));
     }
 
-    /// How well the steps went.
+    /// Returns the quality statistics of the steps.
     pub(crate) fn quality(&self) -> &Quality {
         &self.quality
     }
 
-    /// The figures of the run, which took `seconds` of stepping.
+    /// Builds the report of a run with `seconds` of stepping.
     pub(crate) fn finish<T: Precision>(
         self,
         sim: &mut Sim<T>,
@@ -57,7 +57,7 @@ impl Summary {
         verdict: Verdict,
     ) -> Report {
         let steps = self.quality.steps;
-        // Not by the clock, which resets turn back.
+        // Not by `time`, which is reset when the simulation restarts.
         let simulated_time = steps as f64 * sim.params().timestep.lane(0).to_f64();
         let per_step = |total: usize| total as f64 / steps.max(1) as f64;
         let energy_drift = self.energy_drift(sim);
@@ -107,7 +107,7 @@ impl Summary {
     }
 }
 
-/// A run's status in a word.
+/// Returns the status of a run as one word.
 pub(crate) fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64) -> &'static str {
     match (failed, resets, overflows, unconverged) {
         (true, ..) => "failed",
@@ -118,12 +118,12 @@ pub(crate) fn status(failed: bool, resets: u64, overflows: u64, unconverged: u64
     }
 }
 
-/// The deepest penetration among the contacts, m; zero where nothing penetrates.
+/// Returns the maximum penetration among the contacts, m; zero if there is none.
 pub(crate) fn worst_penetration<T: Precision>(sim: &Sim<T>) -> f64 {
     (sim.contacts().iter()).fold(0.0, |worst, c| f64::max(worst, -c.dist.lane(0).to_f64()))
 }
 
-/// Nothing in the model adds or removes energy while no constraint acts and nobody applies forces.
+/// Returns true if the model conserves energy while no constraint acts and no forces are applied.
 pub(crate) fn is_conservative(model: &Model) -> bool {
     let p = &model.params;
     let none = |values: &[f64]| values.iter().all(|&v| v == 0.0);
@@ -137,7 +137,7 @@ pub(crate) fn is_conservative(model: &Model) -> bool {
         && p.viscosity == 0.0
 }
 
-/// The potential and the kinetic energy of a simulation, J.
+/// Returns the potential and kinetic energy of a simulation, J.
 pub(crate) fn energy<T: Precision>(sim: &mut Sim<T>) -> Result<[f64; 2], SimError> {
     let energy = sim.energy()?;
     Ok([energy.potential, energy.kinetic].map(|x| x.to_f64()))

@@ -1,9 +1,9 @@
-//! A box along the coordinate axes.
+//! Axis-aligned bounding boxes.
 
 use super::{Bound, allowance};
 use clench_math::{Real, Scalar, kernel};
 
-/// What a shape covers in any environment, with its margin.
+/// A shape's box over all environments, with its margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aabb {
     pub low: [f64; 3],
@@ -11,13 +11,13 @@ pub(super) struct Aabb {
 }
 
 impl Aabb {
-    /// Holds nothing.
+    /// The empty box.
     pub(super) const EMPTY: Aabb = Aabb {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
     };
 
-    /// What a bound covers in any environment.
+    /// Computes a bound's box over all environments.
     #[kernel]
     pub(super) fn new<T: Real>(bound: &Bound<T>, margin: T) -> Self {
         let Aabb { mut low, mut high } = Aabb::EMPTY;
@@ -33,7 +33,7 @@ impl Aabb {
         Aabb { low, high }
     }
 
-    /// The longest side.
+    /// Returns the longest side.
     pub(super) fn side(&self) -> f64 {
         let side = |axis: usize| self.high[axis] - self.low[axis];
         side(0).max(side(1)).max(side(2))
@@ -43,7 +43,7 @@ impl Aabb {
         (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
     }
 
-    /// The smallest box that holds both.
+    /// Returns the smallest box that encloses both.
     pub(super) fn union(&self, other: &Aabb) -> Aabb {
         Aabb {
             low: [0, 1, 2].map(|axis| self.low[axis].min(other.low[axis])),
@@ -51,7 +51,7 @@ impl Aabb {
         }
     }
 
-    /// Whether all of its corners are finite.
+    /// Returns true if all corners are finite.
     pub(super) fn is_finite(&self) -> bool {
         self.low.iter().chain(&self.high).all(|x| x.is_finite())
     }

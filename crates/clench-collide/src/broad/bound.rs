@@ -1,31 +1,31 @@
-//! A ball and a box about a shape.
+//! Bounding sphere and bounding box of a shape.
 
 use crate::shape::Solid;
 use crate::{Pose, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
-/// By how much bounding radii and margins are enlarged, a hair more than 1, so that rounding never rejects a pair in which the
-/// narrow phase would find a point: what an environment gets must not depend on its neighbours in the lanes.
+/// Returns the factor, slightly more than 1, that enlarges bounding radii and margins. It keeps rounding from rejecting
+/// a pair with contacts: the result of an environment must not depend on the other lanes.
 #[inline(always)]
 pub fn allowance<T: Real>() -> T {
     T::ONE + T::new(1e-6).max(T::splat(T::Scalar::EPSILON) * T::new(64.0))
 }
 
-/// A ball and a box that hold a shape.
+/// A bounding sphere and box of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound<T> {
     /// The shape's origin in the world, m.
     pub center: Vec3<T>,
-    /// Radius of a ball about the centre that holds the shape, m; infinite for a plane.
+    /// The radius of a sphere about the centre that encloses the shape, m; infinite for a plane.
     pub radius: T,
-    /// Half lengths of a box about the centre, along the coordinate axes, that holds the shape, m; infinite for a plane.
+    /// The half lengths of an axis-aligned box about the centre that encloses the shape, m; infinite for a plane.
     pub half: Vec3<T>,
-    /// The normal of a plane.
+    /// The normal, if the shape is a plane.
     pub plane: Option<Vec3<T>>,
 }
 
 impl<T: Real> Bound<T> {
-    /// The bound of a shape, larger by the [`allowance`].
+    /// Computes the bound of a shape, enlarged by the [`allowance`].
     #[inline(always)]
     pub fn new(shape: &Shape<T>, pose: &Pose<T>) -> Self {
         Bound {
@@ -37,15 +37,14 @@ impl<T: Real> Bound<T> {
     }
 }
 
-/// How far a shape reaches from its origin along the coordinate axes.
+/// Returns the extent of a shape from its origin along each coordinate axis.
 #[inline(always)]
 fn half_lengths<T: Real>(shape: &Shape<T>, pose: &Pose<T>) -> Vec3<T> {
     let [x, y, z] = pose.rotation.rows.map(|axis| shape.reach_along(axis));
     Vec3::new(x, y, z)
 }
 
-/// In which environments two shapes are near enough that they may be within `margin` metres of each other. Two planes
-/// never are.
+/// Returns the environments in which two shapes may be within `margin` metres of each other. Two planes never are.
 #[inline(always)]
 pub fn near<T: Real>(a: &Bound<T>, b: &Bound<T>, margin: T) -> T::Mask {
     let offset = b.center - a.center;

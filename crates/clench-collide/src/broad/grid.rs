@@ -1,37 +1,38 @@
-//! Which of many boxes overlap.
+//! Pairs of overlapping boxes among many.
 //!
-//! Space is cut into cubes about as large as the larger of the boxes. Each box is listed in every cube that it reaches into, in a hash
-//! table (Teschner et al. 2003), so that empty space costs nothing and a box far away does no harm. Boxes in one cube are compared; two that
-//! share several cubes are a pair in the one that holds the lower corner of what they have in common. The few that are much larger than the
-//! rest would be in too many cubes and are compared with all. So the work grows with the number of boxes and of pairs, not with the square.
+//! Space is divided into cubes about as large as the larger boxes. Each box is listed in every cube that it overlaps,
+//! in a hash table (Teschner et al. 2003), so empty space and distant boxes cost nothing. Boxes in the same cube are
+//! compared. Two that share several cubes are reported in the one with the lower corner of their intersection. The few
+//! much larger boxes would be in too many cubes; they are compared with all. So the work grows with the number of boxes
+//! and pairs, not with the square.
 
 use super::aabb::Aabb;
 
-/// This part of the shapes is not larger than a cube.
+/// The fraction of the shapes that are not larger than a cube.
 const SMALL_SHARE: f64 = 0.9;
-/// A shape of more cubes than this along an axis is compared with all others.
+/// The maximum size of a shape, in cubes; larger ones are compared with all others.
 const MAX_CELLS: f64 = 4.0;
-/// Cubes are numbered up to this along an axis; shapes beyond are compared with all others.
+/// The maximum cube coordinate along an axis; shapes beyond are compared with all others.
 const MAX_CELL: f64 = 1e9;
-/// Buckets of the hash table, for each shape.
+/// The number of hash table buckets per shape.
 const BUCKETS_PER_SHAPE: usize = 4;
 
-/// Finds pairs of boxes that overlap. Its buffers grow to the largest scene seen.
+/// Finds pairs of overlapping boxes. Its buffers grow to the largest scene seen.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grid {
     sides: Vec<f64>,
-    /// Boxes that are compared with all others, ascending.
+    /// The boxes compared with all others, ascending.
     wide: Vec<u32>,
-    /// Whether a box is one of them.
+    /// True for these boxes.
     is_wide: Vec<bool>,
-    /// The cubes that hold the corners of each other box, those of fixed ones first.
+    /// The cube ranges of the other boxes, fixed ones first.
     ranges: Vec<CubeRange>,
-    /// Where the entries of a bucket begin, and those of the next.
+    /// The start of each bucket's entries, then the end of the last.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
 
-/// Boxes in a scene, of which those that are `fixed` make no pairs with each other, however many may be in one place.
+/// The boxes of a scene. Those that are `fixed` make no pairs with each other, even if many overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes<'a> {
     pub all: &'a [Aabb],
@@ -47,7 +48,7 @@ struct Entry {
     shape: u32,
 }
 
-/// The cubes that a shape reaches into.
+/// The range of cubes that a shape overlaps.
 #[derive(Clone, Copy, Debug)]
 struct CubeRange {
     low: Cube,
@@ -74,19 +75,19 @@ impl CubeRange {
     }
 }
 
-/// The cube that a point is in.
+/// Returns the cube that contains a point.
 fn cube(point: [f64; 3], per_metre: f64) -> Cube {
     point.map(|x| floor(x * per_metre))
 }
 
-/// The largest whole number up to x, which is within [`MAX_CELL`].
+/// Returns the largest integer not above x, which is within [`MAX_CELL`].
 fn floor(x: f64) -> i32 {
     let whole = x as i32;
     whole - i32::from(f64::from(whole) > x)
 }
 
 impl Grid {
-    /// Hands every pair of boxes that overlap to `check`, once.
+    /// Calls `check` once for every pair of overlapping boxes.
     pub(super) fn pairs(&mut self, boxes: Boxes, check: &mut impl FnMut(u32, u32)) {
         let per_metre = self.part_by_size(boxes.all);
         self.list(boxes, per_metre);
@@ -94,7 +95,7 @@ impl Grid {
         self.with_wide(boxes, check);
     }
 
-    /// Decides the size of the cubes and which shapes are compared with all others. Gives the cubes per metre.
+    /// Chooses the cube size and the shapes compared with all others. Returns the cubes per metre.
     fn part_by_size(&mut self, boxes: &[Aabb]) -> f64 {
         self.sides.clear();
         let sides = boxes.iter().map(Aabb::side);
@@ -125,7 +126,7 @@ impl Grid {
         per_metre
     }
 
-    /// Lists the other shapes in their cubes, bucket after bucket, in each the fixed ones last.
+    /// Lists the other shapes in their cubes, bucket by bucket, with fixed ones last in each.
     fn list(&mut self, Boxes { all, fixed }: Boxes, per_metre: f64) {
         let Grid {
             is_wide,
@@ -154,7 +155,7 @@ impl Grid {
         }
         entries.clear();
         entries.resize(end as usize, Entry::default());
-        // From the end of each bucket to its beginning, which is where `starts` then points.
+        // Fill each bucket from its end to its start, which `starts` then holds.
         for range in ranges.iter() {
             for cube in range.cubes() {
                 let (shape, start) = (range.shape, &mut starts[bucket(cube, buckets)]);
@@ -164,7 +165,7 @@ impl Grid {
         }
     }
 
-    /// Pairs that share a cube.
+    /// Finds the pairs that share a cube.
     fn in_cubes(
         &self,
         Boxes { all, fixed }: Boxes,
@@ -192,12 +193,12 @@ impl Grid {
         }
     }
 
-    /// Pairs with a box that is compared with all others.
+    /// Finds the pairs with a box that is compared with all others.
     fn with_wide(&self, Boxes { all, fixed }: Boxes, check: &mut impl FnMut(u32, u32)) {
         for &one in &self.wide {
             let is_fixed = |index: u32| fixed[index as usize];
             for other in 0..all.len() as u32 {
-                // Of two wide boxes the second meets the first, but for a fixed one, which meets those that are not.
+                // The second of two wide boxes checks the pair, but a fixed one checks those that are not fixed.
                 let twice = self.is_wide[other as usize]
                     && (other <= one || is_fixed(one))
                     && !is_fixed(other);
@@ -210,12 +211,12 @@ impl Grid {
     }
 }
 
-/// The bucket of a cube, of a power of two of them.
+/// Returns the bucket of a cube; `buckets` is a power of two.
 fn bucket([x, y, z]: Cube, buckets: usize) -> usize {
     let mixed = (x as u32).wrapping_mul(73_856_093)
         ^ (y as u32).wrapping_mul(19_349_663)
         ^ (z as u32).wrapping_mul(83_492_791);
-    // The upper bits depend on all of each number's.
+    // The upper bits depend on all bits of each number.
     let spread = mixed.wrapping_mul(0x9E37_79B9);
     (spread as usize ^ (spread >> 16) as usize) & (buckets - 1)
 }

@@ -1,7 +1,7 @@
-//! Broad phase: which pairs of shapes are near enough to be worth asking about.
+//! Broad phase: finds the pairs of shapes that may touch.
 //!
-//! [`Bound`] holds a shape in a ball and in a box along the coordinate axes, [`near`] compares two of them, and [`BroadPhase`] finds the
-//! near pairs of a scene of many shapes.
+//! [`Bound`] encloses a shape in a sphere and an axis-aligned box, [`near`] compares two of them, and [`BroadPhase`]
+//! finds the near pairs of a scene of many shapes.
 
 mod aabb;
 mod bound;

@@ -1,4 +1,4 @@
-//! The near pairs of a scene: a [`StaticTree`] of what stands still, a [`Grid`] of clusters of the rest.
+//! The near pairs of a scene: a [`StaticTree`] of the static shapes, a [`Grid`] of clusters of the others.
 
 use super::aabb::Aabb;
 use super::grid::{Boxes, Grid};
@@ -7,27 +7,28 @@ use super::{Bound, near};
 use clench_math::{Mask, Real, kernel};
 use std::ops::Range;
 
-/// What a shape does in a scene.
+/// The mobility of a shape in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mobility {
-    /// It makes no pair with anything, as a shape that is only drawn.
+    /// The shape makes no pairs, for example because it is only drawn.
     Excluded,
-    /// It never moves, so the tree over such shapes is built once. It makes no pair with another static shape, nor with a placed one.
+    /// The shape never moves, so the tree over such shapes is built once. It makes no pairs with static or placed
+    /// shapes.
     Static,
-    /// It moves only when its pose is set from outside. It makes no pair with another placed shape, nor with a static one.
+    /// The shape moves only when its pose is set from outside. It makes no pairs with static or placed shapes.
     Placed,
-    /// It moves, and may make a pair with any other that is not excluded.
+    /// The shape moves, and may make a pair with any other that is not excluded.
     Moving,
 }
 
-/// Finds the near pairs of a scene. Its buffers grow to what the largest step needed.
+/// Finds the near pairs of a scene. Its buffers grow to the requirements of the largest step.
 #[derive(Clone, Debug, Default)]
 pub struct BroadPhase {
     statics: Vec<u32>,
     tree: StaticTree,
-    /// Whether the tree is built over the static shapes where they are.
+    /// True if the tree is valid for the current static shapes.
     built: bool,
-    /// The shapes that are placed or move, ascending, with their boxes, and whether they are placed.
+    /// The placed and moving shapes, ascending, their boxes, and true for placed ones.
     mobile: Vec<u32>,
     boxes: Vec<Aabb>,
     placed: Vec<bool>,
@@ -35,8 +36,8 @@ pub struct BroadPhase {
     grid: Grid,
 }
 
-/// Mobile shapes that are near each other whatever moves, as those of a robot: the grid holds a box about all of them. Each is a range of
-/// their places among the mobile ones.
+/// Groups of mobile shapes that stay near each other, such as those of a robot, with a common box in the grid. Each is
+/// a range of indices of mobile shapes.
 #[derive(Clone, Debug, Default)]
 struct Clusters {
     members: Vec<Range<usize>>,
@@ -44,11 +45,12 @@ struct Clusters {
     placed: Vec<bool>,
 }
 
-/// Larger clusters are parted: what is in the same or in neighbouring ones is compared each with each.
+/// The maximum size of a cluster; larger ones are split. Shapes in the same or neighbouring clusters are compared
+/// pairwise.
 const MAX_CLUSTER: usize = 32;
 
 impl Clusters {
-    /// Mobile shapes that follow each other, of one cluster and all placed or all moving.
+    /// Groups consecutive mobile shapes of the same cluster that are either all placed or all moving.
     fn new(mobile: &[u32], placed: &[bool], cluster: impl Fn(usize) -> usize) -> Self {
         let mut clusters = Clusters::default();
         for index in 0..mobile.len() {
@@ -66,7 +68,7 @@ impl Clusters {
         clusters
     }
 
-    /// Takes over where the shapes are.
+    /// Updates the boxes of the clusters.
     fn update(&mut self, boxes: &[Aabb]) {
         let around = |members: &Range<usize>| {
             let members = boxes[members.clone()].iter();
@@ -76,7 +78,7 @@ impl Clusters {
         self.boxes.extend(self.members.iter().map(around));
     }
 
-    /// Hands every pair of mobile shapes whose boxes overlap to `check`, once, but for two that are placed.
+    /// Calls `check` once for every pair of mobile shapes whose boxes overlap, except for two placed ones.
     fn pairs(&self, grid: &mut Grid, boxes: &[Aabb], check: &mut impl FnMut(usize, usize)) {
         for (members, &placed) in self.members.iter().zip(&self.placed) {
             if placed {
@@ -107,8 +109,8 @@ impl Clusters {
 }
 
 impl BroadPhase {
-    /// For scenes whose shapes have this mobility, in their order. Shapes that follow each other and are of the same `cluster`, a number
-    /// of the caller's, are supposed to stay near each other, which saves time and changes no pair.
+    /// Creates a broad phase for shapes with the given mobility. Consecutive shapes with the same `cluster`, a number
+    /// chosen by the caller, are assumed to stay near each other. This saves time and changes no pair.
     pub fn new(mobility: &[Mobility], cluster: impl Fn(usize) -> usize) -> Self {
         let of = |wanted: fn(Mobility) -> bool| {
             let shapes = mobility.iter().enumerate();
@@ -127,19 +129,20 @@ impl BroadPhase {
         }
     }
 
-    /// The shapes that are placed or move, ascending.
+    /// Returns the placed and moving shapes, ascending.
     pub fn mobile(&self) -> &[u32] {
         &self.mobile
     }
 
-    /// To be called when static shapes have moved after all, or have other margins: the next search builds their tree anew.
+    /// Invalidates the tree of static shapes, which the next search rebuilds. Call it after static shapes have moved or
+    /// changed margins.
     pub fn forget_statics(&mut self) {
         self.built = false;
     }
 
     /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
-    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `most`: of theirs some are
-    /// left out.
+    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `most`
+    /// pairs; some of their pairs are omitted.
     #[kernel]
     pub fn pairs<T: Real>(
         &mut self,
@@ -187,7 +190,7 @@ impl BroadPhase {
 struct Counter<T: Real> {
     most: T,
     count: T,
-    /// The environments that have more than the most.
+    /// The environments beyond the maximum.
     over: T::Mask,
 }
 
@@ -200,7 +203,7 @@ impl<T: Real> Counter<T> {
         }
     }
 
-    /// Whether an environment in which two shapes are near may have another pair.
+    /// Counts a near pair. Returns true if an environment still has capacity for it.
     #[inline(always)]
     fn admits(&mut self, near: T::Mask) -> bool {
         let found = near & !self.over;

@@ -1,25 +1,26 @@
-//! A bounding-volume tree over shapes that do not move.
+//! A bounding-volume tree over static shapes.
 //!
-//! Each node holds the box about its shapes; half of them, on either side of the median of their centres along the longest side, are its
-//! first child's, the rest its second's. Asking which shapes a box meets takes some steps a level where it meets few.
+//! Each node holds the bounding box of its shapes. The shapes are divided into two halves at the median of their
+//! centres along the longest side; each half belongs to one child. A query that finds few shapes visits a few nodes per
+//! level.
 
 use super::aabb::Aabb;
 
-/// A node of so few shapes is not divided.
+/// The maximum number of shapes in a leaf.
 const LEAF: usize = 4;
-/// A tree over 2³² shapes, divided by halves, is not deeper; a search holds one open node a level.
+/// The maximum depth: 2³² shapes divided by halves need less. A search holds one open node per level.
 const MAX_DEPTH: usize = 40;
 
 /// The tree. Its memory grows to the largest number of shapes seen.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StaticTree {
-    /// A node before its first child, all of the first child's before the second.
+    /// The nodes in depth-first order, first children first.
     nodes: Vec<Node>,
-    /// Shapes with their boxes, leaf after leaf.
+    /// The shapes with their boxes, leaf by leaf.
     leaves: Vec<(u32, Aabb)>,
-    /// Shapes without bounds, as planes.
+    /// The shapes without bounds, such as planes.
     unbounded: Vec<u32>,
-    /// What is still to be divided: node, begin and end of its shapes.
+    /// The pending ranges to divide: parent node, begin and end of the shapes.
     open: Vec<(usize, usize, usize)>,
 }
 
@@ -31,14 +32,14 @@ struct Node {
 
 #[derive(Clone, Copy, Debug)]
 enum NodeKind {
-    /// The shapes of a range.
+    /// A range of shapes.
     Leaf { begin: u32, end: u32 },
-    /// The first child is the next node, the second this one.
+    /// An inner node: the first child is the next node, the second this one.
     Inner { second: u32 },
 }
 
 impl StaticTree {
-    /// Builds the tree anew over these shapes.
+    /// Rebuilds the tree over the given shapes.
     pub(super) fn build(&mut self, shapes: impl Iterator<Item = (u32, Aabb)>) {
         self.nodes.clear();
         self.leaves.clear();
@@ -64,7 +65,7 @@ impl StaticTree {
         }
     }
 
-    /// Adds a node of these shapes, and all first children below it; their second children stay open.
+    /// Adds a node and all first children below it; second children stay pending.
     fn divide(&mut self, mut index: usize, begin: usize, mut end: usize) {
         loop {
             let shapes = &mut self.leaves[begin..end];
@@ -90,7 +91,7 @@ impl StaticTree {
         }
     }
 
-    /// Hands every shape to `found` whose box meets this one.
+    /// Calls `found` for every shape whose box overlaps `bounds`.
     pub(super) fn overlapping(&self, bounds: &Aabb, mut found: impl FnMut(u32)) {
         self.unbounded.iter().for_each(|&shape| found(shape));
         if self.nodes.is_empty() {

@@ -1,15 +1,15 @@
-//! Points that have no convex hull.
+//! Errors of convex hulls.
 
-/// Points that have no hull with an inside.
+/// An error in the computation of a convex hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HullError {
     /// Fewer than four points.
     #[error("a convex hull needs at least four points, not {0}")]
     TooFew(usize),
-    /// More points than can be numbered.
+    /// Too many points to index.
     #[error("{0} points are too many for a convex hull")]
     TooMany(usize),
-    /// A coordinate that is not finite or beyond 1e60 m.
+    /// A coordinate is not finite or beyond 1e60 m.
     #[error("point {0} has a coordinate that is not a number, or too large")]
     NotFinite(usize),
     /// All points coincide.
@@ -25,10 +25,10 @@ pub enum HullError {
         "all points lie in a plane: their convex hull has no volume (a plane or a thin box may serve instead)"
     )]
     Plane,
-    /// Fewer than four vertices were allowed.
+    /// The allowed number of vertices is less than four.
     #[error("a convex hull has at least four vertices, but only {0} are allowed")]
     Bound(usize),
-    /// The surface found is not closed.
+    /// The computed surface is not closed.
     #[error("the convex hull is not closed: please report the points")]
     Broken,
 }

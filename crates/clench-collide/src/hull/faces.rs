@@ -1,8 +1,8 @@
-//! Triangles in one plane merged to polygons.
+//! Merging of coplanar triangles to polygons.
 //!
-//! Files keep 24 bits of a coordinate, so what was drawn as one face arrives as triangles that differ a little. From the largest
-//! triangle on, each takes in its neighbours whose corners are all near to its plane; a face's own plane is then laid
-//! through the farthest vertex along its normal, so that no vertex is beyond it.
+//! Files store 24 bits of a coordinate, so the triangles of a flat face differ slightly. Starting from the largest,
+//! each triangle absorbs its neighbours whose corners are all near its plane. The plane of a face is then moved to the
+//! furthest vertex along its normal, so that no vertex lies beyond it.
 
 use super::lists::Lists;
 use super::sectors::Sectors;
@@ -10,16 +10,16 @@ use super::surface::{MeshEdge, edges};
 use super::{Crease, FEW_FACES, Hull, HullSurface};
 use clench_math::Vec3;
 
-/// Corners within this part of the hull's size of a plane are in it: some ulps of the 24 bits in files.
+/// The distance of a corner from its plane, relative to the hull: some ulps of 24-bit coordinates.
 const COPLANAR: f64 = 1e-6;
 const NONE: u32 = u32::MAX;
 
 impl Hull {
-    /// A surface whose points have moved by an affine map, such as a scale and a turn: `points` are those that the surface
-    /// was found from, where they are now. A map that mirrors is allowed.
+    /// Creates the hull of a surface whose points have moved by an affine map, such as scaling, rotation or mirroring.
+    /// `points` are the current positions of the points of the surface.
     ///
     /// # Panics
-    /// Where `points` are fewer than those that the surface was found from.
+    /// Panics if `points` are fewer than those of the surface.
     pub fn new(surface: &HullSurface, points: &[Vec3<f64>]) -> Self {
         assert!(points.len() >= surface.point_count());
         let (vertices, triangles) = compact(surface, points);
@@ -56,7 +56,7 @@ impl Hull {
         hull
     }
 
-    /// An edge between triangles, if it is one between faces.
+    /// Returns the crease at an edge between triangles, if any.
     fn crease(&self, edge: &MeshEdge, face_of: &[u32]) -> Option<Crease> {
         let faces = [edge.left, edge.right].map(|triangle| face_of[triangle] as usize);
         if faces[0] == faces[1] {
@@ -75,8 +75,8 @@ impl Hull {
     }
 }
 
-/// The points that are on the surface, in their order, and its triangles in their numbers. Where the points are mirrored,
-/// so are the triangles.
+/// Returns the points on the surface, in their order, and its triangles as indices of these. If the points are
+/// mirrored, it flips the triangles.
 fn compact(surface: &HullSurface, points: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, Vec<[u32; 3]>) {
     let mut number = vec![NONE; points.len()];
     for &corner in surface.triangles().as_flattened() {
@@ -102,7 +102,7 @@ fn compact(surface: &HullSurface, points: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, Vec<
     (vertices, triangles)
 }
 
-/// Twice the area of a polygon, along its normal.
+/// Returns twice the area of a polygon, along its normal.
 fn newell(vertices: &[Vec3<f64>], corners: &[u32]) -> Vec3<f64> {
     let first = vertices[corners[0] as usize];
     let arms = corners[1..].windows(2).map(|pair| {
@@ -112,7 +112,7 @@ fn newell(vertices: &[Vec3<f64>], corners: &[u32]) -> Vec3<f64> {
     arms.fold(Vec3::ZERO, |sum, arm| sum + arm)
 }
 
-/// The corners of each face, the largest triangles' faces first, and the face of each triangle.
+/// Returns the corners of each face, those of the largest triangles first, and the face of each triangle.
 fn merge(
     vertices: &[Vec3<f64>],
     triangles: &[[u32; 3]],
@@ -158,7 +158,7 @@ fn merge(
         }
         match outline(triangles, &members) {
             Some(corners) => faces.push(corners),
-            // Not a disk, which only rounding makes: the seed stays alone.
+            // Not a disk, which only rounding causes: the seed remains a face by itself.
             None => {
                 members[1..].iter().for_each(|&t| face_of[t] = NONE);
                 faces.push(triangles[seed].to_vec());
@@ -168,7 +168,7 @@ fn merge(
     (faces, face_of)
 }
 
-/// The corners around triangles that form a disk.
+/// Returns the boundary corners of triangles that form a disk.
 fn outline(triangles: &[[u32; 3]], members: &[usize]) -> Option<Vec<u32>> {
     let mut halves: Vec<(u32, u32)> = Vec::with_capacity(3 * members.len());
     for &t in members {
@@ -205,7 +205,7 @@ fn faces_at(count: usize, triangles: &[[u32; 3]], face_of: &[u32]) -> Lists {
     lists(count, &pairs)
 }
 
-/// The second numbers of sorted pairs, a list for each first number below `count`.
+/// Groups sorted pairs by their first numbers, below `count`.
 fn lists(count: usize, pairs: &[[u32; 2]]) -> Lists {
     let mut lists = Lists::default();
     let mut rest = pairs;

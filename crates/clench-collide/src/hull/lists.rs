@@ -1,9 +1,9 @@
 //! Many short lists of numbers in one array.
 
-/// Lists of numbers, one after the other.
+/// A sequence of lists, stored one after the other.
 #[derive(Clone, PartialEq)]
 pub(super) struct Lists {
-    /// Where each list begins, and where the last ends.
+    /// The start of each list, then the end of the last.
     starts: Vec<u32>,
     items: Vec<u32>,
 }

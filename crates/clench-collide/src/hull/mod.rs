@@ -1,7 +1,7 @@
-//! Convex hulls: what collides of a mesh.
+//! Convex hulls, the collision geometry of meshes.
 //!
-//! [`convex_hull`] finds which of some points lie on their hull, in exact arithmetic; [`Hull`] is that surface made ready for
-//! collision: triangles in one plane merged to polygons, each vertex with its neighbours.
+//! [`convex_hull`] computes the surface of the hull of points in exact arithmetic. [`Hull`] is that surface prepared
+//! for collision: coplanar triangles are merged to polygons and each vertex has its neighbours.
 //!
 //! ```
 //! use clench_collide::{Hull, convex_hull};
@@ -37,79 +37,79 @@ use sectors::Sectors;
 
 use std::fmt;
 
-/// A face counts as lying across a direction up to this tilt (5°).
+/// The cosine of the tilt (5°) up to which a face is perpendicular to a direction.
 pub(crate) const FACE_COSINE: f64 = 0.996;
 
 /// A convex polyhedron about its own origin.
 ///
-/// Vertices and faces stay numbered as they are; counts and orders depend on the points alone. Neighbours are those of a
-/// triangulation, in which a vertex that is no farthest one along a direction has a neighbour that is farther, so climbing
-/// from any vertex ends at a farthest one.
+/// The numbering of vertices and faces is fixed; counts and orders depend only on the points. Neighbours are those of a
+/// triangulation. In it, a vertex that is not furthest along a direction has a neighbour that is further, so climbing
+/// from any vertex ends at a furthest one.
 #[derive(Clone, PartialEq)]
 pub struct Hull {
     vertices: Vec<Vec3<f64>>,
-    /// Of each vertex.
+    /// The neighbours of each vertex.
     neighbors: Lists,
-    /// Faces that each vertex is in.
+    /// The faces that contain each vertex.
     vertex_faces: Lists,
-    /// Corners of each face.
+    /// The corners of each face.
     corners: Lists,
     normals: Vec<Vec3<f64>>,
     offsets: Vec<f64>,
-    /// None where there are many faces.
+    /// The edges between faces; empty if there are many.
     creases: Vec<Crease>,
     center: Vec3<f64>,
     sectors: Sectors,
 }
 
-/// Hulls of at most this many faces are searched face by face.
+/// The maximum number of faces for which hulls are searched face by face.
 pub(crate) const FEW_FACES: usize = 64;
 
-/// An edge between two faces. (Others lie within a face.)
+/// An edge between two faces. (Edges within a face are not creases.)
 #[derive(Clone, PartialEq)]
 pub(crate) struct Crease {
     /// One of its ends, m.
     pub start: Vec3<f64>,
-    /// The unit direction to the other.
+    /// The unit direction to the other end.
     pub along: Vec3<f64>,
-    /// The cross product of the two, m.
+    /// The cross product of `start` and `along`, m.
     pub moment: Vec3<f64>,
-    /// The face that goes along it, and the one that comes back.
+    /// The face to its left, and the one to its right, seen from outside.
     pub faces: [usize; 2],
     /// The cosine and the sine of the angle between their normals.
     pub turn: (f64, f64),
 }
 
 impl Hull {
-    /// Corners, m.
+    /// Returns the corners, m.
     pub fn vertices(&self) -> &[Vec3<f64>] {
         &self.vertices
     }
-    /// A point well inside: the mean of the vertices, m.
+    /// Returns an interior point: the mean of the vertices, m.
     pub fn center(&self) -> Vec3<f64> {
         self.center
     }
-    /// The vertices that share an edge of the triangulation with a vertex.
+    /// Returns the vertices that share an edge of the triangulation with a vertex.
     #[inline]
     pub fn neighbors(&self, vertex: usize) -> &[u32] {
         self.neighbors.get(vertex)
     }
-    /// The faces that a vertex is in: as a corner, or within a face up to the tolerance of merging.
+    /// Returns the faces that contain a vertex: as a corner, or inside up to the tolerance of merging.
     #[inline]
     pub fn faces_at(&self, vertex: usize) -> &[u32] {
         self.vertex_faces.get(vertex)
     }
-    /// How many faces there are.
+    /// Returns the number of faces.
     pub fn face_count(&self) -> usize {
         self.normals.len()
     }
-    /// The vertices around a face, counter-clockwise seen from outside.
+    /// Returns the vertices around a face, counter-clockwise seen from outside.
     #[inline]
     pub fn corners(&self, face: usize) -> &[u32] {
         self.corners.get(face)
     }
-    /// The face that lies across the unit vector `direction`, of those at a vertex the one that does most nearly; none if all are
-    /// tilted by more than 5°.
+    /// Returns the face at a vertex that is most nearly perpendicular to the unit vector `direction`; `None` if all
+    /// tilt by more than 5°.
     #[inline]
     pub(crate) fn face_across(&self, vertex: usize, direction: Vec3<f64>) -> Option<usize> {
         let mut best = (FACE_COSINE, None);
@@ -121,25 +121,25 @@ impl Hull {
         }
         best.1
     }
-    /// The edges between faces; none where there are more than [`FEW_FACES`].
+    /// Returns the edges between faces; none if there are more than [`FEW_FACES`] faces.
     pub(crate) fn creases(&self) -> &[Crease] {
         &self.creases
     }
-    /// The unit vector out of a face.
+    /// Returns the outward unit normal of a face.
     pub fn normal(&self, face: usize) -> Vec3<f64> {
         self.normals[face]
     }
-    /// Where the plane of a face is along its normal, m. No vertex is beyond it.
+    /// Returns the offset of a face's plane along its normal, m. No vertex is beyond it.
     pub fn offset(&self, face: usize) -> f64 {
         self.offsets[face]
     }
-    /// The radius of the smallest sphere about the origin that holds the hull, m.
+    /// Returns the radius of the smallest sphere about the origin that encloses the hull, m.
     pub fn radius(&self) -> f64 {
         let squares = self.vertices.iter().map(|v| v.norm_squared());
         squares.fold(0.0, f64::max).sqrt()
     }
 
-    /// How far it reaches from the origin along x, y and z, to either side, m.
+    /// Returns the maximum extent from the origin along x, y and z, to either side, m.
     pub fn extent(&self) -> Vec3<f64> {
         let reach = |axis: usize| {
             let along = self.vertices.iter().map(|v| v[axis].abs());
@@ -148,13 +148,13 @@ impl Hull {
         Vec3::new(reach(0), reach(1), reach(2))
     }
 
-    /// The vertex that is farthest along a direction of any length; where several are, one that depends on the direction
-    /// alone.
+    /// Returns the vertex that is furthest along a direction of any length. Among several, the choice depends only on
+    /// the direction.
     #[inline]
     pub fn support(&self, direction: Vec3<f64>) -> usize {
         let candidates = self.sectors.candidates(direction);
         let (fours, rest) = candidates.as_chunks::<4>();
-        // Selections instead of branches, which could not be predicted.
+        // Selections instead of branches, which would be unpredictable.
         let farther = |a: (u32, f64), b: (u32, f64)| {
             let is = b.1 > a.1;
             (if is { b.0 } else { a.0 }, if is { b.1 } else { a.1 })
@@ -172,7 +172,7 @@ impl Hull {
         }
     }
 
-    /// From neighbour to farther neighbour.
+    /// Moves from neighbour to further neighbour.
     #[inline]
     fn climb(&self, direction: Vec3<f64>, start: usize) -> usize {
         let mut vertex = start;

@@ -1,58 +1,58 @@
 //! Quickhull (Barber, Dobkin and Huhdanpaa 1996) with exact predicates.
 //!
-//! Start from a tetrahedron; each other point belongs to some triangle that it is strictly outside of. While a triangle has
-//! such points, take the farthest: the triangles visible from it go, and a cone from it to the horizon closes the hole. Whether a
-//! point is outside is the sign of a determinant, which `robust` finds without error, so the triangles that a point sees
-//! always form a disk and the surface stays closed and convex, however thin or fine it is. Distances, which are rounded, only
-//! choose the order.
+//! Start from a tetrahedron and assign each other point to a triangle that it is strictly outside of. While a triangle
+//! has such points, take the furthest, remove the triangles visible from it and close the hole with a cone from it to
+//! the horizon. The sign of a determinant, computed exactly by `robust`, decides if a point is outside. So the
+//! triangles visible from a point form a disk, and the surface stays closed and convex, however thin or fine it is.
+//! Rounded distances only choose the order.
 
 use super::error::HullError;
 use clench_math::Vec3;
 use robust::{Coord3D, orient3d};
 
-/// Points thinner than this part of their extent are flat: what is left of a plane after it was turned in `f64`.
+/// The ratio of thickness to extent below which points are flat: the rounding error of a plane rotated in `f64`.
 const FLAT: f64 = 1e-14;
 const NONE: u32 = u32::MAX;
 
-/// A triangle of the surface as it grows.
+/// A triangle of the growing surface.
 struct Facet {
-    /// Counter-clockwise from outside.
+    /// The corners, counter-clockwise from outside.
     corners: [u32; 3],
     /// The facet across the edge from each corner to the next.
     across: [u32; 3],
     normal: Vec3<f64>,
-    /// Points that are strictly outside, and belong to no other facet.
+    /// The points that are strictly outside and belong to no other facet.
     outside: Vec<u32>,
-    /// The farthest of them, and how far it is.
+    /// The distance and index of the furthest of them.
     farthest: (f64, u32),
     alive: bool,
-    /// The last round in which it was asked whether it sees the point.
+    /// The last round that checked its visibility.
     visited: u32,
 }
 
-/// An edge between facets that see a point and one that does not.
+/// An edge between a facet visible from a point and one that is not.
 #[derive(Clone, Copy)]
 struct HorizonRidge {
     from: u32,
     to: u32,
-    /// The facet behind it, and which of its edges it is.
+    /// The facet behind it, and the index of the edge in that facet.
     behind: (u32, usize),
 }
 
 pub(super) struct Quickhull<'a> {
     points: &'a [Vec3<f64>],
     facets: Vec<Facet>,
-    /// Facets that may have points outside.
+    /// The facets that may have points outside.
     pending: Vec<u32>,
     round: u32,
-    /// The new facet of a round whose edge starts at each point.
+    /// The new facet of a round that starts at each point.
     starting_at: Vec<u32>,
 }
 
-/// The triangles of the hull of some of the points. `most` bounds how many of them become corners.
+/// Returns the triangles of the hull of the points `among`. `most` limits the number of corners.
 ///
 /// # Errors
-/// Points without an inside.
+/// Returns an error if the points have no volume.
 pub(super) fn triangles(
     points: &[Vec3<f64>],
     among: &[u32],
@@ -87,7 +87,7 @@ fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// Whether `d` is strictly outside (1), in the plane (0) or inside (-1) of the triangle a, b, c.
+/// Returns the side of `d`: 1 strictly outside, 0 in the plane, -1 inside of the triangle a, b, c.
 pub(super) fn side(points: &[Vec3<f64>], [a, b, c]: [u32; 3], d: u32) -> i32 {
     let coord = |i: u32| {
         let Vec3 { x, y, z } = points[i as usize];
@@ -97,8 +97,8 @@ pub(super) fn side(points: &[Vec3<f64>], [a, b, c]: [u32; 3], d: u32) -> i32 {
     i32::from(determinant < 0.0) - i32::from(determinant > 0.0)
 }
 
-/// Four points that span a volume, near to as large a one as there is, counter-clockwise: the last is inside of the triangle
-/// of the others.
+/// Returns four points that span a nearly maximal volume. The first three are counter-clockwise and the last is inside
+/// of their triangle.
 fn simplex(points: &[Vec3<f64>], among: &[u32]) -> Result<[u32; 4], HullError> {
     let at = |i: u32| points[i as usize];
     let largest = |measure: &dyn Fn(Vec3<f64>) -> f64| {
@@ -168,7 +168,7 @@ impl Quickhull<'_> {
         self.assign(among, 0);
     }
 
-    /// Gives each point to the first facet from `first` on that it is outside of; the others are inside for good.
+    /// Assigns each point to the first facet from `first` on that it is outside of; drops inside points.
     fn assign(&mut self, candidates: &[u32], first: usize) {
         for &point in candidates {
             let position = self.points[point as usize];
@@ -185,7 +185,7 @@ impl Quickhull<'_> {
         self.pending.extend(first as u32..self.facets.len() as u32);
     }
 
-    /// A facet that has points outside: any, or the one with the farthest.
+    /// Returns a facet that has points outside: any, or the one with the furthest.
     fn next(&mut self, farthest: bool) -> Option<u32> {
         let facets = &self.facets;
         let open = |&f: &u32| facets[f as usize].alive && !facets[f as usize].outside.is_empty();
@@ -203,7 +203,7 @@ impl Quickhull<'_> {
         None
     }
 
-    /// Takes in the farthest point of a facet.
+    /// Adds the furthest point of a facet to the hull.
     fn add(&mut self, facet: u32) -> Result<(), HullError> {
         let point = self.facets[facet as usize].farthest.1;
         let mut orphans = Vec::new();
@@ -236,7 +236,7 @@ impl Quickhull<'_> {
         Ok(())
     }
 
-    /// Removes the facets that see a point, from one that does on, and returns the horizon of the hole.
+    /// Removes the facets visible from a point, starting with one that is, and returns the horizon of the hole.
     fn remove_visible(
         &mut self,
         from: u32,

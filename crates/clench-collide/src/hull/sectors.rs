@@ -1,18 +1,18 @@
-//! Which vertices of a hull may be the farthest along a direction: few enough to compare all of them.
+//! Candidates for the furthest vertex of a hull along a direction, few enough to compare all of them.
 //!
-//! Directions are told apart by comparisons alone: the signs of their coordinates, which is larger than which, and in which half
-//! or quarter of the largest each is. Those of one sector lie between a few corners. Where a vertex has a neighbor that is
-//! farther along all corners, it is so along all directions between them. Vertices without such a neighbor are the sector's
-//! candidates; they are connected by edges, so walking over neighbours finds them.
+//! Directions are classified by comparisons alone: the signs of their coordinates, their order by size, and the half or
+//! quarter of the largest that each is in. The directions of a sector lie between a few corners. A vertex with a
+//! neighbour that is further along all corners is never the furthest between them. The other vertices are the sector's
+//! candidates. Edges connect them, so traversing neighbours finds them.
 
 use super::lists::Lists;
 use clench_math::Vec3;
 
-/// Of more candidates than this one is kept, to climb from.
+/// The maximum number of candidates. Beyond it, only one is stored, to climb from.
 const MAX_CANDIDATES: usize = 32;
-/// Hulls of more vertices have sectors of quarters, others of halves.
+/// The number of vertices above which sectors use quarters instead of halves.
 const FINE_FROM: usize = 128;
-/// Which coordinates are the largest, the second and the least.
+/// The orders of the coordinates: largest, second, smallest.
 const ORDERS: [[usize; 3]; 6] = [
     [0, 1, 2],
     [1, 2, 0],
@@ -25,12 +25,12 @@ const ORDERS: [[usize; 3]; 6] = [
 #[derive(Clone, Default, PartialEq)]
 pub(super) struct Sectors {
     fine: bool,
-    /// By the sector's code; none where there is no such sector.
+    /// The candidates by sector code; empty for codes without a sector.
     candidates: Lists,
 }
 
 impl Sectors {
-    /// `farthest` finds the vertex that is farthest along a direction, from a vertex that may be near it.
+    /// Creates the sectors. `farthest` finds the furthest vertex along a direction, from a vertex near it.
     pub(super) fn new(
         vertices: &[Vec3<f64>],
         neighbors: &Lists,
@@ -51,15 +51,15 @@ impl Sectors {
         Sectors { fine, candidates }
     }
 
-    /// Vertices among which the one is that is farthest along a direction, in fours (some twice); if there is but one, it may be
-    /// only near; none for a direction that is zero or NaN.
+    /// Returns candidates that include the furthest vertex along a direction, padded by duplicates to a multiple of
+    /// four. A single one may be only near it. Empty if the direction is zero or NaN.
     #[inline]
     pub(super) fn candidates(&self, direction: Vec3<f64>) -> &[u32] {
         self.candidates.get(code(direction, self.fine))
     }
 }
 
-/// The sector of a direction. No branches: which way it points cannot be predicted.
+/// Returns the sector of a direction. It has no branches, since directions are unpredictable.
 #[inline]
 fn code(d: Vec3<f64>, fine: bool) -> usize {
     let [x, y, z] = d.to_array().map(f64::abs);
@@ -82,18 +82,18 @@ fn code(d: Vec3<f64>, fine: bool) -> usize {
     }
 }
 
-/// The corners of each sector, of which there are `steps` along half an edge of a cube.
+/// Returns the corners of each sector, with `steps` sectors along half an edge of a cube.
 fn all_corners(steps: usize) -> Vec<Vec<Vec3<f64>>> {
     let at = |k: usize| k as f64 / steps as f64;
     let steps_below = |i: usize| (0..=i).map(move |j| (i, j));
-    // Where a face of a cube about the origin is met, from its middle: to the right, and not as far up.
+    // Cells of one eighth of a cube's face, from its middle: coordinates (1, i, j) with j ≤ i.
     let mut cells: Vec<Vec<[f64; 3]>> = Vec::new();
     for (i, j) in (0..steps).flat_map(steps_below) {
         let square = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
         let corners = square.into_iter().filter(|(i, j)| j <= i);
         cells.push(corners.map(|(i, j)| [1.0, at(i), at(j)]).collect());
     }
-    // No comparison tells apart three that are equal.
+    // The cell of three equal coordinates, which have no order.
     cells.push(vec![[1.0; 3]]);
     let mut all = Vec::new();
     for signs in 0..8 {
@@ -113,7 +113,7 @@ fn all_corners(steps: usize) -> Vec<Vec<Vec3<f64>>> {
     all
 }
 
-/// The vertices that may be farthest between some directions, of which `first` is one.
+/// Returns the vertices that may be furthest along a direction between `corners`; `first` is one of them.
 fn candidates(
     vertices: &[Vec3<f64>],
     neighbors: &Lists,

@@ -1,40 +1,42 @@
-//! Which points are on a hull, and in which triangles.
+//! The points and triangles on the surface of a hull.
 
 use super::error::HullError;
 use super::quickhull::{side, triangles};
 use clench_math::Vec3;
 
-/// Coordinates beyond this (m) have products that overflow.
+/// The maximum coordinate (m); products of larger ones overflow.
 const MAX_COORDINATE: f64 = 1e60;
-/// Coordinates below this (m) have products that vanish: they count as zero.
+/// The minimum coordinate (m); smaller ones, whose products underflow, count as zero.
 const MIN_COORDINATE: f64 = 1e-60;
 
-/// The surface of the convex hull of some points: triangles of their indices.
+/// The surface of a convex hull: triangles of point indices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HullSurface {
     triangles: Vec<[u32; 3]>,
-    /// How many points there were.
+    /// The number of input points.
     points: usize,
 }
 
 impl HullSurface {
-    /// Indices of three of the points each, counter-clockwise seen from outside.
+    /// Returns the triangles as indices of points, counter-clockwise seen from outside.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
-    /// How many points it was found from.
+    /// Returns the number of input points.
     pub(super) fn point_count(&self) -> usize {
         self.points
     }
 }
 
-/// The convex hull of points: exact in their coordinates, however thin it is, and free of corners that lie between others.
+/// Computes the convex hull of points: exact in their coordinates, however thin it is, and without corners that lie
+/// within an edge or a face.
 ///
-/// `max_vertices` bounds how many corners it has; the farthest points are taken first, so the rest lie little outside.
+/// `max_vertices` limits the number of corners. The furthest points are added first, so the others lie only slightly
+/// outside.
 ///
 /// # Errors
-/// Coordinates that are not finite; points that lie in a point, a line or a plane (up to a part 1e-14 of their extent); fewer than
-/// four points or allowed vertices.
+/// Returns an error if a coordinate is not finite (or beyond 1e60 m), if the points lie in a plane or line (up to 1e-14
+/// of their extent), or if there are fewer than four points or allowed vertices.
 pub fn convex_hull(
     points: &[Vec3<f64>],
     max_vertices: Option<usize>,
@@ -71,7 +73,7 @@ pub fn convex_hull(
     }
 }
 
-/// Corners that lie within an edge or a face, ascending: fewer than three bent edges meet there.
+/// Returns the corners that lie within an edge or a face, ascending: fewer than three bent edges meet there.
 fn between(points: &[Vec3<f64>], triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut bent: Vec<u32> = Vec::with_capacity(3 * triangles.len());
     for edge in edges(triangles) {
@@ -94,12 +96,12 @@ fn between(points: &[Vec3<f64>], triangles: &[[u32; 3]]) -> Vec<u32> {
 /// An edge between two triangles.
 pub(super) struct MeshEdge {
     pub ends: [u32; 2],
-    /// The triangle that goes along it from its first end to its second.
+    /// The triangle that traverses it from its first end to its second.
     pub left: usize,
     pub right: usize,
 }
 
-/// The edges of a closed surface.
+/// Returns the edges of a closed surface.
 pub(super) fn edges(triangles: &[[u32; 3]]) -> Vec<MeshEdge> {
     let mut halves: Vec<(u32, u32, bool, usize)> = Vec::with_capacity(3 * triangles.len());
     for (t, corners) in triangles.iter().enumerate() {

@@ -1,19 +1,19 @@
-//! Two balls, and the pairs that come down to two balls: sphere–sphere and sphere–capsule.
+//! Two balls, and the pairs that reduce to them: sphere–sphere and sphere–capsule.
 
 use super::placed::Placed;
 use super::segment::Segment;
 use crate::{Capsule, ContactPoint, Contacts, Sphere};
 use clench_math::{Mask, Real, Vec3, kernel};
 
-/// A point with a radius: a sphere, or one place on the axis of a capsule.
+/// A point with a radius: a sphere, or a point on the axis of a capsule.
 #[derive(Clone, Copy)]
 pub(super) struct Ball<T> {
     pub center: Vec3<T>,
     pub radius: T,
 }
 
-/// Adds the contact of two balls in the environments of `wanted`. `across` gives the unit normal to use where the
-/// centres coincide.
+/// Adds the contact of two balls in the environments of `wanted`. `across` returns the unit normal for coincident
+/// centres.
 #[inline(always)]
 pub(super) fn ball_ball<T: Real>(
     a: Ball<T>,
@@ -42,8 +42,8 @@ pub(super) fn ball_ball<T: Real>(
     out.push(ContactPoint::new(position, normal, distance, active));
 }
 
-/// A unit vector across the axes of two shapes. Where these are parallel: across them, in the plane of the world's x axis
-/// (or y, if they are near that). MuJoCo takes x itself then, the same for upright shapes.
+/// Returns a unit vector across the axes of two shapes. If these are parallel: across them, in the plane of the world's
+/// x axis (or y, if they are near x). MuJoCo then uses x itself, which is the same for upright shapes.
 #[inline(always)]
 pub(super) fn across_axes<A, B, T: Real>(a: Placed<A, T>, b: Placed<B, T>) -> Vec3<T> {
     let axis = b.pose.axis();

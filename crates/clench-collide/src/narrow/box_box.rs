@@ -1,12 +1,12 @@
-//! Box–box: separating axes, then the face of one box clipped to the face of the other, or two edges that cross.
+//! Box–box: separating axes, then one box's face clipped to the other's, or two crossing edges.
 //!
-//! Two boxes are apart exactly if some face normal of either, or some cross product of their edges, separates them. The
-//! axis of largest separation tells the depth where they overlap, and decides the contact. A face yields up to eight points;
-//! across two edges lies a point, or the patch of faces that are nearly level. The rules that break ties, which decide how a
-//! stack rests, follow MuJoCo 4.0's collider, and so do their numbers.
+//! Two boxes are apart exactly if a face normal of either, or a cross product of their edges, separates them. If they
+//! overlap, the axis of largest separation defines the depth and the kind of contact. A face yields up to eight points,
+//! two edges one point, or the patch of nearly level faces. The tie-breaking rules, which affect how stacks rest, and
+//! their numbers follow MuJoCo 4.0's collider.
 //!
-//! Where the boxes are apart the axis tells their distance only if a corner is over a face; else the nearest points of the
-//! two are found as for any convex shapes.
+//! If the boxes are apart, the axis yields their distance only if a corner is over a face; otherwise the nearest points
+//! are found as for any convex shapes.
 
 use super::convex;
 use super::per_lane::{Points, per_lane_where};
@@ -15,21 +15,21 @@ use super::separating_axis::SeparatingAxis;
 use crate::{Contacts, Cuboid, Pose};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
-/// How much an edge pair must beat the best face, relative to its own separation, not to be a tie.
+/// The margin by which an edge pair must beat the best face, relative to its own separation, to break a tie.
 const EDGE_BIAS: f64 = 1e-6;
-/// An edge axis within this cosine of the best face axis (0.05°) is the same contact, seen as a face, as stacks rest on them ...
+/// The cosine (0.05°) from which an edge axis counts as the best face axis, since stacks rest on faces ...
 const ALIAS_COSINE: f64 = 1.0 - 3.8e-7;
-/// ... unless it is better by this share of the face's separation.
+/// ... unless it is better by this fraction of the face's separation.
 const ALIAS_SHARE: f64 = 0.05;
 
-/// Tolerances for rounding: MuJoCo's in double precision, not below a few units in the last place in any.
+/// Returns a rounding tolerance: MuJoCo's in double precision, at least `units` in the last place.
 #[inline]
 pub(super) fn tolerance<S: Scalar>(double: f64, units: f64) -> S {
     S::new(double).max(S::EPSILON * S::new(units))
 }
 
-/// The contacts of two boxes. `axis`, a direction in which they were apart before, may show at once that there are none; where they are
-/// found to be apart, that direction becomes the next `axis`.
+/// Computes the contacts of two boxes. `axis`, the last separating direction, may prove at once that there are none; if
+/// they are found to be apart, it is updated.
 #[kernel]
 pub(super) fn box_box<T: Real>(
     a: Placed<Cuboid<T>, T>,
@@ -49,10 +49,10 @@ pub(super) fn box_box<T: Real>(
     });
 }
 
-/// The contacts of one environment.
+/// Computes the contacts of one environment.
 ///
 /// # Errors
-/// The boxes are apart: the direction in which they are, in the frame of the first.
+/// Returns the separating direction as an error if the boxes are apart, in the frame of the first.
 fn points<S: Scalar>(
     a: Placed<Cuboid<S>, S>,
     b: Placed<Cuboid<S>, S>,
@@ -82,10 +82,10 @@ fn points<S: Scalar>(
     convex::points(a.any(), b.any(), margin, points)
 }
 
-/// An axis of each box.
+/// One axis of each box.
 type EdgePair = (usize, usize);
 
-/// What touches what.
+/// The touching features of two boxes.
 #[derive(Clone, Copy)]
 enum TouchingFeature {
     /// A face across `axis` of box `owner` (0 or 1).
@@ -94,19 +94,19 @@ enum TouchingFeature {
     Edges(usize, usize),
 }
 
-/// One box seen from the other and the reverse.
+/// Each box in the frame of the other.
 pub(super) struct BoxPair<S> {
     pub pose: [Pose<S>; 2],
-    /// Half lengths.
+    /// The half lengths.
     pub size: [Vec3<S>; 2],
-    /// In the frame of each box, the centre of the other.
+    /// The centre of the other box, in the frame of each.
     pub offset: [Vec3<S>; 2],
-    /// In the frame of each box, the axes of the other as columns.
+    /// The axes of the other box as columns, in the frame of each.
     pub rotation: [Mat3<S>; 2],
     pub margin: S,
-    /// What rounding may do to a separation.
+    /// The rounding error of a separation.
     slack: S,
-    /// Separations up to this count as touching: the margin, and some slack so that no pair slips through.
+    /// The largest separation that counts as touching: the margin, plus some slack so that no pair is missed.
     reach: S,
 }
 
@@ -131,10 +131,10 @@ impl<S: Scalar> BoxPair<S> {
         }
     }
 
-    /// The feature of largest separation.
+    /// Returns the feature of largest separation.
     ///
     /// # Errors
-    /// That is beyond reach: its normal towards the second box, in the frame of the first.
+    /// Returns its normal towards the second box, in the frame of the first, as an error if beyond reach.
     fn touching_feature(&self) -> Result<(TouchingFeature, S), Vec3<S>> {
         let (face, face_separation) = self.best_face()?;
         let (edges, separation) = self.best_edges(face_separation)?;
@@ -157,10 +157,10 @@ impl<S: Scalar> BoxPair<S> {
         })
     }
 
-    /// The face of largest separation.
+    /// Returns the face of largest separation.
     ///
     /// # Errors
-    /// Some face separates the boxes: its normal.
+    /// Returns the normal as an error if a face separates the boxes.
     fn best_face(&self) -> Result<(TouchingFeature, S), Vec3<S>> {
         let (owner, axis) = (0, 0);
         let first = self.face_separation(owner, axis);
@@ -179,7 +179,7 @@ impl<S: Scalar> BoxPair<S> {
         Ok(best)
     }
 
-    /// How far the other box is from the nearer face of box `owner` across `axis`.
+    /// Returns the distance of the other box from the nearer face of box `owner` across `axis`.
     #[inline(always)]
     fn face_separation(&self, owner: usize, axis: usize) -> S {
         let (size, other) = (self.size[owner], self.size[1 - owner]);
@@ -188,22 +188,22 @@ impl<S: Scalar> BoxPair<S> {
         self.offset[owner][axis].abs() - size[axis] - extent
     }
 
-    /// The best edge pair that beats the best face, if any does, and the largest separation.
+    /// Returns the best edge pair that beats the best face, if any, and the largest separation.
     ///
     /// # Errors
-    /// Some edge pair separates the boxes: its normal.
+    /// Returns the normal as an error if an edge pair separates the boxes.
     fn best_edges(&self, face: S) -> Result<(Option<EdgePair>, S), Vec3<S>> {
         let mut best = (None, face);
         let (turn, offset, [a, b]) = (&self.rotation[0].rows, self.offset[0], self.size);
         for i in 0..3 {
             let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
             for j in 0..3 {
-                // In the first box's frame the product is (0, -v, u) from axis i on, and its parts along the second box's
-                // other axes are, but for signs, that of axis i along each one's successor.
+                // In the first box's frame the product is (0, -v, u) from axis i on. Up to signs, its components along
+                // the second box's other axes are those of axis i along each one's successor.
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let (u, v) = (turn[i1][j], turn[i2][j]);
                 let sine_squared = u * u + v * v;
-                // Nearly parallel edges: their cross product is noise, and the faces cover the case.
+                // The cross product of nearly parallel edges is noise, and the faces cover the case.
                 if sine_squared < S::EPSILON * S::new(0.5) {
                     continue;
                 }
@@ -225,7 +225,7 @@ impl<S: Scalar> BoxPair<S> {
         Ok(best)
     }
 
-    /// The normal of a box's face towards the second box, in the first box's frame.
+    /// Returns the normal of a box's face towards the second box, in the first box's frame.
     fn face_normal(&self, owner: usize, axis: usize) -> Vec3<S> {
         let mut normal = Vec3::ZERO;
         normal[axis] = S::ONE;
@@ -235,14 +235,14 @@ impl<S: Scalar> BoxPair<S> {
         normal * S::ONE.copysign(normal.dot(self.offset[0]))
     }
 
-    /// The cross product of axis `i` of the first box with axis `j` of the second, in the first box's frame.
+    /// Returns the cross product of axis `i` of the first box with axis `j` of the second, in the first box's frame.
     fn edge_axis(&self, i: usize, j: usize) -> Vec3<S> {
         let mut unit = Vec3::ZERO;
         unit[i] = S::ONE;
         unit.cross(self.rotation[0].column(j))
     }
 
-    /// The unit vector along that product, towards the second box.
+    /// Returns the unit vector along that product, towards the second box.
     fn edge_normal(&self, i: usize, j: usize) -> Vec3<S> {
         let (n, _) = self.edge_axis(i, j).normalize();
         n * S::ONE.copysign(n.dot(self.offset[0]))

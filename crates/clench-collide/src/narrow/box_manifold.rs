@@ -1,4 +1,4 @@
-//! The contact points of two boxes, once it is known which face of one touches the other.
+//! The contact points of two boxes, given the touching face.
 
 use super::{
     box_box::{BoxPair, tolerance},
@@ -7,11 +7,11 @@ use super::{
 };
 use clench_math::{Scalar, Vec3};
 
-/// The corners of a face in order around it.
+/// The corners of a face, in order.
 const AROUND: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
 
 impl<S: Scalar> BoxPair<S> {
-    /// The face of the other box that most opposes the touching face, clipped to it: each corner near enough is a
+    /// Clips the face of the other box that most opposes the touching face. Each corner that is near enough is a
     /// contact, midway between the two faces.
     pub(super) fn face_contact(&self, owner: usize, axis: usize, points: &mut Points<S>) {
         let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -29,7 +29,7 @@ impl<S: Scalar> BoxPair<S> {
         let pose = &self.pose[owner];
         let out = if owner == 0 { side } else { -side };
         let normal = pose.rotation.column(axis) * out;
-        // Cutting at a corner leaves the same point twice.
+        // Clipping at a corner duplicates the point.
         let radius = tolerance::<S>(1e-7, 100.0);
         let apart = radius * radius * (size[x] * size[x] + size[y] * size[y]);
         let mut accepted = Polygon::empty();
@@ -54,7 +54,7 @@ impl<S: Scalar> BoxPair<S> {
         }
     }
 
-    /// The face of the other box that most opposes the face across `axis` of `owner`, in that face's frame.
+    /// Returns the face of the other box that most opposes the face across `axis` of `owner`, in that face's frame.
     fn opposing_face(&self, owner: usize, axis: usize, side: S) -> Polygon<S> {
         let (rotation, other) = (&self.rotation[owner], self.size[1 - owner]);
         let slope = rotation.rows[axis];

@@ -1,8 +1,7 @@
-//! A box against round things: sphere–box, and capsule–box as up to two spheres on the capsule's axis.
+//! A box against round shapes: sphere–box, and capsule–box as up to two spheres on the capsule's axis.
 //!
-//! Both work in the box's own frame, where the nearest point of the box is a clamp of the coordinates. Once the capsule's middle
-//! segment enters the box, no sphere on it tells how far the capsule must move to be free, and the general convex search
-//! does.
+//! Both work in the box's frame, where the nearest point of the box is a clamp of the coordinates. Once the capsule's
+//! segment enters the box, no sphere on it yields the capsule's depth, and the general convex search is used.
 
 use super::convex;
 use super::per_lane::per_lane_where;
@@ -10,7 +9,7 @@ use super::placed::Placed;
 use crate::{Capsule, ContactPoint, Contacts, Cuboid, Sphere};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
-/// Coordinate-wise clamp to the box of half lengths `size`.
+/// Clamps each coordinate to the box of half lengths `size`.
 #[inline(always)]
 fn clamp<T: Real>(p: Vec3<T>, size: Vec3<T>) -> Vec3<T> {
     Vec3::new(
@@ -25,7 +24,7 @@ fn differ<M: Mask>(a: M, b: M) -> M {
     (a & !b) | (b & !a)
 }
 
-/// The normal out of a ball whose centre is inside the box, through the nearest face, and that face's distance.
+/// Returns the normal out of a ball whose centre is inside the box, through the nearest face, and that face's distance.
 #[inline(always)]
 fn nearest_face<T: Real>(center: Vec3<T>, size: Vec3<T>) -> (Vec3<T>, T) {
     let mut depth = T::new(f64::INFINITY);
@@ -43,7 +42,7 @@ fn nearest_face<T: Real>(center: Vec3<T>, size: Vec3<T>) -> (Vec3<T>, T) {
     (normal, depth)
 }
 
-/// Adds the contact of a ball, `center` in the box's frame, with the box.
+/// Adds the contact of a ball with the box; `center` is in the box's frame.
 #[inline(always)]
 fn ball_box<T: Real>(
     center: Vec3<T>,
@@ -111,7 +110,7 @@ pub(super) fn capsule_box<T: Real>(
     let sunk = near & enters(center, half, size);
     if sunk.any() {
         per_lane_where(sunk, a, b, margin, out, |_, a, b, margin, points| {
-            // They overlap, so that no direction separates them.
+            // The bodies overlap, so no direction separates them.
             let _ = convex::points(a.any(), b.any(), margin, points);
         });
     }
@@ -134,7 +133,8 @@ pub(super) fn capsule_box<T: Real>(
     }
 }
 
-/// Whether a segment, centre + x·half with x in [−1, 1], has a point in the box: between all three pairs of its faces for some x.
+/// Returns the lanes in which a segment, centre + x·half with x in [−1, 1], has a point in the box: between all three
+/// pairs of its faces for some x.
 #[inline(always)]
 fn enters<T: Real>(center: Vec3<T>, half: Vec3<T>, size: Vec3<T>) -> T::Mask {
     let (mut from, mut to) = (-T::ONE, T::ONE);
@@ -152,20 +152,20 @@ fn enters<T: Real>(center: Vec3<T>, half: Vec3<T>, size: Vec3<T>) -> T::Mask {
     between & from.le(to)
 }
 
-/// Where a capsule's middle segment, centre + x·half with x in [−1, 1], is nearest to a box.
+/// The point of a capsule's segment, centre + x·half with x in [−1, 1], nearest to a box.
 struct Nearest<T: Real> {
     /// The parameter x.
     along: T,
     /// The nearest point of the box.
     point: Vec3<T>,
-    /// For each axis, whether `point` is at its limit there: none inside the box, one on a face, two on an edge, three
-    /// at a corner.
+    /// For each axis, true if `point` is at its limit: none inside the box, one on a face, two on an edge, three at a
+    /// corner.
     limit: [T::Mask; 3],
     squared_distance: T,
 }
 
 impl<T: Real> Nearest<T> {
-    /// Either an end of the segment is nearest, to a face or inside the box, or some point of it to one of the edges.
+    /// Finds the nearest of the ends, to a face or inside the box, and the points nearest to the edges.
     #[inline(always)]
     fn find(center: Vec3<T>, half: Vec3<T>, size: Vec3<T>) -> Self {
         let mut best = Nearest {
@@ -203,7 +203,7 @@ impl<T: Real> Nearest<T> {
         }
     }
 
-    /// The edge along `axis` through one of the four `corner`s across it: nearest points of two segments, both
+    /// Tries the edge along `axis` through one of the four `corner`s across it: nearest points of two segments, both
     /// parameters in [−1, 1], by clamping in turn.
     #[inline(always)]
     fn try_edge(
@@ -228,7 +228,7 @@ impl<T: Real> Nearest<T> {
         let edge_side = -size[axis] * offset[axis];
         let half_side = half.dot(offset);
         let determinant = edge_squared * half_squared - mixed * mixed;
-        // Parallel edges are left to the ends of the segment and to the edges across.
+        // Parallel edges are handled by the ends of the segment and the edges across.
         let apart = determinant.abs().ge(T::new(1e-15));
         let inverse = T::ONE / T::select(apart, determinant, T::ONE);
 
@@ -244,8 +244,7 @@ impl<T: Real> Nearest<T> {
         let moved = !free_x.eq(x);
         let free_again = (edge_side - mixed * x) / edge_squared;
         let again = unit(free_again);
-        // MuJoCo takes the point for the corner once any clamp met it, and so it is the corner from where the second
-        // point is looked for.
+        // MuJoCo treats the point as the corner once any clamp was active, and searches the second point from there.
         let first_met = !free_y.eq(y);
         let again_met = moved & !free_again.eq(again);
         let at_corner = first_met | again_met;
@@ -262,12 +261,12 @@ impl<T: Real> Nearest<T> {
         self.take(nearer, x, point, limit, squared);
     }
 
-    /// Where a second contact makes a capsule rest that lies along the box, and whether there is one.
+    /// Returns the parameter of a second contact, which stabilizes a capsule lying along the box, and its lanes.
     ///
-    /// From the nearest point one walks along the capsule, over the face it is most nearly parallel to (or along the
-    /// edge), until it ends or leaves the box: that is as far as the two can touch. Which way to walk, and which sides
-    /// of the box to mind, follows from where the nearest point is and for each axis whether walking forward leads
-    /// inward from there. A capsule that points at the box from outside has no second contact.
+    /// It moves from the nearest point along the capsule, over the face that it is most nearly parallel to (or along
+    /// the edge), to the end of the capsule or of the box: the furthest possible contact. The direction and the
+    /// relevant sides of the box depend on the nearest point and, for each axis, on whether moving forward leads
+    /// inward. A capsule that points at the box from outside has no second contact.
     #[inline(always)]
     fn second(&self, half: Vec3<T>, size: Vec3<T>) -> (T, T::Mask) {
         let limit = self.limit;
@@ -286,7 +285,8 @@ impl<T: Real> Nearest<T> {
             way = T::select(face, -self.along, way);
             walls[j] |= face;
             walls[k] |= face;
-            // On an edge along i, unless both ways lead off or both sides lead in: over the flatter of its two faces.
+            // On an edge along i, unless both directions lead off or both sides lead in: over the flatter of its two
+            // faces.
             let edge = !limit[i] & limit[j] & limit[k] & differ(inward[j], inward[k]);
             let over_j = edge & half[j].abs().le(half[k].abs());
             let over_k = edge & !over_j;
@@ -295,7 +295,7 @@ impl<T: Real> Nearest<T> {
             walls[i] |= edge;
             walls[k] |= over_j;
             walls[j] |= over_k;
-            // At a corner where axis i alone leads the other way: along the edge i, or else over the face across it.
+            // At a corner where only axis i leads the other way: along the edge i, or else over the face across it.
             let corner = limit[0]
                 & limit[1]
                 & limit[2]
@@ -310,7 +310,7 @@ impl<T: Real> Nearest<T> {
             walls[j] |= over_face;
             walls[k] |= over_face;
         }
-        // A side that the capsule is parallel to, but for rounding, is no limit.
+        // A side that the capsule is parallel to, up to rounding, is no limit.
         let least = total.sqrt() * T::splat(T::Scalar::EPSILON) * T::new(1e4);
         let mut walk = T::ONE - way * self.along;
         for i in 0..3 {

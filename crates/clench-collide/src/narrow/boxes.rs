@@ -1,15 +1,15 @@
-//! Oriented boxes about two shapes: a quick test, in all lanes at once, before a slow method that runs per lane.
+//! Bounding boxes of two shapes: a quick test, in all lanes at once, before a slow method that runs per lane.
 //!
-//! Boxes are apart if they are so along a face normal of either (Gottschalk, Lin & Manocha 1996; the nine cross products of edges
-//! would find few more). A sphere is its own bound.
+//! Boxes are apart if a face normal of either separates them (Gottschalk, Lin & Manocha 1996; the nine cross products
+//! of edges would find few more). A sphere is its own bound.
 
 use super::placed::AnyPlaced;
 use super::separating_axis::SeparatingAxis;
 use crate::{Shape, Sphere, allowance};
 use clench_math::{Real, Vec3};
 
-/// Where the boxes about two bounded shapes are at most `margin` apart along all of their face normals; the first may be a sphere.
-/// Where they are not, `axis` becomes the normal along which they are furthest apart.
+/// Returns the lanes in which the boxes of two bounded shapes are at most `margin` apart along all of their face
+/// normals; the first may be a sphere. In the others, `axis` becomes the normal along which they are furthest apart.
 #[inline(always)]
 pub(super) fn boxes_near<T: Real>(
     a: AnyPlaced<T>,
@@ -49,11 +49,11 @@ pub(super) fn boxes_near<T: Real>(
     near
 }
 
-/// Where the box about a shape is at most `reach` from a point.
+/// Returns the lanes in which the box of a shape is at most `reach` from a point.
 #[inline(always)]
 fn box_near<T: Real>(shape: AnyPlaced<T>, point: Vec3<T>, reach: T) -> T::Mask {
     let (place, half) = (shape.pose.local(point), shape.shape.half_lengths());
-    // A NaN stays a NaN, which is near nothing.
+    // NaN is preserved, and is near nothing.
     let mut gap = Vec3::ZERO;
     for k in 0..3 {
         gap[k] = T::ZERO.max(place[k].abs() - half[k] * allowance());

@@ -1,15 +1,16 @@
 //! Capsule–capsule: the nearest points of two segments.
 //!
-//! With unit axes u₁, u₂, offset d from the first centre to the second and w = u₁ × u₂, the lines are nearest at
+//! With unit axes u₁, u₂, offset d from the first centre to the second and w = u₁ × u₂, the nearest points of the lines
+//! are at
 //!
 //! ```text
 //! t₁ = (d × u₂)·w / |w|²   on the first line,
 //! ```
 //!
 //! and the second parameter is the projection of that point. Clamping each to its segment in turn, and projecting once
-//! more, gives the nearest points of the segments. The triple product keeps its digits where the axes are nearly
-//! parallel. Below an angle of 1e-4 (MuJoCo 4.0's limit) they count as parallel and touch at both ends of their overlap;
-//! where they do not overlap both contacts are the same, as in MuJoCo.
+//! more, gives the nearest points of the segments. The triple product is accurate even if the axes are nearly parallel.
+//! Below an angle of 1e-4 (MuJoCo 4.0's limit) they count as parallel and touch at both ends of their overlap; if they
+//! do not overlap, both contacts are the same, as in MuJoCo.
 
 use super::ball::{Ball, across_axes, ball_ball};
 use super::placed::Placed;
@@ -42,7 +43,7 @@ pub(super) fn capsule_capsule<T: Real>(
     let t = second.clamp(free);
     let s = T::select(free.eq(t), s, first.clamp(ahead + cosine * t));
 
-    // Parallel: where the second segment, seen from the first, begins and ends on it. Each is an end of one of them.
+    // Parallel: the start and end of the second segment on the first. Each is an end of one of them.
     let extent = second.half_length * cosine.abs();
     let end = second.half_length.copysign(cosine);
     for (sign, wanted) in [(-T::ONE, T::Mask::splat(true)), (T::ONE, parallel)] {

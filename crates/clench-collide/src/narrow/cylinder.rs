@@ -7,9 +7,10 @@ use super::segment::Segment;
 use crate::{Capsule, ContactPoint, Contacts, Cylinder, Sphere};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
-/// Steps to the nearest point of a segment. Four to eight are usual; after this many halvings only rounding is left.
+/// The maximum steps to the nearest point of a segment. Four to eight are usual; this many bisections leave only
+/// rounding.
 const STEPS: usize = 54;
-/// A capsule lies along a cap or a side that it is tilted against by less (5°).
+/// The sine of the tilt (5°) below which a capsule lies along a cap or a side.
 const LEVEL_SINE: f64 = 0.087;
 
 /// A cylinder in its own frame.
@@ -17,12 +18,12 @@ const LEVEL_SINE: f64 = 0.087;
 struct LocalCylinder<T> {
     radius: T,
     half_length: T,
-    /// The outward direction to use for points on the axis, across it.
+    /// The outward direction, across the axis, for points on the axis.
     spare: Vec3<T>,
 }
 
 impl<T: Real> LocalCylinder<T> {
-    /// The cylinder `b`, as the shape `a` meets it.
+    /// Creates `b` in its own frame, for contact with `a`.
     #[inline(always)]
     fn new<A>(a: Placed<A, T>, b: Placed<Cylinder<T>, T>) -> Self {
         LocalCylinder {
@@ -32,7 +33,7 @@ impl<T: Real> LocalCylinder<T> {
         }
     }
 
-    /// Signed distance of a point to the surface, and its gradient: the unit outward direction.
+    /// Returns the signed distance of a point to the surface, and its gradient: the unit outward direction.
     #[inline(always)]
     fn distance(&self, p: Vec3<T>) -> (T, Vec3<T>) {
         let from_axis = (p.x * p.x + p.y * p.y).sqrt();
@@ -40,7 +41,7 @@ impl<T: Real> LocalCylinder<T> {
         let off_side = from_axis - self.radius;
         let (up, out) = (above_cap.max(T::ZERO), off_side.max(T::ZERO));
         let length = (up * up + out * out).sqrt();
-        // Within the cylinder the nearer of cap and side decides; beyond both, the circle where they meet.
+        // Inside, the nearer of cap and side; beyond both, the circle where they meet.
         let within = length.lt(T::new(1e-15));
         let cap = T::select(above_cap.gt(off_side), T::ONE, T::ZERO);
         let inverse = T::ONE / T::select(within, T::ONE, length);
@@ -57,8 +58,8 @@ impl<T: Real> LocalCylinder<T> {
     }
 }
 
-/// Adds the contact of a ball with the cylinder `b`: centre, signed distance of the centre to the cylinder and outward
-/// direction in the cylinder's frame.
+/// Adds the contact of a ball with the cylinder `b`, given the centre, and the signed distance and outward direction of
+/// the centre, in the cylinder's frame.
 #[inline(always)]
 fn add_ball<T: Real>(
     center: Vec3<T>,
@@ -95,10 +96,10 @@ pub(super) fn sphere_cylinder<T: Real>(
     add_ball(center, radius, nearest, b, active, out);
 }
 
-/// The deepest point, and where the capsule lies along the cap or the side both ends of that stretch.
+/// Adds the deepest point and, if the capsule lies along the cap or the side, both ends of that interval.
 ///
-/// Once the capsule's middle segment enters the cylinder, the signed distance of its points no longer tells how far the
-/// capsule must move to be free, while [`penetration_depth`] does.
+/// Once the capsule's segment enters the cylinder, the signed distance of its points is no longer the depth of the
+/// capsule; [`penetration_depth`] is.
 #[kernel]
 pub(super) fn capsule_cylinder<T: Real>(
     a: Placed<Capsule<T>, T>,
@@ -129,7 +130,7 @@ pub(super) fn capsule_cylinder<T: Real>(
     let beside = active & !entered;
     if beside.any() {
         let ends = cylinder.overlap(&segment, nearest);
-        // Where the two are parallel an end is as deep as anything between.
+        // If the two are parallel, an end is as deep as any point between.
         let level = least + rounding.max(T::new(1e-9)) * scale;
         let mut first = nearest;
         for end in ends {
@@ -158,7 +159,8 @@ pub(super) fn capsule_cylinder<T: Real>(
 }
 
 impl<T: Real> LocalCylinder<T> {
-    /// What a segment is at least away, cheaply: the larger of how far beyond the caps and beyond the side it stays.
+    /// Returns a cheap lower bound of a segment's distance: the larger of its distances beyond the caps and beyond the
+    /// side.
     #[inline(always)]
     fn apart_at_least(&self, segment: &Segment<T>) -> T {
         let (c, u) = (segment.center, segment.axis);
@@ -170,11 +172,11 @@ impl<T: Real> LocalCylinder<T> {
         beyond_caps.max(beyond_side)
     }
 
-    /// The parameter of the point on a segment that is nearest to the cylinder; somewhere within, if it enters.
+    /// Returns the parameter of the segment's point nearest to the cylinder; any point inside if it enters.
     ///
-    /// With the distances s beyond the side and h beyond the caps, those below zero taken as zero, ½(s² + h²) is convex along
-    /// the segment. Its slope is s s' + h h', which Newton's method brings to zero; a step that leaves the bracket, or is not
-    /// half as long as the one before, is replaced by halving the bracket.
+    /// With the distances s beyond the side and h beyond the caps, clamped to zero, ½(s² + h²) is convex along the
+    /// segment. Newton's method finds the zero of its slope s s' + h h'. A step that leaves the bracket, or is more
+    /// than half as long as the one before, is replaced by bisection.
     #[inline(always)]
     fn nearest_on(&self, segment: &Segment<T>) -> T {
         let whole = segment.half_length;
@@ -205,7 +207,7 @@ impl<T: Real> LocalCylinder<T> {
         t
     }
 
-    /// How ½(s² + h²) changes along a segment: once and twice differentiated.
+    /// Returns the first and second derivative of ½(s² + h²) along a segment.
     #[inline(always)]
     fn slope(&self, segment: &Segment<T>, t: T) -> (T, T) {
         let (p, u) = (segment.at(t), segment.axis);
@@ -222,8 +224,8 @@ impl<T: Real> LocalCylinder<T> {
         (beyond_side * outward + beyond_cap * upward, bend)
     }
 
-    /// The ends of the stretch of a segment along the cap, or along the side, whichever the point at `nearest` faces more; that
-    /// point alone if the segment is tilted against it.
+    /// Returns the ends of the interval of a segment along the cap or the side, whichever the point at `nearest` faces
+    /// more; that point twice if the segment is tilted against it.
     #[inline(always)]
     fn overlap(&self, segment: &Segment<T>, nearest: T) -> [T; 2] {
         let (c, u) = (segment.center, segment.axis);

@@ -1,6 +1,6 @@
 //! Narrow phase: the contact points of one pair of shapes.
 //!
-//! Every kernel takes the two shapes where they are, how far apart points may be, and where to put them.
+//! Every kernel takes two placed shapes, the margin up to which points may be apart, and the output buffer.
 
 mod ball;
 mod box_box;
@@ -25,13 +25,12 @@ use clench_math::{Real, kernel};
 use placed::Placed;
 pub use separating_axis::SeparatingAxis;
 
-/// The pairs of shapes whose contacts are found: which algorithm MuJoCo takes, a closed form or its general one, and the kernel that finds
-/// them here. The names are those by which the kernels know the two shapes, the margin, the direction in which they were apart, and where
-/// the points go.
+/// Defines the supported pairs of shapes: MuJoCo's algorithm, closed form or general, and the kernel used here. The
+/// names are the kernels' arguments: the two shapes, the margin, the last separating direction, and the output.
 macro_rules! pairs {
     ($a:ident, $b:ident, $margin:ident, $axis:ident, $out:ident:
      $(($first:ident, $second:ident) $mujoco:ident => $find:expr,)*) => {
-        /// Whether [`collide`] knows the pair, given in either order.
+        /// Returns true if [`collide`] supports the pair, in either order.
         pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
             matches!(
                 (a.min(b), a.max(b)),
@@ -39,8 +38,9 @@ macro_rules! pairs {
             )
         }
 
-        /// Whether MuJoCo finds the contacts of a pair, given in either order, by its general algorithm, whose flag `multiccd` decides
-        /// between several points and the deepest alone ([`Contacts::keep_deepest`]). A height field's contacts do not depend on it.
+        /// Returns true if MuJoCo uses its general algorithm for a pair, in either order. Its flag `multiccd` selects
+        /// several points or only the deepest ([`Contacts::keep_deepest`]). It does not affect a height field's
+        /// contacts.
         pub fn multiccd_matters(a: ShapeKind, b: ShapeKind) -> bool {
             match (a.min(b), a.max(b)) {
                 $((ShapeKind::$first, ShapeKind::$second) => Algorithm::$mujoco == Algorithm::General,)*
@@ -48,8 +48,8 @@ macro_rules! pairs {
             }
         }
 
-        /// As [`collide`], for a pair that is asked about again and again: with the direction in which its shapes were apart the last
-        /// time, or that of any other pair. It saves searches and changes no result.
+        /// Computes the same as [`collide`], for a pair that is queried repeatedly. It uses the direction that last
+        /// separated these shapes, or any others, to save searches. It changes no result.
         #[kernel]
         pub fn collide_again<T: Real>(
             a: &Shape<T>,
@@ -118,8 +118,8 @@ pairs! { a, b, margin, axis, out:
 /// Replaces `out` by the points where shape `a` at `pose_a` and shape `b` at `pose_b` are at most `margin` metres
 /// apart.
 ///
-/// The kinds must come in [`ShapeKind`]'s order (`a.kind() <= b.kind()`). A pair out of order or not [`supported`] yields
-/// no points: callers refuse such pairs when they build their scene.
+/// The kinds must be in [`ShapeKind`]'s order (`a.kind() <= b.kind()`). A pair out of order or not [`supported`] yields
+/// no points; callers must reject such pairs when they build their scene.
 pub fn collide<T: Real>(
     a: &Shape<T>,
     pose_a: &Pose<T>,

@@ -1,23 +1,24 @@
-//! At most eight points on the outline of a convex polygon of contacts, which move little when the polygon does.
+//! Up to eight sample points on the outline of a convex contact polygon, which move little when the polygon does.
 //!
-//! Corners that are chosen by size or distance change places whenever two of them are equally good, so those of a body at rest
-//! would jump with every rounding error. Here each of eight sectors of directions, fixed in the body, gives one point: the mean of
-//! the corners that support the directions of the sector, each weighted by its share of them, and from there outward to the outline.
+//! Corners chosen by size or distance swap when two of them are equally good, so those of a body at rest would jump
+//! with every rounding error. Here each of eight sectors of directions, fixed in the body, contributes one point: the
+//! mean of the corners that support the directions of the sector, each weighted by its share of them, moved outward to
+//! the outline.
 //!
 //! ```text
 //! s(u)   the corner furthest along u           qₖ = ∫ s(u) du over sector k, u from one end to the other at a constant speed
 //! ```
 //!
-//! The integral of a support function's gradient changes no faster than the outline does, whichever corners come and go; a corner
-//! that is sharper than a quarter turn supports a whole sector, and is met exactly. Directions are those of the polygon made
-//! round: with its second moments C about the middle m, sectors are of equal angle in x ↦ C^(-½) (x − m).
+//! The integral of a support function's gradient changes no faster than the outline, whichever corners appear or
+//! vanish. A corner sharper than a quarter turn supports a whole sector and is sampled exactly. Directions are those of
+//! the rounded polygon: with its second moments C about the middle m, sectors have equal angles in x ↦ C^(-½) (x − m).
 
 use super::polygon::CAPACITY;
 use crate::PATCH_POINTS;
 use arrayvec::ArrayVec;
 use clench_math::{Real, Scalar, Vec3};
 
-/// The directions between sectors, the first sector being in the middle of the last and the first of them.
+/// The directions between sectors; the first sector is between the first two.
 const BETWEEN: [(f64, f64); PATCH_POINTS] = {
     // Cosine and sine of 22.5°.
     const C: f64 = 0.923_879_532_511_286_7;
@@ -40,13 +41,13 @@ pub(super) struct Outline<S> {
     middle: Vec3<S>,
     /// The inverse root of the second moments: xx, xy, yy.
     round: [S; 3],
-    /// Points nearer to each other are one.
+    /// The distance below which points are merged.
     same: S,
 }
 
 impl<S: Scalar> Outline<S> {
-    /// The convex hull of points that go round it counter-clockwise, seen along z; those nearer than `same` to the one
-    /// before are left out.
+    /// Computes the convex hull of points ordered counter-clockwise, seen along z. A point nearer than `same` to its
+    /// predecessor is omitted.
     pub(super) fn around(points: &[Vec3<S>], same: S) -> Self {
         let corners = hull(points, same);
         let (middle, round) = moments(&corners);
@@ -66,7 +67,7 @@ impl<S: Scalar> Outline<S> {
         self.middle
     }
 
-    /// One point for each sector, the first about the direction `first`; of those that coincide one.
+    /// Returns one point for each sector, the first about the direction `first`; coincident points are merged.
     pub(super) fn sample(&self, first: Vec3<S>) -> ArrayVec<Vec3<S>, PATCH_POINTS> {
         let first = self.rounded((first.x, first.y));
         let length = (first.0 * first.0 + first.1 * first.1).sqrt();
@@ -95,7 +96,7 @@ impl<S: Scalar> Outline<S> {
         points
     }
 
-    /// The point of the sector between two directions; `corner` supports the first, and afterwards the second.
+    /// Returns the point of the sector between two directions; `corner` supports the first, and afterwards the second.
     fn sector(&self, from: (S, S), to: (S, S), corner: &mut usize) -> Vec3<S> {
         let len = self.corners.len();
         let begin = *corner;
@@ -108,7 +109,7 @@ impl<S: Scalar> Outline<S> {
             if at_end <= S::ZERO {
                 break;
             }
-            // Along this share of the way the next corner takes over.
+            // From this fraction of the sector on, the next corner supports it.
             let share = if at_start < S::ZERO {
                 (at_start / (at_start - at_end)).max(passed)
             } else {
@@ -123,7 +124,7 @@ impl<S: Scalar> Outline<S> {
         if edges == 0 {
             return mean;
         }
-        // Outward from the middle, to the edge between those corners that is met first.
+        // Outward from the middle, to the first edge hit between those corners.
         let outward = mean - self.middle;
         let mut reach = S::INFINITY;
         for k in 0..edges {
@@ -145,7 +146,7 @@ impl<S: Scalar> Outline<S> {
         }
     }
 
-    /// The first corner that is furthest along a direction.
+    /// Returns the first corner that is furthest along a direction.
     fn support(&self, (x, y): (S, S)) -> usize {
         let mut best = (-S::INFINITY, 0);
         for (k, p) in self.corners.iter().enumerate() {
@@ -167,7 +168,7 @@ fn near<S: Scalar>(p: Vec3<S>, q: Vec3<S>, same: S) -> bool {
     (p.x - q.x).squared() + (p.y - q.y).squared() <= same * same
 }
 
-/// The corners of the convex hull of a star-shaped polygon (Graham 1972).
+/// Returns the corners of the convex hull of a star-shaped polygon (Graham 1972).
 fn hull<S: Scalar>(points: &[Vec3<S>], same: S) -> ArrayVec<Vec3<S>, CAPACITY> {
     let mut corners = ArrayVec::<Vec3<S>, CAPACITY>::new();
     let Some(&first) = points.first() else {
@@ -179,7 +180,7 @@ fn hull<S: Scalar>(points: &[Vec3<S>], same: S) -> ArrayVec<Vec3<S>, CAPACITY> {
             start = (*p, k);
         }
     }
-    // A corner where the way turns right, or not at all, is none.
+    // Removes corners where the path turns right or not at all.
     let straighten = |corners: &mut ArrayVec<Vec3<S>, CAPACITY>, next: Vec3<S>| {
         while let [.., p, q] = corners[..]
             && (q.x - p.x) * (next.y - q.y) - (q.y - p.y) * (next.x - q.x) <= S::ZERO
@@ -202,13 +203,13 @@ fn hull<S: Scalar>(points: &[Vec3<S>], same: S) -> ArrayVec<Vec3<S>, CAPACITY> {
     corners
 }
 
-/// The middle of a convex polygon's area, and the inverse root of its second moments about it; where it has no area, of numbers
-/// that do no harm.
+/// Computes the centroid of a convex polygon and the inverse root of its second moments about it; harmless values if it
+/// has no area.
 fn moments<S: Scalar>(corners: &[Vec3<S>]) -> (Vec3<S>, [S; 3]) {
     let Some(&origin) = corners.first() else {
         return (Vec3::ZERO, [S::ONE, S::ZERO, S::ONE]);
     };
-    // Moments of area are summed over the triangles between the first corner and each side: twice the area, first, and second moments.
+    // Sums over the triangles between the first corner and each side: twice the area, first and second moments.
     let (mut area, mut x, mut y) = (S::ZERO, S::ZERO, S::ZERO);
     let (mut xx, mut xy, mut yy) = (S::ZERO, S::ZERO, S::ZERO);
     for side in corners.windows(2).skip(1) {
@@ -225,7 +226,7 @@ fn moments<S: Scalar>(corners: &[Vec3<S>]) -> (Vec3<S>, [S; 3]) {
     let (x, y) = (x * inverse / S::new(3.0), y * inverse / S::new(3.0));
     let sixth = inverse / S::new(6.0);
     let (xx, xy, yy) = (xx * sixth - x * x, xy * sixth - x * y, yy * sixth - y * y);
-    // A very thin polygon counts as a little wider.
+    // Widen a very thin polygon a little.
     let least = (xx + yy) * S::EPSILON.sqrt();
     let (xx, yy) = (xx.max(S::ZERO) + least, yy.max(S::ZERO) + least);
     let root = (xx * yy - xy * xy).max(S::MIN_POSITIVE).sqrt();

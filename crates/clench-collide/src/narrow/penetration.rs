@@ -1,4 +1,4 @@
-//! How far a segment inside a cylinder must move to be free of it.
+//! The depth of a segment inside a cylinder.
 //!
 //! Moving by g(n) along the unit direction n just separates a cylinder (radius r, half length h, axis z) from a segment
 //! (centre c, unit axis u, half length s), where
@@ -10,7 +10,8 @@
 //! The depth is the least g. Where all terms are smooth the Hessian of g on the sphere has the eigenvalue −g < 0, so a
 //! least g > 0 lies on a crease: at n = ±z; among the horizontal n; or among the n across u. The second family is the
 //! distance from a point to the boundary of a stadium. In the third, with a = z × u, b = u × a (scaled to unit length),
-//! n = a cos θ + b sin θ, x = tan θ, k = r |u·z|, and a, b turned so that c·a, c·b ≥ 0, the slope of g has the sign of
+//! n = a cos θ + b sin θ, x = tan θ, k = r |u·z|, and a, b oriented so that c·a, c·b ≥ 0, the slope of g has the sign
+//! of
 //!
 //! ```text
 //! F(x) = h |b·z| − c·b + (c·a) x − (r² − k²) x / √(r² + k² x²),
@@ -21,10 +22,11 @@
 use super::segment::Segment;
 use clench_math::{Real, Scalar, Vec3, kernel};
 
-/// Halvings of a right angle that leave less than a rounding error of it.
+/// The number of bisections of a right angle down to rounding error.
 const HALVINGS: usize = 54;
 
-/// The depth of a segment in a cylinder about the origin along z, and the unit direction in which to move it out.
+/// Computes the depth of a segment in a cylinder about the origin along z, and the unit direction in which to move it
+/// out.
 #[kernel]
 pub(super) fn penetration_depth<T: Real>(
     radius: T,
@@ -60,13 +62,14 @@ pub(super) fn penetration_depth<T: Real>(
     best
 }
 
-/// The direction along `n`, either way, on whose side `center` lies.
+/// Returns `n` or `-n`, whichever points to the side of `center`.
 #[inline(always)]
 fn towards<T: Real>(center: Vec3<T>, n: Vec3<T>) -> Vec3<T> {
     Vec3::select(n.dot(center).lt(T::ZERO), -n, n)
 }
 
-/// The best horizontal direction: from the cylinder's axis to the nearest point of the segment, both projected along the axis.
+/// Returns the best horizontal direction: from the cylinder's axis to the nearest point of the segment, both projected
+/// along the axis.
 #[inline(always)]
 fn radial_direction<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
     let flat = |v: Vec3<T>| Vec3::new(v.x, v.y, T::ZERO);
@@ -80,7 +83,7 @@ fn radial_direction<T: Real>(segment: &Segment<T>, spare: Vec3<T>) -> Vec3<T> {
     Vec3::select(on_axis, spare, unit)
 }
 
-/// The best direction across the segment, between `a` and `b`.
+/// Returns the best direction across the segment, between `a` and `b`.
 #[inline(always)]
 fn direction_across_segment<T: Real>(
     radius: T,
@@ -124,9 +127,9 @@ fn direction_across_segment<T: Real>(
     n * (T::ONE / n.norm())
 }
 
-/// Where along the segment it is deepest, along the `outward` direction that [`penetration_depth`] found: at an end, or, where
-/// that direction is across the segment, below the circle of the cap or the side. Any point will do between two parallel flats; then
-/// it is `otherwise`.
+/// Returns the parameter of the segment's deepest point along the direction `outward` found by [`penetration_depth`]:
+/// at an end, or, if the direction is across the segment, below the circle of the cap or the side. Between two parallel
+/// flats any point is valid and it returns `otherwise`.
 #[kernel]
 pub(super) fn deepest<T: Real>(
     radius: T,

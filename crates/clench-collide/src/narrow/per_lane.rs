@@ -1,4 +1,4 @@
-//! Pairs whose decisions branch too much for lanes: each lane is computed on its own, in scalar code.
+//! Pairs that branch too much for lanes: each lane is computed separately, in scalar code.
 
 use super::placed::Placed;
 use crate::shape::Solid;
@@ -6,7 +6,7 @@ use crate::{ContactPoint, Contacts, MAX_POINTS, frame_from_normal};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
-/// A contact before it has a frame.
+/// A contact without a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point<S> {
     pub position: Vec3<S>,
@@ -17,7 +17,7 @@ pub(super) struct Point<S> {
 /// The points of one environment.
 pub(super) type Points<S> = ArrayVec<Point<S>, MAX_POINTS>;
 
-/// Puts the points that `pair` finds for each lane into `out`, which is empty; those of equal rank share a slot.
+/// Writes the points that `pair` finds for each lane into `out`, which is empty; points of equal rank share a slot.
 pub(super) fn per_lane<T: Real, A: Solid<T>, B: Solid<T>>(
     a: Placed<A, T>,
     b: Placed<B, T>,
@@ -36,7 +36,7 @@ pub(super) fn per_lane<T: Real, A: Solid<T>, B: Solid<T>>(
     });
 }
 
-/// The same for some of the lanes, of which `pair` is told the number.
+/// Computes the same for some of the lanes and passes the lane index to `pair`.
 pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
     wanted: T::Mask,
     a: Placed<A, T>,
@@ -66,7 +66,7 @@ pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
         pair(lane, a, b, margin.lane(lane), &mut points);
         let mut frame = Mat3::IDENTITY;
         for (k, point) in points.iter().enumerate() {
-            // Most points of a pair have one normal.
+            // Most points of a pair have the same normal.
             if k == 0 || point.normal != frame.rows[0] {
                 frame = frame_from_normal(point.normal);
             }

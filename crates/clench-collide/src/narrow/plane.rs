@@ -1,11 +1,11 @@
-//! Everything that can lie on a plane. The plane is first, so normals point out of it.
+//! Shapes on a plane. The plane is the first shape, so normals point out of it.
 
 use super::placed::Placed;
 use crate::{Capsule, ContactPoint, Contacts, Cuboid, Cylinder, Ellipsoid, Plane, Sphere};
 use crate::{frame_along, frame_from_normal};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
-/// Adds the point of a surface that is `distance` above the plane.
+/// Adds the contact of a surface point that is `distance` above the plane.
 #[inline(always)]
 fn add<T: Real>(
     surface: Vec3<T>,
@@ -22,7 +22,7 @@ fn add<T: Real>(
     });
 }
 
-/// The plane's normal and the height of a shape's origin above it.
+/// Returns the plane's normal and the height of a shape's origin above it.
 #[inline(always)]
 fn height<X, T: Real>(plane: Placed<Plane<T>, T>, shape: Placed<X, T>) -> (Vec3<T>, T) {
     let normal = plane.pose.axis();
@@ -47,7 +47,7 @@ pub(super) fn plane_sphere<T: Real>(
     }
 }
 
-/// The two ends of the capsule, the first tangent along its axis.
+/// Adds the two ends of the capsule; the first tangent is along its axis.
 #[kernel]
 pub(super) fn plane_capsule<T: Real>(
     a: Placed<Plane<T>, T>,
@@ -71,7 +71,7 @@ pub(super) fn plane_capsule<T: Real>(
     add(middle - half, distances[1], &frame, active[1], out);
 }
 
-/// The lowest point: the ellipsoid's support against the normal.
+/// Adds the lowest point: the ellipsoid's support against the normal.
 #[kernel]
 pub(super) fn plane_ellipsoid<T: Real>(
     a: Placed<Plane<T>, T>,
@@ -86,7 +86,7 @@ pub(super) fn plane_ellipsoid<T: Real>(
     let distance = above - depth;
     let active = distance.le(margin);
     if active.any() {
-        // A point, where all semi-axes are zero.
+        // The ellipsoid is a point if all semi-axes are zero.
         let length = depth.max(T::splat(T::Scalar::MIN_POSITIVE));
         let support = scaled.scale_by(size) * (T::ONE / length);
         let surface = b.pose.position - b.pose.rotation * support;
@@ -94,7 +94,8 @@ pub(super) fn plane_ellipsoid<T: Real>(
     }
 }
 
-/// The lowest points of the circles of both caps, then two more on the lower circle, so that the three there form a regular triangle.
+/// Adds the lowest points of both cap circles, then two more on the lower circle that form a regular triangle with the
+/// first.
 #[kernel]
 pub(super) fn plane_cylinder<T: Real>(
     a: Placed<Plane<T>, T>,
@@ -105,7 +106,7 @@ pub(super) fn plane_cylinder<T: Real>(
     let (radius, half_length) = (b.shape.radius, b.shape.half_length);
     let center = b.pose.position;
     let (normal, above) = height(a, b);
-    // The axis, turned to point towards the plane, and the radius that points most steeply towards it.
+    // The axis, oriented towards the plane, and the radius that points most steeply towards it.
     let up = b.pose.axis();
     let cosine = normal.dot(up);
     let flip = cosine.gt(T::ZERO);
@@ -143,7 +144,7 @@ pub(super) fn plane_cylinder<T: Real>(
     }
 }
 
-/// The corners on the lower side, at most four.
+/// Adds the corners on the lower side, at most four.
 #[kernel]
 pub(super) fn plane_box<T: Real>(
     a: Placed<Plane<T>, T>,
@@ -166,7 +167,7 @@ pub(super) fn plane_box<T: Real>(
         let signs = Vec3::new(sign(0), sign(1), sign(2));
         let rise = local.dot(signs);
         let distance = above + rise;
-        // Corners level with the centre are many when an edge points down: four are enough.
+        // If an edge points down, many corners are level with the centre: four are enough.
         let active = distance.le(margin) & rise.le(T::ZERO) & count.lt(T::new(4.0));
         if active.any() {
             count += T::select(active, T::ONE, T::ZERO);

@@ -1,8 +1,8 @@
-//! A hull on a plane.
+//! Convex hulls on a plane.
 //!
-//! Where a face of few corners lies on the plane, these and the deepest vertex; of one with many, points of its outline (see
-//! [`Outline`]). If there are fewer points than there is room for, other vertices within the margin around the deepest one:
-//! the vertices of a hull on one side of a plane are connected by edges, so walking over neighbours finds them.
+//! If a face with few corners lies on the plane, the contacts are its corners and the deepest vertex; for many corners,
+//! points of its outline (see [`Outline`]). Other vertices within the margin around the deepest one fill the remaining
+//! capacity: those on one side of a plane are connected by edges, so traversing neighbours finds them.
 
 use super::outline::Outline;
 use super::per_lane::{Point, Points, per_lane_where};
@@ -13,7 +13,8 @@ use crate::{Contacts, Hull, Mesh, PATCH_POINTS, Plane, allowance};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
-/// Shares of the hull's extent: corners of a face nearer to each other are one; its outline may miss the deepest vertex by so much.
+/// Relative to the hull: the distance below which face corners are merged, and the allowed error of the outline's
+/// depth.
 const SAME: f64 = 1e-5;
 const MISSED: f64 = 1e-6;
 
@@ -24,7 +25,7 @@ pub(super) fn plane_mesh<T: Real>(
     margin: T,
     out: &mut Contacts<T>,
 ) {
-    // The lowest corner of the box about the mesh; a NaN is left to the search.
+    // The lowest corner of the mesh's bounding box; NaN is left to the search.
     let up = b.pose.rotation.transpose_mul(a.pose.axis());
     let height = a.pose.axis().dot(b.pose.position - a.pose.position);
     let above = (height - b.shape.reach_along(up) * allowance()).gt(margin);
@@ -96,7 +97,7 @@ fn corner<S: Scalar>(hull: &Hull, vertex: u32) -> Vec3<S> {
     Vec3::from_f64(hull.vertices()[vertex as usize].to_array())
 }
 
-/// The deepest vertex, those of the face that lies on the plane, and others around: all that are near, while there is room.
+/// Collects near vertices up to the capacity: the deepest, those of the face on the plane, then their neighbours.
 fn around<S: Scalar>(
     hull: &Hull,
     deepest: usize,
@@ -106,7 +107,7 @@ fn around<S: Scalar>(
 ) {
     let mut visited = ArrayVec::<u32, PATCH_POINTS>::new();
     let mut visit = |vertex: u32, visited: &mut ArrayVec<u32, PATCH_POINTS>| {
-        // Most are not near.
+        // Most vertices are not near.
         if let Some(candidate) = near(vertex)
             && !visited.is_full()
             && !visited.contains(&vertex)
@@ -131,8 +132,8 @@ fn around<S: Scalar>(
     }
 }
 
-/// A sample of the outline of a face with many corners, beginning along its first edge. Where that misses the deepest vertex, the outline is
-/// sampled anew, beginning with the deepest vertex.
+/// Samples the outline of a face with many corners, starting along its first edge. If that misses the deepest vertex,
+/// samples again starting with it.
 fn sample<S: Scalar>(
     hull: &Hull,
     face: usize,
@@ -163,7 +164,7 @@ fn sample<S: Scalar>(
         candidates.extend(outline.sample(first).iter().map(place));
         candidates[0] = lowest;
     } else if let Some(deepest) = candidates.iter_mut().find(|c| c.height <= least) {
-        // What is left of the difference is too small to move a point for, but the contact has the true depth.
+        // The remaining difference is too small to move a point, but the contact gets the true depth.
         deepest.height = least.min(lowest.height);
     }
 }

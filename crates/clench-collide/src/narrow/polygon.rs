@@ -1,15 +1,15 @@
-//! Convex polygons projected along a direction, and clipping them.
+//! Convex polygons projected along a direction, and their clipping.
 
 use crate::shape::MAX_CORNERS;
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::cmp::Ordering;
 
-/// Room for corners. Of each side of a face, both ends of a chord may be corners of its overlap with another, and so may all
-/// corners of both.
+/// The capacity for corners. For each side of a face, both ends of a chord may be corners of its overlap with another
+/// face, and so may all corners of both.
 pub(super) const CAPACITY: usize = 4 * MAX_CORNERS;
 
-/// A convex polygon, or a segment (two corners): x and y in the plane across the line of sight, z the height along it.
+/// A convex polygon, or a segment (two corners): x and y in the projection plane, z the height above it.
 #[derive(Clone, Debug)]
 pub(super) struct Polygon<S> {
     corners: ArrayVec<Vec3<S>, CAPACITY>,
@@ -28,11 +28,11 @@ impl<S: Scalar> Polygon<S> {
         self.corners.clear();
     }
     pub(super) fn push(&mut self, corner: Vec3<S>) {
-        // Only rounding could make more corners than there is room for, and then they coincide with others.
+        // Only rounding could exceed the capacity, and then the corners coincide with others.
         let _ = self.corners.try_push(corner);
     }
 
-    /// Leaves the part where x·`x` + y·`y` is at most `limit` (Sutherland–Hodgman).
+    /// Keeps the part where x·`x` + y·`y` is at most `limit` (Sutherland–Hodgman).
     pub(super) fn clip(&mut self, (x, y): (S, S), limit: S) {
         let beyond = |p: Vec3<S>| x * p.x + y * p.y - limit;
         if self.corners.iter().all(|p| beyond(*p) <= S::ZERO) {
@@ -40,7 +40,7 @@ impl<S: Scalar> Polygon<S> {
         }
         let mut whole = ArrayVec::<Vec3<S>, CAPACITY>::new();
         whole.extend(self.corners.drain(..));
-        // The way back along a segment would meet the line a second time.
+        // The return along a segment would cross the line a second time.
         let sides = if whole.len() == 2 { 1 } else { whole.len() };
         for (k, &p) in whole.iter().enumerate() {
             let q = whole[(k + 1) % whole.len()];
@@ -55,7 +55,7 @@ impl<S: Scalar> Polygon<S> {
         }
     }
 
-    /// Puts the corners in order around their middle, beginning with the first. Their heights are lost.
+    /// Sorts the corners around their middle, starting with the first. It overwrites their heights.
     pub(super) fn sort_around(&mut self) {
         let Some(&first) = self.corners.first() else {
             return;
@@ -64,7 +64,7 @@ impl<S: Scalar> Polygon<S> {
         let sum = self.corners.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
         let middle = sum * share;
         let start = first - middle;
-        // Grows with the angle from the first corner, 0 to 4. Corners next to the first come with it.
+        // Grows with the angle from the first corner, 0 to 4; keeps corners next to the first with it.
         let tiny = S::EPSILON * S::new(1e3);
         for p in &mut self.corners {
             let arm = *p - middle;

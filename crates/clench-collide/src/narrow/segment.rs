@@ -1,4 +1,4 @@
-//! The middle line of a capsule.
+//! The axis segment of a capsule.
 
 use super::placed::Placed;
 use crate::Capsule;
@@ -8,13 +8,13 @@ use clench_math::{Real, Vec3};
 #[derive(Clone, Copy)]
 pub(super) struct Segment<T> {
     pub center: Vec3<T>,
-    /// Unit direction.
+    /// The unit direction.
     pub axis: Vec3<T>,
     pub half_length: T,
 }
 
 impl<T: Real> Segment<T> {
-    /// The middle line of a capsule, in the world.
+    /// Returns the axis segment of a capsule, in world coordinates.
     #[inline(always)]
     pub(super) fn of(capsule: Placed<Capsule<T>, T>) -> Self {
         Segment {
@@ -23,12 +23,12 @@ impl<T: Real> Segment<T> {
             half_length: capsule.shape.half_length,
         }
     }
-    /// The point at a signed length from the middle.
+    /// Returns the point at a signed length from the middle.
     #[inline(always)]
     pub(super) fn at(&self, t: T) -> Vec3<T> {
         self.center + self.axis * t
     }
-    /// The nearest parameter on the segment.
+    /// Returns the nearest parameter on the segment.
     #[inline(always)]
     pub(super) fn clamp(&self, t: T) -> T {
         t.clamp(-self.half_length, self.half_length)

@@ -1,25 +1,25 @@
-//! What an earlier search tells of two shapes that were apart: a direction that may show it again.
+//! A cached direction that separated two shapes and may do so again.
 //!
-//! Along a unit direction d from the first shape to the second the gap between them is d·(p_b − p_a) − s_a(d) − s_b(−d), s being their
-//! support functions; no gap is larger than their distance. A positive one is a proof that needs no search, whatever the direction comes from.
-//! It is believed only where it exceeds the margin by more than a search may be wrong: so an old direction saves a search that would have
-//! found nothing, and changes no result.
+//! Along a unit direction d from the first shape to the second the gap between them is d·(p_b − p_a) − s_a(d) −
+//! s_b(−d), where s are their support functions. No gap exceeds their distance, so a gap beyond the margin proves
+//! separation, wherever the direction comes from. It is accepted only if it exceeds the margin by more than the error
+//! of a search. So a cached direction only skips a search that would find nothing, and changes no result.
 
 use super::placed::AnyPlaced;
 use crate::shape::Solid;
 use crate::{Hull, Mesh, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
-/// A search may be wrong by this share of the smaller shape, which is twice what the search itself allows ...
+/// The error of a search relative to the smaller shape, twice what the search itself allows ...
 const SLACK: f64 = 4e-6;
-/// ... and by this many times the rounding of the largest coordinate.
+/// ... plus this multiple of the rounding error of the largest coordinate.
 const SLACK_UNITS: f64 = 256.0;
 
-/// A direction along which two shapes were apart when last looked at, in each lane. [`collide_again`](crate::collide_again) uses and
-/// renews it; any unit vector will do, and which it is changes no contact.
+/// The direction that last separated two shapes, in each lane. [`collide_again`](crate::collide_again) uses and updates
+/// it. Any unit vector is valid, and none changes a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparatingAxis<T> {
-    /// In the frame of the first shape, or of the world where that is a sphere.
+    /// The direction in the frame of the first shape, or of the world if that is a sphere.
     direction: Vec3<T>,
 }
 
@@ -31,7 +31,7 @@ impl<T: Real> Default for SeparatingAxis<T> {
 }
 
 impl<T: Real> SeparatingAxis<T> {
-    /// Where the shapes are surely more than `margin` apart; the boxes about hulls are tried first.
+    /// Returns the lanes with the shapes certainly more than `margin` apart; tests bounding boxes before hulls.
     #[inline(always)]
     pub(super) fn separates(&self, a: AnyPlaced<T>, b: AnyPlaced<T>, margin: T) -> T::Mask {
         let along = match a.shape {
@@ -56,14 +56,14 @@ impl<T: Real> SeparatingAxis<T> {
         far | (open & (centers - reach).gt(least))
     }
 
-    /// Takes another direction in some lanes, where it is a unit vector.
+    /// Replaces the direction in some lanes, if the new one is a unit vector.
     #[inline(always)]
     pub(super) fn renew(&mut self, lanes: T::Mask, direction: Vec3<T>) {
         let taken = lanes & is_unit(direction);
         self.direction = Vec3::select(taken, direction, self.direction);
     }
 
-    /// Keeps what a search has found for a lane, if that is a unit vector.
+    /// Stores the direction found by a search for a lane, if it is a unit vector.
     #[inline(always)]
     pub(super) fn set(&mut self, lane: usize, direction: Vec3<T::Scalar>) {
         if !is_unit(direction).any() {
@@ -75,13 +75,13 @@ impl<T: Real> SeparatingAxis<T> {
     }
 }
 
-/// Without this a degenerate pair could leave no direction at all, along which any two shapes are 0 apart.
+/// Tests for a unit vector. A degenerate pair could yield zero, along which any two shapes are 0 apart.
 #[inline(always)]
 fn is_unit<T: Real>(direction: Vec3<T>) -> T::Mask {
     (direction.norm_squared() - T::ONE).abs().lt(T::new(1e-3))
 }
 
-/// The support function of a bounded convex shape along a local unit direction, in some of the lanes.
+/// Returns the support function of a bounded convex shape along a local unit direction, in some lanes.
 #[inline(always)]
 fn support<T: Real>(shape: &Shape<T>, d: Vec3<T>, lanes: T::Mask) -> T {
     let Some(hull) = hull(shape) else {
@@ -103,7 +103,7 @@ fn hull<'a, T>(shape: &Shape<'a, T>) -> Option<&'a Hull> {
     }
 }
 
-/// How far a hull reaches along a direction.
+/// Returns the support function of a hull.
 fn hull_reach(hull: &Hull, d: Vec3<f64>) -> f64 {
     hull.vertices()[hull.support(d)].dot(d)
 }

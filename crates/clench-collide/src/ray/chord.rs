@@ -1,9 +1,9 @@
-//! The part of a line within a convex body.
+//! The interval of a line within a convex body.
 
 use super::line::Line;
 use clench_math::{Real, Scalar, Vec3};
 
-/// Where a line enters and leaves, and the normals out of the body there. It misses where it would leave before it enters.
+/// The entry and exit distances of a line, and the outward normals there. It is empty if `leave` is less than `enter`.
 #[derive(Clone, Copy)]
 pub(crate) struct Chord<T> {
     pub enter: T,
@@ -13,7 +13,7 @@ pub(crate) struct Chord<T> {
 }
 
 impl<T: Real> Chord<T> {
-    /// The whole line.
+    /// Returns the whole line.
     #[inline(always)]
     pub(crate) fn whole() -> Self {
         Chord {
@@ -24,18 +24,18 @@ impl<T: Real> Chord<T> {
         }
     }
 
-    /// The part within a ball about a point.
+    /// Returns the interval within a ball.
     #[inline(always)]
     pub(crate) fn of_ball(line: &Line<T>, center: Vec3<T>, radius: T) -> Self {
         let offset = line.origin - center;
         let back = offset.dot(line.along);
-        // From the nearest point of the line, since the origin may be far away.
+        // Measured from the nearest point of the line, since the origin may be far away.
         let square = radius * radius - (offset - line.along * back).norm_squared();
         let half = square.max(T::ZERO).sqrt();
         Chord::whole().between(-back - half, -back + half, square.ge(T::ZERO))
     }
 
-    /// The part within the unbounded cylinder about the z axis.
+    /// Returns the interval within the unbounded cylinder about the z axis.
     #[inline(always)]
     pub(crate) fn of_tube(line: &Line<T>, radius: T) -> Self {
         let (o, u) = (line.origin, line.along);
@@ -61,7 +61,7 @@ impl<T: Real> Chord<T> {
         }
     }
 
-    /// The part between two planes across an axis.
+    /// Intersects with the slab between two planes across an axis.
     #[inline(always)]
     pub(crate) fn slab(self, line: &Line<T>, axis: usize, low: T, high: T) -> Self {
         let (o, u) = (line.origin[axis], line.along[axis]);
@@ -81,7 +81,7 @@ impl<T: Real> Chord<T> {
         )
     }
 
-    /// Begins no earlier and ends no later than this, with these normals.
+    /// Intersects with another interval: its entry and exit, each with a normal.
     #[inline(always)]
     pub(crate) fn cut(self, (enter, entered): (T, Vec3<T>), (leave, left): (T, Vec3<T>)) -> Self {
         let (later, earlier) = (enter.gt(self.enter), leave.lt(self.leave));
@@ -93,7 +93,7 @@ impl<T: Real> Chord<T> {
         }
     }
 
-    /// The part within either of two bodies whose union is convex.
+    /// Returns the interval within the union of two bodies, which must be convex.
     #[inline(always)]
     pub(crate) fn or(self, other: Self) -> Self {
         let infinity = T::new(f64::INFINITY);
@@ -108,7 +108,8 @@ impl<T: Real> Chord<T> {
         }
     }
 
-    /// Where the line crosses the surface first, not before its origin, and the normal there. Infinite if nowhere.
+    /// Returns the first crossing of the surface at or after the origin, and its normal. The distance is infinite if
+    /// there is none.
     #[inline(always)]
     pub(crate) fn first(&self) -> (T, Vec3<T>) {
         let outside = self.enter.ge(T::ZERO);

@@ -1,4 +1,4 @@
-//! Rays, what they hit, and a ray in the frame of a shape.
+//! Rays, hits, and rays in the frame of a shape.
 
 use crate::Pose;
 use clench_math::{Real, Scalar, Vec3};
@@ -11,7 +11,7 @@ pub(crate) struct Line<T> {
 }
 
 impl<T: Real> Line<T> {
-    /// The line of a ray, and what its distances are to be divided by.
+    /// Returns the line of a ray, and the divisor of its distances.
     #[inline(always)]
     pub(super) fn of(pose: &Pose<T>, ray: &Ray<T>) -> (Self, Unit<T>) {
         let (direction, unit) = Unit::of(ray.direction);
@@ -22,13 +22,13 @@ impl<T: Real> Line<T> {
         (line, unit)
     }
 
-    /// The point so far along.
+    /// Returns the point at a distance.
     #[inline(always)]
     pub(crate) fn at(&self, distance: T) -> Vec3<T> {
         self.origin + self.along * distance
     }
 
-    /// What branches too much for lanes, for each of them: how far along the line, and the normal, if there is a hit.
+    /// Computes hits that branch too much for lanes lane by lane. `cast` returns the distance and the normal of a hit.
     pub(crate) fn in_each_lane(
         &self,
         cast: impl Fn(&Line<f64>) -> Option<(f64, Vec3<f64>)>,
@@ -58,18 +58,18 @@ impl<T: Real> Line<T> {
     }
 }
 
-/// The length of a direction, as a product that neither overflows nor vanishes.
+/// The length of a direction, as a product that neither overflows nor underflows.
 #[derive(Clone, Copy)]
 pub(super) struct Unit<T: Real> {
-    /// The largest part of the direction, and its length in units of that.
+    /// The largest component of the direction, and the length in units of it.
     pub(super) largest: T,
     pub(super) length: T,
-    /// Where the direction has a length.
+    /// The lanes in which the direction has a length.
     leads: T::Mask,
 }
 
 impl<T: Real> Unit<T> {
-    /// A direction in units of its largest part; up, where it has none.
+    /// Scales a direction by its largest component; returns z if it is zero.
     #[inline(always)]
     pub(super) fn of(d: Vec3<T>) -> (Vec3<T>, Self) {
         let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
@@ -89,7 +89,7 @@ impl<T: Real> Unit<T> {
         (direction, unit)
     }
 
-    /// The hit so far along a line, with a local normal, if it is one.
+    /// Returns the hit at a distance with a local normal, if valid.
     #[inline(always)]
     pub(super) fn hit(&self, pose: &Pose<T>, distance: T, normal: Vec3<T>) -> Hit<T> {
         let normal = pose.rotation * normal;
@@ -109,23 +109,23 @@ impl<T: Real> Unit<T> {
 /// A half line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray<T> {
-    /// Where it begins, in world coordinates, m.
+    /// The start of the ray, in world coordinates, m.
     pub origin: Vec3<T>,
-    /// Where it leads. Its length is the unit of distances along the ray.
+    /// The direction. Its length is the unit of distances along the ray.
     pub direction: Vec3<T>,
 }
 
-/// Where a ray hits a shape.
+/// The hit of a ray on a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<T> {
-    /// From the origin, in lengths of the ray's direction; infinite where the ray hits nothing.
+    /// The distance from the origin, in lengths of the ray's direction; infinite if there is no hit.
     pub distance: T,
-    /// The unit vector out of the shape there, in world coordinates; zero where the ray hits nothing.
+    /// The outward unit normal, in world coordinates; zero if there is no hit.
     pub normal: Vec3<T>,
 }
 
 impl<T: Real> Hit<T> {
-    /// None.
+    /// Returns no hit.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         Hit {

@@ -1,7 +1,7 @@
-//! Rays: where they hit a shape first.
+//! Rays and their first hit on a shape.
 //!
-//! As in MuJoCo, a ray that begins inside a shape hits it where it leaves, and a plane is hit from above only. All normals
-//! point out of the shape, whichever side the ray comes from.
+//! As in MuJoCo, a ray that starts inside a shape hits it where it leaves, and a plane is hit from above only. All
+//! normals point out of the shape, whichever side the ray comes from.
 
 pub(crate) mod chord;
 pub(crate) mod line;
@@ -18,11 +18,11 @@ use crate::shape::Solid;
 use crate::{Pose, Shape};
 use clench_math::{Real, kernel};
 
-/// Where a ray hits a shape first. A direction without length, and numbers that are not finite, hit nothing.
+/// Computes the first hit of a ray on a shape. A zero direction or a number that is not finite hits nothing.
 ///
-/// A plane whose size along x or y is positive ends there, at so much from its origin, for rays alone (as MuJoCo draws it). A
-/// [`Mesh`](crate::Mesh) is hit on its hull; [`TriangleMesh`] is for its own triangles. A height field is hit on its
-/// surface, its sides or its bottom.
+/// For rays alone, a plane whose size along x or y is positive ends at that distance from its origin (as MuJoCo draws
+/// it). A [`Mesh`](crate::Mesh) is hit on its hull; use [`TriangleMesh`] for its own triangles. A height field is hit
+/// on its surface, its sides or its bottom.
 ///
 /// ```
 /// use clench_collide::{Pose, Ray, Shape, ShapeKind, ray};

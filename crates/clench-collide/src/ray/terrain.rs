@@ -1,18 +1,18 @@
-//! Rays against height fields: from cell to cell.
+//! Rays against height fields, cell by cell.
 //!
-//! Within one triangle of a cell the height of the ray over the surface changes linearly, so a ray that is above where it enters
-//! and below where it leaves has hit the surface in between; and since neighbours agree about their common edge, no ray slips
-//! through. A ray passes at most as many cells as there are rows and columns.
+//! Within a triangle the height of the ray over the surface is linear, so a ray that enters above and leaves below has
+//! hit the surface in between. Neighbours agree about their common edge, so no ray slips through. A ray passes at most
+//! as many cells as there are rows and columns.
 //!
-//! As in MuJoCo 4.0 the terrain stands on its base as one solid on another: a ray that starts within one of them also meets the
-//! plane between the two.
+//! As in MuJoCo 4.0, the terrain and its base are two solids, one on the other: a ray that starts within one of them
+//! also hits the plane between the two.
 
 use super::chord::Chord;
 use super::line::Line;
 use crate::HeightField;
 use clench_math::Vec3;
 
-/// The field's highest point is this much lower than the box that a ray is followed in.
+/// The relative height of the bounding box above the highest point.
 const HEADROOM: f64 = 1e-9;
 
 pub(crate) fn height_field(
@@ -36,7 +36,7 @@ pub(crate) fn height_field(
     let mut walk = Walk::new(field, &line, chord.enter.max(0.0));
     let above = walk.height(walk.now) >= 0.0;
     if !above && chord.enter >= 0.0 {
-        // Through a side or the bottom.
+        // The ray enters through a side or the bottom.
         return Some((chord.enter, chord.entered));
     }
     let in_terrain = !above && origin.z > 0.0;
@@ -64,15 +64,15 @@ pub(crate) fn height_field(
     (!above).then_some((chord.leave, normal))
 }
 
-/// A ray on its way over the cells.
+/// The traversal of cells along a ray.
 struct Walk<'a> {
     field: &'a HeightField,
     line: &'a Line<f64>,
-    /// Lengths of a cell along x and y, m.
+    /// The lengths of a cell along x and y, m.
     step: [f64; 2],
-    /// Column and row.
+    /// The column and row.
     cell: [usize; 2],
-    /// How far along the line it is, and where the cell's borders across x and y are ahead.
+    /// The current distance along the line, and the distances of the cell's next borders across x and y.
     now: f64,
     next: (f64, f64),
 }
@@ -102,7 +102,7 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    /// Where the line crosses the next border of the cell along an axis.
+    /// Returns the distance of the cell's next border along an axis.
     fn border(&self, axis: usize) -> f64 {
         let (o, u) = (self.line.origin[axis], self.line.along[axis]);
         let half = self.field.size()[axis];
@@ -114,7 +114,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Into the next cell, if there is one.
+    /// Moves to the next cell, if there is one.
     fn advance(&mut self) {
         let axis = usize::from(self.next.1 < self.next.0);
         let count = [self.field.columns() - 1, self.field.rows() - 1][axis];
@@ -136,7 +136,7 @@ impl<'a> Walk<'a> {
         *[&mut self.next.0, &mut self.next.1][axis] = next;
     }
 
-    /// Place within the cell, each from 0 to 1.
+    /// Returns the position in the cell, from 0 to 1.
     fn place(&self, at: f64) -> [f64; 2] {
         let p = self.line.at(at);
         [0, 1].map(|axis| {
@@ -145,7 +145,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Height of the lowest corner, and the slopes of a triangle along x and y, in units of the cell.
+    /// Returns the first corner's height and a triangle's slopes along x and y, in units of the cell.
     fn slopes(&self, right: bool) -> (f64, f64, f64) {
         let z = |r: usize, c: usize| self.field.point(self.cell[1] + r, self.cell[0] + c).z;
         let (first, last) = (z(0, 0), z(1, 1));
@@ -156,20 +156,20 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The height of the line over the triangle on the right of the cell's diagonal, or on its left.
+    /// Returns the height of the line over the right or left triangle of the cell.
     fn over(&self, at: f64, right: bool) -> f64 {
         let [x, y] = self.place(at);
         let (z, along_x, along_y) = self.slopes(right);
         self.line.at(at).z - (z + along_x * x + along_y * y)
     }
 
-    /// The height of the line over the surface.
+    /// Returns the height of the line over the surface.
     fn height(&self, at: f64) -> f64 {
         let [x, y] = self.place(at);
         self.over(at, x > y)
     }
 
-    /// Where the line crosses the surface between here and `end`, and the normal there.
+    /// Returns the first crossing with the surface up to `end`, and its normal.
     fn cross(&self, end: f64, above: bool) -> Option<(f64, Vec3<f64>)> {
         let aside = |at| {
             let [x, y] = self.place(at);

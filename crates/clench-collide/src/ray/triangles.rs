@@ -1,37 +1,38 @@
-//! Rays against the triangles of a mesh, found by a tree of boxes.
+//! Rays against the triangles of a mesh, with a tree of boxes.
 //!
-//! A ray and a triangle are sheared so that the ray is the z axis; then the signs of three areas say on which side of each edge
-//! the ray passes, the same for both triangles at an edge: no ray slips between them (Woop, Benthin & Wald 2013).
+//! Ray and triangle are sheared so that the ray is the z axis. Then the signs of three areas tell on which side of each
+//! edge the ray passes. They are the same for both triangles at an edge, so no ray passes between them (Woop, Benthin &
+//! Wald 2013).
 
 use super::line::{Hit, Line, Ray};
 use crate::Pose;
 use clench_math::{Real, Vec3, kernel};
 
-/// A leaf holds at most this many triangles.
+/// The maximum number of triangles in a leaf.
 const LEAF: usize = 4;
-/// Nodes that wait to be visited: no more than the tree is deep, and 2³² triangles make it 32 deep.
+/// The capacity for pending nodes: at most the depth of the tree, which is 32 for 2³² triangles.
 const STACK: usize = 64;
 
-/// The triangles of a mesh as they are, with what lies inside its hull: for rays.
+/// The triangles of a mesh, including those inside its hull, for rays.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     vertices: Vec<Vec3<f64>>,
-    /// Corners, in the order of the leaves.
+    /// The corners of each triangle, in leaf order.
     faces: Vec<[u32; 3]>,
-    /// The first is the root; both children of a node are next to each other.
+    /// The tree, root first; the two children of a node are adjacent.
     nodes: Vec<TriangleNode>,
 }
 
-/// Triangles that no mesh can have.
+/// An error in the triangles of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TriangleMeshError {
-    /// A corner that is no vertex.
+    /// A corner is not a vertex.
     #[error("face {0} has a corner beyond the {1} vertices")]
     Corner(usize, usize),
-    /// A coordinate that is not finite.
+    /// A coordinate is not finite.
     #[error("vertex {0} has a coordinate that is not finite")]
     NotFinite(usize),
-    /// More faces than can be numbered.
+    /// Too many faces to index.
     #[error("{0} faces are too many")]
     TooMany(usize),
 }
@@ -39,21 +40,21 @@ pub enum TriangleMeshError {
 /// A box of the tree over the triangles of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleNode {
-    /// The least coordinates of its corners, m.
+    /// The lowest coordinates, m.
     pub low: Vec3<f64>,
-    /// The largest, m.
+    /// The highest coordinates, m.
     pub high: Vec3<f64>,
-    /// The first face, or the first of two children that are next to each other.
+    /// The first face of a leaf, or the first of two adjacent children.
     pub first: u32,
-    /// Faces of a leaf; 0 for a node with children.
+    /// The number of faces of a leaf; 0 for a node with children.
     pub count: u32,
 }
 
 impl TriangleMesh {
-    /// A mesh of triangles, each three indices of `vertices`, counter-clockwise seen from outside.
+    /// Creates a mesh of triangles, each given by three indices of `vertices`, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// Corners that do not exist, coordinates that are not finite.
+    /// Returns an error if a corner does not exist or a coordinate is not finite.
     pub fn new(
         vertices: Vec<Vec3<f64>>,
         mut faces: Vec<[u32; 3]>,
@@ -83,23 +84,23 @@ impl TriangleMesh {
         })
     }
 
-    /// Corners of the triangles, m.
+    /// Returns the corners of the triangles, m.
     pub fn vertices(&self) -> &[Vec3<f64>] {
         &self.vertices
     }
 
-    /// Corners of each triangle, as numbers of vertices, in the order of the leaves.
+    /// Returns the vertex indices of each triangle, in the order of the leaves.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// The tree of boxes, the first of which is its root; none where there are no triangles.
+    /// Returns the tree of boxes, root first.
     pub fn nodes(&self) -> &[TriangleNode] {
         &self.nodes
     }
 
-    /// Where a ray hits a triangle first, from either side. The normal is on the side from which its corners are
-    /// counter-clockwise.
+    /// Computes the first hit of a ray on a triangle, from either side. The normal points to the side from which the
+    /// corners are counter-clockwise.
     #[kernel]
     pub fn ray<T: Real>(&self, pose: &Pose<T>, ray: &Ray<T>) -> Hit<T> {
         let (line, unit) = Line::of(pose, ray);
@@ -127,7 +128,7 @@ impl TriangleMesh {
                 }
                 continue;
             }
-            // The nearer child is visited first.
+            // Visit the nearer child first.
             let mut children = [first, first + 1].map(|child| {
                 let enters = shear.enters(&self.nodes[child], best.0);
                 enters.map(|at| (at, child as u32))
@@ -149,7 +150,7 @@ impl TriangleMesh {
     }
 }
 
-/// A leaf of some faces, the first of which has a number.
+/// Creates a leaf of `faces`, the first of which is face `first`.
 fn bounds(vertices: &[Vec3<f64>], faces: &[[u32; 3]], first: usize) -> TriangleNode {
     let mut node = TriangleNode {
         low: Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
@@ -167,7 +168,7 @@ fn bounds(vertices: &[Vec3<f64>], faces: &[[u32; 3]], first: usize) -> TriangleN
     node
 }
 
-/// Makes two children of a leaf that is too large: halves of its faces along its longest side.
+/// Divides a leaf that is too large in two along its longest side.
 fn split(
     vertices: &[Vec3<f64>],
     faces: &mut [[u32; 3]],
@@ -198,13 +199,13 @@ fn split(
     nodes.extend(children);
 }
 
-/// A ray, and the shear that makes it the z axis.
+/// A ray and the shear that maps it to the z axis.
 struct Shear {
     origin: Vec3<f64>,
     inverse: Vec3<f64>,
-    /// Axes in an order in which the ray is longest along the last.
+    /// Axes in an order with the ray longest along the last.
     axes: [usize; 3],
-    /// How much x and y change along z, and how much of the ray z is.
+    /// The change of x and y along z, and the inverse of the ray's z component.
     slope: [f64; 2],
     scale: f64,
 }
@@ -228,7 +229,7 @@ impl Shear {
         }
     }
 
-    /// Where the ray enters a node's box, if it does before `limit`.
+    /// Returns the entry distance into a node's box if it is less than `limit`.
     fn enters(&self, node: &TriangleNode, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);
         for axis in 0..3 {
@@ -239,14 +240,14 @@ impl Shear {
             } else {
                 (low * inverse, high * inverse)
             };
-            // Zero times infinity, which min and max pass over, is a ray within a side of the box.
+            // min and max ignore the NaN of zero times infinity, for a ray within a side of the box.
             enter = enter.max(near);
             leave = leave.min(far * (1.0 + 4.0 * f64::EPSILON));
         }
         (enter <= leave).then_some(enter)
     }
 
-    /// Where the ray hits a triangle, if it does.
+    /// Returns the distance at which the ray hits a triangle.
     fn hits(&self, corners: [Vec3<f64>; 3]) -> Option<f64> {
         let [kx, ky, kz] = self.axes;
         let [p, q, r] = corners.map(|v| {

@@ -1,20 +1,20 @@
-//! A proof that a ray misses a sphere, without the square roots and divisions of a hit.
+//! A fast conservative test of a ray against a sphere.
 
 use super::line::{Ray, Unit};
 use crate::allowance;
 use clench_math::{Real, Scalar, Vec3};
 
-/// A ray with a direction of unit length, made once for many bounding spheres.
+/// A ray with a unit direction, created once for many bounding spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct UnitRay<T> {
     origin: Vec3<T>,
     along: Vec3<T>,
-    /// The length of the ray's own direction, the unit of its distances, m.
+    /// The length of the ray's direction, m: the unit of its distances.
     length: T,
 }
 
 impl<T: Real> UnitRay<T> {
-    /// The same ray with a unit direction; one without direction leads upwards.
+    /// Normalizes the direction of a ray; a ray without a direction points upwards.
     #[inline(always)]
     pub fn of(ray: &Ray<T>) -> Self {
         let (direction, unit) = Unit::of(ray.direction);
@@ -25,14 +25,15 @@ impl<T: Real> UnitRay<T> {
         }
     }
 
-    /// Where the ray may meet a ball before it has gone `within`, in lengths of its direction: never false where it does,
-    /// whatever the rounding, and where it only passes close by it may be true. False for numbers that are not finite.
+    /// Returns the lanes in which the ray may hit a ball within the distance `within`, in lengths of its direction. It
+    /// is never false for a hit, whatever the rounding, and may be true for a near miss. It is false if a number is not
+    /// finite.
     #[inline(always)]
     pub fn may_meet(&self, center: Vec3<T>, radius: T, within: T) -> T::Mask {
         let from_origin = center - self.origin;
         let ahead = from_origin.dot(self.along);
         let beside = from_origin - self.along * ahead;
-        // What is computed from far away is known to this rounding only.
+        // The rounding error of values computed from far away.
         let far = from_origin.x.abs() + from_origin.y.abs() + from_origin.z.abs();
         let rounding = far * (T::splat(T::Scalar::EPSILON) * T::new(8.0));
         let radius = radius * allowance() + rounding;

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// The points within a radius of a segment on the local z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule<T> {
-    /// m.
+    /// The radius, m.
     pub radius: T,
     /// Half the length of the segment, m.
     pub half_length: T,
@@ -39,7 +39,7 @@ impl<T: Real> Solid<T> for Capsule<T> {
         self.radius + self.half_length
     }
 
-    /// r + h |d_z|.
+    /// Returns r + h |d_z|.
     #[inline(always)]
     fn reach_along(&self, d: Vec3<T>) -> T {
         self.radius + self.half_length * d.z.abs()
@@ -107,8 +107,9 @@ impl Homogeneous for Capsule<f64> {
         }
     }
 
-    /// A cylinder between two hemispheres. A solid hemisphere's centre of mass is 3r/8 from its flat face, so moving it by
-    /// h/2 adds m ((h/2 + 3r/8)² − (3r/8)²) = m h (3r + 2h) / 8; that of a hollow one is r/2 from its open side.
+    /// Adds a cylinder and two hemispheres. The centre of mass of a solid hemisphere is 3r/8 from its flat face, so
+    /// moving it by h/2 adds m ((h/2 + 3r/8)² − (3r/8)²) = m h (3r + 2h) / 8; that of a hollow one is r/2 from its open
+    /// side.
     fn moments(&self, mass: f64, shell: bool) -> Vec3<f64> {
         let (radius, half) = (self.radius, self.half_length);
         if shell {

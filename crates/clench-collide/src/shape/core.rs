@@ -1,7 +1,7 @@
 //! Convex bodies by their support functions, as a core plus a radius.
 //!
-//! The support function s(d) of a body is how far it reaches along the unit direction d, its gradient is the point that
-//! reaches so far, and its Hessian says how that point moves as d turns: a matrix whose eigenvalues are radii of curvature.
+//! The support function s(d) of a body is its extent along the unit direction d. Its gradient is the furthest point,
+//! and its Hessian the derivative of that point with respect to d: a matrix whose eigenvalues are radii of curvature.
 //!
 //! ```text
 //! point      0                                  segment   h |d·z|
@@ -9,77 +9,78 @@
 //! box        Σ hᵢ |dᵢ|                           hull      max v·d over its vertices v
 //! ```
 //!
-//! A ball of radius ρ rolls freely within a body whose radii of curvature are nowhere below ρ (Blaschke's theorem), so the
-//! body is a smaller convex core, s(d) − ρ, plus that ball. A sphere is a point plus a ball, a capsule a segment plus a ball,
-//! an ellipsoid with ρ = (least semi-axis)² / (largest semi-axis) a core plus a ball. As long as only the balls' layers
-//! overlap, the cores are apart and their distance is a convex problem with one solution.
+//! A ball of radius ρ rolls freely within a body whose radii of curvature are nowhere below ρ (Blaschke's theorem), so
+//! the body is a smaller convex core, s(d) − ρ, plus that ball. A sphere is a point plus a ball, a capsule a segment
+//! plus a ball, an ellipsoid with ρ = (least semi-axis)² / (largest semi-axis) a core plus a ball. If only the layers
+//! of the balls overlap, the cores are apart and their distance is a convex problem with one solution.
 
 use super::feature::Feature;
 use clench_math::{Scalar, Vec3};
 
-/// What the search for the largest gap asks of a convex core, in its own frame.
+/// A convex core in its own frame, for the search for the largest gap.
 pub(crate) trait Core<S: Scalar> {
-    /// The radius of the ball that is added to the core, m.
+    /// Returns the radius of the ball that is added to the core, m.
     fn radius(&self) -> S {
         S::ZERO
     }
 
-    /// The point of the core that is furthest along `d`, a direction of any length. Of several corners or ends that are, the one further
-    /// along `side`, which is `d` or next to it.
+    /// Returns the point of the core that is furthest along `d`, a direction of any length. Among several corners or
+    /// ends, it returns the one further along `side`, which is `d` or near it.
     fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S>;
 
-    /// The feature of the core that is furthest along the unit direction `d`. Its corners come in an order that depends on the feature
-    /// alone.
+    /// Returns the feature of the core that is furthest along the unit direction `d`. The order of its corners depends
+    /// only on the feature.
     fn feature(&self, d: Vec3<S>) -> Feature<S>;
 
-    /// The Hessian of the core's support function at the unit direction `d`.
+    /// Returns the Hessian of the core's support function at the unit direction `d`.
     #[inline]
     fn curvature(&self, _: Vec3<S>) -> Curvature<S> {
         Curvature::NONE
     }
 
-    /// Whether the core is the origin alone.
+    /// Returns true if the core is the origin alone.
     fn is_point(&self) -> bool {
         false
     }
 
-    /// Whether the core has curved parts.
+    /// Returns true if the core has curved parts.
     fn is_curved(&self) -> bool {
         false
     }
 
-    /// The point of the core that is nearest to a point, where a closed form tells.
+    /// Returns the point of the core nearest to a point, if there is a closed form.
     fn nearest(&self, _: impl FnOnce() -> Vec3<S>) -> Option<Vec3<S>> {
         None
     }
 
-    /// The part of a point of the core that jumps where the support function has a crease: the corner of a box, the end of
-    /// a segment or of a cylinder's axis. Edges and faces are spanned by differences of these.
+    /// Returns the component of a point of the core that jumps at creases of the support function: the corner of a box,
+    /// the end of a segment or of a cylinder's axis. Their differences span edges and faces.
     #[inline]
     fn corner(&self, point: Vec3<S>) -> Vec3<S> {
         point
     }
 
-    /// The radius of the flat round cap across the z axis, if the core has one.
+    /// Returns the radius of the flat round cap across the z axis, if the core has one.
     fn cap(&self) -> Option<S> {
         None
     }
 
-    /// The axes along which it has straight edges. None are told of a hull.
+    /// Returns the axes along which it has straight edges; none for a hull.
     fn edge_axes(&self) -> &'static [usize] {
         &[]
     }
 
-    /// The axes across which it has flat faces. None are told of a hull.
+    /// Returns the axes across which it has flat faces; none for a hull.
     fn face_axes(&self) -> &'static [usize] {
         &[]
     }
 }
 
-/// How the supporting point of a core moves with the direction: the matrix λ (Q − p pᵀ) − ρ 1 with a diagonal Q.
+/// The derivative of a core's support point with respect to the direction: the matrix λ (Q − p pᵀ) − ρ 1 with a
+/// diagonal Q.
 ///
-/// For an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. For the cap circle of a cylinder p is the direction along it, and −λ
-/// its radius over the part of d in its plane.
+/// For an ellipsoid Q = S², p = S² d / |S d| and λ = 1 / |S d|. For the cap circle of a cylinder p is the tangent of
+/// the circle, and −λ its radius over the length of d in its plane.
 pub(crate) struct Curvature<S> {
     pub share: S,
     pub diagonal: Vec3<S>,
@@ -88,7 +89,7 @@ pub(crate) struct Curvature<S> {
 }
 
 impl<S: Scalar> Curvature<S> {
-    /// The curvature at a corner, which does not move.
+    /// The curvature of a corner, which does not move.
     pub(crate) const NONE: Self = Curvature {
         share: S::ZERO,
         diagonal: Vec3::ZERO,
@@ -96,7 +97,7 @@ impl<S: Scalar> Curvature<S> {
         radius: S::ZERO,
     };
 
-    /// The matrix between two vectors, uᵀ H v.
+    /// Returns the bilinear form uᵀ H v.
     #[inline]
     pub(crate) fn between(&self, u: Vec3<S>, v: Vec3<S>) -> S {
         let bend = u.scale_by(self.diagonal).dot(v) - self.flat.dot(u) * self.flat.dot(v);
@@ -104,7 +105,8 @@ impl<S: Scalar> Curvature<S> {
     }
 }
 
-/// The unit direction of `d` projected across z: where on a cap's circle a cylinder supports it; x where `d` points along z.
+/// Returns the unit direction of `d` projected across z, where a cylinder's cap circle supports it; x if `d` is along
+/// z.
 #[inline]
 pub(crate) fn radial_direction<S: Scalar>(d: Vec3<S>) -> (S, S) {
     let level = (d.x * d.x + d.y * d.y).sqrt();

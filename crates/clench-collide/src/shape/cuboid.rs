@@ -35,7 +35,7 @@ impl<T: Real> Solid<T> for Cuboid<T> {
         self.half_lengths.norm()
     }
 
-    /// Σ hᵢ |dᵢ|.
+    /// Returns Σ hᵢ |dᵢ|.
     #[inline(always)]
     fn reach_along(&self, d: Vec3<T>) -> T {
         let h = self.half_lengths;
@@ -122,8 +122,8 @@ impl Homogeneous for Cuboid<f64> {
         }
     }
 
-    /// The shell has six faces. With half lengths a, b, c the two faces across x have mass m bc/(ab + bc + ca) and second moments
-    /// a², b²/3, c²/3 per mass, and so on around.
+    /// Sums six faces for the shell. With half lengths a, b, c the two faces across x have mass m bc/(ab + bc + ca) and
+    /// second moments a², b²/3, c²/3 per mass, and so on.
     fn moments(&self, mass: f64, shell: bool) -> Vec3<f64> {
         let size = self.half_lengths;
         if !shell {

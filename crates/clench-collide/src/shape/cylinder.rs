@@ -9,15 +9,15 @@ use crate::ray::line::Line;
 use clench_math::{Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
-/// A cap tilted by less is level to rounding: all its corners are equally deep.
+/// The tilt below which a cap is level to rounding: all its corners are equally deep.
 const TILT: f64 = 5e-6;
 
 /// A cylinder about the local z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<T> {
-    /// m.
+    /// The radius, m.
     pub radius: T,
-    /// m.
+    /// Half the length, m.
     pub half_length: T,
 }
 
@@ -42,7 +42,7 @@ impl<T: Real> Solid<T> for Cylinder<T> {
         (self.radius * self.radius + self.half_length * self.half_length).sqrt()
     }
 
-    /// h |d_z| + r √(d_x² + d_y²).
+    /// Returns h |d_z| + r √(d_x² + d_y²).
     #[inline(always)]
     fn reach_along(&self, d: Vec3<T>) -> T {
         self.radius * (d.x * d.x + d.y * d.y).sqrt() + self.half_length * d.z.abs()
@@ -77,8 +77,8 @@ impl<T: Real> Solid<T> for Cylinder<T> {
 }
 
 impl<S: Scalar> Cylinder<S> {
-    /// The upper or lower cap: corners at equal angles, the first at the deepest point of its circle. They do not turn with a tilt
-    /// that nobody can tell, so that a standing cylinder stands still.
+    /// Returns the upper or lower cap: corners at equal angles, the first at the deepest point of its circle. They
+    /// ignore a tilt within rounding, so that a standing cylinder stays at rest.
     fn cap_feature(&self, d: Vec3<S>) -> Feature<S> {
         let mut feature = Feature::along(d);
         let (r, up) = (self.radius, S::ONE.copysign(d.z));
@@ -173,7 +173,7 @@ impl Homogeneous for Cylinder<f64> {
         }
     }
 
-    /// The shell is a tube and two discs.
+    /// Computes the shell from a tube and two discs.
     fn moments(&self, mass: f64, shell: bool) -> Vec3<f64> {
         let (radius, half) = (self.radius, self.half_length);
         if !shell {
@@ -185,19 +185,19 @@ impl Homogeneous for Cylinder<f64> {
     }
 }
 
-/// Moments of a solid cylinder.
+/// Returns the moments of a solid cylinder.
 pub(super) fn solid_cylinder(radius: f64, half_length: f64, mass: f64) -> Vec3<f64> {
     let (rr, hh) = (radius * radius, half_length * half_length);
     axial(mass * (3.0 * rr + 4.0 * hh) / 12.0, mass * rr / 2.0)
 }
 
-/// Moments of the curved surface of a cylinder.
+/// Returns the moments of the curved surface of a cylinder.
 pub(super) fn tube(radius: f64, half_length: f64, mass: f64) -> Vec3<f64> {
     let (rr, hh) = (radius * radius, half_length * half_length);
     axial(mass * (6.0 * rr + 4.0 * hh) / 12.0, mass * rr)
 }
 
-/// Sixteen directions round a circle.
+/// Sixteen directions around a circle.
 const CAP_CIRCLE: [(f64, f64); 16] = {
     // Cosine and sine of 22.5°, 45° and 67.5°.
     const C: f64 = 0.923_879_532_511_286_7;

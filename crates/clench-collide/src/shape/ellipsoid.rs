@@ -8,15 +8,15 @@ use crate::ray::line::Line;
 use clench_math::{Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
-/// Exponent of Thomsen's formula for the surface of an ellipsoid, as in MuJoCo.
+/// The exponent of Thomsen's formula for the surface of an ellipsoid, as in MuJoCo.
 const THOMSEN: f64 = 1.6075;
-/// Thickness (m) of the layer that stands for an ellipsoid's shell, as in MuJoCo.
+/// The thickness (m) of the layer that represents an ellipsoid's shell, as in MuJoCo.
 const LAYER: f64 = 1e-6;
 
 /// An ellipsoid about the local axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid<T> {
-    /// Along x, y and z, m.
+    /// The semi-axes along x, y and z, m.
     pub semi_axes: Vec3<T>,
 }
 
@@ -41,7 +41,7 @@ impl<T: Real> Solid<T> for Ellipsoid<T> {
         s.x.max(s.y).max(s.z)
     }
 
-    /// |S d|.
+    /// Returns |S d|.
     #[inline(always)]
     fn reach_along(&self, d: Vec3<T>) -> T {
         d.scale_by(self.semi_axes).norm()
@@ -54,7 +54,7 @@ impl<T: Real> Solid<T> for Ellipsoid<T> {
         scaled.norm_squared().le(T::ONE)
     }
 
-    /// The semi-axes scale it to the unit sphere; its normal is the gradient of Σ (xᵢ / sᵢ)².
+    /// Scales the ellipsoid to the unit sphere; its normal is the gradient of Σ (xᵢ / sᵢ)².
     #[inline(always)]
     fn hit(&self, line: &Line<T>) -> (T, Vec3<T>) {
         let (one, s) = (T::ONE, self.semi_axes);
@@ -141,7 +141,7 @@ impl Homogeneous for Ellipsoid<f64> {
         }
     }
 
-    /// The shell is the difference of two solids whose semi-axes differ by [`LAYER`].
+    /// Computes the shell as the difference of two solids whose semi-axes differ by [`LAYER`].
     fn moments(&self, mass: f64, shell: bool) -> Vec3<f64> {
         let inner = self.semi_axes;
         if !shell {

@@ -1,25 +1,26 @@
-//! What of a core lies against a plane: a face, an edge or a corner, and which edge counts as level.
+//! Features of a core that lie against a plane: a face, an edge or a corner.
 
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Most corners of a feature. A face of a hull that has more is represented by every second, third, ... of them and the furthest one.
+/// The maximum number of corners of a feature. A hull face with more is represented by every second, third, ... of them
+/// and the furthest one.
 pub(crate) const MAX_CORNERS: usize = 24;
 
-/// An edge counts as lying against the plane up to this tilt (5°), as a face does.
+/// The sine of the tilt (5°) up to which an edge counts as lying against the plane, as a face does.
 pub(crate) const EDGE_SINE: f64 = 0.087;
 
-/// A face, counter-clockwise seen from outside, an edge (two corners) or a corner of a core.
+/// A face (counter-clockwise seen from outside), an edge (two corners) or a corner of a core.
 pub(crate) struct Feature<S> {
     pub corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
     /// The outward normal of a face.
     pub normal: Vec3<S>,
-    /// The radius of a round cap about the z axis, which its corners only stand for.
+    /// The radius of a round cap about the z axis, which the corners only sample.
     pub radius: Option<S>,
 }
 
 impl<S: Scalar> Feature<S> {
-    /// One that has no corners yet, with the direction along which it is furthest as its normal.
+    /// Creates a feature without corners; its normal is `d`, the direction along which it is furthest.
     #[inline]
     pub(crate) fn along(d: Vec3<S>) -> Self {
         Feature {
@@ -29,7 +30,7 @@ impl<S: Scalar> Feature<S> {
         }
     }
 
-    /// A corner.
+    /// Creates a corner.
     #[inline]
     pub(crate) fn corner(d: Vec3<S>, corner: Vec3<S>) -> Self {
         let mut feature = Feature::along(d);
@@ -37,7 +38,7 @@ impl<S: Scalar> Feature<S> {
         feature
     }
 
-    /// The edge along `axis` through a corner.
+    /// Creates the edge along `axis` through a corner.
     #[inline]
     pub(crate) fn edge(d: Vec3<S>, mut corner: Vec3<S>, axis: usize) -> Self {
         let mut feature = Feature::along(d);
@@ -49,14 +50,14 @@ impl<S: Scalar> Feature<S> {
     }
 }
 
-/// The most nearly level of the edges from a corner to some ends, which are numbered: level is across the unit direction `d`. Nothing
-/// where none is level enough.
+/// Returns the edge from a corner to one of some numbered ends that is most nearly perpendicular to the unit direction
+/// `d`; `None` if no edge is level enough.
 pub(crate) fn most_level<S: Scalar>(
     corner: Vec3<S>,
     ends: impl Iterator<Item = (usize, Vec3<S>)>,
     d: Vec3<S>,
 ) -> Option<(usize, Vec3<S>)> {
-    // The rise and the length of the best edge, squared: its sine is their quotient's root.
+    // The squared rise and the squared length of the best edge; the root of their quotient is its sine.
     let mut best = (S::new(EDGE_SINE).squared(), S::ONE, None);
     for (number, end) in ends {
         let edge = end - corner;

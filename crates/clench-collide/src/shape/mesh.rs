@@ -8,17 +8,17 @@ use crate::ray::chord::Chord;
 use crate::ray::line::Line;
 use clench_math::{Mask, Real, Scalar, Vec3};
 
-/// How much further than the others, as a share of its body, a corner must be to count, which would not be among those that are sampled.
+/// The distance beyond the sampled corners, relative to the size, from which another corner is included.
 const NOTICEABLE: f64 = 1e-7;
-/// Faces tilted by less are level.
+/// The tilt below which a face is level.
 const LEVEL: f64 = 2e-3;
 
-/// The convex hull of a mesh, which is the same in every environment.
+/// The convex hull of a mesh, the same in every environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mesh<'a, T> {
-    /// A mesh whose points lie in a plane has none, and touches nothing.
+    /// The hull. A mesh whose points lie in a plane has none and touches nothing.
     pub hull: Option<&'a Hull>,
-    /// Half the lengths of a box about the origin that holds it, m.
+    /// Half the lengths of a box about the origin that encloses the hull, m.
     pub extent: Vec3<T>,
 }
 
@@ -43,14 +43,14 @@ impl<'a, T: Real> Solid<T> for Mesh<'a, T> {
         self.extent.norm()
     }
 
-    /// That of the box: Σ hᵢ |dᵢ|.
+    /// Returns the extent of the box: Σ hᵢ |dᵢ|.
     #[inline(always)]
     fn reach_along(&self, d: Vec3<T>) -> T {
         let h = self.extent;
         h.x * d.x.abs() + h.y * d.y.abs() + h.z * d.z.abs()
     }
 
-    /// Behind all planes of its faces.
+    /// Tests against the planes of all faces.
     fn contains(&self, point: Vec3<T>) -> T::Mask {
         let Some(hull) = self.hull else {
             return T::Mask::splat(false);
@@ -68,7 +68,7 @@ impl<'a, T: Real> Solid<T> for Mesh<'a, T> {
     }
 }
 
-/// Behind all planes of its faces.
+/// Clips the line to the planes of all faces.
 fn hit(hull: &Hull, line: &Line<f64>) -> Option<(f64, Vec3<f64>)> {
     let mut chord = Chord::whole();
     let (infinity, none) = (f64::INFINITY, Vec3::ZERO);
@@ -91,7 +91,7 @@ fn hit(hull: &Hull, line: &Line<f64>) -> Option<(f64, Vec3<f64>)> {
 }
 
 impl<S: Scalar> Mesh<'_, S> {
-    /// The vertex of the hull that is furthest along `d`, with its number.
+    /// Returns the vertex of the hull that is furthest along `d`, with its index.
     #[inline]
     fn vertex(&self, d: Vec3<S>) -> Option<(usize, Vec3<S>)> {
         let hull = self.hull?;
@@ -106,7 +106,7 @@ impl<S: Scalar> Core<S> for Mesh<'_, S> {
         self.vertex(side).map_or(Vec3::ZERO, |(_, vertex)| vertex)
     }
 
-    /// The most nearly level of the faces and edges at the furthest vertex, if one is level enough.
+    /// Returns the most nearly level face or edge at the furthest vertex, or the vertex if none is level enough.
     fn feature(&self, d: Vec3<S>) -> Feature<S> {
         let (Some(hull), Some((vertex, corner))) = (self.hull, self.vertex(d)) else {
             return Feature::corner(d, Vec3::ZERO);
@@ -125,8 +125,8 @@ impl<S: Scalar> Core<S> for Mesh<'_, S> {
     }
 }
 
-/// A face of a hull. Where corners are left out, the furthest vertex is kept, but for a level face if it is not noticeably further
-/// than the others.
+/// Returns a face of a hull. If corners are omitted, the furthest vertex is kept, except on a level face if it is not
+/// noticeably further.
 fn face_feature<S: Scalar>(
     hull: &Hull,
     face: usize,

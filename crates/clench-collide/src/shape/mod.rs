@@ -1,7 +1,7 @@
-//! What collides: shapes about their own origins. A file each says all that there is to know of one: its size, how far it reaches, what a
-//! ray hits, its support function and the face, edge or corner that lies against a plane, its volume and its moments of inertia.
+//! Shapes about their own origins. Each file describes one shape: size, extent, ray intersection, support function, the
+//! face, edge or corner that lies against a plane, volume and moments of inertia.
 //!
-//! Two shapes at once, and where they are, belong to the broad and narrow phase.
+//! Pairs of shapes and their poses belong to the broad and narrow phase.
 
 mod capsule;
 mod core;
@@ -32,30 +32,30 @@ use crate::ray::line::Line;
 use crate::{HeightField, Hull};
 use clench_math::{Real, Vec3};
 
-/// The kinds of shape, in the order that decides which of two is the first of a pair (MuJoCo's `mjtGeom`).
+/// The kinds of shape, in the order of the two shapes of a pair (MuJoCo's `mjtGeom`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShapeKind {
-    /// The half-space below the local xy plane, without bounds. No size, but for rays: see [`ray`](crate::ray()).
+    /// The unbounded half-space below the local xy plane. Its size affects only rays: see [`ray`](crate::ray()).
     Plane,
-    /// Terrain over a rectangle, on a base. Size: half lengths along x and y; a quarter of the elevation and half of the base,
-    /// added (as in MuJoCo).
+    /// Terrain over a rectangle, on a base. Size: half lengths along x and y; a quarter of the elevation plus half of
+    /// the base (as in MuJoCo).
     HeightField,
-    /// Size: radius.
+    /// A sphere. Size: radius.
     Sphere,
     /// The points within a radius of a segment on the local z axis. Size: radius, half length of the segment.
     Capsule,
-    /// Size: semi-axes along x, y, z.
+    /// An ellipsoid. Size: semi-axes along x, y, z.
     Ellipsoid,
-    /// About the local z axis. Size: radius, half length.
+    /// A cylinder about the local z axis. Size: radius, half length.
     Cylinder,
-    /// Size: half lengths along x, y, z.
+    /// A box. Size: half lengths along x, y, z.
     Box,
-    /// The convex hull of a mesh. Size: how far it reaches from its origin along x, y, z, to either side.
+    /// The convex hull of a mesh. Size: its maximum extent from its origin along x, y, z, to either side.
     Mesh,
 }
 
 impl ShapeKind {
-    /// Every kind, in order.
+    /// All kinds, in order.
     pub const ALL: [ShapeKind; 8] = {
         use ShapeKind::*;
         [
@@ -85,7 +85,7 @@ pub enum Shape<'a, T> {
     Mesh(Mesh<'a, T>),
 }
 
-/// The same expression for every variant of [`Shape`], with the shape in it bound to a name.
+/// Evaluates an expression for each variant of [`Shape`], with the shape bound to a name.
 macro_rules! of_each {
     ($shape:expr, $solid:ident => $answer:expr) => {
         match $shape {
@@ -102,7 +102,7 @@ macro_rules! of_each {
 }
 
 impl<'a, T: Real> Shape<'a, T> {
-    /// A shape of this size in metres, as its kind says; numbers that the kind does not use are ignored. A mesh has no hull and a
+    /// Creates a shape of a size in metres, as defined by its kind, ignoring unused numbers. A mesh has no hull and a
     /// height field no heights yet.
     #[inline(always)]
     pub fn new(kind: ShapeKind, size: Vec3<T>) -> Self {
@@ -127,14 +127,14 @@ impl<'a, T: Real> Shape<'a, T> {
             }),
         }
     }
-    /// A convex hull.
+    /// Creates a convex hull.
     pub fn mesh(hull: &'a Hull) -> Self {
         Shape::Mesh(Mesh {
             hull: Some(hull),
             extent: Vec3::from_f64(hull.extent().to_array()),
         })
     }
-    /// A height field.
+    /// Creates a height field.
     pub fn height_field(field: &'a HeightField) -> Self {
         let [x, y, elevation, base] = field.size();
         Shape::HeightField(Terrain {
@@ -142,7 +142,7 @@ impl<'a, T: Real> Shape<'a, T> {
             size: Vec3::from_f64([x, y, 0.25 * elevation + 0.5 * base]),
         })
     }
-    /// The same shape with another size: its hull or heights stay what they are.
+    /// Returns the shape with another size; hull and heights do not change.
     pub fn resized<U: Real>(&self, size: Vec3<U>) -> Shape<'a, U> {
         match *self {
             Shape::Mesh(Mesh { hull, .. }) => Shape::Mesh(Mesh { hull, extent: size }),
@@ -153,7 +153,7 @@ impl<'a, T: Real> Shape<'a, T> {
         }
     }
 
-    /// What it is.
+    /// Returns the kind of the shape.
     #[inline(always)]
     pub fn kind(&self) -> ShapeKind {
         match self {
@@ -167,27 +167,29 @@ impl<'a, T: Real> Shape<'a, T> {
             Shape::Mesh(_) => ShapeKind::Mesh,
         }
     }
-    /// Its size in metres, as its kind says.
+    /// Returns the size in metres, as defined by the kind.
     #[inline(always)]
     pub fn size(&self) -> Vec3<T> {
         Solid::size(self)
     }
-    /// The shape of one lane.
+    /// Returns the shape of one lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> Shape<'a, T::Scalar> {
         Solid::lane(self, lane)
     }
-    /// The radius in metres of a sphere about the shape's origin that holds it, the smallest where size tells all; infinite for a plane.
+    /// Returns the radius in metres of a sphere about the origin that encloses the shape, the smallest if the size
+    /// defines it; infinite for a plane.
     #[inline(always)]
     pub fn bounding_radius(&self) -> T {
         Solid::bounding_radius(self)
     }
-    /// Half the lengths of the box about it along its own axes, m; its [`size`](Self::size) where it is a plane or terrain.
+    /// Returns half the lengths of the bounding box along the shape's axes, m; the [`size`](Self::size) of a plane or
+    /// terrain.
     #[inline(always)]
     pub fn half_lengths(&self) -> Vec3<T> {
         Solid::half_lengths(self)
     }
-    /// Where a point, in its coordinates, lies in it. In planes and terrain none does.
+    /// Returns the lanes in which the shape contains a local point; none for planes and terrain.
     #[inline(always)]
     pub fn contains(&self, point: Vec3<T>) -> T::Mask {
         Solid::contains(self, point)
@@ -195,13 +197,14 @@ impl<'a, T: Real> Shape<'a, T> {
 }
 
 impl Shape<'_, f64> {
-    /// Volume in m³, or with `shell` the surface in m²; nothing where it is a plane, nor of a mesh, whose own triangles tell more than its
-    /// hull. Textbook formulas; where MuJoCo approximates (the shell of an ellipsoid, a height field as a box) so does this.
+    /// Computes the volume in m³, or with `shell` the surface area in m²; zero for a plane, and for a mesh, which has
+    /// more accurate triangles. Exact, except where MuJoCo approximates (the shell of an ellipsoid, a height field as a
+    /// box).
     pub fn measure(&self, shell: bool) -> f64 {
         self.homogeneous().map_or(0.0, |solid| solid.measure(shell))
     }
-    /// Principal moments in kg m² about its origin, along its axes, of a mass in kg that is spread evenly over its volume, or with
-    /// `shell` over its surface; nothing where [`measure`](Self::measure) says nothing.
+    /// Computes the principal moments of inertia in kg m² about the origin, along the axes, of a mass in kg distributed
+    /// evenly over the volume, or with `shell` over the surface; zero where [`measure`](Self::measure) is.
     pub fn moments(&self, mass: f64, shell: bool) -> Vec3<f64> {
         self.homogeneous()
             .map_or(Vec3::ZERO, |solid| solid.moments(mass, shell))

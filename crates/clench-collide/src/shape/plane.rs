@@ -4,10 +4,10 @@ use super::solid::Solid;
 use crate::ray::line::Line;
 use clench_math::{Mask, Real, Vec3};
 
-/// The half-space below the local xy plane, without bounds.
+/// The unbounded half-space below the local xy plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane<T> {
-    /// For rays alone: where the plane ends along x and y if the first two numbers are positive, m.
+    /// The extent of the plane along x and y for rays alone, if positive, m.
     pub size: Vec3<T>,
 }
 
@@ -40,7 +40,7 @@ impl<T: Real> Solid<T> for Plane<T> {
         T::Mask::splat(false)
     }
 
-    /// From above; within the rectangle that positive sizes say.
+    /// Computes a hit from above, within the rectangle defined by positive sizes.
     #[inline(always)]
     fn hit(&self, line: &Line<T>) -> (T, Vec3<T>) {
         let down = line.along.z.lt(T::ZERO);

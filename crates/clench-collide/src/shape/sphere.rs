@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// The points within a radius of the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere<T> {
-    /// m.
+    /// The radius, m.
     pub radius: T,
 }
 

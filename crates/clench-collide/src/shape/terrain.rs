@@ -7,12 +7,12 @@ use crate::ray::line::Line;
 use crate::ray::terrain::height_field;
 use clench_math::{Mask, Real, Vec3};
 
-/// Terrain over a rectangle, on a base, which is the same in every environment.
+/// Terrain over a rectangle, on a base, the same in every environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terrain<'a, T> {
-    /// The heights; without them it touches nothing.
+    /// The heights; without them the terrain touches nothing.
     pub field: Option<&'a HeightField>,
-    /// Half lengths along x and y; a quarter of the elevation and half of the base, added (as in MuJoCo), m.
+    /// The half lengths along x and y; a quarter of the elevation plus half of the base (as in MuJoCo), m.
     pub size: Vec3<T>,
 }
 
@@ -32,7 +32,7 @@ impl<'a, T: Real> Solid<T> for Terrain<'a, T> {
         self.size
     }
 
-    /// Neither elevation nor base is more than four times the height of the size.
+    /// Uses that neither elevation nor base is more than four times the z size.
     #[inline(always)]
     fn bounding_radius(&self) -> T {
         let s = self.size;
@@ -55,7 +55,7 @@ impl<'a, T: Real> Solid<T> for Terrain<'a, T> {
     }
 }
 
-/// MuJoCo takes a height field for a box here.
+/// Approximates a height field by a box, as MuJoCo does.
 impl Homogeneous for Terrain<'_, f64> {
     fn measure(&self, shell: bool) -> f64 {
         self.as_box().measure(shell)

@@ -1,4 +1,4 @@
-//! Where a constraint acts, and how soft it is there.
+//! The active lanes and the softness of constraints.
 
 use super::assembly::{BlockRecord, ConstraintSource};
 use super::context::ConstraintContext;
@@ -8,7 +8,7 @@ use crate::model::Coupled;
 use clench_math::{Mask, Real};
 
 impl<T: Real> ConstraintContext<'_, T> {
-    /// Lanes in which an equality is on and couples anything that is awake.
+    /// Returns the lanes in which an equality is on and couples any awake object.
     #[inline(always)]
     pub(super) fn active_equality(&self, equality: usize) -> T::Mask {
         let active = self.state.eq_active[equality];
@@ -29,7 +29,7 @@ impl<T: Real> ConstraintContext<'_, T> {
         active & awake
     }
 
-    /// Lanes in which anything that moves one of these coordinates is awake.
+    /// Returns the lanes in which any dof of these coordinates is awake.
     #[inline(always)]
     pub(super) fn awake(&self, coordinates: impl IntoIterator<Item = Coordinate>) -> T::Mask {
         let mut awake = T::Mask::splat(!self.settings.flags.sleep);
@@ -41,7 +41,7 @@ impl<T: Real> ConstraintContext<'_, T> {
         awake
     }
 
-    /// How soft a limit or a contact is, after the rule that keeps springs from being stiffer than a step resolves.
+    /// Returns the softness of a limit or contact, with its stiffness limited to what a step resolves.
     #[inline(always)]
     pub(super) fn resolved(&self, soft: Softness<T>, solref: [T; 2]) -> Softness<T> {
         match self.metric {
@@ -50,7 +50,7 @@ impl<T: Real> ConstraintContext<'_, T> {
         }
     }
 
-    /// How soft an equality is at a violation of this size, and the record of its block.
+    /// Returns the softness of an equality at a violation, and the record of its block.
     #[inline(always)]
     pub(super) fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {
         let source = ConstraintSource::Equality(equality);
@@ -61,7 +61,7 @@ impl<T: Real> ConstraintContext<'_, T> {
         self.soften(source, self.active_equality(equality), solver, violation)
     }
 
-    /// How soft a constraint without a margin is at a violation of this size, and the record of its block.
+    /// Returns the softness of a constraint without margin at a violation, and the record of its block.
     #[inline(always)]
     pub(super) fn soften(
         &self,

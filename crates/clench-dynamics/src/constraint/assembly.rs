@@ -1,4 +1,4 @@
-//! Where constraints put their rows: the convex problem, and beside it what a reader wants to know of each row.
+//! The destination of constraint rows: the convex problem and a record of each row for readers.
 
 use super::exact::ExactDiagonal;
 use super::implicit::ImplicitRows;
@@ -8,10 +8,10 @@ use crate::model::Model;
 use clench_math::{Mask, Real, kernel};
 use clench_solver::{Cost, Problem};
 
-/// The most rows of a block.
+/// The maximum rows of a block.
 const MAX_DIM: usize = 6;
 
-/// What a constraint comes from; the number counts the sources of its kind.
+/// The source of a constraint; the number is its index among the sources of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintSource {
     /// An equality of the model.
@@ -22,7 +22,7 @@ pub enum ConstraintSource {
         slot: usize,
         /// The bodies that it ties.
         bodies: [usize; 2],
-        /// Whether it is a weld, else a connect.
+        /// True for a weld, false for a connect.
         weld: bool,
     },
     /// Dry friction of a dof.
@@ -38,7 +38,7 @@ pub enum ConstraintSource {
 }
 
 impl ConstraintSource {
-    /// Kind of constraint, as MuJoCo groups them; "dynamic" are those that were added at run time.
+    /// Returns the kind of constraint as in MuJoCo, or "dynamic" if it was added at run time.
     pub fn kind(self) -> &'static str {
         match self {
             ConstraintSource::Equality(_) => "equality",
@@ -51,7 +51,7 @@ impl ConstraintSource {
         }
     }
 
-    /// Number of the source among those of its kind.
+    /// Returns the index of the source among those of its kind.
     pub fn index(self) -> usize {
         match self {
             ConstraintSource::Equality(i)
@@ -64,7 +64,8 @@ impl ConstraintSource {
         }
     }
 
-    /// Name of the source, of the joint for a dof; empty where it has none and for contacts and what was added at run time.
+    /// Returns the name of the source (of the joint for a dof); empty if unnamed, for contacts and if added at run
+    /// time.
     pub fn name(self, model: &Model) -> &str {
         match self {
             ConstraintSource::Equality(i) => &model.equalities[i].name,
@@ -78,27 +79,27 @@ impl ConstraintSource {
     }
 }
 
-/// What is known of a block beside the problem.
+/// The data of a block that the problem does not store.
 #[derive(Clone, Copy, Debug)]
 pub struct BlockRecord<T: Real> {
-    /// Where it comes from.
+    /// The source of the block.
     pub source: ConstraintSource,
-    /// Lanes that have it.
+    /// Lanes in which the block is active.
     pub active: T::Mask,
-    /// Distance at which it begins to act.
+    /// The distance at which the block begins to act.
     pub margin: T,
-    /// Impedance d, of the normal for contacts.
+    /// The impedance d, of the normal for contacts.
     pub impedance: T,
 }
 
-/// What is known of all blocks and rows of the last constraint stage, in the order of the problem.
+/// The records of all blocks and rows of the last constraint stage, in the order of the problem.
 #[derive(Clone, Debug, Default)]
 pub struct ConstraintRecord<T: Real> {
-    /// One a block.
+    /// One record per block.
     pub blocks: Vec<BlockRecord<T>>,
-    /// Position of each row: violations, signed distances, angles.
+    /// The position of each row: violation, signed distance or angle.
     pub pos: Vec<T>,
-    /// Its rate of change, J v and what surfaces move by themselves.
+    /// The rate of change of each position: J v plus the surfaces' own velocity.
     pub vel: Vec<T>,
     /// The dofs of the next block.
     pub(super) dofs: Vec<u32>,
@@ -109,24 +110,25 @@ pub(super) struct Assembly<'a, T: Real> {
     pub problem: &'a mut Problem<T>,
     pub record: &'a mut ConstraintRecord<T>,
     pub qvel: &'a [T],
-    /// Inverse inertia of each dof in the initial configuration (nv).
+    /// The inverse inertia of each dof in the initial configuration (nv).
     pub dof_invweight0: &'a [T],
-    /// Computes the inverse inertia that each row sees at present, with the flag `diagexact`.
+    /// Computes the current inverse inertia of each row, with the flag `diagexact`.
     pub exact: Option<ExactDiagonal<'a, T>>,
-    /// Takes rows at the end of the step, with the integrator `discrete`.
+    /// Evaluates rows at the end of the step, with the integrator `discrete`.
     pub implicit: Option<ImplicitRows<'a, T>>,
 }
 
 impl<T: Real> Assembly<'_, T> {
-    /// The dofs of the next block, to be filled in ascending order.
+    /// Returns the dofs of the next block, to be filled in ascending order.
     #[inline(always)]
     pub(super) fn dofs(&mut self) -> &mut Vec<u32> {
         &mut self.record.dofs
     }
 
-    /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` gets them and writes its Jacobian (rows × dofs, row-major, zeros
-    /// before). As in MuJoCo with dense Jacobians, a block is inactive in lanes where its Jacobian is all zero, unless it is a contact: the
-    /// limit of a tendon whose path misses the only geom that moves, or a connect at a point on the only axis about which its body turns.
+    /// Appends a block over the dofs in [`dofs`](Self::dofs); `fill` receives them and writes the Jacobian (rows ×
+    /// dofs, row-major, initially zero). As in MuJoCo with dense Jacobians, a block other than a contact is inactive in
+    /// lanes with an all-zero Jacobian: the limit of a tendon whose path misses the only geom that moves, or a connect
+    /// at a point on its body's only rotation axis.
     #[inline(always)]
     pub(super) fn push(
         &mut self,
@@ -141,7 +143,7 @@ impl<T: Real> Assembly<'_, T> {
         self.finish(cost, block, rows);
     }
 
-    /// Completes the last block of the problem, whose Jacobian is there.
+    /// Completes the last block of the problem, whose Jacobian is filled.
     #[kernel]
     fn finish(&mut self, cost: Cost, mut block: BlockRecord<T>, rows: &[Row<T>]) {
         let ConstraintRecord {
@@ -199,7 +201,7 @@ impl<T: Real> Assembly<'_, T> {
     }
 }
 
-/// Lanes in which a row is not all zero.
+/// Returns the lanes in which a row is not all zero.
 #[inline(always)]
 fn any_nonzero<T: Real>(row: &[T]) -> T::Mask {
     let mut found = T::Mask::splat(false);
@@ -209,8 +211,8 @@ fn any_nonzero<T: Real>(row: &[T]) -> T::Mask {
     found
 }
 
-/// Raises R to what the rounding of single precision leaves of it, see [`least_regularization`]. The rows of a cone are
-/// raised together: their ratios are its shape.
+/// Raises R to its minimum in single precision, see [`least_regularization`]. The rows of a cone are raised together:
+/// their ratios are its shape.
 #[inline(always)]
 fn raise_regularization<T: Real>(
     cost: Cost,
@@ -229,7 +231,7 @@ fn raise_regularization<T: Real>(
     let mut factor = T::ONE;
     for i in 0..rows.len() {
         let a = match cost {
-            // Along the edge y₀ + μ y_i, which is what R is of.
+            // R is that of the edge y₀ + μ y_i.
             Cost::Pyramid => inertia[0] + rows[i].shape * rows[i].shape * inertia[i],
             _ => inertia[i],
         };
@@ -245,7 +247,7 @@ fn raise_regularization<T: Real>(
 }
 
 impl<T: Real> ConstraintRecord<T> {
-    /// Forgets all rows and keeps their memory.
+    /// Clears all rows and retains their memory.
     #[inline(always)]
     pub(super) fn clear(&mut self) {
         self.blocks.clear();

@@ -1,12 +1,12 @@
-//! Connect: two points, one on each body, coincide.
+//! Connect: keeps two points, one on each body, coincident.
 //!
 //! ```text
 //! r = p₁ − p₂        J = ∂p₁/∂q − ∂p₂/∂q        r̈ = J a + J̇ v   ⇒   aref = −b J v − k d r − J̇ v
 //! ```
 //!
-//! J̇ v is what the points accelerate by while no dof does: the spatial bias acceleration of each body, taken to the
-//! point, plus ω × ṗ. The impedance is that of the violation's length; A₀ the sum of the bodies' translational inverse
-//! weights.
+//! J̇ v is the acceleration of the points at zero dof acceleration: the spatial bias acceleration of each body, shifted
+//! to the point, plus ω × ṗ. The impedance depends on the norm of the violation; A₀ is the sum of the bodies'
+//! translational inverse weights.
 
 use super::assembly::Assembly;
 use super::context::ConstraintContext;
@@ -39,13 +39,13 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
     });
 }
 
-/// The points of two bodies that a connect or weld holds together.
+/// The anchor points of a connect or weld.
 pub(super) struct Anchors<T> {
-    /// The first point less the second, m.
+    /// The first point minus the second, m.
     pub separation: Vec3<T>,
-    /// Acceleration of each body, linear at its point, while no dof accelerates.
+    /// The acceleration of each body, linear at its point, at zero dof acceleration.
     pub bias: [Motion<T>; 2],
-    /// Each point from the reference point of its body's tree.
+    /// Each point relative to the reference point of its body's tree.
     offsets: [Vec3<T>; 2],
 }
 
@@ -66,7 +66,7 @@ impl<T: Real> Anchors<T> {
         }
     }
 
-    /// Rows 0 to 2 of a Jacobian: velocity of the first point less that of the second.
+    /// Fills rows 0 to 2 of a Jacobian: the velocity of the first point minus that of the second.
     #[inline(always)]
     pub(super) fn fill_translation(
         &self,

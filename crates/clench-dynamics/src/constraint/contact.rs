@@ -5,21 +5,22 @@
 //! normal:     r = dist − includemargin, aref = −b v − k d r         friction:  r = 0, aref = −b v
 //! ```
 //!
-//! A contact exists where dist < includemargin. Frictionless, it is one one-sided row with R = A₀ (1 − d) / d, where A₀ is
-//! the sum of the bodies' translational inverse weights. With friction it is one block of condim rows:
+//! A contact is active if dist < includemargin. A frictionless contact is one one-sided row with R = A₀ (1 − d) / d,
+//! where A₀ is the sum of the bodies' translational inverse weights. A contact with friction is one block of condim
+//! rows:
 //!
 //! ```text
 //! pyramid:    edges y_n ± μ_i y_i, all with R = 2 (μ₁² / impratio) (1 + μ₁²) A₀ (1 − d) / d
 //! elliptic:   R_n = A₀ (1 − d) / d,   R_1 = R_n / impratio,   R_j = R_1 μ₁² / μ_j²,   shape μ = μ₁ √(R_1 / R_n)
 //! ```
 //!
-//! Where surfaces move by themselves (`surfacevel`), friction rows count their velocity as part of v. A contact that adheres with
-//! a force δ adds R δ to aref (of each edge of a pyramid its share), while δ also pulls the bodies together as a passive force:
-//! what remains of both is the same contact, which can pull with up to δ (MuJoCo, *Computation*, "Adhesion"). It exists within
-//! the gap too, without friction.
+//! If surfaces have a velocity of their own (`surfacevel`), friction rows include it in v. A contact that adheres with
+//! a force δ adds R δ to aref (each edge of a pyramid its share), while δ also pulls the bodies together as a passive
+//! force: the sum is the same contact, which can pull with up to δ (MuJoCo, *Computation*, "Adhesion"). Within the gap
+//! it also adheres, without friction.
 //!
-//! The pyramid's R makes its friction as stiff as the elliptic cone's. Elliptic friction rows may have their own damping
-//! (`solreffriction`); the rows of a pyramid share the normal's, since its edges mix them.
+//! The pyramid's R makes its friction as stiff as the elliptic cone's. Elliptic friction rows may have their own
+//! damping (`solreffriction`); the rows of a pyramid share that of the normal, since its edges mix them.
 
 use super::Softness;
 use super::assembly::{Assembly, BlockRecord, ConstraintSource};
@@ -31,10 +32,11 @@ use crate::options::FrictionCone;
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 
-/// The most rows of a contact.
+/// The maximum rows of a contact.
 const MAX_DIM: usize = 6;
 
-/// Makes a block of `contact`, the `index`-th of the workspace, where any lane touches and any dof is between the bodies.
+/// Appends a block for `contact`, the `index`-th of the workspace, if it acts in any lane and any dof is between the
+/// bodies.
 #[kernel]
 pub(super) fn push<T: Real>(
     context: &ConstraintContext<T>,
@@ -76,8 +78,8 @@ pub(super) fn push<T: Real>(
     });
 }
 
-/// The rows of a contact, from how soft it is and what of that the step resolves. Friction of an elliptic cone has no spring, and so
-/// damping as it is asked for.
+/// Computes the rows of a contact from its softness before and after the limit of `resolved`. Friction of an elliptic
+/// cone has no spring and keeps its damping.
 #[inline(always)]
 fn rows<T: Real>(
     context: &ConstraintContext<T>,
@@ -133,7 +135,7 @@ fn rows<T: Real>(
     }
 }
 
-/// Velocity of the second body less that of the first, column by column.
+/// Writes the velocity of the second body minus that of the first, by columns.
 #[inline(always)]
 fn fill<T: Real>(
     context: &ConstraintContext<T>,

@@ -1,4 +1,4 @@
-//! What all kinds of constraint read.
+//! The inputs of all kinds of constraint.
 
 use crate::dynamics::metric::Metric;
 use crate::model::{Model, Params};
@@ -8,7 +8,7 @@ use crate::stages::{Positions, Velocities};
 use crate::state::State;
 use clench_math::Real;
 
-/// What all kinds of constraint read.
+/// The inputs of all kinds of constraint.
 pub(super) struct ConstraintContext<'a, T: Real> {
     pub(super) model: &'a Model,
     pub(super) params: &'a Params<T>,
@@ -17,10 +17,10 @@ pub(super) struct ConstraintContext<'a, T: Real> {
     pub(super) position: &'a Positions<T>,
     pub(super) velocity: &'a Velocities<T>,
     pub(super) sleep: &'a Sleep<T>,
-    /// No constraint has a shorter time constant, s.
+    /// The minimum time constant, s.
     pub(super) min_timeconst: T,
-    /// Ratio of friction to normal impedance.
+    /// The ratio of friction to normal impedance.
     pub(super) impratio: T,
-    /// The metric of steps that take constraints at their end.
+    /// The metric, if steps evaluate constraints at their end.
     pub(super) metric: Option<&'a Metric<T>>,
 }

@@ -1,4 +1,4 @@
-//! A scalar function of positions, which equalities, limits and dry friction of joints and tendons act on.
+//! Scalar functions of positions that equalities, limits and dry friction of joints and tendons act on.
 
 use super::context::ConstraintContext;
 use crate::dynamics::tendon;
@@ -14,7 +14,7 @@ pub(super) enum Coordinate {
 }
 
 impl Coordinate {
-    /// Its value.
+    /// Returns its value.
     #[inline(always)]
     pub(super) fn value<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
@@ -23,7 +23,7 @@ impl Coordinate {
         }
     }
 
-    /// Its value in the initial configuration.
+    /// Returns its value in the initial configuration.
     #[inline(always)]
     pub(super) fn initial<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
@@ -32,7 +32,7 @@ impl Coordinate {
         }
     }
 
-    /// The inverse inertia that it sees in the initial configuration.
+    /// Returns its inverse inertia in the initial configuration.
     #[inline(always)]
     pub(super) fn inverse_weight<T: Real>(self, context: &ConstraintContext<T>) -> T {
         match self {
@@ -43,7 +43,7 @@ impl Coordinate {
         }
     }
 
-    /// Adds its dofs to `dofs`, keeping them ascending and each once.
+    /// Inserts its dofs into `dofs`, which stays sorted without duplicates.
     #[inline(always)]
     pub(super) fn insert_dofs<T: Real>(self, context: &ConstraintContext<T>, dofs: &mut Vec<u32>) {
         self.each(context, |dof, _| {
@@ -53,7 +53,7 @@ impl Coordinate {
         });
     }
 
-    /// Adds `scale` times its gradient to a Jacobian row over the dofs that [`insert_dofs`](Self::insert_dofs) left.
+    /// Adds `scale` times its gradient to a Jacobian row over the dofs of [`insert_dofs`](Self::insert_dofs).
     #[inline(always)]
     pub(super) fn add_gradient<T: Real>(
         self,
@@ -69,7 +69,7 @@ impl Coordinate {
         });
     }
 
-    /// Shows its dofs to `visit`, each with its derivative by it.
+    /// Calls `visit` with each of its dofs and the derivative by that dof.
     #[inline(always)]
     pub(super) fn each<T: Real>(
         self,

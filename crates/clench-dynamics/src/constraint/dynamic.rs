@@ -1,9 +1,10 @@
-//! Constraints that are added at run time: connects and welds between any two bodies, such as what a suction gripper holds.
+//! Constraints that are added at run time: connects and welds between any two bodies, such as a grasp by a suction
+//! gripper.
 //!
-//! The model says how many slots for them a state has. What a slot holds are fields of the state, so lanes
-//! may tie different bodies in the same slot. A slot then becomes a block for each pair of bodies that any lane ties, active in the
-//! lanes that tie this pair, as contacts of different geoms become different blocks: in a lane, at most one block of a slot acts.
-//! All are as soft as MuJoCo's equalities are by default.
+//! The model sets the number of slots in a state. The contents of a slot are fields of the state, so lanes may tie
+//! different bodies in the same slot. Each pair of bodies that any lane ties becomes a block, active in the lanes that
+//! tie this pair; in a lane, at most one block of a slot is active. All blocks use MuJoCo's default softness of
+//! equalities.
 
 use super::assembly::{Assembly, ConstraintSource};
 use super::context::ConstraintContext;
@@ -14,20 +15,20 @@ use crate::model::Model;
 use crate::state::State;
 use clench_math::{Mask, Real, Scalar, kernel};
 
-/// `dynamic_kind` of a connect.
+/// The `dynamic_kind` of a connect.
 pub const CONNECT: f64 = 1.0;
-/// `dynamic_kind` of a weld.
+/// The `dynamic_kind` of a weld.
 pub const WELD: f64 = 2.0;
 
-/// What a slot holds in some lanes.
+/// The contents of a slot in some lanes.
 pub(crate) struct Tie<T: Real> {
     pub bodies: [usize; 2],
-    /// Whether it is a weld, else a connect.
+    /// True for a weld, false for a connect.
     pub weld: bool,
     pub lanes: T::Mask,
 }
 
-/// Shows what a slot ties, each pair of bodies once, with the lanes that tie it.
+/// Calls `show` once for each pair of bodies that a slot ties, with the lanes that tie it.
 #[inline(always)]
 pub(crate) fn each_tie<T: Real>(
     model: &Model,
@@ -59,7 +60,8 @@ pub(crate) fn each_tie<T: Real>(
     }
 }
 
-/// Whether a slot holds a weld in a lane, and between which bodies; none where it holds nothing, or names no two bodies of the model.
+/// Returns true if a slot holds a weld in a lane, and its bodies; `None` if it is empty or does not name two bodies of
+/// the model.
 pub fn tied<T: Real>(
     model: &Model,
     state: &State<T>,
@@ -79,12 +81,12 @@ pub fn tied<T: Real>(
     (bodies[0] != bodies[1]).then_some((kind == WELD, bodies))
 }
 
-/// The reference dynamics and impedance of all of them.
+/// Returns the reference dynamics and impedance of these constraints.
 pub fn softness<T: Real>() -> ([T; 2], [T; 5]) {
     (DEFAULT_SOLREF.map(T::new), DEFAULT_SOLIMP.map(T::new))
 }
 
-/// Appends what the slots hold, in their order.
+/// Appends the constraints of the slots, in order.
 #[kernel]
 pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     let (solref, solimp) = softness();

@@ -1,27 +1,28 @@
-//! The inverse inertia that rows see in the present configuration, instead of an estimate at the initial one (MuJoCo's flag
+//! The inverse inertia of rows in the current configuration, instead of an estimate at the initial one (MuJoCo's flag
 //! `diagexact`).
 //!
-//! R = A (1 − d) / d, with A = J M⁻¹ Jᵀ of the row in place of A₀. Of a cone one row decides: of an elliptic one the normal, of a
-//! pyramid its first edge, J = J_n + μ₁ J_1. The others keep their ratio to it, so that the shape of the cone stays.
+//! R = A (1 − d) / d, with A = J M⁻¹ Jᵀ of the row in place of A₀. One row determines R of a cone: the normal of an
+//! elliptic one, the first edge of a pyramid, J = J_n + μ₁ J_1. The others keep their ratio to it, which preserves the
+//! shape of the cone.
 
 use super::row::Row;
 use super::softness::inverse_weight;
 use clench_math::Real;
 use clench_solver::{Cost, Tree, TreeFactor};
 
-/// What A is computed with.
+/// The inputs to the computation of A.
 pub(super) struct ExactDiagonal<'a, T> {
     pub tree: &'a Tree,
     /// The factor of the mass matrix.
     pub factor: &'a TreeFactor<T>,
-    /// Ratio of friction to normal impedance.
+    /// The ratio of friction to normal impedance.
     pub impratio: T,
-    /// One number a dof.
+    /// One number per dof.
     pub scratch: &'a mut Vec<T>,
 }
 
 impl<T: Real> ExactDiagonal<'_, T> {
-    /// Replaces R of the rows of a block, whose impedance is `d`.
+    /// Replaces R of the rows of a block with impedance `d`.
     #[inline(always)]
     pub(super) fn regularize(
         &mut self,
@@ -53,7 +54,7 @@ impl<T: Real> ExactDiagonal<'_, T> {
         }
     }
 
-    /// J M⁻¹ Jᵀ of J = row + factor · other.
+    /// Computes J M⁻¹ Jᵀ of J = row + factor · other.
     #[inline(always)]
     fn inverse_inertia(&mut self, row: &[T], other: &[T], factor: T, dofs: &[u32]) -> T {
         let x = &mut *self.scratch;

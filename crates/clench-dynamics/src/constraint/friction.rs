@@ -4,8 +4,8 @@
 //! r = 0        J = ∂q_i/∂q  or  ∂length/∂q        aref = −b v        cost: Huber of loss η
 //! ```
 //!
-//! Its slope R holds at small accelerations: dry friction creeps, softly, where it should stick. The impedance is the one
-//! at zero violation; A₀ the inverse weight of the dof or tendon.
+//! The slope R applies at small accelerations, so sticking friction creeps. The impedance is that at zero violation; A₀
+//! is the inverse weight of the dof or tendon.
 
 use super::Softness;
 use super::assembly::{Assembly, BlockRecord, ConstraintSource};
@@ -15,7 +15,7 @@ use super::row::Row;
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 
-/// All dofs, then all tendons, that have a friction loss.
+/// Appends the friction of all dofs, then of all tendons.
 #[kernel]
 pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     let (model, params) = (context.model, context.params);
@@ -60,7 +60,7 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
 
 struct Friction<T: Real> {
     source: ConstraintSource,
-    /// Lanes in which anything that it brakes is awake.
+    /// The lanes in which any object that it brakes is awake.
     awake: T::Mask,
     loss: T,
     solref: [T; 2],

@@ -1,4 +1,4 @@
-//! What connects and welds hold: a frame on each of two bodies, whether they come from the file or were added at run time.
+//! The anchor frames of connects and welds, both of the model and added at run time.
 
 use super::assembly::{BlockRecord, ConstraintSource};
 use super::context::ConstraintContext;
@@ -12,16 +12,16 @@ use clench_math::{Quat, Real, Vec3};
 pub struct HeldFrames<T> {
     /// The bodies.
     pub bodies: [usize; 2],
-    /// The origin of each in its body's frame.
+    /// The origin of each frame in its body's frame.
     pub anchors: [Vec3<T>; 2],
-    /// How each is turned in its body's frame; connects do not ask.
+    /// The orientation of each frame in its body's frame; unused by connects.
     pub quats: [Quat<T>; 2],
-    /// A length that scales rotations of a weld.
+    /// The length that scales rotations of a weld.
     pub torquescale: T,
 }
 
 impl<T: Real> HeldFrames<T> {
-    /// The frames that an equality of the model holds.
+    /// Returns the frames of an equality of the model.
     #[inline(always)]
     pub fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
         HeldFrames {
@@ -32,7 +32,7 @@ impl<T: Real> HeldFrames<T> {
         }
     }
 
-    /// The frames that a constraint holds which was added at run time.
+    /// Returns the frames of a constraint that was added at run time.
     #[inline(always)]
     pub fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
         HeldFrames {
@@ -43,7 +43,7 @@ impl<T: Real> HeldFrames<T> {
         }
     }
 
-    /// The origins in world coordinates.
+    /// Returns the origins in world coordinates.
     #[inline(always)]
     pub fn points(&self, pos: &Positions<T>) -> [Vec3<T>; 2] {
         let [body1, body2] = self.bodies;
@@ -54,7 +54,7 @@ impl<T: Real> HeldFrames<T> {
     }
 }
 
-/// Frames that are held together, how softly, and in which lanes.
+/// Two constrained frames, with their softness and active lanes.
 pub(super) struct Held<T: Real> {
     pub frames: HeldFrames<T>,
     pub source: ConstraintSource,
@@ -64,7 +64,7 @@ pub(super) struct Held<T: Real> {
 }
 
 impl<T: Real> Held<T> {
-    /// What an equality of the model holds.
+    /// Creates the constraint of an equality.
     #[inline(always)]
     pub(super) fn by_equality(
         context: &ConstraintContext<T>,
@@ -80,7 +80,7 @@ impl<T: Real> Held<T> {
         }
     }
 
-    /// How soft it is at a violation of this size, and the record of its block.
+    /// Returns the softness at a violation, and the record of the block.
     #[inline(always)]
     pub(super) fn soften(
         &self,

@@ -1,5 +1,5 @@
-//! Rows whose spring-damper is taken at the end of the step, in the metric of the integrator `discrete`; the formulas are derived in
-//! `softness`.
+//! Rows whose spring-damper is evaluated at the end of the step, in the metric of the integrator `discrete`. `softness`
+//! derives the formulas.
 
 use super::row::Row;
 use super::softness::{above_least, implicit_ratio};
@@ -7,36 +7,36 @@ use crate::dynamics::metric::Metric;
 use clench_math::Real;
 use clench_solver::{Cost, Tree};
 
-/// Rows that see no more inverse inertia than this (1/kg, 1/(kg m²)) move nothing (MuJoCo's `mjMINVAL`).
+/// The inverse inertia (1/kg, 1/(kg m²)) below which a row counts as immovable (MuJoCo's `mjMINVAL`).
 const MIN_INVERSE_INERTIA: f64 = 1e-15;
 
-/// What such rows are computed with.
+/// The inputs to the computation of such rows.
 pub(super) struct ImplicitRows<'a, T: Real> {
     pub tree: &'a Tree,
     pub metric: &'a Metric<T>,
     /// h, s.
     pub timestep: T,
-    /// Ratio of friction to normal impedance.
+    /// The ratio of friction to normal impedance.
     pub impratio: T,
 }
 
 impl<T: Real> ImplicitRows<'_, T> {
-    /// The reference acceleration of a row of this velocity.
+    /// Returns the reference acceleration of a row at `velocity`.
     #[inline(always)]
     pub(super) fn reference(&self, row: &Row<T>, velocity: T) -> T {
         let rate = row.damping + self.timestep * row.stiffness;
         (row.aref - rate * velocity) / self.beta(row)
     }
 
-    /// 1 + h b + h² k d.
+    /// Computes 1 + h b + h² k d.
     #[inline(always)]
     fn beta(&self, row: &Row<T>) -> T {
         let h = self.timestep;
         T::ONE + h * row.damping + h * h * row.stiffness
     }
 
-    /// Changes R of the rows of a block of impedance `d`. Where it was `estimated` at the initial configuration, it is corrected by
-    /// the share of the inverse inertia that the metric leaves.
+    /// Updates R of the rows of a block with impedance `d`. An R that was `estimated` at the initial configuration is
+    /// multiplied by the metric's share of the inverse inertia.
     #[inline(always)]
     pub(super) fn regularize(
         &self,
@@ -54,7 +54,7 @@ impl<T: Real> ImplicitRows<'_, T> {
             }
         };
         let n = dofs.len();
-        // By how much R of a cone's first row changes, and what that R is a multiple of.
+        // The factor of R of a cone's first row, and the scale of the R that the minimum applies to.
         let (factor, unit) = match cost {
             Cost::Quadratic | Cost::OneSided | Cost::Huber => {
                 for (i, row) in rows.iter().enumerate() {
@@ -78,7 +78,7 @@ impl<T: Real> ImplicitRows<'_, T> {
         }
     }
 
-    /// Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ of J = row + factor · other; one where nothing moves but by rounding.
+    /// Computes Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ of J = row + factor · other; 1 if J is zero up to rounding.
     #[inline(always)]
     fn inverse_inertia_ratio(&self, row: &[T], other: &[T], factor: T, dofs: &[u32]) -> T {
         let (mut before, mut after) = (T::ZERO, T::ZERO);

@@ -1,11 +1,11 @@
-//! Joint and tendon equality: one coordinate is a quartic of another, or constant.
+//! Joint and tendon equality: makes one coordinate a quartic of another, or constant.
 //!
 //! ```text
 //! r = (y − y₀) − P(x − x₀)      P(e) = c₀ + c₁ e + c₂ e² + c₃ e³ + c₄ e⁴      J = ∂y/∂q − P′(x − x₀) ∂x/∂q
 //! ```
 //!
-//! Zero subscripts are the initial configuration. As in MuJoCo the part of r̈ that is quadratic in velocity, −P″ ẋ², is
-//! left out of aref. A₀ is the sum of both coordinates' inverse weights.
+//! The subscript 0 marks the initial configuration. As in MuJoCo, aref omits the part of r̈ that is quadratic in
+//! velocity, −P″ ẋ². A₀ is the sum of both coordinates' inverse weights.
 
 use super::assembly::Assembly;
 use super::context::ConstraintContext;
@@ -48,7 +48,7 @@ pub(super) fn push<T: Real>(
     });
 }
 
-/// P′ of tendon equality `equality` where the tendon that leads, `leader`, is now.
+/// Computes P′ of tendon equality `equality` at the leading tendon's length.
 #[inline(always)]
 pub fn equality_slope<T: Real>(
     params: &Params<T>,
@@ -60,7 +60,7 @@ pub fn equality_slope<T: Real>(
     evaluate(params.eq_polycoef[equality], error).1
 }
 
-/// P(e) and P′(e).
+/// Computes P(e) and P′(e).
 #[inline(always)]
 fn evaluate<T: Real>(polynomial: [T; 5], e: T) -> (T, T) {
     let (mut value, mut slope) = (polynomial[4], T::ZERO);

@@ -1,13 +1,13 @@
-//! Limits: a joint or tendon stays within its range.
+//! Limits: keep a joint or tendon within its range.
 //!
 //! ```text
 //! hinge, slide, tendon:   lower  r = x − low,  J = ∂x/∂q        upper  r = high − x,  J = −∂x/∂q
 //! ball:                   r = largest angle − angle,  J = −axis of the rotation, in the body's frame
 //! ```
 //!
-//! A limit exists where r is below its margin, and only pushes: its cost is one-sided. A ball joint turned by a rotation
-//! vector θ has the angle |θ|, and d|θ|/dt is the angular velocity along θ whatever its other parts. A₀ is the inverse
-//! weight of the joint's first dof, or of the tendon.
+//! A limit is active if r is below its margin, and only pushes: its cost is one-sided. A ball joint rotated by a
+//! rotation vector θ has the angle |θ|; d|θ|/dt is the angular velocity along θ, independent of its other components.
+//! A₀ is the inverse weight of the joint's first dof, or of the tendon.
 
 use super::Softness;
 use super::assembly::{Assembly, BlockRecord, ConstraintSource};
@@ -18,7 +18,7 @@ use crate::model::JointKind;
 use clench_math::{Mask, Quat, Real, kernel};
 use clench_solver::Cost;
 
-/// All limits of joints.
+/// Appends the limits of all joints.
 #[kernel]
 pub(super) fn push_joints<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     let params = context.params;
@@ -58,7 +58,7 @@ pub(super) fn push_joints<T: Real>(context: &ConstraintContext<T>, out: &mut Ass
     }
 }
 
-/// All limits of tendons.
+/// Appends the limits of all tendons.
 #[kernel]
 pub(super) fn push_tendons<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>) {
     let params = context.params;
@@ -81,7 +81,7 @@ pub(super) fn push_tendons<T: Real>(context: &ConstraintContext<T>, out: &mut As
 
 struct Limit<'a, T: Real> {
     source: ConstraintSource,
-    /// Lanes in which anything that it holds is awake.
+    /// The lanes in which any object that it limits is awake.
     awake: T::Mask,
     margin: T,
     solref: &'a [T; 2],
@@ -90,7 +90,7 @@ struct Limit<'a, T: Real> {
 }
 
 impl<T: Real> Limit<'_, T> {
-    /// Lower, then upper end of a coordinate's range.
+    /// Appends a coordinate's lower, then upper limit.
     #[inline(always)]
     fn push_range(
         &self,
@@ -119,7 +119,7 @@ impl<T: Real> Limit<'_, T> {
         }
     }
 
-    /// The largest angle of a ball joint.
+    /// Appends the limit of a ball joint's angle.
     #[inline(always)]
     fn push_cone(&self, context: &ConstraintContext<T>, out: &mut Assembly<T>, joint: usize) {
         let (qpos, dof) = {

@@ -1,7 +1,7 @@
 //! The constraint stage: every active constraint becomes a block of the convex problem, which is solved once.
 //!
-//! One file a kind of constraint, each with its derivation; `softness` turns their parameters into R and aref. Blocks
-//! stand in MuJoCo's order: equalities, dry friction, limits, contacts. What was added at run time comes after the equalities.
+//! Each file derives one kind of constraint; `softness` converts their parameters into R and aref. Blocks are in
+//! MuJoCo's order: equalities, dry friction, limits, contacts. Constraints added at run time follow the equalities.
 
 mod active;
 pub(crate) mod assembly;
@@ -41,10 +41,10 @@ use exact::ExactDiagonal;
 use held::Held;
 use implicit::ImplicitRows;
 
-/// Turns the constraints of a configuration into blocks, solves the problem, and leaves the acceleration in `ws.qacc`
-/// and the constraint forces along dofs in `ws.qfrc_constraint`.
+/// Assembles the constraints of a configuration, solves the problem, and stores the acceleration in `ws.qacc` and the
+/// constraint forces along dofs in `ws.qfrc_constraint`.
 ///
-/// Reads poses and velocities of the workspace, its contacts, and the problem's factored mass and unconstrained
+/// Reads poses, velocities and contacts of the workspace, and the problem's factored mass and unconstrained
 /// acceleration.
 pub fn constraint_stage<T: Real>(
     model: &Model,
@@ -76,7 +76,7 @@ pub fn constraint_stage<T: Real>(
     ws.clock.lap(Stage::Solve as usize);
 }
 
-/// Replaces the problem's blocks by those of the configuration.
+/// Replaces the problem's blocks with those of the configuration.
 #[kernel]
 pub fn assemble<T: Real>(
     model: &Model,
@@ -145,7 +145,7 @@ pub fn assemble<T: Real>(
 #[inline(always)]
 fn min_timeconst<T: Real>(params: &Params<T>, settings: &StepSettings, in_metric: bool) -> T {
     let floor = T::new(settings.constraint_timeconst);
-    // Steps that take constraints at their end are stable with any.
+    // Steps that evaluate constraints at their end are always stable.
     if settings.flags.refsafe && !in_metric {
         floor.max(params.timestep * T::new(2.0))
     } else {

@@ -3,29 +3,29 @@
 use super::softness::Softness;
 use clench_math::Real;
 
-/// One row of a block: everything but its Jacobian.
+/// One row of a block without its Jacobian.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row<T> {
-    /// Position.
+    /// The position.
     pub pos: T,
-    /// Part of the reference acceleration that does not depend on the row's velocity.
+    /// The part of the reference acceleration that does not depend on the row's velocity.
     pub aref: T,
-    /// Damping b: the rest of the reference acceleration is −b v.
+    /// The damping b: the remaining reference acceleration is −b v.
     pub damping: T,
-    /// Stiffness k d, of which steps that take the spring at their end need more than `aref`.
+    /// The stiffness k d, which steps that evaluate the spring at their end need in addition to `aref`.
     pub stiffness: T,
-    /// Regularization.
+    /// The regularization.
     pub r: T,
-    /// The part of its velocity that is not J v: that of surfaces which move by themselves.
+    /// The part of the velocity that is not J v: the surfaces' own velocity.
     pub drift: T,
-    /// A force with which the row pulls where it would otherwise give none: the reference acceleration is raised by R times this.
+    /// The adhesive force of the row: raises the reference acceleration by R times this.
     pub pull: T,
-    /// Shape of its cost, see `clench_solver::BlockMut::shape`.
+    /// The shape of the cost, see `clench_solver::BlockMut::shape`.
     pub shape: T,
 }
 
 impl<T: Real> Row<T> {
-    /// A row at `pos` that is violated by `r = pos − margin` and sees the inverse inertia `a0`.
+    /// Creates a row at `pos` with violation `r = pos − margin` and inverse inertia `a0`.
     #[inline(always)]
     pub(super) fn new(soft: &Softness<T>, pos: T, margin: T, a0: T) -> Self {
         Row {

@@ -1,7 +1,7 @@
-//! How soft a constraint is: the one place where solref and solimp become numbers of the convex problem.
+//! The softness of a constraint: converts solref and solimp into the parameters of the convex problem.
 //!
-//! A constraint of violation r and rate v asks for the acceleration of a damped spring, and yields as much as its
-//! impedance d ∈ (0, 1) allows:
+//! A constraint with violation r and rate v has the reference acceleration of a damped spring; its impedance d ∈ (0, 1)
+//! sets how closely it follows it:
 //!
 //! ```text
 //! aref = −b v − k d r            R = A₀ (1 − d) / d        D = 1 / R
@@ -11,35 +11,35 @@
 //! ```
 //!
 //! y rises from 0 at 0 to 1 at 1, y = x^p / mid^(p−1) up to the midpoint and point-symmetric in shape above. A₀ is the
-//! inverse inertia that the constraint sees in the initial configuration, so a mass on one such constraint follows
-//! a = d (−b v − k d r) + (1 − d) a_unc whatever its size: at dmax, a spring-damper of the given time constant. The rules
-//! and limits are MuJoCo 4.0's (Computation, "Constraint model"), with one of our own: no time constant is shorter than
+//! inverse inertia of the constraint in the initial configuration, so a mass of any size on one such constraint follows
+//! a = d (−b v − k d r) + (1 − d) a_unc: at dmax, a spring-damper with the given time constant. The rules and limits
+//! are those of MuJoCo 4.0 (Computation, "Constraint model"), with one addition: no time constant is shorter than
 //! `constraint_timeconst`.
 //!
-//! Under the integrator `discrete` the spring-damper is taken at the end of the step, at the violation r + h v⁺ and the rate v⁺ = v + h a,
-//! which is solved for a:
+//! The integrator `discrete` evaluates the spring-damper at the end of the step, at the violation r + h v⁺ and the rate
+//! v⁺ = v + h a, and solves for a:
 //!
 //! ```text
 //! aref = (−b v − k d (r + h v)) / β        R = A (1 − d) / (d β)        β = 1 + h b + h² k d
 //! ```
 //!
-//! R is not below that of the largest impedance. A is A₀ times Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ, the share of the inverse inertia that the
-//! metric M̂ leaves. All rows of a cone have the R that their normal, or the first edge of a pyramid, gives it.
+//! R is at least that of the maximum impedance. A is A₀ times Σ Jᵢ² / M̂ᵢᵢ over Σ Jᵢ² / Mᵢᵢ, the metric M̂'s share of
+//! the inverse inertia. All rows of a cone share the R of their normal, or of the first edge of a pyramid.
 
 use clench_math::{Mask, Real, Scalar, array};
 
-/// Least R, and least width of the impedance's rise (MuJoCo's `mjMINVAL`).
+/// The minimum of R and of the width of the impedance's rise (MuJoCo's `mjMINVAL`).
 const MIN_VALUE: f64 = 1e-15;
-/// The same in roundings: `MIN_VALUE` is 4.5 of double precision's at 1.
+/// The same in roundings: `MIN_VALUE` is 4.5 roundings of double precision at 1.
 const MIN_ROUNDINGS: f64 = 4.5;
-/// Bounds of the impedance (MuJoCo's `mjMINIMP`, `mjMAXIMP`).
+/// The limits of the impedance (MuJoCo's `mjMINIMP`, `mjMAXIMP`).
 const IMPEDANCE_RANGE: [f64; 2] = [0.0001, 0.9999];
-/// MuJoCo's default reference dynamics: time constant 0.02 s, damping ratio 1. They replace a solref whose numbers have mixed signs.
+/// MuJoCo's default reference dynamics: time constant 0.02 s, damping ratio 1. They replace a solref of mixed signs.
 pub const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
 /// MuJoCo's default impedance.
 pub const DEFAULT_SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
 
-/// The spring-damper that a constraint asks for.
+/// The spring-damper of a constraint.
 #[derive(Clone, Copy, Debug)]
 pub struct Softness<T> {
     /// d, in (0, 1).
@@ -51,7 +51,7 @@ pub struct Softness<T> {
 }
 
 impl<T: Real> Softness<T> {
-    /// From the parameters of a constraint at violation `r`; no time constant is below `min_timeconst` (s).
+    /// Creates the softness of a constraint at violation `r`; no time constant is below `min_timeconst` (s).
     #[inline(always)]
     pub fn new(solref: [T; 2], solimp: [T; 5], r: T, min_timeconst: T) -> Self {
         let mixed = is_mixed(solref);
@@ -68,7 +68,7 @@ impl<T: Real> Softness<T> {
         }
     }
 
-    /// The damping of friction dimensions that have their own solref: as `self` where it is zero or mixed.
+    /// Returns the damping of friction dimensions with their own solref; that of `self` if it is zero or mixed.
     #[inline(always)]
     pub(crate) fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], min_timeconst: T) -> T {
         let given = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
@@ -79,11 +79,12 @@ impl<T: Real> Softness<T> {
         T::select(given, damping, self.damping)
     }
 
-    /// The same for a step that takes the spring at its end, of length `timestep`: a spring of time constant and damping ratio `solref`
-    /// that the step cannot resolve is the stiffest that it can, at the same damping ratio.
+    /// Returns the softness for a step of length `timestep` that evaluates the spring at its end. A spring of time
+    /// constant and damping ratio `solref` that the step cannot resolve becomes the stiffest that it can, with the same
+    /// damping ratio.
     ///
-    /// A step of length h resolves κ = h² k d up to 1: a body that falls on such a spring rests on it after a step, neither below nor
-    /// thrown back (`tests/suite/discrete.rs`).
+    /// A step of length h resolves κ = h² k d up to 1: a body that falls on such a spring rests on it after a step,
+    /// without penetration or rebound (`tests/suite/discrete.rs`).
     #[inline(always)]
     #[must_use]
     pub fn resolved(self, solref: [T; 2], timestep: T) -> Self {
@@ -102,44 +103,44 @@ impl<T: Real> Softness<T> {
         }
     }
 
-    /// R of a row that sees the inverse inertia `a0`.
+    /// Returns R of a row with the inverse inertia `a0`.
     #[inline(always)]
     pub fn regularization(&self, a0: T) -> T {
         inverse_weight(self.impedance, a0)
     }
 }
 
-/// R of a row of impedance `d` that sees the inverse inertia `a`.
+/// Returns R of a row with impedance `d` and inverse inertia `a`.
 #[inline(always)]
 pub(crate) fn inverse_weight<T: Real>(d: T, a: T) -> T {
     above_least((T::ONE - d) * a / d)
 }
 
-/// The factor of R of a row of impedance `d` whose spring-damper is taken at the end of a step: 1 / `beta`, as its reference acceleration
-/// has, but R is not below that of the largest impedance.
+/// Returns the factor of R of a row with impedance `d` whose spring-damper is evaluated at the end of a step: 1 / β as
+/// for the reference acceleration, but R is at least that of the maximum impedance.
 #[inline(always)]
 pub(crate) fn implicit_ratio<T: Real>(d: T, beta: T) -> T {
     let most = T::new(IMPEDANCE_RANGE[1]);
     (T::ONE / beta).max(d * (T::ONE - most) / (most * (T::ONE - d)))
 }
 
-/// R, or the least that there is.
+/// Returns R, clamped to its minimum.
 #[inline(always)]
 pub(crate) fn above_least<T: Real>(r: T) -> T {
     r.max(T::new(MIN_VALUE))
 }
 
-/// Whether numbers `T` are of single precision, whose rounding needs floors and factors of its own.
+/// Returns true if `T` has single precision, whose rounding needs its own floors and factors.
 #[inline(always)]
 pub(crate) fn is_single<T: Real>() -> bool {
     size_of::<T::Scalar>() < size_of::<f64>()
 }
 
-/// Least R of a row that sees about the inverse inertia `a` at present, in a working precision that is below double. (There
-/// `MIN_VALUE` does, and is MuJoCo's.)
+/// Returns the minimum of R of a row whose current inverse inertia is about `a`, in a working precision below double.
+/// (Double precision uses `MIN_VALUE`, as MuJoCo does.)
 ///
-/// A₀ can be zero where `a` is not, when a centre of mass lies on a joint's axis. The stiffness a / R of such a row, in units
-/// of the inertia that it moves, must not exceed what the working precision can tell from infinity.
+/// A₀ can be zero while `a` is not, if a centre of mass lies on a joint's axis. The stiffness a / R of such a row, in
+/// units of the inertia that it moves, must stay finite in the working precision.
 #[inline(always)]
 pub(crate) fn least_regularization<T: Real>(a: T) -> T {
     a * T::splat(T::Scalar::EPSILON) * T::new(MIN_ROUNDINGS)
@@ -151,7 +152,7 @@ fn is_mixed<T: Real>(solref: [T; 2]) -> T::Mask {
     (a & !b) | (!a & b)
 }
 
-/// (k, b) of a solref whose signs agree.
+/// Returns (k, b) of a solref whose signs agree.
 #[inline(always)]
 fn spring_damper<T: Real>(solref: [T; 2], dmax: T, min_timeconst: T) -> (T, T) {
     let least = T::new(MIN_VALUE);
@@ -177,7 +178,7 @@ fn clamp_impedance<T: Real>(d: T) -> T {
     d.clamp(T::new(IMPEDANCE_RANGE[0]), T::new(IMPEDANCE_RANGE[1]))
 }
 
-/// The impedance at violation `r`.
+/// Computes the impedance at violation `r`.
 #[inline(always)]
 pub fn impedance<T: Real>(solimp: [T; 5], r: T) -> T {
     let [dmin, dmax, width, midpoint, power] = solimp;
@@ -195,7 +196,7 @@ pub fn impedance<T: Real>(solimp: [T; 5], r: T) -> T {
     T::select(at_end, end, dmin + y * (dmax - dmin))
 }
 
-/// y(x) for 0 < x < 1.
+/// Computes y(x) for 0 < x < 1.
 #[inline(always)]
 fn spline<T: Real>(x: T, midpoint: T, power: T) -> T {
     let below = x.le(midpoint);
@@ -206,7 +207,7 @@ fn spline<T: Real>(x: T, midpoint: T, power: T) -> T {
     T::select(power.eq(T::ONE), x, y)
 }
 
-/// base^exponent, exact for the usual exponents 1 and 2.
+/// Computes base^exponent, exact for the usual exponents 1 and 2.
 #[inline(always)]
 fn pow<T: Real>(base: T, exponent: T) -> T {
     let first = exponent.eq(T::ONE);

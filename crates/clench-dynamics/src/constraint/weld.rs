@@ -1,7 +1,7 @@
-//! Weld: two frames, one on each body, coincide.
+//! Weld: keeps two frames, one on each body, coincident.
 //!
-//! The first three rows are those of connect. The other three are the imaginary part of the relative orientation
-//! ρ = q₂⁻¹ q₁ (a unit quaternion, half the rotation vector for small errors), scaled by the torque scale s, a length:
+//! The first three rows are those of a connect. The other three are the imaginary part of ρ = q₂⁻¹ q₁, the relative
+//! orientation (a unit quaternion, half the rotation vector for small errors), scaled by the torque scale s, a length:
 //!
 //! ```text
 //! ρ̇ = ½ (0, u) ρ,   u = R₂ᵀ (ω₁ − ω₂)
@@ -9,7 +9,7 @@
 //! r̈ = s (B u̇ + Ḃ u),   u̇ = R₂ᵀ (ω̇₁ − ω̇₂ − ω₂ × (ω₁ − ω₂))
 //! ```
 //!
-//! J̇ v is r̈ with ω̇ the bias accelerations. The impedance is that of the length of all six rows; A₀ the sums of the
+//! J̇ v is r̈ with ω̇ the bias accelerations. The impedance depends on the norm of all six rows; A₀ is the sum of the
 //! bodies' inverse weights, translational and rotational.
 
 use super::assembly::Assembly;
@@ -56,8 +56,8 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
     });
 }
 
-/// The torque on the first body that forces f of the last three rows mean, in world axes: Jᵀ f = R₂ s Bᵀ f, with
-/// Bᵀ f = ½ (w f + Im ρ × f). The second body takes its negative.
+/// Computes the torque on the first body, in world axes, of the forces f of the last three rows: Jᵀ f = R₂ s Bᵀ f, with
+/// Bᵀ f = ½ (w f + Im ρ × f). The second body receives its negative.
 #[kernel]
 pub fn weld_torque<T: Real>(
     position: &Positions<T>,
@@ -70,10 +70,10 @@ pub fn weld_torque<T: Real>(
     relative.to_second.conjugate().rotate(turned * half)
 }
 
-/// The relative orientation and what turns with it.
+/// The relative orientation and derived quantities.
 struct Relative<T> {
     rho: Quat<T>,
-    /// To the second frame.
+    /// From world axes to the second frame.
     to_second: Quat<T>,
     scale: T,
 }
@@ -92,13 +92,13 @@ impl<T: Real> Relative<T> {
         }
     }
 
-    /// B u.
+    /// Computes B u.
     #[inline(always)]
     fn rate(&self, u: Vec3<T>) -> Vec3<T> {
         half_product(u, self.rho)
     }
 
-    /// J̇ v of the rows, from the bodies' angular accelerations while no dof accelerates.
+    /// Computes J̇ v of the rows from the bodies' angular accelerations at zero dof acceleration.
     #[inline(always)]
     fn bias(
         &self,
@@ -134,7 +134,7 @@ impl<T: Real> Relative<T> {
     }
 }
 
-/// Imaginary part of ½ (0, u) q.
+/// Computes the imaginary part of ½ (0, u) q.
 #[inline(always)]
 fn half_product<T: Real>(u: Vec3<T>, q: Quat<T>) -> Vec3<T> {
     (u * q.w + u.cross(q.imaginary())) * T::new(0.5)

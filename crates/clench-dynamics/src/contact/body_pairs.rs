@@ -1,4 +1,5 @@
-//! Listed candidates by pairs of bodies: while boxes about the geoms of two bodies are apart, no pair of their geoms is looked at.
+//! Listed candidates grouped by body pair: pairs of geoms are skipped while boxes about the geoms of two bodies are
+//! apart.
 
 use super::Candidate;
 use super::bounding_sphere::BoundingSphere;
@@ -7,20 +8,20 @@ use clench_collide::ShapeKind;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 use std::ops::Range;
 
-/// Two bodies with fewer candidates are not worth a box about each.
+/// The minimum number of candidates for which two bodies get boxes.
 const WORTH_BOXES: usize = 4;
-/// Boxes are enlarged by this many ε times the coordinates of their spheres, more than rounding may make them too small by.
+/// Boxes are enlarged by this many ε times the coordinates of their spheres, which exceeds their rounding error.
 const ROUNDING: f64 = 8.0;
 
-/// Candidates that follow each other in the list.
+/// Consecutive candidates in the list.
 #[derive(Clone, Debug)]
 struct Run {
     candidates: Range<usize>,
-    /// The boxes that must meet for any of them to touch; none where each is looked at by itself.
+    /// The boxes that must overlap for any of them to touch; `None` to check each candidate.
     boxes: Option<[usize; 2]>,
 }
 
-/// A box about the bounding spheres of some geoms of a body.
+/// A box around the bounding spheres of some geoms of a body.
 #[derive(Clone, Debug)]
 struct BodyBox<T> {
     body: usize,
@@ -32,14 +33,14 @@ struct BodyBox<T> {
 /// The candidates of a model whose list never changes.
 #[derive(Clone, Debug)]
 pub(super) struct BodyPairs<T> {
-    /// The geoms that any candidate has.
+    /// The geoms of all candidates.
     geoms: Vec<usize>,
     runs: Vec<Run>,
     boxes: Vec<BodyBox<T>>,
 }
 
 impl<T: Real> BodyPairs<T> {
-    /// Those of a list in canonical order, in which candidates of the same bodies follow each other.
+    /// Groups a list in canonical order, in which candidates of the same bodies are consecutive.
     pub(super) fn new(model: &Model, candidates: &[Candidate]) -> Self {
         let mut geoms = Vec::from_iter(candidates.iter().flat_map(|c| c.geoms.map(|g| g as usize)));
         geoms.sort_unstable();
@@ -72,7 +73,7 @@ impl<T: Real> BodyPairs<T> {
         pairs
     }
 
-    /// The number of the box about the geoms of a body that any candidate has.
+    /// Returns the index of the box of a body's candidate geoms, created if absent.
     fn box_about(&mut self, model: &Model, body: usize) -> usize {
         let known = self.boxes.iter().position(|known| known.body == body);
         known.unwrap_or_else(|| {
@@ -87,17 +88,17 @@ impl<T: Real> BodyPairs<T> {
         })
     }
 
-    /// The geoms that any candidate has.
+    /// Returns the geoms of all candidates.
     pub(super) fn geoms(&self) -> impl Iterator<Item = usize> {
         self.geoms.iter().copied()
     }
 
-    /// How many runs of candidates there are.
+    /// Returns the number of runs of candidates.
     pub(super) fn len(&self) -> usize {
         self.runs.len()
     }
 
-    /// Fits the boxes to the spheres about their geoms.
+    /// Fits the boxes to the spheres of their geoms.
     #[kernel]
     pub(super) fn update(&mut self, spheres: &[BoundingSphere<T>]) {
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(ROUNDING);
@@ -116,7 +117,7 @@ impl<T: Real> BodyPairs<T> {
         }
     }
 
-    /// The candidates of a run, if any of them may touch in any lane.
+    /// Returns the candidates of a run, if any of them may touch in any lane.
     #[inline(always)]
     pub(super) fn near(&self, run: usize) -> Option<Range<usize>> {
         let run = &self.runs[run];
@@ -131,7 +132,7 @@ impl<T: Real> BodyPairs<T> {
     }
 }
 
-/// In which lanes no coordinate of a point is larger than that of the other.
+/// Returns the lanes in which no coordinate of `low` exceeds that of `high`.
 #[inline(always)]
 fn at_most<T: Real>(low: Vec3<T>, high: Vec3<T>) -> T::Mask {
     low.x.le(high.x) & low.y.le(high.y) & low.z.le(high.z)

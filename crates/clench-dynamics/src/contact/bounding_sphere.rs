@@ -1,4 +1,4 @@
-//! How far geoms reach: spheres about them that hold all points where they could be in contact.
+//! Bounding spheres of geoms that contain all points where they could be in contact.
 
 use super::Candidate;
 use crate::model::{Model, Params};
@@ -6,17 +6,17 @@ use crate::stages::Positions;
 use clench_collide::{ShapeKind, allowance};
 use clench_math::{Real, Vec3, kernel};
 
-/// A sphere about a geom's origin.
+/// A sphere around a geom's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundingSphere<T> {
     pub(super) center: Vec3<T>,
-    /// Radius that holds the shape; 0 for a plane.
+    /// The radius that contains the shape; 0 for a plane.
     radius: T,
-    /// The same radius with the geom's share of margin and gap.
+    /// The radius plus the geom's share of margin and gap.
     pub(super) reach: T,
 }
 
-/// Replaces the spheres of some geoms of a configuration. Those of geoms that were never among them have no extent.
+/// Updates the spheres of the given geoms. Spheres of geoms that were never updated have zero radius.
 #[kernel]
 pub(super) fn update<T: Real>(
     model: &Model,
@@ -43,7 +43,7 @@ pub(super) fn update<T: Real>(
     }
 }
 
-/// A geom's share of the distance within which contacts are listed.
+/// Returns a geom's share of the distance within which contacts are listed.
 #[inline(always)]
 pub(super) fn own_margin<T: Real>(model: &Model, params: &Params<T>, geom: usize) -> T {
     let margin = if model.override_contacts {
@@ -54,7 +54,7 @@ pub(super) fn own_margin<T: Real>(model: &Model, params: &Params<T>, geom: usize
     margin + params.geom_gap[geom]
 }
 
-/// In which lanes two geoms may be in contact. `range` is the listing distance of an explicit pair.
+/// Returns the lanes in which two geoms may be in contact. `range` is the listing distance of an explicit pair.
 #[inline(always)]
 pub(super) fn may_touch<T: Real>(
     candidate: &Candidate,
@@ -72,7 +72,7 @@ pub(super) fn may_touch<T: Real>(
     if candidate.kinds[0] == ShapeKind::Plane {
         pos.geom_xmat[a].column(2).dot(offset).le(reach)
     } else {
-        // Negative margins may make the reach negative: nothing touches then.
+        // Negative margins may make the reach negative: no point touches then.
         offset.norm_squared().le(reach * reach.max(T::ZERO))
     }
 }

@@ -1,4 +1,4 @@
-//! What the detection of contacts keeps between steps, and how much it may find.
+//! The state of contact detection between steps, and its budget.
 
 use super::Candidate;
 use super::body_pairs::BodyPairs;
@@ -13,10 +13,10 @@ use crate::model::Model;
 use crate::options::MaxContacts;
 use clench_math::{Mask, Real};
 
-/// What a step can find more of than the model's budget allows.
+/// A quantity of a step that can exceed the model's budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Excess {
-    /// Pairs of geoms whose bounds meet.
+    /// Pairs of geoms whose bounds overlap.
     Pairs = 1,
     /// Contacts.
     Contacts,
@@ -27,14 +27,14 @@ pub enum Excess {
 }
 
 impl Excess {
-    /// The excess of a code; `Factor` where it is none of the others.
+    /// Returns the excess of a code; `Factor` for an unknown code.
     pub fn from_code(code: f64) -> Excess {
         let others = [Excess::Pairs, Excess::Contacts, Excess::Jacobian];
         let found = others.into_iter().find(|&one| f64::from(one as u8) == code);
         found.unwrap_or(Excess::Factor)
     }
 
-    /// What there is too much of, and how much there may be.
+    /// Returns a description of the quantity and its limit.
     pub fn describe(self, budget: &Budget) -> (&'static str, u64) {
         match self {
             Excess::Pairs => ("pairs of geoms whose bounds meet", budget.pairs()),
@@ -48,33 +48,33 @@ impl Excess {
     }
 }
 
-/// What detection keeps between steps.
+/// The state of detection between steps.
 #[derive(Clone, Debug)]
 pub struct Collision<T: Real> {
-    /// The workspace's contacts were given by the user: detection leaves them alone.
+    /// True if the user provided the workspace's contacts: detection leaves them unchanged.
     pub given: bool,
-    /// Lanes in which the last step found more contacts than the options allow.
+    /// The lanes in which the last step found more contacts than the options allow.
     pub overflow: T::Mask,
-    /// What the last step found more of than the model's budget allows, as the code of an [`Excess`], or 0. Lanes with an excess have
-    /// no contacts.
+    /// The quantity of the last step that exceeds the model's budget, as the code of an [`Excess`], or 0. Lanes with an
+    /// excess have no contacts.
     pub excess: T,
-    /// Pairs to look at, in canonical order.
+    /// The pairs to check, in canonical order.
     pub(super) candidates: Vec<Candidate>,
-    /// The same by the bodies of their geoms, where they are listed once.
+    /// The same pairs by body, if they are listed once.
     pub(super) body_pairs: BodyPairs<T>,
-    /// Those of them that may touch now.
+    /// The candidates that may touch now.
     pub(super) near: Vec<u32>,
-    /// Finds the candidates of a large model anew each step; those of a small one never change.
+    /// Finds the candidates of a large model in each step; those of a small one never change.
     pub(super) broad_phase: Option<Box<DynamicBroadPhase<T>>>,
     pub(super) spheres: Vec<BoundingSphere<T>>,
     pub(super) axes: SeparatingAxes<T>,
     /// Times the narrow phase by kinds of pair.
     pub(crate) clock: PairClock,
-    /// Look at the pairs that are near, several where threads share them.
+    /// The checkers of the near pairs; several if threads share them.
     pub(super) finders: Vec<PairFinder<T>>,
-    /// How many contacts each lane has.
+    /// The number of contacts in each lane.
     pub(super) contact_count: T,
-    /// How many numbers the Jacobian of the contacts has.
+    /// The size of the contacts' Jacobian in each lane.
     pub(super) jacobian_size: T,
 }
 
@@ -103,7 +103,8 @@ impl<T: Real> Collision<T> {
         }
     }
 
-    /// Counts a new contact, whose Jacobian has `numbers`, in the lanes where it is active. Returns those that have room for it.
+    /// Counts a new contact, whose Jacobian has `numbers` entries, in its active lanes. Returns those within the
+    /// limits.
     #[inline(always)]
     pub(super) fn count_within_limit(
         &mut self,
@@ -131,7 +132,7 @@ impl<T: Real> Collision<T> {
         active
     }
 
-    /// Records in some lanes what they have too much of.
+    /// Records the excess of some lanes.
     #[inline(always)]
     pub(super) fn record_excess(&mut self, lanes: T::Mask, excess: Excess) {
         self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);

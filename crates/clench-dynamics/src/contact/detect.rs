@@ -15,15 +15,15 @@ use clench_math::{Mask, Real, kernel};
 use clench_solver::Threads;
 use std::ops::Range;
 
-/// Tells which bodies are awake: two that both sleep make no contact.
+/// The awake bodies: two sleeping bodies make no contact.
 struct Awake<'a, T: Real> {
     model: &'a Model,
-    /// `None` where trees cannot sleep.
+    /// `None` if trees cannot sleep.
     sleep: Option<&'a Sleep<T>>,
 }
 
 impl<T: Real> Awake<'_, T> {
-    /// Lanes in which the geoms of a candidate can make a contact.
+    /// Returns the lanes in which the geoms of a candidate can make a contact.
     #[inline(always)]
     fn of(&self, candidate: &Candidate) -> T::Mask {
         let Some(sleep) = self.sleep else {
@@ -33,9 +33,9 @@ impl<T: Real> Awake<'_, T> {
     }
 }
 
-/// More finders than threads, so that all threads are done at about the same time though pairs take unequal times.
+/// The number of finders per thread: more than one, so that threads finish together although pairs take unequal times.
 const FINDERS_PER_THREAD: usize = 4;
-/// Fewer pairs are not worth waking a thread for.
+/// The minimum number of pairs that justifies a thread.
 const MIN_PAIRS: usize = 8;
 
 /// Fills `ws.contacts` from the geoms' poses, in canonical order.
@@ -101,7 +101,7 @@ pub fn detect<T: Real>(
     ws.clock.lap(Stage::NarrowPhase as usize);
 }
 
-/// Adds those of some candidates that may touch in any lane to the list of those that do.
+/// Appends the candidates that may touch in any lane to the near pairs.
 #[inline(always)]
 fn find_near<T: Real>(
     params: &Params<T>,
@@ -124,7 +124,7 @@ fn find_near<T: Real>(
     }
 }
 
-/// Finds the points of all candidates that are near, in their order, by as many finders as are worth it.
+/// Finds the points of all near candidates, in order, with a number of finders that suits the work.
 fn find_points<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -141,7 +141,7 @@ fn find_points<T: Real>(
     if finders.len() < count {
         finders.resize_with(count, PairFinder::default);
     }
-    // Those that are not needed now keep their memory for another step.
+    // Unused finders retain their memory for another step.
     finders.iter_mut().for_each(PairFinder::clear);
     let finders = &mut finders[..count];
     for (k, finder) in finders.iter_mut().enumerate() {
@@ -157,7 +157,7 @@ fn find_points<T: Real>(
     }
 }
 
-/// Adds a contact for each point of one candidate.
+/// Appends a contact for each point of one candidate.
 #[kernel]
 fn push_contacts<T: Real>(
     (params, settings, pos): (&Params<T>, &StepSettings, &Positions<T>),
@@ -176,7 +176,7 @@ fn push_contacts<T: Real>(
     let geoms = candidate.geoms.map(|g| g as usize);
     let adheres = !mixed.adhesion.eq(T::ZERO);
     for point in points {
-        // Where a contact that adheres is within the gap, it is one without friction.
+        // A contact that adheres has no friction within the gap.
         let apart = adheres & !point.distance.lt(mixed.includemargin);
         for (lanes, dim) in [(!apart, mixed.dim), (apart, 1)] {
             let active = collision.count_within_limit(

@@ -1,4 +1,4 @@
-//! The candidates of a large model, looked for anew in each step.
+//! The candidates of a large model, found in each step.
 
 use super::Candidate;
 use super::bounding_sphere::{self, BoundingSphere, own_margin};
@@ -9,25 +9,25 @@ use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
 use clench_math::{Mask, Real, Vec3, kernel};
 
-/// Finds candidates. The bounds of geoms that stand still are kept from step to step. They are computed anew when the pose, size or margin of
-/// any such geom has changed in any lane, as it may have when the lanes hold another group of environments; and that is checked only after
-/// the poses of what is fixed were computed anew.
+/// Finds candidates. The bounds of static geoms persist between steps. They are recomputed if the pose, size or margin
+/// of any such geom changes in any lane, for example if the lanes receive another group of environments. This is
+/// checked only after the poses of fixed bodies were recomputed.
 #[derive(Clone, Debug)]
 pub(super) struct DynamicBroadPhase<T> {
     broad_phase: BroadPhase,
     bounds: Vec<Bound<T>>,
     margins: Vec<T>,
     hits: Vec<(u32, u32)>,
-    /// Geoms that only explicit pairs have.
+    /// The geoms that occur only in explicit pairs.
     in_pairs: Vec<usize>,
-    /// The geoms that stand still, and what their bounds were made of.
+    /// The static geoms, and the inputs of their bounds.
     statics: Vec<usize>,
     placements: Vec<Placement<T>>,
     /// The [version](crate::fixed::FixedPoses::version) of the poses that they were compared with.
     version: u64,
 }
 
-/// What the bound of a geom follows from.
+/// The data that determine the bound of a geom.
 #[derive(Clone, Copy, Debug)]
 struct Placement<T> {
     pose: Pose<T>,
@@ -45,7 +45,7 @@ impl<T: Real> Placement<T> {
         }
     }
 
-    /// Whether two are the same in every lane; with a NaN they are not.
+    /// Returns true if both are equal in every lane; false for NaN.
     #[inline(always)]
     fn same(&self, other: &Self) -> bool {
         let same = |a: Vec3<T>, b: Vec3<T>| a.x.eq(b.x) & a.y.eq(b.y) & a.z.eq(b.z);
@@ -70,7 +70,7 @@ fn mobility(model: &Model, geom: &Geom) -> Mobility {
     }
 }
 
-/// A number that geoms share which are of one kinematic tree, or are placed together.
+/// Returns a number shared by geoms of one kinematic tree, or that are placed together.
 fn cluster(model: &Model, geom: usize) -> usize {
     let body = &model.bodies[model.geoms[geom].body];
     body.last_dof
@@ -99,7 +99,7 @@ impl<T: Real> DynamicBroadPhase<T> {
         }
     }
 
-    /// Takes over where geoms are, with the version of the poses of what is fixed, and keeps their bounding spheres up to date.
+    /// Updates the bounds and bounding spheres for the poses of geoms; `version` is that of the fixed poses.
     #[kernel]
     pub fn update(
         &mut self,
@@ -138,8 +138,8 @@ impl<T: Real> DynamicBroadPhase<T> {
         }
     }
 
-    /// Replaces `candidates` by the explicit pairs and those that are near in any lane. Returns the lanes in which there are more of them
-    /// than the budget allows.
+    /// Replaces `candidates` with the explicit pairs and the pairs that are near in any lane. Returns the lanes in
+    /// which they exceed the budget.
     #[kernel]
     pub fn find(&mut self, model: &Model, candidates: &mut Vec<Candidate>) -> T::Mask {
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);

@@ -1,40 +1,41 @@
 //! The parameters of a contact, mixed from those of its geoms by MuJoCo 4.0's rules.
 //!
-//! Margins and gaps add up: a contact is listed where dist ≤ margin + gap and carries force where dist < margin. Of two
-//! geoms the one of higher priority decides everything else; between equals condim and friction take the larger value,
-//! solref and solimp the average weighted by solmix, and adhesion the sum. Averages of a solref in direct format (not both positive) would
-//! make no sense: there the smaller of each number, hence the stiffer, wins. An explicit pair brings its own
-//! parameters. The model's override replaces margin, solref, solreffriction, solimp and friction of every contact.
+//! Margins and gaps add up: a contact is listed if dist ≤ margin + gap and carries force if dist < margin. The geom of
+//! higher priority determines all other parameters; at equal priority, condim and friction take the larger value,
+//! solref and solimp the average weighted by solmix, and adhesion the sum. A solref in direct format (not both
+//! positive) takes the smaller of each number, hence the stiffer, since an average would be meaningless. An explicit
+//! pair has its own parameters. The model's override replaces margin, solref, solreffriction, solimp and friction of
+//! every contact.
 
 use super::Candidate;
 use crate::model::{Model, Params};
 use clench_math::{Mask, Real, array};
 
-/// Weights below this count as none while stepping (MuJoCo's `mjMINVAL`).
+/// Weights below this count as zero while stepping (MuJoCo's `mjMINVAL`).
 const MIN_WEIGHT: f64 = 1e-15;
-/// Least friction coefficient (MuJoCo's `mjMINMU`).
+/// The minimum friction coefficient (MuJoCo's `mjMINMU`).
 const MIN_FRICTION: f64 = 1e-5;
 
-/// What a contact takes from its geoms or its pair; fields as in [`Contact`](super::Contact).
+/// The parameters of a contact from its geoms or pair; fields as in [`Contact`](super::Contact).
 #[derive(Clone, Copy, Debug)]
 pub struct ContactParams<T> {
     /// Dimensions.
     pub dim: usize,
-    /// Margin within which the contact carries force, m.
+    /// The margin within which the contact carries force, m.
     pub includemargin: T,
     /// Two slides, spin, two rolls.
     pub friction: [T; 5],
     /// Reference dynamics.
     pub solref: [T; 2],
-    /// Reference dynamics of the friction dimensions; both zero: as `solref`.
+    /// Reference dynamics of the friction dimensions; equal to `solref` if both are zero.
     pub solreffriction: [T; 2],
     /// Impedance.
     pub solimp: [T; 5],
-    /// Force with which the contact holds on, N.
+    /// The force with which the contact adheres, N.
     pub adhesion: T,
 }
 
-/// The margin of a pair, and the distance within which its contacts are listed (margin + gap), m.
+/// Returns the margin of a pair and the distance within which its contacts are listed (margin + gap), m.
 #[inline(always)]
 pub fn contact_range<T: Real>(model: &Model, params: &Params<T>, pair: &Candidate) -> (T, T) {
     let (margin, gap) = match pair.pair {
@@ -53,7 +54,7 @@ pub fn contact_range<T: Real>(model: &Model, params: &Params<T>, pair: &Candidat
     (margin, margin + gap)
 }
 
-/// The parameters of every contact of a pair.
+/// Returns the parameters of every contact of a pair.
 #[inline(always)]
 pub fn contact_params<T: Real>(
     model: &Model,
@@ -90,7 +91,7 @@ fn pair_params<T: Real>(model: &Model, params: &Params<T>, pair: usize) -> Conta
     }
 }
 
-/// The parameters of two geoms, without margin and override; `solmix` below `min_weight` counts as none.
+/// Returns the parameters of two geoms, without margin and override; `solmix` below `min_weight` counts as zero.
 #[inline(always)]
 pub fn mixed_params<T: Real>(
     model: &Model,
@@ -134,7 +135,7 @@ pub fn mixed_params<T: Real>(
     }
 }
 
-/// The share of the first of two weights; halves where both vanish.
+/// Returns the share of the first of two weights; one half if both vanish.
 #[inline(always)]
 fn weight<T: Real>(a: T, b: T, least: f64) -> T {
     let least = T::new(least);

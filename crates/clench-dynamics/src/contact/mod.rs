@@ -1,5 +1,5 @@
-//! From geoms to contacts: which pairs may touch, where they do, and with what parameters. The constraint that a
-//! contact becomes is `constraint::contact`.
+//! Contact detection: the pairs that may touch, their contact points and contact parameters. `constraint::contact`
+//! turns contacts into constraints.
 
 mod body_pairs;
 mod bounding_sphere;
@@ -29,7 +29,7 @@ use clench_math::{Mask, Mat3, Real, Vec3};
 pub struct Contact<T: Real> {
     /// The geoms; the normal points from the first to the second.
     pub geoms: [usize; 2],
-    /// Lanes that have this contact.
+    /// The lanes in which the contact is active.
     pub active: T::Mask,
     /// Dimensions: 1, 3, 4 or 6.
     pub dim: usize,
@@ -37,29 +37,29 @@ pub struct Contact<T: Real> {
     pub dist: T,
     /// Midpoint between the surfaces, m.
     pub pos: Vec3<T>,
-    /// Rows: normal, first tangent, second tangent.
+    /// The rows: normal, first tangent, second tangent.
     pub frame: Mat3<T>,
-    /// The constraint exists where `dist < includemargin` (the margins of both geoms), m.
+    /// The constraint exists if `dist < includemargin` (the margins of both geoms), m.
     pub includemargin: T,
     /// Two slides, spin, two rolls.
     pub friction: [T; 5],
     /// Reference dynamics.
     pub solref: [T; 2],
-    /// Reference dynamics of the friction dimensions; both zero: as `solref`.
+    /// Reference dynamics of the friction dimensions; equal to `solref` if both are zero.
     pub solreffriction: [T; 2],
     /// Impedance.
     pub solimp: [T; 5],
-    /// Force with which it holds on, N: the bodies are pulled together by it, so that the constraint can pull as much. Where it is not
-    /// zero, the contact acts, without friction, within the gap too.
+    /// The adhesive force, N: pulls the bodies together, so that the constraint can pull as much. If it is not zero,
+    /// the contact also acts within the gap, without friction.
     pub adhesion: T,
-    /// Velocity of the second surface less that of the first along the tangents, m/s, and about the normal, rad/s.
+    /// The velocity of the second surface minus that of the first along the tangents, m/s, and about the normal, rad/s.
     pub surfacevel: [T; 3],
-    /// Its block in the problem, if it became a constraint.
+    /// The block in the problem, if the contact became a constraint.
     pub block: Option<usize>,
 }
 
 impl<T: Real> Contact<T> {
-    /// The contact of one environment in every lane.
+    /// Copies the contact of one environment to every lane.
     pub fn splat(contact: &Contact<T::Scalar>) -> Self {
         let [x, y, z] = contact.frame.rows.map(Vec3::splat);
         Contact {
@@ -80,7 +80,7 @@ impl<T: Real> Contact<T> {
         }
     }
 
-    /// Lanes in which it is a constraint, if any dof is between its bodies.
+    /// Returns the lanes in which it is a constraint, if any dof is between its bodies.
     #[inline(always)]
     pub fn acts(&self) -> T::Mask {
         let adheres = !self.adhesion.eq(T::ZERO);

@@ -1,11 +1,11 @@
-//! Where the narrow phase spends its time, by kinds of pair; it counts and measures only while a profile is taken.
+//! The time of the narrow phase by kinds of pair, measured only while profiling.
 
 use crate::profile::PairProfile;
 use clench_collide::ShapeKind;
 use clench_solver::Stopwatch;
 use std::time::Duration;
 
-/// Kinds of shape; a pair of kinds has a number below its square.
+/// The number of shape kinds; the index of a pair of kinds is below its square.
 const KINDS: usize = ShapeKind::ALL.len();
 const PAIRS: usize = KINDS * KINDS;
 
@@ -32,12 +32,12 @@ impl PairClock {
         self.clock.run(running);
     }
 
-    /// Runs if another does.
+    /// Runs if `other` runs.
     pub(super) fn run_as(&mut self, other: &Self) {
         self.clock.run_as(&other.clock);
     }
 
-    /// Takes what another has counted and measured.
+    /// Moves the counts and times of `other` into this clock.
     pub(super) fn absorb(&mut self, other: &mut Self) {
         self.clock.absorb(&mut other.clock);
         for (mine, theirs) in [
@@ -56,7 +56,7 @@ impl PairClock {
         self.clock.start();
     }
 
-    /// A pair has been looked at in `lanes` environments and touches in those that `touching` counts.
+    /// Records a pair that was checked in `lanes` environments and touches in `touching` of them.
     #[inline(always)]
     pub(super) fn lap(
         &mut self,
@@ -72,7 +72,7 @@ impl PairClock {
         }
     }
 
-    /// The kinds of pair that there were.
+    /// Returns the kinds of pair that occurred.
     pub(crate) fn profiles(&self) -> Vec<PairProfile> {
         let all = ShapeKind::ALL.into_iter();
         let kinds = all.flat_map(|a| ShapeKind::ALL.into_iter().map(move |b| [a, b]));

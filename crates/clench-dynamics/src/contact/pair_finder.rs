@@ -1,4 +1,4 @@
-//! The narrow phase over some of the pairs that are near: one thread's part of them.
+//! The narrow phase over one thread's share of the near pairs.
 
 use super::pair_clock::PairClock;
 use super::placed_shape::{pose, shape};
@@ -11,20 +11,20 @@ use clench_collide::{
 };
 use clench_math::{Mask, Real, kernel};
 
-/// Pairs to look at, and the points found.
+/// The pairs to check and the points found.
 #[derive(Clone, Debug)]
 pub(super) struct PairFinder<T: Real> {
     pairs: Vec<NearPair<T>>,
-    /// The pairs that touch, each with the end of its points among `points`.
+    /// The pairs that touch, each with the end of its points in `points`.
     touching: Vec<(u32, usize)>,
     points: Vec<ContactPoint<T>>,
-    /// The points of the pair at hand.
+    /// The points of the current pair.
     scratch: Contacts<T>,
     clock: PairClock,
     collide: Collide<T>,
 }
 
-/// A candidate that is near, and the direction in which it was apart when a step last looked, with its place in the table of these.
+/// A near candidate, its separating axis in the last step, and the index of that axis in its table.
 #[derive(Clone, Copy, Debug)]
 struct NearPair<T> {
     candidate: u32,
@@ -46,14 +46,14 @@ impl<T: Real> Default for PairFinder<T> {
 }
 
 impl<T: Real> PairFinder<T> {
-    /// Forgets all pairs and what was found.
+    /// Clears all pairs and results.
     pub(super) fn clear(&mut self) {
         self.pairs.clear();
         self.touching.clear();
         self.points.clear();
     }
 
-    /// Takes these of the candidates, and runs its clock if `clock` runs.
+    /// Adds the given candidates, and runs the clock if `clock` runs.
     pub(super) fn begin(
         &mut self,
         near: &[u32],
@@ -72,7 +72,7 @@ impl<T: Real> PairFinder<T> {
         }));
     }
 
-    /// Finds the points of each pair; without `multiccd` only the deepest, where MuJoCo's flag decides.
+    /// Finds the points of each pair; without `multiccd` only the deepest, for kinds that MuJoCo's flag affects.
     #[kernel]
     pub fn find(
         &mut self,
@@ -113,7 +113,7 @@ impl<T: Real> PairFinder<T> {
         }
     }
 
-    /// Gives back the directions in which pairs were apart, and the time spent.
+    /// Returns the separating axes and the time spent to their owners.
     pub(super) fn end(&mut self, axes: &mut SeparatingAxes<T>, clock: &mut PairClock) {
         for pair in &self.pairs {
             *axes.at(pair.place) = pair.axis;
@@ -121,7 +121,7 @@ impl<T: Real> PairFinder<T> {
         clock.absorb(&mut self.clock);
     }
 
-    /// The candidates that touch, with their points.
+    /// Returns the candidates that touch, with their points.
     pub(super) fn touching(&self) -> impl Iterator<Item = (u32, &[ContactPoint<T>])> {
         let mut start = 0;
         self.touching.iter().map(move |&(candidate, end)| {

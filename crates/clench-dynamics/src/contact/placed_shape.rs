@@ -1,11 +1,11 @@
-//! The shape of a geom, and its pose.
+//! The shape and pose of a geom.
 
 use crate::model::{Model, Params};
 use crate::stages::Positions;
 use clench_collide::{Mesh, Pose, Shape, ShapeKind, Terrain};
 use clench_math::Real;
 
-/// The shape of a geom.
+/// Returns the shape of a geom.
 #[inline(always)]
 pub fn shape<'a, T: Real>(model: &'a Model, params: &Params<T>, geom: usize) -> Shape<'a, T> {
     let size = params.geom_size[geom];
@@ -22,7 +22,7 @@ pub fn shape<'a, T: Real>(model: &'a Model, params: &Params<T>, geom: usize) -> 
     }
 }
 
-/// The pose of a geom.
+/// Returns the pose of a geom.
 #[inline(always)]
 pub(super) fn pose<T: Real>(pos: &Positions<T>, geom: usize) -> Pose<T> {
     Pose {

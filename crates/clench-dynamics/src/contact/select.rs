@@ -1,28 +1,28 @@
-//! Which geom pairs may collide, decided once for a model by MuJoCo 4.0's rules.
+//! The pairs of geoms that may collide, selected by MuJoCo 4.0's rules.
 //!
-//! A pair of bodies is out when both are welded together, when neither can move, when one is the parent of the other
-//! (after welding; the world does not count as a parent, and the flag `filterparent` can be off), or when it is
-//! excluded. Of the bodies left, two geoms collide when the type bits of one meet the affinity bits of the other.
-//! Explicit pairs always collide, once, with their own parameters.
+//! A pair of bodies cannot collide if both are welded together, if neither can move, if one is the parent of the other
+//! (after welding; the world does not count as a parent, and the flag `filterparent` can be off), or if it is excluded.
+//! Geoms of the remaining pairs collide if the type bits of one overlap the affinity bits of the other. Explicit pairs
+//! always collide, once, with their own parameters.
 //!
-//! Candidates stand in the order in which MuJoCo lists contacts: by body pair, explicit pairs first, then by geoms.
+//! Candidates are in the order in which MuJoCo lists contacts: by body pair, explicit pairs first, then by geoms.
 
 use crate::Model;
 use crate::model::Geom;
 use clench_collide::{ShapeKind, supported};
 
-/// Two geoms that may collide, the one of smaller shape kind first.
+/// Two geoms that may collide, the one with the smaller shape kind first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Candidate {
     /// The geoms.
     pub geoms: [u32; 2],
     /// Their shapes.
     pub kinds: [ShapeKind; 2],
-    /// The explicit pair, if it is one.
+    /// The explicit pair, if any.
     pub pair: Option<u32>,
 }
 
-/// Two geoms that may collide but whose shapes cannot.
+/// Two geoms that may collide but whose shapes are not supported.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}geoms {first} and {second} may collide, but {kinds} is not supported")]
 pub struct UnsupportedPair {
@@ -32,14 +32,15 @@ pub struct UnsupportedPair {
     kinds: String,
 }
 
-/// With more pairs than these the broad phase looks for them in each step: a list grows with the square of the geoms.
+/// The maximum number of listed pairs: a list grows with the square of the geoms. Beyond, the broad phase runs in each
+/// step.
 const MAX_LISTED_PAIRS: usize = 1 << 13;
-/// So it does with more geoms than these that stand still: a tree over them finds the few that are near.
+/// The same for static geoms: beyond, a tree over them finds the few that are near.
 const MAX_LISTED_STATICS: usize = 128;
-/// So it does, without counting the pairs, with more geoms than these.
+/// The same for all geoms, without counting pairs.
 const MAX_COUNTED_GEOMS: usize = 1 << 10;
 
-/// All candidates of a model in which a list of them, compared in each step, is the fastest.
+/// Returns all candidates of a model if comparing a list of them in each step is the fastest method.
 pub(super) fn listed_candidates(model: &Model) -> Option<Vec<Candidate>> {
     let stands = |geom: &Geom| model.bodies[model.bodies[geom.body].weld].dofs.is_empty();
     let roles = model.geoms.iter().zip(meet_any(model));
@@ -52,12 +53,12 @@ pub(super) fn listed_candidates(model: &Model) -> Option<Vec<Candidate>> {
     few.then(|| candidates_up_to(model, MAX_LISTED_PAIRS))?
 }
 
-/// All candidates of a model, in canonical order.
+/// Returns all candidates of a model, in canonical order.
 pub fn candidates(model: &Model) -> Vec<Candidate> {
     candidates_up_to(model, usize::MAX).unwrap_or_default()
 }
 
-/// All candidates, in canonical order; nothing where they are more than `most`.
+/// Returns all candidates in canonical order; `None` if there are more than `most`.
 fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
     let meets = meet_any(model);
     let collides = |&body: &usize| model.bodies[body].geoms.clone().any(|g| meets[g]);
@@ -85,7 +86,8 @@ fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
     Some(found)
 }
 
-/// Whether each geom's type and affinity bits meet those of any geom, its own among them. A geom that is only drawn meets none.
+/// Returns, for each geom, true if its type or affinity bits overlap those of any geom, including itself; false for
+/// visual geoms.
 pub(super) fn meet_any(model: &Model) -> Vec<bool> {
     let (mut contypes, mut conaffinities) = (0, 0);
     for geom in &model.geoms {
@@ -96,22 +98,22 @@ pub(super) fn meet_any(model: &Model) -> Vec<bool> {
     model.geoms.iter().map(meets).collect()
 }
 
-/// The candidate of explicit pair `pair`.
+/// Returns the candidate of explicit pair `pair`.
 pub(super) fn explicit(model: &Model, pair: u32) -> Candidate {
     Candidate::new(model, model.pairs[pair as usize].geoms, Some(pair))
 }
 
-/// Whether two geoms that are no explicit pair may collide.
+/// Returns true if two geoms that are no explicit pair may collide.
 pub(super) fn geoms_may_collide(model: &Model, g1: usize, g2: usize) -> bool {
     masks_meet(model, g1, g2)
         && bodies_may_collide(model, model.geoms[g1].body, model.geoms[g2].body)
         && !is_explicit(model, g1, g2)
 }
 
-/// Refuses a model in which shapes may meet that the narrow phase does not know.
+/// Checks that the narrow phase supports all pairs of shapes that may collide.
 ///
 /// # Errors
-/// The first such pair.
+/// Returns the first unsupported pair.
 pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
     let unsupported = |c: &Candidate| !supported(c.kinds[0], c.kinds[1]);
     let mut explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
@@ -137,7 +139,8 @@ pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
     })
 }
 
-/// Two geoms that may collide, no explicit pair, of kinds that the narrow phase does not know. Those are few, so few geoms are compared.
+/// Finds two geoms that may collide, no explicit pair, of unsupported kinds. Such kinds are few, so few geoms are
+/// compared.
 fn find_unsupported(model: &Model) -> Option<Candidate> {
     let mut kinds: Vec<(ShapeKind, Vec<usize>)> = Vec::new();
     for (g, geom) in model.geoms.iter().enumerate() {
@@ -164,7 +167,7 @@ fn find_unsupported(model: &Model) -> Option<Candidate> {
 }
 
 impl Candidate {
-    /// A candidate of two geoms in either order; the order is kept between equal kinds.
+    /// Creates a candidate of two geoms in any order; geoms of equal kind keep their order.
     pub(super) fn new(model: &Model, geoms: [usize; 2], pair: Option<u32>) -> Self {
         let [g1, g2] = geoms;
         let swap = model.geoms[g1].kind > model.geoms[g2].kind;
@@ -176,7 +179,7 @@ impl Candidate {
         }
     }
 
-    /// Sorting by this gives the canonical order.
+    /// Returns the sort key of the canonical order.
     pub(super) fn order(&self, model: &Model) -> (usize, usize, u32, [u32; 2]) {
         let [a, b] = self.geoms.map(|g| model.geoms[g as usize].body);
         (

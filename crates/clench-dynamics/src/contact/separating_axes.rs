@@ -1,14 +1,15 @@
-//! In which directions pairs of geoms were apart when a step last looked at them.
+//! The separating axes of pairs of geoms in the last step that checked them.
 //!
-//! Most pairs that are near each other are apart step after step. What is kept here shows that at once ([`clench_collide::collide_again`])
-//! and changes no result: so it is no part of the state, may be another environment's, and two pairs may contend for one place.
+//! Most near pairs stay separated for many steps. A stored axis proves this at once ([`clench_collide::collide_again`])
+//! and changes no result. Thus it is not part of the state, may stem from another environment, and two pairs may
+//! compete for an entry.
 
 use clench_collide::SeparatingAxis;
 use clench_math::Real;
 
-/// Pairs that share a bucket: of more, one gives way.
+/// The number of pairs in a bucket; a further one evicts another.
 const WAYS: usize = 4;
-/// Places for each pair that is near.
+/// The number of entries per near pair.
 const PLACES_PER_PAIR: usize = 4;
 
 /// A table of buckets without chains.
@@ -17,11 +18,11 @@ pub(super) struct SeparatingAxes<T> {
     buckets: Vec<[Entry<T>; WAYS]>,
 }
 
-/// A pair of geoms and its direction.
+/// A pair of geoms and its axis.
 type Entry<T> = ([u32; 2], SeparatingAxis<T>);
 
 impl<T: Real> SeparatingAxes<T> {
-    /// Makes room for a number of pairs. Where that is more than ever before, all axes are forgotten.
+    /// Reserves capacity for `pairs`. If the table grows, all axes are cleared.
     pub(super) fn reserve(&mut self, pairs: usize) {
         let wanted = (pairs * PLACES_PER_PAIR).div_ceil(WAYS).next_power_of_two();
         if self.buckets.len() < wanted {
@@ -31,7 +32,7 @@ impl<T: Real> SeparatingAxes<T> {
         }
     }
 
-    /// The place of a pair's direction.
+    /// Returns the index of a pair's axis.
     #[inline(always)]
     pub(super) fn place(&mut self, geoms: [u32; 2]) -> usize {
         let mixed = geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B);
@@ -47,7 +48,7 @@ impl<T: Real> SeparatingAxes<T> {
         bucket * WAYS + way
     }
 
-    /// The direction at a place.
+    /// Returns the axis at an index.
     #[inline(always)]
     pub(super) fn at(&mut self, place: usize) -> &mut SeparatingAxis<T> {
         &mut self.buckets[place / WAYS][place % WAYS].1

@@ -1,14 +1,15 @@
 //! Surfaces that move while their geoms do not, such as conveyor belts (MuJoCo's `surfacevel`).
 //!
-//! The surface of a geom moves with v + ω × (x − p) at a point x, v and ω given in the geom's frame, whose origin is p. A contact
-//! feels the difference of its two surfaces along its tangents, and about its normal.
+//! The surface of a geom moves with v + ω × (x − p) at a point x, with v and ω in the geom's frame, whose origin is p.
+//! The difference of the two surfaces' velocities acts on a contact along its tangents and about its normal.
 
 use super::placed_shape::pose;
 use crate::model::Params;
 use crate::stages::Positions;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
-/// Velocity of the second geom's surface less that of the first at `point`: along both tangents of `frame`, and about its normal.
+/// Returns the velocity of the second geom's surface minus that of the first at `point`: along both tangents of
+/// `frame`, and about its normal.
 #[inline(always)]
 pub(super) fn relative<T: Real>(
     params: &Params<T>,

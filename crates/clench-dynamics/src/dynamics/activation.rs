@@ -1,4 +1,4 @@
-//! From controls to what acts: clamped controls, activation dynamics, and setpoints on a circle.
+//! Actuator inputs: clamped controls, activation dynamics, and setpoints on a circle.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use super::setpoint::nearest_setpoint;
@@ -7,12 +7,13 @@ use crate::model::{DynamicsKind, Model, Params};
 use crate::state::State;
 use clench_math::{Mask, Real, kernel};
 
-/// The most controls that an actuator has: position, velocity, feedforward and voltage.
+/// The maximum number of controls of an actuator: position, velocity, feedforward and voltage.
 const MAX_CONTROLS: usize = 4;
 /// The shortest time constant (s) of a filter (MuJoCo's `mjMINVAL`).
 const MIN_TIMECONST: f64 = 1e-15;
 
-/// The controls as they act, `offset` seconds after the time of the state: those of delayed actuators are read from the past; then ranges clamp.
+/// Computes the effective controls `offset` seconds after the time of the state: reads delayed ones from the history,
+/// then clamps them.
 #[kernel]
 pub(crate) fn acting_controls<T: Real>(
     model: &Model,
@@ -51,8 +52,8 @@ pub(super) fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
     params.actuator_dynprm[u][0].max(T::new(MIN_TIMECONST))
 }
 
-/// Activation `a` of actuator `u` a time step later, from what it is and its rate, within its range. An exact filter approaches
-/// its control by 1 − exp(−h/τ) of the distance.
+/// Advances activation `a` of actuator `u` by a time step at its rate, within its range. An exact filter covers 1 −
+/// exp(−h/τ) of the distance to its control.
 #[inline(always)]
 pub(crate) fn next_activation<T: Real>(
     model: &Model,
@@ -82,7 +83,8 @@ pub(crate) fn next_activation<T: Real>(
     }
 }
 
-/// What the gain of actuator `u` multiplies: its control, or its activation (of the end of the step with `actearly`).
+/// Returns the factor of the gain of actuator `u`: its control or its activation (at the end of the step with
+/// `actearly`).
 #[inline(always)]
 pub(crate) fn input<T: Real>(
     model: &Model,
@@ -100,7 +102,7 @@ pub(crate) fn input<T: Real>(
     nearest_setpoint(model, params, u, input, at.length)
 }
 
-/// Activation `a` of actuator `u` as its gain takes it: of the end of the step with `actearly`.
+/// Returns activation `a` of actuator `u` for its gain: at the end of the step with `actearly`.
 #[inline(always)]
 pub(crate) fn acting<T: Real>(
     model: &Model,

@@ -8,7 +8,8 @@ use crate::model::{DynamicsKind, Model, Params};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Real, kernel};
 
-/// The rate of change of each activation (na). A filtered servo on a circle turns towards its control by the shorter way.
+/// Computes the rate of change of each activation (na). A filtered servo on a circle turns towards its control along
+/// the shorter arc.
 #[kernel]
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
@@ -24,7 +25,7 @@ pub(crate) fn activation_rates<T: Real>(
         let ctrl = || given.ctrl[actuator.controls.start];
         let at = ActuatorMotion::of(model, pos, vel, u);
         act_dot[a] = match actuator.dynamics {
-            // What a callback of MuJoCo's user would say.
+            // MuJoCo leaves these rates to a user callback.
             DynamicsKind::None | DynamicsKind::User => T::ZERO,
             DynamicsKind::Muscle => {
                 muscle::activation_rate(ctrl(), act, &params.actuator_dynprm[u])

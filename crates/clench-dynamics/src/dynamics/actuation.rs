@@ -1,4 +1,4 @@
-//! Actuator forces, force = gain · input + bias, and the dof forces they make.
+//! Actuator forces, force = gain · input + bias, and the resulting dof forces.
 
 use super::activation_rates::activation_rates;
 use super::actuator::{ActuatorInputs, ActuatorMotion};
@@ -11,8 +11,9 @@ use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Real, kernel};
 
-/// `act_dot`, `actuator_force` and `qfrc_actuator`, within the limits of tendons, actuators and joints, in this order. Gravity
-/// compensation of joints with `actgravcomp` is part of the joint's actuation, if the model has any actuator.
+/// Computes `act_dot`, `actuator_force` and `qfrc_actuator`, with the limits of tendons, actuators and joints applied
+/// in this order. Gravity compensation of joints with `actgravcomp` is part of the joint's actuation, if the model has
+/// any actuator.
 #[kernel]
 pub fn actuation<T: Real>(
     model: &Model,
@@ -59,7 +60,7 @@ pub fn actuation<T: Real>(
                 _ => out[0] = out[0].clamp(range[0], range[1]),
             }
         }
-        // A tendon's range, as an actuator's own, holds what a motor's current pulls with, without its cogging and friction.
+        // Ranges of tendons and actuators limit the force of a motor's current, without cogging and friction.
         if let Some(t) = limited_tendon(model, actuator.transmission) {
             force.ten_actuator_force[t] += force.actuator_force[first];
         }
@@ -81,7 +82,7 @@ pub fn actuation<T: Real>(
     finish_joints(model, params, force);
 }
 
-/// The tendon that an actuator pulls on, if their total force is limited.
+/// Returns the tendon of an actuator, if the tendon's total force is limited.
 #[inline(always)]
 pub(super) fn limited_tendon(model: &Model, transmission: Transmission) -> Option<usize> {
     match transmission {
@@ -90,7 +91,7 @@ pub(super) fn limited_tendon(model: &Model, transmission: Transmission) -> Optio
     }
 }
 
-/// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
+/// Scales the actuators of a tendon by a common factor if their total exceeds the tendon's range.
 #[inline(always)]
 fn limit_tendon_forces<T: Real>(model: &Model, params: &Params<T>, force: &mut Forces<T>) {
     for actuator in &model.actuators {

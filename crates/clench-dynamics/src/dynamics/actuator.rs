@@ -1,13 +1,13 @@
-//! What actuators are given, and how they move.
+//! Inputs and motion of actuators.
 
 use crate::model::Model;
 use crate::stages::{Positions, Velocities};
 use clench_math::{Real, Scalar};
 
-/// What actuators are given: controls as they act, and activations.
+/// The inputs of actuators: effective controls, and activations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActuatorInputs<'a, T> {
-    /// Delayed, and within their ranges (nu).
+    /// Controls, delayed and clamped (nu).
     pub ctrl: &'a [T],
     /// Activations (na).
     pub act: &'a [T],
@@ -16,14 +16,14 @@ pub(crate) struct ActuatorInputs<'a, T> {
 /// Length and velocity of an actuator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActuatorMotion<T> {
-    /// Length of its transmission.
+    /// The length of its transmission.
     pub length: T,
-    /// Velocity of its transmission.
+    /// The velocity of its transmission.
     pub velocity: T,
 }
 
 impl<T: Real> ActuatorMotion<T> {
-    /// Of actuator `u`, the first where it has several.
+    /// Returns the motion of the first output of actuator `u`.
     #[inline(always)]
     pub(crate) fn of(model: &Model, pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
         let output = model.actuators[u].outputs.start;
@@ -34,11 +34,11 @@ impl<T: Real> ActuatorMotion<T> {
     }
 }
 
-/// The share by which a force that was scaled to the end of a range may miss it.
+/// Returns the relative error with which a force scaled to the end of a range may miss it.
 #[inline(always)]
 pub(super) fn scaling_error<T: Real>() -> T {
     T::new(SUM_ROUNDING).max(T::splat(T::Scalar::EPSILON) * T::new(16.0))
 }
 
-/// A sum of scaled forces is at the end of a range if it misses it by so little of it (as in MuJoCo), or by rounding.
+/// The relative error within which a sum of scaled forces is at the end of a range (as in MuJoCo).
 pub(super) const SUM_ROUNDING: f64 = 1e-10;

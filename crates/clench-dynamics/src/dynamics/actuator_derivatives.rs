@@ -1,5 +1,5 @@
-//! How the force of an actuator changes with its velocity and with its length, after all limits: where a limit of the actuator, its
-//! tendon or its joint holds the force, it does not change.
+//! The derivatives of an actuator's force by its velocity and length, after all limits; zero if a limit of the
+//! actuator, its tendon or its joint is reached.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion, scaling_error};
 use crate::dynamics::actuation::limited_tendon;
@@ -10,7 +10,7 @@ use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Mask, Real, kernel};
 
-/// ∂force/∂velocity of actuator `u`.
+/// Computes ∂force/∂velocity of actuator `u`.
 #[kernel]
 pub(crate) fn velocity_derivative<T: Real>(
     model: &Model,
@@ -33,7 +33,7 @@ pub(crate) fn velocity_derivative<T: Real>(
     // As in MuJoCo, friction counts here with a motor's gain, though it is part of its bias.
     let friction = || dc_motor::mechanical_slope(model, params, u);
     let slope = match (actuator.gain, actuator.bias) {
-        // The bias of a motor needs its gain. No limit holds what it adds.
+        // The bias of a motor requires its gain. No limit applies to it.
         (GainKind::DcMotor, BiasKind::DcMotor) => T::select(held, T::ZERO, slope) + friction(),
         (GainKind::DcMotor, _) => T::select(held, T::ZERO, slope + friction()),
         _ => T::select(held, T::ZERO, slope),
@@ -41,7 +41,7 @@ pub(crate) fn velocity_derivative<T: Real>(
     unless_joint_holds(model, params, force, u, slope)
 }
 
-/// ∂force/∂length of actuator `u`. Of an orientation servo it is that for small angles, the same about each axis.
+/// Computes ∂force/∂length of actuator `u`. For an orientation servo, that at small angles, equal about each axis.
 #[kernel]
 pub(crate) fn length_derivative<T: Real>(
     model: &Model,
@@ -77,7 +77,8 @@ fn inputs<'a, T: Real>(state: &'a State<T>, force: &'a Forces<T>) -> ActuatorInp
     }
 }
 
-/// Lanes in which the force is at an end of its own range, or with those of other actuators at an end of their tendon's.
+/// Returns the lanes in which the force is at an end of its range, or the total of its tendon at an end of the tendon's
+/// range.
 #[inline(always)]
 fn is_held<T: Real>(
     model: &Model,
@@ -90,7 +91,7 @@ fn is_held<T: Real>(
     let actuator = &model.actuators[u];
     let mut held = T::Mask::splat(false);
     if actuator.forcelimited {
-        // Cogging and friction of a motor come after its limit, which holds its current alone.
+        // Cogging and friction of a motor follow its limit, which clamps only the current's force.
         let limited = match actuator.bias {
             BiasKind::DcMotor => unlimited_force(model, params, given, &force.act_dot, u, at),
             _ => force.actuator_force[actuator.outputs.start],
@@ -103,7 +104,7 @@ fn is_held<T: Real>(
     held
 }
 
-/// The slope, or zero in lanes in which the range of the actuator's joint holds the sum of all that act on it.
+/// Returns the slope, or zero in lanes in which the range of the actuator's joint clamps the total force.
 #[inline(always)]
 fn unless_joint_holds<T: Real>(
     model: &Model,
@@ -129,8 +130,8 @@ fn is_saturated<T: Real>(value: T, [low, high]: [T; 2]) -> T::Mask {
     value.le(low) | value.ge(high)
 }
 
-/// Whether a sum of forces that were scaled into a range is at one of its ends. As in MuJoCo, where actuators reach the
-/// range of their tendon and one of them is then cut by its own, what is left of the sum decides.
+/// Returns the lanes in which a sum of forces scaled into a range is at one of its ends. As in MuJoCo, if actuators
+/// reach the range of their tendon and one is then clamped by its own range, the reduced sum is compared.
 #[inline(always)]
 fn is_reached<T: Real>(sum: T, [low, high]: [T; 2]) -> T::Mask {
     let rounding = scaling_error::<T>();

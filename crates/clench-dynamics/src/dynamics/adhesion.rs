@@ -1,9 +1,9 @@
-//! Transmissions to contacts: a body is drawn to whatever it touches.
+//! Transmissions to contacts: attract a body to the objects that it touches.
 //!
-//! The force is shared equally by all contacts of the body, those among them that are within the gap and carry no force yet. Along
-//! a contact's normal n, from its first body to the second, the bodies come apart with n · (v₂ − v₁): the moment arms are minus
-//! the mean of that over the contacts, and zero where there is none. Gears do not count. As in MuJoCo a contact within one rigid body,
-//! which a pair can ask for, has no share, unless it is within the gap.
+//! All contacts of the body, including those within the gap that carry no force yet, share the force equally. Along a
+//! contact's normal n, from its first body to the second, the bodies separate with n · (v₂ − v₁): the moment arms are
+//! minus its mean over the contacts, and zero without contacts. Gears have no effect. As in MuJoCo, a contact within
+//! one rigid body, possible for an explicit pair, has no share unless it is within the gap.
 
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
@@ -11,7 +11,7 @@ use crate::model::{Model, Transmission};
 use crate::stages::Positions;
 use clench_math::{Mask, Real, kernel};
 
-/// Moment arms of all actuators on contacts, once these are found.
+/// Computes the moment arms of all actuators on detected contacts.
 #[kernel]
 pub fn adhesion<T: Real>(model: &Model, contacts: &[Contact<T>], pos: &mut Positions<T>) {
     let mut moments = std::mem::take(&mut pos.actuator_moment);
@@ -24,7 +24,7 @@ pub fn adhesion<T: Real>(model: &Model, contacts: &[Contact<T>], pos: &mut Posit
     pos.actuator_moment = moments;
 }
 
-/// Moment arms, over all dofs of the model, of an actuator on the contacts of `body`.
+/// Computes the moment arms, over all dofs of the model, of an actuator on the contacts of `body`.
 #[inline(always)]
 fn body_arms<T: Real>(
     model: &Model,

@@ -1,6 +1,7 @@
-//! The factor of the mass matrix by articulated bodies (Featherstone 2008, §7.3), for long chains in single precision.
+//! The factorization of the mass matrix by articulated bodies (Featherstone 2008, §7.3), for long chains in single
+//! precision.
 //!
-//! Let IA_i be the inertia that is felt at dof i if the joints below it are free, s_i its axis, and M = LᵀDL as everywhere.
+//! Let IA_i be the inertia at dof i if the joints below it are free, s_i its axis, and M = LᵀDL as elsewhere.
 //! Eliminating the dofs below i from M leaves s_jᵀ IA_i s_i in row i, hence
 //!
 //! ```text
@@ -8,10 +9,10 @@
 //! IA of what carries dof i:  IA_i − u_i u_iᵀ / D_i
 //! ```
 //!
-//! From M itself the pivot D_i of a link near the root of a chain is a small difference of large numbers: in a chain of 50
-//! links it is 10⁻⁶ of the entry that it is left of, and single precision has nothing left of it. IA is of the pivot's own
-//! size when it is taken about a point nearby, here each body's centre of mass. So D and L come out with the errors of a few
-//! roundings however long the chain. In double precision M's own digits suffice.
+//! Computed from M, the pivot D_i of a link near the root of a chain is a small difference of large numbers: in a chain
+//! of 50 links it is 10⁻⁶ of the original entry, beyond single precision. IA has the magnitude of the pivot if it is
+//! taken about a nearby point, here each body's centre of mass. Thus D and L have errors of a few roundings for any
+//! length of chain. In double precision, M is accurate enough.
 
 use crate::constraint::softness::is_single;
 use crate::dynamics::reflected::{dof_armature, tendon_armature};
@@ -20,7 +21,7 @@ use crate::stages::Positions;
 use clench_math::{Inertia, Mask, Mat3, Real, Vec3, kernel};
 use clench_solver::TreeFactor;
 
-/// Inertia of an articulated body about a point: moment = rotational ω + coupling v, force = couplingᵀ ω + mass v.
+/// The inertia of an articulated body about a point: moment = rotational ω + coupling v, force = couplingᵀ ω + mass v.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArticulatedInertia<T> {
     rotational: Mat3<T>,
@@ -29,14 +30,14 @@ pub struct ArticulatedInertia<T> {
 }
 
 impl<T: Real> ArticulatedInertia<T> {
-    /// No body at all.
+    /// The inertia of no body.
     pub const ZERO: Self = ArticulatedInertia {
         rotational: Mat3::ZERO,
         coupling: Mat3::ZERO,
         mass: Mat3::ZERO,
     };
 
-    /// A rigid body about its centre of mass.
+    /// Creates a rigid body about its centre of mass.
     #[inline(always)]
     fn rigid(diagonal: Vec3<T>, axes: &Mat3<T>, mass: T) -> Self {
         let [xx, yy, zz, xy, xz, yz] =
@@ -52,7 +53,7 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 
-    /// Moment and force that accelerate it by (`angular`, `linear`).
+    /// Returns the moment and force that accelerate it by (`angular`, `linear`).
     #[inline(always)]
     fn mul(&self, angular: Vec3<T>, linear: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
         (
@@ -61,7 +62,7 @@ impl<T: Real> ArticulatedInertia<T> {
         )
     }
 
-    /// Takes off u uᵀ / pivot.
+    /// Subtracts u uᵀ / pivot.
     #[inline(always)]
     fn release(&mut self, (moment, force): (Vec3<T>, Vec3<T>), inverse_pivot: T) {
         for i in 0..3 {
@@ -71,7 +72,7 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 
-    /// Adds `other`, which is about the point at `offset` from this one's.
+    /// Adds `other`, whose reference point is at `offset` from this one's.
     ///
     /// With r× the matrix of the cross product by the offset: coupling' = coupling + r× mass and
     /// rotational' = rotational − coupling r× + r× coupling'ᵀ.
@@ -96,7 +97,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 }
 
-/// The cross products of a vector with the columns of a matrix.
+/// Returns the cross products of a vector with the columns of a matrix.
 #[inline(always)]
 fn crossed<T: Real>(vector: Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
     Mat3::from_columns(
@@ -106,12 +107,12 @@ fn crossed<T: Real>(vector: Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
     )
 }
 
-/// More dofs than this on a path from a root are too many for the factor to be computed from M in single precision: rounding
-/// takes a part of the smallest pivots that grows with the cube of their number, at 20 about a hundredth.
+/// The maximum number of dofs on a path from a root for which the factor is computed from M in single precision: the
+/// relative rounding error of the smallest pivots grows with the cube of this number, at 20 to about one hundredth.
 const MAX_DOFS: usize = 20;
 
-/// Memory for `articulated_factor` where numbers `T` and the model need it, else none: the model alone decides. The inertia of
-/// tendons is not that of a body: with it M is factored itself.
+/// Allocates memory for `articulated_factor`; empty if the precision of `T` and the model do not require it. Models
+/// with tendon armature, which is no body inertia, factor M itself.
 pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> {
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
     let heavy = |t| tendon_armature(model, &model.params, t) > 0.0;
@@ -123,9 +124,9 @@ pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> 
     }
 }
 
-/// Factors M + diag(`added`) into `factor`. False in lanes that met a pivot that is not positive.
+/// Factors M + diag(`added`) into `factor`. Returns false in lanes with a pivot that is not positive.
 ///
-/// `bodies` is memory for all bodies.
+/// `bodies` is scratch memory for all bodies.
 #[kernel]
 pub(crate) fn articulated_factor<T: Real>(
     model: &Model,
@@ -162,8 +163,8 @@ pub(crate) fn articulated_factor<T: Real>(
     positive
 }
 
-/// Angular and linear velocity at `point` when dof `i` moves at unit velocity, from the joint's anchor: nothing large cancels
-/// where both are near.
+/// Returns the angular and linear velocity at `point` if dof `i` moves at unit velocity, computed from the joint's
+/// anchor, to avoid cancellation near it.
 #[inline(always)]
 fn axis<T: Real>(
     model: &Model,

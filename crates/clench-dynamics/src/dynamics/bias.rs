@@ -1,14 +1,14 @@
 //! Coriolis, centrifugal and gravity forces by recursive Newton–Euler (Featherstone 2008, §5.3).
 //!
-//! Without joint acceleration a body still accelerates, a = Σ ċdof q̇ along its chain; gravity is an upward acceleration of
-//! the world. The force that this takes, I a + v ×* I v, is summed down the tree and measured along each dof.
+//! Without joint acceleration a body accelerates with a = Σ ċdof q̇ along its chain; gravity is an upward acceleration
+//! of the world. The required force I a + v ×* I v is summed down the tree and projected onto each dof.
 
 use crate::dynamics::project::project_forces;
 use crate::model::{Model, Params};
 use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Motion, Real, Vec3, kernel};
 
-/// `qfrc_bias`, on the left side of the equation of motion.
+/// Computes `qfrc_bias`, on the left side of the equation of motion.
 #[kernel]
 pub(crate) fn bias_forces<T: Real>(
     model: &Model,

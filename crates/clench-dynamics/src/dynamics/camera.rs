@@ -1,10 +1,10 @@
-//! Where cameras are. No motion depends on them, so they are worked out when somebody asks.
+//! Camera poses. No motion depends on them, so they are computed on demand.
 
 use crate::model::{CameraMode, Model, Params};
 use crate::stages::Positions;
 use clench_math::{Mat3, Real, Vec3, kernel};
 
-/// The pose of a camera that is fixed to its body.
+/// Returns the pose of a camera that is fixed to its body.
 #[kernel]
 pub fn fixed_pose<T: Real>(
     model: &Model,
@@ -18,7 +18,7 @@ pub fn fixed_pose<T: Real>(
     (place, turn)
 }
 
-/// The pose of a camera: its position, and its axes as columns.
+/// Returns the pose of a camera: its position, and its axes as columns.
 #[kernel]
 pub fn camera_pose<T: Real>(
     model: &Model,
@@ -50,8 +50,8 @@ pub fn camera_pose<T: Real>(
     }
 }
 
-/// The axes of a camera that looks from one point to another, with the world's z axis upwards in its picture. Where that is no
-/// direction, the x axis takes its place, as in MuJoCo.
+/// Returns the axes of a camera that looks from one point to another, with the world's z axis upwards in its image. A
+/// direction of zero length becomes the x axis, as in MuJoCo.
 #[kernel]
 fn looking<T: Real>(from: Vec3<T>, to: Vec3<T>) -> Mat3<T> {
     let up = Vec3::new(T::ZERO, T::ZERO, T::ONE);

@@ -1,20 +1,20 @@
-//! The dofs that move two bodies relative to each other, and how.
+//! The dofs that move two bodies relative to each other.
 //!
-//! The dofs that move a body are its chain: a row of the tree. Of two chains the common part comes first in both; what
-//! is left lies on different branches, and dofs are numbered depth first, so one rest comes wholly before the other.
+//! The chain of a body is the set of dofs that move it: a row of the tree. Two chains begin with their common part; the
+//! remainders lie on different branches, and dofs are numbered depth first, so one wholly precedes the other.
 
 use crate::model::Model;
 use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, Vec3};
 
-/// Which of the two bodies a dof moves.
+/// The body of a pair that a dof moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Both.
     Both,
-    /// The first alone.
+    /// Only the first.
     First,
-    /// The second alone.
+    /// Only the second.
     Second,
 }
 
@@ -25,7 +25,7 @@ pub struct Chains<'a> {
 }
 
 impl<'a> Chains<'a> {
-    /// All dofs that move either body.
+    /// Returns all dofs that move either body.
     #[inline(always)]
     pub fn new(model: &'a Model, [body1, body2]: [usize; 2]) -> Self {
         let chain = |body: usize| match model.bodies[body].last_dof {
@@ -49,14 +49,14 @@ impl<'a> Chains<'a> {
         Chains { parts }
     }
 
-    /// Leaves out dofs that move both bodies: at one common point their motion has no difference.
+    /// Omits dofs that move both bodies: they cause no relative motion at a common point.
     #[inline(always)]
     pub fn without_common(mut self) -> Self {
         self.parts[0].0 = &[];
         self
     }
 
-    /// Replaces `dofs` by those of the chains.
+    /// Replaces `dofs` with those of the chains.
     #[inline(always)]
     pub fn collect(&self, dofs: &mut Vec<u32>) {
         dofs.clear();
@@ -65,13 +65,13 @@ impl<'a> Chains<'a> {
         }
     }
 
-    /// Dofs by whom they move, ascending.
+    /// Returns the dofs by the side that they move, ascending.
     #[inline(always)]
     pub fn parts(&self) -> [(&'a [u32], Side); 3] {
         self.parts
     }
 
-    /// Each dof and whom it moves, ascending.
+    /// Returns each dof with its side, ascending.
     #[inline(always)]
     pub fn iter(&self) -> impl Iterator<Item = (usize, Side)> {
         let parts = self.parts.into_iter();
@@ -84,12 +84,12 @@ impl<'a> Chains<'a> {
 pub struct BodyPoint<T> {
     /// The body.
     pub body: usize,
-    /// From the reference point of the body's tree.
+    /// The offset from the reference point of the body's tree.
     pub offset: Vec3<T>,
 }
 
 impl<T: Real> BodyPoint<T> {
-    /// The point of `body` that is at `point` (world coordinates) now.
+    /// Returns the point of `body` that is currently at `point` (world coordinates).
     #[inline(always)]
     pub fn new(model: &Model, pos: &Positions<T>, body: usize, point: Vec3<T>) -> Self {
         let root = model.bodies[body].root;
@@ -99,7 +99,8 @@ impl<T: Real> BodyPoint<T> {
         }
     }
 
-    /// Acceleration of the body and of the point while no dof accelerates (J̇ v): angular, then linear at the point.
+    /// Returns the acceleration of the body and the point at zero dof acceleration (J̇ v): angular, then linear at the
+    /// point.
     #[inline(always)]
     pub fn bias_acceleration(&self, model: &Model, vel: &Velocities<T>, qvel: &[T]) -> Motion<T> {
         let mut sum = Motion::ZERO;

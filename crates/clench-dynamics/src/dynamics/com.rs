@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Below this mass (kg) a subtree's centre of mass is that of its top body (MuJoCo's `mjMINVAL`).
 const MASSLESS: f64 = 1e-15;
 
-/// `subtree_com`, `cinert` and `cdof` of the bodies in the ranges `parts`, from the poses.
+/// Computes `subtree_com`, `cinert` and `cdof` of the bodies in the ranges `parts`, from the poses.
 #[kernel]
 pub fn com_positions<T: Real>(
     model: &Model,
@@ -32,8 +32,8 @@ pub fn com_positions<T: Real>(
     }
 }
 
-/// Moments add up from the last body to the first. What is in none of the parts are whole trees on the world, whose moments
-/// are still known.
+/// Sums moments from the last body to the first. Bodies outside the parts form whole trees on the world, whose moments
+/// are still valid.
 #[inline(always)]
 fn subtree_com<T: Real>(
     model: &Model,
@@ -66,9 +66,9 @@ fn subtree_com<T: Real>(
     }
 }
 
-/// The spatial motion of each dof at unit velocity: for a rotation about an axis through an anchor, the linear part at
-/// the centre of mass is axis × (com − anchor). Ball and free joints rotate about the body's own axes as they end up; a
-/// free joint translates along the world's.
+/// Computes the spatial motion of each dof at unit velocity: for a rotation about an axis through an anchor, the linear
+/// part at the centre of mass is axis × (com − anchor). Ball and free joints rotate about the axes of the moved body; a
+/// free joint translates along the world's axes.
 #[inline(always)]
 fn dof_axes<T: Real>(model: &Model, part: &Range<usize>, pos: &mut Positions<T>) {
     for j in model.joints_of(part) {

@@ -1,16 +1,17 @@
-//! How bias forces change with velocities: ∂bias/∂v, in the pattern of the mass matrix and not symmetric.
+//! The velocity derivatives of bias forces: ∂bias/∂v, in the pattern of the mass matrix, not symmetric.
 //!
-//! When dof j, of axis s, moves faster by one unit, so does every body b below it, and what changes of its force I a + v ×* I v
-//! is linear in s and in the change of its acceleration (Featherstone 2008, §5.3; Echeandia & Wensing 2021 arrange it so):
+//! A unit increase of the velocity of dof j, with axis s, moves every body b below it. The change of its force I a + v
+//! ×* I v is linear in s and in the change of its acceleration (Featherstone 2008, §5.3; arrangement by Echeandia &
+//! Wensing 2021):
 //!
 //! ```text
 //! δv = s     δa = ṡ + s × (v_b − u),  u the velocity with which what follows the joint in the chain is carried along
 //! δf_b = B_b s + I_b (ṡ − s × u)      B_b x = I_b (x × v_b) + x ×* I_b v_b + v_b ×* I_b x
 //! ```
 //!
-//! The part of the derivative of the medium's forces that is not symmetric is added to B, since it has the same entries.
+//! The part of the derivative of fluid forces that is not symmetric is added to B, since it has the same entries.
 //!
-//! Summed over the bodies below the later one of two dofs i and j, B and I give both entries of the pair.
+//! Summed over the bodies below the later of two dofs i and j, B and I give both entries of the pair.
 
 use crate::dynamics::ellipsoid::{FluidForces, ellipsoid_rates};
 use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
@@ -19,17 +20,17 @@ use crate::stages::{Positions, Velocities};
 use clench_math::{Force, Inertia, Motion, Real, kernel};
 use clench_solver::TreeLu;
 
-/// What these derivatives take besides: made for models that are integrated with them, else empty.
+/// Scratch memory of these derivatives; empty for models whose integrator does not use them.
 #[derive(Clone, Debug, Default)]
 pub struct Coriolis<T> {
-    /// Columns of B, of each body and all below it (nbody).
+    /// The columns of B, of each body and all below it (nbody).
     rates: Vec<[Force<T>; 6]>,
     /// ṡ − s × u of each dof (nv).
     drift: Vec<Motion<T>>,
 }
 
 impl<T: Real> Coriolis<T> {
-    /// Room for a model.
+    /// Allocates memory for a model.
     pub fn new(model: &Model) -> Self {
         Coriolis {
             rates: vec![[Force::ZERO; 6]; model.nbody()],
@@ -38,7 +39,7 @@ impl<T: Real> Coriolis<T> {
     }
 }
 
-/// `matrix += scale · ∂(bias − fluid)/∂v`, of the fluid forces only what is not symmetric.
+/// Computes `matrix += scale · ∂(bias − fluid)/∂v`, with only the non-symmetric part of the fluid forces.
 #[kernel]
 pub fn add_bias_derivatives<T: Real>(
     model: &Model,
@@ -55,7 +56,7 @@ pub fn add_bias_derivatives<T: Real>(
     for (i, dof) in model.dofs.iter().enumerate() {
         let (axis, rate) = (pos.cdof[i], &rates[dof.body]);
         let momentum = pos.crb[dof.body] * axis;
-        // The change of the force below i with dof i, and the force along i for each component of another's axis.
+        // The change of the force below i with dof i, and the force along i for each component of another axis.
         let mut change = pos.crb[dof.body] * drift[i];
         let mut along = [T::ZERO; 6];
         for (c, x) in axis.to_array().into_iter().enumerate() {
@@ -75,7 +76,7 @@ pub fn add_bias_derivatives<T: Real>(
     }
 }
 
-/// B of each body, then of each and all below it.
+/// Computes B of each body, then of each body and all below it.
 #[inline(always)]
 fn sum_rates<T: Real>(
     model: &Model,
@@ -106,7 +107,7 @@ fn sum_rates<T: Real>(
     }
 }
 
-/// The columns of B of one body.
+/// Computes the columns of B of one body.
 #[inline(always)]
 fn body_rate<T: Real>(inertia: &Inertia<T>, velocity: Motion<T>) -> [Force<T>; 6] {
     let momentum = *inertia * velocity;
@@ -120,7 +121,7 @@ fn body_rate<T: Real>(inertia: &Inertia<T>, velocity: Motion<T>) -> [Force<T>; 6
     columns
 }
 
-/// ṡ − s × u of each dof. The axes of a ball joint turn with the whole joint, those of a free joint's rotations too.
+/// Computes ṡ − s × u of each dof. The axes of a ball joint and of a free joint's rotations turn with the whole joint.
 #[inline(always)]
 fn drifts<T: Real>(
     model: &Model,

@@ -1,4 +1,4 @@
-//! Direct-current motors: torque K i from a current i that the voltage drives against resistance and back-EMF, with the
+//! Direct-current motors: torque K i from a current i driven by the voltage against resistance and back-EMF, with the
 //! options of MuJoCo's `dcmotor`: a controller, inductance, heat, cogging, and LuGre friction.
 //!
 //! ```text
@@ -10,16 +10,16 @@
 //! cogging  A sin(N l + φ)
 //! ```
 //!
-//! Canudas de Wit et al. (1995), *A new model for control of systems with friction*. The parameters stand where MuJoCo has them:
-//! `gainprm` R₀ K α T₀ kp ki kd Vmax; `dynprm` te, largest |i̇|, RT, C, ambient, σ₀, σ₁, slew rate, bound of the integral; `biasprm` A
-//! N φ F_C F_S v_S.
+//! Canudas de Wit et al. (1995), *A new model for control of systems with friction*. The parameters are stored as in
+//! MuJoCo: `gainprm` R₀ K α T₀ kp ki kd Vmax; `dynprm` te, largest |i̇|, RT, C, ambient, σ₀, σ₁, slew rate, bound of
+//! the integral; `biasprm` A N φ F_C F_S v_S.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
 use crate::model::{BiasKind, ControlInput, Model, Params};
 use clench_math::{Real, kernel};
 
-/// Divisors are at least so large (MuJoCo's `mjMINVAL`).
+/// The minimum of divisors (MuJoCo's `mjMINVAL`).
 const MIN_DIVISOR: f64 = 1e-15;
 
 #[inline(always)]
@@ -87,13 +87,13 @@ impl<T: Real> Circuit<T> {
         }
     }
 
-    /// The current that voltage and back-EMF hold.
+    /// Returns the steady current of the voltage and back-EMF.
     #[inline(always)]
     fn steady_current(&self, velocity: T) -> T {
         (self.voltage - self.constant * velocity) / self.resistance
     }
 
-    /// i̇, within its bound.
+    /// Returns i̇, within its bound.
     #[inline(always)]
     fn current_rate(&self, prm: &[T; 10], current: T, velocity: T) -> T {
         let rate = (self.steady_current(velocity) - current) / prm[0];
@@ -103,7 +103,7 @@ impl<T: Real> Circuit<T> {
     }
 }
 
-/// The rates of the activations of actuator `u`.
+/// Computes the rates of the activations of actuator `u`.
 #[kernel]
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
@@ -139,7 +139,7 @@ pub(crate) fn activation_rates<T: Real>(
     }
 }
 
-/// −σ₀ |ω| / g(ω): the rate at which the bristle's deflection decays.
+/// Computes −σ₀ |ω| / g(ω), the decay rate of the bristle's deflection.
 #[kernel]
 fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
     let [_, _, _, coulomb, static_, stribeck, ..] = params.actuator_biasprm[u];
@@ -148,8 +148,8 @@ fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
     -params.actuator_dynprm[u][5] * velocity.abs() / divisor(level)
 }
 
-/// An activation of a motor a time step later. A current approaches what holds it as an exact filter does, a deflection obeys its
-/// equation exactly at a constant velocity, an integral stays within its bound.
+/// Advances an activation of a motor by a time step. A current approaches its steady value like an exact filter, a
+/// deflection is integrated exactly at constant velocity, and an integral stays within its bound.
 #[kernel]
 pub(crate) fn next_activation<T: Real>(
     model: &Model,
@@ -181,7 +181,8 @@ pub(crate) fn next_activation<T: Real>(
     next
 }
 
-/// The gain of a motor, and the voltage: K, which multiplies the current where that is a state, else K / R, which multiplies the voltage.
+/// Returns the gain and the voltage of a motor: the gain is K for the current if that is a state, else K / R for the
+/// voltage.
 #[kernel]
 pub(crate) fn gain_and_voltage<T: Real>(
     model: &Model,
@@ -198,7 +199,7 @@ pub(crate) fn gain_and_voltage<T: Real>(
     (gain, circuit.voltage)
 }
 
-/// What back-EMF takes from the force of an actuator with this gain: nothing where the current is a state, whose equation has it.
+/// Returns the force that back-EMF subtracts at this gain: zero if the current is a state, whose equation includes it.
 #[inline(always)]
 pub(crate) fn back_emf<T: Real>(
     model: &Model,
@@ -213,7 +214,7 @@ pub(crate) fn back_emf<T: Real>(
     }
 }
 
-/// ∂force/∂velocity of a motor's gain, and of its back-EMF where its bias is a motor's.
+/// Computes ∂force/∂velocity of a motor's gain, and of its back-EMF if its bias is a motor's.
 #[kernel]
 pub(crate) fn electrical_slope<T: Real>(
     model: &Model,
@@ -232,7 +233,7 @@ pub(crate) fn electrical_slope<T: Real>(
     by_voltage(model, params, act_dot, u, &circuit, net)
 }
 
-/// ∂force/∂length of a motor's gain.
+/// Computes ∂force/∂length of a motor's gain.
 #[kernel]
 pub(crate) fn electrical_length_slope<T: Real>(
     model: &Model,
@@ -247,8 +248,8 @@ pub(crate) fn electrical_length_slope<T: Real>(
     by_voltage(model, params, act_dot, u, &circuit, net)
 }
 
-/// How the force changes where the voltage that drives the current changes by `net`: a current that is a state follows it within
-/// the step alone, with `actearly`.
+/// Returns the change of the force if the driving voltage changes by `net`: a current that is a state follows it within
+/// the step only with `actearly`.
 #[inline(always)]
 fn by_voltage<T: Real>(
     model: &Model,
@@ -273,7 +274,7 @@ fn by_voltage<T: Real>(
     }
 }
 
-/// Cogging and friction, which no limit of the motor's torque holds.
+/// Computes cogging and friction, which the motor's torque limits do not clamp.
 #[kernel]
 pub(crate) fn mechanical_force<T: Real>(
     model: &Model,
@@ -294,7 +295,7 @@ pub(crate) fn mechanical_force<T: Real>(
     }
 }
 
-/// ∂force/∂velocity of friction, with the deflection's decay held.
+/// Computes ∂force/∂velocity of friction, at constant decay of the deflection.
 #[inline(always)]
 pub(crate) fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
     match model.actuators[u].states.bristle {
@@ -303,7 +304,7 @@ pub(crate) fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: us
     }
 }
 
-/// ∂force/∂length of cogging.
+/// Computes ∂force/∂length of cogging.
 #[kernel]
 pub(crate) fn cogging_slope<T: Real>(params: &Params<T>, u: usize, length: T) -> T {
     let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];

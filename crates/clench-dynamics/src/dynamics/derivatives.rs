@@ -1,6 +1,6 @@
-//! D = ∂τ/∂v: how smooth forces change with velocities, in the pattern of the mass matrix.
+//! D = ∂τ/∂v: the velocity derivatives of smooth forces, in the pattern of the mass matrix.
 //!
-//! Coriolis forces are left out, so that D is symmetric, and so is what couples dofs of different branches, so that M − h D
+//! D omits Coriolis forces, so that it is symmetric, and couplings of dofs of different branches, so that M − h D
 //! factors without fill (both as in MuJoCo's `implicitfast`). A force s along a generalized velocity J v contributes
 //! its slope: s′ JᵀJ.
 
@@ -16,7 +16,7 @@ use crate::state::State;
 use clench_math::{Force, Mask, Motion, Real, kernel};
 use clench_solver::TreeMatrix;
 
-/// `matrix += scale · D`.
+/// Computes `matrix += scale · D`.
 #[kernel]
 pub fn add_velocity_derivatives<T: Real>(
     model: &Model,
@@ -49,15 +49,15 @@ pub fn add_velocity_derivatives<T: Real>(
     }
 }
 
-/// Which entries of a body's part of the matrix are meant.
+/// The entries of a body's part of the matrix.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
     All,
     Diagonal,
 }
 
-/// Adds what the medium has in D, or its drag alone, times `scale`. As in MuJoCo, drag of a body whose mass matrix is diagonal is then
-/// diagonal too.
+/// Adds the part of fluid forces, or only drag, in D times `scale`. As in MuJoCo, drag alone of a body with a diagonal
+/// mass matrix is diagonal too.
 #[kernel]
 pub(crate) fn add_fluid_derivatives<T: Real>(
     model: &Model,
@@ -76,7 +76,7 @@ pub(crate) fn add_fluid_derivatives<T: Real>(
     }
 }
 
-/// Adds `scale · JᵀJ` of a sparse row J, where the pattern has room for it.
+/// Adds `scale · JᵀJ` of a sparse row J, restricted to the pattern.
 #[inline(always)]
 pub(crate) fn add_outer<T: Real>(
     model: &Model,
@@ -97,8 +97,8 @@ pub(crate) fn add_outer<T: Real>(
     }
 }
 
-/// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i. Of ellipsoids' forces
-/// only what is symmetric is counted.
+/// Adds the drag on body `b`: entry (i, j) is the power, along dof j, of the change of the drag with dof i. Ellipsoid
+/// forces contribute only their symmetric part.
 #[inline(always)]
 fn add_fluid<T: Real>(
     model: &Model,
@@ -141,7 +141,7 @@ fn add_fluid<T: Real>(
     }
 }
 
-/// Adds the change of a force on body `b` with its velocity, `change` of each dof that moves it.
+/// Adds the change of a force on body `b` with its velocity; `change` returns that of each dof.
 #[inline(always)]
 fn add_along_chain<T: Real>(
     model: &Model,

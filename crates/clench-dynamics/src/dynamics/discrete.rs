@@ -1,9 +1,9 @@
-//! Velocity stepping: what the solver finds is the step (MuJoCo's `discrete`).
+//! Velocity stepping: the solver's result is the step (MuJoCo's `discrete`).
 //!
-//! The [`metric`](crate::dynamics::metric) takes the place of the mass matrix in the convex problem, and rows of constraints are taken
-//! at the end of the step too (see `constraint::softness`). The acceleration that minimises is the change of the velocity over h, so
-//! that nothing is left to integrate but positions. A free body that is a tree by itself, and that neither constraints nor couplings
-//! of the metric touch, is solved for once more with its gyroscopic forces.
+//! The [`metric`](crate::dynamics::metric) replaces the mass matrix in the convex problem, and constraint rows are
+//! evaluated at the end of the step (see `constraint::softness`). The minimising acceleration is the change of the
+//! velocity over h, so only positions remain to be integrated. A free body that is its own tree, without constraints or
+//! couplings of the metric, is solved once more with its gyroscopic forces.
 
 use crate::constraint::assembly::ConstraintRecord;
 use crate::dynamics::ellipsoid::FluidForces;
@@ -18,11 +18,11 @@ use crate::workspace::Workspace;
 use clench_math::{Mask, Real, array, kernel};
 use clench_solver::{ConstraintSolver, Cost, Problem, Settings};
 
-/// Newton steps that a quadratic cost is given: one leads to its minimum, more take away what rounding has left.
+/// The number of Newton steps for a quadratic cost: one reaches its minimum, more remove rounding errors.
 const EXACT_STEPS: usize = 4;
 
-/// Puts the metric of the state in the place of the mass matrix, and −h K v to the forces in `qacc_smooth`, once actuators have their
-/// forces.
+/// Replaces the mass matrix with the metric of the state, and adds −h K v to the forces in `qacc_smooth`, after
+/// actuators have their forces.
 #[kernel]
 pub(crate) fn enter_metric<T: Real>(
     model: &Model,
@@ -43,8 +43,8 @@ pub(crate) fn enter_metric<T: Real>(
     add_scaled(&mut ws.problem.qacc_smooth, &ws.metric.shift, T::ONE);
 }
 
-/// Finds `qacc_smooth`, the acceleration without constraints, in a metric that couples branches: the problem has found it there without
-/// these couplings.
+/// Computes `qacc_smooth`, the acceleration without constraints, in a metric that couples branches. The problem
+/// provides it without these couplings.
 pub(crate) fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
     if !ws.metric.is_coupled() {
         return;
@@ -65,8 +65,8 @@ pub(crate) fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mu
     ws.problem.qacc_smooth.copy_from_slice(ws.solver.qacc());
 }
 
-/// Appends the couplings of the metric to the constraints of the problem, about the acceleration without constraints, in lanes that
-/// have any.
+/// Appends the couplings of the metric to the constraints of the problem, relative to the acceleration without
+/// constraints, in lanes that have any.
 pub(crate) fn append_couplings<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
     ws.problem.noslip_factor.clear();
     if let (true, Some(factor)) = (settings.noslip_iterations > 0, ws.metric.backbone_factor()) {
@@ -92,7 +92,7 @@ pub(crate) fn append_couplings<T: Real>(model: &Model, settings: &Settings, ws: 
     ws.problem.qacc_smooth = smooth;
 }
 
-/// Lanes in which a block acts.
+/// Returns the lanes in which a block acts.
 #[inline(always)]
 fn acting<T: Real>(d: &[T]) -> T::Mask {
     let no = T::Mask::splat(false);
@@ -132,7 +132,7 @@ fn push_couplings<T: Real>(
     }
 }
 
-/// Takes from `qfrc_constraint`, the sum of what all rows of the problem pull with, what couplings of the metric do.
+/// Subtracts the forces of the metric's couplings from `qfrc_constraint`, the sum of the forces of all rows.
 #[kernel]
 pub(crate) fn subtract_couplings<T: Real>(
     problem: &Problem<T>,
@@ -147,7 +147,7 @@ pub(crate) fn subtract_couplings<T: Real>(
     }
 }
 
-/// Solves once more for free bodies that nothing touches, with their gyroscopic forces.
+/// Solves once more for untouched free bodies, with their gyroscopic forces.
 #[kernel]
 pub fn spin_freely<T: Real>(model: &Model, params: &Params<T>, qvel: &[T], ws: &mut Workspace<T>) {
     let Workspace {
@@ -176,8 +176,8 @@ pub fn spin_freely<T: Real>(model: &Model, params: &Params<T>, qvel: &[T], ws: &
     }
 }
 
-/// Adds to inverse dynamics what the metric has beside the mass matrix of the problem: its couplings, gyroscopic forces of free bodies
-/// that nothing touches, and h K v.
+/// Adds the terms of the metric beyond the problem's mass matrix to inverse dynamics: its couplings, gyroscopic forces
+/// of untouched free bodies, and h K v.
 #[kernel]
 pub(crate) fn add_metric_forces<T: Real>(
     model: &Model,
@@ -216,7 +216,7 @@ pub(crate) fn add_metric_forces<T: Real>(
     }
 }
 
-/// Notes the trees on which constraints act.
+/// Records the trees on which constraints act.
 #[inline(always)]
 fn note_touched<T: Real>(model: &Model, problem: &Problem<T>, touched: &mut [T::Mask]) {
     for block in problem.blocks() {

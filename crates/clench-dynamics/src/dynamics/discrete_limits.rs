@@ -1,24 +1,24 @@
-//! What the integrator `discrete` cannot be combined with.
+//! The combinations that the integrator `discrete` does not support.
 
 use crate::dynamics::metric::Along;
 use crate::model::{BiasKind, GainKind, Integrator, Model, SleepPolicy};
 use clench_solver::Switch;
 
-/// Something that the integrator `discrete` cannot be combined with.
+/// An option or element that the integrator `discrete` cannot be combined with.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the integrator discrete cannot go with {with}: {reason}")]
 pub struct NotDiscrete {
-    /// What it is.
+    /// The option or element.
     pub with: String,
-    /// Why it cannot.
+    /// The reason.
     pub reason: &'static str,
 }
 
-/// Refuses what a model is asked to do beside stepping in the metric: whether its trees may `sleep`, and whether `islands` are solved
-/// apart.
+/// Checks that a model can step in the metric: `sleep` is true if its trees may sleep, and `islands` if islands are
+/// solved separately.
 ///
 /// # Errors
-/// The first such combination.
+/// Returns the first unsupported combination.
 pub(crate) fn check_discrete(
     model: &Model,
     sleep: bool,
@@ -41,7 +41,7 @@ pub(crate) fn check_discrete(
     Ok(())
 }
 
-/// The tendons and lengths of actuators that may add to the metric.
+/// Returns the tendons and actuator lengths that may add to the metric.
 fn terms(model: &Model) -> impl Iterator<Item = Along> + '_ {
     let tendons = (0..model.tendons.len()).filter(|&t| acts_on_tendon(model, t));
     let outputs = (model.actuators.iter())
@@ -56,7 +56,7 @@ fn terms(model: &Model) -> impl Iterator<Item = Along> + '_ {
     (tendons.map(Along::Tendon)).chain(outputs.map(Along::Output))
 }
 
-/// Whether tendon `t` has a spring or a damper.
+/// Returns true if tendon `t` has a spring or a damper.
 fn acts_on_tendon(model: &Model, t: usize) -> bool {
     let p = &model.params;
     let any = |linear: f64, higher: [f64; 2]| linear != 0.0 || higher != [0.0; 2];
@@ -67,14 +67,14 @@ fn acts_on_tendon(model: &Model, t: usize) -> bool {
     springs || dampers
 }
 
-/// Whether a term acts on several trees of which one may sleep.
+/// Returns true if a term acts on several trees of which one may sleep.
 fn couples_what_sleeps(model: &Model, along: Along) -> bool {
     let trees = model.trees_of(along.dofs(model));
     let may_sleep = |&tree: &usize| model.trees[tree].sleep != SleepPolicy::Never;
     trees.len() > 1 && trees.iter().any(may_sleep)
 }
 
-/// What errors call the tendon or actuator of a term.
+/// Returns the name of a term's object for errors.
 fn name(model: &Model, along: Along) -> String {
     let (kind, index, name) = match along {
         Along::Tendon(t) => ("tendon", t, &model.tendons[t].name),

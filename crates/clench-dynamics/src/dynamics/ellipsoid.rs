@@ -1,7 +1,8 @@
-//! Forces of a surrounding medium on geoms, each taken as an ellipsoid of the same semi-axes.
+//! Fluid forces on geoms, each modelled as an ellipsoid with the same semi-axes.
 //!
-//! MuJoCo's second model ("ellipsoid model", *Computation*, fluid forces). In the frame of a geom of semi-axes r, with v its velocity
-//! relative to the medium and ω its angular velocity, ρ density, η viscosity, V volume, and ∘ the product entry by entry:
+//! MuJoCo's second model ("ellipsoid model", *Computation*, fluid forces). In the frame of a geom with semi-axes r, v
+//! is its velocity relative to the fluid, ω its angular velocity, ρ density, η viscosity, V volume, and ∘ the entrywise
+//! product:
 //!
 //! ```text
 //! added mass:   L = ρ m∘v, H = ρ I∘ω (m, I virtual mass and inertia)   f = L × ω        t = L × v + H × ω
@@ -12,8 +13,8 @@
 //!               t = −(π D³ η + ρ |c∘ω|) ω                               c_i = C_a J_i + C_s (J_max − J_i)
 //! ```
 //!
-//! A_max is the largest area, J_i = 8/15 π r_i max(r_j, r_k)⁴. C_b, C_s, C_a, C_K, C_M are the geom's `fluidcoef`: of blunt, slender and
-//! angular drag and of both lifts.
+//! A_max is the largest area, J_i = 8/15 π r_i max(r_j, r_k)⁴. C_b, C_s, C_a, C_K, C_M are the geom's `fluidcoef`:
+//! blunt, slender and angular drag, and both lifts.
 
 use crate::dynamics::project::{force_at, local_velocity};
 use crate::model::{Model, Params};
@@ -22,19 +23,19 @@ use clench_collide::{Shape, ShapeKind};
 use clench_math::{Force, Motion, Real, Vec3};
 use std::f64::consts::PI;
 
-/// Least mass of a body that feels the medium, kg (MuJoCo's `mjMINVAL`).
+/// The minimum mass of a body that the fluid acts on, kg (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
 
-/// Half the lengths of the ellipsoid that stands for a shape of size `size`.
+/// Returns the semi-axes of the ellipsoid of a shape of size `size`.
 #[inline(always)]
 pub fn semi_axes<T: Real>(kind: ShapeKind, size: Vec3<T>) -> Vec3<T> {
     Shape::new(kind, size).half_lengths()
 }
 
-/// An ellipsoid in the medium, at one velocity.
+/// An ellipsoid in the fluid, at one velocity.
 pub struct Ellipsoid<T> {
     geom: usize,
-    /// Velocity relative to the medium, in the geom's frame.
+    /// The velocity relative to the fluid, in the geom's frame.
     velocity: Motion<T>,
     /// ρ times virtual mass and inertia.
     virtual_mass: Vec3<T>,
@@ -53,7 +54,7 @@ pub struct Ellipsoid<T> {
     areas: Vec3<T>,
 }
 
-/// What the area that is seen along the velocity takes, and how all of it changes along a change of the velocity.
+/// The projected area along the velocity and related terms, or their derivatives along a velocity change.
 struct Flow<T> {
     /// |v|.
     speed: T,
@@ -66,7 +67,7 @@ struct Flow<T> {
 }
 
 impl<T: Real> Ellipsoid<T> {
-    /// Geom `geom` of body `b` as it moves now.
+    /// Creates the ellipsoid of geom `geom` of body `b`.
     #[inline(always)]
     pub fn new(
         model: &Model,
@@ -121,7 +122,7 @@ impl<T: Real> Ellipsoid<T> {
         }
     }
 
-    /// The force on the body, about the reference point of its tree.
+    /// Returns the force on the body, about the reference point of its tree.
     #[inline(always)]
     pub fn force(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
         let Motion {
@@ -141,7 +142,8 @@ impl<T: Real> Ellipsoid<T> {
         self.to_world(model, pos, torque, force)
     }
 
-    /// The change of [`force`](Self::force), or of its drag alone, with a change `motion` of the body's velocity.
+    /// Returns the change of [`force`](Self::force), or only of its drag, with a change `motion` of the body's
+    /// velocity.
     #[inline(always)]
     pub fn derivative(
         &self,
@@ -195,7 +197,7 @@ impl<T: Real> Ellipsoid<T> {
         self.to_world(model, pos, torque, force)
     }
 
-    /// Force of drag over velocity.
+    /// Returns the drag force over the velocity.
     #[inline(always)]
     fn linear_drag(&self, flow: &Flow<T>) -> T {
         let [widest, blunt] = self.drag;
@@ -216,8 +218,8 @@ impl<T: Real> Ellipsoid<T> {
         }
     }
 
-    /// How the flow changes when the velocity does by `dv`, and by how much the speed does. Zero at rest, where all that follows from
-    /// it vanishes.
+    /// Returns the changes of the flow and of the speed with a change `dv` of the velocity. Zero at rest, where all
+    /// dependent terms vanish.
     #[inline(always)]
     fn flow_derivative(&self, flow: &Flow<T>, dv: Vec3<T>) -> (Flow<T>, T) {
         let v = self.velocity.linear;
@@ -249,23 +251,23 @@ impl<T: Real> Ellipsoid<T> {
     }
 }
 
-/// A denominator: itself where it is positive, else one.
+/// Returns a denominator: `x` if it is positive, else one.
 #[inline(always)]
 fn positive<T: Real>(x: T) -> T {
     T::select(x.gt(T::ZERO), x, T::ONE)
 }
 
-/// Which forces of the medium are meant.
+/// A selection of fluid forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FluidForces {
     /// All.
     All,
-    /// Drag, without lift and added mass. On inertia boxes nothing else acts.
+    /// Drag, without lift and added mass; the only force on inertia boxes.
     Drag,
 }
 
-/// How the fluid forces on the ellipsoids of body `b` change with its velocity: for each component of a motion about the reference
-/// point of its tree, the change of the force about that point.
+/// Computes the derivatives of the fluid forces on the ellipsoids of body `b`: for each component of a motion about the
+/// reference point of its tree, the change of the force about that point.
 #[inline(always)]
 pub fn ellipsoid_rates<T: Real>(
     model: &Model,
@@ -284,7 +286,7 @@ pub fn ellipsoid_rates<T: Real>(
     rates
 }
 
-/// The geoms of body `b` that feel the medium as ellipsoids. A body that has any does not feel it as a box.
+/// Returns the geoms of body `b` that the fluid acts on as ellipsoids. With any of them, the body's box is unused.
 #[inline(always)]
 pub fn ellipsoids(model: &Model, b: usize) -> impl Iterator<Item = usize> + '_ {
     let geoms = model.bodies[b].geoms.clone();

@@ -9,16 +9,16 @@ use crate::state::State;
 use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 
-/// Energy of a state, J.
+/// The energy of a state, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy<T> {
-    /// Of gravity (zero at the height of the world's origin) and of springs.
+    /// The energy of gravity (zero at the height of the world's origin) and of springs.
     pub potential: T,
-    /// ½ q̇ᵀ M q̇, the armature's included.
+    /// ½ q̇ᵀ M q̇, including armature.
     pub kinetic: T,
 }
 
-/// The energy of a state, with its positions `pos` and the mass matrix there.
+/// Computes the energy of a state from its positions `pos` and mass matrix.
 #[kernel]
 pub fn energy<T: Real>(
     model: &Model,
@@ -42,7 +42,7 @@ pub fn energy<T: Real>(
     }
 }
 
-/// The energy of every spring.
+/// Computes the energy of all springs.
 #[inline(always)]
 fn spring_energy<T: Real>(
     model: &Model,
@@ -69,7 +69,7 @@ fn spring_energy<T: Real>(
     energy
 }
 
-/// ½ vᵀ M v, each pair of the lower triangle once.
+/// Computes ½ vᵀ M v, each pair of the lower triangle once.
 #[inline(always)]
 fn kinetic_energy<T: Real>(model: &Model, mass: &TreeMatrix<T>, qvel: &[T]) -> T {
     let half = T::new(0.5);

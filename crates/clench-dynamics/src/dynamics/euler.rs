@@ -1,7 +1,8 @@
 //! Semi-implicit Euler, implicit in joint damping.
 //!
-//! The damping force is taken at the end of the step to first order, with B its slope: the acceleration that advances the
-//! velocity solves (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second factorization.
+//! The damping force is evaluated at the end of the step to first order, with slope B: the acceleration that advances
+//! the velocity solves (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second
+//! factorization.
 
 use super::integration::Integration;
 use crate::dynamics::articulated::articulated_factor;
@@ -28,7 +29,7 @@ pub fn euler<T: Real>(
     advance_semi_implicit(model, params, state, ws);
 }
 
-/// Lanes in which some dof is damped, and damping implicit.
+/// Returns the lanes with implicit damping and a damped dof.
 #[inline(always)]
 fn damped_lanes<T: Real>(model: &Model, params: &Params<T>) -> T::Mask {
     let mut damped = T::Mask::splat(false);
@@ -41,7 +42,7 @@ fn damped_lanes<T: Real>(model: &Model, params: &Params<T>) -> T::Mask {
     damped
 }
 
-/// M + h B, in `integration.matrix`, for [`damped_acceleration`] and for inverse dynamics.
+/// Computes M + h B into `integration.matrix`, for [`damped_acceleration`] and for inverse dynamics.
 #[kernel]
 pub(crate) fn damped_inertia<T: Real>(
     model: &Model,
@@ -60,7 +61,7 @@ pub(crate) fn damped_inertia<T: Real>(
     }
 }
 
-/// Solves with M + h B in the lanes that are `damped`.
+/// Solves with M + h B in the `damped` lanes.
 #[inline(always)]
 fn damped_acceleration<T: Real>(
     model: &Model,

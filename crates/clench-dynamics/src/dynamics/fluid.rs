@@ -1,8 +1,8 @@
-//! Forces of a surrounding medium, on the box that has the body's mass and inertia. Bodies of which a geom feels the medium as an
-//! ellipsoid feel it so alone, see [`ellipsoid`](crate::dynamics::ellipsoid).
+//! Fluid forces on the box with the body's mass and inertia. The fluid acts on bodies with ellipsoid geoms only through
+//! those, see [`ellipsoid`](crate::dynamics::ellipsoid).
 //!
-//! MuJoCo's default model ("inertia box", *Computation*, fluid forces): in the inertial frame of a body with box sides s and
-//! mean side d, velocity v relative to the medium and angular velocity ω,
+//! MuJoCo's default model ("inertia box", *Computation*, fluid forces): in the inertial frame of a body with box sides
+//! s and mean side d, velocity v relative to the fluid and angular velocity ω,
 //!
 //! ```text
 //! viscous:    f_i = −3π d η v_i               t_i = −π d³ η ω_i
@@ -16,22 +16,22 @@ use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 use std::f64::consts::PI;
 
-/// Below this mass (kg) a body feels no medium; also the least (kg m²) of a box's squared sides (MuJoCo's `mjMINVAL`).
+/// The minimum mass (kg) of a body in a fluid, and the minimum (kg m²) for a box's squared sides (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
 
-/// Whether any lane has a medium.
+/// Returns true if any lane has a fluid.
 #[inline(always)]
 pub(crate) fn has_fluid<T: Real>(params: &Params<T>) -> bool {
     !(params.density.eq(T::ZERO) & params.viscosity.eq(T::ZERO)).all()
 }
 
-/// Whether there is a medium, and passive forces are switched on at all.
+/// Returns true if there is a fluid and passive forces are enabled.
 #[inline(always)]
 pub(crate) fn fluid_acts<T: Real>(model: &Model, params: &Params<T>) -> bool {
     (model.flags.spring || model.flags.damper) && has_fluid(params)
 }
 
-/// The symmetric and the skew part of a 6 × 6 matrix, given and returned by columns.
+/// Returns the symmetric and the skew part of a 6 × 6 matrix, input and output by columns.
 #[inline(always)]
 pub(crate) fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>; 6]; 2] {
     let mut parts = [[Force::ZERO; 6]; 2];
@@ -52,7 +52,7 @@ pub(crate) fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>;
     parts
 }
 
-/// `qfrc_fluid` (zero without a medium).
+/// Computes `qfrc_fluid` (zero without a fluid).
 #[kernel]
 pub(crate) fn fluid_forces<T: Real>(
     model: &Model,
@@ -79,19 +79,19 @@ pub(crate) fn fluid_forces<T: Real>(
     project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_fluid);
 }
 
-/// The resistance of the medium to one body, at one velocity.
+/// The resistance of the fluid to one body, at one velocity.
 pub(crate) struct Drag<T> {
     body: usize,
-    /// Velocity relative to the medium at the centre of mass, in the inertial frame.
+    /// The velocity relative to the fluid at the centre of mass, in the inertial frame.
     velocity: Motion<T>,
-    /// Force per velocity of each component, N s/m.
+    /// The force per velocity of each component, N s/m.
     viscous: Motion<T>,
-    /// Force per squared velocity.
+    /// The force per squared velocity.
     quadratic: Motion<T>,
 }
 
 impl<T: Real> Drag<T> {
-    /// The resistance to body `b` as it moves now.
+    /// Creates the resistance to body `b`.
     #[inline(always)]
     pub(crate) fn new(
         model: &Model,
@@ -135,7 +135,7 @@ impl<T: Real> Drag<T> {
         }
     }
 
-    /// The force on the body, about the reference point of its tree.
+    /// Returns the force on the body, about the reference point of its tree.
     #[inline(always)]
     pub(crate) fn force(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
         self.to_world(
@@ -154,7 +154,7 @@ impl<T: Real> Drag<T> {
         )
     }
 
-    /// The change of [`force`](Self::force) with a change `motion` of the body's velocity.
+    /// Returns the change of [`force`](Self::force) with a change `motion` of the body's velocity.
     #[inline(always)]
     pub(crate) fn derivative(
         &self,
@@ -195,7 +195,7 @@ impl<T: Real> Drag<T> {
     }
 }
 
-/// −(c₁ v + c₂ |v| v), axis by axis.
+/// Computes −(c₁ v + c₂ |v| v), axis by axis.
 #[inline(always)]
 fn resistance<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
     let axis = |c1: T, c2: T, v: T| -(c1 * v + c2 * v.abs() * v);
@@ -206,7 +206,7 @@ fn resistance<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
     )
 }
 
-/// The change of [`resistance`] with a change `dv` of the velocity.
+/// Computes the change of [`resistance`] with a change `dv` of the velocity.
 #[inline(always)]
 fn resistance_derivative<T: Real>(c1: Vec3<T>, c2: Vec3<T>, v: Vec3<T>, dv: Vec3<T>) -> Vec3<T> {
     let axis = |c1: T, c2: T, v: T| -(c1 + T::new(2.0) * c2 * v.abs());

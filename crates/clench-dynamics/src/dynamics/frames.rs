@@ -1,4 +1,4 @@
-//! Frames of bodies, geoms, sites and cameras: where they are, how they move and accelerate.
+//! Frames of bodies, geoms, sites and cameras: their poses, velocities and accelerations.
 
 use crate::dynamics::camera::camera_pose;
 use crate::dynamics::chains::BodyPoint;
@@ -12,14 +12,14 @@ use clench_math::{Mat3, Motion, Quat, Real, Vec3};
 pub struct Frames<'a, T: Real> {
     /// The model.
     pub model: &'a Model,
-    /// Its parameters.
+    /// The parameters of the model.
     pub params: &'a Params<T>,
-    /// Poses of everything.
+    /// The poses of all objects.
     pub pos: &'a Positions<T>,
 }
 
 impl<'a, T: Real> Frames<'a, T> {
-    /// The frames of the configuration that geoms are in.
+    /// Returns the frames of the configuration of `geoms`.
     #[inline(always)]
     pub fn of(geoms: Geoms<'a, T>) -> Self {
         Frames {
@@ -29,7 +29,7 @@ impl<'a, T: Real> Frames<'a, T> {
         }
     }
 
-    /// Where an object is.
+    /// Returns the position of an object.
     #[inline(always)]
     pub fn position(&self, object: FrameObject) -> Vec3<T> {
         match object {
@@ -41,7 +41,7 @@ impl<'a, T: Real> Frames<'a, T> {
         }
     }
 
-    /// Its axes as columns.
+    /// Returns its axes as columns.
     #[inline(always)]
     pub fn rotation(&self, object: FrameObject) -> Mat3<T> {
         match object {
@@ -53,7 +53,7 @@ impl<'a, T: Real> Frames<'a, T> {
         }
     }
 
-    /// Its orientation, with the sign that its body's has.
+    /// Returns its orientation, with the sign of its body's.
     #[inline(always)]
     pub fn orientation(&self, object: FrameObject) -> Quat<T> {
         let (body, params) = (self.pos.xquat[object.body(self.model)], self.params);
@@ -62,7 +62,7 @@ impl<'a, T: Real> Frames<'a, T> {
             FrameObject::Body(_) => body,
             FrameObject::Geom(geom) => body * params.geom_quat[geom],
             FrameObject::Site(site) => body * params.site_quat[site],
-            // As if it were fixed to its body, whatever it follows: so it is in MuJoCo.
+            // As in MuJoCo, cameras of all modes count as fixed to their bodies.
             FrameObject::Camera(camera) => body * params.cam_quat[camera],
         }
     }
@@ -71,14 +71,14 @@ impl<'a, T: Real> Frames<'a, T> {
         camera_pose(self.model, self.params, self.pos, camera)
     }
 
-    /// The body point at an object's position.
+    /// Returns the body point at an object's position.
     #[inline(always)]
     pub fn point(&self, object: FrameObject) -> BodyPoint<T> {
         let body = object.body(self.model);
         BodyPoint::new(self.model, self.pos, body, self.position(object))
     }
 
-    /// The velocity of the body point at an object's position, world axes.
+    /// Returns the velocity of the body point at an object's position, in world axes.
     #[inline(always)]
     pub fn velocity(&self, object: FrameObject, vel: &Velocities<T>) -> Motion<T> {
         let point = self.point(object);
@@ -86,9 +86,9 @@ impl<'a, T: Real> Frames<'a, T> {
         Motion::new(cvel.angular, cvel.velocity_at(point.offset))
     }
 
-    /// The acceleration of the body point at an object's position, world axes, with gravity's upward reaction, from the
-    /// accelerations of bodies. A spatial acceleration holds the velocity field's change at a fixed place; the point also moves,
-    /// which adds ω × v.
+    /// Returns the acceleration of the body point at an object's position, in world axes, with gravity's upward
+    /// reaction, from the accelerations of bodies. A spatial acceleration is the velocity field's change at a fixed
+    /// point; the body point also moves, which adds ω × v.
     #[inline(always)]
     pub fn acceleration(
         &self,
@@ -104,7 +104,7 @@ impl<'a, T: Real> Frames<'a, T> {
     }
 }
 
-/// Axes in which vectors are told.
+/// The axes of output vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axes {
     /// The axes of the world.
@@ -114,7 +114,7 @@ pub enum Axes {
     Local,
 }
 
-/// The motion of an object, linear and then angular, in the axes asked for.
+/// Returns the motion of an object, linear and then angular, in the requested axes.
 pub fn along<T: Real>(
     frames: Frames<T>,
     axes: Axes,

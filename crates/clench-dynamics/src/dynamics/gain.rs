@@ -1,4 +1,4 @@
-//! Gains and biases of actuators, force = gain · input + bias, and how the force changes with velocity and with length.
+//! Gains and biases of actuators, force = gain · input + bias, and the derivatives of the force by velocity and length.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use crate::dynamics::activation::{acting, input};
@@ -7,7 +7,7 @@ use crate::dynamics::{dc_motor, pid};
 use crate::model::{BiasKind, GainKind, Model, Params};
 use clench_math::Real;
 
-/// The force of actuator `u` before any limit, but for what no limit holds.
+/// Computes the force of actuator `u` before limits, except for unlimited parts.
 #[inline(always)]
 pub(crate) fn unlimited_force<T: Real>(
     model: &Model,
@@ -46,7 +46,7 @@ pub(crate) fn unlimited_force<T: Real>(
     }
 }
 
-/// ∂force/∂velocity of [`unlimited_force`].
+/// Computes ∂force/∂velocity of [`unlimited_force`].
 #[inline(always)]
 pub(crate) fn unlimited_slope<T: Real>(
     model: &Model,
@@ -74,7 +74,7 @@ pub(crate) fn unlimited_slope<T: Real>(
     }
 }
 
-/// ∂force/∂length of [`unlimited_force`].
+/// Computes ∂force/∂length of [`unlimited_force`].
 #[inline(always)]
 pub(crate) fn unlimited_length_slope<T: Real>(
     model: &Model,

@@ -1,16 +1,15 @@
 //! Gyroscopic forces of a free body without jointed children, integrated implicitly.
 //!
-//! Integrated explicitly they feed energy into a spinning body. With w the angular velocity, s the centre of mass relative to
-//! the joint and I the inertia about it (of the body and what is welded to it), the bias force and its change with a
-//! change δw are
-//!
+//! Explicit integration of these forces adds energy to a spinning body. With w the angular velocity, s the centre of
+//! mass relative to the joint and I the inertia about it (including welded bodies), the bias force and its change with
+//! a change δw are
 //! ```text
 //! f = m w×(w×s)                      t = w×Iw
 //! δf = m (δw×(w×s) + w×(δw×s))       δt = δw×Iw + w×Iδw
 //! ```
 //!
-//! The force acts along the joint's translations, the moment t + s×f about its rotations. (M − h D + h ∂bias/∂v) a = τ is
-//! then a 6 × 6 system apart from all others. It need not be symmetric, so it has what a medium adds to D that is not.
+//! The force acts along the joint's translations, the moment t + s×f about its rotations. (M − h D + h ∂bias/∂v) a = τ
+//! is then a separate 6 × 6 system. It need not be symmetric, so it includes the fluid's non-symmetric part of D.
 
 use crate::dynamics::ellipsoid::{FluidForces, ellipsoid_rates};
 use crate::dynamics::fluid::{fluid_acts, symmetric_and_skew};
@@ -19,7 +18,7 @@ use crate::stages::{Positions, Velocities};
 use clench_math::{Force, Real, Vec3, kernel};
 use clench_solver::TreeMatrix;
 
-/// Whether joint `j` is the free joint of a body that is a tree by itself, with what is welded to it.
+/// Returns true if `j` is the free joint of a body that, with welded bodies, forms a tree.
 #[inline(always)]
 pub(crate) fn is_free_tree(model: &Model, j: usize) -> bool {
     let joint = &model.joints[j];
@@ -28,8 +27,8 @@ pub(crate) fn is_free_tree(model: &Model, j: usize) -> bool {
         && (after >= model.nv || tree.tree_of(after) != tree.tree_of(joint.dof))
 }
 
-/// The joint's part of the acceleration (nv) that `force` along its dofs causes, with M − h D in `matrix`. Of the medium `fluid` has what is
-/// not symmetric in D, if that counts.
+/// Computes the joint's part of the acceleration (nv) due to `force` along its dofs, with M − h D in `matrix`. `fluid`
+/// selects whether the fluid's non-symmetric part of D is included.
 #[kernel]
 pub(crate) fn solve_gyroscopic<T: Real>(
     model: &Model,
@@ -55,7 +54,7 @@ pub(crate) fn solve_gyroscopic<T: Real>(
     solve6(rows)
 }
 
-/// The joint's part of h ∂bias/∂v, less what of h D is not symmetric, if that counts, times `x` (nv).
+/// Computes the joint's part of h ∂bias/∂v, minus the non-symmetric part of h D if selected, times `x` (nv).
 #[inline(always)]
 pub(crate) fn gyroscopic_product<T: Real>(
     model: &Model,
@@ -109,7 +108,7 @@ fn add_bias_derivative<T: Real>(
     }
 }
 
-/// Subtracts h times the skew part of D, which ellipsoids in a medium have.
+/// Subtracts h times the skew part of D, which stems from ellipsoids in a fluid.
 #[inline(always)]
 fn subtract_skew_drag<T: Real>(
     model: &Model,
@@ -142,8 +141,7 @@ fn subtract_skew_drag<T: Real>(
     }
 }
 
-/// Solves six equations, each with its right side as the seventh number, by elimination. The pivot of each column is
-/// brought up by exchanging rows, lane by lane.
+/// Solves six equations, each with its right side as the seventh number, by elimination with row pivoting per lane.
 #[inline(always)]
 fn solve6<T: Real>(mut rows: [[T; 7]; 6]) -> [T; 6] {
     for k in 0..6 {

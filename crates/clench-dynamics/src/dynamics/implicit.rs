@@ -1,10 +1,10 @@
-//! Euler, implicit in velocity derivatives: of damping, fluid and actuation (MuJoCo's `implicitfast`), or of Coriolis forces
-//! too (its `implicit`).
+//! Euler, implicit in velocity derivatives of damping, fluid and actuation (MuJoCo's `implicitfast`), and optionally of
+//! Coriolis forces (its `implicit`).
 //!
-//! With D = ∂τ/∂v, the acceleration that advances the velocity solves (M − h D) a = τ + Jᵀf, see
-//! [`derivatives`](crate::dynamics::derivatives) for D. A free body that is a tree by itself is then solved once more, with its
+//! With D = ∂τ/∂v, the acceleration that advances the velocity solves (M − h D) a = τ + Jᵀf; for D see
+//! [`derivatives`](crate::dynamics::derivatives). A free body that is its own tree is then solved once more with its
 //! gyroscopic forces, see [`gyroscopic`](crate::dynamics::gyroscopic). With Coriolis forces, see
-//! [`coriolis`](crate::dynamics::coriolis), D is not symmetric, and all bodies are solved for by LU.
+//! [`coriolis`](crate::dynamics::coriolis), D is not symmetric, and all bodies are solved by LU.
 
 use super::integration::Integration;
 use crate::dynamics::coriolis::add_bias_derivatives;
@@ -50,7 +50,7 @@ pub fn implicit_fast<T: Real>(
     advance_semi_implicit(model, params, state, ws);
 }
 
-/// The same with the derivatives of Coriolis forces.
+/// Does the same with the derivatives of Coriolis forces.
 #[kernel]
 pub fn implicit<T: Real>(
     model: &Model,
@@ -66,7 +66,7 @@ pub fn implicit<T: Real>(
     advance_semi_implicit(model, params, state, ws);
 }
 
-/// M − h D with Coriolis forces, in `integration.full`.
+/// Computes M − h D with Coriolis forces into `integration.full`.
 #[inline(always)]
 pub(crate) fn full_inertia<T: Real>(
     model: &Model,
@@ -87,7 +87,7 @@ pub(crate) fn full_inertia<T: Real>(
     add_bias_derivatives(model, params, stages, &state.qvel, h, coriolis, full);
 }
 
-/// M − h D without Coriolis forces, in `integration.matrix`.
+/// Computes M − h D without Coriolis forces into `integration.matrix`.
 #[inline(always)]
 pub(crate) fn symmetric_inertia<T: Real>(
     model: &Model,
@@ -107,7 +107,7 @@ pub(crate) fn symmetric_inertia<T: Real>(
     );
 }
 
-/// Adds to `integration.qacc`, M − h D times `ws.qacc`, what gyroscopic forces of free bodies add to the product.
+/// Adds the gyroscopic forces of free bodies to `integration.qacc`, the product of M − h D and `ws.qacc`.
 #[kernel]
 pub(crate) fn add_gyroscopic_products<T: Real>(
     model: &Model,

@@ -1,7 +1,7 @@
 //! The joint-space mass matrix by composite rigid bodies (Featherstone 2008, §6.2).
 //!
-//! If only dof i moves, everything below it moves as one rigid body of inertia `crb`. The momentum crb · cdof_i, measured
-//! along an ancestor dof j, is M_ij; dofs on different branches do not feel each other.
+//! If only dof i moves, all bodies below it move as one rigid body of inertia `crb`. The momentum crb · cdof_i
+//! projected onto an ancestor dof j is M_ij; dofs on different branches are not coupled.
 
 use crate::dynamics::reflected::dof_armature;
 use crate::model::{Model, Params};
@@ -9,7 +9,7 @@ use crate::stages::Positions;
 use clench_math::{Real, kernel};
 use clench_solver::TreeMatrix;
 
-/// `crb` and the mass matrix, armature included.
+/// Computes `crb` and the mass matrix, including armature.
 #[kernel]
 pub fn composite_inertia<T: Real>(
     model: &Model,

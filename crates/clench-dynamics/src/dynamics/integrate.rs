@@ -1,4 +1,4 @@
-//! Advancing the state by a time step, once its rates of change are known.
+//! Advances the state by a time step, given its rates of change.
 
 use super::actuator::ActuatorMotion;
 use super::integration::Integration;
@@ -13,7 +13,7 @@ use crate::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Tree;
 
-/// `out += x · scale`, entry by entry.
+/// Computes `out += x · scale`, entry by entry.
 #[inline(always)]
 pub fn add_scaled<T: Real>(out: &mut [T], x: &[T], scale: T) {
     for (out, &x) in out.iter_mut().zip(x) {
@@ -21,7 +21,7 @@ pub fn add_scaled<T: Real>(out: &mut [T], x: &[T], scale: T) {
     }
 }
 
-/// Moves `qpos` along `velocity` (nv) for `time` seconds. Orientations turn about the child's axes.
+/// Moves `qpos` along `velocity` (nv) for `time` seconds. Orientations rotate about the child's axes.
 #[kernel]
 pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T], time: T) {
     for joint in &model.joints {
@@ -68,7 +68,7 @@ pub fn differentiate_positions<T: Real>(
     }
 }
 
-/// Moves activations by `act_dot`; those of disabled actuators stay where they are, but for whole turns on a circle.
+/// Advances activations by `act_dot`; those of disabled actuators change only by whole turns on a circle.
 #[kernel]
 pub(crate) fn advance_activations<T: Real>(
     model: &Model,
@@ -99,7 +99,7 @@ pub(crate) fn advance_activations<T: Real>(
     }
 }
 
-/// Keeps the controls of the step, and what sensors measured, for those that they reach late, and lets the step pass.
+/// Records the step's controls and sensor measurements for delayed reading, and advances the time.
 #[inline(always)]
 pub(crate) fn advance_time<T: Real>(
     model: &Model,
@@ -123,7 +123,7 @@ pub(crate) fn advance_time<T: Real>(
     state.pass(params.timestep);
 }
 
-/// Solves with `integration.factor` for `integration.qacc`, from the sum of all forces.
+/// Solves for `integration.qacc` with `integration.factor`, from the sum of all forces.
 #[inline(always)]
 pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
     sum_forces(ws);
@@ -131,7 +131,7 @@ pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
     factor.solve(tree, qacc);
 }
 
-/// Leaves the sum of all forces in `integration.qacc`.
+/// Stores the sum of all forces in `integration.qacc`.
 #[inline(always)]
 pub(crate) fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
     let forces = ws.force.qfrc_smooth.iter().zip(&ws.qfrc_constraint);
@@ -140,8 +140,8 @@ pub(crate) fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
     }
 }
 
-/// Activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit Euler), then
-/// where springs rest, then time.
+/// Advances activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit
+/// Euler), then rest positions of springs, then time.
 #[inline(always)]
 pub(crate) fn advance_semi_implicit<T: Real>(
     model: &Model,

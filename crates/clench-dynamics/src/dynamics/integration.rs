@@ -13,21 +13,21 @@ pub struct Integration<T> {
     pub matrix: TreeMatrix<T>,
     /// Its factor.
     pub factor: TreeFactor<T>,
-    /// The same with what is not symmetric, then its factors; empty but for [`Integrator::Implicit`].
+    /// The same with its non-symmetric part, then its factors; empty except for [`Integrator::Implicit`].
     pub full: TreeLu<T>,
-    /// What the derivatives of bias forces take, likewise.
+    /// The scratch memory for derivatives of bias forces, likewise.
     pub coriolis: Coriolis<T>,
     /// The acceleration that advances the velocity (nv).
     pub qacc: Vec<T>,
-    /// Runge–Kutta: by how much the present stage is later than the state's time, s; else zero.
+    /// Runge–Kutta: the time of the current stage after the state's time, s; else zero.
     pub offset: T,
     /// Runge–Kutta: the state at the start of the step.
     pub start: Rates<T>,
     /// Runge–Kutta: the velocities of actuators (nout) at the start of the step.
     pub actuator_velocity: Vec<T>,
-    /// Runge–Kutta: lengths of tendons at the start of the step, and their gradients; empty where no tendon's spring yields.
+    /// Runge–Kutta: tendon lengths and gradients at the start of the step; empty if no tendon's spring yields.
     pub tendons: [Vec<T>; 2],
-    /// Runge–Kutta: the rates of the present stage.
+    /// Runge–Kutta: the rates of the current stage.
     pub stage: Rates<T>,
     /// Runge–Kutta: the weighted mean of all stages' rates.
     pub mean: Rates<T>,
@@ -55,7 +55,7 @@ impl<T: Real> Rates<T> {
 }
 
 impl<T: Real> Integration<T> {
-    /// Room for the integrators of a model.
+    /// Allocates memory for the integrators of a model.
     pub fn new(model: &Model) -> Self {
         let (full, coriolis) = match model.integrator {
             Integrator::Implicit => (TreeLu::zeros(&model.tree), Coriolis::new(model)),

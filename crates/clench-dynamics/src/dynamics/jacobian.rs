@@ -1,8 +1,8 @@
-//! Dense Jacobians of points and subtrees, and how those of points change.
+//! Dense Jacobians of points and subtrees, and the rates of those of points.
 //!
-//! Column i is the motion that dof i causes at unit velocity. With s the dof's axis as a spatial motion about o and p the point,
-//! the point moves with s.linear + s.angular × (p − o), and its body turns with s.angular. The axis turns with the frame that it is
-//! fixed to, and the point moves with ṗ:
+//! Column i is the motion that dof i causes at unit velocity. With s the dof's axis as a spatial motion about o and p
+//! the point, the point moves with s.linear + s.angular × (p − o), and its body rotates with s.angular. The axis turns
+//! with the frame that it is fixed to, and the point moves with ṗ:
 //!
 //! ```text
 //! d/dt (s.linear + s.angular × (p − o)) = ṡ.linear + ṡ.angular × (p − o) + s.angular × ṗ
@@ -13,7 +13,7 @@ use crate::model::{JointKind, Model, Params};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, Vec3, kernel};
 
-/// The dofs that move a body, ascending.
+/// Returns the dofs that move a body, ascending.
 #[inline(always)]
 fn chain(model: &Model, body: usize) -> &[u32] {
     match model.bodies[body].last_dof {
@@ -22,7 +22,7 @@ fn chain(model: &Model, body: usize) -> &[u32] {
     }
 }
 
-/// Writes a column: three numbers, a row apart.
+/// Writes a column of three numbers, one per row.
 #[inline(always)]
 fn put<T: Real>(rows: &mut [T], nv: usize, column: usize, value: Vec3<T>) {
     for k in 0..3 {
@@ -30,7 +30,8 @@ fn put<T: Real>(rows: &mut [T], nv: usize, column: usize, value: Vec3<T>) {
     }
 }
 
-/// Writes the Jacobian of a body point (6, nv): three rows of its velocity, three of its body's angular velocity, world axes.
+/// Writes the Jacobian of a body point (6, nv), world axes: three rows of its velocity, three of its body's angular
+/// velocity.
 #[kernel]
 pub fn point_jacobian<T: Real>(
     model: &Model,
@@ -52,7 +53,7 @@ pub fn point_jacobian<T: Real>(
     }
 }
 
-/// Writes how fast the same Jacobian changes (6, nv), as MuJoCo's `mj_jacDot`.
+/// Writes the time derivative of this Jacobian (6, nv), as MuJoCo's `mj_jacDot`.
 #[kernel]
 pub fn point_jacobian_rate<T: Real>(
     model: &Model,
@@ -72,8 +73,8 @@ pub fn point_jacobian_rate<T: Real>(
     }
 }
 
-/// ṡ of a dof by itself. That of a joint's several rotations turns with the body, which `cdof_dot` leaves out: of the sum over
-/// all of them that is no part.
+/// Returns ṡ of a single dof. The rotations of a ball or free joint turn with the body. `cdof_dot` omits this turn,
+/// which cancels in the sum over the joint.
 #[inline(always)]
 fn axis_rate<T: Real>(
     model: &Model,
@@ -94,10 +95,10 @@ fn axis_rate<T: Real>(
     }
 }
 
-/// Writes the Jacobian of the centre of mass of a body and all below it (3, nv), world axes.
+/// Writes the Jacobian of the centre of mass of the subtree of a body (3, nv), world axes.
 ///
-/// A dof above the body moves the whole subtree as one rigid body, and so its centre of mass as a point of it; a dof further down
-/// moves only what is below it, in the proportion of the masses. Of a subtree without mass nothing below counts.
+/// A dof above the body moves the subtree as one rigid body, with its centre of mass; a dof in the subtree moves only
+/// the bodies below it, weighted by mass. In a massless subtree they do not count.
 #[kernel]
 pub fn subtree_jacobian<T: Real>(
     model: &Model,
@@ -129,7 +130,7 @@ pub fn subtree_jacobian<T: Real>(
     }
 }
 
-/// Adds the forces along dofs of a force and a torque on a body point, world axes (MuJoCo's `mj_applyFT`).
+/// Adds the dof forces of a force and a torque on a body point, world axes (MuJoCo's `mj_applyFT`).
 #[kernel]
 pub fn add_point_forces<T: Real>(
     model: &Model,

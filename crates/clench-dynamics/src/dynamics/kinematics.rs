@@ -1,16 +1,16 @@
 //! Forward kinematics: from position coordinates to the poses of bodies, joints, geoms and sites.
 //!
 //! A body starts at its fixed pose in its parent and is then moved by its joints in turn. A rotation about an anchor p
-//! leaves p where it is, so after the orientation changed from R to R′ the position is p_world − R′ p. Joint axes and
-//! anchors are recorded as they are before the joint acts, which is where its motion turns them next.
+//! leaves p fixed, so after a change of orientation from R to R′ the position is p_world − R′ p. Joint axes and anchors
+//! are recorded before the joint acts; its motion rotates them next.
 //!
-//! The joints' own rotations come first, in a pass of their own: they do not depend on one another, and so do not wait for
-//! one another, as poses along a chain do.
+//! The joints' own rotations are computed first in a separate pass, without the dependencies of poses along a chain.
 //!
-//! What is trivial in every environment ([`SameFrames`](crate::model::SameFrames)) is not composed but copied.
+//! Transforms that are trivial in every environment ([`SameFrames`](crate::model::SameFrames)) are copied, not
+//! composed.
 //!
-//! Poses are computed for the bodies in some ranges only. The ranges leave out what is fixed to the world, and trees that sleep where they
-//! slept in the last pass: their poses of that pass still hold.
+//! Poses are computed only for ranges of bodies. These omit bodies fixed to the world, and trees asleep since the last
+//! pass, whose poses are still valid.
 
 use crate::model::{JointKind, Model, Params};
 use crate::stages::Positions;
@@ -21,22 +21,23 @@ use std::ops::Range;
 /// The poses that a pass computes.
 #[derive(Clone, Copy, Debug)]
 pub struct Computed<'a> {
-    /// Ranges of the bodies whose poses they are.
+    /// The ranges of bodies whose poses are computed.
     pub parts: &'a [Range<usize>],
-    /// Those of geoms and sites on bodies that are fixed to the world are among them.
+    /// True to include geoms and sites on bodies that are fixed to the world.
     pub fixed: bool,
 }
 
 impl<'a> Computed<'a> {
-    /// All poses on the bodies in some ranges.
+    /// Selects all poses on the bodies in some ranges.
     pub fn all(parts: &'a [Range<usize>]) -> Self {
         Computed { parts, fixed: true }
     }
 }
 
-/// Poses of bodies, and of inertial frames, joints, geoms and sites on them, from `state.qpos` and the mocap poses.
+/// Computes poses of bodies, and of their inertial frames, joints, geoms and sites, from `state.qpos` and the mocap
+/// poses.
 ///
-/// Quaternions need not be of unit length: they are read normalized, and never written.
+/// Quaternions need not have unit length: they are normalized when read, and never written.
 #[kernel]
 pub fn kinematics<T: Real>(
     model: &Model,
@@ -62,7 +63,7 @@ pub fn kinematics<T: Real>(
     }
 }
 
-/// The rotation of each of some joints from its position at `qpos0` (a ball or free joint's whole orientation).
+/// Computes the rotation of each of some joints from `qpos0` (the whole orientation of a ball or free joint).
 #[inline(always)]
 fn joint_turns<T: Real>(
     model: &Model,
@@ -85,8 +86,8 @@ fn joint_turns<T: Real>(
     }
 }
 
-/// The pose of body `b`; its joints' anchors and axes are written to `pos`. Factors of a product of unit quaternions
-/// leave it of unit length but for rounding, so that only what the user sets is normalized.
+/// Returns the pose of body `b` and writes its joints' anchors and axes to `pos`. A product of unit quaternions has
+/// unit length up to rounding, so only user input is normalized.
 #[inline(always)]
 fn body_pose<T: Real>(
     model: &Model,
@@ -137,7 +138,7 @@ fn body_pose<T: Real>(
     (xpos, xquat)
 }
 
-/// Inertial frames, geoms and sites, each fixed to its body; those on bodies that are `fixed` to the world only if they are wanted.
+/// Computes inertial frames, geoms and sites on bodies; those on bodies fixed to the world only if `fixed`.
 #[inline(always)]
 fn attached_poses<T: Real>(
     model: &Model,
@@ -170,7 +171,7 @@ fn attached_poses<T: Real>(
     }
 }
 
-/// The axes of a frame that stands as `quat` on a body of axes `xquat` and `xmat`, or along them.
+/// Returns the axes of a frame at `quat` on a body with axes `xquat`, `xmat`; the body's if `same`.
 #[inline(always)]
 fn attached_axes<T: Real>(same: bool, (xquat, xmat): (Quat<T>, Mat3<T>), quat: Quat<T>) -> Mat3<T> {
     match same {

@@ -1,20 +1,20 @@
 //! The metric in which the integrator `discrete` solves for accelerations.
 //!
-//! A step takes smooth forces at its end, to first order in velocities and positions. With B = −∂τ/∂v and K = −∂τ/∂q, what of them is
-//! symmetric and positive semidefinite,
+//! A step evaluates smooth forces at its end, to first order in velocities and positions. With B and K the symmetric
+//! positive semidefinite parts of −∂τ/∂v and −∂τ/∂q,
 //!
 //! ```text
 //! M̂ a = τ − h K v + Jᵀf        M̂ = M + h B + h² K
 //! ```
 //!
-//! and a is the change of the velocity in the step over h. Each term is as in MuJoCo 4.0, beside which these rules were found: derivatives
-//! of springs and dampers of joints, on the diagonal, of a ball or free joint the same in all directions; the drag of a medium;
-//! and s JᵀJ of tendons and actuators, s = h b + h² k with b and k the derivatives of their forces by velocity and length. A derivative that
-//! would take from the metric counts as zero.
+//! where a is the change of the velocity in the step over h. The terms match MuJoCo 4.0, with which these rules were
+//! determined: derivatives of springs and dampers of joints, on the diagonal, isotropic for a ball or free joint; fluid
+//! drag; and s JᵀJ of tendons and actuators, s = h b + h² k with b and k the derivatives of their forces by velocity
+//! and length. A derivative that would reduce the metric counts as zero.
 //!
-//! What couples dofs of different branches does not fit into the pattern of M. It is given to the solver as rows of a quadratic cost,
-//! ½ s (J a − J a_s)², which with ½ (a − a_s)ᵀ(M̂ − Σ s JᵀJ)(a − a_s) makes the cost in the whole metric about the acceleration a_s
-//! without constraints.
+//! Couplings of dofs of different branches do not fit the pattern of M. The solver receives them as rows of a quadratic
+//! cost, ½ s (J a − J a_s)². With ½ (a − a_s)ᵀ(M̂ − Σ s JᵀJ)(a − a_s), it is the cost in the whole metric about the
+//! acceleration a_s without constraints.
 
 use crate::dynamics::actuator_derivatives::{length_derivative, velocity_derivative};
 use crate::dynamics::derivatives::{add_fluid_derivatives, add_outer};
@@ -31,7 +31,7 @@ use crate::state::State;
 use clench_math::{Mask, Real, Vec3, kernel};
 use clench_solver::{Solver, Tree, TreeFactor, TreeMatrix};
 
-/// What the forces of a term act along.
+/// The direction in which the forces of a term act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The length of a tendon.
@@ -41,7 +41,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// The dofs that it depends on, ascending.
+    /// Returns the dofs that it depends on, ascending.
     pub fn dofs(self, model: &Model) -> &[u32] {
         match self {
             Along::Tendon(t) => model.tendon_dofs.dofs(t),
@@ -50,37 +50,37 @@ impl Along {
     }
 }
 
-/// Memory of the metric; empty but for [`Integrator::Discrete`].
+/// The memory of the metric; empty except for [`Integrator::Discrete`].
 #[derive(Clone, Debug)]
 pub struct Metric<T: Real> {
-    /// M. The problem has what of M̂ fits into its pattern.
+    /// M. The problem stores the part of M̂ that fits its pattern.
     pub mass: TreeMatrix<T>,
     /// Its factor.
     pub mass_factor: TreeFactor<T>,
     /// −h K v (nv).
     pub shift: Vec<T>,
-    /// Diagonal of M̂ − M (nv).
+    /// The diagonal of M̂ − M (nv).
     pub added: Vec<T>,
-    /// M̂ with what tendons and actuators have on the diagonal alone, which MuJoCo's exact inverse inertias and its sweeps without slip
-    /// are of; empty where that is M̂.
+    /// M̂ with only the diagonal of tendon and actuator terms, used by MuJoCo's exact inverse inertias and no-slip
+    /// sweeps; empty if equal to M̂.
     backbone: TreeMatrix<T>,
     /// Its factor.
     backbone_factor: TreeFactor<T>,
-    /// What may couple dofs of different branches.
+    /// The terms that may couple dofs of different branches.
     pub couplings: Vec<Along>,
-    /// s of each.
+    /// s of each coupling.
     pub scales: Vec<T>,
-    /// Lanes in which terms of tendons and actuators act on a tree, once they are known (ntree); then also constraints.
+    /// The lanes in which tendon and actuator terms, later also constraints, act on a tree (ntree).
     pub touched: Vec<T::Mask>,
-    /// Which of `couplings` a tendon is (ntendon).
+    /// The index of each tendon in `couplings` (ntendon).
     of_tendon: Vec<Option<usize>>,
-    /// Which of them an actuator's length is (nout).
+    /// The index of each actuator length in `couplings` (nout).
     of_output: Vec<Option<usize>>,
     acts: bool,
 }
 
 impl<T: Real> Metric<T> {
-    /// Room for the metric of a model.
+    /// Allocates memory for the metric of a model.
     pub fn new(model: &Model) -> Self {
         let acts = model.integrator == Integrator::Discrete;
         let numbers = if acts { model.nv } else { 0 };
@@ -126,17 +126,17 @@ impl<T: Real> Metric<T> {
         metric
     }
 
-    /// Whether the model steps in this metric.
+    /// Returns true if the model steps in this metric.
     pub fn acts(&self) -> bool {
         self.acts
     }
 
-    /// The factor of M̂ without what tendons and actuators couple, where it differs from that of the problem.
+    /// Returns the factor of the backbone, if it differs from that of the problem.
     pub(crate) fn backbone_factor(&self) -> Option<&TreeFactor<T>> {
         (!self.backbone.values.is_empty()).then_some(&self.backbone_factor)
     }
 
-    /// Factors that matrix. False in lanes where it is not positive definite.
+    /// Factors the backbone. Returns false in lanes where it is not positive definite.
     pub(crate) fn factor_backbone(&mut self, tree: &Tree, solver: &Solver<T>) -> T::Mask {
         match self.backbone.values.is_empty() {
             true => T::Mask::splat(true),
@@ -144,19 +144,19 @@ impl<T: Real> Metric<T> {
         }
     }
 
-    /// Whether any coupling between branches acts in any lane.
+    /// Returns true if any coupling between branches acts in any lane.
     pub fn is_coupled(&self) -> bool {
         self.scales.iter().any(|scale| !scale.eq(T::ZERO).all())
     }
 }
 
-/// Whether each of these dofs, given in ascending order, is above the next.
+/// Returns true if each of these ascending dofs is above the next.
 fn is_chain(tree: &Tree, dofs: &[u32]) -> bool {
     let above = |pair: &[u32]| tree.row(pair[1] as usize).contains(&pair[0]);
     dofs.windows(2).all(above)
 }
 
-/// The dofs that a term acts on, with J along each.
+/// Calls `visit` with each dof that a term acts on and J along it.
 #[inline(always)]
 pub(crate) fn each_arm<T: Real>(
     model: &Model,
@@ -170,7 +170,7 @@ pub(crate) fn each_arm<T: Real>(
     }
 }
 
-/// Turns M in `mass` into what of M̂ fits into its pattern; leaves the rest in `metric`.
+/// Replaces M in `mass` with the part of M̂ that fits its pattern; `metric` stores the remainder.
 #[kernel]
 pub(crate) fn add_metric<T: Real>(
     model: &Model,
@@ -271,7 +271,7 @@ fn add_joint_spring<T: Real>(
     }
 }
 
-/// −∂force/∂length and −∂force/∂velocity of tendon `t`. Within its dead band a spring has none.
+/// Returns −∂force/∂length and −∂force/∂velocity of tendon `t`. A spring has none within its dead band.
 #[inline(always)]
 fn tendon_derivatives<T: Real>(
     model: &Model,
@@ -294,14 +294,14 @@ fn tendon_derivatives<T: Real>(
     derivatives
 }
 
-/// A term s JᵀJ of the metric, and its share of −h K v, which is `shift` Jᵀ.
+/// A term s JᵀJ of the metric, and its share `shift` Jᵀ of −h K v.
 struct Term<T> {
     scale: T,
     shift: T,
 }
 
 impl<T: Real> Term<T> {
-    /// From the derivatives of the force by length and velocity, both negated, at a velocity.
+    /// Creates a term from the negated derivatives of the force, at the velocity `rate`.
     #[inline(always)]
     fn new(h: T, [length, velocity]: [T; 2], rate: T) -> Self {
         let stiffness = h * length.max(T::ZERO);
@@ -311,7 +311,7 @@ impl<T: Real> Term<T> {
         }
     }
 
-    /// Adds it to the matrix, or to the couplings where it is one, `place`.
+    /// Adds the term to the matrix, or to the couplings at index `place`.
     #[kernel]
     fn add(
         &self,

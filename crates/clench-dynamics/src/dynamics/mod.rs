@@ -1,11 +1,11 @@
-//! Smooth dynamics: everything of the equation of motion but constraints, one idea a file.
+//! Smooth dynamics: all terms of the equation of motion except constraints, one topic per file.
 //!
 //! ```text
 //! M(q) a = τ,   τ = passive + actuation + applied − bias(q, v)
 //! ```
 //!
-//! Spatial vectors of a kinematic tree are about the tree's centre of mass (`subtree_com` of its root), in world axes, as
-//! in MuJoCo: the numbers stay small wherever the tree is.
+//! Spatial vectors of a kinematic tree are about the tree's centre of mass (`subtree_com` of its root), in world axes,
+//! as in MuJoCo: the numbers stay small at any position of the tree.
 
 pub(crate) mod activation;
 pub(crate) mod activation_rates;

@@ -1,14 +1,15 @@
-//! Muscles: activation dynamics, and force = −F₀ (FL(L) FV(V) activation + FP(L)), as MuJoCo's manual defines them (modeling
+//! Muscles: activation dynamics, and force = −F₀ (FL(L) FV(V) activation + FP(L)), as in MuJoCo's manual (modeling
 //! chapter, "Muscles").
 //!
-//! Lengths are scaled so that the operating range of the actuator becomes `range`: L is the muscle's length in units of its
-//! resting length L₀, and V its velocity in units of the velocity of shortening at which it has no force. FL is a bump of four parabolas from `lmin` over 1
-//! to `lmax`; FV rises by a parabola from −1, and by another to `fvmax`; FP is a parabola beyond 1 that goes on straight.
+//! Lengths are scaled so that the operating range of the actuator becomes `range`: L is the muscle's length in units of
+//! its resting length L₀, V its velocity in units of the shortening velocity at zero force. FL is a bump of four
+//! parabolas from `lmin` over 1 to `lmax`; FV rises by a parabola from −1, and by another to `fvmax`; FP is a parabola
+//! beyond 1 that continues linearly.
 
 use crate::model::Params;
 use clench_math::{Real, kernel};
 
-/// Divisors are at least so large (MuJoCo's `mjMINVAL`).
+/// The minimum of divisors (MuJoCo's `mjMINVAL`).
 const MIN_DIVISOR: f64 = 1e-15;
 
 #[inline(always)]
@@ -16,10 +17,10 @@ fn divisor<T: Real>(x: T) -> T {
     x.max(T::new(MIN_DIVISOR))
 }
 
-/// The rate of change of an activation under a control, both taken within [0, 1] for the time constants.
+/// Computes the rate of an activation under a control, both clamped to [0, 1] for the time constants.
 ///
-/// `prm` are the time constants of activation and deactivation, and the width over which one passes into the other; Millard et al.
-/// (2013) for the former, MuJoCo's quintic step for the latter.
+/// `prm` holds the time constants of activation and deactivation (Millard et al. 2013), and the width of the transition
+/// between them (MuJoCo's quintic step).
 #[kernel]
 pub(crate) fn activation_rate<T: Real>(ctrl: T, act: T, prm: &[T; 10]) -> T {
     let [activation, deactivation, width, ..] = *prm;
@@ -32,7 +33,7 @@ pub(crate) fn activation_rate<T: Real>(ctrl: T, act: T, prm: &[T; 10]) -> T {
     missing / divisor(timeconst)
 }
 
-/// 0 up to 0, 1 from 1 on, 6x⁵ − 15x⁴ + 10x³ between.
+/// Returns 0 up to 0, 1 from 1 on, 6x⁵ − 15x⁴ + 10x³ between.
 #[inline(always)]
 fn smooth_step<T: Real>(x: T) -> T {
     let x = x.clamp(T::ZERO, T::ONE);
@@ -44,7 +45,7 @@ fn smooth_step<T: Real>(x: T) -> T {
 pub struct Muscle<T> {
     /// F₀.
     peak_force: T,
-    /// Resting length L₀, m.
+    /// The resting length L₀, m.
     resting: T,
     /// L.
     length: T,
@@ -56,7 +57,7 @@ pub struct Muscle<T> {
 }
 
 impl<T: Real> Muscle<T> {
-    /// Actuator `u` as a muscle with the parameters of its gain or bias, `prm`, at a length.
+    /// Creates the muscle of actuator `u` at a length, with the parameters `prm` of its gain or bias.
     #[kernel]
     pub fn new(params: &Params<T>, u: usize, prm: &[T; 10], length: T) -> Self {
         let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
@@ -75,20 +76,20 @@ impl<T: Real> Muscle<T> {
         }
     }
 
-    /// What the activation is multiplied by: −F₀ FL FV.
+    /// Returns the factor of the activation: −F₀ FL FV.
     #[inline(always)]
     pub fn gain(&self, velocity: T) -> T {
         -self.peak_force * self.active_by_length() * self.by_velocity(velocity).0
     }
 
-    /// ∂gain/∂velocity.
+    /// Returns ∂gain/∂velocity.
     #[inline(always)]
     pub(crate) fn gain_slope(&self, velocity: T) -> T {
         let slope = self.by_velocity(velocity).1 / divisor(self.resting * self.vmax);
         -self.peak_force * self.active_by_length() * slope
     }
 
-    /// The passive force, −F₀ FP.
+    /// Returns the passive force, −F₀ FP.
     #[inline(always)]
     pub fn bias(&self) -> T {
         let half = T::new(0.5);
@@ -101,14 +102,14 @@ impl<T: Real> Muscle<T> {
         T::select(slack, T::ZERO, -self.peak_force * self.fpmax * force)
     }
 
-    /// ∂gain/∂length.
+    /// Returns ∂gain/∂length.
     #[inline(always)]
     pub(crate) fn gain_length_slope(&self, velocity: T) -> T {
         let slope = self.active_by_length_slope() / divisor(self.resting);
         -self.peak_force * slope * self.by_velocity(velocity).0
     }
 
-    /// ∂bias/∂length.
+    /// Returns ∂bias/∂length.
     #[inline(always)]
     pub(crate) fn bias_slope(&self) -> T {
         let bend = T::new(0.5) * (T::ONE + self.lmax);
@@ -119,7 +120,7 @@ impl<T: Real> Muscle<T> {
         T::select(self.length.le(T::ONE), T::ZERO, force)
     }
 
-    /// The derivative of FL by L.
+    /// Returns the derivative of FL by L.
     #[kernel]
     fn active_by_length_slope(&self) -> T {
         let (half, l) = (T::new(0.5), self.length);
@@ -135,7 +136,7 @@ impl<T: Real> Muscle<T> {
         T::select(l.lt(self.lmin) | l.gt(self.lmax), T::ZERO, slope)
     }
 
-    /// FL.
+    /// Returns FL.
     #[kernel]
     fn active_by_length(&self) -> T {
         let (half, l) = (T::new(0.5), self.length);
@@ -154,7 +155,7 @@ impl<T: Real> Muscle<T> {
         T::select(l.lt(self.lmin) | l.gt(self.lmax), T::ZERO, force)
     }
 
-    /// FV and its derivative by V.
+    /// Returns FV and its derivative by V.
     #[kernel]
     fn by_velocity(&self, velocity: T) -> (T, T) {
         let v = velocity / divisor(self.resting * self.vmax);

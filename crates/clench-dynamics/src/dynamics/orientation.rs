@@ -1,12 +1,13 @@
-//! Orientation servos: a torque that turns a ball joint, or a site in the frame of another, to a commanded orientation by the shortest
-//! way (MuJoCo manual, XML reference, `actuator/orientation`).
+//! Orientation servos: a torque that turns a ball joint, or a site in the frame of another, to a commanded orientation
+//! along the shortest path (MuJoCo manual, XML reference, `actuator/orientation`).
 //!
 //! ```text
 //! τ = kp log(q⁻¹ target) + c − kv ω        kp = gainprm[0],  c = biasprm[0],  −kv = biasprm[2]
 //! ```
 //!
-//! in the frame of what is turned. The servo has three lengths, the rotation vector of q, and three moment arms, each with a force of its
-//! own. Its target is a rotation vector, of three controls or of three activations that integrate them, or a quaternion of four controls.
+//! in the frame of the rotated object. The servo has three lengths, the rotation vector of q, and three moment arms
+//! with a force each. Its target is a rotation vector, of three controls or three activations that integrate them, or a
+//! quaternion of four controls.
 
 use super::actuator::{ActuatorInputs, scaling_error};
 use crate::dynamics::activation::next_activation;
@@ -14,10 +15,10 @@ use crate::model::{ControlInput, Model, Params};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Mask, Quat, Real, Vec3, kernel};
 
-/// How many lengths, moment arms and forces a servo has.
+/// The number of lengths, moment arms and forces of a servo.
 pub const OUTPUTS: usize = 3;
 
-/// The torque of servo `u` before any limit.
+/// Computes the torque of servo `u` before limits.
 #[kernel]
 pub fn torque<T: Real>(
     model: &Model,
@@ -36,7 +37,7 @@ pub fn torque<T: Real>(
     error * params.actuator_gainprm[u][0] + constant + velocity * damping
 }
 
-/// The orientation that servo `u` goes for.
+/// Returns the target orientation of servo `u`.
 #[inline(always)]
 fn target<T: Real>(
     model: &Model,
@@ -63,7 +64,7 @@ fn target<T: Real>(
     Quat::from_rotation_vector(Vec3::from_array(vector))
 }
 
-/// Holds the norm of a torque within a range from zero, and its direction.
+/// Clamps the norm of a torque and retains its direction.
 #[inline(always)]
 pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
     let norm = Vec3::from_slice(torque).norm();
@@ -72,21 +73,21 @@ pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
     torque.iter_mut().for_each(|part| *part *= share);
 }
 
-/// ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
+/// Returns ∂torque/∂ω, equal about each axis; zero if the limit clamps the torque.
 #[inline(always)]
 pub fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
     let slope = params.actuator_biasprm[u][2];
     T::select(is_held(model, params, u, forces), T::ZERO, slope)
 }
 
-/// ∂torque/∂angle for small angles from the target, likewise.
+/// Returns ∂torque/∂angle at small angles from the target, likewise.
 #[kernel]
 pub fn length_slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
     let slope = -params.actuator_gainprm[u][0];
     T::select(is_held(model, params, u, forces), T::ZERO, slope)
 }
 
-/// Lanes in which the limit holds the torque.
+/// Returns the lanes in which the limit clamps the torque.
 #[inline(always)]
 fn is_held<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T::Mask {
     let actuator = &model.actuators[u];
@@ -94,11 +95,11 @@ fn is_held<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -
         return T::Mask::splat(false);
     }
     let norm = Vec3::from_slice(&forces[actuator.outputs.clone()]).norm();
-    // In MuJoCo rounding decides whether a torque that was scaled to its limit is there.
+    // In MuJoCo, rounding decides if a torque scaled to its limit is at the limit.
     norm.ge(params.actuator_forcerange[u][1] * (T::ONE - scaling_error()))
 }
 
-/// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.
+/// Subtracts whole turns from a rotation vector of more than half a turn, at the same orientation.
 #[inline(always)]
 pub fn shorten<T: Real>(vector: &mut [T]) {
     let angle = Vec3::from_slice(vector).norm();

@@ -1,4 +1,4 @@
-//! Passive forces: springs, dampers, gravity compensation, the medium, and what adhesive contacts pull with.
+//! Passive forces: springs, dampers, gravity compensation, fluid forces, and adhesive contacts.
 
 use crate::contact::Contact;
 use crate::dynamics::fluid::fluid_forces;
@@ -14,8 +14,9 @@ use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Force, Mask, Real, Vec3, kernel};
 
-/// `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`. Gravity compensation of joints
-/// with `actgravcomp` is left to the actuators. As in MuJoCo, without springs and dampers there is nothing passive at all.
+/// Computes `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`.
+/// Gravity compensation of joints with `actgravcomp` belongs to the actuators. As in MuJoCo, disabling springs and
+/// dampers disables all passive forces.
 #[kernel]
 pub(crate) fn passive_forces<T: Real>(
     model: &Model,
@@ -82,7 +83,7 @@ fn springs<T: Real>(
     }
 }
 
-/// Adds the force of a spring that is stretched along `stretch`.
+/// Adds the force of a spring with the elongation `stretch`.
 #[inline(always)]
 fn pull_back<T: Real>(spring: &Polynomial<T>, stretch: Vec3<T>, qfrc: &mut [T]) {
     let stiffness = if spring.is_curved().any() {
@@ -114,7 +115,7 @@ fn dampers<T: Real>(
     }
 }
 
-/// What contacts hold on with pulls their bodies together, against what their constraints give for it.
+/// Adds the adhesive forces of contacts, which pull the bodies together against the constraint forces.
 #[inline(always)]
 fn adhesion<T: Real>(
     model: &Model,
@@ -138,8 +139,8 @@ fn adhesion<T: Real>(
     project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_adhesion);
 }
 
-/// Each body's weight, or the share of it that `gravcomp` says, is held at its centre of mass. As in MuJoCo, shares below
-/// zero, which add weight, do so only where some body's share is positive.
+/// Supports the share `gravcomp` of each body's weight at its centre of mass. As in MuJoCo, negative shares, which add
+/// weight, apply only if some body's share is positive.
 #[inline(always)]
 fn gravity_compensation<T: Real>(
     model: &Model,

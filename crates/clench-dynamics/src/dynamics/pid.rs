@@ -1,7 +1,8 @@
-//! PID controllers: force = kp (position setpoint − length) + kv (velocity setpoint − velocity) + ki ∫error + feedforward.
+//! PID controllers: force = kp (position setpoint − length) + kv (velocity setpoint − velocity) + ki ∫error +
+//! feedforward.
 //!
-//! As in MuJoCo, kp and kv are those of the affine bias, which makes the part of the force that no setpoint makes; ki is `gainprm[0]`, the bound
-//! of the integral `dynprm[0]`, the fastest change of the position setpoint `dynprm[1]`.
+//! As in MuJoCo, kp and kv are those of the affine bias, which provides the part of the force without setpoints. ki is
+//! `gainprm[0]`, the bound of the integral `dynprm[0]`, the maximum rate of the position setpoint `dynprm[1]`.
 
 use super::actuator::{ActuatorInputs, ActuatorMotion};
 use super::setpoint::nearest_setpoint;
@@ -10,7 +11,7 @@ use crate::dynamics::setpoint::{Setpoints, integral_rate};
 use crate::model::{Model, Params};
 use clench_math::Real;
 
-/// The rates of the activations of actuator `u`.
+/// Computes the rates of the activations of actuator `u`.
 #[inline(always)]
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
@@ -32,7 +33,7 @@ pub(crate) fn activation_rates<T: Real>(
     }
 }
 
-/// The part of the force that setpoints and the integral make.
+/// Computes the part of the force due to setpoints and the integral.
 #[inline(always)]
 pub(crate) fn force<T: Real>(
     model: &Model,

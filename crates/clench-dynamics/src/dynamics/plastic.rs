@@ -1,10 +1,10 @@
 //! Springs that yield.
 //!
-//! A spring whose stretch at the end of a step is larger than its yield rests closer from then on, by what it is stretched too far:
-//! what is left is a stretch of the yield (ideal plasticity). Where springs rest is part of the state, and stays what it is within a
-//! step, also between the stages of Runge and Kutta. As in MuJoCo 4.0, beside which these rules were found, joints are looked at where
-//! they are after the step, and tendons where length and gradient of its start lead at the velocity that moved the positions. Neither
-//! stiffness nor dead band change this; a band moves as a whole.
+//! If the stretch of a spring at the end of a step exceeds its yield, its rest position moves by the excess, so that
+//! the yield remains as stretch (ideal plasticity). Rest positions are part of the state and constant within a step,
+//! including Runge–Kutta stages. As in MuJoCo 4.0, with which these rules were determined, joints are evaluated at
+//! their positions after the step, and tendons by extrapolating their initial length and gradient with the velocity
+//! that moved the positions. Stiffness and width of the dead band do not change.
 
 use crate::dynamics::spring::{JointStretch, stretch_of_joint, stretch_outside};
 use crate::model::{Model, Params};
@@ -12,17 +12,17 @@ use crate::sleep::Sleep;
 use crate::stages::Positions;
 use clench_math::{Mask, Quat, Real, Vec3, kernel};
 
-/// Lengths and gradients of tendons, as [`Positions`] has them.
+/// Lengths and gradients of tendons, stored as in [`Positions`].
 #[derive(Clone, Copy, Debug)]
 pub struct Lengths<'a, T> {
     /// Lengths (ntendon).
     pub length: &'a [T],
-    /// Their gradients, entry after entry.
+    /// The gradients, entry after entry.
     pub jacobian: &'a [T],
 }
 
 impl<'a, T: Real> Lengths<'a, T> {
-    /// Those at a pose.
+    /// Returns the lengths at a pose.
     pub fn of(pos: &'a Positions<T>) -> Self {
         Lengths {
             length: &pos.ten_length,
@@ -31,8 +31,8 @@ impl<'a, T: Real> Lengths<'a, T> {
     }
 }
 
-/// Lets springs yield after a step that has moved the positions to `qpos` along `velocity` (nv), from where tendons were as `start`
-/// says. What sleeps does not yield.
+/// Updates yielding springs after a step that moved the positions to `qpos` along `velocity` (nv), with the tendons
+/// initially at `start`. Sleeping springs do not yield.
 #[kernel]
 pub(crate) fn yield_springs<T: Real>(
     model: &Model,
@@ -76,7 +76,7 @@ pub(crate) fn yield_springs<T: Real>(
     }
 }
 
-/// By how much a stretch is larger than the yield, towards its side of the rest; 0 where the spring does not yield.
+/// Returns the signed excess of a stretch over the yield; 0 if the spring does not yield.
 #[inline(always)]
 fn beyond<T: Real>(stretch: T, limit: T) -> T {
     let above = T::select(stretch.gt(limit), stretch - limit, T::ZERO);
@@ -84,7 +84,8 @@ fn beyond<T: Real>(stretch: T, limit: T) -> T {
     T::select(limit.gt(T::ZERO), out, T::ZERO)
 }
 
-/// Turns the orientation at which a ball joint's spring rests about the axis of its stretch, until a turn by the yield is left.
+/// Turns the rest orientation of a ball joint's spring about the axis of its stretch, until the yield remains as
+/// stretch.
 #[inline(always)]
 fn turn_rest<T: Real>(stretch: Vec3<T>, limit: T, awake: T::Mask, rest: &mut [T]) {
     let (axis, angle) = stretch.normalize();
@@ -98,7 +99,7 @@ fn turn_rest<T: Real>(stretch: Vec3<T>, limit: T, awake: T::Mask, rest: &mut [T]
     Quat::select(yields, turned, old).write(rest);
 }
 
-/// Whether the spring of any tendon yields.
+/// Returns true if the spring of any tendon yields.
 pub fn has_yielding_tendons(model: &Model) -> bool {
     model.tendons.iter().any(|tendon| tendon.plastic.is_some())
 }

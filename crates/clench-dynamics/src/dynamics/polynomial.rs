@@ -5,8 +5,8 @@
 //! damper at the velocity v:       f = −(a v + b v |v| + c v³)   −∂f/∂v = a + 2 b |v| + 3 c v²
 //! ```
 //!
-//! A damper's force is odd in v, a spring's need not be. A displacement in space, of a ball or free joint, has a length x ≥ 0,
-//! and the force is along it.
+//! A damper's force is odd in v, a spring's need not be. A spatial displacement, of a ball or free joint, has a length
+//! x ≥ 0, and the force is along it.
 
 use clench_math::{Mask, Real};
 
@@ -20,40 +20,40 @@ pub struct Polynomial<T> {
 }
 
 impl<T: Real> Polynomial<T> {
-    /// Of these coefficients.
+    /// Creates a polynomial of these coefficients.
     #[inline(always)]
     pub fn new(linear: T, higher: [T; 2]) -> Self {
         Polynomial { linear, higher }
     }
 
-    /// Whether no lane has any force.
+    /// Returns true if the force is zero in all lanes.
     #[inline(always)]
     pub fn is_zero(&self) -> bool {
         (self.linear.eq(T::ZERO) & !self.is_curved()).all()
     }
 
-    /// Lanes with a coefficient of a higher power.
+    /// Returns the lanes with a coefficient of a higher power.
     #[inline(always)]
     pub(crate) fn is_curved(&self) -> T::Mask {
         let [b, c] = self.higher;
         !(b.eq(T::ZERO) & c.eq(T::ZERO))
     }
 
-    /// Minus a spring's force over its displacement `x`: a + b x + c x².
+    /// Returns minus a spring's force over its displacement `x`: a + b x + c x².
     #[inline(always)]
     pub fn stiffness(&self, x: T) -> T {
         let [b, c] = self.higher;
         self.linear + x * (b + x * c)
     }
 
-    /// Minus the change of a spring's force with its displacement `x`: a + 2 b x + 3 c x².
+    /// Returns minus the derivative of a spring's force by its displacement `x`: a + 2 b x + 3 c x².
     #[inline(always)]
     pub fn stiffness_slope(&self, x: T) -> T {
         let [b, c] = self.higher;
         self.linear + x * (T::new(2.0) * b + x * (T::new(3.0) * c))
     }
 
-    /// The energy in a spring of displacement `x`.
+    /// Returns the energy of a spring of displacement `x`.
     #[inline(always)]
     pub fn energy(&self, x: T) -> T {
         let [b, c] = self.higher;
@@ -61,13 +61,13 @@ impl<T: Real> Polynomial<T> {
         mean * x.squared()
     }
 
-    /// Minus a damper's force over its velocity `v`: a + b |v| + c v².
+    /// Returns minus a damper's force over its velocity `v`: a + b |v| + c v².
     #[inline(always)]
     pub fn damping(&self, v: T) -> T {
         self.stiffness(v.abs())
     }
 
-    /// Minus the change of a damper's force with its velocity `v`: a + 2 b |v| + 3 c v².
+    /// Returns minus the derivative of a damper's force by its velocity `v`: a + 2 b |v| + 3 c v².
     #[inline(always)]
     pub fn damping_slope(&self, v: T) -> T {
         self.stiffness_slope(v.abs())

@@ -1,10 +1,10 @@
-//! Between bodies and dofs: Σ_b J_bᵀ f_b in one pass over the tree instead of a chain a body, and the frames that forces are told in.
+//! Projection between bodies and dofs: Σ_b J_bᵀ f_b in one pass over the tree, and the frames of forces and velocities.
 
 use crate::model::Model;
 use crate::stages::Positions;
 use clench_math::{Force, Mat3, Motion, Real, Vec3, kernel};
 
-/// The spatial force, about the reference point of its tree, of a force and a torque that act on body `b` at `point`.
+/// Returns the spatial force, about the reference point of its tree, of a force and a torque on body `b` at `point`.
 #[inline(always)]
 pub fn force_at<T: Real>(
     model: &Model,
@@ -18,8 +18,8 @@ pub fn force_at<T: Real>(
     Force::new(torque + arm.cross(force), force)
 }
 
-/// Adds the dof forces of one spatial force a body to `qfrc`. `forces` is used up: afterwards each holds the force on the
-/// body and all below it.
+/// Adds the dof forces of one spatial force per body to `qfrc`. Overwrites `forces` with the forces on the body and all
+/// below it.
 #[kernel]
 pub fn project_forces<T: Real>(
     model: &Model,
@@ -38,7 +38,7 @@ pub fn project_forces<T: Real>(
     }
 }
 
-/// A spatial velocity at the point that is `arm` from where it is measured, along the axes of a frame.
+/// Returns a spatial velocity at the offset `arm` from its reference point, along the axes of a frame.
 #[inline(always)]
 pub fn local_velocity<T: Real>(motion: Motion<T>, arm: Vec3<T>, axes: &Mat3<T>) -> Motion<T> {
     Motion::new(

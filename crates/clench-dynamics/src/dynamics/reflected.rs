@@ -1,13 +1,13 @@
-//! What actuators add to their targets: damping and armature, times the square of the gear, since a gear scales both forces and
-//! velocities (MuJoCo's `damping` and `armature` of actuators).
+//! Damping and armature that actuators add to their targets, times the square of the gear, since a gear scales both
+//! forces and velocities (MuJoCo's `damping` and `armature` of actuators).
 //!
-//! Both act whether the actuator is switched off or not, and no range limits them.
+//! Both also act for disabled actuators, and no range limits them.
 
 use crate::dynamics::polynomial::Polynomial;
 use crate::model::{Model, Params};
 use clench_math::Real;
 
-/// The force law of the damper of dof `i`: its own and that of its joint's actuators.
+/// Returns the damper of dof `i`: its own and that of its joint's actuators.
 #[inline(always)]
 pub(crate) fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -> Polynomial<T> {
     let own = Polynomial::new(params.dof_damping[i], params.dof_dampingpoly[i]);
@@ -15,7 +15,7 @@ pub(crate) fn dof_damper<T: Real>(model: &Model, params: &Params<T>, i: usize) -
     add_dampers(params, actuators, own)
 }
 
-/// The force law of the damper of tendon `t`: its own and that of its actuators.
+/// Returns the damper of tendon `t`: its own and that of its actuators.
 #[inline(always)]
 pub fn tendon_damper<T: Real>(model: &Model, params: &Params<T>, t: usize) -> Polynomial<T> {
     let own = Polynomial::new(params.tendon_damping[t], params.tendon_dampingpoly[t]);
@@ -38,14 +38,14 @@ fn add_dampers<T: Real>(
     damper
 }
 
-/// The inertia that is added to dof `i`: its own armature and that of its joint's actuators.
+/// Returns the inertia added to dof `i`: its own armature and that of its joint's actuators.
 #[inline(always)]
 pub fn dof_armature<T: Real>(model: &Model, params: &Params<T>, i: usize) -> T {
     let actuators = &model.joints[model.dofs[i].joint].reflecting;
     add_armatures(params, actuators, params.dof_armature[i])
 }
 
-/// The inertia of tendon `t`: its own armature and that of its actuators.
+/// Returns the inertia of tendon `t`: its own armature and that of its actuators.
 #[inline(always)]
 pub fn tendon_armature<T: Real>(model: &Model, params: &Params<T>, t: usize) -> T {
     let actuators = &model.tendons[t].reflecting;

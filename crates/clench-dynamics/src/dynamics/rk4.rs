@@ -1,9 +1,9 @@
-//! Fourth-order Runge–Kutta, on the rotation group where joints are ball or free.
+//! Fourth-order Runge–Kutta, on the rotation group for ball and free joints.
 //!
-//! Positions, velocities and activations advance by the classical tableau: stages at 0, h/2, h/2, h, each reached along the
-//! rates of the one before, weighted 1/6, 1/3, 1/3, 1/6. Orientations are not a vector space, so their increments are
-//! rotation vectors u from the start, R = R₀ exp(u), and what is averaged is u̇, not the angular velocity ω (Munthe-Kaas
-//! 1998, *Runge–Kutta methods on Lie groups*). In the child's axes
+//! Positions, velocities and activations advance by the classical tableau: stages at 0, h/2, h/2, h, each reached along
+//! the rates of the previous one, weighted 1/6, 1/3, 1/3, 1/6. Orientations are not a vector space: their increments
+//! are rotation vectors u from the start, R = R₀ exp(u), and the average is of u̇, not of the angular velocity ω
+//! (Munthe-Kaas 1998, *Runge–Kutta methods on Lie groups*). In the child's axes
 //!
 //! ```text
 //! u̇ = ω + ½ u×ω + c u×(u×ω),   c = (1 − (θ/2) cot(θ/2)) / θ²,   θ = |u|
@@ -21,15 +21,16 @@ use crate::workspace::Workspace;
 use clench_math::{Real, Vec3, kernel};
 use std::mem::swap;
 
-/// Where stages 1, 2 and 3 lie, in time steps.
+/// The times of stages 1, 2 and 3, in time steps.
 const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 /// Weights of stages 0 to 3.
 const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
-/// Below this squared angle, rad², c is taken from its series: its closed form loses digits there, and four terms of the
-/// series are exact to 1e-15.
+/// The squared angle, rad², below which c is computed from its series: the closed form loses digits there, and four
+/// terms of the series are exact to 1e-15.
 const SMALL: f64 = 0.01;
 
-/// Advances the state by a time step. `ws` holds the forward dynamics of `state`; `forward` computes them elsewhere.
+/// Advances the state by a time step. `ws` holds the forward dynamics of `state`; `forward` computes those of other
+/// states.
 #[kernel]
 pub fn rk4<T: Real>(
     model: &Model,
@@ -50,9 +51,9 @@ pub fn rk4<T: Real>(
         add_scaled(&mut state.qvel, &rate.velocity, step);
         add_scaled(&mut state.act, &rate.activation, step);
         ws.clock.lap(Stage::Integration as usize);
-        // The stage before is nearer than the last step: 9 to 15% of a humanoid's time in lanes.
+        // The previous stage is closer than the last step: saves 9 to 15% of a humanoid's time in lanes.
         state.qacc_warmstart.copy_from_slice(&ws.qacc);
-        // What went wrong in one stage went wrong in the step.
+        // A failure in one stage is a failure of the step.
         let (singular, overflow) = (ws.singular, ws.collision.overflow);
         let excess = ws.collision.excess;
         ws.integration.offset = step;
@@ -65,8 +66,8 @@ pub fn rk4<T: Real>(
         collect(model, state, step, weight, ws);
     }
     restore(&ws.integration.start, state);
-    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with; what users read is that of
-    // the last stage.
+    // As in MuJoCo, a motor's bristles deflect by the velocity at the start of the step; users read that of the last
+    // stage.
     let first = &mut ws.integration.actuator_velocity;
     swap(first, &mut ws.velocity.actuator_velocity);
     let mean = &ws.integration.mean;
@@ -85,7 +86,7 @@ pub fn rk4<T: Real>(
     advance_time(model, params, &ws.sensors.measured, state);
 }
 
-/// Keeps the state, and the rates of stage 0.
+/// Stores the state and the rates of stage 0.
 #[kernel]
 fn begin<T: Real>(state: &State<T>, ws: &mut Workspace<T>) {
     let Integration {
@@ -127,7 +128,7 @@ fn add_weighted<T: Real>(mean: &mut Rates<T>, stage: &Rates<T>, weight: T) {
     add_scaled(&mut mean.activation, &stage.activation, weight);
 }
 
-/// Takes the rates of a stage that was reached by going `step` along the stage before.
+/// Collects the rates of a stage that was reached by advancing `step` along the previous one.
 #[kernel]
 fn collect<T: Real>(model: &Model, state: &State<T>, step: T, weight: T, ws: &mut Workspace<T>) {
     let Integration { stage, mean, .. } = &mut ws.integration;
@@ -151,7 +152,7 @@ fn collect<T: Real>(model: &Model, state: &State<T>, step: T, weight: T, ws: &mu
     add_weighted(mean, stage, weight);
 }
 
-/// u̇ of the rotation vector u while its end turns at ω (see above).
+/// Computes u̇ of the rotation vector u for the angular velocity ω (see above).
 #[inline(always)]
 fn increment_rate<T: Real>(u: Vec3<T>, omega: Vec3<T>) -> Vec3<T> {
     let squared = u.norm_squared();

@@ -1,4 +1,4 @@
-//! What controllers are asked for: the controls of an actuator by what they mean, moved no faster than the first may move.
+//! Setpoints of controllers: the controls of an actuator by kind, with a rate limit on the first.
 
 use super::actuator::ActuatorInputs;
 use crate::model::{
@@ -6,23 +6,24 @@ use crate::model::{
 };
 use clench_math::{Mask, Real, Vec3, kernel};
 
-/// The controls of an actuator with a controller; what it has no control for is zero.
+/// The controls of an actuator with a controller; zero for absent ones.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Setpoints<T> {
     /// Position.
     pub position: T,
     /// Velocity.
     pub velocity: T,
-    /// Force, or torque, that is added.
+    /// Additional force or torque.
     pub feedforward: T,
-    /// Voltage at the terminals of a motor, beside what its controller puts there.
+    /// Voltage at the terminals of a motor, in addition to its controller's.
     pub voltage: T,
-    /// The first control as it acts: what the activation that limits its rate goes to.
+    /// The first control after its rate limit: the target of its slew activation.
     pub first: T,
 }
 
 impl<T: Real> Setpoints<T> {
-    /// Of actuator `u`. A first control whose rate is limited acts from where it was, and on a circle goes the shorter way.
+    /// Returns the setpoints of actuator `u`. A rate limit of the first control starts at its previous value, and on a
+    /// circle takes the shorter arc.
     #[kernel]
     pub fn new(model: &Model, params: &Params<T>, given: ActuatorInputs<'_, T>, u: usize) -> Self {
         let actuator = &model.actuators[u];
@@ -52,7 +53,7 @@ impl<T: Real> Setpoints<T> {
                 ControlInput::Velocity => setpoints.velocity = value,
                 ControlInput::Feedforward => setpoints.feedforward = value,
                 ControlInput::Voltage => setpoints.voltage = value,
-                // Of orientation servos and plain gains, which have no controller.
+                // Inputs of orientation servos and plain gains, which have no controller.
                 ControlInput::Command | ControlInput::RotationVector | ControlInput::Quaternion => {
                 }
             }
@@ -60,14 +61,14 @@ impl<T: Real> Setpoints<T> {
         setpoints
     }
 
-    /// The rate of the activation that holds the first control.
+    /// Returns the rate of the activation that stores the first control.
     #[inline(always)]
     pub(crate) fn slew_rate(&self, params: &Params<T>, before: T) -> T {
         (self.first - before) / params.timestep
     }
 }
 
-/// The rate of an integral of an error; where the integral has reached its bound, a positive one, it only goes back.
+/// Returns the rate of an integral of an error; an integral at its positive bound only decreases in magnitude.
 #[inline(always)]
 pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
     let bounded = bound.gt(T::ZERO);
@@ -77,11 +78,11 @@ pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
     T::select(high, error.min(T::ZERO), from_low)
 }
 
-/// The setpoint of a servo on a ball joint, or on the rotation of a site in the frame of another, moved by whole turns to the one
-/// nearest to `near`; other inputs pass
-/// unchanged.
+/// Moves the setpoint of a servo on a ball joint, or on the rotation of a site in the frame of another, by whole turns
+/// to the one nearest to `near`; returns other inputs unchanged.
 ///
-/// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the length of its gear.
+/// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the
+/// length of its gear.
 #[kernel]
 pub(crate) fn nearest_setpoint<T: Real>(
     model: &Model,

@@ -1,7 +1,7 @@
 //! Transmissions to sites: a wrench in a site's frame, the pose of a site in the frame of another, slider-cranks.
 //!
-//! In each a length changes with the motions of one or two bodies; its moment arm along a dof is the power of a force on each
-//! body, and of a couple, when that dof moves at unit velocity. Dofs that move both bodies have none, as in MuJoCo.
+//! Each length changes with the motions of one or two bodies; its moment arm along a dof is the power of a force and a
+//! couple on each body at unit velocity of that dof. Dofs that move both bodies have none, as in MuJoCo.
 
 use crate::dynamics::chains::{Chains, Side};
 use crate::dynamics::project::force_at;
@@ -22,7 +22,7 @@ impl<T: Real> Pull<T> {
         model.sites[self.site].body
     }
 
-    /// As a spatial force about the reference point of the body's tree.
+    /// Returns the spatial force about the reference point of the body's tree.
     #[inline(always)]
     fn spatial(&self, model: &Model, pos: &Positions<T>) -> Force<T> {
         let at = pos.site_xpos[self.site];
@@ -30,7 +30,7 @@ impl<T: Real> Pull<T> {
     }
 }
 
-/// Moment arms of a wrench along the axes of a site. Such an actuator has no length.
+/// Computes the moment arms of a wrench along the axes of a site. Such an actuator has no length.
 #[inline(always)]
 pub(crate) fn wrench_arms<T: Real>(
     model: &Model,
@@ -52,7 +52,7 @@ pub(crate) fn wrench_arms<T: Real>(
     }
 }
 
-/// Moment arms, over the dofs that move two bodies relative to each other, of a pull on each.
+/// Computes the moment arms, over the dofs that move two bodies relative to each other, of a pull on each.
 #[inline(always)]
 fn relative_arms<T: Real>(model: &Model, pos: &Positions<T>, pulls: [Pull<T>; 2], row: &mut [T]) {
     let forces = [0, 1].map(|i| pulls[i].spatial(model, pos));
@@ -63,8 +63,8 @@ fn relative_arms<T: Real>(model: &Model, pos: &Positions<T>, pulls: [Pull<T>; 2]
     }
 }
 
-/// Length and moment arms of the pose of a site in the frame of another: its position along the first three gears, and its
-/// rotation vector along the others.
+/// Computes the length and moment arms of the pose of a site in the frame of another: its position along the first
+/// three gears, and its rotation vector along the others.
 #[inline(always)]
 pub(crate) fn relative_pose<T: Real>(
     model: &Model,
@@ -95,7 +95,7 @@ pub(crate) fn relative_pose<T: Real>(
     shift.dot(along) + turn.dot(about)
 }
 
-/// The rotation vector of a site in the frame of another.
+/// Returns the rotation vector of a site in the frame of another.
 #[inline(always)]
 pub(crate) fn relative_turn<T: Real>(
     model: &Model,
@@ -109,7 +109,7 @@ pub(crate) fn relative_turn<T: Real>(
     own.difference(other)
 }
 
-/// Moment arms of a couple about an axis of a site, against another site.
+/// Computes the moment arms of a couple about an axis of a site, against another site.
 #[inline(always)]
 pub(crate) fn turning_arms<T: Real>(
     model: &Model,
@@ -132,14 +132,14 @@ pub(crate) fn turning_arms<T: Real>(
     );
 }
 
-/// Length and moment arms of a slider-crank: a rod of length r joins the crank's pin, at v from the slider's site, to a slider
-/// on the axis z of that site, at
+/// Computes the length and moment arms of a slider-crank: a rod of length r joins the crank's pin, at v from the
+/// slider's site, to a slider on the axis z of that site, at
 ///
 /// ```text
 /// s = a − √w,   a = v · z,   w = a² + r² − v²        ∂s/∂v = (1 − a/√w) z + v/√w        ∂s/∂z = (1 − a/√w) v
 /// ```
 ///
-/// Where the rod is too short to reach the axis the slider stands at a, next to the pin.
+/// If the rod is too short to reach the axis, the slider is at a, next to the pin.
 #[inline(always)]
 pub(crate) fn slider_crank<T: Real>(
     model: &Model,

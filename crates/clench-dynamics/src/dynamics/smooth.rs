@@ -1,4 +1,4 @@
-//! The sum of all forces but constraints, and the acceleration they alone would cause.
+//! The sum of all forces except constraints, and the resulting acceleration.
 
 use crate::dynamics::project::{force_at, project_forces};
 use crate::model::Model;
@@ -7,7 +7,7 @@ use crate::state::State;
 use clench_math::{Force, Mask, Real, kernel};
 use clench_solver::Problem;
 
-/// `qfrc_smooth`: passive + actuator + applied − bias.
+/// Computes `qfrc_smooth`: passive + actuator + applied − bias.
 #[kernel]
 pub(crate) fn smooth_forces<T: Real>(
     model: &Model,
@@ -30,7 +30,7 @@ pub(crate) fn smooth_forces<T: Real>(
     project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_smooth);
 }
 
-/// Turns the forces in `qacc_smooth` into the acceleration that they cause, by the factor of the problem.
+/// Replaces the forces in `qacc_smooth` with their acceleration, by the factor of the problem.
 pub(crate) fn smooth_acceleration<T: Real>(model: &Model, problem: &mut Problem<T>) {
     problem
         .mass_factor

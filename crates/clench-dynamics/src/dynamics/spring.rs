@@ -1,11 +1,11 @@
-//! Springs: how far each is from rest. Force and energy both follow from that.
+//! Springs: the stretch of each, which determines force and energy.
 
 use crate::dynamics::polynomial::Polynomial;
 use crate::model::{JointKind, Model, Params};
 use crate::state::State;
 use clench_math::{Quat, Real, Vec3};
 
-/// How far a joint is from its spring's rest position.
+/// The displacement of a joint from its spring's rest position.
 pub(crate) enum JointStretch<T> {
     /// A distance or an angle, on the joint's only dof.
     Scalar(T),
@@ -15,13 +15,13 @@ pub(crate) enum JointStretch<T> {
     Pose(Vec3<T>, Vec3<T>),
 }
 
-/// The force law of joint `j`'s spring.
+/// Returns the force law of joint `j`'s spring.
 #[inline(always)]
 pub(crate) fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<T> {
     Polynomial::new(params.jnt_stiffness[j], params.jnt_stiffnesspoly[j])
 }
 
-/// The stretch of joint `j` in a state; `None` where no lane has a spring there.
+/// Returns the stretch of joint `j` in a state; `None` if it has no spring in any lane.
 #[inline(always)]
 pub(crate) fn joint_stretch<T: Real>(
     model: &Model,
@@ -33,7 +33,8 @@ pub(crate) fn joint_stretch<T: Real>(
     (!absent).then(|| stretch_of_joint(model, params, (&state.qpos, &state.plastic), j))
 }
 
-/// How far joint `j` at positions `qpos` is from where its spring rests, which `plastic` says of a spring that yields.
+/// Returns the displacement of joint `j` at positions `qpos` from its spring's rest position, stored in `plastic` if it
+/// yields.
 #[inline(always)]
 pub(crate) fn stretch_of_joint<T: Real>(
     model: &Model,
@@ -62,13 +63,13 @@ pub(crate) fn stretch_of_joint<T: Real>(
     }
 }
 
-/// The force law of tendon `t`'s spring.
+/// Returns the force law of tendon `t`'s spring.
 #[inline(always)]
 pub fn tendon_spring<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
     Polynomial::new(params.tendon_stiffness[t], params.tendon_stiffnesspoly[t])
 }
 
-/// How far tendon `t` of length `length` is outside the dead band of its spring, which `plastic` says of a spring that yields.
+/// Returns the distance of tendon `t` at `length` from its spring's dead band, stored in `plastic` if it yields.
 #[inline(always)]
 pub fn tendon_stretch<T: Real>(
     model: &Model,
@@ -84,7 +85,7 @@ pub fn tendon_stretch<T: Real>(
     stretch_outside(band, length)
 }
 
-/// How far a length is outside a dead band.
+/// Returns the signed distance of a length from a dead band.
 #[inline(always)]
 pub(crate) fn stretch_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
     let below = T::select(length.lt(low), length - low, T::ZERO);

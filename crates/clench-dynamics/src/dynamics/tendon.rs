@@ -1,13 +1,13 @@
 //! Tendons: the length of each and its gradient J = ∂length/∂q, a sparse row over dofs.
 //!
-//! Springs, dampers, limits, dry friction, equalities and actuators of tendons read lengths and rows, and nothing else.
+//! Springs, dampers, limits, dry friction, equalities and actuators of tendons use only these.
 
 use crate::dynamics::tendon_path::spatial_tendon;
 use crate::model::{Model, Params, Wrap};
 use crate::stages::Positions;
 use clench_math::{Real, kernel};
 
-/// The dofs that change a tendon's length, with ∂length/∂q along each.
+/// Returns the dofs that change a tendon's length, with ∂length/∂q along each.
 #[inline(always)]
 pub fn gradient<'a, T: Real>(
     model: &'a Model,
@@ -17,7 +17,7 @@ pub fn gradient<'a, T: Real>(
     model.tendon_dofs.row(&pos.ten_jacobian, tendon)
 }
 
-/// `ten_length` and `ten_jacobian` at `qpos`, after the kinematics.
+/// Computes `ten_length` and `ten_jacobian` at `qpos`, after the kinematics.
 #[kernel]
 pub fn tendons<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], pos: &mut Positions<T>) {
     for (t, tendon) in model.tendons.iter().enumerate() {
@@ -29,7 +29,7 @@ pub fn tendons<T: Real>(model: &Model, params: &Params<T>, qpos: &[T], pos: &mut
     }
 }
 
-/// A sum of joint positions: its gradient are the coefficients.
+/// Computes a sum of joint positions, whose gradient is the coefficients.
 #[inline(always)]
 fn fixed_tendon<T: Real>(
     model: &Model,
@@ -57,7 +57,7 @@ fn fixed_tendon<T: Real>(
     pos.ten_length[t] = length;
 }
 
-/// Rate of change of each tendon's length (ntendon).
+/// Computes the rate of change of each tendon's length (ntendon).
 #[kernel]
 pub(crate) fn tendon_velocities<T: Real>(
     model: &Model,
@@ -73,7 +73,7 @@ pub(crate) fn tendon_velocities<T: Real>(
     }
 }
 
-/// Adds the joint forces of tendon `tendon` pulling with `force` to `qfrc`.
+/// Adds the dof forces of tendon `tendon` with the tension `force` to `qfrc`.
 #[inline(always)]
 pub(crate) fn add_tendon_force<T: Real>(
     model: &Model,

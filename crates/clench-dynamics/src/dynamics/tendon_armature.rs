@@ -1,7 +1,7 @@
 //! Inertia of tendons: the kinetic energy ½ m (J v)² of a tendon whose length changes with J v.
 //!
-//! It adds m JᵀJ to the mass matrix, and m Jᵀ (J̇ v) to the bias forces. As in MuJoCo what couples dofs of different branches is
-//! left out, so that the mass matrix keeps its pattern.
+//! It adds m JᵀJ to the mass matrix, and m Jᵀ (J̇ v) to the bias forces. As in MuJoCo, couplings of dofs of different
+//! branches are omitted, which preserves the pattern of the mass matrix.
 
 use crate::dynamics::derivatives::add_outer;
 use crate::dynamics::reflected::tendon_armature;
@@ -26,7 +26,7 @@ pub fn add_tendon_inertia<T: Real>(
     }
 }
 
-/// Adds what tendons resist without any acceleration of dofs, because their gradients change, to `qfrc_bias`.
+/// Adds the inertial forces of tendons at zero dof acceleration, due to changing gradients, to `qfrc_bias`.
 #[kernel]
 pub(crate) fn add_tendon_bias<T: Real>(
     model: &Model,

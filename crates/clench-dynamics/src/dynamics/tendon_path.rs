@@ -1,9 +1,10 @@
-//! Spatial tendons: strings through sites, around or through spheres and cylinders, in branches whose lengths are divided.
+//! Spatial tendons: strings through sites, around or through spheres and cylinders, in branches whose lengths are
+//! divided.
 //!
-//! A straight span of unit direction u between the points p and q has the length |q − p|, which changes with
-//! u · (q̇ − ṗ). Where a string touches a geom, the two ends of what lies on its surface can be held fixed to it: the string is
-//! the shortest one, so that its length does not depend on where it meets the surface, to first order. So a tendon's
-//! gradient is that of its straight spans alone, each between a point of one body and a point of another.
+//! A straight span of unit direction u between the points p and q has the length |q − p|, with the rate u · (q̇ − ṗ).
+//! The ends of a string's part on the surface of a geom count as fixed to it: the string is the shortest, so to first
+//! order its length does not depend on the contact points. Thus a tendon's gradient is that of its straight spans, each
+//! between points of two bodies.
 
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use crate::dynamics::wrap::{Obstacle, WrapShape, wrap};
@@ -12,22 +13,21 @@ use crate::stages::{Positions, Velocities};
 use clench_collide::ShapeKind;
 use clench_math::{Real, Vec3, kernel};
 
-/// Points nearer than this (m) have no direction between them (MuJoCo's `mjMINVAL`).
+/// Points closer than this (m) define no direction (MuJoCo's `mjMINVAL`).
 const MIN_DISTANCE: f64 = 1e-15;
 
 /// A straight part of a tendon between two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Span<T> {
-    /// The bodies that its ends move with.
+    /// The bodies of its ends.
     pub bodies: [usize; 2],
     /// Its ends, in the world.
     pub points: [Vec3<T>; 2],
-    /// The unit vector from the first to the second, times the share of its length in the tendon's: zero in lanes that do not have
-    /// this span.
+    /// The unit vector from the first to the second, divided by the branch's divisor; zero in lanes without this span.
     pub pull: Vec3<T>,
 }
 
-/// Shows the spans of a spatial tendon whose bodies differ, and returns its length.
+/// Calls `show` with a tendon's spans between different bodies, and returns its length.
 #[inline(always)]
 pub fn each_span<T: Real>(
     model: &Model,
@@ -56,7 +56,7 @@ pub fn each_span<T: Real>(
     length
 }
 
-/// Shows the spans of a section, and returns its length.
+/// Calls `show` with the spans of a section, and returns its length.
 #[inline(always)]
 fn section_spans<T: Real>(
     model: &Model,
@@ -167,8 +167,8 @@ fn add_span<T: Real>(
     }
 }
 
-/// d²length/dt² of tendon `t` while no dof accelerates, J̇ v, for tendons without obstacles: a span of length s between points
-/// that move apart with w and accelerate apart with c changes its length with u·c + (w² − (u·w)²) / s.
+/// Computes d²length/dt² of tendon `t` at zero dof acceleration, J̇ v, for tendons without obstacles: a span of length
+/// s, whose ends have the relative velocity w and acceleration c, adds u·c + (w² − (u·w)²) / s.
 #[kernel]
 pub fn bias_acceleration<T: Real>(
     model: &Model,

@@ -7,7 +7,7 @@ use crate::model::{Actuator, Joint, JointKind, Model, Params, Transmission};
 use crate::stages::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 
-/// The dofs that a force of an actuator, one of `Model::nout`, acts on, with its moment arm along each.
+/// Returns the dofs of an actuator force, one of `Model::nout`, with its moment arm along each.
 #[inline(always)]
 pub fn moment<'a, T: Real>(
     model: &'a Model,
@@ -17,10 +17,11 @@ pub fn moment<'a, T: Real>(
     model.actuator_dofs.row(&pos.actuator_moment, output)
 }
 
-/// `actuator_length` and `actuator_moment`, after the kinematics and the tendons.
+/// Computes `actuator_length` and `actuator_moment`, after the kinematics and the tendons.
 ///
-/// A ball joint's length is its rotation vector along the gear, a free joint has none (zero); their gears are wrenches in
-/// the child's frame, or for [`Transmission::JointInParent`] in the parent's. What pulls on contacts has no length.
+/// A ball joint's length is its rotation vector along the gear, that of a free joint is zero; their gears are wrenches
+/// in the child's frame, or for [`Transmission::JointInParent`] in the parent's. Transmissions to contacts have no
+/// length.
 #[kernel]
 pub fn transmissions<T: Real>(
     model: &Model,
@@ -53,7 +54,7 @@ pub fn transmissions<T: Real>(
             }
             Transmission::SiteInFrame(sites) => relative_pose(model, params, pos, sites, gear, row),
             Transmission::SliderCrank(sites) => slider_crank(model, params, pos, u, sites, row),
-            // Its moment arms wait for the contacts, see `adhesion`.
+            // Its moment arms are computed after the contacts, see `adhesion`.
             Transmission::Body(_) => T::ZERO,
             Transmission::Rotation(_) | Transmission::RotationInFrame(_) => {
                 rotation(model, params, pos, actuator, &mut moments);
@@ -64,7 +65,8 @@ pub fn transmissions<T: Real>(
     pos.actuator_moment = moments;
 }
 
-/// Writes the three lengths and moment arms of an orientation: those of its rotation vector, about the axes of what is turned.
+/// Writes the three lengths and moment arms of an orientation: its rotation vector, about the axes of the rotated
+/// object.
 #[inline(always)]
 fn rotation<T: Real>(
     model: &Model,
@@ -88,7 +90,7 @@ fn rotation<T: Real>(
     }
 }
 
-/// Writes the moment arms on a joint that stands at `q`, or at the rotation `turn`, and returns the length.
+/// Writes the moment arms on a joint at position `q` or rotation `turn`, and returns the length.
 #[inline(always)]
 fn joint_arms<T: Real>(
     joint: &Joint,
@@ -116,7 +118,7 @@ fn joint_arms<T: Real>(
     }
 }
 
-/// A torque on a joint that stands at the rotation `turn`, along the axes of the child.
+/// Returns a torque on a joint at the rotation `turn`, along the axes of the child.
 #[inline(always)]
 fn to_child<T: Real>(turn: Quat<T>, in_parent: bool, torque: &[T]) -> Vec3<T> {
     let torque = Vec3::from_slice(torque);

@@ -1,4 +1,4 @@
-//! Velocities of bodies, and how the dof axes turn with them.
+//! Velocities of bodies, and the resulting rates of dof axes.
 
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
@@ -6,7 +6,7 @@ use crate::model::{JointKind, Model};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, kernel};
 
-/// `cvel`, `cdof_dot`, tendon and actuator velocities.
+/// Computes `cvel`, `cdof_dot`, tendon and actuator velocities.
 #[kernel]
 pub fn velocities<T: Real>(model: &Model, pos: &Positions<T>, qvel: &[T], vel: &mut Velocities<T>) {
     body_velocities(model, pos, qvel, vel);
@@ -21,9 +21,10 @@ pub fn velocities<T: Real>(model: &Model, pos: &Positions<T>, qvel: &[T], vel: &
     }
 }
 
-/// A body moves as its parent does, plus its own dofs. An axis fixed in the frame before its joint moves with that
-/// frame's velocity. The axes of a ball joint are the body's own, but turning about one of them by their common velocity
-/// is of no account: what counts is Σ ċ_k v_k, and ω × ω = 0. A free joint's translations keep the world's axes.
+/// Computes the velocity of each body from that of its parent and its own dofs. An axis fixed in the frame before its
+/// joint moves with that frame's velocity. The axes of a ball joint belong to the body, but rotating them by their
+/// common velocity has no effect: only Σ ċ_k v_k counts, and ω × ω = 0. A free joint's translations are along the
+/// world's axes.
 #[inline(always)]
 fn body_velocities<T: Real>(
     model: &Model,

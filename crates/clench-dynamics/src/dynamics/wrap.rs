@@ -1,71 +1,71 @@
 //! The shortest string between two points around, or through, a sphere or an infinite cylinder.
 //!
-//! All of it happens in a plane: across the cylinder's axis, or through the sphere's centre and both points. There the obstacle is
-//! a circle of radius r about the origin. Let θ be the angle that the string turns about the origin, 0 ≤ θ ≤ 2π, and R₀, R₁ the
+//! The problem is planar: across the cylinder's axis, or through the sphere's centre and both points. The obstacle is a
+//! circle of radius r about the origin. Let θ be the angle of the string about the origin, 0 ≤ θ ≤ 2π, and R₀, R₁ the
 //! distances of its ends. From an end the tangent to the circle spans the angle φ = acos(r/R), so that
 //!
 //! ```text
 //! arc = θ − φ₀ − φ₁        length = √(R₀² − r²) + r · arc + √(R₁² − r²)        if arc > 0
 //! ```
 //!
-//! and else the straight segment misses the circle and is the shortest string. Without a side site θ is the angle between the
-//! ends. With one, outside the obstacle, the string turns the same way as the polyline from end to side site to end, by as much
-//! (MuJoCo 4.0, XML reference of `sidesite`). A string along a cylinder is straight once the surface is unrolled: its height
-//! rises in proportion to the length in the plane.
+//! else the straight segment misses the circle and is the shortest string. Without a side site, θ is the angle between
+//! the ends. With one outside the obstacle, the string turns in the direction and by the angle of the polyline from end
+//! to side site to end (MuJoCo 4.0, XML reference of `sidesite`). A string along a cylinder is straight on the unrolled
+//! surface: its height rises in proportion to the length in the plane.
 //!
-//! A side site inside the obstacle lets the string pass through: it touches the circle at one point at least, and where the
-//! segment misses the circle that point x reflects it, at equal angles β to the normal. Seen from the origin, the ends are then
-//! β − asin(sin β · r/R) to either side of x, hence
+//! A side site inside the obstacle lets the string pass through: it touches the circle in at least one point. If the
+//! segment misses the circle, that point x reflects it, at equal angles β to the normal. Seen from the origin, the ends
+//! are β − asin(sin β · r/R) to either side of x, hence
 //!
 //! ```text
 //! f(β) = asin(sin β · r/R₀) + asin(sin β · r/R₁) − 2β + θ = 0
 //! ```
 //!
-//! which Newton's method solves from β = π/2 as MuJoCo does it, to the same tolerance: no further.
+//! Newton's method solves it from β = π/2 as in MuJoCo, to the same tolerance.
 
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
-/// Lengths (and squared distances) below this count as none (MuJoCo's `mjMINVAL`).
+/// Lengths (and squared distances) below this count as zero (MuJoCo's `mjMINVAL`).
 const MIN_LENGTH: f64 = 1e-15;
-/// How far f may be from 0, rad.
+/// The tolerance of f, rad.
 const TOLERANCE: f64 = 1e-6;
-/// The same in roundings of the working precision, where that is coarser.
+/// The same in roundings of the working precision, if that is coarser.
 const TOLERANCE_ROUNDINGS: f64 = 16.0;
-/// Most steps of Newton's method.
+/// The maximum number of Newton steps.
 const MAX_ITERATIONS: usize = 20;
 
-/// The shape that a string goes around.
+/// The shape of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrapShape {
     /// A sphere.
     Sphere,
-    /// A cylinder along the third axis of its frame, without ends.
+    /// An infinite cylinder along the third axis of its frame.
     Cylinder,
 }
 
 /// An obstacle of a string.
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacle<T> {
-    /// Its shape.
+    /// The shape.
     pub shape: WrapShape,
-    /// Its centre, or a point on its axis.
+    /// The centre, or a point on the axis.
     pub centre: Vec3<T>,
-    /// The axes of its frame.
+    /// The axes of the frame.
     pub axes: Mat3<T>,
-    /// Its radius, m.
+    /// The radius, m.
     pub radius: T,
-    /// A point on the side where the string has to pass, or inside, if the string has to pass through.
+    /// A point on the side where the string must pass, or inside if it must pass through.
     pub side: Option<Vec3<T>>,
 }
 
-/// How a string touches its obstacle.
+/// The contact of a string with its obstacle.
 #[derive(Clone, Copy, Debug)]
 pub struct Wrapped<T: Real> {
-    /// Lanes in which it does; elsewhere it is straight.
+    /// The lanes in which it touches; elsewhere it is straight.
     pub touches: T::Mask,
-    /// Where it meets the obstacle and where it leaves it.
+    /// The first and last point on the obstacle.
     pub points: [Vec3<T>; 2],
-    /// Its length between them.
+    /// The length between them.
     pub length: T,
 }
 
@@ -89,17 +89,17 @@ impl<T: Real> Planar<T> {
     fn cross(self, o: Self) -> T {
         self.x * o.y - self.y * o.x
     }
-    /// The angle from `self` to `o` seen from the origin, in [−π, π].
+    /// Returns the angle from `self` to `o` seen from the origin, in [−π, π].
     #[inline(always)]
     fn angle_to(self, o: Self) -> T {
         self.cross(o).atan2(self.dot(o))
     }
-    /// `a · self` plus `b` times `self` turned by a quarter.
+    /// Returns `a · self` plus `b` times `self` rotated by a quarter turn.
     #[inline(always)]
     fn turned(self, a: T, b: T) -> Self {
         Planar::new(self.x * a - self.y * b, self.y * a + self.x * b)
     }
-    /// The unit vector along it; the x axis if it has no length.
+    /// Returns the unit vector along it; the x axis if its length is zero.
     #[inline(always)]
     fn unit(self) -> Self {
         let norm = self.dot(self).sqrt();
@@ -124,7 +124,7 @@ struct PlanarWrap<T: Real> {
     arc_length: T,
 }
 
-/// The shortest string between `ends` in the presence of `obstacle`.
+/// Computes the shortest string between `ends` in the presence of `obstacle`.
 #[kernel]
 pub fn wrap<T: Real>(ends: [Vec3<T>; 2], obstacle: &Obstacle<T>) -> Wrapped<T> {
     let local = |point: Vec3<T>| obstacle.axes.transpose_mul(point - obstacle.centre);
@@ -173,8 +173,8 @@ pub fn wrap<T: Real>(ends: [Vec3<T>; 2], obstacle: &Obstacle<T>) -> Wrapped<T> {
     }
 }
 
-/// Two axes of the plane through the origin and both points, the first towards the first point. Where all three lie on a line the
-/// plane is the one that MuJoCo takes.
+/// Returns two axes of the plane through the origin and both points, the first towards the first point. If all three
+/// are collinear, the plane is MuJoCo's choice.
 #[inline(always)]
 fn plane_through<T: Real>([first, second]: [Vec3<T>; 2]) -> [Vec3<T>; 2] {
     let axis = first.normalize().0;
@@ -196,7 +196,7 @@ fn plane_through<T: Real>([first, second]: [Vec3<T>; 2]) -> [Vec3<T>; 2] {
     [axis, normal.cross(axis).normalize().0]
 }
 
-/// The shortest string around the circle that turns as `side` says.
+/// Computes the shortest string around the circle, in the direction of `side`.
 #[inline(always)]
 fn around<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> PlanarWrap<T> {
     let [first, second] = ends;
@@ -228,7 +228,7 @@ fn around<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> 
     }
 }
 
-/// The string that passes through the circle, straight if it does so of itself.
+/// Computes the string through the circle, straight if the segment meets it.
 #[kernel]
 fn through<T: Real>(ends: [Planar<T>; 2], radius: T) -> PlanarWrap<T> {
     let [first, second] = ends;
@@ -254,7 +254,7 @@ fn through<T: Real>(ends: [Planar<T>; 2], radius: T) -> PlanarWrap<T> {
     }
 }
 
-/// Whether the interior of the segment comes to the circle.
+/// Returns the lanes in which the segment's interior meets the circle.
 #[inline(always)]
 fn meets_circle<T: Real>([first, second]: [Planar<T>; 2], radius: T) -> T::Mask {
     let along = Planar::new(second.x - first.x, second.y - first.y);
@@ -266,7 +266,7 @@ fn meets_circle<T: Real>([first, second]: [Planar<T>; 2], radius: T) -> T::Mask 
     apart & between & nearest.dot(nearest).sqrt().le(radius)
 }
 
-/// f(β) and its slope.
+/// Computes f(β) and its slope.
 #[inline(always)]
 fn turned_by<T: Real>(ratios: [T; 2], angle: T, beta: T) -> (T, T) {
     let (two, least) = (T::new(2.0), T::new(MIN_LENGTH));
@@ -280,7 +280,7 @@ fn turned_by<T: Real>(ratios: [T; 2], angle: T, beta: T) -> (T, T) {
     (value - two * beta + angle, slope - two)
 }
 
-/// β, and where it was found. Each lane stops by itself.
+/// Computes β and the lanes in which it was found. Lanes stop individually.
 #[inline(always)]
 fn reflect<T: Real>(ratios: [T; 2], angle: T) -> (T, T::Mask) {
     let rounding = T::splat(T::Scalar::EPSILON) * T::new(TOLERANCE_ROUNDINGS);
@@ -305,13 +305,13 @@ fn reflect<T: Real>(ratios: [T; 2], angle: T) -> (T, T::Mask) {
     (beta, !(failed | busy))
 }
 
-/// Arc sine of a number in [−1, 1].
+/// Returns the arc sine of a number in [−1, 1].
 #[inline(always)]
 fn asin<T: Real>(x: T) -> T {
     x.atan2((T::ONE - x * x).max(T::ZERO).sqrt())
 }
 
-/// Along a cylinder's axis: where the string meets the surface and where it leaves it.
+/// Returns the heights along a cylinder's axis at which the string meets and leaves the surface.
 #[inline(always)]
 fn heights<T: Real>(ends: [Vec3<T>; 2], flat: [Planar<T>; 2], found: &PlanarWrap<T>) -> [T; 2] {
     let distance = |i: usize| {

@@ -1,7 +1,7 @@
-//! A user's own data in a model, which moves nothing.
+//! A user's own data in a model, which has no effect on physics.
 
-/// Numbers, texts and lists of elements that a model file keeps for its user's program (MJCF's `<custom>`), each kind in the order of
-/// the file.
+/// Numbers, texts and lists of elements that a model file stores for its user's program (MJCF's `<custom>`), each kind
+/// in the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Custom {
     /// Arrays of numbers by name.
@@ -12,13 +12,13 @@ pub struct Custom {
     pub tuples: Vec<(String, Vec<TupleEntry>)>,
 }
 
-/// An element in a list of a user.
+/// An entry of a user's list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TupleEntry {
-    /// The kind of the element, in MJCF's words: `body`, `joint`, ...
+    /// The kind of the element, as MJCF keyword: `body`, `joint`, ...
     pub kind: String,
     /// Its name.
     pub name: String,
-    /// A number that goes with it.
+    /// A number of the entry.
     pub value: f64,
 }

@@ -1,4 +1,4 @@
-//! The fields of [`Params`] by name: what their numbers must be, and what follows from them.
+//! The fields of [`Params`] by name: the rules of their numbers, and the fields that follow from them.
 
 use super::rule::Rule;
 use super::{Model, ParamField, Params};
@@ -8,14 +8,14 @@ use clench_collide::{Shape, ShapeKind};
 use clench_math::{Real, Scalar};
 use std::sync::Arc;
 
-/// Shorter axes and quaternions say no direction.
+/// The minimum length of axes and quaternions.
 const MIN_LENGTH: f64 = 1e-7;
 
 impl ParamField {
-    /// The field of that name.
+    /// Returns the field with a name.
     ///
     /// # Errors
-    /// A name that no field has.
+    /// Returns an error if no field has the name.
     pub fn find(name: &str) -> Result<Self, SimError> {
         let all = ParamField::ALL.iter();
         let found = all.clone().find(|field| field.name() == name);
@@ -24,15 +24,15 @@ impl ParamField {
             .ok_or_else(|| SimError::unknown("parameter", name, all.map(|field| field.name())))
     }
 
-    /// Its shape in a model, such as (nbody, 3) for `body_inertia`; empty for a single number.
+    /// Returns its shape in a model, such as (nbody, 3) for `body_inertia`; empty for a single number.
     pub fn shape(self, model: &Model) -> Vec<usize> {
         model.params.shape(self)
     }
 
-    /// The field of that name, to be set.
+    /// Returns the field with a name, for setting it.
     ///
     /// # Errors
-    /// A name that no field has, and a field that follows from another.
+    /// Returns an error if no field has the name, or if the field follows from another.
     pub fn settable(name: &str) -> Result<Self, SimError> {
         let found = ParamField::find(name)?;
         let field = found.name();
@@ -42,7 +42,7 @@ impl ParamField {
         }
     }
 
-    /// The field that follows from this one, and changes with it.
+    /// Returns the field that follows from this one, and changes with it.
     pub fn follower(self) -> Option<ParamField> {
         match self {
             ParamField::body_mass => Some(ParamField::body_subtreemass),
@@ -51,10 +51,10 @@ impl ParamField {
         }
     }
 
-    /// Checks the numbers of this field for one environment, and gives unit length to what must have it.
+    /// Checks the numbers of this field for one environment, and normalizes quaternions and axes.
     ///
     /// # Errors
-    /// A wrong number of numbers, or the first that cannot be.
+    /// Returns an error if the length is wrong, or for the first invalid number.
     pub fn check_row<S: Scalar>(self, model: &Model, row: &mut [S]) -> Result<(), SimError> {
         let field = self.name();
         let rule = self.rule();
@@ -85,7 +85,7 @@ impl ParamField {
     }
 }
 
-/// Whether a shape's size is that of its asset, which is the same in every environment.
+/// Returns true if a shape's size is that of its asset, which is the same in every environment.
 fn has_own_size(kind: ShapeKind) -> bool {
     matches!(kind, ShapeKind::Mesh | ShapeKind::HeightField)
 }
@@ -144,8 +144,8 @@ fn normalize<S: Scalar>(
 }
 
 impl<T: Real> Params<T> {
-    /// Computes what follows directly from a field: the masses of subtrees from those of bodies, the bounding radii of geoms
-    /// from their sizes. The inverse inertias `*_invweight0`, by which constraints are scaled, stay as they are.
+    /// Computes the field that follows directly from another: the masses of subtrees from those of bodies, the bounding
+    /// radii of geoms from their sizes. The inverse inertias `*_invweight0`, which scale constraints, do not change.
     pub fn derive(&mut self, model: &Model, field: ParamField) {
         match field {
             ParamField::body_mass => {
@@ -171,10 +171,10 @@ impl<T: Real> Params<T> {
 }
 
 impl Model {
-    /// Updates the structure of a model whose environments get parameters of their own. Structure lets a step leave out what the model's
-    /// own numbers make zero: dry friction of a dof or tendon, inertia and damping that an actuator reflects, the offset of an inertial
-    /// frame, [trivial poses](super::SameFrames). Where a number in `row` is not zero, the step must no longer leave it out. The model is copied at most once, and only if
-    /// something changes.
+    /// Updates the structure of a model whose environments get parameters of their own. Structure lets a step skip
+    /// terms that are zero in the model: dry friction of a dof or tendon, inertia and damping that an actuator
+    /// reflects, the offset of an inertial frame, [trivial poses](super::SameFrames). If a number in `row` is not zero,
+    /// the step must no longer skip it. The model is copied at most once, and only if something changes.
     pub fn clear_structural_guarantees<S: Scalar>(
         model: &mut Arc<Model>,
         field: ParamField,

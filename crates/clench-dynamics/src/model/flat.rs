@@ -1,9 +1,9 @@
-//! Numbers, vectors and arrays of them: broadcast to another kind of number, and seen as flat rows.
+//! Numbers, vectors and arrays of them: broadcast to another number type, and viewed as flat rows.
 
 use clench_math::{Quat, Real, Vec3, write_lane};
 use std::slice::{from_mut, from_ref};
 
-/// A number, vector or array that can be broadcast to another kind of number.
+/// A number, vector or array that can be broadcast to another number type.
 pub(super) trait Broadcast<T> {
     type Output;
     fn broadcast(&self) -> Self::Output;
@@ -40,14 +40,14 @@ impl<T, A: Broadcast<T>> Broadcast<T> for Vec<A> {
     }
 }
 
-/// Numbers one after the other, or three or four at a time.
+/// A view of consecutive numbers, vectors or quaternions.
 pub(super) enum Flat<'a, T> {
     Numbers(&'a [T]),
     Vectors(&'a [Vec3<T>]),
     Quats(&'a [Quat<T>]),
 }
 
-/// As [`Flat`], to be written.
+/// The mutable view like [`Flat`].
 pub(super) enum FlatMut<'a, T> {
     Numbers(&'a mut [T]),
     Vectors(&'a mut [Vec3<T>]),
@@ -63,7 +63,7 @@ impl<T: Real> Flat<'_, T> {
         }
     }
 
-    /// The numbers of lane `lane`.
+    /// Returns the numbers of lane `lane`.
     pub(super) fn read_lane(&self, lane: usize) -> Vec<T::Scalar> {
         let read = |x: T| x.lane(lane);
         match self {
@@ -75,7 +75,7 @@ impl<T: Real> Flat<'_, T> {
 }
 
 impl<T: Real> FlatMut<'_, T> {
-    /// Replaces the numbers of lane `lane`; `row` has as many.
+    /// Replaces the numbers of lane `lane`; `row` has the same length.
     pub(super) fn write_lane(self, lane: usize, row: &[T::Scalar]) {
         match self {
             FlatMut::Numbers(x) => write_lane(row, lane, x),
@@ -107,9 +107,9 @@ pub(crate) fn set_lane<T: Real, const N: usize>(to: [&mut T; N], lane: usize, ro
     }
 }
 
-/// Something made of numbers of type `T`.
+/// A type that consists of numbers of type `T`.
 pub(super) trait Numbers<T> {
-    /// Elements, numbers of each. What is no array, or a plain number, has no axis for it.
+    /// Returns the shape: elements, numbers per element. Single fields and plain numbers omit that axis.
     fn shape(&self) -> Vec<usize>;
     fn flat(&self) -> Flat<'_, T>;
     fn flat_mut(&mut self) -> FlatMut<'_, T>;

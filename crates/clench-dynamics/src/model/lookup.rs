@@ -1,5 +1,5 @@
-//! Elements and the user's own data by name, what to call elements that have no name, the body of an object, and what gives a geom its
-//! shape.
+//! Lookup of elements and of the user's own data by name, labels of unnamed elements, the body of an object, and the
+//! shape data of geoms.
 
 use super::Model;
 use super::custom::TupleEntry;
@@ -8,7 +8,7 @@ use clench_collide::{HeightField, Hull};
 
 macro_rules! lookups {
     ($($(#[$doc:meta])* $method:ident in $elements:ident;)*) => {
-        /// Each takes time proportional to the number of elements: look up once, keep the index.
+        /// Each lookup takes time proportional to the number of elements: look up once and store the index.
         impl Model {
             $($(#[$doc])*
             pub fn $method(&self, name: &str) -> Option<usize> {
@@ -19,38 +19,38 @@ macro_rules! lookups {
 }
 
 lookups! {
-    /// Index of the body of that name (`world` is the first).
+    /// Returns the index of the body with a name (`world` is the first).
     body in bodies;
-    /// Index of the joint of that name.
+    /// Returns the index of the joint with a name.
     joint in joints;
-    /// Index of the geom of that name.
+    /// Returns the index of the geom with a name.
     geom in geoms;
-    /// Index of the site of that name.
+    /// Returns the index of the site with a name.
     site in sites;
-    /// Index of the camera of that name.
+    /// Returns the index of the camera with a name.
     camera in cameras;
-    /// Index of the tendon of that name.
+    /// Returns the index of the tendon with a name.
     tendon in tendons;
-    /// Index of the actuator of that name.
+    /// Returns the index of the actuator with a name.
     actuator in actuators;
-    /// Index of the sensor of that name.
+    /// Returns the index of the sensor with a name.
     sensor in sensors;
-    /// Index of the equality constraint of that name.
+    /// Returns the index of the equality constraint with a name.
     equality in equalities;
-    /// Index of the keyframe of that name.
+    /// Returns the index of the keyframe with a name.
     keyframe in keyframes;
-    /// Index of the mesh of that name.
+    /// Returns the index of the mesh with a name.
     mesh in meshes;
-    /// Index of the height field of that name.
+    /// Returns the index of the height field with a name.
     height_field in height_fields;
 }
 
 impl Model {
-    /// What to call a geom where it is shown: its name, or else its body and its number among the geoms of that, as in `torso[1]`. A body
-    /// without a name goes by its index, as in `body 3[0]`.
+    /// Returns the label of a geom: its name, or else its body and its index among that body's geoms, as in `torso[1]`.
+    /// A body without a name is shown by its index, as in `body 3[0]`.
     ///
     /// # Panics
-    /// If there is no such geom, as slices do.
+    /// Panics if there is no such geom.
     pub fn geom_label(&self, geom: usize) -> String {
         let found = &self.geoms[geom];
         if !found.name.is_empty() {
@@ -66,7 +66,7 @@ impl Model {
 }
 
 impl FrameObject {
-    /// The body that carries it.
+    /// Returns the body that carries it.
     #[inline(always)]
     pub fn body(self, model: &Model) -> usize {
         match self {
@@ -84,30 +84,30 @@ fn named<'a, T>(list: &'a [(String, T)], name: &str) -> Option<&'a T> {
 }
 
 impl Model {
-    /// The user's array of numbers with this name.
+    /// Returns the user's array of numbers with a name.
     pub fn numeric(&self, name: &str) -> Option<&[f64]> {
         named(&self.custom.numerics, name).map(Vec::as_slice)
     }
 
-    /// The user's text with this name.
+    /// Returns the user's text with a name.
     pub fn text(&self, name: &str) -> Option<&str> {
         named(&self.custom.texts, name).map(String::as_str)
     }
 
-    /// The user's list of elements with this name.
+    /// Returns the user's list of elements with a name.
     pub fn tuple(&self, name: &str) -> Option<&[TupleEntry]> {
         named(&self.custom.tuples, name).map(Vec::as_slice)
     }
 }
 
 impl Model {
-    /// The hull of a geom that is a mesh and may touch something.
+    /// Returns the hull of a mesh geom that may collide.
     #[inline(always)]
     pub fn hull(&self, geom: usize) -> Option<&Hull> {
         let mesh = self.geoms[geom].mesh?;
         self.meshes[mesh].hull.as_ref()
     }
-    /// The heights of a geom that is a height field.
+    /// Returns the height field of a geom that is one.
     #[inline(always)]
     pub fn heights(&self, geom: usize) -> Option<&HeightField> {
         let field = self.geoms[geom].height_field?;

@@ -1,8 +1,8 @@
 //! The immutable description of a model: structure here, numbers in [`Params`].
 //!
-//! Structure is what decides loops and branches and is the same for every environment: who is whose parent, which
-//! joint is a hinge, which geoms may collide. Numbers (masses, lengths, stiffnesses) live in [`Params`], so that a
-//! batch can give each environment its own.
+//! Structure determines loops and branches and is the same for every environment: the parent of each body, the kind of
+//! each joint, the geoms that may collide. Numbers (masses, lengths, stiffnesses) are in [`Params`], so that each
+//! environment of a batch can have its own.
 
 mod custom;
 mod fields;
@@ -39,7 +39,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A model: never changes while stepping, shared by `Arc` between simulations.
+/// A model: immutable while stepping, shared by `Arc` between simulations.
 ///
 /// Elements are numbered as in MuJoCo: bodies depth first, joints, dofs, geoms and sites in the order of their bodies.
 #[derive(Clone, Debug)]
@@ -70,7 +70,7 @@ pub struct Model {
     pub sensors: Vec<Sensor>,
     /// Equality constraints.
     pub equalities: Vec<Equality>,
-    /// How many constraints can be added at run time, beside each other: slots that every state has.
+    /// Maximum number of constraints added at run time: the slots of every state.
     pub max_dynamic_constraints: usize,
     /// Explicit geom pairs.
     pub pairs: Vec<Pair>,
@@ -88,9 +88,9 @@ pub struct Model {
     pub nv: usize,
     /// Activations.
     pub na: usize,
-    /// Numbers that say where springs that yield rest.
+    /// Rest positions of yielding springs (count).
     pub nplastic: usize,
-    /// Numbers in buffers of past values.
+    /// Numbers in buffers of past values (count).
     pub nhistory: usize,
     /// Mocap bodies.
     pub nmocap: usize,
@@ -98,46 +98,46 @@ pub struct Model {
     pub tree: Arc<Tree>,
     /// Kinematic trees, in the order of their dofs.
     pub trees: Vec<KinematicTree>,
-    /// Of each tendon that pulls on two trees, these.
+    /// The two trees of each tendon that acts on two.
     pub tendon_ties: Vec<Option<[usize; 2]>>,
     /// The initial [`State::tree_asleep`](crate::State::tree_asleep), which has no numbers without the flag `sleep`.
     pub tree_asleep0: Vec<f64>,
-    /// How time advances.
+    /// The integrator.
     pub integrator: Integrator,
     /// Feature switches.
     pub flags: Flags,
-    /// Whether contacts take the parameters in `params.override_*`.
+    /// True if contacts take the parameters in `params.override_*`.
     pub override_contacts: bool,
     /// Solver options of the file, over its format's defaults.
     pub options: RigidOptions,
-    /// What a step may ask for.
+    /// Limits on the resources of a step.
     pub budget: Budget,
     /// Every number of the model.
     pub params: Params<f64>,
-    /// Which of its fixed poses are trivial.
+    /// The fixed poses that are trivial.
     pub same_frames: SameFrames,
-    /// Things worth telling the user once.
+    /// Messages to report to the user once.
     pub notes: Vec<String>,
-    /// What was left out of the file because it is not supported yet, each with its place.
+    /// Elements of the file that were omitted because they are not supported yet, each with its location.
     pub left_out: Vec<String>,
     /// The user's own data.
     pub custom: Custom,
-    /// How its elements look.
+    /// The appearance of its elements.
     pub visuals: Visuals,
 }
 
 impl Model {
-    /// Number of bodies, the world included.
+    /// Returns the number of bodies, including the world.
     pub fn nbody(&self) -> usize {
         self.bodies.len()
     }
-    /// Whether nothing can move a body: neither joints nor the user, who moves mocap bodies.
+    /// Returns true if nothing can move a body: neither joints nor the user, who moves mocap bodies.
     #[inline(always)]
     pub(crate) fn is_fixed(&self, body: usize) -> bool {
         let weld = &self.bodies[self.bodies[body].weld];
         weld.dofs.is_empty() && weld.mocap.is_none()
     }
-    /// The joints of consecutive bodies.
+    /// Returns the joints of consecutive bodies.
     #[inline(always)]
     pub(crate) fn joints_of(&self, bodies: &Range<usize>) -> Range<usize> {
         match self.bodies[bodies.clone()] {
@@ -146,40 +146,41 @@ impl Model {
             [] => 0..0,
         }
     }
-    /// Whether any tree can sleep.
+    /// Returns true if any tree can sleep.
     pub(crate) fn may_sleep(&self) -> bool {
         !self.tree_asleep0.is_empty()
     }
-    /// Number of kinematic trees.
+    /// Returns the number of kinematic trees.
     pub fn ntree(&self) -> usize {
         self.trees.len()
     }
-    /// The kinematic tree of a body; none where nothing moves it.
+    /// Returns the kinematic tree of a body; `None` if no joint moves it.
     pub fn tree_of_body(&self, body: usize) -> Option<usize> {
         self.bodies[body].last_dof.map(|dof| self.tree.tree_of(dof))
     }
-    /// The kinematic trees of some dofs, each once.
+    /// Returns the kinematic trees of some dofs, without duplicates.
     pub fn trees_of(&self, dofs: &[u32]) -> Vec<usize> {
         let mut trees = Vec::from_iter(dofs.iter().map(|&dof| self.tree.tree_of(dof as usize)));
         trees.sort_unstable();
         trees.dedup();
         trees
     }
-    /// Number of controls. Most actuators have one.
+    /// Returns the number of controls. Most actuators have one.
     pub fn nu(&self) -> usize {
         self.actuators.last().map_or(0, |last| last.controls.end)
     }
-    /// Number of forces of actuators. Most actuators have one.
+    /// Returns the number of actuator forces. Most actuators have one.
     pub fn nout(&self) -> usize {
         self.actuators.last().map_or(0, |last| last.outputs.end)
     }
-    /// The buffers of past values.
+    /// Returns the buffers of past values.
     pub fn histories(&self) -> impl Iterator<Item = &History> {
         let of_actuators = self.actuators.iter().filter_map(|a| a.history.as_ref());
         let of_sensors = self.sensors.iter().filter_map(|s| s.history.as_ref());
         of_actuators.chain(of_sensors)
     }
-    /// Lets actuator `u` damp its target and add inertia to it, if that is a joint or a tendon. Others have neither, as in MuJoCo.
+    /// Lets actuator `u` damp its target and add inertia to it, if that is a joint or a tendon. Other targets have
+    /// neither, as in MuJoCo.
     pub fn let_reflect(&mut self, u: usize) {
         let reflecting = match self.actuators[u].transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
@@ -192,7 +193,7 @@ impl Model {
             reflecting.insert(place, u);
         }
     }
-    /// Whether actuator `u` may damp its target, or add inertia to it, as far as that has any.
+    /// Returns true if actuator `u` may damp its target or add inertia to it, or if its target has neither.
     fn reflects(&self, u: usize) -> bool {
         match self.actuators[u].transmission {
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
@@ -202,11 +203,11 @@ impl Model {
             _ => true,
         }
     }
-    /// Numbers that all sensors give.
+    /// Returns the total number of sensor values.
     pub fn nsensordata(&self) -> usize {
         self.sensors.last().map_or(0, |sensor| sensor.numbers.end)
     }
-    /// A body and all below it, which are numbered depth first.
+    /// Returns the range of a body and its descendants, numbered depth first.
     pub fn subtree(&self, body: usize) -> Range<usize> {
         let below = &self.bodies[body + 1..];
         let end = below.iter().position(|other| other.parent < body);

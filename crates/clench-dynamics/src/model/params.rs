@@ -1,4 +1,4 @@
-//! Every number of a model, one array a field, in any precision or width.
+//! The numbers of a model, one array per field, in any precision or width.
 
 use super::flat::{Broadcast, Flat, FlatMut, Numbers};
 use super::rule::Rule;
@@ -6,7 +6,7 @@ use clench_math::{Quat, Real, Vec3};
 
 macro_rules! params {
     ($($(#[$doc:meta])* $name:ident: $kind:ty, $rule:expr;)*) => {
-        /// Every number of a model, one array a field (the index is that of the element).
+        /// The numbers of a model, one array per field (the index is that of the element).
         ///
         /// Units are SI; `solref` and `solimp` as in MuJoCo.
         #[derive(Clone, Debug, Default)]
@@ -25,12 +25,12 @@ macro_rules! params {
             /// Every field.
             pub const ALL: &[ParamField] = &[$(ParamField::$name),*];
 
-            /// The name of the field.
+            /// Returns the name of the field.
             pub fn name(self) -> &'static str {
                 match self { $(ParamField::$name => stringify!($name),)* }
             }
 
-            /// What its numbers must be.
+            /// Returns the rule of its numbers.
             pub(super) fn rule(self) -> Rule {
                 use Rule::*;
                 match self { $(ParamField::$name => $rule,)* }
@@ -38,14 +38,15 @@ macro_rules! params {
         }
 
         impl Params<f64> {
-            /// The same numbers in every lane of `T`.
+            /// Copies the numbers to every lane of `T`.
             pub fn broadcast<T: Real>(&self) -> Params<T> {
                 Params { $($name: self.$name.broadcast(),)* }
             }
         }
 
         impl<T: Real> Params<T> {
-            /// The shape of a field: elements, numbers of each. What is no array, or a plain number, has no axis for it.
+            /// Returns the shape of a field: elements, numbers per element. Single fields and plain numbers omit that
+            /// axis.
             pub(super) fn shape(&self, field: ParamField) -> Vec<usize> {
                 match field { $(ParamField::$name => self.$name.shape(),)* }
             }
@@ -62,19 +63,19 @@ macro_rules! params {
 }
 
 impl<T: Real> Params<T> {
-    /// How many numbers a field has.
+    /// Returns the number of numbers of a field.
     pub fn width(&self, field: ParamField) -> usize {
         self.flat(field).len()
     }
-    /// The numbers of a field in lane `lane`, element after element.
+    /// Returns the numbers of a field in lane `lane`, element after element.
     pub fn read_lane(&self, field: ParamField, lane: usize) -> Vec<T::Scalar> {
         self.flat(field).read_lane(lane)
     }
-    /// Replaces the numbers of a field in lane `lane` by as many others.
+    /// Replaces the numbers of a field in lane `lane` by the same number of others.
     pub fn write_lane(&mut self, field: ParamField, lane: usize, row: &[T::Scalar]) {
         self.flat_mut(field).write_lane(lane, row);
     }
-    /// Replaces the numbers of a field by as many others, the same in every lane.
+    /// Replaces the numbers of a field by the same number of others, equal in every lane.
     pub fn write_lanes(&mut self, field: ParamField, row: &[T::Scalar]) {
         for lane in 0..T::LANES {
             self.write_lane(field, lane, row);
@@ -83,13 +84,13 @@ impl<T: Real> Params<T> {
 }
 
 params! {
-    /// Seconds a step.
+    /// Time step, s.
     timestep: T, Positive;
     /// Acceleration of gravity.
     gravity: Vec3<T>, Finite;
     /// Velocity of the medium.
     wind: Vec3<T>, Finite;
-    /// The magnetic field, which magnetometers measure.
+    /// The magnetic field, measured by magnetometers.
     magnetic: Vec3<T>, Finite;
     /// Density of the medium.
     density: T, NotNegative;
@@ -108,7 +109,7 @@ params! {
 
     /// Initial position coordinates (nq).
     qpos0: Vec<T>, Finite;
-    /// Position coordinates at which springs rest (nq).
+    /// Position coordinates at which springs are at rest (nq).
     qpos_spring: Vec<T>, Finite;
 
     /// Position in the parent's frame.
@@ -121,11 +122,11 @@ params! {
     body_iquat: Vec<Quat<T>>, Quaternion;
     /// Mass.
     body_mass: Vec<T>, AsModel;
-    /// Mass of the body and all below it.
+    /// Mass of the body and its descendants.
     body_subtreemass: Vec<T>, Follows("body_mass");
     /// Principal moments.
     body_inertia: Vec<Vec3<T>>, AsModel;
-    /// Share of the weight that is lifted.
+    /// Fraction of the weight that is compensated.
     body_gravcomp: Vec<T>, Finite;
     /// Mean inverse inertia at qpos0: translation, rotation.
     body_invweight0: Vec<[T; 2]>, NotNegative;
@@ -138,7 +139,7 @@ params! {
     jnt_stiffness: Vec<T>, Finite;
     /// Coefficients of the spring's quadratic and cubic force.
     jnt_stiffnesspoly: Vec<[T; 2]>, Finite;
-    /// Stretch at which the spring yields.
+    /// Elongation at which the spring yields.
     jnt_springyield: Vec<T>, IfModel;
     /// Allowed positions.
     jnt_range: Vec<[T; 2]>, Range;
@@ -153,8 +154,8 @@ params! {
 
     /// Added inertia.
     dof_armature: Vec<T>, NotNegative;
-    /// What a velocity is multiplied by before it is compared with `sleep_tolerance`: 1 for translations, for rotations the size
-    /// of the body, m.
+    /// Factor of a velocity before it is compared with `sleep_tolerance`: 1 for translations, the size of the body for
+    /// rotations, m.
     dof_length: Vec<T>, NotNegative;
     /// Damping.
     dof_damping: Vec<T>, Finite;
@@ -185,13 +186,13 @@ params! {
     geom_gap: Vec<T>, Finite;
     /// Velocity of the surface in the geom's frame: linear, angular.
     geom_surfacevel: Vec<[T; 6]>, Finite;
-    /// Force with which contacts hold on.
+    /// Adhesive force of contacts.
     geom_adhesion: Vec<T>, Finite;
     /// Coefficients of blunt, slender and angular drag and of Kutta and Magnus lift, of ellipsoids in a medium.
     geom_fluidcoef: Vec<[T; 5]>, Finite;
     /// Volume of the medium that moves with the geom along each axis.
     geom_virtualmass: Vec<[T; 3]>, Finite;
-    /// Moment of inertia of the medium that turns with the geom about each axis, at unit density.
+    /// Moment of inertia of the medium that rotates with the geom about each axis, at unit density.
     geom_virtualinertia: Vec<[T; 3]>, Finite;
     /// Weight in mixing.
     geom_solmix: Vec<T>, Finite;
@@ -211,21 +212,21 @@ params! {
     cam_pos: Vec<Vec3<T>>, Finite;
     /// Orientation in the body frame.
     cam_quat: Vec<Quat<T>>, Quaternion;
-    /// From the body to the camera in the initial configuration, world axes.
+    /// Offset of the camera from the body in the initial configuration, world axes.
     cam_pos0: Vec<Vec3<T>>, Finite;
-    /// From the centre of mass of the body and all below it to the camera, likewise.
+    /// Offset of the camera from the centre of mass of the body's subtree, likewise.
     cam_poscom0: Vec<Vec3<T>>, Finite;
     /// Orientation in the initial configuration, row by row.
     cam_mat0: Vec<[T; 9]>, Finite;
-    /// Vertical field of view, degrees; where lines of sight are parallel, the height of the picture.
+    /// Vertical field of view, degrees; for an orthographic camera the height of the picture.
     cam_fovy: Vec<T>, Finite;
     /// Size of the sensor, width and height; both zero: the field of view is `cam_fovy`.
     cam_sensorsize: Vec<[T; 2]>, Finite;
     /// Focal length and principal point, two numbers each.
     cam_intrinsic: Vec<[T; 4]>, Finite;
 
-    /// Numbers of what tendons are made of, tendon after tendon: coefficients of joints, divisors of pulleys; 0 for sites and
-    /// geoms.
+    /// Coefficients of the elements of tendons, tendon after tendon: coefficients of joints, divisors of pulleys; 0 for
+    /// sites and geoms.
     wrap_coef: Vec<T>, Finite;
     /// Spring stiffness.
     tendon_stiffness: Vec<T>, Finite;
@@ -235,11 +236,11 @@ params! {
     tendon_damping: Vec<T>, Finite;
     /// Coefficients of quadratic and cubic damping.
     tendon_dampingpoly: Vec<[T; 2]>, Finite;
-    /// Inertia of changes of the length.
+    /// Inertia for changes of the length.
     tendon_armature: Vec<T>, IfModel;
     /// Dead band of the spring.
     tendon_lengthspring: Vec<[T; 2]>, Range;
-    /// Stretch at which the spring yields.
+    /// Elongation at which the spring yields.
     tendon_springyield: Vec<T>, IfModel;
     /// Length at qpos0.
     tendon_length0: Vec<T>, Finite;
@@ -278,22 +279,22 @@ params! {
     actuator_forcerange: Vec<[T; 2]>, Range;
     /// Allowed activations.
     actuator_actrange: Vec<[T; 2]>, Range;
-    /// How late controls arrive, s; only of actuators that keep past ones.
+    /// Delay of controls, s; only of actuators that store past ones.
     actuator_delay: Vec<T>, NotNegative;
-    /// Damping that the target gets, times the square of the gear.
+    /// Damping added to the target, times the square of the gear.
     actuator_damping: Vec<T>, Finite;
-    /// Coefficients of its quadratic and cubic damping, likewise.
+    /// Coefficients of quadratic and cubic damping, likewise.
     actuator_dampingpoly: Vec<[T; 2]>, Finite;
-    /// Inertia that the target gets, likewise.
+    /// Inertia added to the target, likewise.
     actuator_armature: Vec<T>, NotNegative;
     /// Norm of the acceleration that a unit force causes at qpos0.
     actuator_acc0: Vec<T>, NotNegative;
-    /// Lengths between which the transmission can be; of use to muscles.
+    /// Range of the transmission's length; used by muscles.
     actuator_lengthrange: Vec<[T; 2]>, Finite;
 
-    /// How late sensors tell what they measure, s; only those that keep past values.
+    /// Delay of sensors, s; only those that store past values.
     sensor_delay: Vec<T>, NotNegative;
-    /// How often sensors measure, s; zero: every step. Only those that keep past values.
+    /// Measurement interval of sensors, s; zero: every step. Only those that store past values.
     sensor_interval: Vec<T>, NotNegative;
 
     /// Anchor (connect) or weld point in the first body's frame.
@@ -325,6 +326,6 @@ params! {
     pair_margin: Vec<T>, Finite;
     /// Gap.
     pair_gap: Vec<T>, Finite;
-    /// Force with which contacts hold on.
+    /// Adhesive force of contacts.
     pair_adhesion: Vec<T>, Finite;
 }

@@ -1,8 +1,8 @@
-//! What the numbers of a parameter must be.
+//! The rules of the numbers of parameters.
 
 use clench_math::Scalar;
 
-/// What the numbers of a field must be.
+/// The rule of the numbers of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
     /// Finite.
@@ -11,22 +11,22 @@ pub(super) enum Rule {
     Positive,
     /// Finite, zero or more.
     NotNegative,
-    /// Finite, positive where the model's number is, else zero or more.
+    /// Finite, positive if the model's number is, else zero or more.
     AsModel,
-    /// Finite, zero or more where the model's number is positive, else zero.
+    /// Finite, zero or more if the model's number is positive, else zero.
     IfModel,
-    /// Pairs that do not fall, infinite if need be.
+    /// Pairs in ascending order, possibly infinite.
     Range,
-    /// Quaternions, which are made unit ones.
+    /// Quaternions, which are normalized.
     Quaternion,
-    /// Directions, which are made unit vectors.
+    /// Directions, which are normalized.
     Axis,
-    /// It cannot be set: it follows from another field.
+    /// Not settable: it follows from another field.
     Follows(&'static str),
 }
 
 impl Rule {
-    /// What a number must be, if it is not.
+    /// Returns the required range of a number that is outside it.
     pub(super) fn refuses<S: Scalar>(self, x: S, of_model: f64) -> Option<&'static str> {
         let positive = self == Rule::Positive || self == Rule::AsModel && of_model > 0.0;
         let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel | Rule::IfModel);

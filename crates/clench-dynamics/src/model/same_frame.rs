@@ -1,27 +1,27 @@
-//! Which of a model's fixed poses are trivial, so that kinematics need not compose them (MuJoCo's `sameframe`).
+//! The trivial fixed poses of a model, which kinematics need not compose (MuJoCo's `sameframe`).
 //!
-//! Most joints are anchored at the origin of their body, most bodies stand along the axes of their parent, and so do many geoms and
-//! sites on their bodies. A pose that is left out equals the composed one to the bit, but for the sign of zeros.
+//! Most joints are anchored at the origin of their body, and most bodies, geoms and sites are aligned with their parent
+//! or body. Skipping a trivial pose gives the composed one to the bit, except for the sign of zeros.
 
 use super::{Model, ParamField, Params};
 use clench_math::{Quat, Scalar, Vec3};
 use std::sync::Arc;
 
-/// Which fixed poses are trivial.
+/// The fixed poses that are trivial.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SameFrames {
-    /// Bodies that stand along the axes of their parent before their joints act (nbody).
+    /// Bodies aligned with their parent before their joints act (nbody).
     pub bodies: Vec<bool>,
     /// Joints anchored at the origin of their body (njnt).
     pub joints: Vec<bool>,
-    /// Geoms along the axes of their body (ngeom).
+    /// Geoms aligned with their body (ngeom).
     pub geoms: Vec<bool>,
-    /// Sites along the axes of their body (nsite).
+    /// Sites aligned with their body (nsite).
     pub sites: Vec<bool>,
 }
 
 impl SameFrames {
-    /// Those of a model's numbers.
+    /// Finds the trivial poses of a model's parameters.
     pub fn of(params: &Params<f64>) -> Self {
         let along = |quats: &[Quat<f64>]| quats.iter().map(|&q| q == Quat::IDENTITY).collect();
         let centred = |anchor: &Vec3<f64>| anchor.to_array() == [0.0; 3];
@@ -33,7 +33,7 @@ impl SameFrames {
         }
     }
 
-    /// What the numbers of a field decide, how many numbers an element has there, and which are trivial.
+    /// Returns the flags that a field determines, and the trivial numbers of an element.
     fn decided_by(&mut self, field: ParamField) -> Option<(&mut Vec<bool>, &'static [f64])> {
         const ORIGIN: &[f64] = &[0.0; 3];
         const ALONG: &[f64] = &[1.0, 0.0, 0.0, 0.0];
@@ -46,7 +46,7 @@ impl SameFrames {
         }
     }
 
-    /// Takes back what no longer holds once an environment has the numbers `row` in a field.
+    /// Clears the flags that no longer hold if an environment has the numbers `row` in a field.
     fn restrict<S: Scalar>(&mut self, field: ParamField, row: &[S]) {
         if let Some((same, trivial)) = self.decided_by(field) {
             for (same, numbers) in same.iter_mut().zip(row.chunks_exact(trivial.len())) {
@@ -60,14 +60,15 @@ impl SameFrames {
 }
 
 impl Model {
-    /// Takes back what an environment's numbers of a field do not leave trivial. The model is copied only if something changes.
+    /// Clears the flags that no longer hold with an environment's numbers of a field. The model is copied only if
+    /// something changes.
     pub fn restrict_same_frames<S: Scalar>(model: &mut Arc<Model>, field: ParamField, row: &[S]) {
         let mut same = model.same_frames.clone();
         same.restrict(field, row);
         Model::set_same_frames(model, same);
     }
 
-    /// Takes everything back, for numbers that may be anything.
+    /// Clears all flags, for arbitrary numbers.
     pub fn forget_same_frames(model: &mut Arc<Model>) {
         let mut same = model.same_frames.clone();
         for all in [

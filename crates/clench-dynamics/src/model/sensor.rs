@@ -1,4 +1,4 @@
-//! What a model measures: the table of kinds of sensor, and the sensors of a model.
+//! Sensors: the table of sensor kinds, and the sensors of a model.
 
 use super::History;
 use super::sensor_target::SensorTarget;
@@ -7,10 +7,10 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What a kind of sensor is attached to.
+/// The element that a kind of sensor is attached to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attachment {
-    /// Nothing: it measures the whole simulation.
+    /// The whole simulation.
     Nothing,
     /// A site.
     Site,
@@ -24,17 +24,17 @@ pub enum Attachment {
     Tendon,
     /// An actuator.
     Actuator,
-    /// A body, and all below it.
+    /// A body and its descendants.
     Body,
-    /// A frame of an object, and perhaps one relative to which it is measured.
+    /// A frame of an object, and an optional reference frame.
     Frame,
-    /// A frame, measured in the world alone.
+    /// A frame, measured only relative to the world.
     WorldFrame,
     /// A site, and an object that may be inside it.
     Inside,
     /// A site, and a camera that sees it.
     Projection,
-    /// A site or a camera, from which rays go out.
+    /// A site or a camera that emits rays.
     Rays,
     /// Two geoms, or all geoms of a body.
     Geoms,
@@ -42,7 +42,7 @@ pub enum Attachment {
     Contacts,
     /// The vertices of a mesh in the frame of a geom.
     Taxels,
-    /// Numbers of a user's program: it is zero here.
+    /// Data of a user's program; zero here.
     User,
 }
 
@@ -69,12 +69,12 @@ impl fmt::Display for Attachment {
     }
 }
 
-/// What the numbers of a sensor can be.
+/// The range of the numbers of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorData {
-    /// Any numbers; a cutoff holds them between its negative and itself.
+    /// Any numbers; a cutoff clamps them to ± its value.
     Real,
-    /// Numbers of at least zero, at most the cutoff.
+    /// Numbers from zero to the cutoff.
     Positive,
     /// A unit vector; it has no cutoff.
     Axis,
@@ -82,11 +82,11 @@ pub enum SensorData {
     Quaternion,
 }
 
-/// The dimension of a sensor's numbers, with any power of time: what becomes of its cutoff and its noise where a file scales lengths and
-/// masses.
+/// The dimension of a sensor's numbers, with any power of time. It determines the scaling of cutoff and noise if a file
+/// scales lengths and masses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorDimension {
-    /// Neither lengths nor masses, or lengths that are not scaled.
+    /// Without lengths and masses, or with lengths that are not scaled.
     None,
     /// A length.
     Length,
@@ -94,15 +94,15 @@ pub enum SensorDimension {
     Force,
     /// A torque, or an angular momentum.
     Torque,
-    /// That of a joint, tendon or actuator: a length or an angle.
+    /// A joint, tendon or actuator coordinate: a length or an angle.
     Coordinate,
-    /// That of a force along such a coordinate.
+    /// A force along such a coordinate.
     CoordinateForce,
 }
 
 macro_rules! sensor_kinds {
     ($($(#[$doc:meta])* $kind:ident $name:literal $attachment:ident $dim:literal $data:ident $dimension:ident;)*) => {
-        /// Kinds of sensor. Numbers, frames and signs are MuJoCo's.
+        /// The kinds of sensor. Numbers, frames and signs are MuJoCo's.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum SensorKind {
             $($(#[$doc])* $kind,)*
@@ -112,23 +112,23 @@ macro_rules! sensor_kinds {
             /// Every kind.
             pub const ALL: &[SensorKind] = &[$(SensorKind::$kind),*];
 
-            /// Its name, which is that of its element in MJCF.
+            /// Returns its name, which is that of its element in MJCF.
             pub fn name(self) -> &'static str {
                 match self { $(SensorKind::$kind => $name,)* }
             }
-            /// What it is attached to.
+            /// Returns the element that it is attached to.
             pub fn attachment(self) -> Attachment {
                 match self { $(SensorKind::$kind => Attachment::$attachment,)* }
             }
-            /// How many numbers it gives; 0 where a sensor says so itself.
+            /// Returns the number of values; 0 if it depends on the sensor.
             pub fn dim(self) -> usize {
                 match self { $(SensorKind::$kind => $dim,)* }
             }
-            /// What its numbers can be.
+            /// Returns the range of its numbers.
             pub fn data(self) -> SensorData {
                 match self { $(SensorKind::$kind => SensorData::$data,)* }
             }
-            /// The dimension of its numbers.
+            /// Returns the dimension of its numbers.
             pub fn dimension(self) -> SensorDimension {
                 match self { $(SensorKind::$kind => SensorDimension::$dimension,)* }
             }
@@ -147,13 +147,13 @@ sensor_kinds! {
     Gyro "gyro" Site 3 Real None;
     /// Force of the site's body on its parent through their joints, in the site's frame, N.
     Force "force" Site 3 Real Force;
-    /// The same as a torque about the site, N m.
+    /// The torque likewise, about the site, N m.
     Torque "torque" Site 3 Real Torque;
     /// The magnetic field in the site's frame.
     Magnetometer "magnetometer" Site 3 Real None;
-    /// Where rays first meet a geom: one ray along a site's z axis, or one through each pixel of a camera.
+    /// The first hits of rays with a geom: one ray along a site's z axis, or one through each pixel of a camera.
     Rangefinder "rangefinder" Rays 0 Real Length;
-    /// Where a camera sees a site, in pixels from the upper left corner of its picture.
+    /// Image position of a site in a camera, in pixels from the upper left corner of the picture.
     CamProjection "camprojection" Projection 2 Real None;
     /// Position of a slide or hinge joint, m or rad.
     JointPos "jointpos" ScalarJoint 1 Real Coordinate;
@@ -207,25 +207,25 @@ sensor_kinds! {
     FrameLinAcc "framelinacc" WorldFrame 3 Real Length;
     /// Its angular acceleration, world axes, rad/s².
     FrameAngAcc "frameangacc" WorldFrame 3 Real None;
-    /// Centre of mass of a body and all below it, m.
+    /// Centre of mass of a body and its descendants, m.
     SubtreeCom "subtreecom" Body 3 Real Length;
     /// Velocity of that, m/s.
     SubtreeLinVel "subtreelinvel" Body 3 Real Length;
-    /// Angular momentum of a body and all below it about their centre of mass, kg m²/s.
+    /// Angular momentum of a body and its descendants about their centre of mass, kg m²/s.
     SubtreeAngMom "subtreeangmom" Body 3 Real Torque;
-    /// 1 where an object's position is inside the site's volume, else 0; or, of one that is to be enclosed, how far it juts out of that volume,
-    /// negative by its clearance where it lies inside, m.
+    /// 1 if an object's position is inside the site's volume, else 0. With `enclosed`: the distance by which the object
+    /// protrudes from the volume, or the negative of its clearance inside, m.
     InsideSite "insidesite" Inside 1 Positive None;
     /// Smallest signed distance of two geoms or sets of geoms, at most the cutoff, m.
     Distance "distance" Geoms 1 Real Length;
-    /// The direction from the first to the second along which that is measured; zero where they are further apart.
+    /// The direction from the first to the second of that distance; zero beyond the cutoff.
     Normal "normal" Geoms 3 Axis Length;
-    /// The nearest points of both; zero where they are further apart, m.
+    /// The nearest points of both; zero beyond the cutoff, m.
     FromTo "fromto" Geoms 6 Real Length;
-    /// What contacts between two sides are and do: a fixed number of them, zeros where there are fewer.
+    /// Data of contacts between two sides: a fixed number of contacts, zeros if there are fewer.
     Contact "contact" Contacts 0 Real None;
-    /// How deep each vertex of a mesh in a geom's frame is in what touches the geom's body, m; then how fast each slides there along
-    /// its first tangent, and along its second, m/s.
+    /// Penetration depth of each vertex of a mesh in a geom's frame into objects that touch the geom's body, m; then
+    /// its sliding velocity there along its first tangent, and along its second, m/s.
     Tactile "tactile" Taxels 0 Real None;
     /// Potential energy, J.
     PotentialEnergy "e_potential" Nothing 1 Real None;
@@ -233,12 +233,12 @@ sensor_kinds! {
     KineticEnergy "e_kinetic" Nothing 1 Real None;
     /// Time, s.
     Clock "clock" Nothing 1 Real None;
-    /// What a user's own program measures; zero here.
+    /// Measurement of a user's own program; zero here.
     User "user" User 0 Real None;
 }
 
 impl SensorKind {
-    /// The kind of that name.
+    /// Returns the kind with a name.
     pub fn find(name: &str) -> Option<Self> {
         let mut kinds = SensorKind::ALL.iter().copied();
         kinds.find(|kind| kind.name() == name)
@@ -250,24 +250,24 @@ impl SensorKind {
 pub struct Sensor {
     /// Name, possibly empty.
     pub name: String,
-    /// What it measures.
+    /// The kind.
     pub kind: SensorKind,
-    /// Of what.
+    /// The measured element.
     pub target: SensorTarget,
-    /// What its numbers can be.
+    /// The range of its numbers.
     pub data: SensorData,
-    /// Bound of its numbers, where positive.
+    /// Limit of its numbers, if positive.
     pub cutoff: f64,
     /// Standard deviation of the noise that the author expects; none is added.
     pub noise: f64,
-    /// Where its numbers are in `sensordata`.
+    /// The range of its numbers in `sensordata`.
     pub numbers: Range<usize>,
     /// The buffer of its past values.
     pub history: Option<History>,
-    /// When a sensor that measures periodically did so last before time zero, s; zero: one period before.
+    /// Time of the last measurement before time zero of a periodic sensor, s; zero: one period before.
     pub phase: f64,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers; equally many for each sensor.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }

@@ -1,9 +1,9 @@
-//! What sensors measure, by the numbers of elements.
+//! The targets of sensors, by the indices of elements.
 
 use super::Model;
 use std::ops::Range;
 
-/// A frame that a sensor measures, or relative to which it does.
+/// A frame that a sensor measures or uses as reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameObject {
     /// The inertial frame of a body.
@@ -19,7 +19,8 @@ pub enum FrameObject {
 }
 
 impl FrameObject {
-    /// The geoms that count as this object where its extent matters: itself, those of a body, or those of a body and all below it.
+    /// Returns the geoms of this object, for measurements of its volume: itself, those of a body, or those of a body
+    /// and its descendants.
     pub fn enclosed_geoms(self, model: &Model) -> impl Iterator<Item = usize> {
         let bodies = match self {
             FrameObject::Inertial(body) => body..body + 1,
@@ -35,7 +36,7 @@ impl FrameObject {
     }
 }
 
-/// Where the rays of a sensor go out.
+/// The source of the rays of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaySource {
     /// One ray along the z axis of a site.
@@ -53,14 +54,14 @@ macro_rules! fields {
         }
 
         impl $name {
-            /// All of them, in the order in which they stand in `sensordata`.
+            /// All of them, in their order in `sensordata`.
             pub const ALL: &[$name] = &[$($name::$field),*];
 
-            /// Its name in MJCF.
+            /// Returns its name in MJCF.
             pub fn name(self) -> &'static str {
                 match self { $($name::$field => $word,)* }
             }
-            /// How many numbers it is.
+            /// Returns the number of its values.
             pub fn size(self) -> usize {
                 match self { $($name::$field => $size,)* }
             }
@@ -69,17 +70,17 @@ macro_rules! fields {
 }
 
 fields! {
-    /// What a sensor tells of each ray.
+    /// A quantity that a sensor reports for each ray.
     RayField {
         /// Distance to the nearest geom, −1 where there is none, m.
         Dist "dist" 1;
-        /// Unit vector along the ray, zero where it meets nothing.
+        /// Unit vector along the ray, zero if it hits nothing.
         Dir "dir" 3;
-        /// Where the ray begins, m.
+        /// The start of the ray, m.
         Origin "origin" 3;
-        /// Where it meets the geom, zero where it meets nothing, m.
+        /// The hit point, zero if it hits nothing, m.
         Point "point" 3;
-        /// Unit vector out of the geom there, zero where it meets nothing.
+        /// Outward unit normal of the geom there, zero if the ray hits nothing.
         Normal "normal" 3;
         /// Distance of that point from the plane of the camera, −1 where there is none, m.
         Depth "depth" 1;
@@ -87,9 +88,9 @@ fields! {
 }
 
 fields! {
-    /// What a sensor tells of each contact.
+    /// A quantity that a sensor reports for each contact.
     ContactField {
-        /// How many contacts match, 0 where there is none.
+        /// The number of matching contacts, 0 if there is none.
         Found "found" 1;
         /// Force on the second side in the frame of the contact, N.
         Force "force" 3;
@@ -110,7 +111,7 @@ fields! {
     }
 }
 
-/// Which of the contacts that match a sensor tells of.
+/// The selection among the matching contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactReduction {
     /// The first ones.
@@ -119,7 +120,7 @@ pub enum ContactReduction {
     MinDist,
     /// Those with the largest forces, the largest first.
     MaxForce,
-    /// One contact in world axes that does what all of them do together.
+    /// One contact in world axes, equivalent to all of them together.
     NetForce,
 }
 
@@ -136,75 +137,76 @@ pub enum ContactSide {
     Subtree(Range<usize>),
 }
 
-/// Which contacts a sensor looks for, and what it tells of them.
+/// The contacts that a sensor selects, and the quantities that it reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContactQuery {
-    /// What touches; the normal points from the first to the second.
+    /// The two sides; the normal points from the first to the second.
     pub sides: [ContactSide; 2],
     /// A site whose volume the contact's position must be in.
     pub site: Option<usize>,
-    /// What is told of each contact, in order.
+    /// The quantities reported for each contact, in order.
     pub fields: Vec<ContactField>,
-    /// Which contacts are told of.
+    /// The selection among the contacts.
     pub reduction: ContactReduction,
-    /// How many.
+    /// The number of reported contacts.
     pub count: usize,
 }
 
 impl ContactQuery {
-    /// How many numbers are told of each contact.
+    /// Returns the number of values per contact.
     pub fn size(&self) -> usize {
         self.fields.iter().map(|field| field.size()).sum()
     }
 }
 
-/// What a sensor measures.
+/// The target of a sensor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SensorTarget {
-    /// The whole simulation, or what only a user's program knows.
+    /// The whole simulation, or a quantity of a user's program.
     Nothing,
     /// An element, of the kind that the sensor's [`Attachment`](super::Attachment) names.
     Element(usize),
-    /// A frame, and one relative to which it is measured (else the world).
+    /// A frame, and a reference frame (else the world).
     Frame {
-        /// What is measured.
+        /// The measured frame.
         object: FrameObject,
-        /// Where from.
+        /// The reference frame.
         reference: Option<FrameObject>,
     },
-    /// Whether an object is inside a site.
+    /// An object that may be inside a site.
     Inside {
         /// The site.
         site: usize,
         /// The object.
         object: FrameObject,
-        /// Whether its whole extent counts: how far it juts out is measured, rather than whether its position is inside. It is then no
-        /// camera; of a body it is the geoms, with `Inertial` the body's own, with `Body` those of all below it too.
+        /// True if the whole object counts: the sensor measures how far it protrudes, not whether its position is
+        /// inside. The object is then no camera; for a body it is the geoms: its own with `Inertial`, also those of its
+        /// descendants with `Body`.
         enclosed: bool,
     },
-    /// Where a camera sees a site.
+    /// The image of a site in a camera.
     Projection {
         /// The site.
         site: usize,
         /// The camera.
         camera: usize,
     },
-    /// What rays meet.
+    /// Ray hits.
     Rays {
-        /// Where they go out.
+        /// The source of the rays.
         source: RaySource,
-        /// What is told of each, in order.
+        /// The quantities reported for each ray, in order.
         fields: Vec<RayField>,
     },
     /// Two sets of geoms.
     Geoms([Range<usize>; 2]),
     /// Contacts.
     Contacts(ContactQuery),
-    /// What the vertices of a mesh feel.
+    /// The contact of the vertices of a mesh.
     Taxels {
         /// The mesh.
         mesh: usize,
-        /// The geom in whose frame its vertices stand.
+        /// The geom whose frame is that of the vertices.
         geom: usize,
     },
 }

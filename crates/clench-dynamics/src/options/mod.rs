@@ -1,5 +1,5 @@
-//! What a user may set. A table has a row for each option; the struct, its checks, the flags of the program, MJCF's `<option>` and
-//! Python's class follow from it.
+//! The user options. A table has a row for each option; the struct, its checks, the flags of the program, MJCF's
+//! `<option>` and Python's class follow from it.
 
 mod table;
 mod value;
@@ -11,22 +11,22 @@ use clench_solver::{ConstraintSolver, SolverOptions, Switch};
 /// The flag of the program that sets an option.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Argument {
-    /// A flag that the value follows.
+    /// A flag followed by the value.
     Given(&'static str),
-    /// A flag that stands for a value.
+    /// A flag that implies a value.
     Sets(&'static str, OptionValue),
 }
 
-/// Where MJCF has an option.
+/// The location of an option in MJCF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mjcf {
-    /// An attribute of `<option>` that is written as the value is.
+    /// An attribute of `<option>` with the value as text.
     Attribute(&'static str),
-    /// An attribute of `<option>` with words of its own. The first for a value is the one that is written.
+    /// An attribute of `<option>` with its own keywords. The first keyword of a value is the one that is written.
     Words(&'static str, &'static [(&'static str, OptionValue)]),
-    /// An attribute of `<flag>`, and what "disable" and "enable" mean.
+    /// An attribute of `<flag>`, and the values of "disable" and "enable".
     Flag(&'static str, [OptionValue; 2]),
-    /// Nowhere.
+    /// Not in MJCF.
     Nowhere,
 }
 
@@ -35,8 +35,8 @@ macro_rules! declare_options {
         $(#[doc = $doc:literal])*
         $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
     )*})*) => {
-        /// Options of the constraint model and its solver. Every field knows whether it was set, so that what the user sets
-        /// wins over the file and the file over its format's defaults: `user.or(file).or(format)`.
+        /// Options of the constraint model and its solver. Every field records whether it was set, so that the user's
+        /// options take precedence over the file and the file over its format's defaults: `user.or(file).or(format)`.
         ///
         /// ```
         /// use clench_dynamics::options::RigidOptions;
@@ -58,13 +58,13 @@ macro_rules! declare_options {
                 self
             } )*)*
 
-            /// Takes from `lower` what is not set here.
+            /// Takes from `lower` the options that are not set here.
             #[must_use]
             pub fn or(self, lower: RigidOptions) -> Self {
                 RigidOptions { $($( $name: self.$name.or(lower.$name), )*)* }
             }
 
-            /// The value of an option that is set.
+            /// Returns the value of an option that is set.
             pub fn get(&self, option: RigidOption) -> Option<OptionValue> {
                 match option {
                     $($( RigidOption::$name => self.$name.map(OptionValue::from), )*)*
@@ -74,7 +74,7 @@ macro_rules! declare_options {
             /// Sets an option.
             ///
             /// # Errors
-            /// A value of another type, or out of the option's range; nothing is set then.
+            /// Returns an error, and sets nothing, if the type is wrong or the value is out of range.
             pub fn set(&mut self, option: RigidOption, value: OptionValue) -> Result<(), OptionError> {
                 match option {
                     $($( RigidOption::$name => {
@@ -102,17 +102,17 @@ macro_rules! declare_options {
             /// Every option, those of the solver first.
             pub const ALL: &[RigidOption] = &[$($( RigidOption::$name, )*)*];
 
-            /// Its name.
+            /// Returns the name.
             pub fn name(self) -> &'static str {
                 match self { $($( RigidOption::$name => stringify!($name), )*)* }
             }
 
-            /// What it is, and its default.
+            /// Returns the description and the default.
             pub fn sentence(self) -> &'static str {
                 match self { $($( RigidOption::$name => concat!($($doc),*).trim_ascii(), )*)* }
             }
 
-            /// Its value where nobody sets it.
+            /// Returns the default value.
             pub fn default(self, single_precision: bool) -> OptionValue {
                 match self {
                     $($( RigidOption::$name => {
@@ -122,19 +122,19 @@ macro_rules! declare_options {
                 }
             }
 
-            /// What its numbers may be.
+            /// Returns the range of its numbers.
             pub fn range(self) -> Range {
                 match self { $($( RigidOption::$name => Range::$range, )*)* }
             }
 
-            /// The flag of the program that sets it.
+            /// Returns the flag of the program that sets it.
             pub fn argument(self) -> Argument {
                 use Argument::{Given, Sets};
                 use OptionValue::Truth;
                 match self { $($( RigidOption::$name => $argument, )*)* }
             }
 
-            /// Where MJCF has it.
+            /// Returns its location in MJCF.
             pub fn mjcf(self) -> Mjcf {
                 use Mjcf::{Attribute, Flag, Nowhere, Words};
                 use OptionValue::{Algorithm, Choice, Truth};
@@ -155,7 +155,7 @@ macro_rules! declare_solver_part {
         step $step:tt
     ) => {
         impl RigidOptions {
-            /// The options that the solver reads.
+            /// Returns the options that the solver reads.
             pub fn solver(self) -> SolverOptions {
                 SolverOptions { $( $name: self.$name, )* }
             }
@@ -166,13 +166,13 @@ macro_rules! declare_solver_part {
 crate::rigid_options!(declare_solver_part);
 
 impl RigidOptions {
-    /// Nothing set.
+    /// Creates options with nothing set.
     pub fn new() -> Self {
         Self::default()
     }
 
     /// # Errors
-    /// The first option that is out of its range.
+    /// Returns an error for the first option that is out of its range.
     pub fn check(&self) -> Result<(), OptionError> {
         let set = |&option: &RigidOption| Some((option, self.get(option)?));
         let mut all = RigidOption::ALL.iter().filter_map(set);
@@ -182,7 +182,7 @@ impl RigidOptions {
 
 impl RigidOption {
     /// # Errors
-    /// A value out of the range.
+    /// Returns an error if the value is out of the range.
     pub fn check(self, value: OptionValue) -> Result<(), OptionError> {
         match self.range().holds(value) {
             true => Ok(()),

@@ -1,4 +1,4 @@
-//! The values that options can have, and what they may be.
+//! The values of options, and their ranges.
 
 use clench_solver::{ConstraintSolver, Switch};
 use std::fmt;
@@ -13,7 +13,7 @@ pub enum FrictionCone {
     Elliptic,
 }
 
-/// How many contacts a step may hold.
+/// The maximum number of contacts of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MaxContacts {
     /// Buffers grow as needed.
@@ -32,12 +32,12 @@ macro_rules! declare_values {
         }
 
         impl OptionValue {
-            /// What a value of this type is, in a sentence.
+            /// Returns the description of a value of this type.
             pub fn what(self) -> &'static str {
                 match self { $(OptionValue::$variant(_) => $what,)* }
             }
 
-            /// The words that values of this type have in text; a number is its digits.
+            /// Returns the keywords of values of this type; a number is written in digits.
             pub fn words(self) -> &'static [(&'static str, OptionValue)] {
                 match self { $(OptionValue::$variant(_) => $words,)* }
             }
@@ -49,7 +49,7 @@ macro_rules! declare_values {
             }
         }
 
-        /// Gives a value of another type back.
+        /// Returns a value of another type as the error.
         impl TryFrom<OptionValue> for $type {
             type Error = OptionValue;
             fn try_from(value: OptionValue) -> Result<Self, OptionValue> {
@@ -63,11 +63,11 @@ macro_rules! declare_values {
 }
 
 declare_values! {
-    /// A number of things.
+    /// A count.
     Count(usize): "an integer that is not negative", &[];
     /// A real number.
     Number(f64): "a number", &[];
-    /// Yes or no.
+    /// A truth value.
     Truth(bool): "true or false", &[("false", OptionValue::Truth(false)), ("true", OptionValue::Truth(true))];
     /// A choice that the model makes unless the user does.
     Choice(Switch): "auto, on or off", &[
@@ -75,14 +75,14 @@ declare_values! {
         ("on", OptionValue::Choice(Switch::On)),
         ("off", OptionValue::Choice(Switch::Off)),
     ];
-    /// A bound on contacts.
+    /// A limit on contacts.
     Limit(MaxContacts): "auto or a number of contacts", &[("auto", OptionValue::Limit(MaxContacts::Auto))];
     /// An algorithm.
     Algorithm(ConstraintSolver): "Newton or CG", &[
         ("Newton", OptionValue::Algorithm(ConstraintSolver::Newton)),
         ("CG", OptionValue::Algorithm(ConstraintSolver::Cg)),
     ];
-    /// A shape of contacts.
+    /// A shape of friction cones.
     Cone(FrictionCone): "pyramidal or elliptic", &[
         ("pyramidal", OptionValue::Cone(FrictionCone::Pyramidal)),
         ("elliptic", OptionValue::Cone(FrictionCone::Elliptic)),
@@ -90,14 +90,14 @@ declare_values! {
 }
 
 impl OptionValue {
-    /// The word for it among `words`.
+    /// Returns its keyword among `words`.
     pub fn word(self, words: &[(&'static str, OptionValue)]) -> Option<&'static str> {
         let found = words.iter().find(|(_, value)| *value == self);
         found.map(|&(word, _)| word)
     }
 }
 
-/// As it is written in text.
+/// Writes the value as in text formats.
 impl fmt::Display for OptionValue {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -109,10 +109,10 @@ impl fmt::Display for OptionValue {
     }
 }
 
-/// What the number of an option may be.
+/// The range of the number of an option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// All that its type can hold.
+    /// All values of the type.
     Any,
     /// Finite and zero or more.
     NotNegative,
@@ -121,7 +121,7 @@ pub enum Range {
 }
 
 impl Range {
-    /// Whether a value lies in it.
+    /// Returns true if a value is in the range.
     pub fn holds(self, value: OptionValue) -> bool {
         let OptionValue::Number(x) = value else {
             return true;
@@ -133,7 +133,7 @@ impl Range {
         }
     }
 
-    /// The range in words.
+    /// Returns the range as text.
     pub fn text(self) -> &'static str {
         match self {
             Range::Any => "any",
@@ -147,10 +147,10 @@ impl Range {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("option {name} is {value}, but must be {range}")]
 pub struct OptionError {
-    /// Which option.
+    /// The name of the option.
     pub name: &'static str,
     /// Its value.
     pub value: OptionValue,
-    /// What it may be.
+    /// The allowed range.
     pub range: &'static str,
 }

@@ -1,8 +1,8 @@
-//! Falling asleep, and staying where one fell asleep.
+//! Deactivation: trees fall asleep and keep their positions.
 //!
-//! A tree is slow where each of its velocities, times the length of its dof, is below the tolerance, and no force is applied to
-//! it. What counts is the velocity at the start of the step, as in MuJoCo: a step in which an island falls asleep leaves it
-//! where it was.
+//! A tree is slow if each of its velocities, times the length of its dof, is below the tolerance, and no force is
+//! applied to it. The velocity at the start of the step counts, as in MuJoCo: a step in which an island falls asleep
+//! does not move it.
 
 use super::wake::is_free;
 use super::{AWAKE, READY, Sleep, is_blank, mocap_pose};
@@ -13,8 +13,8 @@ use crate::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 use clench_solver::{Problem, Switch};
 
-/// Counts the steps in which trees rest, and puts the islands to sleep of which all trees have rested for long enough: their
-/// velocities and accelerations become zero. Reads the constraints of `ws`, from which the islands follow.
+/// Counts the steps in which trees are slow, and deactivates the islands whose trees have all been slow for long
+/// enough: their velocities and accelerations become zero. The islands follow from the constraints of `ws`.
 #[kernel]
 pub fn fall_asleep<T: Real>(
     model: &Model,
@@ -24,7 +24,7 @@ pub fn fall_asleep<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let sleep = &mut ws.sleep;
-    // Without islands nobody knows what rests alone, as in MuJoCo.
+    // Without islands, trees fall asleep only in lanes without constraints, as in MuJoCo.
     let counting = match settings.solver.islands {
         Switch::Off => !constrained(&ws.problem),
         _ => T::Mask::splat(true),
@@ -46,13 +46,13 @@ pub fn fall_asleep<T: Real>(
     }
 }
 
-/// Lanes in which any constraint acts.
+/// Returns the lanes in which any constraint acts.
 fn constrained<T: Real>(problem: &Problem<T>) -> T::Mask {
     let rows = problem.blocks().flat_map(|block| block.d);
     rows.fold(T::Mask::splat(false), |lanes, d| lanes | d.gt(T::ZERO))
 }
 
-/// Lanes in which a tree may sleep, is slow and is left alone.
+/// Returns the lanes in which a tree may sleep, is slow and has no applied force.
 #[inline(always)]
 fn is_slow<T: Real>(params: &Params<T>, tree: &KinematicTree, state: &State<T>) -> T::Mask {
     let mut slow = T::Mask::splat(tree.sleep != SleepPolicy::Never);
@@ -64,7 +64,7 @@ fn is_slow<T: Real>(params: &Params<T>, tree: &KinematicTree, state: &State<T>) 
     slow & is_free(tree, state)
 }
 
-/// Puts to sleep what is ready: islands as a whole, and trees on which no constraint acts.
+/// Deactivates ready islands as a whole, and ready trees on which no constraint acts.
 #[inline(always)]
 fn put_islands_to_sleep<T: Real>(
     model: &Model,
@@ -99,7 +99,7 @@ fn put_islands_to_sleep<T: Real>(
     sleep.update(model);
 }
 
-/// Puts the trees of an island to sleep in some lanes.
+/// Deactivates the trees of an island in some lanes.
 #[inline(always)]
 fn put_to_sleep<T: Real>(
     model: &Model,
@@ -125,7 +125,7 @@ fn put_to_sleep<T: Real>(
 }
 
 impl<T: Real> Sleep<T> {
-    /// Lets sleeping trees have no acceleration.
+    /// Sets the acceleration of sleeping trees to zero.
     #[kernel]
     pub fn still(&self, model: &Model, qacc: &mut [T]) {
         for (tree, &awake) in model.trees.iter().zip(&self.awake) {
@@ -139,7 +139,8 @@ impl<T: Real> Sleep<T> {
     }
 }
 
-/// Takes over which trees sleep now, and leaves those where they fell asleep, whatever the integrator did.
+/// Stores in the state which trees sleep, and resets those to their sleeping positions, independently of the
+/// integrator.
 #[kernel]
 pub fn hold<T: Real>(model: &Model, state: &mut State<T>, ws: &Workspace<T>) {
     state.tree_asleep.copy_from_slice(&ws.sleep.counters);

@@ -1,9 +1,9 @@
-//! What a step leaves out because it sleeps.
+//! The work that a step skips for sleeping trees.
 //!
-//! Poses of trees that sleep, and lie where they lay when the workspace's poses were computed, need not be computed again.
-//! If no lane has a tree that is awake, and nothing can wake one, a step only lets time pass. What the workspace holds then is
-//! that of the last pass, if all trees slept in it where they sleep now: no number of it would come out differently. Otherwise
-//! the step is done in full once, unless nobody reads the workspace.
+//! The poses of sleeping trees are not computed again if their positions are those of the workspace's poses. If no lane
+//! has an awake tree, and nothing can wake one, a step only advances time. The workspace then holds the results of the
+//! last pass; they are exact if all trees slept in it at their present positions. Otherwise the step is done in full
+//! once, unless the workspace is not read.
 
 use super::wake::wake_coupled;
 use super::{Sleep, hold, is_blank, mocap_pose, wake_touched};
@@ -18,8 +18,8 @@ use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Real, kernel};
 use std::ops::Range;
 
-/// Whether a step finds everything asleep and as the last pass left it, so that nothing but time changes. What can act on sleepers in
-/// other ways than by forces on them, or is written in every step, is looked at by [`is_idle`].
+/// Returns true if everything sleeps as the last pass left it, so that a step only advances time. Models with elements
+/// that act on sleeping trees other than by forces, or that are written in every step, are left to [`is_idle`].
 #[kernel]
 pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> bool {
     let sleep = &ws.sleep;
@@ -38,10 +38,10 @@ pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> boo
         && (0..T::LANES).all(|lane| state.time.lane(lane).is_finite())
 }
 
-/// So many numbers are looked at before anyone asks whether they are as they should be.
+/// The number of values that are compared between tests of the result.
 const BLOCK: usize = 256;
 
-/// Whether two arrays hold the same numbers in all lanes.
+/// Returns true if two arrays hold equal numbers in all lanes.
 #[inline(always)]
 fn all_same<T: Real>(one: &[T], other: &[T]) -> bool {
     let same = |same: T::Mask, (a, b): (&T, &T)| same & a.eq(*b);
@@ -49,7 +49,7 @@ fn all_same<T: Real>(one: &[T], other: &[T]) -> bool {
     blocks.all(|(a, b)| a.iter().zip(b).fold(T::Mask::splat(true), same).all())
 }
 
-/// Whether all bits of all numbers are zero.
+/// Returns true if all bits of all numbers are zero.
 #[inline(always)]
 fn all_blank<T: Real>(numbers: &[T]) -> bool {
     let mut blocks = numbers.chunks(BLOCK);
@@ -57,7 +57,7 @@ fn all_blank<T: Real>(numbers: &[T]) -> bool {
     blocks.all(|block| block.iter().fold(T::Mask::splat(true), and_blank).all())
 }
 
-/// Does a step that changes nothing but time.
+/// Does a step that only advances time.
 pub(crate) fn pass_time<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -70,8 +70,8 @@ pub(crate) fn pass_time<T: Real>(
     state.pass(params.timestep);
 }
 
-/// Whether a step only lets time pass. Actuators and mocap bodies act on what sleeps, or may touch it, and past values are
-/// written in every step, so a model that has them is looked at in full.
+/// Returns true if a step only advances time: nothing is awake, nothing wakes, and the model has no actuators and no
+/// past values. Mocap bodies must not have moved.
 #[kernel]
 pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) -> bool {
     if !model.actuators.is_empty() || model.nhistory > 0 || ws.collision.given {
@@ -82,14 +82,14 @@ pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspa
         return false;
     }
     if wake_coupled(model, state, ws) {
-        // A pass looks for what touches before, and for that among what is not yet awake.
+        // A pass first detects wakes by touch, and only among trees that are not yet awake.
         ws.sleep.begin(model, state);
         return false;
     }
     ws.sleep.rests_as_before(model, state) || (model.nmocap == 0 && !ws.read)
 }
 
-/// Does a step that only lets time pass.
+/// Does a step that only advances time.
 pub(crate) fn idle<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -106,7 +106,7 @@ pub(crate) fn idle<T: Real>(
     state.qacc_warmstart.fill(T::ZERO);
 }
 
-/// Makes the workspace say that nothing acts and nothing went wrong. Its poses and forces are not updated.
+/// Clears contacts, constraints and failures in the workspace. Its poses and forces are not updated.
 fn clear<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -127,7 +127,7 @@ fn clear<T: Real>(
 }
 
 impl<T: Real> Sleep<T> {
-    /// Has the next pass compute all poses, because what the workspace holds was computed from other numbers.
+    /// Invalidates all poses, so that the next pass computes them.
     pub fn forget(&mut self) {
         (self.placed, self.at_rest) = (false, false);
         if self.enabled {
@@ -136,7 +136,7 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Takes note of a pass over a state.
+    /// Records a pass over a state.
     pub fn note(&mut self, model: &Model, state: &State<T>) {
         let (qpos, mocap) = self.pose.split_at_mut(model.nq);
         qpos.copy_from_slice(&state.qpos);
@@ -147,8 +147,8 @@ impl<T: Real> Sleep<T> {
         self.at_rest = self.all_asleep().all();
     }
 
-    /// Ranges of the bodies whose poses the position stage computes: all but those of trees on the world that are known to be fixed, or
-    /// that sleep where they slept in the last pass.
+    /// Returns the ranges of the bodies whose poses the position stage computes: all but those of trees on the world
+    /// whose fixed poses are valid, or that sleep as in the last pass.
     pub fn parts<'a>(&'a self, fixed: &'a FixedPoses) -> &'a [Range<usize>] {
         match self.enabled {
             true => &self.parts,
@@ -156,7 +156,7 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Finds [`parts`](Self::parts) for a state.
+    /// Computes [`parts`](Self::parts) for a state.
     pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>, fixed: &FixedPoses) {
         self.parts.clear();
         let mut trees = model.trees.iter().zip(&self.awake).peekable();
@@ -177,12 +177,12 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Whether positions are those of the last pass.
+    /// Returns true if positions are those of the last pass.
     fn lies_as_before(&self, qpos: Range<usize>, state: &State<T>) -> bool {
         all_same(&self.pose[qpos.clone()], &state.qpos[qpos])
     }
 
-    /// Whether all trees slept in the last pass where they sleep now, and no mocap body has moved.
+    /// Returns true if all trees slept in the last pass at their present positions, and no mocap body has moved.
     fn rests_as_before(&self, model: &Model, state: &State<T>) -> bool {
         let mut mocap = self.pose[model.nq..].chunks_exact(7).enumerate();
         self.at_rest

@@ -1,12 +1,13 @@
-//! Sleeping islands: trees that have come to rest are left out of the step until something wakes them.
+//! Sleeping islands: trees at rest are excluded from the step until something wakes them.
 //!
-//! Each tree has a number, as MuJoCo's `tree_asleep`. Awake, it counts steps of small velocity, from [`AWAKE`] up to `READY`.
-//! When all trees of an island are ready, their velocities become zero and the numbers a cycle through the island: each names
-//! the next tree. `docs/sleeping.md` has the rules, `wake.rs` what wakes trees and `fall.rs` how they fall asleep.
+//! Each tree has a counter, as MuJoCo's `tree_asleep`. While awake, it counts steps of small velocity, from [`AWAKE`]
+//! up to `READY`. When all trees of an island are ready, their velocities become zero and the counters a cycle through
+//! the island: each is the index of the next tree. `docs/sleeping.md` has the rules, `wake.rs` wakes trees and
+//! `fall.rs` deactivates them.
 //!
-//! A tree that sleeps in a lane keeps its positions there. Constraints that would act on sleeping and fixed bodies alone are
-//! absent, as are contacts between them; a constraint between a sleeping tree and one that is awake wakes the former before
-//! it acts. So a lane's sleep is nothing to its neighbours.
+//! A tree that sleeps in a lane keeps its positions there. Constraints and contacts that act only on sleeping and fixed
+//! bodies are absent. A constraint between a sleeping and an awake tree wakes the former before it acts. So sleep in
+//! one lane does not affect the others.
 
 mod fall;
 mod idle;
@@ -24,36 +25,36 @@ use clench_math::{Mask, Quat, Real, Scalar, Vec3};
 use clench_solver::Partition;
 use std::ops::Range;
 
-/// The number of a tree that moves: it must stay below the tolerance for so many steps less one (MuJoCo's `mjMINAWAKE`, 10).
+/// The counter of a moving tree; it reaches `READY` after 10 steps below the tolerance (MuJoCo's `mjMINAWAKE`).
 pub const AWAKE: f64 = -11.0;
-/// The number of a tree that has rested for long enough.
+/// The counter of a tree that has been slow for long enough.
 pub const READY: f64 = -1.0;
 
-/// Which trees are awake in a step.
+/// The sleep state of the trees in a step.
 #[derive(Clone, Debug)]
 pub struct Sleep<T: Real> {
-    /// Whether any tree can sleep: without the flag nothing below is used.
+    /// True if any tree can sleep; the other fields are unused otherwise.
     enabled: bool,
-    /// The numbers of the trees, to become [`State::tree_asleep`] after the step.
+    /// The counters of the trees, written to [`State::tree_asleep`] after the step.
     counters: Vec<T>,
     /// Lanes in which each tree is awake.
     awake: Vec<T::Mask>,
-    /// Lanes in which each body is: mocap bodies always, for the user may move them, and fixed bodies never.
+    /// Lanes in which each body is awake: mocap bodies always, because the user may move them, and fixed bodies never.
     bodies: Vec<T::Mask>,
-    /// Whether the workspace holds what follows from the positions and the poses of mocap bodies in `pose`.
+    /// True if the workspace's results are those of the positions and mocap poses in `pose`.
     placed: bool,
     pose: Vec<T>,
-    /// Whether, besides, all trees slept in the last pass in all lanes.
+    /// True if, in addition, all trees slept in the last pass in all lanes.
     at_rest: bool,
     /// Ranges of the bodies whose poses the position stage computes.
     parts: Vec<Range<usize>>,
     partition: Partition<T>,
-    /// The trees of an island.
+    /// Scratch: the trees of an island.
     members: Vec<u32>,
 }
 
 impl<T: Real> Sleep<T> {
-    /// Everything is awake.
+    /// Creates the record with everything awake.
     pub fn new(model: &Model) -> Self {
         let enabled = model.may_sleep();
         let numbers = |of_model: usize| if enabled { of_model } else { 0 };
@@ -72,18 +73,18 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// The numbers of the trees.
+    /// Returns the counters of the trees.
     pub fn counters(&self) -> &[T] {
         &self.counters
     }
 
-    /// Starts from the numbers of a state.
+    /// Starts from the counters of a state.
     pub fn begin(&mut self, model: &Model, state: &State<T>) {
         self.counters.copy_from_slice(&state.tree_asleep);
         self.update(model);
     }
 
-    /// Takes note of numbers that have changed.
+    /// Updates the awake lanes from the counters.
     fn update(&mut self, model: &Model) {
         for (awake, counter) in self.awake.iter_mut().zip(&self.counters) {
             *awake = counter.lt(T::ZERO);
@@ -99,7 +100,7 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Lanes in which a tree is awake.
+    /// Returns the lanes in which a tree is awake.
     #[inline(always)]
     pub(crate) fn is_awake(&self, tree: usize) -> T::Mask {
         match self.enabled {
@@ -108,7 +109,7 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Lanes in which constraints between two bodies act: in which either is awake.
+    /// Returns the lanes in which constraints between two bodies act, because either is awake.
     #[inline(always)]
     pub(crate) fn is_either_awake(&self, [first, second]: [usize; 2]) -> T::Mask {
         match self.enabled {
@@ -117,21 +118,21 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Lanes in which everything sleeps.
+    /// Returns the lanes in which everything sleeps.
     pub fn all_asleep(&self) -> T::Mask {
         let nothing = T::Mask::splat(!self.awake.is_empty());
         (self.awake.iter()).fold(nothing, |asleep, &awake| asleep & !awake)
     }
 
-    /// The lowest tree of the island with which a tree sleeps in a lane.
+    /// Returns the lowest tree of the island with which a tree sleeps in a lane.
     fn first_of_island(&self, tree: usize, lane: usize) -> usize {
         let mut lowest = tree;
         self.each_of_island(tree, lane, |at| lowest = lowest.min(at));
         lowest
     }
 
-    /// Shows the trees of the island with which a tree sleeps in a lane. Numbers that users wrote may be no cycle: what is shown
-    /// then is some of the trees, and ends.
+    /// Passes the trees of the island with which a tree sleeps in a lane to `show`. Counters that users wrote may not
+    /// form a cycle; then it passes some of the trees and terminates.
     fn each_of_island(&self, tree: usize, lane: usize, mut show: impl FnMut(usize)) {
         let mut at = tree;
         for _ in 0..self.counters.len() {
@@ -148,13 +149,13 @@ impl<T: Real> Sleep<T> {
     }
 }
 
-/// Lanes in which all bits of a number are zero: not those of −0, by which users wake what they do not move.
+/// Returns the lanes in which all bits of a number are zero. Users write −0 to wake trees without moving them.
 #[inline(always)]
 fn is_blank<T: Real>(x: T) -> T::Mask {
     x.eq(T::ZERO) & T::ONE.copysign(x).gt(T::ZERO)
 }
 
-/// The pose of a mocap body, as [`State::pose_asleep`] holds it.
+/// Returns the pose of a mocap body in the layout of [`State::pose_asleep`].
 fn mocap_pose<T: Real>(state: &State<T>, mocap: usize) -> [T; 7] {
     let (Vec3 { x, y, z }, turn) = (state.mocap_pos[mocap], state.mocap_quat[mocap]);
     let Quat {

@@ -1,7 +1,7 @@
-//! What wakes sleeping trees, in the order in which a step looks for it.
+//! The causes that wake sleeping trees, in the order in which a step tests for them.
 //!
-//! Whoever wakes, wakes with its whole island. A tree that the user or an equality wakes starts to count anew; one that is
-//! touched or pulled takes over the count of the tree that does it, for both must rest to sleep again.
+//! A tree wakes with its whole island. A tree that the user or an equality wakes starts its counter anew. A tree that
+//! is touched or pulled takes the counter of the tree that wakes it, because both must be at rest to sleep again.
 
 use super::{AWAKE, Sleep, is_blank, mocap_pose};
 use crate::constraint::dynamic::each_tie;
@@ -12,8 +12,8 @@ use crate::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, kernel};
 
 impl<T: Real> Sleep<T> {
-    /// Wakes the island of a tree in some lanes; each of its trees counts from `counter`. Where it is awake, it counts from there
-    /// if that is further from sleep.
+    /// Wakes the island of a tree in some lanes, with `counter` for each of its trees. In lanes where the tree is
+    /// awake, it takes `counter` if that is further from sleep.
     fn wake(&mut self, tree: usize, lanes: T::Mask, counter: T) {
         for lane in (0..T::LANES).filter(|&lane| lanes.lane(lane)) {
             let counter = counter.lane(lane);
@@ -32,7 +32,7 @@ impl<T: Real> Sleep<T> {
         }
     }
 
-    /// Wakes each of two trees where it sleeps and the other does not. Whether any was asleep.
+    /// Wakes each of two trees where it sleeps and the other does not. Returns true if any was asleep.
     fn wake_each_other(&mut self, [one, other]: [usize; 2], lanes: T::Mask) -> bool {
         let mut woke = false;
         for [asleep, awake] in [[one, other], [other, one]] {
@@ -46,8 +46,8 @@ impl<T: Real> Sleep<T> {
     }
 }
 
-/// Starts from the state, and wakes what the user touched: trees with other positions than they fell asleep with, also those that
-/// a mocap body carried elsewhere, with velocities or with applied forces.
+/// Starts from the state, and wakes trees that the user changed: trees whose positions differ from those at which they
+/// fell asleep, including those moved by a mocap body, and trees with velocities or applied forces.
 #[kernel]
 pub(crate) fn wake_touched<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) {
     let sleep = &mut ws.sleep;
@@ -67,7 +67,7 @@ pub(crate) fn wake_touched<T: Real>(model: &Model, state: &State<T>, ws: &mut Wo
     sleep.update(model);
 }
 
-/// Lanes in which a sleeping tree lies as it fell asleep.
+/// Returns the lanes in which a sleeping tree is as it fell asleep.
 #[inline(always)]
 fn is_untouched<T: Real>(model: &Model, tree: &KinematicTree, state: &State<T>) -> T::Mask {
     let mut same = T::Mask::splat(tree.sleep != SleepPolicy::Never);
@@ -86,7 +86,7 @@ fn is_untouched<T: Real>(model: &Model, tree: &KinematicTree, state: &State<T>) 
     same & is_free(tree, state)
 }
 
-/// Lanes in which the user applies no force to a tree.
+/// Returns the lanes in which the user applies no force to a tree.
 #[inline(always)]
 pub(super) fn is_free<T: Real>(tree: &KinematicTree, state: &State<T>) -> T::Mask {
     let mut free = T::Mask::splat(true);
@@ -106,7 +106,7 @@ pub(super) fn is_free<T: Real>(tree: &KinematicTree, state: &State<T>) -> T::Mas
     free
 }
 
-/// Wakes trees by tendons that tie them to others: where such a tendon is at a limit or has dry friction.
+/// Wakes trees by tendons that connect them to others, if such a tendon is at a limit or has dry friction.
 #[kernel]
 pub(crate) fn wake_pulled<T: Real>(
     model: &Model,
@@ -136,8 +136,8 @@ pub(crate) fn wake_pulled<T: Real>(
     }
 }
 
-/// Wakes trees that trees which are awake, or mocap bodies, touch. Whether there were any: then contacts are to be sought once
-/// more, for those of the woken trees among themselves and with fixed bodies are missing.
+/// Wakes trees in contact with awake trees or mocap bodies. Returns true if there were any. Contact detection must then
+/// run again, because contacts among the woken trees and with fixed bodies are missing.
 #[kernel]
 pub(crate) fn wake_touching<T: Real>(model: &Model, ws: &mut Workspace<T>) -> bool {
     let sleep = &mut ws.sleep;
@@ -152,7 +152,7 @@ pub(crate) fn wake_touching<T: Real>(model: &Model, ws: &mut Workspace<T>) -> bo
     woke
 }
 
-/// Wakes either of two bodies by the other. Whether any slept.
+/// Wakes either of two bodies by the other. Returns true if any slept.
 #[inline(always)]
 fn wake_pair<T: Real>(
     model: &Model,
@@ -168,7 +168,7 @@ fn wake_pair<T: Real>(
     }
 }
 
-/// Wakes a tree by a body that no joint moves, if that is carried by a mocap body. Whether it slept.
+/// Wakes a tree by a body without joints, if a mocap body carries that. Returns true if the tree slept.
 #[inline(always)]
 fn wake_by_body<T: Real>(sleep: &mut Sleep<T>, tree: usize, body: usize, lanes: T::Mask) -> bool {
     let wakes = lanes & !sleep.awake[tree] & sleep.bodies[body];
@@ -178,8 +178,9 @@ fn wake_by_body<T: Real>(sleep: &mut Sleep<T>, tree: usize, body: usize, lanes: 
     wakes.any()
 }
 
-/// Wakes trees that an active equality, or a constraint that was added at run time, couples to a tree that is awake, to a mocap body, or to a tree that sleeps in another
-/// island: the equality was off when they fell asleep. Whether there were any.
+/// Wakes trees that an active equality, or a constraint added at run time, couples to an awake tree, to a mocap body,
+/// or to a tree that sleeps in another island (the equality was off when they fell asleep). Returns true if there were
+/// any.
 #[kernel]
 pub fn wake_coupled<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) -> bool {
     let sleep = &mut ws.sleep;
@@ -219,7 +220,7 @@ pub fn wake_coupled<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace
     woke
 }
 
-/// Wakes what a connect or weld holds together. Whether any slept.
+/// Wakes the bodies of a connect or weld. Returns true if any slept.
 #[inline(always)]
 fn wake_bodies<T: Real>(
     model: &Model,
@@ -233,7 +234,7 @@ fn wake_bodies<T: Real>(
     }
 }
 
-/// Wakes both of two trees in the lanes in which they do not sleep together. Whether any slept.
+/// Wakes both of two trees in the lanes in which they do not sleep in the same island. Returns true if any slept.
 #[inline(always)]
 fn wake_couple<T: Real>(sleep: &mut Sleep<T>, trees: [usize; 2], lanes: T::Mask) -> bool {
     let [one, other] = trees;
@@ -259,14 +260,15 @@ fn wake_couple<T: Real>(sleep: &mut Sleep<T>, trees: [usize; 2], lanes: T::Mask)
     woke
 }
 
-/// Wakes, in a state itself, the islands of two bodies that are tied together from now on, or no longer.
+/// Wakes, in a state itself, the islands of two bodies when a constraint between them is added or removed.
 pub fn wake_in_state<T: Scalar>(model: &Model, state: &mut State<T>, bodies: [usize; 2]) {
     for tree in bodies
         .into_iter()
         .filter_map(|body| model.tree_of_body(body))
     {
         let mut at = tree;
-        // Sleeping trees name the next of their island, in a circle; in a state that was written by hand it may not close.
+        // Sleeping trees name the next of their island, in a cycle. In a state that was written by hand it may not
+        // close.
         for _ in 0..state.tree_asleep.len() {
             let next = state.tree_asleep[at];
             state.tree_asleep[at] = T::new(AWAKE);

@@ -1,4 +1,4 @@
-//! What fields of a state are made of: numbers, vectors, quaternions, wrenches, truth values.
+//! The element types of the fields of a state: numbers, vectors, quaternions, wrenches, truth values.
 
 use clench_math::{Force, Mask, Quat, Real, Scalar, Vec3};
 use std::array::from_mut;
@@ -8,16 +8,16 @@ use std::fmt::Debug;
 pub trait Kind {
     /// An element in the number type `T`.
     type Of<T: Real>: Copy + Debug;
-    /// What a row of a batch holds of it.
+    /// A cell of an element in a row of a batch.
     type Cell<S>;
-    /// How many cells an element takes.
+    /// The number of cells of an element.
     const WIDTH: usize;
 
-    /// Zero, or false.
+    /// Returns zero, or false.
     fn zero<T: Real>() -> Self::Of<T>;
-    /// A cell of it.
+    /// Returns the zero cell.
     fn zero_cell<S: Real>() -> Self::Cell<S>;
-    /// Cell `part` of an element in lane `lane`.
+    /// Returns cell `part` of an element in lane `lane`.
     fn cell<T: Real>(element: &Self::Of<T>, part: usize, lane: usize) -> Self::Cell<T::Scalar>;
     /// Sets cell `part` of an element in lane `lane`.
     fn set_cell<T: Real>(
@@ -26,19 +26,19 @@ pub trait Kind {
         lane: usize,
         cell: Self::Cell<T::Scalar>,
     );
-    /// A cell as a number.
+    /// Converts a cell to a number.
     fn number<S: Scalar>(cell: Self::Cell<S>) -> S;
-    /// The cell of a number.
+    /// Converts a number to a cell.
     fn from_number<S: Scalar>(number: S) -> Self::Cell<S>;
-    /// Shows the numbers of elements to `visit`, with the index of the first: many at once, or an element at a time.
+    /// Passes the numbers of elements to `visit`, with the index of the first: many at once, or an element at a time.
     fn numbers<T: Real>(elements: &[Self::Of<T>], visit: impl FnMut(usize, &[T]));
-    /// The element of one environment in every lane.
+    /// Copies the element of one environment to every lane.
     fn splat<T: Real>(element: &Self::Of<T::Scalar>) -> Self::Of<T>;
-    /// Whether two elements are the same, bit by bit.
+    /// Returns true if two elements are equal, bit by bit.
     fn same<T: Real>(one: &Self::Of<T>, other: &Self::Of<T>) -> bool;
 }
 
-/// Whether two numbers are the same, bit by bit, in every lane.
+/// Returns true if two numbers are equal, bit by bit, in every lane.
 fn same_bits<T: Real>(one: T, other: T) -> bool {
     let bits = |lane: usize| {
         let bits = |x: T| x.lane(lane).to_f64().to_bits();
@@ -47,7 +47,7 @@ fn same_bits<T: Real>(one: T, other: T) -> bool {
     (0..T::LANES).all(bits)
 }
 
-/// A number a lane.
+/// A number per lane.
 #[derive(Debug)]
 pub enum Number {}
 
@@ -91,7 +91,7 @@ impl Kind for Number {
     }
 }
 
-/// An integer a lane, of a size that every number type holds exactly; in rows 32 bits.
+/// An integer per lane, of a size that every number type holds exactly; 32 bits in rows.
 #[derive(Debug)]
 pub enum Integer {}
 
@@ -135,7 +135,7 @@ impl Kind for Integer {
     }
 }
 
-/// Kinds of several numbers, by the order of their parts.
+/// Implements kinds of several numbers, by the order of their parts.
 macro_rules! compound {
     ($($(#[$doc:meta])* $name:ident: $of:ident, $zero:expr, [$($($part:ident).+),*];)*) => {$(
         $(#[$doc])*
@@ -200,8 +200,8 @@ compound! {
     Wrench: Force, Force::ZERO, [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
 }
 
-/// A truth value a lane; in rows a byte, of which all but 0 means true, for those who write rows by their address may leave others
-/// than those of false and true.
+/// A truth value per lane; a byte in rows. Any nonzero byte means true, because programs that write rows by address may
+/// write other values than 0 and 1.
 #[derive(Debug)]
 pub enum Truth {}
 

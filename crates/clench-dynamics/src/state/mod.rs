@@ -1,4 +1,4 @@
-//! What a user saves and restores.
+//! The data that a user saves and restores.
 
 pub mod kind;
 mod table;
@@ -8,7 +8,7 @@ use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast, kernel};
 use kind::Kind;
 use std::ops::Range;
 
-/// How many elements a field has: as many as the model has of what a variant is named after.
+/// The number of elements of a field. Each variant is named after the elements of the model that it counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "`symbol` says how many each means")]
 pub enum Size {
@@ -27,7 +27,7 @@ pub enum Size {
 }
 
 impl Size {
-    /// How it is written where shapes are told, in MuJoCo's names.
+    /// Returns its symbol in descriptions of shapes, in MuJoCo's names.
     pub fn symbol(self) -> &'static str {
         match self {
             Size::Positions => "nq",
@@ -63,7 +63,7 @@ impl Size {
         }
     }
 
-    /// Where the elements of a joint lie, in fields that have any for joints: next to each other.
+    /// Returns the range of the elements of a joint, for fields that have elements of joints.
     pub fn of_joint(self, joint: &Joint) -> Option<Range<usize>> {
         match self {
             Size::Positions => Some(joint.qpos..joint.qpos + joint.kind.nq()),
@@ -73,25 +73,25 @@ impl Size {
     }
 }
 
-/// A field of the state besides the time.
+/// A field of the state other than the time.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Its name.
     pub name: &'static str,
-    /// How many elements it has.
+    /// The number of elements.
     pub size: Size,
-    /// How many numbers each of them has.
+    /// The number of numbers per element.
     width: usize,
 }
 
 impl Field {
-    /// How many numbers it has.
+    /// Returns the number of numbers of the field.
     pub fn numbers(self, model: &Model) -> usize {
         self.width * self.size.of(model)
     }
 }
 
-/// The elements of one environment in every lane.
+/// Copies the elements of one environment to every lane.
 #[kernel]
 fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
     for (from, to) in from.iter().zip(to) {
@@ -99,7 +99,7 @@ fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
     }
 }
 
-/// The elements of the first lane.
+/// Copies the elements of the first lane.
 fn first_lane<T: Real, K: Kind>(from: &[K::Of<T>], to: &mut [K::Of<T::Scalar>]) {
     for (from, to) in from.iter().zip(to) {
         for part in 0..K::WIDTH {
@@ -126,19 +126,19 @@ macro_rules! declare_state {
         /// The state of one environment (or of the lanes of a group): everything that the next step depends on.
         #[derive(Clone, Debug)]
         pub struct State<T: Real> {
-            /// s, in double precision.
+            /// The time, s, in double precision.
             pub time: T::Clock,
             $($($(#[$doc])* pub $name: Vec<<kind::$kind as Kind>::Of<T>>,)*)*
         }
 
-        /// The fields of a state, but for the time.
+        /// The fields of a state, except the time.
         pub const FIELDS: &[Field] = &[$($(Field {
             name: stringify!($name),
             size: Size::$size,
             width: <kind::$kind as Kind>::WIDTH,
         }),*),*];
 
-        /// Bit by bit: a NaN equals itself, and 0 does not equal −0.
+        /// Compares bit by bit: a NaN equals itself, and 0 does not equal −0.
         impl<T: Real> PartialEq for State<T> {
             fn eq(&self, other: &Self) -> bool {
                 let same_time = |lane| {
@@ -153,7 +153,7 @@ macro_rules! declare_state {
         }
 
         impl<T: Real> State<T> {
-            /// Zero and false everywhere.
+            /// Creates a state with zero and false everywhere.
             fn zero(model: &Model) -> Self {
                 State {
                     time: T::Clock::splat(0.0),
@@ -161,23 +161,23 @@ macro_rules! declare_state {
                 }
             }
 
-            /// How many numbers each field has, in the order of [`FIELDS`].
+            /// Returns the number of numbers of each field, in the order of [`FIELDS`].
             pub fn lengths(&self) -> impl Iterator<Item = usize> {
                 [$($(self.$name.len() * <kind::$kind as Kind>::WIDTH),*),*].into_iter()
             }
 
-            /// Whether every field has as many elements as the model says.
+            /// Returns true if every field has the number of elements that the model needs.
             pub fn fits(&self, model: &Model) -> bool {
                 $($(self.$name.len() == Size::$size.of(model))&&*)&&*
             }
 
-            /// Takes over another state of the same model, without allocating.
+            /// Copies another state of the same model, without allocating.
             pub fn copy_from(&mut self, other: &Self) {
                 self.time = other.time;
                 $($(copy(&other.$name, &mut self.$name);)*)*
             }
 
-            /// Takes over the state of one environment, of the same model, in every lane.
+            /// Copies the state of one environment, of the same model, to every lane.
             pub fn splat_from(&mut self, other: &State<T::Scalar>) {
                 self.time = T::Clock::splat(other.time);
                 $($(splat::<T, kind::$kind>(&other.$name, &mut self.$name);)*)*
@@ -192,13 +192,14 @@ macro_rules! declare_moving {
         $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
     )* } $($others:tt)*) => {
         impl<T: Real> State<T> {
-            /// Takes over from another state of the same model what a step writes, without allocating.
+            /// Copies the fields that a step writes from another state of the same model, without allocating.
             pub fn copy_moving_from(&mut self, other: &Self) {
                 self.time = other.time;
                 $(self.$name.clone_from(&other.$name);)*
             }
 
-            /// Writes what a step changed in the first lane to the state of one environment of the same model.
+            /// Writes the fields that a step changes from the first lane to the state of one environment of the same
+            /// model.
             pub fn write_moving(&self, other: &mut State<T::Scalar>) {
                 other.time = self.time.lane(0);
                 $(first_lane::<T, kind::$kind>(&self.$name, &mut other.$name);)*
@@ -211,7 +212,7 @@ crate::state_fields!(declare_moving);
 impl<T: Real> Eq for State<T> {}
 
 impl<T: Real> State<T> {
-    /// The initial state of a model.
+    /// Creates the initial state of a model.
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
@@ -256,7 +257,7 @@ impl<T: Real> State<T> {
         state
     }
 
-    /// Lets time pass.
+    /// Advances the time.
     #[inline(always)]
     pub fn pass(&mut self, time: T) {
         for lane in 0..T::LANES {
@@ -265,7 +266,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// The time in the precision of all other numbers.
+    /// Returns the time in the precision of all other numbers.
     pub fn rounded_time(&self) -> T {
         let mut time = T::ZERO;
         for lane in 0..T::LANES {
@@ -274,7 +275,7 @@ impl<T: Real> State<T> {
         time
     }
 
-    /// Takes over what a keyframe of the model holds, the same in every lane.
+    /// Copies a keyframe of the model to every lane.
     pub fn set_keyframe(&mut self, key: &Keyframe) {
         self.time = T::Clock::splat(key.time);
         for (to, from) in [
@@ -295,7 +296,7 @@ impl<T: Real> State<T> {
     }
 }
 
-/// Writes where springs that yield rest in the model (nplastic): before anything yields.
+/// Writes the initial rest positions of yielding springs (nplastic).
 fn write_initial_rests<T: Real>(model: &Model, plastic: &mut [T]) {
     for joint in &model.joints {
         if let Some(start) = joint.plastic {
@@ -304,7 +305,7 @@ fn write_initial_rests<T: Real>(model: &Model, plastic: &mut [T]) {
             broadcast(rest, &mut plastic[start..start + count]);
         }
     }
-    // While a model is built, joints have their places before tendons have lengths.
+    // While a model is built, joints have their indices before tendons have lengths.
     for (tendon, &[low, high]) in model.tendons.iter().zip(&model.params.tendon_lengthspring) {
         if let Some(start) = tendon.plastic {
             (plastic[start], plastic[start + 1]) = (T::new(low), T::new(high));

@@ -1,4 +1,4 @@
-//! Affine maps of points: how a node of a scene stands in the one around it.
+//! Affine maps of points: the pose and scale of a scene node in its parent.
 
 use clench_math::{Mat3, Quat, Vec3};
 use std::ops::Mul;
@@ -16,7 +16,7 @@ impl Transform {
         offset: Vec3::ZERO,
     };
 
-    /// Scales along the axes.
+    /// Creates a scaling along the axes.
     pub(super) fn scaling(factors: [f64; 3]) -> Self {
         Transform {
             linear: Mat3::diagonal(Vec3::from_array(factors)),
@@ -38,7 +38,7 @@ impl Transform {
         }
     }
 
-    /// A matrix of four rows, whose last is 0 0 0 1.
+    /// Creates a map from four rows, the last 0 0 0 1.
     pub(super) fn from_rows(rows: [[f64; 4]; 4]) -> Self {
         let row = |i: usize| [rows[i][0], rows[i][1], rows[i][2]];
         Transform {
@@ -51,7 +51,7 @@ impl Transform {
         self.linear * point + self.offset
     }
 
-    /// Whether it turns right hands into left ones, and so faces inside out.
+    /// Returns true if the map reverses handedness and so turns faces inside out.
     pub(super) fn mirrors(&self) -> bool {
         self.linear.determinant() < 0.0
     }
@@ -60,7 +60,7 @@ impl Transform {
 impl Mul for Transform {
     type Output = Transform;
 
-    /// First `inner`, then this.
+    /// Composes the maps: applies `inner` first.
     fn mul(self, inner: Transform) -> Transform {
         Transform {
             linear: self.linear * inner.linear,
@@ -69,7 +69,7 @@ impl Mul for Transform {
     }
 }
 
-/// A point rounded to single precision, in which mesh files have theirs.
+/// Rounds a point to single precision, that of mesh files.
 pub(super) fn to_single(point: Vec3<f64>) -> Vec3<f64> {
     Vec3::from_array(point.to_array().map(|x| f64::from(x as f32)))
 }

@@ -1,5 +1,5 @@
-//! Meshes that a model asks for by name and parameters, MJCF's `builtin`: points and triangles as MuJoCo makes them, with 24 bits
-//! a coordinate.
+//! Meshes defined by name and parameters, MJCF's `builtin`: points and triangles as MuJoCo makes them, with 24 bits per
+//! coordinate.
 
 use super::bytes;
 use super::triangles::Triangles;
@@ -8,19 +8,19 @@ use clench_math::Vec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// The most that a resolution can be asked to be.
+/// The maximum resolution.
 const MAX_RESOLUTION: usize = 1000;
 
 /// Makes the mesh of a name.
 ///
 /// # Errors
-/// A name that is not known, a wrong number of parameters, or one that cannot be.
+/// Returns an error if the name, the number of parameters or a parameter is invalid.
 pub(crate) fn make(
     name: &str,
     parameters: &[f64],
     spending: &mut Spending,
 ) -> Result<Triangles, String> {
-    // More than any of them has: a grid of the resolutions.
+    // An upper bound for any of them: a grid of the resolutions.
     let resolution = |k: usize| {
         let asked = parameters.get(k).map_or(0, |&number| number as usize);
         asked.min(MAX_RESOLUTION)
@@ -32,7 +32,7 @@ pub(crate) fn make(
     };
     spending.bytes(bytes(vertices, 2 * vertices))?;
     let whole = |what: &str, number: f64, least: usize, most: usize| {
-        // As in MuJoCo, what is behind the point does not count.
+        // As in MuJoCo, the fractional part is ignored.
         let integer = number.trunc();
         match integer >= least as f64 && integer <= most as f64 {
             true => Ok(integer as usize),
@@ -83,12 +83,12 @@ pub(crate) fn make(
     }
 }
 
-/// A point or tangent with the bits that it keeps.
+/// Creates a point or tangent, rounded to single precision.
 fn point(x: f64, y: f64, z: f64) -> Vec3<f64> {
     Vec3::from_array([x, y, z].map(|coordinate| f64::from(coordinate as f32)))
 }
 
-/// Triangles of the icosahedron.
+/// The triangles of the icosahedron.
 const ICOSAHEDRON: [[u32; 3]; 20] = [
     [0, 11, 5],
     [0, 5, 1],
@@ -112,7 +112,8 @@ const ICOSAHEDRON: [[u32; 3]; 20] = [
     [9, 8, 1],
 ];
 
-/// Corners of an icosahedron: three rectangles with sides 2 and 2 φ, φ the golden ratio, each in a plane of two axes.
+/// Returns the corners of an icosahedron: three rectangles with sides 2 and 2 φ, φ the golden ratio, each in a plane of
+/// two axes.
 fn icosahedron(golden: f32) -> Vec<[f32; 3]> {
     let corners = [
         (golden, -1.0),
@@ -128,7 +129,7 @@ fn icosahedron(golden: f32) -> Vec<[f32; 3]> {
     .concat()
 }
 
-/// An icosahedron whose triangles are cut into four, again and again, their new corners on the unit sphere.
+/// Makes an icosphere: repeatedly cuts each triangle into four, with the new corners on the unit sphere.
 fn sphere(subdivisions: usize) -> Triangles {
     let golden = (0.5 * (1.0 + 5f64.sqrt())) as f32;
     let norm = (1.0 + f64::from(golden * golden)).sqrt();
@@ -164,8 +165,8 @@ fn sphere(subdivisions: usize) -> Triangles {
     }
 }
 
-/// The upper half of an octahedron, each of its triangles cut into rows of triangles, its corners moved to the unit sphere; and a
-/// disc around the origin.
+/// Makes the upper half of an octahedron, each triangle cut into rows of triangles, its corners moved to the unit
+/// sphere, and a disc around the origin.
 fn hemisphere(resolution: usize) -> Triangles {
     const EQUATOR: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     let rows = resolution + 1;
@@ -187,7 +188,7 @@ fn hemisphere(resolution: usize) -> Triangles {
     }
     let middle = vertices.len() as u32;
     vertices.push(Vec3::ZERO);
-    // Corner number `step` of a side of a row; the pole is the row 0.
+    // Corner number `step` of a side of a row; the pole is row 0.
     let corner = |row: usize, side: usize, step: usize| match row {
         0 => 0,
         _ => (1 + 2 * row * (row - 1) + (side * row + step) % (4 * row)) as u32,
@@ -215,7 +216,7 @@ fn hemisphere(resolution: usize) -> Triangles {
     }
 }
 
-/// A regular polygon at z = −1 and another, of this radius, at z = 1; or a point there.
+/// Makes a cone: a regular polygon at z = −1 and another, of the given radius, or a point at z = 1.
 fn cone(corners: usize, radius: f64) -> Triangles {
     let ring = |radius: f64, z: f64, turns: usize| {
         (0..corners).map(move |corner| {
@@ -225,7 +226,7 @@ fn cone(corners: usize, radius: f64) -> Triangles {
     };
     let mut vertices: Vec<Vec3<f64>> = ring(1.0, -1.0, 0).collect();
     match radius > 0.0 {
-        // As in MuJoCo, the upper ring is one turn further.
+        // As in MuJoCo, the upper ring's angles are a full turn greater.
         true => vertices.extend(ring(radius, 1.0, 1)),
         false => vertices.push(Vec3::new(0.0, 0.0, 1.0)),
     }
@@ -235,12 +236,12 @@ fn cone(corners: usize, radius: f64) -> Triangles {
     }
 }
 
-/// abs(x)ⁿ with the sign of x.
+/// Returns abs(x)ⁿ with the sign of x.
 fn signed_power(x: f64, exponent: f64) -> f64 {
     x.abs().powf(exponent).copysign(x)
 }
 
-/// A superellipsoid with half axes of length one: rings of points between two poles.
+/// Makes a superellipsoid with half axes of length one: rings of points between two poles.
 fn supersphere(resolution: usize, e: f64, n: f64) -> Triangles {
     let step = |turn: f64, k: usize| k as f64 * turn / resolution as f64;
     let mut vertices = vec![Vec3::new(0.0, 0.0, -1.0)];
@@ -278,7 +279,7 @@ fn supersphere(resolution: usize, e: f64, n: f64) -> Triangles {
     }
 }
 
-/// A supertoroid about a circle of radius one.
+/// Makes a supertoroid about a circle of radius one.
 fn supertorus(resolution: usize, radius: f64, s: f64, t: f64) -> Triangles {
     let angle = |k: usize| 2.0 * PI * k as f64 / resolution as f64;
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
@@ -304,9 +305,9 @@ fn supertorus(resolution: usize, radius: f64, s: f64, t: f64) -> Triangles {
     }
 }
 
-/// Edges of equal bins from −1 to 1.
+/// Returns the edges of equal bins from −1 to 1.
 fn edges(bins: usize) -> impl Iterator<Item = f64> {
-    // Summed as MuJoCo sums them, so that the last bits agree.
+    // Summed in MuJoCo's order, so that the last bits agree.
     let width = 2.0 / bins as f64;
     (0..=bins).scan(-1.0, move |edge, _| {
         let here = *edge;
@@ -315,8 +316,9 @@ fn edges(bins: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The middles of bins of azimuth and elevation on the unit sphere, about −z, up to these angles (degrees) to each side. The more `fovea`
-/// is one, the denser they are in the middle: an edge x moves to fovea x⁵ + (1 − fovea) x.
+/// Makes the centres of bins of azimuth and elevation on the unit sphere, about −z, up to these angles (degrees) to
+/// each side. The closer `fovea` is to one, the denser they are in the middle: an edge x moves to fovea x⁵ + (1 −
+/// fovea) x.
 fn wedge(bins: [usize; 2], angles: [f64; 2], fovea: f64) -> Triangles {
     let middles = |axis: usize| -> Vec<f64> {
         let moved = edges(bins[axis]).map(|x| match fovea > 0.0 {
@@ -345,7 +347,7 @@ fn wedge(bins: [usize; 2], angles: [f64; 2], fovea: f64) -> Triangles {
     }
 }
 
-/// The middles of the cells of a square with sides of length two at z = −1, and the triangles between them.
+/// Makes the centres of the cells of a square with sides of length two at z = −1, and the triangles between them.
 fn plate(cells: [usize; 2]) -> Triangles {
     let [rows, columns] = cells;
     let middle = |k: usize, count: usize| -1.0 + (k as f64 + 0.5) * (2.0 / count as f64);
@@ -378,8 +380,8 @@ mod tests {
     fn a_wedge_is_a_part_of_the_unit_sphere_about_minus_z() {
         let found = wedge([4, 6], [90.0, 30.0], 0.5);
         assert_eq!(found.vertices.len(), 24);
-        // The fovea takes the edges 1/2 and 1 of the last bin of azimuth to (1/2⁵ + 1/2) / 2 = 17/64 and 1, of 90 degrees; the edges 2/3
-        // and 1 of elevation to 97/243 and 1, of 30 degrees.
+        // The fovea moves the edges 1/2 and 1 of the last azimuth bin to (1/2⁵ + 1/2) / 2 = 17/64 and 1, of 90 degrees;
+        // the edges 2/3 and 1 of elevation to 97/243 and 1, of 30 degrees.
         let azimuth = (17.0 / 64.0 + 1.0) / 2.0 * PI / 2.0;
         let elevation = (97.0 / 243.0 + 1.0) / 2.0 * PI / 6.0;
         let expected = Vec3::new(

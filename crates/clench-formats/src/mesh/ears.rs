@@ -1,16 +1,17 @@
-//! Triangles of a polygon, those that MuJoCo 4.0 finds in OBJ files.
+//! Triangulation of polygons, as MuJoCo 4.0 does for OBJ files.
 //!
-//! A quadrilateral is split along its shorter diagonal, a larger polygon by clipping ears: corner by corner, seen along the coordinate axis
-//! that its first corner faces most, a corner that turns the right way and whose triangle holds no other vertex is cut off. Where a
-//! polygon is not convex the search may end early, and leaves out what is left. Which triangles these are is decided by rounding, so all is in
-//! single precision, and a corner's sense is compared with the sign of x₀ y₁ − y₀ x₁, as in tinyobjloader, the reader that MuJoCo uses.
+//! A quadrilateral is split along its shorter diagonal, a larger polygon by ear clipping: corner by corner, projected
+//! along the coordinate axis that its first corner faces most, a corner is cut off if it turns the right way and its
+//! triangle contains no other vertex. On a polygon that is not convex, the search may terminate early and omit the
+//! remainder. Rounding affects the result, so all is in single precision, and a corner's sense is compared with the
+//! sign of x₀ y₁ − y₀ x₁, as in tinyobjloader, the reader that MuJoCo uses.
 
 use clench_math::Vec3;
 
-/// Polygons with more corners are left out, as in MuJoCo.
+/// Larger polygons are omitted, as in MuJoCo.
 const MAX_CORNERS: usize = 100;
 
-/// The triangles of a polygon with its corners at these places, as numbers of the corners.
+/// Returns the triangles of a polygon with these corners, as indices of the corners.
 pub(super) fn triangulate(places: &[Vec3<f64>]) -> Vec<[usize; 3]> {
     let points: Vec<[f32; 3]> = (places.iter())
         .map(|place| place.to_array().map(|x| x as f32))
@@ -29,13 +30,13 @@ pub(super) fn triangulate(places: &[Vec3<f64>]) -> Vec<[usize; 3]> {
     }
 }
 
-/// The square of a distance.
+/// Returns the square of a distance.
 fn square(p: [f32; 3], q: [f32; 3]) -> f32 {
     let [x, y, z] = [0, 1, 2].map(|i| q[i] - p[i]);
     x * x + y * y + z * z
 }
 
-/// The two coordinates in which the first corner that is not straight is seen best.
+/// Returns the two coordinates in which the first corner that is not straight has the largest area.
 fn plane(points: &[[f32; 3]]) -> [usize; 2] {
     let count = points.len();
     for k in 0..count {
@@ -55,7 +56,7 @@ fn plane(points: &[[f32; 3]]) -> [usize; 2] {
     [1, 2]
 }
 
-/// Cuts ears off a polygon until a triangle is left, or none was found in a round.
+/// Clips ears off a polygon until a triangle is left, or a round finds none.
 fn clip(flat: impl Iterator<Item = [f32; 2]>) -> Vec<[usize; 3]> {
     let mut faces = Vec::new();
     let mut left: Vec<(usize, [f32; 2])> = flat.enumerate().collect();
@@ -73,7 +74,7 @@ fn clip(flat: impl Iterator<Item = [f32; 2]>) -> Vec<[usize; 3]> {
         }
         faces.push(ear.map(|(corner, _)| corner));
         left.remove((first + 1) % count);
-        // What the last try of a round finds is the last ear; any other begins a round anew.
+        // An ear found by the last try of a round is the last one; any other starts a new round.
         if tries > 0 {
             tries = left.len() + 1;
         }
@@ -84,14 +85,14 @@ fn clip(flat: impl Iterator<Item = [f32; 2]>) -> Vec<[usize; 3]> {
     faces
 }
 
-/// Whether a corner turns against the sense in which its first edge goes about the origin.
+/// Returns true if a corner turns against the sense of its first edge about the origin.
 fn turns_back([p, q, r]: &[[f32; 2]; 3]) -> bool {
     let turn = (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]);
     let sense = (p[0] * q[1] - p[1] * q[0]) * 0.5;
     turn * sense < 0.0
 }
 
-/// Whether a point is in a triangle: a ray from it along the first axis crosses an odd number of edges.
+/// Returns true if a point is in a triangle: a ray from it along the first axis crosses an odd number of edges.
 fn is_inside([x, y]: [f32; 2], triangle: &[[f32; 2]; 3]) -> bool {
     let [p, q, r] = *triangle;
     let crosses = |[ax, ay]: [f32; 2], [bx, by]: [f32; 2]| {
@@ -120,14 +121,14 @@ mod tests {
         [-0.3, 0.5],
     ];
 
-    /// Its triangles where it stands elsewhere.
+    /// Its triangles when it is translated.
     fn faces([x, y]: [f64; 2]) -> Vec<[usize; 3]> {
         triangulate(&OUTLINE.map(|[a, b]| Vec3::new(a + x, b + y, 0.0)))
     }
 
     #[test]
     fn what_is_not_convex_is_cut_as_by_mujoco() {
-        // The faces that MuJoCo 4.0.0 has of these polygons.
+        // The faces that MuJoCo 4.0.0 makes of these polygons.
         let all = [
             [0, 1, 2],
             [0, 2, 3],

@@ -1,7 +1,7 @@
-//! Meshes: triangles from STL, OBJ, MSH, Collada and glTF files, and those that a model asks for by name.
+//! Meshes: triangles from STL, OBJ, MSH, Collada and glTF files, and built-in meshes.
 //!
-//! A reader takes the bytes of a file and says what is wrong with them; who asked for the file adds which one it was. Counts that a
-//! file claims are held against its length before anything is allocated.
+//! A reader takes the bytes of a file and reports errors in them; its caller adds the file name. Counts are checked
+//! against the file's length before allocation.
 
 mod affine;
 pub(crate) mod builtin;
@@ -18,12 +18,13 @@ use clench_math::Vec3;
 use std::path::Path;
 pub(crate) use triangles::Triangles;
 
-/// What a mesh takes in all, bytes: in the builder, in the model, as a hull, and in a tree for rays.
+/// Returns the total memory of a mesh, bytes: in the builder, in the model, as a hull, and in a tree for rays.
 fn bytes(vertices: usize, faces: usize) -> u64 {
     (vertices as u64).saturating_mul(200) + (faces as u64).saturating_mul(150)
 }
 
-/// What a mesh that was read takes in all, bytes: its texture coordinates stand in the builder and in the model too.
+/// Returns the total memory of a mesh read from a file, bytes, including its texture coordinates in the builder and the
+/// model.
 pub(crate) fn cost(mesh: &Triangles) -> u64 {
     let seen = 24 * mesh.texcoords.len() + 36 * mesh.face_texcoords.len();
     bytes(mesh.vertices.len(), mesh.faces.len()) + seen as u64
@@ -40,7 +41,7 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// The format that a file name ends with, in small letters or capitals.
+    /// Returns the format of a file name extension, ignoring case.
     pub(crate) fn from_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
             "stl" => Some(Format::Stl),
@@ -51,7 +52,7 @@ impl Format {
             _ => None,
         }
     }
-    /// The format of a media type, MJCF's `content_type`.
+    /// Returns the format of a media type, MJCF's `content_type`.
     pub(crate) fn from_media_type(media_type: &str) -> Option<Self> {
         match media_type {
             "model/stl" => Some(Format::Stl),
@@ -64,25 +65,25 @@ impl Format {
     }
 }
 
-/// Which objects and groups of an OBJ file count.
+/// The objects and groups of an OBJ file that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Objects {
-    /// The first that has faces, as in MuJoCo.
+    /// The first with faces, as in MuJoCo.
     First,
     All,
 }
 
-/// The folder of a mesh file, in which files are that it names.
+/// The folder of a mesh file, with the files that it refers to.
 pub(crate) struct Beside<'a> {
     pub directory: &'a Path,
     pub spending: &'a mut Spending,
 }
 
 impl Beside<'_> {
-    /// Reads a file that a mesh file names.
+    /// Reads a file that a mesh file refers to.
     ///
     /// # Errors
-    /// A file that is not there or too long.
+    /// Returns an error if it is missing or too long.
     fn read(&mut self, name: &str) -> Result<Vec<u8>, String> {
         let path = self.directory.join(name);
         let read = self.spending.read(&path);
@@ -93,7 +94,7 @@ impl Beside<'_> {
 /// Reads a mesh.
 ///
 /// # Errors
-/// What is wrong with the bytes, or with a file that they name.
+/// Returns a message if the bytes, or a file that they refer to, are invalid.
 pub(crate) fn read(
     bytes: Vec<u8>,
     format: Format,

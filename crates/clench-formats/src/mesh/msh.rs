@@ -1,9 +1,9 @@
-//! MSH, MuJoCo's old binary format: four counts (vertices, normals, texture coordinates, faces), then three `f32` a vertex, three a
-//! normal, two a texture coordinate, three `i32` a face.
+//! MSH, MuJoCo's old binary format: four counts (vertices, normals, texture coordinates, faces), then three `f32` per
+//! vertex, three per normal, two per texture coordinate, three `i32` per face.
 
 use super::triangles::{Triangles, floats, points};
 
-/// Bytes of the four counts.
+/// The bytes of the four counts.
 const HEADER: u64 = 16;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
@@ -27,7 +27,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
             bytes.len()
         ));
     }
-    // As long as the file, so they fit into its numbers.
+    // The file has this length, so the offsets fit `usize`.
     let end = (HEADER + 12 * vertices) as usize;
     let start = (expected - 12 * faces) as usize;
     let corners: Vec<i32> = (words[start / 4..].iter().copied())

@@ -1,6 +1,6 @@
-//! OBJ: the lines that matter to a shape, read as MuJoCo reads them.
+//! OBJ files: the lines that define a shape, read as MuJoCo reads them.
 //!
-//! All vertices of the file count towards the hull.
+//! All vertices of the file contribute to the hull.
 
 use super::Objects;
 use super::ears::triangulate;
@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8], objects: Objects) -> Result<Triangles, String> 
                 let corners = words
                     .map(|word| corner(word, [vertices.len(), texcoords.len()], number))
                     .collect::<Result<Vec<Corner>, String>>()?;
-                // What has no area is dropped, as in MuJoCo.
+                // Faces without area are dropped, as in MuJoCo.
                 if corners.len() >= 3 {
                     polygons.push(Polygon { number, corners });
                 }
@@ -38,7 +38,7 @@ pub(super) fn read(bytes: &[u8], objects: Objects) -> Result<Triangles, String> 
     triangles(vertices, texcoords, &polygons)
 }
 
-/// The number of faces of objects and groups after the first.
+/// Returns the number of faces in objects and groups after the first.
 pub(crate) fn further_faces(bytes: &[u8]) -> usize {
     let text = String::from_utf8_lossy(bytes);
     let tags = text
@@ -50,20 +50,20 @@ pub(crate) fn further_faces(bytes: &[u8]) -> usize {
     further.filter(|tag| *tag == "f").count()
 }
 
-/// A face of the file, and the line it is in.
+/// A face of the file and its line number.
 struct Polygon {
     number: usize,
     corners: Vec<Corner>,
 }
 
-/// A corner of a face: a vertex and, where it has one, a texture coordinate.
+/// A corner of a face: a vertex and an optional texture coordinate.
 #[derive(Clone, Copy)]
 struct Corner {
     vertex: u32,
     texcoord: Option<u32>,
 }
 
-/// The triangles of all faces. As in MuJoCo texture coordinates count only where all corners have one.
+/// Returns the triangles of all faces. As in MuJoCo, texture coordinates are used only if all corners have one.
 fn triangles(
     vertices: Vec<Vec3<f64>>,
     texcoords: Vec<[f32; 2]>,
@@ -102,7 +102,7 @@ fn triangles(
     })
 }
 
-/// Three coordinates, kept with the 24 bits that MuJoCo keeps.
+/// Parses three coordinates, in single precision as in MuJoCo.
 fn vertex<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3<f64>, String> {
     let mut coordinates = [0.0; 3];
     let mut found = 0;
@@ -119,7 +119,7 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3<
     }
 }
 
-/// A place in a picture, which OBJ counts upwards.
+/// Parses a texture coordinate, whose second axis points up.
 fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<[f32; 2], String> {
     let mut number = || match words.next() {
         None => Ok(0.0),
@@ -130,7 +130,8 @@ fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result
     Ok([number()?, 1.0 - number()?])
 }
 
-/// A corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; `before` counts the vertices and texture coordinates up to there.
+/// Parses a corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; `before` counts the preceding vertices
+/// and texture coordinates.
 fn corner(word: &str, before: [usize; 2], line: usize) -> Result<Corner, String> {
     let wrong = || format!("line {line}: \"{word}\" is no corner of a face");
     let mut parts = word.split('/');

@@ -1,4 +1,5 @@
-//! STL, binary and text. Corners with the same bits are one vertex. Normals are not used: many a file has none that are right.
+//! STL files, binary and text. Corners with the same bits are one vertex. Normals are ignored: in many files they are
+//! wrong.
 
 use super::triangles::{Triangles, floats};
 use clench_math::Vec3;
@@ -6,13 +7,13 @@ use std::collections::HashMap;
 use std::iter::Enumerate;
 use std::str::{Lines, SplitAsciiWhitespace};
 
-/// What a binary file begins with: 80 bytes of any content, then the number of triangles.
+/// The length of a binary file's header: 80 arbitrary bytes, then the number of triangles.
 const HEADER: usize = 84;
-/// A triangle: normal, three corners, two bytes of any content.
+/// The length of a triangle: normal, three corners, two arbitrary bytes.
 const TRIANGLE: usize = 50;
-/// The normal, three numbers.
+/// The length of a normal, three numbers.
 const NORMAL: usize = 12;
-/// Three corners of three numbers.
+/// The length of three corners of three numbers.
 const CORNERS: usize = 36;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
@@ -27,10 +28,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     }
 }
 
-/// Whether the bytes are a binary file. Many a binary file begins with "solid", as text files do: its length tells.
+/// Returns true if the bytes are a binary file. Some binary files begin with "solid", like text files, so the length
+/// decides.
 ///
 /// # Errors
-/// Bytes that are neither text nor as long as the number of triangles that they claim says.
+/// Returns an error if they are not text and their length does not match their number of triangles.
 fn is_binary(bytes: &[u8]) -> Result<bool, String> {
     let count = match bytes.get(80..HEADER) {
         Some(&[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]) as usize,
@@ -53,7 +55,7 @@ fn is_binary(bytes: &[u8]) -> Result<bool, String> {
     })
 }
 
-/// Triangles whose equal corners are one vertex.
+/// Triangles with equal corners merged.
 #[derive(Default)]
 struct Indexed {
     triangles: Triangles,
@@ -64,7 +66,7 @@ impl Indexed {
     /// Adds a triangle.
     ///
     /// # Errors
-    /// More vertices than can be counted.
+    /// Returns an error if there are too many vertices.
     fn push(&mut self, corners: [[f32; 3]; 3]) -> Result<(), String> {
         let mut face = [0; 3];
         for (index, corner) in face.iter_mut().zip(corners) {
@@ -97,7 +99,7 @@ fn read_binary(bytes: &[u8], mesh: &mut Indexed) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads all solids of a text; small letters and capitals are the same.
+/// Reads all solids of a text, ignoring case.
 fn read_text(text: &str, mesh: &mut Indexed) -> Result<(), String> {
     let mut lines = Text {
         lines: text.lines().enumerate(),
@@ -121,15 +123,15 @@ fn read_text(text: &str, mesh: &mut Indexed) -> Result<(), String> {
     Ok(())
 }
 
-/// The lines of a text that are not empty.
+/// The nonempty lines of a text.
 struct Text<'a> {
     lines: Enumerate<Lines<'a>>,
-    /// Of the last one, from 1 on.
+    /// The number of the last line, from 1 on.
     number: usize,
 }
 
 impl<'a> Text<'a> {
-    /// The first word of the next line and those after it.
+    /// Returns the first word of the next line, and the others.
     fn next(&mut self) -> Option<(&'a str, SplitAsciiWhitespace<'a>)> {
         self.lines.by_ref().find_map(|(index, line)| {
             self.number = index + 1;
@@ -141,7 +143,7 @@ impl<'a> Text<'a> {
         let next = self.next();
         next.ok_or_else(|| self.error(&format!("the file ends where {what} should follow")))
     }
-    /// The words after `keyword`, with which the next line begins.
+    /// Consumes a line that begins with `keyword` and returns its other words.
     fn take(&mut self, keyword: &str) -> Result<SplitAsciiWhitespace<'a>, String> {
         let (word, rest) = self.need(keyword)?;
         self.expect(word, keyword)?;

@@ -1,8 +1,8 @@
 //! `<actuator>`: `general` and its shortcuts.
 //!
-//! Mechanical attributes (ranges, gear) come from any default of the class. Dynamics, gain and bias come only from a default that was
-//! written with the same shortcut, or with `general` and the shortcut's kind of gain, in the class or its nearest such
-//! ancestor (MuJoCo manual, modeling chapter, "Shortcuts"); `general` takes any as they are.
+//! Mechanical attributes (ranges, gear) come from any default of the class. Dynamics, gain and bias come only from a
+//! default that was written with the same shortcut, or with `general` and the shortcut's kind of gain, in the class or
+//! its nearest such ancestor (MuJoCo manual, modeling chapter, "Shortcuts"); `general` inherits from any default.
 
 use super::controller::{self, Saturation};
 use super::document::Element;
@@ -14,7 +14,7 @@ use clench_builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
 use clench_dynamics::model::Interpolation;
 use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
-/// Overwrites what the element says of past values; fewer samples than none are none, as in MuJoCo.
+/// Overwrites the history settings that the element gives; a negative number of samples is none, as in MuJoCo.
 pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Result<(), LoadError> {
     if let Some(samples) = element.integer("nsample")? {
         history.nsample = usize::try_from(samples).unwrap_or(0);
@@ -28,12 +28,12 @@ pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Resu
     element.set_number("delay", &mut history.delay)
 }
 
-/// An actuator as it is written, or as a default class has it.
+/// An actuator as written in an element or a default class.
 #[derive(Clone, Debug)]
 pub(crate) struct ActuatorDraft {
     pub shortcut: Shortcut,
     pub parameters: ActuatorParams,
-    /// All other attributes that a default class can have.
+    /// All other attributes that a default class can set.
     spec: ActuatorSpec,
 }
 
@@ -48,13 +48,13 @@ impl Default for ActuatorDraft {
 }
 
 impl ActuatorDraft {
-    /// Whether a shortcut may read its parameters from this default.
+    /// Returns true if a shortcut may inherit its parameters from this default.
     pub(super) fn lends_parameters_to(&self, shortcut: Shortcut) -> bool {
         self.shortcut == shortcut
             || (self.shortcut == Shortcut::General && self.parameters.gain == shortcut.gain())
     }
 
-    /// Overwrites what the element gives; `inherited` are the parameters that its class lends to `shortcut`.
+    /// Overwrites what the element gives; `inherited` are the parameters that `shortcut` inherits from its class.
     pub(super) fn read(
         &mut self,
         element: &Element,
@@ -96,7 +96,7 @@ impl ActuatorDraft {
             Shortcut::Adhesion => shortcut::read_adhesion(element, inherited)?,
         };
         self.parameters = match shortcut {
-            // It changes what its class says, one by one.
+            // It overwrites the parameters of its class individually.
             Shortcut::General => ActuatorParams {
                 saturation: (parameters.saturation)
                     .map(|_| (self.spec.forcerange, self.spec.forcelimited)),
@@ -113,15 +113,16 @@ impl ActuatorDraft {
         }
         self.spec.actlimited = match shortcut {
             Shortcut::General => self.spec.actlimited,
-            // Its activations are of many kinds, which no range bounds.
+            // Its activations are of several kinds, which no range limits.
             Shortcut::DcMotor => Some(false),
-            // As in MuJoCo, whatever the file says of it: an activation range limits if there is one.
+            // As in MuJoCo, the attribute is ignored: an activation range limits if there is one.
             _ => None,
         };
         self.settle_inheritrange(element)
     }
 
-    /// `dcmotor`: its saturation is a limit of the force, and comes with what its class lends, whatever limit others of the class have.
+    /// Reads `dcmotor`: its saturation is a force limit, inherited with the other parameters. It takes precedence over
+    /// other limits of the class.
     fn read_dc_motor(
         &mut self,
         element: &Element,
@@ -143,7 +144,7 @@ impl ActuatorDraft {
         Ok(parameters)
     }
 
-    /// Dampers and adhesions are limited to positive controls.
+    /// Limits dampers and adhesions to nonnegative controls.
     fn require_positive_controls(&mut self, element: &Element) -> Result<(), LoadError> {
         if self.spec.ctrlrange.iter().any(|&end| end < 0.0) {
             return Err(element.error(format!(
@@ -155,7 +156,8 @@ impl ActuatorDraft {
         Ok(())
     }
 
-    /// Of an inherited and a written one of `inheritrange` and the range that it stands for, the written one counts.
+    /// Resolves a conflict of `inheritrange` with the range that it sets: one written in the element overrides an
+    /// inherited one.
     fn settle_inheritrange(&mut self, element: &Element) -> Result<(), LoadError> {
         if self.parameters.inheritrange == 0.0 {
             return Ok(());
@@ -178,7 +180,7 @@ impl ActuatorDraft {
         Ok(())
     }
 
-    /// The actuator of the model.
+    /// Returns the actuator of the model.
     pub(super) fn finish(self, element: &Element) -> Result<ActuatorSpec, LoadError> {
         let mut parameters = self.parameters;
         if let Some(inputs) = parameters.inputs {
@@ -186,7 +188,7 @@ impl ActuatorDraft {
         }
         let mut lengthrange = [0.0; 2];
         element.set_range("lengthrange", &mut lengthrange)?;
-        // MuJoCo keeps a damping ratio as a positive velocity coefficient of what pulls back, however written.
+        // MuJoCo stores a damping ratio as a positive velocity coefficient of a restoring bias, however it is written.
         let matches = parameters.gainprm[0] == -parameters.biasprm[1];
         let pulls_back = matches!(parameters.bias, BiasKind::Affine | BiasKind::So3)
             && (matches || parameters.gain == GainKind::Pid);
@@ -196,7 +198,7 @@ impl ActuatorDraft {
         if dampratio.is_some() {
             parameters.biasprm[2] = 0.0;
         }
-        // A controller has the activations that it needs, where its class says that there are none.
+        // A PID controller has the activations that it needs even if its class says that there are none.
         let counts = parameters.dynamics != DynamicsKind::Pid || parameters.actdim > 0;
         Ok(ActuatorSpec {
             name: element.string("name"),
@@ -219,7 +221,7 @@ impl ActuatorDraft {
     }
 }
 
-/// `general`: every parameter by its own attribute.
+/// Reads `general`: each parameter from its own attribute.
 fn read_general(
     element: &Element,
     mut parameters: ActuatorParams,

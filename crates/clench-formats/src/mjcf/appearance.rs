@@ -1,4 +1,4 @@
-//! How elements look: colours, materials, and which of them geoms have.
+//! The appearance of elements: colours, materials, and their assignment to geoms.
 
 use super::document::Element;
 use super::sections::entries;
@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// MuJoCo takes this colour of an element for none.
+/// The colour that MuJoCo treats as unset.
 const NO_COLOUR: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
 
-/// Overwrites what the element gives of its appearance.
+/// Overwrites the appearance that the element gives.
 pub(crate) fn read_appearance(
     element: &Element,
     appearance: &mut AppearanceSpec,
@@ -26,7 +26,7 @@ pub(crate) fn read_appearance(
     Ok(())
 }
 
-/// Overwrites what the element gives of a material.
+/// Overwrites the material properties that the element gives.
 pub(crate) fn read_material(
     element: &Element,
     material: &mut MaterialSpec,
@@ -48,7 +48,7 @@ pub(crate) fn read_material(
     if let Some(texture) = element.text("texture") {
         material.texture = texture.into();
     }
-    // A material of several layers shows that of its colours.
+    // A material with several layers shows its colour layer.
     let layers = element.children.iter().filter(|child| child.tag == "layer");
     for layer in layers.filter(|layer| matches!(layer.text("role"), Some("rgb" | "rgba"))) {
         material.texture = layer.string("texture").into();
@@ -68,7 +68,7 @@ pub(super) fn set<const N: usize>(
     Ok(())
 }
 
-/// Overwrites as many numbers of an attribute as it gives.
+/// Overwrites the leading numbers that an attribute gives.
 fn set_some<const N: usize>(
     element: &Element,
     name: &str,
@@ -79,17 +79,17 @@ fn set_some<const N: usize>(
     Ok(())
 }
 
-/// The materials that geoms have, and with them what can be seen.
+/// The materials of geoms, and their visibility.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Palette {
-    /// Whether each material can be seen.
+    /// True for each visible material.
     visible: BTreeMap<String, bool>,
-    /// The materials that meshes lend to geoms without one.
+    /// The materials that geoms inherit from their meshes.
     meshes: BTreeMap<String, Arc<str>>,
 }
 
 impl Palette {
-    /// That of a model's materials, and of the meshes that have one.
+    /// Creates the palette of a model's materials and meshes.
     pub(super) fn new(root: &Element, materials: &[MaterialSpec]) -> Self {
         let visible = materials.iter().map(|material| {
             let Material { name, rgba, .. } = &material.surface;
@@ -113,7 +113,7 @@ impl Palette {
         palette
     }
 
-    /// The appearance of a geom of a mesh, which lends its material to a geom without one.
+    /// Returns the appearance of a mesh geom, which inherits the mesh's material by default.
     pub(super) fn of_geom(&self, appearance: AppearanceSpec, mesh: &str) -> AppearanceSpec {
         let material = match self.meshes.get(mesh) {
             Some(lent) if appearance.material.is_empty() => Arc::clone(lent),
@@ -125,7 +125,7 @@ impl Palette {
         }
     }
 
-    /// Whether a geom can be seen: by its material, or without one by its own colour.
+    /// Returns true if a geom is visible, by its material or else by its own colour.
     pub(super) fn shows(&self, appearance: &AppearanceSpec) -> bool {
         let own = || appearance.rgba.is_none_or(|rgba| rgba[3] != 0.0);
         (self.visible.get(&*appearance.material).copied()).unwrap_or_else(own)

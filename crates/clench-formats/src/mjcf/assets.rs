@@ -1,4 +1,4 @@
-//! `<asset>`: meshes and height fields. Who names a material must name one that exists.
+//! `<asset>`: meshes and height fields. A referenced material must exist.
 
 use super::document::Element;
 use super::sections::{entries, sections};
@@ -35,7 +35,7 @@ pub(crate) fn read(
     Ok(())
 }
 
-/// Checks that every material that an element of the body tree names exists.
+/// Checks that every material referenced in the body tree exists.
 pub(crate) fn check_materials(root: &Element) -> Result<(), LoadError> {
     let materials = entries(root, "asset").filter(|asset| asset.tag == "material");
     let known = materials

@@ -1,4 +1,4 @@
-//! `<worldbody>` and what is in it: bodies, frames and the elements that bodies carry.
+//! `<worldbody>` and its contents: bodies, frames and the elements of bodies.
 
 use super::appearance::Palette;
 use super::compiler::CompilerOptions;
@@ -19,7 +19,7 @@ use clench_dynamics::model::SleepPolicy;
 use clench_math::{Mat3, Quat, Vec3};
 use std::sync::Arc;
 
-/// Reads the body tree into a list of bodies, parents before children.
+/// A reader of the body tree into a list of bodies, parents before children.
 pub(crate) struct BodyReader<'a> {
     sources: &'a Sources,
     palette: &'a Palette,
@@ -32,7 +32,7 @@ pub(crate) struct BodyReader<'a> {
     frames: Frames,
 }
 
-/// The numbers by which keyframes of attached models refer to the joints and mocap bodies of a model, in its order.
+/// The numbers by which keyframes of attached models refer to a model's joints and mocap bodies, in its order.
 #[derive(Debug, Default)]
 pub(crate) struct Numbers {
     pub joints: Vec<u32>,
@@ -46,24 +46,24 @@ const SLEEP_POLICIES: [(&str, SleepPolicy); 4] = [
     ("init", SleepPolicy::Init),
 ];
 
-/// What is read of an element stands in the builder, then in the model, and for a while in both.
+/// The memory factor of an element: stored in the builder, then in the model, for a while in both.
 const COPIES: usize = 3;
 
-/// Where in the tree the reader is.
+/// The position of the reader in the tree.
 #[derive(Clone)]
 struct Place {
-    /// The body that carries what is read.
+    /// The body that contains the elements.
     body: usize,
-    /// The class that elements without one of their own start from.
+    /// The default class of elements without a class.
     class: usize,
-    /// The frame that what is read is written in.
+    /// The enclosing frame.
     frame: Pose,
-    /// The innermost frame that scales it.
+    /// The innermost enclosing frame that scales.
     scale: FrameId,
 }
 
 impl Place {
-    /// What the frames around make of positions in the axes of the body.
+    /// Returns the linear map of positions by the enclosing frames, in body axes.
     fn in_body(&self) -> Stretch {
         self.frame.stretch.turned(self.frame.quat.conjugate())
     }
@@ -72,12 +72,12 @@ impl Place {
 /// An element whose children are being read.
 struct Level<'e> {
     element: &'e Element,
-    /// The next child.
+    /// The index of the next child.
     next: usize,
     place: Place,
 }
 
-/// The world, before anything is on it.
+/// Returns the empty world.
 pub(crate) fn world() -> BodySpec {
     BodySpec {
         name: "world".to_owned(),
@@ -87,7 +87,7 @@ pub(crate) fn world() -> BodySpec {
 }
 
 impl<'a> BodyReader<'a> {
-    /// A reader that adds to a list of bodies which begins with the world.
+    /// Creates a reader that adds to a list of bodies, which begins with the world.
     pub(super) fn new(
         sources: &'a Sources,
         palette: &'a Palette,
@@ -105,7 +105,7 @@ impl<'a> BodyReader<'a> {
         }
     }
 
-    /// The numbers of what was read, and the frames that scale it.
+    /// Returns the numbers of the elements read, and the frames that scale.
     pub(super) fn finish(mut self) -> (Numbers, Frames) {
         self.joints.sort_by_key(|&(body, _)| body);
         let numbers = Numbers {
@@ -148,7 +148,7 @@ impl<'a> BodyReader<'a> {
         Ok(())
     }
 
-    /// Takes the memory of an element of this size with these texts.
+    /// Counts an element of this size with these texts against the budget.
     fn charge(&mut self, element: &Element, size: usize, texts: &[&str]) -> Result<(), LoadError> {
         let texts: usize = texts.iter().map(|text| text.len()).sum();
         let bytes = COPIES * (size + texts);
@@ -180,7 +180,7 @@ impl<'a> BodyReader<'a> {
         })
     }
 
-    /// Reads a body without its contents, and gives what the frames around it make of positions in its axes.
+    /// Reads a body without its contents, and returns the enclosing frames' map of positions in its axes.
     fn push_body(&mut self, element: &Element, place: &Place) -> Result<Stretch, LoadError> {
         let written = Pose::read(element, self.compiler(element))?;
         let pose = place.frame.then(written);
@@ -255,7 +255,7 @@ impl<'a> BodyReader<'a> {
             "site" => self.read_site(element, place)?,
             "camera" => self.read_camera(element, place)?,
             "light" => self.read_light(element, place)?,
-            // The schema lets nothing else through.
+            // The schema admits no other element.
             _ => {}
         }
         Ok(())
@@ -288,18 +288,18 @@ impl<'a> BodyReader<'a> {
         Ok(())
     }
 
-    /// The settings of an attached model, for a body of it.
+    /// Returns the settings of the body's attached model, if any.
     fn own_settings(&self, element: &Element) -> Option<Arc<CompilerSpec>> {
         let own = &self.sources.of(element).spec;
         (own != &self.sources.main().spec).then(|| own.clone())
     }
 
-    /// How the file that an element comes from writes angles.
+    /// Returns the compiler options for an element.
     fn compiler(&self, element: &Element) -> &'a CompilerOptions {
         &self.sources.of(element).compiler
     }
 
-    /// The default classes of the file that an element comes from.
+    /// Returns the default classes for an element.
     fn classes(&self, element: &Element) -> &'a Classes {
         &self.sources.of(element).classes
     }
@@ -407,8 +407,8 @@ impl<'a> BodyReader<'a> {
     }
 }
 
-/// Moments in the inertial frame, or a matrix in the axes of the frame that the element is written in, which is turned
-/// into those of the body.
+/// Reads moments in the inertial frame, or a matrix in the axes of the enclosing frame, which is rotated to those of
+/// the body.
 fn read_inertia(element: &Element, frame: &Pose) -> Result<InertiaSpec, LoadError> {
     let Some([xx, yy, zz, xy, xz, yz]) = element.numbers("fullinertia")? else {
         let moments = element.numbers("diaginertia")?;

@@ -1,4 +1,4 @@
-//! `<camera>`: a frame that follows bodies, and what is seen from it. Only sensors ask.
+//! `<camera>`: a frame that follows bodies, and its optics. Used only by sensors.
 
 use super::compiler::CompilerOptions;
 use super::document::Element;
@@ -8,7 +8,7 @@ use clench_builder::{CameraLens, CameraSpec, CameraTracking};
 use clench_math::Vec3;
 use std::sync::Arc;
 
-/// A camera as it is written, or as a default class has it.
+/// A camera as written in an element or a default class.
 #[derive(Clone, Debug)]
 pub(crate) struct CameraDraft {
     mode: Mode,
@@ -23,7 +23,7 @@ pub(crate) struct CameraDraft {
     user: Arc<[f64]>,
 }
 
-/// How a camera or light follows bodies.
+/// The mode in which a camera or light follows bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Mode {
     Fixed,
@@ -33,7 +33,7 @@ pub(super) enum Mode {
     TargetBodyCom,
 }
 
-/// Two lengths on the sensor, in metres or in pixels, which go before where they are not zero.
+/// Two lengths on the sensor, in metres or in pixels; the latter take precedence if nonzero.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lengths {
     metres: [f64; 2],
@@ -87,7 +87,7 @@ impl CameraDraft {
         Ok(())
     }
 
-    /// The camera in its body, carried along with the frame that it is written in.
+    /// Returns the camera in its body, transformed by the enclosing frame.
     pub(super) fn finish(
         self,
         element: &Element,
@@ -160,7 +160,7 @@ impl Mode {
     }
 }
 
-/// How an element follows bodies, with the target that it names.
+/// Returns the tracking mode of an element, with its target.
 pub(super) fn tracking(mode: Mode, element: &Element) -> CameraTracking {
     let target = || element.string("target");
     match mode {
@@ -178,7 +178,7 @@ impl Lengths {
     }
 }
 
-/// A number as MuJoCo stores lengths of lenses: in single precision.
+/// Rounds a lens length to single precision, as MuJoCo stores it.
 fn stored(number: f64) -> f64 {
     f64::from(number as f32)
 }

@@ -1,34 +1,34 @@
-//! `<compiler>`: how to read what follows (units, order of rotations), and how to derive what it does not say.
+//! `<compiler>`: settings for reading the file (units, order of rotations) and for deriving omitted values.
 
 use super::document::Element;
 use crate::LoadError;
 use clench_builder::{CompilerSpec, InertiaFromGeom, LengthRangeMode, LengthRangeSpec};
 use clench_math::{Quat, Vec3};
 
-/// What becomes of options of attached models.
+/// The treatment of options of attached models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Conflict {
-    /// They are left out, with a note.
+    /// They are omitted, with a note.
     Warning,
-    /// They are merged, where that is possible.
+    /// They are merged if possible.
     Merge,
-    /// None may say another thing than the model itself.
+    /// They must not contradict those of the model itself.
     Error,
 }
 
-/// How the file writes angles and rotations.
+/// The settings for reading the file.
 #[derive(Clone, Debug)]
 pub(crate) struct CompilerOptions {
     pub degrees: bool,
-    /// Axes of the three Euler rotations; lower case: moving axes, upper case: fixed ones.
+    /// The axes of the three Euler rotations; lower case: moving axes, upper case: fixed axes.
     pub eulerseq: [char; 3],
-    /// Where files of meshes and height fields are, seen from the model.
+    /// The folder of mesh and height field files, relative to the model.
     pub meshdir: String,
-    /// Where files of textures are.
+    /// The folder of texture files.
     pub texturedir: String,
-    /// Only the last part of a file's path counts.
+    /// True if only the last component of a file's path is used.
     pub strippath: bool,
-    /// What becomes of options of attached models.
+    /// The treatment of options of attached models.
     pub conflict: Conflict,
 }
 
@@ -46,7 +46,7 @@ impl Default for CompilerOptions {
 }
 
 impl CompilerOptions {
-    /// An angle of the file in radians.
+    /// Converts an angle of the file to radians.
     pub(crate) fn radians(&self, angle: f64) -> f64 {
         if self.degrees {
             angle.to_radians()
@@ -55,7 +55,7 @@ impl CompilerOptions {
         }
     }
 
-    /// The rotation by three angles of the file.
+    /// Returns the rotation by three angles of the file.
     pub(crate) fn euler(&self, angles: [f64; 3]) -> Quat<f64> {
         let mut total = Quat::IDENTITY;
         for (angle, name) in angles.into_iter().zip(self.eulerseq) {
@@ -105,7 +105,7 @@ impl CompilerOptions {
     }
 }
 
-/// Reads one `<compiler>`; a later one overrides what it gives.
+/// Reads one `<compiler>`; it overrides values of earlier ones.
 pub(crate) fn read(
     element: &Element,
     compiler: &mut CompilerOptions,

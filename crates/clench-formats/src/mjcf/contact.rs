@@ -1,11 +1,12 @@
-//! `<contact>`: pairs that collide whatever their masks say, and bodies that never collide.
+//! `<contact>`: pairs that collide regardless of their masks, and bodies that never collide.
 
 use super::document::Element;
 use super::geom::read_condim;
 use crate::LoadError;
 use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, ExcludeSpec, PairSpec};
 
-/// What a pair of a file starts as. Files do not mix the parameters of the geoms, they have defaults of their own.
+/// Returns the defaults of a pair. Pairs in files do not mix the parameters of their geoms; they have their own
+/// defaults.
 pub(crate) fn default_pair() -> PairSpec {
     PairSpec {
         condim: Some(3),
@@ -36,7 +37,7 @@ pub(crate) fn read_pair(element: &Element, pair: &mut PairSpec) -> Result<(), Lo
     Ok(())
 }
 
-/// The pair that an element of the section `<contact>` describes.
+/// Returns the pair of an element in `<contact>`.
 pub(crate) fn finish_pair(element: &Element, mut pair: PairSpec) -> Result<PairSpec, LoadError> {
     read_pair(element, &mut pair)?;
     Ok(PairSpec {
@@ -48,7 +49,7 @@ pub(crate) fn finish_pair(element: &Element, mut pair: PairSpec) -> Result<PairS
     })
 }
 
-/// Two bodies that never collide.
+/// Reads a pair of bodies that never collide.
 pub(crate) fn read_exclude(element: &Element) -> Result<ExcludeSpec, LoadError> {
     Ok(ExcludeSpec {
         name: element.string("name"),

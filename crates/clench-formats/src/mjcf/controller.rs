@@ -6,7 +6,7 @@ use super::shortcut::{ActuatorParams, not_negative};
 use crate::LoadError;
 use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
-/// `pid`: force = kp (position − length) + kv (velocity − its velocity) + ki ∫error + feedforward.
+/// Reads `pid`: force = kp (position − length) + kv (velocity − its velocity) + ki ∫error + feedforward.
 pub(crate) fn read_pid(
     element: &Element,
     inherited: ActuatorParams,
@@ -58,17 +58,18 @@ pub(crate) fn read_pid(
     Ok(parameters)
 }
 
-/// What `dcmotor` says of the force: its limits, where `saturation` is given.
+/// The force limits set by `saturation` of a `dcmotor`.
 pub(crate) enum Saturation {
-    /// Not given: limits stay as they are.
+    /// Not given: limits are unchanged.
     Inherited,
     /// No limit.
     None,
-    /// The largest torque.
+    /// The maximum torque.
     Torque(f64),
 }
 
-/// `dcmotor`: a motor with its controller, circuit, heat and friction; `damping` is the linear damping of the actuator.
+/// Reads `dcmotor`: a motor with its controller, circuit, heat and friction; `damping` is the linear damping of the
+/// actuator.
 pub(crate) fn read_dc_motor(
     element: &Element,
     inherited: ActuatorParams,
@@ -102,14 +103,16 @@ pub(crate) fn read_dc_motor(
     Ok((motor, saturation))
 }
 
-/// How many activations the motor has: one each for current, heat, friction, slew and integral. A `general` of its class inherits the number.
+/// Returns the number of activations: one each for current, heat, friction, slew and integral. A `general` of its class
+/// inherits it.
 fn count_activations(motor: &ActuatorParams) -> i32 {
     let [te, _, thermal, _, _, bristle, _, slewmax, ..] = motor.dynprm;
     let states = [te, thermal, bristle, slewmax, motor.gainprm[5]];
     states.map(|state| i32::from(state > 0.0)).iter().sum()
 }
 
-/// Resistance R and motor constant K, given or from a nominal operating point (MuJoCo's technical note on motors, section 2.1).
+/// Reads resistance R and motor constant K, given or from a nominal operating point (MuJoCo's technical note on motors,
+/// section 2.1).
 fn read_constants(
     element: &Element,
     motor: &mut ActuatorParams,
@@ -152,7 +155,8 @@ fn read_constants(
     Ok(())
 }
 
-/// The back-EMF constant with which the motor, damped as it is, turns at its no-load speed at the nominal voltage.
+/// Returns the back-EMF constant for which the motor, with its damping, reaches its no-load speed at the nominal
+/// voltage.
 fn nominal_back_emf([voltage, stall, speed]: [f64; 3], resistance: f64, damping: f64) -> f64 {
     let undamped = voltage / speed;
     if damping <= 0.0 {
@@ -172,7 +176,7 @@ fn nominal_back_emf([voltage, stall, speed]: [f64; 3], resistance: f64, damping:
     }
 }
 
-/// Inductance, and the controller's gains and bounds.
+/// Reads the inductance, and the controller's gains and limits.
 fn read_circuit(element: &Element, motor: &mut ActuatorParams) -> Result<(), LoadError> {
     let mut inductance = [0.0; 2];
     if element.overlay("inductance", &mut inductance)? > 0 {
@@ -231,7 +235,7 @@ fn read_heat(element: &Element, motor: &mut ActuatorParams) -> Result<(), LoadEr
     Ok(())
 }
 
-/// Cogging and LuGre friction.
+/// Reads cogging and LuGre friction.
 fn read_friction(element: &Element, motor: &mut ActuatorParams) -> Result<(), LoadError> {
     let (bias, prm) = (&mut motor.biasprm, &mut motor.dynprm);
     let mut cogging = [bias[0], bias[1], bias[2]];

@@ -1,4 +1,4 @@
-//! What a file keeps for its user's program: `<custom>`, and how many numbers of the user's own elements have.
+//! User data: `<custom>`, and the counts of user numbers of elements.
 
 use super::document::Element;
 use super::schema;
@@ -8,11 +8,11 @@ use crate::spending::Spending;
 use clench_builder::UserWidths;
 use clench_dynamics::model::{Custom, TupleEntry};
 
-/// Kinds of elements that a tuple may list.
+/// The kinds of elements that a tuple may list.
 const KINDS: &str = "body xbody joint geom site camera light flex mesh skin hfield texture material pair exclude equality tendon \
     actuator sensor numeric text tuple key plugin";
 
-/// Reads the user's numbers, texts and tuples.
+/// Reads the user numbers, texts and tuples.
 pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, LoadError> {
     let mut custom = Custom::default();
     for element in entries(root, "custom") {
@@ -47,7 +47,7 @@ pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, Lo
     Ok(custom)
 }
 
-/// Reads from a `<size>` how many numbers of the user's own elements have; -1 stands for as many as are given.
+/// Reads the counts of user numbers from a `<size>`; -1 means as many as are given.
 pub(crate) fn read_widths(size: &Element, widths: &mut UserWidths) -> Result<(), LoadError> {
     let targets = [
         ("nuser_body", &mut widths.body),
@@ -71,7 +71,7 @@ pub(crate) fn read_widths(size: &Element, widths: &mut UserWidths) -> Result<(),
     Ok(())
 }
 
-/// As many numbers as `size` says, with zeros at the end, or as `data` has.
+/// Returns `size` numbers, padded with zeros, or those of `data`.
 fn read_numbers(element: &Element, spending: &mut Spending) -> Result<Vec<f64>, LoadError> {
     let mut numbers = element.any_numbers("data")?;
     let size = element.integer("size")?;

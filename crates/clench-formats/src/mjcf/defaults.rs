@@ -1,4 +1,4 @@
-//! `<default>`: classes of attribute values that elements start from.
+//! `<default>`: classes of initial attribute values of elements.
 //!
 //! A class starts as a copy of its parent and overwrites what its elements give; an element starts as a copy of its
 //! class. Copies, not a search for the nearest value, because an attribute with several numbers may give only some.
@@ -21,7 +21,7 @@ use crate::spending::Spending;
 use clench_builder::{JointSpec, MaterialSpec, PairSpec, TendonSpec};
 use std::collections::HashMap;
 
-/// One class: what each kind of element starts as.
+/// A class: the initial values of each kind of element.
 #[derive(Clone, Debug)]
 pub(crate) struct Class {
     name: String,
@@ -39,7 +39,7 @@ pub(crate) struct Class {
     pub actuator: ActuatorDraft,
 }
 
-/// All classes of a model; the first is `main`, which everything starts from.
+/// All classes of a model; the first is `main`, the root of all others.
 #[derive(Debug)]
 pub(crate) struct Classes {
     list: Vec<Class>,
@@ -81,7 +81,7 @@ impl std::ops::Index<usize> for Classes {
 }
 
 impl Classes {
-    /// Reads one top-level `<default>`, which is (more of) the class `main`.
+    /// Reads one top-level `<default>`, which adds to the class `main`.
     pub(super) fn read(
         &mut self,
         element: &Element,
@@ -91,7 +91,7 @@ impl Classes {
             None | Some("" | "main") => {}
             Some(_) => return Err(element.error("the top-level default class is called \"main\"")),
         }
-        // Classes whose own elements are read, each with those nested in it that are still to come.
+        // The classes whose own elements are read, each with its nested classes that remain to be read.
         let mut open = vec![(MAIN, self.read_own(element, MAIN)?)];
         while let Some((class, nested)) = open.last_mut() {
             let Some(child) = nested.next() else {
@@ -104,7 +104,7 @@ impl Classes {
         Ok(())
     }
 
-    /// Reads the elements of a class; gives the classes nested in it.
+    /// Reads the elements of a class; returns its nested classes.
     fn read_own<'a>(
         &mut self,
         element: &'a Element,
@@ -117,7 +117,7 @@ impl Classes {
         Ok(element.children.iter().filter(nested))
     }
 
-    /// Adds a class that is as its parent so far.
+    /// Adds a class as a copy of its parent.
     fn derive(
         &mut self,
         element: &Element,
@@ -164,12 +164,13 @@ impl Classes {
             "pair" => contact::read_pair(element, &mut class.pair),
             "equality" => class.equality.read(element),
             "tendon" => tendon::read_common(element, &mut class.tendon),
-            // Nested classes come after all elements; the rest is only seen (the schema lets nothing else through).
+            // Nested classes are read after all elements; the remaining elements are only visual (the schema admits no
+            // others).
             _ => Ok(()),
         }
     }
 
-    /// The parameters that a class lends to an actuator written with `shortcut`.
+    /// Returns the parameters that an actuator written with `shortcut` inherits from a class.
     pub(super) fn parameters(&self, class: usize, shortcut: Shortcut) -> ActuatorParams {
         let ancestors = std::iter::successors(Some(class), |&class| self.list[class].parent);
         ancestors
@@ -178,10 +179,10 @@ impl Classes {
             .map_or_else(ActuatorParams::default, |actuator| actuator.parameters)
     }
 
-    /// Copies of all classes, with a prefix to their names, for elements of a model that these are attached to.
+    /// Returns copies of all classes with prefixed names, for a model that attaches this one.
     ///
     /// # Errors
-    /// Where they take more memory than is left.
+    /// Returns a message if they exceed the budget.
     pub(super) fn prefixed(
         &self,
         prefix: &str,
@@ -198,7 +199,7 @@ impl Classes {
         Ok(self.list.iter().map(renamed).collect())
     }
 
-    /// Adds classes of another model; of two with the same name the first counts.
+    /// Adds classes of another model; of classes with the same name the first takes precedence.
     pub(super) fn borrow(&mut self, lent: Vec<Class>) {
         let first = self.list.len();
         for class in lent {
@@ -215,7 +216,7 @@ impl Classes {
         self.by_name.get(name).copied()
     }
 
-    /// The class that an attribute of the element names, or `otherwise`.
+    /// Returns the class that an attribute of the element names, or `otherwise`.
     pub(super) fn named_by(
         &self,
         element: &Element,
@@ -232,7 +233,7 @@ impl Classes {
         })
     }
 
-    /// The class of an element outside the body tree.
+    /// Returns the class of an element outside the body tree.
     pub(super) fn of(&self, element: &Element) -> Result<&Class, LoadError> {
         Ok(&self.list[self.named_by(element, "class", MAIN)?])
     }

@@ -1,4 +1,4 @@
-//! `<equality>`: connect, weld, joint and tendon; what each may say, how it is read, and how it is written.
+//! `<equality>`: connect, weld, joint and tendon; their rules, reader and writer.
 
 use super::document::Element;
 use super::rules::rule::{NONE, Rule, section};
@@ -10,7 +10,7 @@ use clench_dynamics::Model;
 use clench_dynamics::model::{Equality, EqualityTarget};
 use clench_math::{Quat, Vec3};
 
-/// What the section and its elements may have.
+/// The attributes of the section and its elements.
 pub(super) const RULES: &[Rule] = &[
     section("equality", "connect weld joint tendon", "flex flexstrain"),
     Rule {
@@ -40,7 +40,7 @@ pub(super) const RULES: &[Rule] = &[
     },
 ];
 
-/// What all kinds of equality share, and what a default class has of them.
+/// The attributes that all equalities share and default classes can set.
 #[derive(Clone, Debug)]
 pub(crate) struct EqualityDraft {
     active: bool,
@@ -68,7 +68,7 @@ impl EqualityDraft {
     }
 }
 
-/// The constraint that an element of the section `<equality>` describes.
+/// Returns the constraint of an element in `<equality>`.
 pub(crate) fn read(element: &Element, mut draft: EqualityDraft) -> Result<EqualitySpec, LoadError> {
     draft.read(element)?;
     let kind = match element.tag.as_str() {
@@ -101,7 +101,7 @@ fn read_polycoef(element: &Element) -> Result<[f64; 5], LoadError> {
     Ok(polycoef)
 }
 
-/// Two sites, if the element names any; nothing that belongs to bodies may then be given.
+/// Reads two sites, if the element names any; attributes of bodies are then rejected.
 fn read_sites(element: &Element, of_bodies: &[&str]) -> Result<Option<ConnectAnchor>, LoadError> {
     match (element.text("site1"), element.text("site2")) {
         (None, None) => Ok(None),
@@ -141,7 +141,7 @@ fn read_weld(element: &Element) -> Result<EqualityKind, LoadError> {
         Some(sites) => sites,
         None => read_bodies(element, element.numbers("anchor")?.unwrap_or_default())?,
     };
-    // A zero quaternion, also the default, asks for the relative pose of the initial configuration.
+    // A zero quaternion, the default, selects the relative pose of the initial configuration.
     let relpose = element
         .numbers("relpose")?
         .filter(|[_, _, _, w, x, y, z]: &[f64; 7]| [*w, *x, *y, *z] != [0.0; 4])
@@ -158,7 +158,7 @@ fn read_weld(element: &Element) -> Result<EqualityKind, LoadError> {
 /// Writes all constraints of a model.
 ///
 /// # Errors
-/// Elements without a name that a constraint refers to.
+/// Returns an error if a constraint refers to an element without a name.
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     for (k, equality) in model.equalities.iter().enumerate() {
         write_equality(model, k, equality, xml)?;
@@ -235,7 +235,8 @@ fn write_bodies<'a>(model: &Model, pair: [usize; 2], tag: Tag<'a>) -> Result<Tag
         .text("body2", body_name(model, body2)?))
 }
 
-/// The anchor is a point of the second body; the relative pose says where the first body holds it, and how turned.
+/// Writes the anchor, a point of the second body, and the relative pose: its position and orientation in the first
+/// body.
 fn write_weld<'a>(held: Vec3<f64>, anchor: Vec3<f64>, turn: Quat<f64>, tag: Tag<'a>) -> Tag<'a> {
     let [x, y, z] = held.to_array();
     let [w, a, b, c] = turn.to_array();

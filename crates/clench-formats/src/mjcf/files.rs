@@ -1,7 +1,8 @@
-//! Files that a model names: meshes, height fields and textures.
+//! Files that a model refers to: meshes, height fields and textures.
 //!
-//! As in MuJoCo, a path is relative to `meshdir` (of a texture `texturedir`), which is relative to the model's directory; what is not
-//! there, and named in an included file, is looked for in `meshdir` along the path from the model to that file.
+//! As in MuJoCo, a path is relative to `meshdir` (for a texture `texturedir`), which is relative to the model's
+//! directory. A file named in an included file is also looked up in `meshdir` under the path from the model to that
+//! file.
 
 use super::compiler::CompilerOptions;
 use super::document::Element;
@@ -9,7 +10,7 @@ use crate::LoadError;
 use crate::spending::Spending;
 use std::path::{Path, PathBuf};
 
-/// Where a model's files are.
+/// The folders of a model's files.
 #[derive(Debug)]
 pub(crate) struct Files {
     pub model_directory: PathBuf,
@@ -18,18 +19,18 @@ pub(crate) struct Files {
     strippath: bool,
 }
 
-/// The bytes of a file, and what it is called.
+/// The bytes of a file, and its name.
 pub(crate) struct Content {
-    /// Name without directory and extension.
+    /// The name without directory and extension.
     pub stem: String,
-    /// Without the dot.
+    /// The extension without the dot.
     pub extension: String,
     pub bytes: Vec<u8>,
     path: PathBuf,
 }
 
 impl Files {
-    /// For a model in a directory.
+    /// Creates the paths of a model in a directory.
     pub(crate) fn new(model_directory: &Path, compiler: &CompilerOptions) -> Self {
         Files {
             model_directory: model_directory.to_owned(),
@@ -48,7 +49,7 @@ impl Files {
         self.find(&self.meshes, element, "file", spending)
     }
 
-    /// Reads the file of a texture that an attribute names, if it names one.
+    /// Reads the texture file that an attribute names, if any.
     pub(crate) fn texture(
         &self,
         element: &Element,
@@ -107,12 +108,12 @@ impl Content {
         })
     }
 
-    /// The folder that the file is in.
+    /// Returns the folder of the file.
     pub(crate) fn directory(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).to_owned()
     }
 
-    /// Takes the bytes out, for a reader whose errors shall name the file and who asked for it.
+    /// Parses the bytes with a reader; adds the file and the element to its errors.
     pub(crate) fn parse<T>(
         &mut self,
         element: &Element,
@@ -123,7 +124,7 @@ impl Content {
     }
 }
 
-/// Paths of model files may be written as on Windows.
+/// Converts a path that may be written as on Windows.
 pub(crate) fn slashes(path: &str) -> String {
     path.replace('\\', "/")
 }

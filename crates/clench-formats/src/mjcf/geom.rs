@@ -22,15 +22,15 @@ const KINDS: [(&str, Option<ShapeKind>); 9] = [
     ("sdf", None),
 ];
 
-/// Overwrites the shape if `type` names one; none stands for a signed distance field.
+/// Overwrites the shape if `type` names one; `None` stands for a signed distance field.
 pub(crate) fn read_kind(element: &Element, kind: &mut Option<ShapeKind>) -> Result<(), LoadError> {
     element.set_keyword("type", &KINDS, kind)
 }
 
-/// The shape of an element of the model; a default class may have any.
+/// Returns the shape of an element of the model; a default class may have any.
 ///
 /// # Errors
-/// A signed distance field.
+/// Returns an error for a signed distance field.
 pub(crate) fn known_kind(
     kind: Option<ShapeKind>,
     element: &Element,
@@ -38,7 +38,7 @@ pub(crate) fn known_kind(
     kind.ok_or_else(|| element.error("the type \"sdf\" is not supported yet"))
 }
 
-/// A geom as it is written, or as a default class has it.
+/// A geom as written in an element or a default class.
 #[derive(Clone, Debug)]
 pub(crate) struct GeomDraft {
     pub spec: GeomSpec,
@@ -107,13 +107,12 @@ impl GeomDraft {
         element.set_number("density", &mut self.density)
     }
 
-    /// Length of the texts in it, bytes.
+    /// Returns the length of its texts, bytes.
     pub(super) fn text_length(&self) -> usize {
         self.spec.mesh.len() + self.spec.hfield.len()
     }
 
-    /// The geom in its body: shorthand resolved, carried along with the frame that it is written in, and what the frames around it make of its
-    /// shape.
+    /// Returns the geom in its body, with shorthand resolved, and the deformation of its shape by the enclosing frames.
     pub(super) fn finish(
         mut self,
         element: &Element,
@@ -155,8 +154,8 @@ impl GeomDraft {
     }
 }
 
-/// The pose in the body of a shape that stretches between two points of a frame, whose distance becomes its size along z. Where the
-/// frame has scales that differ, it is the points that are mapped.
+/// Returns the pose, in the body, of a shape between two points of a frame, whose distance becomes its size along z. If
+/// the frame's scales differ between axes, the points are mapped.
 pub(crate) fn place_segment(
     points: [f64; 6],
     pos: [f64; 3],
@@ -192,12 +191,12 @@ pub(crate) fn place_segment(
     Ok((pose, deformation))
 }
 
-/// Contact bits: a 32-bit integer, of which the bits count.
+/// Reads contact bits: a 32-bit integer used as a bit mask.
 fn read_mask(element: &Element, name: &str, current: u32) -> Result<u32, LoadError> {
     Ok(element.integer(name)?.map_or(current, |bits| bits as u32))
 }
 
-/// Contact dimensions.
+/// Reads the contact dimension.
 pub(crate) fn read_condim(element: &Element) -> Result<Option<u32>, LoadError> {
     match element.integer("condim")? {
         Some(condim @ (1 | 3 | 4 | 6)) => Ok(Some(condim as u32)),

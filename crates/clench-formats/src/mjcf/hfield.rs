@@ -1,4 +1,4 @@
-//! `<hfield>`: from an image or a binary file, or from numbers in the model.
+//! `<hfield>`: a height field from an image, a binary file, or numbers in the model.
 
 use super::document::Element;
 use super::files::Files;
@@ -14,7 +14,7 @@ pub(crate) fn read(
 ) -> Result<HeightFieldSpec, LoadError> {
     let mut name = element.string("name");
     let found = match files.read(element, spending)? {
-        // As in MuJoCo, a file says how many rows and columns there are, whatever else does.
+        // As in MuJoCo, the file determines the numbers of rows and columns.
         Some(mut file) => {
             if name.is_empty() {
                 name.clone_from(&file.stem);
@@ -49,7 +49,7 @@ pub(crate) fn read(
     })
 }
 
-/// Heights in the model: rows from the positive end of y, as one sees them; flat where none are given.
+/// Reads heights in the model: rows from the positive end of y, as displayed; flat if none are given.
 fn written(element: &Element, spending: &mut Spending) -> Result<Elevation, LoadError> {
     let rows = element.count("nrow")?.unwrap_or(0);
     let columns = element.count("ncol")?.unwrap_or(0);

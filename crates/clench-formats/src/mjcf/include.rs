@@ -1,7 +1,7 @@
-//! `<include file="..."/>`: the children of another file's root, in place of the element.
+//! `<include file="..."/>`: replaced by the children of another file's root.
 //!
-//! As in MuJoCo 4.0, a file is looked for in the directory of the main model, then in that of the including file, and
-//! no file may appear twice, by whatever path; so includes cannot recurse.
+//! As in MuJoCo 4.0, a file is looked up in the directory of the main model, then in that of the including file, and no
+//! file may appear twice, by any path; so includes cannot recurse.
 
 use super::document::{self, Element, MAX_DEPTH};
 use crate::LoadError;
@@ -11,14 +11,15 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Splices included files into the trees of a model.
+/// The state of splicing included files into a model.
 pub(crate) struct Includes {
     model_directory: PathBuf,
     seen: HashSet<PathBuf>,
 }
 
 impl Includes {
-    /// For a model in a file, or from text (`None`), whose includes are found from the working directory.
+    /// Creates the state for a model in a file, or from text (`None`), with includes resolved from the working
+    /// directory.
     pub(super) fn new(model: Option<&Path>, spending: &Spending) -> Self {
         Includes {
             model_directory: model
@@ -32,17 +33,17 @@ impl Includes {
         }
     }
 
-    /// Replaces every include below `root`, which itself was read from a file in `directory`.
+    /// Replaces every include below `root`, which was read from a file in `directory`.
     ///
     /// # Errors
-    /// Where an included file is missing, unreadable, empty, broken, or included already.
+    /// Returns an error if a file is missing, unreadable, empty, malformed, or already included.
     pub(super) fn expand(
         &mut self,
         root: &mut Element,
         directory: &Path,
         spending: &mut Spending,
     ) -> Result<(), LoadError> {
-        // The lists of children that the reader is in, the outermost first.
+        // The open lists of children, outermost first.
         let mut open = vec![Siblings::of(root, directory.into(), 1)];
         while let Some(siblings) = open.last_mut() {
             let Some(mut child) = siblings.left.next() else {
@@ -50,7 +51,7 @@ impl Includes {
                 let owner = siblings.owner.take();
                 open.pop();
                 match (owner, open.last_mut()) {
-                    // What an included file holds stands in place of the include.
+                    // The content of an included file replaces the include.
                     (None, Some(around)) => around.done.extend(done),
                     (Some(mut element), Some(around)) => {
                         element.children = done;
@@ -78,7 +79,7 @@ impl Includes {
         Ok(())
     }
 
-    /// The root of the file that an include names, and the file's directory.
+    /// Returns the root of the file that an include names, and the file's directory.
     fn include(
         &mut self,
         element: &Element,
@@ -110,13 +111,13 @@ impl Includes {
 
 /// The children of an element while includes among them are replaced.
 struct Siblings {
-    /// The element; `None` for the root of a file, whose children are all that counts.
+    /// The element; `None` for the root of a file, of which only the children are used.
     owner: Option<Element>,
     left: std::vec::IntoIter<Element>,
     done: Vec<Element>,
-    /// Where the file is that they were read from.
+    /// The directory of the file that they were read from.
     directory: Rc<Path>,
-    /// How deep the element is that they are in; the root is at 1.
+    /// The depth of their parent; the root is at 1.
     depth: usize,
 }
 

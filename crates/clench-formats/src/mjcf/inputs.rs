@@ -1,10 +1,10 @@
-//! `input`: what the controls of an actuator are.
+//! `input`: the meaning of an actuator's controls.
 
 use super::document::Element;
 use crate::LoadError;
 use clench_dynamics::model::{ControlInput, GainKind};
 
-/// The inputs that an actuator names, in the order in which they must be named.
+/// The inputs that an actuator can name, in the required order.
 const INPUTS: [(&str, &[ControlInput]); 7] = [
     ("pos", &[ControlInput::Position]),
     ("vel", &[ControlInput::Velocity]),
@@ -15,19 +15,19 @@ const INPUTS: [(&str, &[ControlInput]); 7] = [
     ("quat", &[ControlInput::Quaternion; 4]),
 ];
 
-/// The first of them that is a way to write an orientation.
+/// The index of the first input that represents an orientation.
 const ROTATIONS: u8 = 5;
 
 fn names() -> String {
     INPUTS.map(|(name, _)| name).join(", ")
 }
 
-/// Some of [`INPUTS`], one a bit.
+/// A set of [`INPUTS`], one per bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Inputs(u8);
 
 impl Inputs {
-    /// What controls they are.
+    /// Returns their controls.
     pub(super) fn controls(self) -> Vec<ControlInput> {
         let named = |k: &usize| self.0 & (1 << k) != 0;
         (0..INPUTS.len())
@@ -37,7 +37,8 @@ impl Inputs {
             .collect()
     }
 
-    /// Refuses inputs that an actuator with this gain cannot have. A default class may say any: it may serve none.
+    /// Rejects inputs that an actuator with this gain cannot have. A default class may name any, since it may have no
+    /// actuators.
     pub(super) fn check(self, gain: GainKind, element: &Element) -> Result<(), LoadError> {
         let single = self
             .0
@@ -70,7 +71,8 @@ impl Inputs {
     }
 }
 
-/// Overwrites the inputs if the element names them. Of an actuator whose control is scaled by its gain they only say what it is.
+/// Overwrites the inputs if the element names them. For an actuator whose gain scales its control they are only
+/// descriptive.
 pub(crate) fn read_inputs(element: &Element, inputs: &mut Option<Inputs>) -> Result<(), LoadError> {
     let Some(text) = element.text("input") else {
         return Ok(());

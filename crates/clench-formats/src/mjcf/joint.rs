@@ -7,7 +7,7 @@ use crate::LoadError;
 use clench_builder::JointSpec;
 use clench_dynamics::model::JointKind;
 
-/// Overwrites what the element gives; angles stay in the file's unit until [`finish`].
+/// Overwrites what the element gives; angles remain in the file's unit until [`finish`].
 pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadError> {
     let kinds = [
         ("free", JointKind::Free),
@@ -40,7 +40,7 @@ pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadE
     element.set_integer("group", &mut joint.group)
 }
 
-/// A free joint, which takes nothing from default classes.
+/// Reads a free joint, which inherits nothing from default classes.
 pub(crate) fn read_free(element: &Element) -> Result<JointSpec, LoadError> {
     let mut joint = JointSpec {
         name: element.string("name"),
@@ -53,9 +53,9 @@ pub(crate) fn read_free(element: &Element) -> Result<JointSpec, LoadError> {
     Ok(joint)
 }
 
-/// Turns angles into radians and carries the joint along with the frame that it is written in.
+/// Converts angles to radians and transforms the joint by the enclosing frame.
 ///
-/// As in MuJoCo, degrees concern the range of hinge and ball joints where it is a limit, their yield, and the reference
+/// As in MuJoCo, degrees apply to the range of hinge and ball joints if it is a limit, their yield, and the reference
 /// angles of hinge joints.
 pub(crate) fn finish(mut joint: JointSpec, compiler: &CompilerOptions, frame: &Pose) -> JointSpec {
     let limits = joint.limited != Some(false);

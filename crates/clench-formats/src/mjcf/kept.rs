@@ -1,11 +1,11 @@
-//! Bodies that elements which move nothing name: MuJoCo does not fuse them into others.
+//! Bodies referenced by elements without effect on motion: MuJoCo does not fuse them into others.
 
 use super::document::Element;
 use super::sections::entries;
 use clench_builder::BodySpec;
 use std::collections::HashSet;
 
-/// Keeps the bodies that cameras and lights look at, that skins hang on, and that belong to a user's tuples.
+/// Excludes bodies from fusion that are targets of cameras and lights, bones of skins, or elements of user tuples.
 pub(crate) fn keep_named(root: &Element, bodies: &mut [BodySpec]) {
     let mut names = HashSet::new();
     for section in ["worldbody", "asset", "custom"] {

@@ -1,10 +1,10 @@
-//! `<keyframe>`: stored states, and `<size nkey="..."/>`, which asks for more of them.
+//! `<keyframe>`: stored states, and `<size nkey="..."/>`, which can request more of them.
 
 use super::document::Element;
 use crate::LoadError;
 use clench_builder::KeyframeSpec;
 
-/// The state that a `<key>` describes; lengths are checked against the model when it is built.
+/// Reads the state of a `<key>`; vector lengths are checked when the model is built.
 pub(crate) fn read(element: &Element) -> Result<KeyframeSpec, LoadError> {
     let mut key = KeyframeSpec {
         name: element.string("name"),
@@ -22,12 +22,12 @@ pub(crate) fn read(element: &Element) -> Result<KeyframeSpec, LoadError> {
     Ok(key)
 }
 
-/// More keyframes than a file can mean to have.
+/// The maximum number of keyframes.
 const MAX_KEYFRAMES: usize = 10_000;
 
-/// Adds keyframes in the initial state until there are as many as a `<size>` asks for.
+/// Adds keyframes in the initial state up to the number that a `<size>` requests.
 pub(crate) fn pad(size: &Element, keyframes: &mut Vec<KeyframeSpec>) -> Result<(), LoadError> {
-    // -1 is how MuJoCo writes "as many as there are".
+    // MuJoCo writes -1 for "as many as there are".
     let wanted = size.integer("nkey")?.unwrap_or(-1).max(-1);
     let wanted = usize::try_from(wanted).unwrap_or(0);
     if wanted > MAX_KEYFRAMES {

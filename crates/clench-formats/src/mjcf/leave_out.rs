@@ -1,13 +1,13 @@
-//! Leaves out of a model what this library cannot simulate yet, where a user asks for that, and says what.
+//! Optional omission of elements that this library cannot simulate yet, with a report.
 //!
-//! Only that is left out without which the rest still means the same: a plugin, a deformable body, a sensor, a force or a flag. A tendon
-//! or an actuator that is missing would change what the controls and the coordinates of the model are, so those are refused as ever, and
-//! so is what names an element that was left out.
+//! Only an element that does not change the meaning of the others is omitted: a plugin, a deformable body, a sensor, a
+//! force or a flag. Omitting a tendon or an actuator would change the controls and coordinates of the model, so those
+//! are still rejected, and so are references to omitted elements.
 
 use super::document::Element;
 use super::schema;
 
-/// Elements that a model cannot do without.
+/// Elements that cannot be omitted.
 const ESSENTIAL: &[&str] = &[
     "spatial",
     "fixed",
@@ -25,7 +25,7 @@ const ESSENTIAL: &[&str] = &[
     "dcmotor",
 ];
 
-/// Attributes that an element cannot do without: what it acts on, and what it is.
+/// Attributes that cannot be omitted, since they define what an element is or acts on.
 const ESSENTIAL_ATTRIBUTES: &[&str] = &[
     "site",
     "refsite",
@@ -38,7 +38,7 @@ const ESSENTIAL_ATTRIBUTES: &[&str] = &[
     "data",
 ];
 
-/// Takes what is not supported out of a document, and adds a line about each such thing.
+/// Removes unsupported elements from a document, and adds a line about each.
 pub(crate) fn leave_out(root: &mut Element, left_out: &mut Vec<String>) {
     let mut pending = vec![root];
     while let Some(element) = pending.pop() {
@@ -56,7 +56,7 @@ pub(crate) fn leave_out(root: &mut Element, left_out: &mut Vec<String>) {
     }
 }
 
-/// Why an element is left out, if it is.
+/// Returns the reason to omit an element, if any.
 fn unsupported(parent: &str, element: &Element) -> Option<String> {
     let tag = element.tag.as_str();
     let later = schema::is_later(parent, tag) && (parent == "default" || !ESSENTIAL.contains(&tag));

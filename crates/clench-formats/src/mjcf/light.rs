@@ -1,4 +1,4 @@
-//! `<light>`, and the light that goes with the camera: only viewers ask.
+//! `<light>` and the headlight: used only by viewers.
 
 use super::camera::{Mode, tracking};
 use super::document::Element;
@@ -8,13 +8,13 @@ use clench_builder::LightSpec;
 use clench_dynamics::model::{Headlight, LightKind, LightProperties};
 use clench_math::{Quat, Vec3};
 
-/// A light as it is written, or as a default class has it.
+/// A light as written in an element or a default class.
 #[derive(Clone, Debug)]
 pub(crate) struct LightDraft {
     mode: Mode,
     pos: [f64; 3],
     dir: [f64; 3],
-    /// None for one that shines as an image does, which is not drawn.
+    /// `None` for an image-based light, which is not drawn.
     kind: Option<LightKind>,
     properties: LightProperties,
 }
@@ -61,7 +61,7 @@ impl LightDraft {
         element.set_numbers("specular", &mut properties.specular)
     }
 
-    /// The light in its body, carried along with the frame that it is written in.
+    /// Returns the light in its body, transformed by the enclosing frame.
     pub(super) fn finish(self, element: &Element, frame: &Pose) -> LightSpec {
         let pose = frame.then(Pose {
             pos: Vec3::from_array(self.pos),
@@ -83,7 +83,7 @@ impl LightDraft {
     }
 }
 
-/// Overwrites what a `<headlight>` gives.
+/// Overwrites the properties that a `<headlight>` gives.
 pub(super) fn read_headlight(
     element: &Element,
     headlight: &mut Headlight,

@@ -1,4 +1,4 @@
-//! `<mesh>`: from a file, from vertices and faces in the model, or made by name.
+//! `<mesh>`: a mesh from a file, from vertices and faces in the model, or built in.
 
 use super::document::Element;
 use super::files::Files;
@@ -8,12 +8,12 @@ use crate::spending::Spending;
 use clench_builder::{MeshInertia, MeshSpec};
 use clench_math::{Quat, Vec3};
 
-/// A mesh as it is written, or as a default class has it.
+/// A mesh as written in an element or a default class.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MeshDraft(MeshSpec);
 
 impl MeshDraft {
-    /// Overwrites what the element gives, of what a default class may have.
+    /// Overwrites those attributes of a default class that the element gives.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let mesh = &mut self.0;
         element.set_vector("scale", &mut mesh.scale)?;
@@ -34,7 +34,7 @@ impl MeshDraft {
         Ok(())
     }
 
-    /// The mesh, with what only an element itself can say. Notes tell of faces that do not count.
+    /// Completes the mesh with attributes that only an element can have. Notes report ignored faces.
     pub(super) fn finish(
         mut self,
         element: &Element,
@@ -85,7 +85,7 @@ impl MeshDraft {
     }
 }
 
-/// The mesh that `builtin` names.
+/// Makes the mesh that `builtin` names.
 fn make(element: &Element, builtin: &str, spending: &mut Spending) -> Result<Triangles, LoadError> {
     for other in ["file", "vertex"] {
         if element.text(other).is_some() {
@@ -97,7 +97,7 @@ fn make(element: &Element, builtin: &str, spending: &mut Spending) -> Result<Tri
     builtin::make(builtin, &parameters, spending).map_err(|message| element.error(message))
 }
 
-/// The mesh in a file, which also gives a name to one without, or in the model.
+/// Reads the mesh from a file, which also provides a missing name, or from the model.
 fn read_or_written(
     element: &Element,
     files: &Files,
@@ -147,7 +147,7 @@ fn read_or_written(
     merge(found, written, element)
 }
 
-/// A file without faces may get them from the model.
+/// Merges a file with data in the model, which may add missing faces and texture coordinates.
 fn merge(file: Triangles, written: Triangles, element: &Element) -> Result<Triangles, LoadError> {
     if !written.vertices.is_empty() {
         return Err(element.error("vertex and file cannot both be given"));
@@ -174,7 +174,7 @@ fn merge(file: Triangles, written: Triangles, element: &Element) -> Result<Trian
     })
 }
 
-/// Tangents, where each vertex has a normal and two of them: nine numbers. Normals alone do nothing to motion.
+/// Reads tangents, if each vertex has a normal and two of them: nine numbers. Normals alone do not affect motion.
 fn read_tangents(element: &Element, vertices: usize) -> Result<Vec<[Vec3<f64>; 2]>, LoadError> {
     let numbers = (element.list_of_singles("normal", usize::MAX)?).unwrap_or_default();
     if numbers.len() != 9 * vertices {
@@ -185,7 +185,7 @@ fn read_tangents(element: &Element, vertices: usize) -> Result<Vec<[Vec3<f64>; 2
     Ok(tangents.map(|pair| pair.map(point)).collect())
 }
 
-/// Vertices with the 24 bits a coordinate that MuJoCo keeps.
+/// Reads vertices, in single precision as in MuJoCo.
 fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
     let numbers = (element.list_of_singles("vertex", usize::MAX)?).unwrap_or_default();
     let (points, rest) = numbers.as_chunks::<3>();

@@ -1,7 +1,7 @@
 //! MJCF, as MuJoCo 4.0 reads it.
 //!
-//! [`document`](crate::document) turns text into elements, [`include`] splices files together, [`schema`] accepts or rejects every element
-//! and attribute, and only then do the sections read their values; so a section never meets what it does not know.
+//! [`document`](crate::document) parses text into elements, [`include`] splices files together, and [`schema`] accepts
+//! or rejects every element and attribute before the sections read their values, so they never see unknown names.
 
 mod actuator;
 mod appearance;
@@ -59,11 +59,11 @@ use include::Includes;
 use option::OptionReader;
 use std::path::{Path, PathBuf};
 
-/// Reads the model below a root element, which came from a file or (`None`) from text, without what is not supported yet if that
-/// may be left out. `packages` are folders for the URDF files that it attaches.
+/// Reads the model below a root element, which came from a file or (`None`) from text; omits unsupported elements if
+/// allowed. `packages` are folders for attached URDF files.
 ///
 /// # Errors
-/// What breaks a rule of the format, or asks for something that is not supported yet.
+/// Returns an error if a rule of the format is broken or a feature is not supported yet.
 pub(crate) fn read(
     mut root: Element,
     path: Option<&Path>,

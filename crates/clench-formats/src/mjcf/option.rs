@@ -1,6 +1,7 @@
-//! `<option>`: time step, medium, integrator, solver and feature flags. Which attributes are options says the table of options.
+//! `<option>`: time step, medium, integrator, solver and feature flags. The table of options defines which attributes
+//! are options.
 //!
-//! Solver options that a file leaves out keep the values of its format, not this library's: a MuJoCo user gets MuJoCo's
+//! Solver options that a file omits have the defaults of its format, not this library's: a MuJoCo user gets MuJoCo's
 //! numbers.
 
 use super::document::Element;
@@ -10,9 +11,9 @@ use clench_dynamics::model::{Flags, Integrator};
 use clench_dynamics::options::{Mjcf, OptionValue, RigidOption, RigidOptions};
 use clench_solver::Switch;
 
-/// What MJCF means where it is silent: 100 iterations and time constants as they are written.
+/// Returns MJCF's defaults: 100 iterations, and time constants as written.
 ///
-/// A tolerance is left to the precision that the solve runs in.
+/// The tolerance depends on the precision of the solve.
 pub(crate) fn format_defaults() -> RigidOptions {
     RigidOptions::new()
         .iterations(100)
@@ -21,7 +22,7 @@ pub(crate) fn format_defaults() -> RigidOptions {
 
 const SWITCHES: [(&str, bool); 2] = [("disable", false), ("enable", true)];
 
-/// Reads the `<option>`s of a file in turn; later ones override what they give.
+/// A reader of the `<option>`s of a file; later ones override earlier ones.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OptionReader {
     contact: ContactOverride,
@@ -84,7 +85,7 @@ impl OptionReader {
         Ok(())
     }
 
-    /// What only the last word of all `<option>`s decides.
+    /// Applies the settings that depend on all `<option>`s together.
     pub(crate) fn finish(self, builder: &mut ModelBuilder) {
         builder.physics.contact_override = self.contact_override.then_some(self.contact);
         if self.replaced_solver {
@@ -94,7 +95,7 @@ impl OptionReader {
     }
 }
 
-/// Reads what the table of options says of an element, by `read`.
+/// Reads the options of an element, each by `read`.
 fn read_options(
     element: &Element,
     options: &mut RigidOptions,
@@ -108,7 +109,7 @@ fn read_options(
     Ok(())
 }
 
-/// The value of an option that is an attribute of `<option>`.
+/// Returns the value of an option that is an attribute of `<option>`.
 fn attribute(element: &Element, option: RigidOption) -> Result<Option<OptionValue>, LoadError> {
     match (option.mjcf(), option.default(false)) {
         (Mjcf::Attribute(name), OptionValue::Count(_)) => {
@@ -123,7 +124,7 @@ fn attribute(element: &Element, option: RigidOption) -> Result<Option<OptionValu
     }
 }
 
-/// The value of an option that is an attribute of `<flag>`.
+/// Returns the value of an option that is an attribute of `<flag>`.
 fn flag_value(element: &Element, option: RigidOption) -> Result<Option<OptionValue>, LoadError> {
     match option.mjcf() {
         Mjcf::Flag(name, [disabled, enabled]) => {
@@ -166,7 +167,7 @@ fn read_physics(element: &Element, builder: &mut ModelBuilder) -> Result<(), Loa
     Ok(())
 }
 
-/// Flags of the physics.
+/// Reads the physics flags.
 fn element_flags(element: &Element, flags: &mut Flags) -> Result<(), LoadError> {
     let targets = [
         ("equality", &mut flags.equality),

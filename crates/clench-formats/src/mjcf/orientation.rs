@@ -1,4 +1,4 @@
-//! Poses: the five ways to write an orientation, and frames that carry their contents along.
+//! Poses: the five representations of an orientation, and frames that transform their contents.
 
 use super::compiler::CompilerOptions;
 use super::document::Element;
@@ -9,7 +9,7 @@ use clench_math::{Mat3, Quat, Vec3};
 /// Vectors shorter than this have no direction (MuJoCo's `mjEPS`).
 pub(crate) const SMALL: f64 = 1e-14;
 
-/// An orientation as it was written; angles in the file's unit.
+/// An orientation as written; angles in the file's unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Orientation {
     Quat([f64; 4]),
@@ -17,9 +17,9 @@ pub(crate) enum Orientation {
     AxisAngle([f64; 4]),
     /// Three rotations in the order of `eulerseq`.
     Euler([f64; 3]),
-    /// x axis, and y axis to be made perpendicular to it.
+    /// The x axis, and a y axis to be made perpendicular to it.
     XyAxes([f64; 6]),
-    /// The least rotation that gives this z axis.
+    /// The minimal rotation that gives this z axis.
     ZAxis([f64; 3]),
 }
 
@@ -54,7 +54,7 @@ impl Orientation {
         Ok(())
     }
 
-    /// The unit quaternion; `element` is where to report an axis without direction.
+    /// Returns the unit quaternion; errors about an axis without direction refer to `element`.
     pub(crate) fn resolve(
         &self,
         compiler: &CompilerOptions,
@@ -98,12 +98,12 @@ fn columns(x: Vec3<f64>, y: Vec3<f64>, z: Vec3<f64>) -> Mat3<f64> {
     }
 }
 
-/// Where something is in its parent.
+/// The pose of an object in its parent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose {
     pub pos: Vec3<f64>,
     pub quat: Quat<f64>,
-    /// What becomes of positions in it before anything else.
+    /// The linear map of positions, applied first.
     pub stretch: Stretch,
 }
 
@@ -114,7 +114,7 @@ impl Pose {
         stretch: Stretch::NONE,
     };
 
-    /// The pose that an element writes in `pos` and one of the orientation attributes.
+    /// Reads the pose in `pos` and one of the orientation attributes.
     pub(crate) fn read(element: &Element, compiler: &CompilerOptions) -> Result<Pose, LoadError> {
         let mut orientation = Orientation::default();
         orientation.read(element)?;
@@ -125,7 +125,7 @@ impl Pose {
         })
     }
 
-    /// The pose in the frame's parent of something whose pose in the frame is `inner`.
+    /// Returns the pose in the frame's parent of an object whose pose in the frame is `inner`.
     pub(crate) fn then(&self, inner: Pose) -> Pose {
         Pose {
             pos: self.point(inner.pos),
@@ -134,7 +134,7 @@ impl Pose {
         }
     }
 
-    /// The same of a shape, with what becomes of it.
+    /// Like `then` for a shape, with its deformation.
     pub(crate) fn carry(&self, shape: Pose) -> (Pose, Deformation) {
         let pose = self.then(shape);
         let deformation = Deformation {
@@ -144,13 +144,13 @@ impl Pose {
         (pose, deformation)
     }
 
-    /// A point of the frame in its parent.
+    /// Maps a point of the frame to its parent.
     pub(crate) fn point(&self, local: Vec3<f64>) -> Vec3<f64> {
         self.pos + self.quat.rotate(self.stretch.apply(local))
     }
 }
 
-/// The middle, half length and orientation (z from the second point to the first, as MuJoCo has it) of a segment.
+/// Returns the centre, orientation (z from the second point to the first, as in MuJoCo) and half length of a segment.
 pub(crate) fn segment(
     [x0, y0, z0, x1, y1, z1]: [f64; 6],
     element: &Element,

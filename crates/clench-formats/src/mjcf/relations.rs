@@ -1,4 +1,4 @@
-//! The sections whose elements name elements of the body tree.
+//! The sections that refer to elements of the body tree.
 
 use super::defaults::MAIN;
 use super::document::Element;
@@ -46,10 +46,10 @@ pub(crate) fn read(
     Ok(())
 }
 
-/// The shortcuts that wrote the parameters of the actuators, themselves or in their class.
+/// Returns the shortcuts that define the actuators' parameters, themselves or by their class.
 ///
 /// # Errors
-/// A class that is not there.
+/// Returns an error if a class does not exist.
 pub(crate) fn shortcuts(root: &Element, sources: &Sources) -> Result<Vec<Shortcut>, LoadError> {
     let of_element = |element: &Element| match Shortcut::from_tag(&element.tag) {
         None | Some(Shortcut::General) => {
@@ -74,7 +74,7 @@ pub(crate) fn read_tendon(element: &Element, sources: &Sources) -> Result<Tendon
     Ok(tendon)
 }
 
-/// Reads an actuator over what its class says.
+/// Reads an actuator, starting from its class.
 pub(crate) fn read_actuator(
     element: &Element,
     sources: &Sources,

@@ -1,7 +1,7 @@
-//! Accepts or rejects every element and attribute of a file, before anything is read.
+//! Validation of every element and attribute of a file, before any value is read.
 //!
-//! Four answers: read; accepted and without effect on motion; known to MuJoCo but not supported yet; unknown. The
-//! tables are [`rules`](super::rules).
+//! The outcomes are: read; accepted and without effect on motion; known to MuJoCo but not supported yet; unknown. The
+//! tables are in [`rules`](super::rules).
 
 use super::document::Element;
 use super::rules::rules;
@@ -10,7 +10,7 @@ use crate::LoadError;
 use crate::mjcf::rules::Rule;
 use clench_dynamics::model::SensorKind;
 
-/// Attributes that an element has in the model, but not in a default class.
+/// Attributes that an element can have in the model, but not in a default class.
 const NOT_IN_DEFAULTS: &[&str] = &[
     "name",
     "class",
@@ -34,13 +34,13 @@ pub(crate) fn check(root: &Element) -> Result<(), LoadError> {
     check_element(root, rule)
 }
 
-/// Checks a section of MJCF that stands in a file of another format.
+/// Checks a section of MJCF in a file of another format.
 pub(crate) fn check_section(section: &Element) -> Result<(), LoadError> {
     let rule = find("mujoco", &section.tag).ok_or_else(|| section.error("unknown element"))?;
     check_element(section, rule)
 }
 
-/// The rule of an element below a parent: one for that parent alone, or one for anywhere.
+/// Returns the rule of an element below a parent: a specific one for that parent, or the general one.
 fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
     if parent == "sensor" {
         return sensor::rule(tag);
@@ -49,14 +49,14 @@ fn find(parent: &str, tag: &str) -> Option<&'static Rule> {
     of(&format!("{parent}/{tag}")).or_else(|| of(tag))
 }
 
-/// Whether an element is known in its parent and not supported yet.
+/// Returns true if an element is known in its parent but not supported yet.
 pub(crate) fn is_later(parent: &str, tag: &str) -> bool {
-    // Which rule a parent has does not depend on where it stands itself, but for those that cannot hold anything.
+    // The rule of a parent does not depend on its own parent, except for elements without children.
     let rule = find("", parent);
     rule.is_some_and(|rule| words(rule.later_children).any(|later| later == tag))
 }
 
-/// Whether an attribute of an element is known and not supported yet with this value.
+/// Returns true if an attribute of an element is known but not supported yet with this value.
 pub(crate) fn is_later_attribute(parent: &str, tag: &str, name: &str, value: &str) -> bool {
     let rule = find(parent, tag);
     let mut later = rule.into_iter().flat_map(|rule| words(rule.later));
@@ -70,7 +70,7 @@ pub(crate) fn is_later_attribute(parent: &str, tag: &str, name: &str, value: &st
 struct Level<'a> {
     element: &'a Element,
     rule: &'static Rule,
-    /// The next child.
+    /// The index of the next child.
     next: usize,
 }
 
@@ -178,7 +178,7 @@ fn check_attribute(
     Err(element.error(format!("unknown attribute \"{name}\"{hint}")))
 }
 
-/// Why an attribute is not supported, where that is for a reason of its own.
+/// Returns the specific reason that an attribute is not supported, if any.
 fn reason(name: &str) -> &'static str {
     match name {
         "speculative" => ": MuJoCo 4.0 says of these contacts that their behavior may still change",
@@ -200,7 +200,7 @@ fn reject_in_default(element: &Element) -> Result<(), LoadError> {
     }
 }
 
-/// Whether every word of a value is the one (as text or number) with which an unsupported attribute does nothing.
+/// Returns true if every word of a value equals (as text or number) the harmless value of an unsupported attribute.
 fn is_harmless(value: &str, harmless: &str) -> bool {
     let number = harmless.parse::<f64>().ok();
     let same =
@@ -212,10 +212,10 @@ fn words(text: &'static str) -> impl Iterator<Item = &'static str> {
     text.split_ascii_whitespace()
 }
 
-/// Longer names are compared with none: the work grows with the product of the lengths.
+/// The maximum length of names to compare: the work grows with the product of the lengths.
 const MAX_SUGGESTED_LENGTH: usize = 100;
 
-/// `; did you mean "..."?` if some known name is near to a mistaken one.
+/// Returns `; did you mean "..."?` if a known name is similar to a mistaken one.
 pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str>) -> String {
     let distance =
         |name: &str| strsim::damerau_levenshtein(&mistaken.to_lowercase(), &name.to_lowercase());
@@ -268,7 +268,7 @@ mod tests {
         paths.filter(|path| path.extension().is_some_and(|end| end == "xml"))
     }
 
-    /// Elements that no model of the folders has.
+    /// Elements missing in the models of the folders.
     const RARE: &str = "<mujoco>
       <option><flag/></option>
       <default><equality/></default>
@@ -298,10 +298,10 @@ mod tests {
         read.unwrap_or_else(|error| panic!("{error}"));
     }
 
-    /// Attributes of replicas that are handed to a frame, which is then asked.
+    /// Attributes of replicas that are passed on to a frame, which is queried instead.
     const HANDED_ON: [&str; 2] = ["replicate class", "replicate childclass"];
 
-    /// An attribute that a rule accepts as read and that no reader asks for would be without effect.
+    /// An attribute that a rule lists as read but no reader queries would have no effect.
     #[test]
     fn what_is_said_to_be_read_is_asked_for() {
         read_rare();

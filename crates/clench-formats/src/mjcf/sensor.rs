@@ -1,4 +1,4 @@
-//! `<sensor>`: which attributes a kind of sensor has follows from what it is attached to.
+//! `<sensor>`: the attributes of a kind of sensor follow from its attachment.
 
 use super::actuator::read_history;
 use super::document::Element;
@@ -13,7 +13,7 @@ use clench_dynamics::model::{
 };
 use std::sync::Arc;
 
-/// What all sensors have, before what they are attached to.
+/// Creates a rule with common attributes and those of an attachment.
 macro_rules! rule {
     ($attributes:literal) => {
         Rule {
@@ -37,7 +37,7 @@ const FRAME: Rule = rule!("objtype objname reftype refname");
 const WORLD_FRAME: Rule = rule!("objtype objname");
 const INSIDE: Rule = rule!("site objtype objname enclosed");
 const GEOMS: Rule = rule!("geom1 geom2 body1 body2");
-/// What the user's numbers belong to and when they are computed matters to the user's program alone.
+/// The objects and stage of a user sensor only concern the user's program.
 const USER: Rule = Rule {
     element: "sensor",
     read: "name cutoff noise dim datatype user",
@@ -46,7 +46,7 @@ const USER: Rule = Rule {
 };
 const PROJECTION: Rule = rule!("site camera");
 const CONTACTS: Rule = rule!("geom1 geom2 body1 body2 subtree1 subtree2 site num data reduce");
-/// A skin has no noise.
+/// Tactile sensors have no noise.
 const TAXELS: Rule = Rule {
     element: "sensor",
     read: "name cutoff nsample interp delay interval user mesh geom",
@@ -54,7 +54,7 @@ const TAXELS: Rule = Rule {
 };
 const RAYS: Rule = rule!("site camera data");
 
-/// The rule of a sensor's element.
+/// Returns the rule of a sensor's element.
 pub(crate) fn rule(tag: &str) -> Option<&'static Rule> {
     let kind = SensorKind::find(tag)?;
     Some(match kind.attachment() {
@@ -138,12 +138,12 @@ pub(crate) fn read(element: &Element, kind: SensorKind) -> Result<SensorSpec, Lo
     Ok(spec)
 }
 
-/// The object that is measured.
+/// Reads the measured object.
 fn read_object(element: &Element) -> Result<FrameName, LoadError> {
     read_frame(element, "objtype", "objname")?.ok_or_else(|| element.missing("objtype"))
 }
 
-/// A frame by its object's type and name, which come together or not at all.
+/// Reads a frame by its object's type and name, which must be given together.
 fn read_frame(element: &Element, kind: &str, name: &str) -> Result<Option<FrameName>, LoadError> {
     let kinds = [
         ("body", FrameKind::Inertial),
@@ -163,7 +163,7 @@ fn read_frame(element: &Element, kind: &str, name: &str) -> Result<Option<FrameN
     }
 }
 
-/// Where rays go out, and what is told of each.
+/// Reads the origin of rays, and the fields of each.
 fn read_rays(element: &Element) -> Result<SensorSubject, LoadError> {
     element.at_most_one(&["site", "camera"])?;
     let (kind, name) = match (element.text("site"), element.text("camera")) {
@@ -181,7 +181,7 @@ fn read_rays(element: &Element) -> Result<SensorSubject, LoadError> {
     })
 }
 
-/// Which contacts a sensor looks for, and what it tells of them.
+/// Reads the contacts that a sensor selects, and the fields of each.
 fn read_contacts(element: &Element) -> Result<SensorSubject, LoadError> {
     element.at_most_one(&["geom1", "body1", "subtree1", "site"])?;
     element.at_most_one(&["geom2", "body2", "subtree2"])?;
@@ -218,7 +218,7 @@ fn read_contacts(element: &Element) -> Result<SensorSubject, LoadError> {
     }))
 }
 
-/// The words of `data`, which must come in the order in which they are known.
+/// Reads the words of `data`, which must be in the order of `known`.
 fn read_fields<F: Copy + PartialOrd>(
     element: &Element,
     known: &[(&str, F)],
@@ -247,7 +247,7 @@ fn read_fields<F: Copy + PartialOrd>(
     Ok(fields)
 }
 
-/// A geom, or all geoms of a body.
+/// Reads a geom, or all geoms of a body.
 fn read_geoms(element: &Element, geom: &str, body: &str) -> Result<GeomsName, LoadError> {
     element.at_most_one(&[geom, body])?;
     match (element.text(geom), element.text(body)) {

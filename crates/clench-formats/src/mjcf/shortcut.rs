@@ -1,5 +1,5 @@
-//! The shortcuts of `<actuator>`: actuators whose dynamics, gain and bias follow from parameters of their own, such as `kp`, `kv`,
-//! `area`.
+//! The shortcuts of `<actuator>`: actuators whose dynamics, gain and bias derive from parameters of their own, such as
+//! `kp`, `kv`, `area`.
 
 use super::document::Element;
 use super::inputs::{Inputs, read_inputs};
@@ -7,7 +7,7 @@ use crate::LoadError;
 use clench_builder::{ActuatorSpec, TransmissionSpec};
 use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
-/// Which element an actuator is written with.
+/// The element that an actuator is written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Shortcut {
     #[default]
@@ -26,7 +26,7 @@ pub(crate) enum Shortcut {
 }
 
 impl Shortcut {
-    /// The shortcut of an element name.
+    /// Returns the shortcut of an element name.
     pub(super) fn from_tag(tag: &str) -> Option<Shortcut> {
         Some(match tag {
             "general" => Shortcut::General,
@@ -45,7 +45,7 @@ impl Shortcut {
         })
     }
 
-    /// The kind of its gain.
+    /// Returns the kind of its gain.
     pub(super) fn gain(self) -> GainKind {
         match self {
             Shortcut::Orientation => GainKind::So3,
@@ -58,7 +58,7 @@ impl Shortcut {
     }
 }
 
-/// How control becomes force.
+/// The parameters from control to force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActuatorParams {
     pub dynamics: DynamicsKind,
@@ -70,15 +70,15 @@ pub(crate) struct ActuatorParams {
     pub inheritrange: f64,
     pub actearly: bool,
     pub actdim: i32,
-    /// The range of forces, and whether it limits them, where the saturation of a `dcmotor` is part of the parameters.
+    /// The force range and its limited flag, if the saturation of a `dcmotor` is part of the parameters.
     pub saturation: Option<([f64; 2], Option<bool>)>,
-    /// What the controls are; `None`: what is usual.
+    /// The control inputs; `None` for the default ones.
     pub inputs: Option<Inputs>,
-    /// The shortcut that wrote them, which also says what the control is where `inputs` do not.
+    /// The shortcut that defined them, which also determines the control if `inputs` does not.
     pub shortcut: Shortcut,
 }
 
-/// Leading entries, then zeros.
+/// Pads leading entries with zeros.
 fn params<const N: usize>(leading: [f64; N]) -> [f64; 10] {
     let mut all = [0.0; 10];
     all[..N].copy_from_slice(&leading);
@@ -105,7 +105,7 @@ impl Default for ActuatorParams {
     }
 }
 
-/// `position` and `intvelocity`: force = kp (target − length) − kv velocity.
+/// Reads `position` and `intvelocity`: force = kp (target − length) − kv velocity.
 fn read_servo(element: &Element, inherited: ActuatorParams) -> Result<ActuatorParams, LoadError> {
     element.at_most_one(&["kv", "dampratio"])?;
     let mut kp = inherited.gainprm[0];
@@ -127,7 +127,7 @@ fn read_servo(element: &Element, inherited: ActuatorParams) -> Result<ActuatorPa
     Ok(parameters)
 }
 
-/// `position`: a servo, filtered if it has a time constant.
+/// Reads `position`: a servo, filtered if it has a time constant.
 pub(crate) fn read_position(
     element: &Element,
     inherited: ActuatorParams,
@@ -141,13 +141,13 @@ pub(crate) fn read_position(
     if timeconst > 0.0 {
         parameters.dynamics = DynamicsKind::FilterExact;
     }
-    // A class hands it on even where it is zero.
+    // A class passes it on even if it is zero.
     parameters.dynprm = params([timeconst]);
     Ok(parameters)
 }
 
-/// `intvelocity`: a servo whose target is the integral of the control. What is filtered in its class leaves its time constant to it, as to
-/// `position`, and so to others of its class.
+/// Reads `intvelocity`: a servo whose target is the integral of the control. Like `position`, it inherits the time
+/// constant of a filtered class, and passes it on in its own class.
 pub(crate) fn read_intvelocity(
     element: &Element,
     inherited: ActuatorParams,
@@ -158,7 +158,7 @@ pub(crate) fn read_intvelocity(
     })
 }
 
-/// `orientation`: torque = kp · (rotation to the target) − kv · angular velocity.
+/// Reads `orientation`: torque = kp · (rotation to the target) − kv · angular velocity.
 pub(crate) fn read_orientation(
     element: &Element,
     inherited: ActuatorParams,
@@ -174,7 +174,7 @@ pub(crate) fn read_orientation(
     Ok(parameters)
 }
 
-/// `damper`: force = −kv velocity · control.
+/// Reads `damper`: force = −kv velocity · control.
 pub(crate) fn read_damper(
     element: &Element,
     inherited: ActuatorParams,
@@ -194,7 +194,7 @@ pub(crate) fn read_damper(
     })
 }
 
-/// `velocity`: force = kv (target − velocity).
+/// Reads `velocity`: force = kv (target − velocity).
 pub(crate) fn read_velocity(
     element: &Element,
     inherited: ActuatorParams,
@@ -209,7 +209,7 @@ pub(crate) fn read_velocity(
     })
 }
 
-/// `cylinder`: force = area · filtered pressure + bias.
+/// Reads `cylinder`: force = area · filtered pressure + bias.
 pub(crate) fn read_cylinder(
     element: &Element,
     inherited: ActuatorParams,
@@ -233,7 +233,8 @@ pub(crate) fn read_cylinder(
     Ok(parameters)
 }
 
-/// `muscle`: dynamics, gain and bias of a muscle. Of its own attributes those that are negative are what they usually are, whatever its class says.
+/// Reads `muscle`: dynamics, gain and bias of a muscle. Negative values of its own attributes stand for the defaults,
+/// whatever its class.
 pub(crate) fn read_muscle(
     element: &Element,
     inherited: ActuatorParams,
@@ -270,7 +271,7 @@ pub(crate) fn read_muscle(
     })
 }
 
-/// Takes the numbers that are given, and in place of those that are negative the usual ones.
+/// Overwrites targets with the given numbers, using the default for negative ones.
 fn overwrite(targets: &mut [f64], given: &[f64], usual: &[f64]) {
     for ((target, &given), &usual) in targets.iter_mut().zip(given).zip(usual) {
         *target = if given < 0.0 { usual } else { given };
@@ -284,7 +285,7 @@ pub(crate) fn not_negative(element: &Element, name: &str) -> Result<Option<f64>,
     }
 }
 
-/// `adhesion`: force = gain · control.
+/// Reads `adhesion`: force = gain · control.
 pub(super) fn read_adhesion(
     element: &Element,
     inherited: ActuatorParams,

@@ -1,4 +1,4 @@
-//! `<site>`: a frame, and the volume in which sensors feel.
+//! `<site>`: a frame, and a volume for sensors.
 
 use super::appearance::read_appearance;
 use super::compiler::CompilerOptions;
@@ -12,7 +12,7 @@ use clench_collide::ShapeKind;
 use clench_math::Vec3;
 use std::sync::Arc;
 
-/// A site as it is written, or as a default class has it.
+/// A site as written in an element or a default class.
 #[derive(Clone, Debug)]
 pub(crate) struct SiteDraft {
     kind: Option<ShapeKind>,
@@ -65,8 +65,7 @@ impl SiteDraft {
         read_appearance(element, &mut self.appearance)
     }
 
-    /// The site in its body, carried along with the frame that it is written in, and what the frames around it make of its
-    /// shape.
+    /// Returns the site in its body, and the deformation of its shape by the enclosing frames.
     pub(super) fn finish(
         mut self,
         element: &Element,

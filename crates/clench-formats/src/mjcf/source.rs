@@ -1,5 +1,5 @@
-//! What the files of a model each say about how to read them: a model that is attached keeps its own units, directories, default
-//! classes and rules for inertia.
+//! Settings for reading the files of a model: an attached model retains its own units, directories, default classes and
+//! rules for inertia.
 
 use super::compiler::{self, CompilerOptions};
 use super::defaults::Classes;
@@ -12,22 +12,22 @@ use clench_builder::CompilerSpec;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A model's own settings, with which its elements are read wherever they are attached.
+/// A model's own settings, for its elements wherever attached.
 #[derive(Debug)]
 pub(crate) struct Source {
     pub compiler: CompilerOptions,
-    /// The settings that act when the model is built.
+    /// The settings used when the model is built.
     pub spec: Arc<CompilerSpec>,
     pub classes: Classes,
     pub files: Files,
 }
 
-/// The settings of the main model, which come first, and of those that are attached.
+/// The settings of the main model, which come first, and those of attached models.
 #[derive(Debug, Default)]
 pub(crate) struct Sources(Vec<Source>);
 
 impl Sources {
-    /// Reads a model's settings, and marks its elements as read with them. Says which they are.
+    /// Reads a model's settings, assigns them to its elements, and returns their index.
     pub(super) fn add(
         &mut self,
         root: &mut Element,
@@ -53,20 +53,20 @@ impl Sources {
         Ok(index)
     }
 
-    /// The settings of the main model.
+    /// Returns the main model's settings.
     pub(super) fn main(&self) -> &Source {
         &self.0[0]
     }
 
-    /// The settings that an element is read with.
+    /// Returns the settings for an element.
     pub(super) fn of(&self, element: &Element) -> &Source {
         &self.0[element.source]
     }
 
-    /// Lets elements of one model name the classes of another by their prefixed names.
+    /// Lets elements of one model refer to the classes of another by their prefixed names.
     ///
     /// # Errors
-    /// Where the names take more memory than is left.
+    /// Returns a message if the names exceed the memory budget.
     pub(super) fn lend_classes(
         &mut self,
         from: usize,
@@ -82,10 +82,10 @@ impl Sources {
         Ok(())
     }
 
-    /// Decides whether a range limits, for an element of a model whose `autolimits` is not that of the main model.
+    /// Decides whether a range limits, for an element whose model's `autolimits` differs from the main model's.
     ///
     /// # Errors
-    /// A range without a word on its use where `autolimits` is off.
+    /// Returns an error if `autolimits` is off and the flag of a range is missing.
     pub(super) fn settle_limit(
         &self,
         element: &Element,

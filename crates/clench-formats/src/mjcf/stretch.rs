@@ -1,29 +1,30 @@
-//! The linear maps of positions that frames with scales make.
+//! The linear maps of positions by frames with scales.
 //!
-//! A frame with pose (p, Q) and scales S takes a point x in it to p + Q S x. In a frame within it, at (q, R) and with scales T, a point
-//! goes through S R T, which is R (Rᵀ S R) T: the orientation stays a rotation, and the frame within has the map Rᵀ S R T. That is
-//! a shear where R does not keep the axes along which S differs. MuJoCo 4.0 has the same rule; its tolerances were found beside it.
+//! A frame with pose (p, Q) and scales S maps a point x in it to p + Q S x. In a nested frame at (q, R) with scales T,
+//! a point is mapped by S R T, which is R (Rᵀ S R) T: the orientation remains a rotation, and the nested frame has the
+//! map Rᵀ S R T. That is a shear if R does not preserve the axes along which S differs. MuJoCo 4.0 has the same rule;
+//! its tolerances were determined by comparison.
 
 use clench_math::{Mat3, Quat, Vec3};
 
-/// The largest sine of the angle between an axis and what it is mapped to, and the largest relative difference of factors
-/// that are to be equal.
+/// The maximum sine of the angle between an axis and its image, and the maximum relative difference of factors that
+/// must be equal.
 const TOLERANCE: f64 = 0.0349;
 
-/// What becomes of positions, in the axes of a frame, a body or a shape.
+/// A linear map of positions, in the axes of a frame, a body or a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stretch {
-    /// All directions have the same factor.
+    /// The same factor in all directions.
     Uniform(f64),
-    /// Factors differ between directions.
+    /// A map whose factors depend on the direction.
     General(Mat3<f64>),
 }
 
 impl Stretch {
-    /// Positions stay as they are.
+    /// The identity.
     pub(crate) const NONE: Stretch = Stretch::Uniform(1.0);
 
-    /// A factor for each axis.
+    /// Creates a map from a factor for each axis.
     pub(crate) fn along_axes(factors: Vec3<f64>) -> Self {
         Stretch::of(Mat3::diagonal(factors))
     }
@@ -51,7 +52,7 @@ impl Stretch {
         }
     }
 
-    /// The point that is mapped to this one.
+    /// Returns the point that is mapped to this one.
     pub(crate) fn undo(self, point: Vec3<f64>) -> Vec3<f64> {
         match self {
             Stretch::Uniform(factor) => point * (1.0 / factor),
@@ -64,7 +65,7 @@ impl Stretch {
         }
     }
 
-    /// The normal of a surface, not of unit length, whose normal was this before.
+    /// Maps the normal of a surface; the result does not have unit length.
     pub(crate) fn normal(self, normal: Vec3<f64>) -> Vec3<f64> {
         match self {
             Stretch::Uniform(factor) => normal * (1.0 / factor),
@@ -72,7 +73,7 @@ impl Stretch {
         }
     }
 
-    /// The same map in axes that are turned like this.
+    /// Returns the same map in rotated axes.
     pub(crate) fn turned(self, axes: Quat<f64>) -> Self {
         match self {
             Stretch::Uniform(_) => self,
@@ -83,7 +84,7 @@ impl Stretch {
         }
     }
 
-    /// This map after another one in the same axes.
+    /// Composes this map with an inner one in the same axes.
     pub(crate) fn after(self, inner: Stretch) -> Self {
         match (self, inner) {
             (Stretch::Uniform(outer), Stretch::Uniform(inner)) => Stretch::Uniform(outer * inner),
@@ -95,7 +96,7 @@ impl Stretch {
         }
     }
 
-    /// The factor of lengths along each axis.
+    /// Returns the factor of lengths along each axis.
     pub(crate) fn factors(self) -> Vec3<f64> {
         match self {
             Stretch::Uniform(factor) => Vec3::new(factor, factor, factor),
@@ -105,7 +106,7 @@ impl Stretch {
         }
     }
 
-    /// The factor of lengths along a direction; `None` where it turns that.
+    /// Returns the factor of lengths along a direction; `None` if the map rotates it.
     pub(crate) fn factor_along(self, direction: Vec3<f64>) -> Option<f64> {
         let matrix = match self {
             Stretch::Uniform(factor) => return Some(factor),
@@ -113,27 +114,27 @@ impl Stretch {
         };
         let (unit, length) = direction.normalize();
         let (image, factor) = (matrix * unit).normalize();
-        // A direction of no length is refused with the joint that has it.
+        // A zero direction is rejected with the joint that has it.
         (length == 0.0 || unit.cross(image).norm() <= TOLERANCE).then_some(factor)
     }
 
-    /// Whether it turns none of the first axes.
+    /// Returns true if the first `count` axes are not rotated.
     pub(crate) fn keeps_axes(self, count: usize) -> bool {
         let axes = &Mat3::IDENTITY.rows[..count];
         axes.iter().all(|&axis| self.factor_along(axis).is_some())
     }
 }
 
-/// What frames with scales make of a shape.
+/// The deformation of a shape by frames with scales.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deformation {
-    /// What becomes of positions in its axes.
+    /// The linear map of positions in its axes.
     pub(crate) stretch: Stretch,
-    /// Whether it stretches between two points that were mapped, and so has its length already.
+    /// True if the shape lies between two mapped points, and so already has its length.
     pub(crate) segment: bool,
 }
 
-/// Whether factors are as good as equal.
+/// Returns true if the factors are nearly equal.
 pub(crate) fn nearly_equal(factors: &[f64]) -> bool {
     let largest = factors.iter().copied().fold(0.0, f64::max);
     let least = (1.0 - TOLERANCE) * largest;

@@ -1,4 +1,4 @@
-//! What of MJCF is read, for users and for tests that must reach all of it.
+//! The supported part of MJCF, for users and for tests that must cover it.
 
 use super::rules::rules;
 use super::sensor;
@@ -6,22 +6,22 @@ use crate::mjcf::rules::Rule;
 use clench_dynamics::model::SensorKind;
 use std::borrow::Cow;
 
-/// What the reader does with an MJCF element.
+/// The treatment of an MJCF element by the reader.
 #[derive(Clone, Debug)]
 pub struct Support {
-    /// Its name, or `parent/name` where the parent gives the name a meaning of its own.
+    /// Its name, or `parent/name` if the name has another meaning in that parent.
     pub element: Cow<'static, str>,
     /// Attributes that are read.
     pub read: Vec<&'static str>,
-    /// Attributes that are accepted and do not act on motion; viewers may show what they say.
+    /// Attributes accepted without effect on motion; viewers may show them.
     pub ignored: Vec<&'static str>,
-    /// Attributes that are refused; one written as `name=value` is accepted with that value, which does nothing.
+    /// Rejected attributes; one written as `name=value` is accepted with that value, which has no effect.
     pub refused: Vec<&'static str>,
-    /// Elements that may stand in it.
+    /// Permitted children.
     pub children: Vec<&'static str>,
 }
 
-/// What of MJCF is supported, element by element. An element not listed is refused.
+/// Returns the supported elements of MJCF. An element not listed is rejected.
 ///
 /// ```
 /// let geom = clench_formats::supported().find(|support| support.element == "geom");

@@ -1,11 +1,11 @@
-//! `<tendon>`: sums of joint positions, and strings through sites and around geoms.
+//! `<tendon>`: weighted sums of joint positions, and strings through sites and around geoms.
 
 use super::appearance::read_appearance;
 use super::document::Element;
 use crate::LoadError;
 use clench_builder::{TendonSpec, WrapSpec};
 
-/// Overwrites what the element gives of the attributes that default classes also have.
+/// Overwrites the attributes that the element gives and default classes can also set.
 pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<(), LoadError> {
     element.set_range("range", &mut tendon.range)?;
     element.set_tristate("limited", &mut tendon.limited)?;
@@ -30,12 +30,12 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
         1 => tendon.springlength = Some([rest[0]; 2]),
         _ => tendon.springlength = Some(rest),
     }
-    // MuJoCo writes "the length where springs rest" as -1.
+    // MuJoCo writes -1 for "the length at which springs rest".
     tendon.springlength = tendon.springlength.filter(|rest| *rest != [-1.0; 2]);
     Ok(())
 }
 
-/// The tendon that a `<fixed>` or `<spatial>` describes.
+/// Reads the tendon of a `<fixed>` or `<spatial>`.
 pub(crate) fn read(element: &Element, mut tendon: TendonSpec) -> Result<TendonSpec, LoadError> {
     read_common(element, &mut tendon)?;
     for child in &element.children {

@@ -1,4 +1,4 @@
-//! `<texture>`: from files, or computed. As in MuJoCo a pattern goes before a file, and a file before six of them.
+//! `<texture>`: files or a pattern. As in MuJoCo, a pattern takes precedence over a file, and a file over six of them.
 
 use super::document::Element;
 use super::files::{Content, Files};
@@ -10,7 +10,7 @@ use clench_dynamics::model::{
 };
 use std::sync::Arc;
 
-/// The files of the sides of a cube, in their order.
+/// The file attributes of the sides of a cube, in order.
 const SIDES: [&str; 6] = [
     "fileright",
     "fileleft",
@@ -23,13 +23,13 @@ const SIDES: [&str; 6] = [
 /// The letters of these sides in a layout.
 const LETTERS: [char; 6] = ['R', 'L', 'U', 'D', 'F', 'B'];
 
-/// The most squares of a picture that has several sides.
+/// The maximum number of squares in an image with several sides.
 const MAX_SQUARES: usize = 12;
 
-/// What a pixel of a file takes, bytes: itself, and as it is decoded.
+/// The memory of a pixel of a file, bytes: itself, and its decoded form.
 const PIXEL: u64 = 8;
 
-/// Reads a texture; none where its file is KTX, which only some renderers of MuJoCo's can draw.
+/// Reads a texture; none if its file is KTX, which only some of MuJoCo's renderers can draw.
 pub(super) fn read(
     element: &Element,
     files: &Files,
@@ -66,7 +66,7 @@ pub(super) fn read(
             None => TexturePicture::Pixels(Arc::new(six_files(element, files, spending)?)),
         },
     };
-    // As in MuJoCo a sky, which no material names, does without.
+    // As in MuJoCo, a sky needs no name, since no material refers to it.
     if name.is_empty() && kind != TextureKind::Sky {
         return Err(element.incomplete("a texture needs a name or a file"));
     }
@@ -77,7 +77,7 @@ pub(super) fn read(
     }))
 }
 
-/// What the file of a texture is, by what the element says or by its name.
+/// Returns the media type of a texture file, from the element or the file name.
 fn media_type(element: &Element, file: &Content) -> Result<&'static str, LoadError> {
     let extension = file.extension.to_ascii_lowercase();
     let said = element.text("content_type").unwrap_or(match &*extension {
@@ -94,7 +94,7 @@ fn media_type(element: &Element, file: &Content) -> Result<&'static str, LoadErr
         })
 }
 
-/// The pattern that `builtin` names, if it names one.
+/// Returns the pattern that `builtin` names, if any.
 fn pattern(
     element: &Element,
     kind: TextureKind,
@@ -140,7 +140,7 @@ fn pattern(
     }))
 }
 
-/// Colours of an image, grey ones too, turned over as the element asks.
+/// Returns the colours of an image, also of grey ones, flipped as specified.
 fn read_picture(
     mut file: Content,
     element: &Element,
@@ -169,7 +169,7 @@ fn read_picture(
     })
 }
 
-/// The sides of a cube out of squares of one picture; a square picture is on all sides.
+/// Assembles the sides of a cube from squares of an image; a square image is on all sides.
 fn unfolded(
     element: &Element,
     picture: Pixels,
@@ -212,7 +212,7 @@ fn unfolded(
     cube(element, width, &sides, spending)
 }
 
-/// A square of a picture that has so many of them in a row.
+/// Returns a square of an image with `columns` squares in a row.
 fn cut(picture: &Pixels, width: usize, square: usize, columns: usize) -> Vec<u8> {
     let (row, column) = (square / columns, square % columns);
     let lines = picture.rgb.chunks_exact(3 * picture.width);
@@ -224,7 +224,7 @@ fn cut(picture: &Pixels, width: usize, square: usize, columns: usize) -> Vec<u8>
         .collect()
 }
 
-/// A cube of a file a side.
+/// Assembles a cube from one file per side.
 fn six_files(
     element: &Element,
     files: &Files,
@@ -257,7 +257,7 @@ fn six_files(
     }
 }
 
-/// The sides below each other; `rgb1` where there is none.
+/// Stacks the sides vertically; uses `rgb1` for missing ones.
 fn cube(
     element: &Element,
     width: usize,

@@ -1,10 +1,10 @@
-//! What an actuator pulls on, by the attributes that name it.
+//! The transmission of an actuator, from the attributes of its target.
 
 use super::document::Element;
 use crate::LoadError;
 use clench_builder::TransmissionSpec;
 
-/// Attributes that name a target; an actuator has one.
+/// The attributes that name a target; an actuator has one.
 const TARGETS: &[&str] = &[
     "joint",
     "jointinparent",
@@ -14,7 +14,7 @@ const TARGETS: &[&str] = &[
     "body",
 ];
 
-/// The target of an actuator.
+/// Reads the target of an actuator.
 pub(super) fn read(element: &Element) -> Result<TransmissionSpec, LoadError> {
     element.at_most_one(TARGETS)?;
     let name = |attribute| element.text(attribute).map(str::to_owned);

@@ -1,4 +1,4 @@
-//! What is only seen: the materials and textures of a file.
+//! Visual elements: the materials and textures of a file.
 
 use super::appearance::read_material;
 use super::document::Element;
@@ -26,7 +26,7 @@ pub(crate) fn read(
                 builder.materials.push(finish_material(element, draft)?);
                 size_of::<MaterialSpec>() + size_of::<Material>()
             }
-            // As in MuJoCo, what is discarded is not read.
+            // As in MuJoCo, discarded elements are not read.
             "texture" if discarded => continue,
             "texture" => {
                 let files = &sources.of(element).files;
@@ -53,7 +53,7 @@ pub(crate) fn read(
     }
 }
 
-/// Checks that every texture that a material names exists.
+/// Checks that every texture that a material refers to exists.
 fn check_textures(root: &Element, builder: &ModelBuilder) -> Result<(), LoadError> {
     let textures = entries(root, "asset").filter(|asset| asset.tag == "texture");
     let known: BTreeSet<&str> = (textures.filter_map(|texture| texture.text("name")))

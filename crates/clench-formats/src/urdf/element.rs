@@ -1,14 +1,14 @@
-//! What all elements of URDF share: only children, errors that say where, memory.
+//! Common functions for URDF elements: unique children, error context, memory.
 
 use crate::LoadError;
 use crate::document::Element;
 use crate::spending::Spending;
 
 impl Element {
-    /// The only child of that name.
+    /// Returns the only child of that name.
     ///
     /// # Errors
-    /// More than one.
+    /// Returns an error if there are several.
     pub(super) fn child(&self, tag: &str) -> Result<Option<&Element>, LoadError> {
         let mut found = self.children.iter().filter(|child| child.tag == tag);
         let first = found.next();
@@ -18,14 +18,14 @@ impl Element {
         }
     }
 
-    /// The only child of that name, which must be there.
+    /// Returns the only child of that name, which is required.
     pub(super) fn required_child(&self, tag: &str) -> Result<&Element, LoadError> {
         self.child(tag)?
             .ok_or_else(|| self.error(format!("the element <{tag}> is required")))
     }
 }
 
-/// An error inside of a link or joint, which says so.
+/// Adds the enclosing link or joint to an error.
 pub(super) fn inside(outer: &Element) -> impl Fn(LoadError) -> LoadError {
     let label = outer.label();
     move |mut error| {
@@ -37,14 +37,14 @@ pub(super) fn inside(outer: &Element) -> impl Fn(LoadError) -> LoadError {
     }
 }
 
-/// Takes the memory of an element of this size with these texts.
+/// Counts an element of this size with these texts against the budget.
 pub(super) fn charge(
     element: &Element,
     size: usize,
     texts: &[&str],
     spending: &mut Spending,
 ) -> Result<(), LoadError> {
-    /// What is read stands in the builder, in that of the fused bodies, then in the model.
+    /// Copies in the builder, in that of the fused bodies, and in the model.
     const COPIES: usize = 4;
     let texts: usize = texts.iter().map(|text| text.len()).sum();
     let charged = spending.bytes((COPIES * (size + texts)) as u64);

@@ -1,17 +1,17 @@
-//! Frees the base of a robot whose file fixes it to the world.
+//! Freeing of the base of a robot whose file fixes it to the world.
 
 use crate::LoadError;
 use crate::document::Element;
 use clench_builder::{JointSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;
 
-/// The name of the joint. It becomes `floating_base_1` if the robot has a joint of this name, and so on.
+/// The name of the joint, or `floating_base_1` and so on if the name is taken.
 const NAME: &str = "floating_base";
 
-/// Gives a free joint to the link that stands on the world. A link that has one already keeps it.
+/// Adds a free joint to the link fixed to the world. An existing one is retained.
 ///
 /// # Errors
-/// No such link, several, or one that another joint moves.
+/// Returns an error if there is no such link, several, or one that another joint moves.
 pub(super) fn float(root: &Element, builder: &mut ModelBuilder) -> Result<(), LoadError> {
     let on_world = |&body: &usize| builder.bodies[body].parent == ModelBuilder::WORLD;
     let bases = Vec::from_iter((1..builder.bodies.len()).filter(on_world));

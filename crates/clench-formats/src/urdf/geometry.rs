@@ -11,14 +11,14 @@ use clench_collide::ShapeKind;
 use clench_math::{Quat, Vec3};
 use std::collections::{HashMap, HashSet};
 
-/// What only shows is in this group, as in MuJoCo.
+/// The group of visual shapes, as in MuJoCo.
 const VISUAL_GROUP: i32 = 1;
 
 /// The colours of materials, by name.
 pub(super) struct Materials(HashMap<String, [f32; 4]>);
 
 impl Materials {
-    /// Collects the coloured materials of a whole file; the first of a name counts.
+    /// Collects the coloured materials of a whole file; the first of a name takes precedence.
     pub(super) fn read(root: &Element) -> Result<Self, LoadError> {
         let mut found = HashMap::new();
         let mut pending = vec![root];
@@ -40,20 +40,20 @@ fn read_rgba(color: &Element) -> Result<[f32; 4], LoadError> {
     color.singles("rgba")?.ok_or_else(|| color.missing("rgba"))
 }
 
-/// Reads the shapes of all links.
+/// A reader of the shapes of all links.
 pub(super) struct GeomReader<'a> {
     pub meshes: Meshes<'a>,
     pub materials: Materials,
-    /// Names that are taken.
+    /// The names in use.
     pub names: HashSet<String>,
     pub discard_visual: bool,
 }
 
 impl GeomReader<'_> {
-    /// The shapes of a link, in order.
+    /// Reads the shapes of a link, in order.
     ///
     /// # Errors
-    /// A shape that is none, or that has not the sizes it needs; meshes that are not there.
+    /// Returns an error if a shape is unknown or lacks its sizes, or a mesh is missing.
     pub(super) fn read(
         &mut self,
         link: &Element,
@@ -61,7 +61,7 @@ impl GeomReader<'_> {
         spending: &mut Spending,
     ) -> Result<Vec<GeomSpec>, LoadError> {
         let mut geoms = Vec::new();
-        // The colour of the last visual is also that of what follows.
+        // The colour of a visual also applies to the shapes after it.
         let mut rgba = None;
         for element in &link.children {
             let visual = match element.tag.as_str() {
@@ -107,7 +107,7 @@ impl GeomReader<'_> {
         Ok(())
     }
 
-    /// The name of a shape, or nothing where another has it, as in MuJoCo.
+    /// Returns the name of a shape, or an empty one if the name is taken, as in MuJoCo.
     fn free_name(&mut self, element: &Element, notes: &mut Vec<String>) -> String {
         let name = element.string("name");
         if name.is_empty() || self.names.insert(name.clone()) {
@@ -157,14 +157,14 @@ impl GeomReader<'_> {
     }
 }
 
-/// Radius and half length.
+/// Returns the radius and half length.
 fn round(shape: &Element) -> Result<Vec3<f64>, LoadError> {
     let [radius] = shape.required_numbers("radius")?;
     let [length] = shape.required_numbers("length")?;
     Ok(Vec3::new(radius, length * 0.5, 0.0))
 }
 
-/// The pose in `<origin>`: roll, pitch and yaw turn about the fixed axes x, y, z in this order.
+/// Reads the pose in `<origin>`: roll, pitch and yaw turn about the fixed axes x, y, z in this order.
 pub(super) fn read_origin(element: &Element) -> Result<Pose, LoadError> {
     let Some(origin) = element.child("origin")? else {
         return Ok(Pose::IDENTITY);

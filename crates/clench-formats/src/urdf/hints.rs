@@ -1,9 +1,9 @@
-//! Elements and attributes that nobody reads, but whose names are nearly those of what is read.
+//! Hints about ignored elements and attributes with names similar to supported ones.
 
 use crate::document::Element;
 use crate::mjcf::schema::suggestion;
 
-/// What is read of each element: its attributes and its children.
+/// The supported attributes and children of each element.
 const KNOWN: [(&str, &[&str], &[&str]); 21] = [
     ("robot", &["name"], &["link", "joint", "material", "mujoco"]),
     ("link", &["name"], &["inertial", "collision", "visual"]),
@@ -38,12 +38,12 @@ const KNOWN: [(&str, &[&str], &[&str]); 21] = [
     ("mimic", &["joint", "multiplier", "offset"], &[]),
 ];
 
-/// Most notes; more mistakes are likely to be of one kind.
+/// The maximum number of notes; further mistakes are probably of the same kind.
 const MOST: usize = 20;
-/// Most names that are compared with those that are known.
+/// The maximum number of names to compare with known ones.
 const MAX_COMPARED: usize = 10_000;
 
-/// Notes each name below a robot that is probably mistaken for one that is read.
+/// Notes each name below a robot that is probably a misspelling of a supported one.
 pub(super) fn collect(root: &Element, notes: &mut Vec<String>) {
     let mut compared = 0;
     let mut pending = vec![("robot", root)];

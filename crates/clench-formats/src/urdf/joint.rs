@@ -1,4 +1,4 @@
-//! `<joint>`: where a link stands on its parent, and how it moves there.
+//! `<joint>`: the pose of a link on its parent, and its degrees of freedom.
 
 use super::element::{charge, inside};
 use super::geometry::read_origin;
@@ -11,7 +11,7 @@ use clench_dynamics::model::JointKind;
 use clench_math::{Quat, Vec3};
 use std::collections::HashMap;
 
-/// Kinds of URDF joints. `spherical` is no word of URDF, but of MuJoCo's and Bullet's readers.
+/// The kinds of URDF joints. `spherical` is not in URDF, but in MuJoCo's and Bullet's readers.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Revolute,
@@ -34,16 +34,16 @@ const KINDS: [(&str, Kind); 7] = [
 ];
 
 impl Kind {
-    /// Whether its position is one number, which another joint may mimic.
+    /// Returns true if its position is one number, which another joint may mimic.
     fn is_scalar(self) -> bool {
         matches!(self, Kind::Revolute | Kind::Continuous | Kind::Prismatic)
     }
 }
 
-/// Reads all joints into the bodies that they move, then who mimics whom.
+/// Reads all joints into the bodies that they move, then the mimic relations.
 ///
 /// # Errors
-/// What a joint cannot be.
+/// Returns an error if a joint is invalid.
 pub(super) fn read_all(
     tree: &Tree,
     builder: &mut ModelBuilder,
@@ -88,7 +88,7 @@ pub(super) fn read_all(
     Ok(())
 }
 
-/// The joints of ours that a URDF joint is.
+/// Returns the model's joints for a URDF joint.
 fn read(
     element: &Element,
     kind: Kind,
@@ -127,19 +127,19 @@ fn read(
             dynamics.set_number("friction", &mut joint.frictionloss)?;
         }
     }
-    // The limits of a planar joint hold its first direction alone, as in MuJoCo.
+    // The limits of a planar joint apply only to its first direction, as in MuJoCo.
     read_limit(element, kind, &mut joints[0], notes)?;
     Ok(joints)
 }
 
-/// Two axes in the plane across an axis, as the least rotation that gives it carries x and y along.
+/// Returns two axes perpendicular to an axis: x and y under the minimal rotation of z to it.
 fn across(axis: Vec3<f64>) -> [Vec3<f64>; 2] {
     let (unit, _) = axis.normalize();
     let turn = Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), unit);
     [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)].map(|v| turn.rotate(v))
 }
 
-/// Limits of position, and of effort as the bounds of all actuator force. Velocities have no limit.
+/// Reads the limits of position, and of effort as limits of total actuator force. Velocities have no limit.
 fn read_limit(
     element: &Element,
     kind: Kind,
@@ -180,7 +180,7 @@ fn read_limit(
     Ok(())
 }
 
-/// A joint that mimics another is held to `multiplier · other + offset` by an equality constraint, as in MuJoCo 4.0.
+/// Reads a mimic relation: an equality constraint to `multiplier · other + offset`, as in MuJoCo 4.0.
 fn read_mimic(
     element: &Element,
     kinds: &HashMap<&str, Kind>,

@@ -12,7 +12,7 @@ use clench_math::{Mat3, Quat, Vec3};
 /// Reads a link into the world or the next body.
 ///
 /// # Errors
-/// What a link cannot be.
+/// Returns an error if the link is invalid.
 pub(super) fn read(
     link: &Link,
     geoms: &mut GeomReader,
@@ -37,8 +37,8 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Mass, and inertia in the axes of `<origin>`, which is turned into those of the link. No inertia at all is for the compiler's
-/// bounds to raise.
+/// Reads the mass, and the inertia in the axes of `<origin>`, which is rotated to those of the link. A zero inertia is
+/// left to the compiler's lower limits.
 fn read_inertial(link: &Element) -> Result<Option<InertialSpec>, LoadError> {
     let Some(element) = link.child("inertial")? else {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! `<mesh>`: where its file is, and which meshes are the same.
+//! `<mesh>`: file lookup and sharing of equal meshes.
 
 use crate::LoadError;
 use crate::document::Element;
@@ -11,7 +11,7 @@ use clench_math::Vec3;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// What comes before the name of a package.
+/// The prefixes of a package name.
 const PACKAGE: [&str; 2] = ["package://", "model://"];
 
 /// The meshes of a robot.
@@ -21,13 +21,13 @@ pub(super) struct Meshes<'a> {
     meshdir: PathBuf,
     strippath: bool,
     pub found: Vec<MeshSpec>,
-    /// The names of those in `found`, by file and scale.
+    /// The names of the meshes in `found`, by file and scale.
     known: HashMap<(PathBuf, [u64; 3]), String>,
     names: HashSet<String>,
 }
 
 impl<'a> Meshes<'a> {
-    /// For a robot in a directory.
+    /// Creates the meshes of a robot in a directory.
     pub(super) fn new(
         directory: &'a Path,
         packages: &'a [PathBuf],
@@ -44,10 +44,10 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Reads the mesh that an element names, if no other has read it, and says what it is called.
+    /// Reads the mesh of an element, once per file and scale, and returns its name.
     ///
     /// # Errors
-    /// A file that is not there or no mesh.
+    /// Returns an error if the file is missing or not a mesh.
     pub(super) fn read(
         &mut self,
         element: &Element,
@@ -93,7 +93,7 @@ impl<'a> Meshes<'a> {
         Ok(name)
     }
 
-    /// The name of the file, with a number where it is taken.
+    /// Returns the name of the file, with a number if it is taken.
     fn name(&mut self, stem: &str) -> String {
         let numbered = (1..).map(|number| format!("{stem}{number}"));
         let mut names = std::iter::once(stem.to_owned()).chain(numbered);
@@ -103,7 +103,7 @@ impl<'a> Meshes<'a> {
         name
     }
 
-    /// The file that is meant by what is written.
+    /// Returns the file that a written path refers to.
     fn find(&self, written: &str) -> Result<PathBuf, String> {
         if self.strippath {
             let last = Path::new(written).file_name().unwrap_or_default();
@@ -122,7 +122,7 @@ impl<'a> Meshes<'a> {
                 written,
             );
         };
-        // Some write three slashes.
+        // Some files write three slashes.
         let inside = inside.trim_start_matches('/');
         let (name, rest) = inside.split_once('/').unwrap_or(("", inside));
         let around = self.directory.canonicalize().unwrap_or_default();
@@ -144,7 +144,8 @@ impl<'a> Meshes<'a> {
     }
 }
 
-/// The text of a URI: each `%` with two hexadecimal digits stands for a byte. Other texts, and those that would not be UTF-8, are kept.
+/// Decodes a URI: each `%` with two hexadecimal digits stands for a byte. Other texts, and those that would not be
+/// UTF-8, are unchanged.
 fn decoded(written: String) -> String {
     if !written.contains("://") {
         return written;
@@ -161,7 +162,7 @@ fn decoded(written: String) -> String {
     String::from_utf8(bytes).unwrap_or(written)
 }
 
-/// The first of some places where there is a file.
+/// Returns the first path at which a file exists.
 fn first_file(places: impl IntoIterator<Item = PathBuf>, written: &str) -> Result<PathBuf, String> {
     let mut places = places.into_iter();
     let found = places.find(|path| path.is_file());

@@ -1,8 +1,8 @@
 //! URDF, as MuJoCo 4.0 reads it.
 //!
-//! Links become bodies, joints what moves them, and a link that no joint moves is fused into its parent. Elements that say nothing of
-//! links and joints (transmissions, sensors, plugins, Gazebo's) are ignored, as in MuJoCo; one whose name is nearly that of an
-//! element that is read is noted. Text keeps its place in the file, which is why our own tree of elements is read
+//! Links become bodies, joints their degrees of freedom, and a link without a joint is fused into its parent. Elements
+//! that do not concern links and joints (transmissions, sensors, plugins, Gazebo's) are ignored, as in MuJoCo; one with
+//! a name similar to a supported one is noted. Elements come from this crate's own tree, which has source locations
 //! ([`document`](crate::document)).
 
 mod element;
@@ -24,11 +24,11 @@ use meshes::Meshes;
 use std::path::{Path, PathBuf};
 use tree::Tree;
 
-/// Reads the robot below a root element, whose file is in a directory; `floating` frees the link that stands on the world.
+/// Reads the robot below a root element, whose file is in a directory; `floating` frees the link fixed to the world.
 ///
 /// # Errors
-/// What breaks a rule of the format: missing elements and attributes, names that are taken or lead nowhere, joints that form a loop,
-/// meshes that are not there.
+/// Returns an error if a rule of the format is broken: missing elements and attributes, duplicate or unknown names,
+/// joints that form a loop, missing meshes.
 pub(crate) fn read(
     root: &Element,
     directory: &Path,

@@ -1,4 +1,4 @@
-//! `<mujoco>`, MuJoCo's extension of URDF: how to derive what the file does not say, and the physics of the world.
+//! `<mujoco>`, MuJoCo's extension of URDF: settings for deriving omitted values, and the physics of the world.
 
 use crate::LoadError;
 use crate::document::Element;
@@ -7,13 +7,13 @@ use crate::mjcf::option::OptionReader;
 use crate::mjcf::{keyframe, schema};
 use clench_builder::{CompilerSpec, ModelBuilder};
 
-/// Sections of MJCF that may stand in `<mujoco>`.
+/// The sections of MJCF that are permitted in `<mujoco>`.
 const SECTIONS: [&str; 3] = ["compiler", "option", "size"];
 
-/// Reads the settings over MuJoCo's defaults for URDF: static bodies are fused, and what is only seen is left out.
+/// Reads the settings over MuJoCo's defaults for URDF: static bodies are fused, visual geometry is omitted.
 ///
 /// # Errors
-/// What a section cannot say.
+/// Returns an error if a section is invalid.
 pub(super) fn read(
     root: &Element,
     builder: &mut ModelBuilder,

@@ -1,30 +1,30 @@
-//! Which link stands on which.
+//! The kinematic tree of links.
 
 use crate::LoadError;
 use crate::document::Element;
 use std::collections::HashMap;
 
-/// The link that is the world itself.
+/// The name of the link that is the world itself.
 const WORLD: &str = "world";
 
 /// The links and joints of a robot.
 pub(super) struct Tree<'a> {
     links: Vec<&'a Element>,
     pub joints: Vec<Joint<'a>>,
-    /// Links, each after the one that it stands on.
+    /// The links, each after its parent.
     order: Vec<usize>,
-    /// The joint above each link.
+    /// The parent joint of each link.
     above: Vec<Option<usize>>,
-    /// The body that each link is; 0 for the world.
+    /// The body of each link; 0 for the world.
     body: Vec<usize>,
 }
 
-/// A link and where it stands.
+/// A link and its parent.
 pub(super) struct Link<'a> {
     pub element: &'a Element,
-    /// The body that it is; 0 for the world.
+    /// Its body; 0 for the world.
     pub body: usize,
-    /// The body that it stands on: the world, where no joint says another.
+    /// The parent body; the world if there is no parent joint.
     pub parent: usize,
 }
 
@@ -36,10 +36,11 @@ pub(super) struct Joint<'a> {
 }
 
 impl<'a> Tree<'a> {
-    /// Reads which links there are, and which joints are between them.
+    /// Reads the links, and the joints between them.
     ///
     /// # Errors
-    /// Links of one name; joints of links that are not there; a link below two joints, or below itself.
+    /// Returns an error for links with the same name, joints of missing links, and a link below two joints or below
+    /// itself.
     pub(super) fn read(root: &'a Element) -> Result<Self, LoadError> {
         let links: Vec<&Element> = children(root, "link").collect();
         let mut names = HashMap::new();
@@ -80,7 +81,7 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// The links, each after the one that it stands on.
+    /// Returns the links, each after its parent.
     pub(super) fn links(&self) -> impl Iterator<Item = Link<'a>> {
         self.order.iter().map(|&link| Link {
             element: self.links[link],
@@ -89,7 +90,7 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// The body that a joint moves.
+    /// Returns the body that a joint moves.
     pub(super) fn child(&self, joint: &Joint) -> usize {
         self.body[joint.child]
     }
@@ -117,10 +118,10 @@ fn read_joint<'a>(
     })
 }
 
-/// Links depth first: those without a parent in order of appearance, the children of each in the order of their joints.
+/// Returns the links depth first: roots in order of appearance, children in the order of their joints.
 ///
 /// # Errors
-/// Joints that form a loop.
+/// Returns an error if joints form a loop.
 fn parents_first(joints: &[Joint], above: &[Option<usize>]) -> Result<Vec<usize>, LoadError> {
     let mut below = vec![Vec::new(); above.len()];
     for joint in joints {

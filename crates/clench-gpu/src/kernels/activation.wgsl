@@ -1,6 +1,6 @@
-// From activations to the next ones. Sister of `dynamics/activation.rs`.
+// Integration of activations. CPU counterpart: `dynamics/activation.rs`.
 
-// The setpoint of a servo on a circle, moved by whole turns to the one nearest to `near`; other inputs pass unchanged.
+// Returns the setpoint of a servo on a circle, moved by full turns to be nearest to `near`; other inputs are unchanged.
 fn nearest_setpoint(u: u32, input: f32, near: f32) -> f32 {
     let turn = parameter(ACTUATOR_TURN + u);
     if (turn == 0.0) {
@@ -13,7 +13,8 @@ fn time_constant(u: u32) -> f32 {
     return max(parameter(DYNAMICS_PRM + 3u * u), TINY);
 }
 
-// e^x − 1, without the digits that a device's own power loses where x is small: there its Taylor series, whose rest is below 10⁻¹⁶ of it.
+// Computes e^x − 1 by its Taylor series for small x, where the device's own function loses digits. The relative
+// truncation error is below 10⁻¹⁶.
 fn exp_less_one(x: f32) -> f32 {
     if (abs(x) < 0.5) {
         var sum: f32 = 1.0;
@@ -25,7 +26,7 @@ fn exp_less_one(x: f32) -> f32 {
     return exponential(x) - 1.0;
 }
 
-// Activation `a` of actuator `u` a time step later, within its range.
+// Returns activation `a` of actuator `u` one time step later, within its range.
 fn next_activation(u: u32, a: u32, act: f32, rate: f32, velocity: f32) -> f32 {
     if (ANY_CONTROLLER && words[ACTUATOR_DYNAMICS + u] == DYN_DC_MOTOR) {
         return next_motor_activation(u, a, act, rate, velocity);

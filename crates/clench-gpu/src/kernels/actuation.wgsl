@@ -1,6 +1,7 @@
-// Actuator forces and the dof forces they make. Sister of `dynamics/actuation.rs`. A range that is not limited is one of all numbers.
+// Actuator forces and the resulting dof forces. CPU counterpart: `dynamics/actuation.rs`. Ranges that are not limited
+// contain all numbers.
 
-// Zero where there is no actuation.
+// Computes an output's velocity; zero without actuation.
 fn actuator_velocity(o: u32) {
     var velocity: f32 = 0.0;
     for (var k = words[ACTUATOR_ROW + o]; ACTUATION && k < words[ACTUATOR_ROW + o + 1u]; k++) {
@@ -9,7 +10,7 @@ fn actuator_velocity(o: u32) {
     put(ACTUATOR_VELOCITY + o, velocity);
 }
 
-// Leaves in TEN_ACTUATOR_FORCE with how much actuators pull at each tendon whose total is limited.
+// Stores in TEN_ACTUATOR_FORCE the total actuator force on each tendon with a force limit.
 fn sum_tendon_forces() {
     for (var t = 0u; is_first() && t < NTENDON; t++) {
         put(TEN_ACTUATOR_FORCE + t, 0.0);
@@ -23,7 +24,7 @@ fn sum_tendon_forces() {
     join();
 }
 
-// Where the actuators of a tendon pull with more than its range together, each is scaled by the same factor.
+// Scales the actuator forces of a tendon by a common factor if their total exceeds the tendon's range.
 fn limit_tendon_forces() {
     sum_tendon_forces();
     for (var u = member; ANY_ON_TENDON && u < NU; u += TEAM) {
@@ -41,7 +42,7 @@ fn limit_tendon_forces() {
     }
 }
 
-// Holds the force of an actuator within its range.
+// Clamps the force of an actuator to its range.
 fn limit_force(u: u32) {
     if (is_orientation_servo(u)) {
         limit_torque(u);
@@ -52,7 +53,7 @@ fn limit_force(u: u32) {
     put(place, clamp(fetch(place), parameter(range), parameter(range + 1u)));
 }
 
-// The force on a dof: what all outputs with an arm on it do.
+// Sums the forces of all outputs with a moment arm on a dof.
 fn actuator_force_on(i: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var n = words[DOF_ARM + i]; n < words[DOF_ARM + i + 1u]; n++) {
@@ -87,7 +88,7 @@ fn actuation() {
     for (var u = member; u < NU; u += TEAM) {
         limit_force(u);
     }
-    // A tendon's range, as an actuator's own, holds what a motor's current pulls with, without its cogging and friction.
+    // The ranges of actuators and tendons limit the force of a motor's current, without its cogging and friction.
     if (NTENDON > 0u) {
         join();
         sum_tendon_forces();

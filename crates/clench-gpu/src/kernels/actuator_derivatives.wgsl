@@ -1,10 +1,10 @@
-// How the force of an actuator changes with its velocity, after all limits: where a limit of the actuator, its tendon or its joint holds
-// the force, it does not change. Sister of `dynamics/actuator_derivatives.rs` and of `gain.rs`.
+// Velocity derivatives of actuator forces, after all limits: zero if a limit of the actuator, its tendon or its joint
+// is active. CPU counterparts: `dynamics/actuator_derivatives.rs` and `gain.rs`.
 
-// A sum of forces that were scaled into a range is at one of its ends if it misses it by so little of it.
+// The relative tolerance with which a sum of forces scaled into a range is at one of its ends.
 const SUM_ROUNDING: f32 = max(1e-10, 16.0 * EPSILON);
 
-// Before any limit.
+// Ignores all limits.
 fn unlimited_slope(u: u32) -> f32 {
     let length = fetch(ACTUATOR_LENGTH + output_of(u));
     let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));
@@ -29,7 +29,7 @@ fn is_saturated(x: f32, range: u32) -> bool {
     return x <= parameter(range) || x >= parameter(range + 1u);
 }
 
-// Whether the actuators of a tendon pull with as much as it bears.
+// Returns true if the total actuator force on a tendon is at a limit.
 fn tendon_is_saturated(t: u32) -> bool {
     let total = fetch(TEN_ACTUATOR_FORCE + t);
     let low = parameter(TENDON_FORCE_RANGE + 2u * t);
@@ -37,8 +37,8 @@ fn tendon_is_saturated(t: u32) -> bool {
     return total <= low + abs(low) * SUM_ROUNDING || total >= high - abs(high) * SUM_ROUNDING;
 }
 
-// Whether a limit of the actuator or its tendon holds its force. Cogging and friction of a motor come after its limit, which holds its
-// current alone.
+// Returns true if a limit of the actuator or its tendon is active. Cogging and friction of a motor are added after its
+// limit, which applies only to its current.
 fn is_held(u: u32) -> bool {
     var limited = fetch(ACTUATOR_FORCE + output_of(u));
     if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR) {
@@ -65,7 +65,7 @@ fn velocity_slope(u: u32) -> f32 {
     }
     let held = is_held(u);
     if (ANY_CONTROLLER && words[GAIN_LAW + u] == LAW_DC_MOTOR) {
-        // As in MuJoCo, friction counts with a motor's gain, though it is part of its bias. No limit holds what that adds.
+        // As in MuJoCo, friction counts with a motor's gain although it is part of its bias. No limit applies to it.
         let friction = mechanical_slope(u);
         if (held) {
             return select(0.0, friction, words[BIAS_LAW + u] == LAW_DC_MOTOR);

@@ -1,7 +1,8 @@
-// Transmissions to contacts: a body is drawn to whatever it touches. Sister of `dynamics/adhesion.rs`.
+// Transmissions to contacts: a body is attracted to everything that it touches. CPU counterpart:
+// `dynamics/adhesion.rs`.
 
-// Moment arms, over all dofs, of an actuator on the contacts of `body`: minus the mean rate at which the bodies come apart there.
-// A contact within one rigid body has no share, unless it is within the gap.
+// Computes the moment arms, over all dofs, of an actuator on the contacts of `body`: minus the mean separation rate of
+// the bodies there. A contact within one rigid body has no share, unless it is within the gap.
 fn contact_arms(u: u32, body: u32) {
     let arms = ACTUATOR_MOMENT + first_arm(u);
     for (var i = 0u; i < bound(NV); i++) {

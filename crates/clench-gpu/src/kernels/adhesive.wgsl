@@ -1,6 +1,6 @@
-// Contacts that adhere of themselves, see `constraint/contact.rs` of clench-rigid.
+// Contacts with adhesion, see `constraint/contact.rs` of clench-rigid.
 
-// What a contact holds on with. Its rows give that besides, against the passive force that pulls its bodies together.
+// Returns the adhesion of a contact. Its rows add this force against the passive one that pulls its bodies together.
 fn contact_adhesion(contact: u32) -> f32 {
     if (!ANY_ADHESION) {
         return 0.0;

@@ -1,8 +1,9 @@
-// The factor of the mass matrix by articulated bodies, where paths are long: M in single precision has lost it. Sister of
-// `dynamics/articulated.rs`.
+// The factor of the mass matrix by articulated bodies, for long paths, where M in single precision is too inexact. CPU
+// counterpart: `dynamics/articulated.rs`.
 //
-// ARTICULATED has the inertia that is felt at each body if the joints below it are free, about its centre of mass: three matrices,
-// `rotational`, `coupling` and `mass`, with moment = rotational ω + coupling v and force = couplingᵀ ω + mass v.
+// ARTICULATED holds the apparent inertia of each body with the joints below it free, about its centre of mass: three
+// matrices, `rotational`, `coupling` and `mass`, with moment = rotational ω + coupling v and force = couplingᵀ ω + mass
+// v.
 
 struct ArticulatedInertia {
     rotational: mat3x3f,
@@ -22,7 +23,7 @@ fn put_articulated(b: u32, inertia: ArticulatedInertia) {
     put_matrix(place + 18u, inertia.mass);
 }
 
-// The body alone.
+// Returns the inertia of a single body.
 fn rigid_inertia(b: u32) -> ArticulatedInertia {
     let axes = fetch_matrix(XIMAT + 9u * b);
     let diagonal = parameter3(BODY_INERTIA + 3u * b);
@@ -35,7 +36,7 @@ fn rigid_inertia(b: u32) -> ArticulatedInertia {
     );
 }
 
-// Moment and force that accelerate it so.
+// Returns the moment and force for an acceleration.
 fn articulated_force(inertia: ArticulatedInertia, m: Spatial) -> Spatial {
     return Spatial(
         inertia.rotational * m.angular + inertia.coupling * m.linear,
@@ -43,7 +44,7 @@ fn articulated_force(inertia: ArticulatedInertia, m: Spatial) -> Spatial {
     );
 }
 
-// The inertia less u uᵀ / pivot.
+// Returns inertia − u uᵀ / pivot.
 fn release(inertia: ArticulatedInertia, u: Spatial, inverse_pivot: f32) -> ArticulatedInertia {
     var freed = inertia;
     for (var i = 0u; i < bound(3u); i++) {
@@ -54,12 +55,12 @@ fn release(inertia: ArticulatedInertia, u: Spatial, inverse_pivot: f32) -> Artic
     return freed;
 }
 
-// The cross products of a vector with the columns of a matrix.
+// Returns the cross products of a vector with the columns of a matrix.
 fn crossed(v: vec3f, m: mat3x3f) -> mat3x3f {
     return mat3x3f(cross(v, m[0]), cross(v, m[1]), cross(v, m[2]));
 }
 
-// The sum of an inertia and another about the point at `offset` from its own.
+// Adds an inertia about the point at `offset` from the other's.
 fn add_shifted(own: ArticulatedInertia, other: ArticulatedInertia, offset: vec3f) -> ArticulatedInertia {
     let moved = other.coupling + crossed(offset, other.mass);
     let turned = transpose(crossed(offset, transpose(other.coupling)));
@@ -71,7 +72,7 @@ fn add_shifted(own: ArticulatedInertia, other: ArticulatedInertia, offset: vec3f
     );
 }
 
-// The motion of the matter at a point where dof i moves at unit velocity, from the joint's anchor.
+// Returns the motion of the body's point at `point` if dof i moves at unit velocity, from the joint's anchor.
 fn motion_from_anchor(i: u32, point: vec3f) -> Spatial {
     let joint = words[DOF_JNT + i];
     let kind = words[JNT_KIND + joint];
@@ -82,7 +83,7 @@ fn motion_from_anchor(i: u32, point: vec3f) -> Spatial {
     return Spatial(motion.angular, cross(motion.angular, point - fetch3(XANCHOR + 3u * joint)));
 }
 
-// Factors M, with what `added_inertia` adds to its diagonal, into QLD; false where a pivot is not positive.
+// Factors M, plus `added_inertia` on its diagonal, into QLD; returns false if a pivot is not positive.
 fn articulated_factor() -> bool {
     var positive = true;
     for (var b = 1u; b < bound(NBODY); b++) {

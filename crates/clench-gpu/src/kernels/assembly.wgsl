@@ -1,10 +1,11 @@
-// Jacobians of all rows, their velocities, and with these aref, R and D. One workgroup an environment. Sister of
-// `constraint/assembly.rs`.
+// Jacobians of all rows, their velocities, and from these aref, R and D. One workgroup per environment. CPU
+// counterpart: `constraint/assembly.rs`.
 
-// R is at least this share of the inverse inertia: 4.5 ε of single precision, as on the processor.
+// The minimum of R relative to the inverse inertia: 4.5 ε of single precision, as on the processor.
 const MIN_REGULARIZATION: f32 = 4.5 * EPSILON;
 
-// Axes of dofs: in the memory of the workgroup, where they are no more than these. There a number beside another is of the same environment.
+// The axes of dofs are in workgroup memory if there are no more than this. Adjacent numbers there belong to the same
+// environment.
 const NEAR_AXES: u32 = 96u;
 var<workgroup> near_axes: array<f32, 6u * NEAR_AXES>;
 
@@ -26,7 +27,7 @@ fn axis_of(i: u32) -> Spatial {
     );
 }
 
-// Row `k` of a connect or weld: what separates the points, then what turns one frame in the other.
+// Returns an entry of row `k` of a connect or weld: the points' separation, then the frames' rotation.
 fn held_entry(equality: u32, k: u32, i: u32) -> f32 {
     let first = words[EQ_PAIR + 2u * equality];
     let second = words[EQ_PAIR + 2u * equality + 1u];
@@ -47,7 +48,7 @@ fn held_entry(equality: u32, k: u32, i: u32) -> f32 {
     return (half_product(u, relative_quat(equality)) * torquescale(equality))[k - 3u];
 }
 
-// The follower's derivative, less that of its leader times the slope, which the row has as its shape.
+// Returns the follower's derivative minus the slope, stored as the row's shape, times that of its leader.
 fn coupling_entry(equality: u32, a: u32, i: u32) -> f32 {
     var sum = coordinate_entry(words[EQ_PAIR + 2u * equality], i);
     let leader = words[EQ_PAIR + 2u * equality + 1u];
@@ -57,7 +58,8 @@ fn coupling_entry(equality: u32, a: u32, i: u32) -> f32 {
     return sum;
 }
 
-// Row `k` of a contact: along the normal and the tangents, then about them; the second body against the first.
+// Returns an entry of row `k` of a contact: along, then about the normal and the tangents; second body relative to
+// first.
 fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
     let place = CONTACTS + CONTACT_SIZE * contact;
     let pair = u32(fetch(place));
@@ -118,7 +120,7 @@ fn entry(a: u32, i: u32) -> f32 {
     }
 }
 
-// The velocity along a row, and the inverse inertia that it would see if dofs were independent.
+// Computes the velocity along a row, and its inverse inertia as if dofs were independent.
 fn finish_row(a: u32) {
     var velocity = row(VELOCITY + a);
     var inertia: f32 = 0.0;
@@ -130,11 +132,11 @@ fn finish_row(a: u32) {
     put_row(VELOCITY + a, velocity);
     put_row(AREF + a, row(AREF + a) - row(DAMPING + a) * velocity);
     put_row(RESIDUAL + a, inertia);
-    // A step of length 0 along any ray is nothing, if the ray is finite.
+    // A step of length 0 along any finite ray is zero.
     put_row(RAY + a, 0.0);
 }
 
-// Raises R to what rounding leaves of it, the rows of a cone together. RESIDUAL holds the inverse inertia of each row.
+// Raises R to the rounding level, for the rows of a cone together. RESIDUAL holds the inverse inertia of each row.
 fn finish_cone(first: u32, dim: u32, is_pyramid: bool) {
     let normal = row(RESIDUAL + first);
     var factor: f32 = 1.0;
@@ -173,7 +175,7 @@ fn finish_block(b: u32) {
     for (var a = first; a < first + dim; a++) {
         finish_stiffness(a, max(row(R + a), MIN_REGULARIZATION * row(RESIDUAL + a)));
     }
-    // A single row that nothing can change is no constraint, but for contacts.
+    // A single row that nothing can affect is no constraint, except in contacts.
     if (dim == 1u && kind != CONTACT_NORMAL && row(RESIDUAL + first) == 0.0) {
         put_row(D + first, 0.0);
         put_row(SHAPE + first, 0.0);
@@ -189,7 +191,7 @@ fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
     let nrow = reports[NROW * envs + env];
     let nblock = reports[NBLOCK * envs + env];
     fetch_axes();
-    // Eight rows and eight dofs at a time: either way numbers side by side are written together.
+    // Eight rows and eight dofs at a time: in both arrays adjacent numbers are written together.
     for (var first_row = 0u; first_row < nrow; first_row += 8u) {
         let a = first_row + lane / 8u;
         for (var i = lane % 8u; a < nrow && i < bound(NV); i += 8u) {

@@ -1,5 +1,5 @@
-// Accelerations of bodies and forces between them, constraints included, and the energy: one thread an environment, and only where somebody asks.
-// Sister of `sensor/bodies.rs`.
+// Accelerations of bodies and forces between them, constraints included, and the energy: one thread per environment, on
+// request. CPU counterpart: `sensor/bodies.rs`.
 
 @compute @workgroup_size(GROUP)
 fn body_forces(@builtin(global_invocation_id) id: vec3u) {

@@ -1,16 +1,18 @@
-// Box–box: separating axes, then the face of one box clipped to the face of the other, or two edges that cross. Sisters of
-// `clench-collide/src/narrow/box_box.rs` and `box_manifold.rs`, where the rules and their numbers are explained.
+// Box–box: separating axes, then the face of one box clipped to the face of the other, or two crossing edges. CPU
+// counterparts: `clench-collide/src/narrow/box_box.rs` and `box_manifold.rs`, which explain the rules and their
+// constants.
 
 const EDGE_BIAS: f32 = 1e-6;
 const ALIAS_COSINE: f32 = 1.0 - 3.8e-7;
 const ALIAS_SHARE: f32 = 0.05;
 
-// How a pair goes on: its contacts are found, they are those along `best`, or those of any convex shapes.
+// The remaining work for a pair: none, contacts along `best`, or the general convex method.
 const FOUND: u32 = 0u;
 const ALONG_BEST: u32 = 1u;
 const AS_CONVEX: u32 = 2u;
 
-// An axis of largest separation: that of a face of box `owner`, or, where `owner` is 2, across edges along an axis of each.
+// An axis of largest separation: a face normal of box `owner`, or, if `owner` is 2, the cross product of one edge
+// direction of each.
 struct Separation {
     owner: u32,
     axis: u32,
@@ -18,7 +20,8 @@ struct Separation {
     distance: f32,
 }
 
-// Of face normals; that of an owner beyond 2 separates the boxes. `turn` has the axes of the second box in the frame of the first.
+// Finds the best face normal; an owner above 2 means separate boxes. `turn` holds the axes of the second box in the
+// frame of the first.
 fn best_face(turn: mat3x3f, offset: vec3f, a: Placed, b: Placed, reach: f32) -> Separation {
     var most = Separation(3u, 0u, 0u, -3e38);
     for (var k = 0u; k < bound(6u); k++) {
@@ -43,7 +46,7 @@ fn best_face(turn: mat3x3f, offset: vec3f, a: Placed, b: Placed, reach: f32) -> 
     return most;
 }
 
-// An edge pair that beats the best face, if any does.
+// Finds an edge pair that is better than the best face, if any.
 fn best_edges(face: Separation, turn: mat3x3f, offset: vec3f, a: vec3f, b: vec3f, reach: f32) -> Separation {
     var most = face;
     for (var k = 0u; k < bound(9u); k++) {
@@ -78,7 +81,8 @@ fn unit_axis(axis: u32) -> vec3f {
     return unit;
 }
 
-// The corners of the face of the other box that most opposes the face of the owner, in the polygon: x and y in that face, z above it.
+// Fills the polygon with the corners of the other box's face most opposed to the owner's face: x and y in that face, z
+// above it.
 fn opposing_face(axis: u32, side: f32, size: vec3f, turn: mat3x3f, offset: vec3f, other: vec3f) {
     let slope = transpose(turn)[axis];
     var most = 0u;
@@ -98,8 +102,8 @@ fn opposing_face(axis: u32, side: f32, size: vec3f, turn: mat3x3f, offset: vec3f
     polygon_count = 4u;
 }
 
-// Adds the corners of the opposing face clipped to the owner's, each midway between the two faces; gives the least distance. `turn`
-// and `offset` are of the other box in the owner's frame.
+// Adds the corners of the opposing face clipped to the owner's, each midway between the two faces. Returns the least
+// distance. `turn` and `offset` are those of the other box in the owner's frame.
 fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, turn: mat3x3f, offset: vec3f, out: f32, range: f32) -> f32 {
     let x = (axis + 1u) % 3u;
     let y = (axis + 2u) % 3u;

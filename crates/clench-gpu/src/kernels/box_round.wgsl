@@ -1,7 +1,7 @@
-// Sphere–box, and capsule–box as up to two balls on the capsule's axis. Sister of `clench-collide/src/narrow/box_round.rs`, where the
-// cases are explained. Vectors are in the box's frame.
+// Sphere–box, and capsule–box as up to two balls on the capsule's axis. CPU counterpart:
+// `clench-collide/src/narrow/box_round.rs`, which explains the cases. Vectors are in the box's frame.
 
-// The normal out of a ball whose centre is inside the box, through the nearest face, and that face's distance.
+// Returns the normal out of a ball whose centre is inside the box, through the nearest face, and that face's distance.
 fn nearest_face(center: vec3f, size: vec3f) -> vec4f {
     var best = vec4f(0.0, 0.0, 0.0, 3e38);
     for (var k = 0u; k < bound(6u); k++) {
@@ -16,7 +16,7 @@ fn nearest_face(center: vec3f, size: vec3f) -> vec4f {
     return best;
 }
 
-// Adds the contact of a ball, `center` in the box's frame, with the box `b`.
+// Adds the contact of a ball with the box `b`; `center` is in the box's frame.
 fn ball_box(pair: u32, center: vec3f, radius: f32, b: Placed, range: f32) {
     let offset = clamp(center, -b.size, b.size) - center;
     let apart = length(offset);
@@ -42,7 +42,7 @@ fn sphere_box(pair: u32, a: Placed, b: Placed, range: f32) {
     ball_box(pair, transpose(b.axes) * (a.center - b.center), a.size.x, b, range);
 }
 
-// Whether a segment, center + x half with x in [−1, 1], has a point in the box.
+// Returns true if a segment, center + x half with x in [−1, 1], intersects the box.
 fn segment_enters(center: vec3f, half: vec3f, size: vec3f) -> bool {
     var low: f32 = -1.0;
     var high: f32 = 1.0;
@@ -61,8 +61,8 @@ fn segment_enters(center: vec3f, half: vec3f, size: vec3f) -> bool {
     return low <= high;
 }
 
-// Where a capsule's middle segment is nearest to a box: the parameter, the point of the box, along which axes that is at its limit
-// (a bit each), and the squared distance.
+// The point of a capsule's middle segment nearest to a box: its parameter, the point of the box, the axes along which
+// that is at its limit (a bit each), and the squared distance.
 struct NearestOfBox {
     along: f32,
     point: vec3f,
@@ -74,7 +74,8 @@ fn axes_mask(x: bool, y: bool, z: bool) -> u32 {
     return select(0u, 1u, x) | select(0u, 2u, y) | select(0u, 4u, z);
 }
 
-// The edge along `axis` through one of the four corners across it: nearest points of two segments, by clamping in turn.
+// Tries the edge along `axis` through one of the four corners across it: nearest points of two segments, by alternate
+// clamping.
 fn try_edge(best: ptr<function, NearestOfBox>, center: vec3f, half: vec3f, size: vec3f, axis: u32, corner: u32) {
     var middle = vec3f();
     middle[(axis + 1u) % 3u] = select(f32(-1.0), f32(1.0), (corner & 1u) != 0u) * size[(axis + 1u) % 3u];
@@ -86,7 +87,7 @@ fn try_edge(best: ptr<function, NearestOfBox>, center: vec3f, half: vec3f, size:
     let edge_side = -size[axis] * offset[axis];
     let half_side = dot(half, offset);
     let determinant = edge_squared * half_squared - mixed * mixed;
-    // Parallel edges are left to the ends of the segment and to the edges across.
+    // Parallel edges are covered by the segment's ends and the edges across.
     if (abs(determinant) < 1e-15) {
         return;
     }
@@ -120,7 +121,7 @@ fn try_edge(best: ptr<function, NearestOfBox>, center: vec3f, half: vec3f, size:
     }
 }
 
-// Either an end of the segment is nearest, to a face or inside the box, or some point of it to one of the edges.
+// Finds the nearest points: an end of the segment to a face or the inside of the box, or a point of it to an edge.
 fn nearest_of_box(center: vec3f, half: vec3f, size: vec3f) -> NearestOfBox {
     var best = NearestOfBox(0.0, vec3f(), 0u, 3e38);
     for (var k = 0u; k < bound(2u); k++) {
@@ -147,7 +148,7 @@ fn sign_of(mask: u32, i: u32) -> f32 {
     return select(f32(-1.0), f32(1.0), in_mask(mask, i));
 }
 
-// Which way to walk along the capsule from the nearest point (0: no way), and which sides of the box to mind, a bit each.
+// The direction of the second ball along the capsule (0: none), and the sides of the box that limit it, a bit each.
 struct Walk {
     way: f32,
     walls: u32,
@@ -174,7 +175,8 @@ fn choose_walk(nearest: NearestOfBox, half: vec3f) -> Walk {
             let over_j = abs(half[j]) <= abs(half[k]);
             walk = Walk(sign_of(inward, select(j, k, over_j)), (1u << i) | (1u << select(j, k, over_j)));
         } else if (limit == 7u && differs_j && differs_k) {
-            // At a corner where axis i alone leads the other way: along the edge i, or else over the face across it.
+            // At a corner where only axis i leads in the other direction: along the edge i, or else over the face
+            // across it.
             if (half[i] * half[i] > 0.5 * dot(half, half)) {
                 walk = Walk(sign_of(inward, i), 1u << i);
             } else {
@@ -185,9 +187,9 @@ fn choose_walk(nearest: NearestOfBox, half: vec3f) -> Walk {
     return walk;
 }
 
-// How far to walk: until the capsule ends or leaves the box.
+// Returns the length until the capsule ends or leaves the box.
 fn walk_length(walk: Walk, nearest: NearestOfBox, half: vec3f, size: vec3f) -> f32 {
-    // A side that the capsule is parallel to, but for rounding, is no limit.
+    // A side parallel to the capsule, up to rounding, is no limit.
     let least = length(half) * (1e4 * EPSILON);
     var far = 1.0 - walk.way * nearest.along;
     for (var i = 0u; i < bound(3u); i++) {
@@ -202,7 +204,8 @@ fn walk_length(walk: Walk, nearest: NearestOfBox, half: vec3f, size: vec3f) -> f
     return far;
 }
 
-// False where the capsule's middle segment enters the box: then no ball on it tells how far the capsule must move to be free.
+// Adds the contacts. Returns false if the capsule's middle segment intersects the box: no ball on it then determines
+// the penetration depth.
 fn capsule_box(pair: u32, a: Placed, b: Placed, range: f32) -> bool {
     let back = transpose(b.axes);
     let center = back * (a.center - b.center);

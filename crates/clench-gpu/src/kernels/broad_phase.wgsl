@@ -1,7 +1,7 @@
-// Which pairs are near. Sister of `bounding_sphere.rs`: the pairs of the model, listed once, in canonical order, and
-// behind them those whose distance somebody asks for.
+// The near pairs. CPU counterpart: `bounding_sphere.rs`. The pairs of the model are listed once, in canonical order,
+// followed by those whose distance is requested.
 
-// Whether the bounding spheres of a pair meet; a plane has none.
+// Returns true if the bounding spheres of a pair overlap; a plane has none.
 fn may_touch(pair: u32) -> bool {
     let a = words[PAIR_GEOM + 2u * pair];
     let b = words[PAIR_GEOM + 2u * pair + 1u];
@@ -15,22 +15,23 @@ fn may_touch(pair: u32) -> bool {
     return dot(offset, offset) <= reach * max(reach, 0.0);
 }
 
-// Which of four pairs from one on are near: a card waits for all that it has to know of them at once. Those beyond the last are not.
+// Tests four consecutive pairs, so that a GPU waits only once for their data. Pairs from `end` on are not near.
 fn near_of_four(pair: u32, end: u32) -> vec4<bool> {
     let last = end - 1u;
     let near = vec4<bool>(may_touch(pair), may_touch(min(pair + 1u, last)), may_touch(min(pair + 2u, last)), may_touch(min(pair + 3u, last)));
     return near & (vec4u(pair, pair + 1u, pair + 2u, pair + 3u) < vec4u(end));
 }
 
-// Of each thread and method: how many pairs are near.
+// The number of near pairs for each thread and method.
 var<workgroup> near_counts: array<u32, GROUP * TEAM * METHODS>;
 
 fn near_count(thread: u32, method: u32) -> u32 {
     return GROUP * (METHODS * thread + method) + column;
 }
 
-// A team an environment: lists its near pairs in canonical order, and tells in which order their methods come. Each thread looks at consecutive pairs, and
-// puts those that are near where the order will be, until all know how many the others have.
+// Lists the near pairs of an environment in canonical order, and their order by method. One team per environment. Each
+// thread tests consecutive pairs, and stores near ones in the memory of the order until all know the counts of the
+// others.
 @compute @workgroup_size(GROUP, TEAM)
 fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);
@@ -38,7 +39,7 @@ fn broad_phase(@builtin(global_invocation_id) id: vec3u) {
     let share = (pairs + 4u * TEAM - 1u) / (4u * TEAM) * 4u;
     let start = share * min(member, TEAM);
     let end = min(start + share, pairs);
-    // Of each method: how many pairs, then where the next one goes.
+    // The number of pairs for each method, then the next position.
     var next: array<u32, METHODS>;
     var count = 0u;
     for (var pair = start; pair < end; pair += 4u) {

@@ -1,14 +1,14 @@
-// Where cameras are: one thread an environment, and only where somebody asks. Sister of `dynamics/camera.rs`. A camera is a row of
+// Camera poses: one thread per environment, on request. CPU counterpart: `dynamics/camera.rs`. A camera is a row of
 // CAMERA_SIZE words.
 
-// The axes of a camera that looks from one point to another, with the world's z axis upwards in its picture.
+// Returns the axes of a camera that looks from one point to another, with the world's z axis upwards in its image.
 fn looking(origin: vec3f, point: vec3f) -> mat3x3f {
     let z = direction(origin - point).xyz;
     let x = direction(cross(vec3f(0.0, 0.0, 1.0), z)).xyz;
     return mat3x3f(x, direction(cross(z, x)).xyz, z);
 }
 
-// At a constant offset from a point, with a constant orientation.
+// Places a camera at a constant offset from a point, with a constant orientation.
 fn follow(c: u32, point: vec3f, offset: u32) {
     put3(CAM_XPOS + 3u * c, point + parameter3(offset + 3u * c));
     for (var k = 9u * c; k < bound(9u * c + 9u); k++) {
@@ -16,7 +16,7 @@ fn follow(c: u32, point: vec3f, offset: u32) {
     }
 }
 
-// Fixed to its body, and perhaps turned towards a point.
+// Fixes a camera to its body, and optionally turns it towards a point.
 fn fix(c: u32, mode: u32, body: u32, looked_at: u32) {
     let place = fetch3(XPOS + 3u * body) + fetch_matrix(XMAT + 9u * body) * parameter3(CAM_POS + 3u * c);
     put3(CAM_XPOS + 3u * c, place);

@@ -1,9 +1,10 @@
-// Conjugate gradients, preconditioned by the mass matrix. Sister of `clench-solver/src/cg.rs`, where the restarts are explained.
+// Conjugate gradients, preconditioned by the mass matrix. CPU counterpart: `clench-solver/src/cg.rs`, which explains
+// the restarts.
 
-// Powell's bound: consecutive gradients that overlap by this part of the new one are far from orthogonal.
+// Powell's restart threshold: the overlap of consecutive gradients relative to the new one.
 const OVERLAP: f32 = 0.2;
 
-// The next direction from the last one, where the two are to be conjugate; else M⁻¹ times the negative gradient.
+// Computes the next direction, conjugate to the last one; or, on a restart, M⁻¹ times the negative gradient.
 fn direct_conjugate(started: bool) {
     var products = vec4f();
     for (var i = lane; i < bound(NV); i += GROUP) {

@@ -1,15 +1,15 @@
-// The factor of H = LLᵀ, tile by tile of its lower triangle, column after column of tiles. A tile is what H has there less the
-// products of the tiles before, and only then is it kept: H itself is nowhere. Of the tiles on the diagonal the inverse of L is
-// kept, so that what is to be divided by them is multiplied instead, without one number waiting for the next (as MAGMA does it:
-// Tomov, Nath, Ltaief & Dongarra, *Dense linear algebra solvers for multicore with GPU accelerators*, 2010).
+// The factor of H = LLᵀ, tile by tile of its lower triangle, column by column of tiles. A tile of H minus the products
+// of the previous tiles is stored only when complete; H itself is never stored. For tiles on the diagonal the inverse
+// of L is stored, so that divisions become products without sequential dependencies (as in MAGMA: Tomov, Nath, Ltaief &
+// Dongarra, *Dense linear algebra solvers for multicore with GPU accelerators*, 2010).
 
-// A pivot below this part of the diagonal that it is left of is nothing but rounding.
+// The pivot, relative to the original diagonal, below which it is only rounding error.
 const MIN_PIVOT: f32 = EPSILON;
 
-// The diagonal of H in the tile at hand.
+// The diagonal of H in the current tile.
 var<workgroup> diagonal: array<f32, TILE>;
 
-// This thread's part of a tile of M; beyond its end, of the identity.
+// Returns this thread's part of a tile of M; beyond the end of M, of the identity.
 fn mass_tile(i: u32, j: u32) -> vec4f {
     var own = vec4f();
     let r = TILE * i + own_row();
@@ -24,7 +24,7 @@ fn mass_tile(i: u32, j: u32) -> vec4f {
     return own;
 }
 
-// Puts four stiff rows, from the k-th on, where a product reads them: J at dof `i` and W J at dof `j`.
+// Stages four stiff rows, from the k-th on, for a product: J at dof `i` and W J at dof `j`.
 fn stage_stiff(place: u32, k: u32, count: u32, i: u32, j: u32) {
     var of_j = vec4f();
     var of_wj = vec4f();
@@ -39,10 +39,10 @@ fn stage_stiff(place: u32, k: u32, count: u32, i: u32, j: u32) {
     tiles[RIGHT + place] = of_wj;
 }
 
-// Puts the factors of a term of the tile (i, j) where a product reads them: of Jᵀ W J for sixteen stiff rows, or of what a column
-// of tiles before it has of it, which is subtracted.
+// Stages the factors of a term of the tile (i, j) for a product: of Jᵀ W J for sixteen stiff rows, or of a previous
+// column of tiles, which is subtracted.
 fn stage_term(i: u32, j: u32, term: u32, chunks: u32, count: u32) {
-    // Threads side by side have rows side by side, which are dofs: numbers of J side by side.
+    // Adjacent threads have adjacent rows, which are dofs: adjacent numbers of J.
     let r = lane % TILE;
     let quad = lane / TILE;
     let place = waiting_row(r) + quad;
@@ -55,7 +55,7 @@ fn stage_term(i: u32, j: u32, term: u32, chunks: u32, count: u32) {
     workgroupBarrier();
 }
 
-// Notes the diagonal of H in a tile on the diagonal.
+// Records the diagonal of H in a diagonal tile.
 fn note_diagonal(own: vec4f) {
     let r = own_row();
     if (r / 4u == own_quad()) {
@@ -63,9 +63,10 @@ fn note_diagonal(own: vec4f) {
     }
 }
 
-// Of a tile on the diagonal L⁻¹: what turns it into Lᵀ, row by row, turns the identity into that. A pivot that rounding has consumed is
-// replaced by its diagonal, so that the direction stays one of descent. Row k waits in row k of both factors of a product. Beyond the last dof a tile is
-// the identity, and stays it: only `order` rows are eliminated.
+// Computes L⁻¹ of a diagonal tile: the row operations that turn the tile into Lᵀ turn the identity into L⁻¹. A pivot
+// lost to rounding is replaced by its diagonal, so that the direction remains a descent direction. Row k is staged in
+// row k of both factors of a product. Beyond the last dof a tile is the identity and remains so: only `order` rows are
+// eliminated.
 fn invert_factor(own: vec4f, order: u32) -> vec4f {
     let r = own_row();
     var a = own;
@@ -92,12 +93,12 @@ fn invert_factor(own: vec4f, order: u32) -> vec4f {
             inverse = of_inverse;
         }
     }
-    // The result may go where others still read.
+    // Others may still read the destination of the result.
     workgroupBarrier();
     return inverse;
 }
 
-// A tile below the diagonal: what is left of it times the inverse of the factor above it.
+// Returns a tile below the diagonal: its remainder times the inverse of the factor above it.
 fn divide_tile(own: vec4f, j: u32) -> vec4f {
     let place = waiting_row(own_row()) + own_quad();
     scratch[place] = own;
@@ -106,7 +107,7 @@ fn divide_tile(own: vec4f, j: u32) -> vec4f {
     return tile_product();
 }
 
-// Factors H, of which `count` rows of J are stiff.
+// Factors H, for which `count` rows of J are stiff.
 fn factor_hessian(count: u32) {
     let chunks = (count + TILE - 1u) / TILE;
     for (var j = 0u; j < bound(NTILE); j++) {
@@ -134,7 +135,7 @@ fn factor_hessian(count: u32) {
     }
 }
 
-// The vector at `x` becomes H⁻¹ x; that at `half_way` is used up.
+// Replaces the vector at `x` by H⁻¹ x; overwrites that at `half_way`.
 fn solve_hessian(x: u32, half_way: u32) {
     for (var j = 0u; j < bound(NTILE); j++) {
         if (lane < TILE) {

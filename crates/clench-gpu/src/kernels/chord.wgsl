@@ -1,6 +1,7 @@
-// Where a line o + t d is within a shape: from t.x to t.y, and nowhere where t.x > t.y. Sister of `clench-collide/src/ray/chord.rs`.
+// The interval of a line o + t d within a shape, from t.x to t.y; empty if t.x > t.y. CPU counterpart:
+// `clench-collide/src/ray/chord.rs`.
 
-// Within the unit ball. From the nearest point of the line, since its origin may be far away.
+// Clips to the unit ball, from the nearest point of the line, since its origin may be far away.
 fn within_ball(o: vec3f, d: vec3f) -> vec2f {
     let square = dot(d, d);
     let back = dot(o, d) / max(square, SMALLEST);
@@ -12,7 +13,7 @@ fn within_ball(o: vec3f, d: vec3f) -> vec2f {
     return vec2f(-back) + vec2f(-1.0, 1.0) * sqrt(rest / square);
 }
 
-// Between −half and half along one axis.
+// Clips to −half to half along one axis.
 fn within_slab(o: f32, d: f32, half: f32) -> vec2f {
     if (d == 0.0) {
         return select(vec2f(1.0, -1.0), vec2f(-1e30, 1e30), abs(o) <= half);
@@ -21,7 +22,7 @@ fn within_slab(o: f32, d: f32, half: f32) -> vec2f {
     return vec2f(min(ends.x, ends.y), max(ends.x, ends.y));
 }
 
-// Within the endless cylinder of a radius around z.
+// Clips to the infinite cylinder of a radius around z.
 fn within_tube(o: vec3f, d: vec3f, radius: f32) -> vec2f {
     if (dot(d.xy, d.xy) < EPSILON * EPSILON) {
         return select(vec2f(1.0, -1.0), vec2f(-1e30, 1e30), dot(o.xy, o.xy) <= radius * radius);
@@ -29,18 +30,18 @@ fn within_tube(o: vec3f, d: vec3f, radius: f32) -> vec2f {
     return within_ball(vec3f(o.xy, 0.0) / radius, vec3f(d.xy, 0.0) / radius);
 }
 
-// Within a box.
+// Clips to a box.
 fn within_box(o: vec3f, d: vec3f, half: vec3f) -> vec2f {
     let level = overlap(within_slab(o.x, d.x, half.x), within_slab(o.y, d.y, half.y));
     return overlap(level, within_slab(o.z, d.z, half.z));
 }
 
-// Within both.
+// Intersects two intervals.
 fn overlap(a: vec2f, b: vec2f) -> vec2f {
     return vec2f(max(a.x, b.x), min(a.y, b.y));
 }
 
-// Within either of two shapes whose union is convex.
+// Unites two intervals whose shapes have a convex union.
 fn union_of(a: vec2f, b: vec2f) -> vec2f {
     if (b.x > b.y) {
         return a;
@@ -48,7 +49,7 @@ fn union_of(a: vec2f, b: vec2f) -> vec2f {
     return select(vec2f(min(a.x, b.x), max(a.y, b.y)), b, a.x > a.y);
 }
 
-// Within a sphere, a capsule, an ellipsoid, a cylinder or a box about its own axes; d has unit length.
+// Clips to a sphere, capsule, ellipsoid, cylinder or box about its own axes; d has unit length.
 fn within_shape(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> vec2f {
     switch kind {
         case SPHERE, ELLIPSOID: {
@@ -72,7 +73,7 @@ fn within_shape(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> vec2f {
     }
 }
 
-// Whether a ray meets what its line is so far within.
+// Returns true if a ray hits a shape with this interval on its line.
 fn is_met(t: vec2f) -> bool {
     return t.x <= t.y && t.y >= 0.0;
 }

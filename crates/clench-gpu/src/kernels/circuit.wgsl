@@ -1,4 +1,4 @@
-// The circuits of direct-current motors, and what they do. Sister of `dynamics/dc_motor.rs`.
+// The circuits and forces of direct-current motors. CPU counterpart: `dynamics/dc_motor.rs`.
 
 // A motor's circuit at an instant: R, K, V and ∂V/∂ω.
 struct Circuit {
@@ -40,7 +40,7 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
     return Circuit(resistance, constant, voltage + setpoints.voltage, slope);
 }
 
-// The current that voltage and back-EMF hold.
+// Returns the steady current of a voltage and back-EMF.
 fn steady_current(circuit: Circuit, velocity: f32) -> f32 {
     return (circuit.voltage - circuit.constant * velocity) / circuit.resistance;
 }
@@ -69,7 +69,8 @@ fn motor_rates(u: u32, setpoints: Setpoints, circuit: Circuit, length: f32, velo
     }
 }
 
-// The gain of a motor: K, which multiplies the current where that is a state, else K / R, which multiplies the voltage.
+// Returns the gain of a motor: K, which multiplies the current if that is a state, else K / R, which multiplies the
+// voltage.
 fn motor_gain(u: u32, circuit: Circuit) -> f32 {
     if (state_of(u, STATE_CURRENT) != NONE) {
         return circuit.constant;
@@ -77,7 +78,7 @@ fn motor_gain(u: u32, circuit: Circuit) -> f32 {
     return circuit.constant / max(circuit.resistance, TINY);
 }
 
-// What that multiplies.
+// Returns the input that the gain multiplies.
 fn motor_input(u: u32, circuit: Circuit, velocity: f32) -> f32 {
     let a = state_of(u, STATE_CURRENT);
     if (a == NONE) {
@@ -86,13 +87,14 @@ fn motor_input(u: u32, circuit: Circuit, velocity: f32) -> f32 {
     return acting(u, a, velocity);
 }
 
-// What back-EMF takes from the force of an actuator with this gain: nothing where the current is a state, whose equation has it.
+// Returns the back-EMF's reduction of the force of an actuator with this gain: zero if the current is a state, whose
+// equation includes it.
 fn back_emf(u: u32, gain: f32, velocity: f32) -> f32 {
     return select(0.0, gain * controller(u, OF_GAIN + 1u) * velocity, state_of(u, STATE_CURRENT) == NONE);
 }
 
-// ∂force/∂velocity of a motor's gain, and of its back-EMF where its bias is a motor's. A current that is a state follows the voltage
-// within the step alone, with `actearly`.
+// Returns ∂force/∂velocity of a motor's gain, and of its back-EMF if its bias is a motor's. If the current is a state,
+// it follows the voltage within the step only with `actearly`.
 fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
     let a = state_of(u, STATE_CURRENT);
     let net = circuit.voltage_slope - select(circuit.constant, 0.0, a == NONE && words[BIAS_LAW + u] != LAW_DC_MOTOR);
@@ -108,7 +110,7 @@ fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
     return -steady * exp_less_one(-TIMESTEP / max(controller(u, OF_DYNAMICS), TINY));
 }
 
-// Cogging and friction, which no limit of the motor's torque holds.
+// Returns cogging and friction, to which no limit of the motor's torque applies.
 fn mechanical_force(u: u32, length: f32) -> f32 {
     let phase = controller(u, OF_BIAS + 1u) * length + controller(u, OF_BIAS + 2u);
     let cogging = controller(u, OF_BIAS) * sin_cos(phase).x;
@@ -119,7 +121,7 @@ fn mechanical_force(u: u32, length: f32) -> f32 {
     return cogging - (controller(u, OF_DYNAMICS + 5u) * given(ACT + a) + controller(u, OF_DYNAMICS + 6u) * fetch(ACT_DOT + a));
 }
 
-// ∂force/∂velocity of friction, with the deflection's decay held.
+// Returns ∂force/∂velocity of friction, with the deflection's decay constant.
 fn mechanical_slope(u: u32) -> f32 {
     return select(0.0, -controller(u, OF_DYNAMICS + 6u), state_of(u, STATE_BRISTLE) != NONE);
 }

@@ -1,6 +1,6 @@
-// Centres of mass, spatial inertias and dof axes about them. Sister of `dynamics/com.rs`.
+// Centres of mass, spatial inertias and dof axes about them. CPU counterpart: `dynamics/com.rs`.
 
-// The sum of mass times position over a body and all below it, for those above; then what that is divided by the mass.
+// Sums mass times position over each body and its descendants, from the leaves up; then divides by the mass.
 fn subtree_com() {
     for (var level = NBODY_LEVEL; level > 0u; level--) {
         for (var n = words[BODY_LEVEL + level - 1u] + member; n < words[BODY_LEVEL + level]; n += TEAM) {
@@ -24,7 +24,7 @@ fn subtree_com() {
     join();
 }
 
-// The inertia of a body about the centre of mass of its tree.
+// Computes the inertia of a body about the centre of mass of its tree.
 fn body_inertia(b: u32) {
     let axes = fetch_matrix(XIMAT + 9u * b);
     let diagonal = parameter3(BODY_INERTIA + 3u * b);
@@ -44,7 +44,7 @@ fn body_inertia(b: u32) {
     put(CINERT + 10u * b + 9u, mass);
 }
 
-// The spatial motion of each dof of a joint at unit velocity.
+// Computes the spatial motion of each dof of a joint at unit velocity.
 fn dof_axes(j: u32) {
     let body = words[JNT_BODY + j];
     let kind = words[JNT_KIND + j];

@@ -1,15 +1,16 @@
-// Every active constraint becomes a block of rows: equalities, dry friction, limits, contacts, in this order. Sisters of
-// `constraint/friction.rs`, `limit.rs` and `contact.rs`, and of `contact/surface.rs`. Jacobians and velocities are added by `assembly.wgsl`.
+// Blocks of rows of all active constraints: equalities, dry friction, limits, contacts, in this order. CPU
+// counterparts: `constraint/friction.rs`, `limit.rs` and `contact.rs`, and `contact/surface.rs`. Jacobians and
+// velocities are added by `assembly.wgsl`.
 //
-// A thread first counts what its constraint has, and writes it when it knows what those before it have.
+// A thread first counts the blocks and rows of its constraint, and writes them once it knows the counts before it.
 
 var<private> nblock: u32;
 var<private> nrow: u32;
 var<private> writes: bool;
-// The impedance of the present block.
+// The impedance of the current block.
 var<private> block_impedance: f32;
 
-// Begins a block of a kind, from a source that its Jacobian is made of.
+// Begins a block of a kind; its Jacobian is computed from the source.
 fn begin_block(kind: u32, dim: u32, source: u32, impedance: f32) {
     block_impedance = impedance;
     let place = BLOCKS + BLOCK_SIZE * nblock;
@@ -22,8 +23,8 @@ fn begin_block(kind: u32, dim: u32, source: u32, impedance: f32) {
     nblock++;
 }
 
-// Adds a row to the block. The part of aref that its velocity has comes later: −damping · velocity. Until then VELOCITY has the part
-// of that which is not J v, PULL the force for which aref is raised by R times as much, and D the impedance.
+// Adds a row to the block. The velocity part of aref, −damping · velocity, is added later. Until then VELOCITY holds
+// the part of the velocity other than J v, PULL the force that raises aref by R times itself, and D the impedance.
 fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
     if (writes) {
         put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
@@ -48,7 +49,7 @@ fn push_friction(k: u32) {
     add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
 }
 
-// One end of the range of a coordinate. `source` is twice the coordinate, one more at the upper end.
+// Adds one end of a coordinate's range. `source` is twice the coordinate, plus one at the upper end.
 fn push_limit(prm: u32, distance: f32, source: u32) {
     let margin = parameter(prm + 2u);
     if (distance >= margin) {
@@ -60,7 +61,7 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
     add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + 3u)), 0.0);
 }
 
-// Both ends.
+// Adds both ends.
 fn push_limits(k: u32) {
     let c = words[LIMIT_COORDINATE + k];
     let prm = LIMIT_PRM + 11u * k;
@@ -75,8 +76,8 @@ fn push_limits(k: u32) {
     push_limit(prm, parameter(prm + 1u) - value, 2u * c + 1u);
 }
 
-// Velocity of the second geom's surface less that of the first where they touch: along both tangents, and about the normal. Sister of
-// `contact/surface.rs`.
+// Returns the velocity of the second geom's surface relative to the first's at the contact: along both tangents, and
+// about the normal.
 fn surface_velocity(contact: u32) -> vec3f {
     let place = CONTACTS + CONTACT_SIZE * contact;
     let pair = u32(fetch(place));
@@ -95,7 +96,7 @@ fn surface_velocity(contact: u32) -> vec3f {
     return vec3f(dot(fetch3(place + 8u), linear), dot(fetch3(place + 11u), linear), dot(fetch3(place + 5u), angular));
 }
 
-// The rows of a contact with friction, after the normal's.
+// Adds the friction rows of a contact, after the normal's.
 fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
     let mu1 = parameter(friction);
     var drift = vec3f();
@@ -116,7 +117,7 @@ fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: 
     }
 }
 
-// The row along the normal, which pulls where the contact adheres.
+// Adds the row along the normal, which pulls if the contact has adhesion.
 fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull: f32) {
     add_row(distance, aref, damping, r, shape);
     if (writes && ANY_ADHESION) {
@@ -124,7 +125,7 @@ fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull:
     }
 }
 
-// Where a contact that adheres is within the gap, it is one without friction.
+// Adds a contact. One with adhesion has no friction within the gap.
 fn push_contact(contact: u32) {
     let place = CONTACTS + CONTACT_SIZE * contact;
     let pair = u32(fetch(place));
@@ -162,12 +163,12 @@ fn push_contact(contact: u32) {
     let edge = regularization(soft.impedance, a0 + mu * mu * a0);
     let r = 2.0 * (mu * mu / IMPRATIO) * edge;
     begin_block(CONTACT_PYRAMID, dim, contact, soft.impedance);
-    // Each edge has its share.
+    // The edges share the adhesion.
     push_normal(distance, aref, soft.damping, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
     push_tangents(contact, dim, friction, r, soft.damping, soft.damping);
 }
 
-// The n-th of all constraints, if it acts.
+// Adds the n-th constraint, if it is active.
 fn push(n: u32) {
     var k = n;
     if (k < NEQ) {
@@ -187,7 +188,7 @@ fn push(n: u32) {
     push_contact(k - NLIMIT);
 }
 
-// A workgroup an environment, a thread a constraint.
+// One workgroup per environment, one thread per constraint.
 @compute @workgroup_size(GROUP)
 fn constraints(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
     lane = index;
@@ -195,7 +196,7 @@ fn constraints(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
         return;
     }
     let all = NEQ + NFRICTION + NLIMIT + reports[NCON * envs + env];
-    // Blocks and rows of the threads in earlier turns.
+    // Blocks and rows of the threads in earlier iterations.
     var earlier = vec2u();
     for (var start = 0u; start < all; start += GROUP) {
         var first = vec2u();

@@ -1,22 +1,22 @@
-// The contacts that a thread of the narrow phase finds, pair by pair, in memory of its own: as many as an environment may have in all, and
-// one of each pair whose distance is measured. Frames are those of `clench-collide/src/frame.rs`.
+// The contacts that a thread of the narrow phase finds, pair by pair, in private memory: up to the maximum of an
+// environment, and one for each pair whose distance is measured. Frames are those of `clench-collide/src/frame.rs`.
 
-// Where the memory of this thread begins.
+// The start of this thread's memory.
 var<private> thread_start: u32;
 
-// Where a field of this thread is.
+// Returns the offset of a field of this thread.
 fn thread_field(field: u32) -> u32 {
     return thread_start + field;
 }
 
-// How many there are so far, and how many before the present pair.
+// The number of contacts so far, and before the current pair.
 var<private> found: u32;
 var<private> first_of_pair: u32;
-// Whether there were more than there is room for.
+// True if the capacity was exceeded.
 var<private> overflowed: bool;
 
-// Adds a contact of a pair; `tangent` is the first of the two. Of a pair that is to have but one contact, the first of the deepest stays.
-// Those of a triangle of terrain are not contacts yet.
+// Adds a contact of a pair; `tangent` is the first of the two. For a pair limited to one contact, the first of the
+// deepest is kept. Contacts of a terrain triangle go to its patch.
 fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent: vec3f) {
     if (ANY_TERRAIN && on_terrain) {
         add_to_patch(TerrainPoint(position, normal, distance));
@@ -42,7 +42,7 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
     found++;
 }
 
-// The y axis made orthogonal to the normal, or the z axis where the normal is within 60° of y.
+// Returns the y axis made orthogonal to the normal, or the z axis if the normal is within 60° of y.
 fn tangent_from_normal(n: vec3f) -> vec3f {
     let use_y = abs(n.y) < 0.5;
     let start = select(vec3f(0.0, 0.0, 1.0), vec3f(0.0, 1.0, 0.0), use_y);
@@ -50,10 +50,10 @@ fn tangent_from_normal(n: vec3f) -> vec3f {
     return tangent * (1.0 / length(tangent));
 }
 
-// A direction made orthogonal to the normal; the x axis, or y near it, where the two are parallel.
+// Returns a direction made orthogonal to the normal; the x axis, or y near it, if the two are parallel.
 fn tangent_along(n: vec3f, along: vec3f) -> vec3f {
     var tangent = along - n * dot(n, along);
-    // Below this length what is left of the direction is mostly rounding error.
+    // Below this length the remainder of the direction is mostly rounding error.
     let least: f32 = 1e4 * EPSILON;
     if (dot(tangent, tangent) < least * least) {
         let other = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.9);

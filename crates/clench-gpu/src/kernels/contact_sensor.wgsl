@@ -1,9 +1,9 @@
-// Contacts between two sides. Sister of `sensor/contact.rs`, where signs are explained.
+// Contacts between two sides. CPU counterpart: `sensor/contact.rs`, which explains the signs.
 //
-// A query is a row of words: how contacts are reduced, how many numbers are told of each, how many fields these are, which, and of each geom
-// to which sides it belongs (1 to the first, 2 to the second).
+// A query is a row of words: the reduction of contacts, the numbers reported of each, the number of fields, the fields,
+// and for each geom its sides (1: the first, 2: the second).
 
-// 1 or −1 where a contact matches, as its geoms come; 0 where it does not.
+// Returns 1 or −1 if a contact matches, by the order of its geoms; 0 if it does not.
 fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
     let query = QUERIES + words[s + SENSOR_OBJECT];
     let sides = query + QUERY_FIELDS + words[query + QUERY_NFIELD];
@@ -20,7 +20,8 @@ fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
     return select(f32(0.0), f32(-1.0), (b & 1u) != 0u && (a & 2u) != 0u);
 }
 
-// Force and torque of a contact on its second geom in its frame; zero where it is no constraint. Blocks of contacts are the last ones, in their order.
+// Returns the force and torque of a contact on its second geom in its frame; zero if it is no constraint. Blocks of
+// contacts come last, in their order.
 fn contact_wrench(c: u32) -> Spatial {
     let count = reports[NBLOCK * envs + env];
     for (var b = count - min(count, reports[NCON * envs + env] - c); b < count; b++) {
@@ -36,7 +37,7 @@ fn contact_frame(c: u32) -> mat3x3f {
     return mat3x3f(fetch3(place + 5u), fetch3(place + 8u), fetch3(place + 11u));
 }
 
-// How the second body moves relative to the first where they touch, in the contact's frame.
+// Returns the motion of the second body relative to the first at the contact, in its frame.
 fn relative_motion(c: u32) -> Spatial {
     let place = CONTACTS + CONTACT_SIZE * c;
     let pair = u32(fetch(place));
@@ -46,7 +47,7 @@ fn relative_motion(c: u32) -> Spatial {
     return Spatial((second.angular - first.angular) * axes, (second.linear - first.linear) * axes);
 }
 
-// What contacts are sorted by, the smallest first.
+// Returns the sort key of contacts, in ascending order.
 fn contact_key(reduction: u32, c: u32) -> f32 {
     switch reduction {
         case MIN_DIST: {
@@ -62,7 +63,7 @@ fn contact_key(reduction: u32, c: u32) -> f32 {
     }
 }
 
-// What can be told of one contact, or of all that match together.
+// The data of one contact, or of all matches together.
 struct ContactData {
     wrench: Spatial,
     motion: Spatial,
@@ -87,7 +88,7 @@ fn contact_data(c: u32, sign: f32) -> ContactData {
     );
 }
 
-// All that match as one contact in world axes: it acts at the mean of their positions, each weighted by its force.
+// Returns all matches as one contact in world axes, at the force-weighted mean of their positions.
 fn net_force(s: u32, prm: u32) -> ContactData {
     var net = ContactData();
     var weight: f32 = 0.0;
@@ -160,7 +161,7 @@ fn write_contact_data(query: u32, count: f32, data: ContactData, first: u32) {
     }
 }
 
-// The contact that follows another by its key, then by its number, among those that match; NONE where there is none.
+// Returns the matching contact that follows another by its key, then by its index; NONE if there is none.
 fn next_match(s: u32, prm: u32, last: u32) -> u32 {
     let reduction = words[QUERIES + words[s + SENSOR_OBJECT] + QUERY_REDUCTION];
     var last_key: f32 = 0.0;
@@ -183,7 +184,7 @@ fn next_match(s: u32, prm: u32, last: u32) -> u32 {
     return best;
 }
 
-// Zeros where there are fewer contacts than there is room for.
+// Reads a contact sensor; unused slots are zero.
 fn read_contacts(s: u32, prm: u32, out: u32) {
     let query = QUERIES + words[s + SENSOR_OBJECT];
     var count: f32 = 0.0;

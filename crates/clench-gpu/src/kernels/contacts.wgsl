@@ -1,6 +1,7 @@
-// The contacts of an environment: a pool of MAX_CONTACTS, in canonical order; and the nearest points of pairs whose distance is measured.
+// The contacts of an environment: a pool of MAX_CONTACTS, in canonical order; and the nearest points of pairs whose
+// distance is measured.
 
-// All numbers of a contact at once: a card waits as long for one.
+// Copies all numbers of a contact at once: a GPU waits as long for one.
 fn copy_contact(start: u32, place: u32) {
     let first = fetch4(start);
     let second = fetch4(start + 4u);
@@ -13,7 +14,8 @@ fn copy_contact(start: u32, place: u32) {
     put(place + 13u, last.y);
 }
 
-// A team an environment: puts together what the threads of the narrow phase found. All of it go through the list, and each copies its share.
+// Gathers the contacts found by the threads of the narrow phase. One team per environment; each thread traverses the
+// whole list and copies its share.
 @compute @workgroup_size(GROUP, TEAM)
 fn contacts(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);

@@ -1,4 +1,5 @@
-// Scalar functions of positions: joints, then tendons, in one numbering. Sister of `constraint/coordinate.rs`.
+// Scalar functions of positions: joints, then tendons, with consecutive indices. CPU counterpart:
+// `constraint/coordinate.rs`.
 
 fn coordinate_value(c: u32) -> f32 {
     if (c < NJNT) {
@@ -11,7 +12,7 @@ fn is_ball(c: u32) -> bool {
     return c < NJNT && words[JNT_KIND + min(c, NJNT - 1u)] == BALL;
 }
 
-// Its derivative along dof `i`.
+// Returns the derivative of a coordinate along dof `i`.
 fn coordinate_entry(c: u32, i: u32) -> f32 {
     if (c < NJNT) {
         return select(f32(0.0), f32(1.0), i == words[JNT_DOF + c]);

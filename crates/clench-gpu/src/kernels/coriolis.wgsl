@@ -1,7 +1,7 @@
-// How bias forces change with velocities, in the pattern of the mass matrix and not symmetric. Sister of `dynamics/coriolis.rs`, where it
-// is derived.
+// Velocity derivatives of bias forces, in the pattern of the mass matrix, not symmetric. CPU counterpart:
+// `dynamics/coriolis.rs`, which derives them.
 
-// Writes the columns of B of a body: the change of its force with each component of a motion.
+// Writes the columns of B of a body: the derivative of its force with respect to each component of a motion.
 fn write_body_rates(b: u32) {
     let cvel = fetch_spatial(CVEL + 6u * b);
     let carried = momentum(CINERT + 10u * b, cvel);
@@ -16,7 +16,7 @@ fn write_body_rates(b: u32) {
     }
 }
 
-// B of each body and all below it.
+// Sums B over each body and its descendants.
 fn sum_rates() {
     for (var b = 0u; b < bound(NBODY); b++) {
         write_body_rates(b);
@@ -29,7 +29,8 @@ fn sum_rates() {
     }
 }
 
-// Writes ṡ − s × u of each dof. The axes of a ball joint turn with the whole joint, those of a free joint's rotations too.
+// Writes ṡ − s × u of each dof. The axes of a ball joint rotate with the whole joint, as do those of a free joint's
+// rotations.
 fn drifts() {
     for (var b = 1u; b < bound(NBODY); b++) {
         var carried = fetch_spatial(CVEL + 6u * words[BODY_PARENT + b]);
@@ -52,7 +53,7 @@ fn drifts() {
     }
 }
 
-// Adds h ∂(bias − fluid)/∂v to the matrix in QLD and QLD_UPPER, of the fluid forces only what is not symmetric.
+// Adds h ∂(bias − fluid)/∂v to the matrix in QLD and QLD_UPPER; of the fluid forces only the skew-symmetric part.
 fn add_bias_derivatives() {
     sum_rates();
     drifts();
@@ -60,7 +61,8 @@ fn add_bias_derivatives() {
         let b = words[DOF_BODY + i];
         let axis = fetch_spatial(CDOF + 6u * i);
         let carried = momentum(CRB + 10u * b, axis);
-        // The change of the force below i with dof i, and the force along i for each component of another's axis.
+        // The derivative of the force below i with respect to dof i, and the force along i for each component of
+        // another's axis.
         var change = momentum(CRB + 10u * b, fetch_spatial(CORIOLIS_DRIFT + 6u * i));
         var along = Spatial(vec3f(), vec3f());
         for (var c = 0u; c < bound(3u); c++) {

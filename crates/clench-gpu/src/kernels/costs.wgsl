@@ -1,6 +1,7 @@
-// The costs of blocks: value, force, active set, and what a line search needs of them. Sisters of `clench-solver/src/costs`.
+// The costs of blocks: value, force, active set, and the terms of a line search. CPU counterparts:
+// `clench-solver/src/costs`.
 
-// Of a step along the ray: derivatives of the cost, and its change from the start.
+// Derivatives of the cost along the ray, and its change from the start.
 struct Along {
     first: f32,
     second: f32,
@@ -11,13 +12,13 @@ fn join_along(a: Along, b: Along) -> Along {
     return Along(a.first + b.first, a.second + b.second, a.change + b.change);
 }
 
-// A one-sided term of stiffness `d` at `y`, moving by `dy`, at α.
+// Computes a one-sided term of stiffness `d` at `y`, with rate `dy`, at α.
 fn edge_along(d: f32, y: f32, dy: f32, alpha: f32) -> Along {
     let step = alpha * dy;
     let moved = y + step;
     let before = min(y, 0.0);
     let after = min(moved, 0.0);
-    // The difference is the step itself where both are violated: it keeps all its digits.
+    // If both are violated, the difference is the step itself, which keeps all digits.
     let difference = select(after - before, step, y < 0.0 && moved < 0.0);
     let stiff = select(0.0, d * dy, moved < 0.0);
     return Along(stiff * moved, stiff * dy, 0.5 * d * difference * (after + before));
@@ -52,7 +53,7 @@ fn pyramid_along(first: u32, dim: u32, alpha: f32) -> Along {
     return sum;
 }
 
-// Equalities: a quadratic in each row.
+// Computes an equality: a quadratic in each row.
 fn quadratic_along(first: u32, dim: u32, alpha: f32) -> Along {
     var sum = Along(0.0, 0.0, 0.0);
     for (var a = first; a < first + dim; a++) {
@@ -87,7 +88,7 @@ fn block_along(b: u32, alpha: f32) -> Along {
     }
 }
 
-// What an evaluation gives: the cost, the active set, and whether the block is on a curved piece.
+// The result of an evaluation: the cost, the active set, and whether the block is on a curved piece.
 struct Value {
     cost: f32,
     active_set: u32,

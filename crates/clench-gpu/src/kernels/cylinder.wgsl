@@ -1,9 +1,9 @@
-// Sphere–cylinder and capsule–cylinder. Sister of `clench-collide/src/narrow/cylinder.rs`. Vectors are in the cylinder's frame, where
-// its axis is z; `size` has its radius and half length.
+// Sphere–cylinder and capsule–cylinder. CPU counterpart: `clench-collide/src/narrow/cylinder.rs`. Vectors are in the
+// cylinder's frame, with its axis z; `size` holds its radius and half length.
 
-// Steps to the nearest point of a segment.
+// The maximum steps to the nearest point of a segment.
 const SEGMENT_STEPS: u32 = 40u;
-// A capsule lies along a cap or a side that it is tilted against by less (5°).
+// The sine of the tilt (5°) up to which a capsule lies along a cap or a side.
 const LEVEL_SINE: f32 = 0.087;
 
 // The middle line of a capsule.
@@ -17,7 +17,8 @@ fn on_segment(s: Segment, t: f32) -> vec3f {
     return s.center + s.axis * t;
 }
 
-// The outward direction at a point and the signed distance to the surface. `spare` is the direction for points on the axis.
+// Returns the outward direction at a point and the signed distance to the surface. `spare` is the direction for points
+// on the axis.
 fn cylinder_distance(p: vec3f, size: vec3f, spare: vec3f) -> vec4f {
     let from_axis = length(p.xy);
     let above_cap = abs(p.z) - size.y;
@@ -25,7 +26,7 @@ fn cylinder_distance(p: vec3f, size: vec3f, spare: vec3f) -> vec4f {
     let up = max(above_cap, 0.0);
     let out = max(off_side, 0.0);
     let apart = sqrt(up * up + out * out);
-    // Within the cylinder the nearer of cap and side decides; beyond both, the circle where they meet.
+    // Inside the cylinder the nearer of cap and side decides; outside both, the circle between them.
     var along = select(f32(0.0), f32(1.0), above_cap > off_side);
     var across = 1.0 - along;
     var signed_distance = max(above_cap, off_side);
@@ -42,7 +43,7 @@ fn cylinder_distance(p: vec3f, size: vec3f, spare: vec3f) -> vec4f {
     return vec4f(outward, signed_distance);
 }
 
-// The outward direction for points on the axis of `b`, across it, as `a` meets it.
+// Returns the outward direction for points on the axis of `b`, given the axis of `a`.
 fn spare_direction(a: Placed, b: Placed) -> vec3f {
     return -(transpose(b.axes) * across_axes(a.axes[2], b.axes[2]));
 }
@@ -64,7 +65,7 @@ fn sphere_cylinder(pair: u32, a: Placed, b: Placed, range: f32) {
     ball_cylinder(pair, center, a.size.x, surface, b, range);
 }
 
-// How half the squared distance beyond the surface changes along a segment: once and twice differentiated.
+// Returns the first and second derivative along a segment of half the squared distance beyond the surface.
 fn segment_slope(s: Segment, t: f32, size: vec3f) -> vec2f {
     let p = on_segment(s, t);
     let from_axis = length(p.xy);
@@ -79,8 +80,8 @@ fn segment_slope(s: Segment, t: f32, size: vec3f) -> vec2f {
     return vec2f(beyond_side * outward + beyond_cap * upward, bend);
 }
 
-// The parameter of the point on a segment that is nearest to the cylinder, by safeguarded Newton steps; somewhere within, if it
-// enters.
+// Returns the parameter of a segment's point nearest to the cylinder, by safeguarded Newton steps; any one inside if
+// the segment enters.
 fn nearest_on_segment(s: Segment, size: vec3f) -> f32 {
     var low = -s.half_length;
     var high = s.half_length;
@@ -114,8 +115,8 @@ fn nearest_on_segment(s: Segment, size: vec3f) -> f32 {
     return t;
 }
 
-// The ends of the stretch of a segment along the cap, or along the side, whichever the point at `nearest` faces more; that point
-// alone if the segment is tilted against it.
+// Returns the ends of the interval of a segment along the cap or the side, whichever the point at `nearest` faces more;
+// only that point if the segment is tilted against it.
 fn segment_overlap(s: Segment, nearest: f32, size: vec3f, spare: vec3f) -> vec2f {
     let c = s.center;
     let u = s.axis;
@@ -138,11 +139,11 @@ fn segment_overlap(s: Segment, nearest: f32, size: vec3f, spare: vec3f) -> vec2f
     return vec2f(low, max(min(middle + reach, s.half_length), nearest));
 }
 
-// A capsule whose middle line stays outside: the deepest point, and where it lies along the cap or the side both ends of that
-// stretch.
+// Adds the contacts of a capsule with its middle line outside: the deepest point, and both ends of the interval along
+// the cap or the side.
 fn capsule_beside_cylinder(pair: u32, s: Segment, radius: f32, nearest: f32, least: f32, b: Placed, spare: vec3f, range: f32) {
     let ends = segment_overlap(s, nearest, b.size, spare);
-    // Where the two are parallel an end is as deep as anything between.
+    // If the two are parallel, an end is as deep as any point between.
     let level = least + max(1e-9, 8.0 * EPSILON) * (radius + b.size.x);
     var first = nearest;
     for (var k = 0u; k < 2u; k++) {
@@ -172,7 +173,7 @@ fn capsule_cylinder(pair: u32, a: Placed, b: Placed, range: f32) {
     if (least - radius > range) {
         return;
     }
-    // Once its middle line enters the cylinder, distances of its points no longer tell how far the capsule must move to be free.
+    // Once its middle line enters the cylinder, distances of its points no longer give the penetration depth.
     if (least <= 8.0 * EPSILON * (radius + b.size.x)) {
         let out = penetration_depth(s, b.size);
         let center = on_segment(s, deepest_of_segment(s, b.size, out.xyz, nearest));

@@ -1,5 +1,5 @@
-// The states of direct-current motors. Sister of `dynamics/dc_motor.rs`, where formulas and parameters are listed. Each actuator with a
-// controller has ten numbers of its dynamics, then of its gain, then of its bias.
+// The states of direct-current motors. CPU counterpart: `dynamics/dc_motor.rs`, which lists formulas and parameters.
+// Each actuator with a controller has ten numbers of its dynamics, then of its gain, then of its bias.
 
 const OF_DYNAMICS: u32 = 0u;
 const OF_GAIN: u32 = 10u;
@@ -9,12 +9,12 @@ fn controller(u: u32, place: u32) -> f32 {
     return parameter(CONTROLLER_PRM + 30u * words[ACTUATOR_CONTROLLER + u] + place);
 }
 
-// The activation that is a state of actuator `u`: one of the STATE_ constants. NONE where it has none such.
+// Returns the activation that is the given state of actuator `u`, one of the STATE_ constants; NONE if it has none.
 fn state_of(u: u32, which: u32) -> u32 {
     return words[ACTUATOR_STATES + 5u * u + which];
 }
 
-// −σ₀ |ω| / g(ω): the rate at which the bristle's deflection decays.
+// Returns −σ₀ |ω| / g(ω), the decay rate of the bristle's deflection.
 fn bristle_decay(u: u32, velocity: f32) -> f32 {
     let coulomb = controller(u, OF_BIAS + 3u);
     let ratio = velocity / max(controller(u, OF_BIAS + 5u), TINY);
@@ -22,7 +22,7 @@ fn bristle_decay(u: u32, velocity: f32) -> f32 {
     return -controller(u, OF_DYNAMICS + 5u) * abs(velocity) / max(level, TINY);
 }
 
-// An activation of a motor a time step later.
+// Returns an activation of a motor one time step later.
 fn next_motor_activation(u: u32, a: u32, act: f32, rate: f32, velocity: f32) -> f32 {
     if (a == state_of(u, STATE_CURRENT)) {
         let te = max(controller(u, OF_DYNAMICS), TINY);

@@ -1,4 +1,4 @@
-// How smooth forces change with velocities, in the pattern of the mass matrix: added, times −h, to what stands in QLD. Sister of
+// Velocity derivatives of smooth forces, in the pattern of the mass matrix: added, times −h, to QLD. CPU counterpart:
 // `dynamics/derivatives.rs`.
 
 fn add_actuators() {
@@ -21,19 +21,19 @@ fn add_dampers() {
     }
 }
 
-// The change of the resistance of the medium, axis by axis, with a change `dv` of the velocity `v`.
+// Returns the change of the resistance of the medium, axis by axis, for a change `dv` of the velocity `v`.
 fn resistance_change(viscous: vec3f, quadratic: vec3f, v: vec3f, dv: vec3f) -> vec3f {
     return -(viscous + 2.0 * quadratic * abs(v)) * dv;
 }
 
-// Adds the power, along each dof of the path to dof i, of a force on a body that changes with that dof.
+// Adds the power, along each dof of the path to dof i, of the derivative of a body's force with respect to that dof.
 fn add_along_path(i: u32, change: Spatial) {
     for (var p = words[TREE_START + i]; p < words[TREE_START + i + 1u]; p++) {
         add(QLD + p, -TIMESTEP * spatial_dot(fetch_spatial(CDOF + 6u * words[TREE_DOF + p]), change));
     }
 }
 
-// What the medium adds on ellipsoids: of their forces only what is symmetric is counted.
+// Adds the medium's effect on ellipsoids: only the symmetric part of their forces.
 fn add_fluid_on_ellipsoids(b: u32) {
     for (var i = 0u; i < bound(NV); i++) {
         if (moves(b, i)) {
@@ -42,7 +42,7 @@ fn add_fluid_on_ellipsoids(b: u32) {
     }
 }
 
-// What it adds on boxes: entry (i, j) is the power, along dof j, of the change of the resistance with dof i.
+// Adds its effect on boxes: entry (i, j) is the power, along dof j, of the resistance's derivative by dof i.
 fn add_fluid(b: u32) {
     let axes = fetch_matrix(XIMAT + 9u * b);
     let back = transpose(axes);
@@ -77,7 +77,8 @@ fn add_velocity_derivatives() {
     }
 }
 
-// Leaves M − h D, without Coriolis forces, in QLD, and the sum of all forces in RATE. What is added has entries in common: one thread adds it.
+// Computes M − h D, without Coriolis forces, in QLD, and the sum of all forces in RATE. The terms share entries, so one
+// thread adds them.
 fn symmetric_inertia() {
     for (var p = member; p < bound(NNZ); p += TEAM) {
         put(QLD + p, fetch(QM + p));

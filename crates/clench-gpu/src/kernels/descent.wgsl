@@ -1,43 +1,44 @@
-// The loop that Newton and conjugate gradients share, and the kernel: one workgroup an environment. Sister of
+// The common loop of Newton and conjugate gradients, and the kernel: one workgroup per environment. CPU counterpart:
 // `clench-solver/src/descent.rs`.
 
-// What a round of a solve does. Drivers put the text of a function wherever it is called: hence one loop, in which each of the
-// large ones is called at one place.
+// The rounds of a solve. Drivers inline a function at every call site: hence one loop with one call site for each large
+// one.
 const AT_SMOOTH: u32 = 0u;
 const AT_WARMSTART: u32 = 1u;
 const BACK_AT_SMOOTH: u32 = 2u;
 const DESCEND: u32 = 3u;
 const REFRESH: u32 = 4u;
-// Newton's method looks at the duality gap before its first step, CG always. What the last step leaves of it, `gap.wgsl` finds where somebody asks.
+// Newton's method checks the duality gap before its first step, CG always. `gap.wgsl` computes the final gap on
+// request.
 const PROVE: u32 = 5u;
 const DONE: u32 = 6u;
 
-// So many iterations without noticeable progress are too many.
+// The maximum number of iterations without noticeable progress.
 const PATIENCE: u32 = select(20u, 2u, NEWTON);
 
-// Where a solve stands.
+// The state of a solve.
 struct Convergence {
     // The cost at the unconstrained acceleration.
     cold: f32,
-    // 1 / (mean inertia × nv), by which gradients and costs are scaled.
+    // 1 / (mean inertia × nv), the scale of gradients and costs.
     scale: f32,
     // The norm of the gradient, and the duality gap.
     norm: f32,
     gap: f32,
-    // No piece changed since the last factorization, none is curved: the factor holds.
+    // No piece has changed since the last factorization, and none is curved: the factor is valid.
     same_hessian: bool,
     curved: bool,
     refreshed: bool,
-    // There is a direction that the next one can be conjugate to.
+    // True if there is a previous direction for conjugation.
     started: bool,
-    // The smallest gradient norm so far, and iterations since it fell noticeably.
+    // The smallest gradient norm so far, and the iterations since it fell noticeably.
     best: f32,
     idle: u32,
     iterations: u32,
     status: u32,
 }
 
-// Puts the iterate where a round begins: at the unconstrained acceleration, at that of the last step, or where it is.
+// Sets the iterate of a round: the unconstrained acceleration, that of the last step, or the current one.
 fn place(round: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         if (round == AT_SMOOTH) {
@@ -53,14 +54,14 @@ fn place(round: u32) {
     join_vectors();
 }
 
-// Ends the solve; what comes next.
+// Ends the solve. Returns the next round.
 fn end(c: ptr<function, Convergence>, status: u32) -> u32 {
     (*c).status = status;
     return DONE;
 }
 
-// What comes once the starting point is chosen. Newton is trusted for its forces as well: the gap alone, a bound in cost, would let
-// stiff ones be wrong.
+// Returns the round after the choice of the start. Newton's forces are trusted as well: the gap alone, a bound in cost,
+// would tolerate errors in stiff ones.
 fn after_start(c: ptr<function, Convergence>) -> u32 {
     if (NEWTON && (*c).scale * (*c).norm <= TOLERANCE) {
         return PROVE;
@@ -68,7 +69,7 @@ fn after_start(c: ptr<function, Convergence>) -> u32 {
     return after_proof(c);
 }
 
-// What comes once the duality gap at the start is known, if it counts.
+// Returns the round after the duality gap at the start is known, if it counts.
 fn after_proof(c: ptr<function, Convergence>) -> u32 {
     let gap_counts = !NEWTON || (*c).scale * (*c).norm <= TOLERANCE;
     if (gap_counts && (*c).scale * (*c).gap <= TOLERANCE) {
@@ -81,7 +82,7 @@ fn after_proof(c: ptr<function, Convergence>) -> u32 {
     return DESCEND;
 }
 
-// What comes after the iterate was placed.
+// Returns the round after the iterate was set.
 fn after_placing(c: ptr<function, Convergence>, round: u32, totals: vec4f, nblock: u32) -> u32 {
     (*c).curved = totals.z > 0.0;
     (*c).same_hessian = false;
@@ -100,17 +101,17 @@ fn after_placing(c: ptr<function, Convergence>, round: u32, totals: vec4f, nbloc
         (*c).cold = totals.x + totals.w;
         return AT_WARMSTART;
     }
-    // The last acceleration is a good start where it costs less than the unconstrained one.
+    // The last acceleration is a good start if it costs less than the unconstrained one.
     if (round == AT_WARMSTART && !(totals.x + totals.w < (*c).cold)) {
         return BACK_AT_SMOOTH;
     }
     return after_start(c);
 }
 
-// What comes after a step. One that seems stuck gets a second chance, without the rounding that steps have added up.
+// Returns the round after a step. A stalled solve is refreshed once, without accumulated rounding.
 fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f) -> u32 {
     let curved = totals.z > 0.0;
-    // A full Newton step over a quadratic stretch ends at the minimum: the size of that step says nothing more.
+    // A full Newton step over a quadratic interval ends at the minimum: the size of that step is irrelevant.
     let exact = NEWTON && totals.y == 0.0 && !curved && !(*c).curved;
     (*c).same_hessian = exact;
     (*c).curved = curved;
@@ -167,7 +168,7 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
         }
         if (round != PROVE) {
             totals = evaluate(nblock);
-            // The gradient there says nothing that counts, if the last acceleration is tried next.
+            // The gradient there is not needed if the last acceleration is tried next.
             if (round != AT_SMOOTH || !WARMSTART) {
                 c.norm = differentiate(nrow);
             }

@@ -1,4 +1,4 @@
-// The smallest distance of two sets of geoms: a range of the pairs that are measured. Sister of `sensor/distance.rs`.
+// The smallest distance of two sets of geoms: a range of the measured pairs. CPU counterpart: `sensor/distance.rs`.
 
 fn read_distance(kind: u32, s: u32, prm: u32, out: u32) {
     var distance = parameter(prm);
@@ -21,7 +21,7 @@ fn read_distance(kind: u32, s: u32, prm: u32, out: u32) {
         middle = fetch3(place + 2u);
         normal = fetch3(place + 5u) * select(f32(1.0), f32(-1.0), words[MEASURED_TURNED + nearest] == 1u);
     }
-    // From the first end to the second: against the normal where the geoms overlap.
+    // From the first end to the second: against the normal if the geoms overlap.
     if (kind == SENSE_NORMAL) {
         put3(out, normal * select(f32(1.0), f32(-1.0), distance < 0.0));
         return;

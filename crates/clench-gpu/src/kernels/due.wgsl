@@ -1,6 +1,6 @@
-// When a buffer takes a sample. Sister of `history.rs` of clench-rigid.
+// The sample times of buffers. CPU counterpart: `history.rs` of clench-rigid.
 
-// Where a sample is due now; always where the period is zero.
+// Returns true if a sample is due now; always if the period is zero.
 fn is_due(h: u32, period: f32) -> bool {
     return period <= 0.0 || given(HISTORY + words[h]) + period <= clock();
 }

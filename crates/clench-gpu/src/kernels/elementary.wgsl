@@ -1,19 +1,22 @@
-// What depends on the precision of numbers: this is single precision, and `elementary_double.wgsl` has the same for double.
+// Definitions that depend on the precision: this file is for single precision, `elementary_double.wgsl` for double.
 //
-// The built-in sine and cosine of a device may be off by 5e-4 and differ from one to the next; these are good to a rounding.
+// The built-in sine and cosine of a device may be off by 5e-4 and differ between devices; these are accurate to
+// rounding.
 
-// The distance from 1 to the next number, its root, and the smallest normal number. They have no type, so that products with them are
-// computed by the compiler.
+// The distance from 1 to the next number, its root, and the smallest normal number. They are untyped, so that the
+// compiler computes products with them.
 const EPSILON = 1.1920928955078125e-7;
 const ROOT_OF_EPSILON = 3.4526698300124393e-4;
 const SMALLEST = 1.1754943508222875e-38;
 
-// Whether a number is infinite or undefined. Told by its bits: a compiler for shaders may assume that there are none such.
+// Returns true if a number is infinite or NaN. It tests the bits, because shader compilers may assume that there are
+// none.
 fn is_wild(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) == 0x7f800000u;
 }
 
-// Sine and cosine: Cody and Waite's reduction to a quarter turn, and the minimax polynomials of `clench-math`.
+// Returns sine and cosine, by Cody and Waite's reduction to a quarter turn and the minimax polynomials of
+// `clench-math`.
 fn sin_cos(x: f32) -> vec2f {
     let quarters = round(x * 0.63661977);
     var y = x - quarters * 1.5703125;
@@ -36,7 +39,7 @@ fn sin_cos(x: f32) -> vec2f {
     return vec2f(-cosine, sine);
 }
 
-// The angle of the point (x, y) with y not negative, in [0, π].
+// Returns the angle of the point (x, y) with y not negative, in [0, π].
 fn angle_of(y: f32, x: f32) -> f32 {
     let steep = y > abs(x);
     let small = select(y, abs(x), steep);
@@ -54,12 +57,12 @@ fn exponential(x: f32) -> f32 {
     return exp(x);
 }
 
-// Of a base that is not negative.
+// Returns a power of a non-negative base.
 fn power_of(base: f32, exponent: f32) -> f32 {
     return pow(base, exponent);
 }
 
-// A number as the reports carry it: in single precision.
+// Returns the bits of a number in reports: in single precision.
 fn report_bits(x: f32) -> u32 {
     return bitcast<u32>(x);
 }

@@ -1,17 +1,17 @@
-// What depends on the precision of numbers: this is double precision, and `elementary.wgsl` has the same for single. Devices have no
-// functions beyond roots in double precision; these are sisters of `clench-math`'s `elementary`, whose coefficients they have, and good to
-// some roundings.
+// Definitions that depend on the precision: this file is for double precision, `elementary.wgsl` for single. In double
+// precision devices have no functions beyond roots. These are the counterparts of `clench-math`'s `elementary`, with
+// the same coefficients, accurate to some roundings.
 
 const EPSILON = 2.220446049250313e-16;
 const ROOT_OF_EPSILON = 1.4901161193847656e-8;
 const SMALLEST = 2.2250738585072014e-308;
-// Whether a number is infinite or undefined, or beyond what single precision holds, which no number of a motion is. Told by its bits there: a
-// compiler for shaders may assume that there are none such.
+// Returns true if a number is infinite, NaN, or beyond single precision, like no number of a motion. It tests the bits
+// in that, because shader compilers may assume that there are none.
 fn is_wild(x: f64) -> bool {
     return (bitcast<u32>(f32(x)) & 0x7f800000u) == 0x7f800000u;
 }
 
-// Sine and cosine: Cody and Waite's reduction to a quarter turn, and minimax polynomials.
+// Returns sine and cosine, by Cody and Waite's reduction to a quarter turn and minimax polynomials.
 fn sin_cos(x: f64) -> vec2<f64> {
     let quarters = round(x * 0.6366197723675814);
     var y = x - quarters * 1.5707963267341256;
@@ -39,7 +39,7 @@ fn sin_cos(x: f64) -> vec2<f64> {
     return vec2<f64>(-cosine, sine);
 }
 
-// The angle of the point (x, y) with y not negative, in [0, π].
+// Returns the angle of the point (x, y) with y not negative, in [0, π].
 fn angle_of(y: f64, x: f64) -> f64 {
     let steep = y > abs(x);
     let small = select(y, abs(x), steep);
@@ -59,7 +59,7 @@ fn angle_of(y: f64, x: f64) -> f64 {
     return select(angle, PI - angle, x < 0.0);
 }
 
-// 2 to a whole power within ±1100.
+// Returns 2 to an integer power within ±1100.
 fn power_of_two(exponent: i32) -> f64 {
     var result = f64(1.0);
     var base = select(f64(2.0), f64(0.5), exponent < 0);
@@ -72,7 +72,7 @@ fn power_of_two(exponent: i32) -> f64 {
     return result;
 }
 
-// x = k ln 2 + r with |r| ≤ ½ ln 2, and eˣ = 2ᵏ eʳ.
+// Computes eˣ = 2ᵏ eʳ with x = k ln 2 + r and |r| ≤ ½ ln 2.
 fn exponential(x: f64) -> f64 {
     let bounded = clamp(x, -745.0, 710.0);
     let k = round(bounded * 1.4426950408889634);
@@ -86,12 +86,13 @@ fn exponential(x: f64) -> f64 {
     return (1.0 + (r + r * r * p)) * power_of_two(half) * power_of_two(i32(k) - half);
 }
 
-// The natural logarithm of a positive number: x = 2ᵏ m with m in [√½, √2), and ln m = 2 artanh s with s = (m − 1)/(m + 1).
+// Returns the natural logarithm of a positive number: x = 2ᵏ m with m in [√½, √2), and ln m = 2 artanh s with s = (m −
+// 1)/(m + 1).
 fn logarithm(x: f64) -> f64 {
     var m = x;
     var k = 0;
-    // Into single precision, whose bits can be seen.
-    // The smallest and the largest numbers take 34 turns.
+    // Scales into single precision, whose bits are accessible.
+    // The smallest and the largest numbers take 34 iterations.
     for (var turn = 0u; turn < 34u && m < 2.3283064365386963e-10; turn++) {
         m *= 4294967296.0;
         k -= 32;
@@ -117,7 +118,7 @@ fn logarithm(x: f64) -> f64 {
     return f64(k) * 0.6931471805598903 + (ln_m + f64(k) * 5.497923018708371e-14);
 }
 
-// Of a base that is not negative.
+// Returns a power of a non-negative base.
 fn power_of(base: f64, exponent: f64) -> f64 {
     if (!(base > 0.0)) {
         return select(f64(0.0), f64(1.0), exponent == 0.0);
@@ -125,7 +126,7 @@ fn power_of(base: f64, exponent: f64) -> f64 {
     return exponential(exponent * logarithm(base));
 }
 
-// A number as the reports carry it: in single precision.
+// Returns the bits of a number in reports: in single precision.
 fn report_bits(x: f64) -> u32 {
     return bitcast<u32>(f32(x));
 }

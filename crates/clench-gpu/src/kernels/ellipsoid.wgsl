@@ -1,15 +1,15 @@
-// Forces of the medium on geoms, each taken as an ellipsoid of the same semi-axes. Sister of `dynamics/ellipsoid.rs`, where the formulas
-// are explained.
+// Forces of the medium on geoms, as ellipsoids of the same semi-axes. CPU counterpart: `dynamics/ellipsoid.rs`, which
+// explains the formulas.
 
-// An ellipsoid at one velocity, v and ω in the geom's frame. Its coefficients stand at `prm`: ρ times virtual mass and inertia, ρ C_M V,
-// ρ C_K, 3π D η and π D³ η, ρ C_s A_max and ρ (C_b − C_s), ρ c, a.
+// An ellipsoid at one velocity, v and ω in the geom's frame. Its coefficients at `prm` are ρ times virtual mass and
+// inertia, ρ C_M V, ρ C_K, 3π D η and π D³ η, ρ C_s A_max and ρ (C_b − C_s), ρ c, a.
 struct Ellipsoid {
     geom: u32,
     prm: u32,
     velocity: Spatial,
 }
 
-// Speed, n, A, and A cos α / |n|; or how they change.
+// Speed, n, A, and A cos α / |n|; or their changes.
 struct Flow {
     speed: f32,
     normal: vec3f,
@@ -17,19 +17,19 @@ struct Flow {
     lift: f32,
 }
 
-// A denominator: itself where it is positive, else one.
+// Returns a denominator: x if it is positive, else one.
 fn positive(x: f32) -> f32 {
     return select(1.0, x, x > 0.0);
 }
 
-// A motion of the body of a geom, as the geom's origin moves, along the geom's axes.
+// Returns a motion of a geom's body, at the geom's origin, along the geom's axes.
 fn in_geom_frame(geom: u32, motion: Spatial) -> Spatial {
     let back = transpose(fetch_matrix(GEOM_XMAT + 9u * geom));
     let arm = offset_of(words[GEOM_BODY + geom], fetch3(GEOM_XPOS + 3u * geom));
     return Spatial(back * motion.angular, back * (motion.linear + cross(motion.angular, arm)));
 }
 
-// Ellipsoid `e` of the model as it moves now.
+// Returns ellipsoid `e` of the model at its current velocity.
 fn ellipsoid(e: u32) -> Ellipsoid {
     let geom = words[ELLIPSOID_GEOM + e];
     var velocity = in_geom_frame(geom, fetch_spatial(CVEL + 6u * words[GEOM_BODY + geom]));
@@ -47,7 +47,7 @@ fn flow_of(e: Ellipsoid) -> Flow {
     return Flow(speed, normal, area, area * along / positive(speed * squared));
 }
 
-// How the flow changes when the velocity does by `dv`.
+// Returns the change of the flow for a change `dv` of the velocity.
 fn flow_change(e: Ellipsoid, flow: Flow, dv: vec3f) -> Flow {
     let v = e.velocity.linear;
     let normal = dv * parameter3(e.prm + 15u);
@@ -58,19 +58,20 @@ fn flow_change(e: Ellipsoid, flow: Flow, dv: vec3f) -> Flow {
     return Flow(speed, normal, flow.area * (squared - along), lift);
 }
 
-// Force of drag over velocity.
+// Returns the drag force divided by the velocity.
 fn linear_drag(e: Ellipsoid, flow: Flow) -> f32 {
     return parameter(e.prm + 8u) + flow.speed * (parameter(e.prm + 10u) + parameter(e.prm + 11u) * flow.area);
 }
 
-// A torque and a force at the geom's origin, along its axes, as a spatial force about the reference point of its tree.
+// Returns the spatial force, about the reference point of its tree, of a torque and a force at the geom's origin, along
+// its axes.
 fn from_geom_frame(geom: u32, torque: vec3f, force: vec3f) -> Spatial {
     let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
     let arm = offset_of(words[GEOM_BODY + geom], fetch3(GEOM_XPOS + 3u * geom));
     return Spatial(axes * torque + cross(arm, axes * force), axes * force);
 }
 
-// The force on the body.
+// Returns the force on the body.
 fn ellipsoid_force(e: Ellipsoid) -> Spatial {
     let v = e.velocity.linear;
     let w = e.velocity.angular;
@@ -83,7 +84,7 @@ fn ellipsoid_force(e: Ellipsoid) -> Spatial {
     return from_geom_frame(e.geom, cross(momentum, v) + cross(spin, w) - w * turning, force);
 }
 
-// The sum of the forces on the ellipsoids of a body.
+// Sums the forces on the ellipsoids of a body.
 fn ellipsoids_force(b: u32) -> Spatial {
     var sum = Spatial(vec3f(), vec3f());
     for (var e = words[BODY_ELLIPSOID + b]; e < words[BODY_ELLIPSOID + b + 1u]; e++) {

@@ -1,6 +1,6 @@
-// How the forces of the medium on ellipsoids change with velocities. Sister of `dynamics/ellipsoid.rs` and `fluid.rs`.
+// Velocity derivatives of the medium's forces on ellipsoids. CPU counterparts: `dynamics/ellipsoid.rs` and `fluid.rs`.
 
-// The change of the force on the body with a change `motion` of its velocity.
+// Returns the change of the force on the body for a change `motion` of its velocity.
 fn ellipsoid_derivative(e: Ellipsoid, motion: Spatial) -> Spatial {
     let v = e.velocity.linear;
     let w = e.velocity.angular;
@@ -29,7 +29,7 @@ fn ellipsoid_derivative(e: Ellipsoid, motion: Spatial) -> Spatial {
     return from_geom_frame(e.geom, torque, force);
 }
 
-// A unit motion: about an axis, or along one.
+// Returns a unit motion: about an axis, or along one.
 fn motion_component(c: u32) -> Spatial {
     var axis = vec3f();
     axis[c % 3u] = 1.0;
@@ -37,7 +37,8 @@ fn motion_component(c: u32) -> Spatial {
     return Spatial(select(axis, vec3f(), moves_along), select(vec3f(), axis, moves_along));
 }
 
-// Writes, for each component of a motion of a body, the change of the force on its ellipsoids, both about the reference point of its tree.
+// Writes, for each component of a body's motion, the change of the force on its ellipsoids, both about the reference
+// point of its tree.
 fn write_ellipsoid_rates(b: u32) {
     for (var c = 0u; c < bound(6u); c++) {
         var sum = Spatial(vec3f(), vec3f());
@@ -56,7 +57,7 @@ fn ellipsoid_rates() {
     }
 }
 
-// Column `c` of the rates of a body: its symmetric part, with `sign` 1, or its skew one, with −1.
+// Returns column `c` of the rates of a body: its symmetric part, with `sign` 1, or its skew one, with −1.
 fn rate_part(b: u32, c: u32, sign: f32) -> Spatial {
     let place = FLUID_RATES + 36u * b;
     var across = Spatial(vec3f(), vec3f());
@@ -67,7 +68,7 @@ fn rate_part(b: u32, c: u32, sign: f32) -> Spatial {
     return times(plus(fetch_spatial(place + 6u * c), times(across, sign)), 0.5);
 }
 
-// What that part changes with a motion of the body.
+// Returns the change by that part for a motion of the body.
 fn rate_along(b: u32, motion: Spatial, sign: f32) -> Spatial {
     var change = Spatial(vec3f(), vec3f());
     for (var k = 0u; k < bound(3u); k++) {

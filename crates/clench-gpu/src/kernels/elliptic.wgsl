@@ -1,13 +1,14 @@
-// Frictional contact with the exact cone. Sister of `clench-solver/src/costs/elliptic.rs`, where the formulas are derived.
+// Frictional contact with the exact cone. CPU counterpart: `clench-solver/src/costs/elliptic.rs`, which derives the
+// formulas.
 
-// A block at y + α dy, in the coordinates in which its cone is circular.
+// A block at y + α dy, in coordinates in which its cone is circular.
 struct Zone {
     k: f32,
     mu: f32,
-    // N − μT and μN + T, each where negative.
+    // N − μT and μN + T, each if negative.
     p: f32,
     q: f32,
-    // 1 / T, 0 where nothing slips.
+    // 1 / T, 0 without slip.
     inverse: f32,
     // μ² − μ N/T in the middle zone.
     c: f32,
@@ -42,7 +43,7 @@ fn zone(first: u32, dim: u32, alpha: f32) -> Zone {
 }
 
 fn evaluate_elliptic(first: u32, dim: u32) -> Value {
-    // The ray plays no part at α = 0.
+    // The ray has no effect at α = 0.
     let z = zone(first, dim, 0.0);
     let slip = z.k * (z.mu * z.p - z.q);
     put_row(FORCE + first, -(z.k * z.mu * (z.p + z.mu * z.q)));

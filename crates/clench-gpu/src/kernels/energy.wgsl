@@ -1,6 +1,6 @@
-// Potential and kinetic energy. Sister of `dynamics/energy.rs`.
+// Potential and kinetic energy. CPU counterpart: `dynamics/energy.rs`.
 
-// What a spring of this law has in it at a stretch.
+// Returns the energy of a spring of this law at an elongation.
 fn energy_of_spring(law: vec3f, x: f32) -> f32 {
     return x * x * (law.x / 2.0 + x * (law.y / 3.0 + x * law.z / 4.0));
 }
@@ -28,7 +28,7 @@ fn energy_of_springs() -> f32 {
     return sum;
 }
 
-// Zero at the height of the world's origin.
+// Returns the gravitational energy (zero at the world's origin).
 fn energy_of_weights() -> f32 {
     var sum: f32 = 0.0;
     for (var b = 1u; b < bound(NBODY); b++) {
@@ -37,7 +37,7 @@ fn energy_of_weights() -> f32 {
     return sum;
 }
 
-// ½ vᵀ M v, each pair of the lower triangle once.
+// Returns ½ vᵀ M v, with each pair of the lower triangle once.
 fn kinetic_energy() -> f32 {
     var sum: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {

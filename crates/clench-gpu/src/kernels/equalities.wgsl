@@ -1,5 +1,5 @@
-// Equalities as blocks: connects, welds, and couplings of joints or tendons. Sisters of `constraint/connect.rs`, `weld.rs` and
-// `joint_equality.rs`.
+// Equalities as blocks: connects, welds, and couplings of joints or tendons. CPU counterparts: `constraint/connect.rs`,
+// `weld.rs` and `joint_equality.rs`.
 
 fn push_coupling(equality: u32, prm: u32) {
     let follower = words[EQ_PAIR + 2u * equality];
@@ -17,11 +17,11 @@ fn push_coupling(equality: u32, prm: u32) {
     let violation = coordinate_value(follower) - parameter(prm) - value;
     let soft = soften(prm + 8u, violation);
     begin_block(COUPLING, 1u, equality, soft.impedance);
-    // The slope stands where costs have their shape: this one needs none.
+    // The slope is stored as the cost's shape, which this cost does not use.
     add_row(violation, -soft.stiffness * violation, soft.damping, regularization(soft.impedance, parameter(prm + 7u)), slope);
 }
 
-// J̇ v of the last three rows of a weld, for bias accelerations whose difference is `alpha`.
+// Returns J̇ v of the last three rows of a weld, for bias accelerations with the difference `alpha`.
 fn weld_bias(equality: u32, alpha: vec3f) -> vec3f {
     let omega1 = fetch3(CVEL + 6u * words[EQ_PAIR + 2u * equality]);
     let omega2 = fetch3(CVEL + 6u * words[EQ_PAIR + 2u * equality + 1u]);
@@ -33,7 +33,7 @@ fn weld_bias(equality: u32, alpha: vec3f) -> vec3f {
     return (half_product(u_dot, rho) + 0.5 * half_product(u, rho_dot)) * torquescale(equality);
 }
 
-// Three rows at a violation, with the acceleration that they have while no dof has any.
+// Adds three rows at a violation, with their bias acceleration.
 fn add_held_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
     for (var k = 0u; k < 3u; k++) {
         let aref = -soft.stiffness * violation[k] - bias[k];

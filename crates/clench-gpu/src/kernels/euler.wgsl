@@ -1,4 +1,4 @@
-// Semi-implicit Euler: a team an environment. Sister of `dynamics/euler.rs`.
+// Semi-implicit Euler: one team per environment. CPU counterpart: `dynamics/euler.rs`.
 
 @compute @workgroup_size(GROUP, TEAM)
 fn euler(@builtin(global_invocation_id) id: vec3u) {

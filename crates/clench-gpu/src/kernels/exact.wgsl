@@ -1,7 +1,7 @@
-// The inverse inertia that rows see in the present configuration, instead of an estimate at the initial one. Sister of
-// `constraint/exact.rs`. Until a row has its D, that holds the impedance of its block.
+// The inverse inertia of rows in the current configuration, instead of an estimate at the initial one. CPU counterpart:
+// `constraint/exact.rs`. D holds the impedance of the row's block until it is set.
 
-// J M⁻¹ Jᵀ of row `a` and `factor` times row `other`. WEIGHED of the first is used up.
+// Returns J M⁻¹ Jᵀ of row `a` plus `factor` times row `other`. Overwrites WEIGHED of the first.
 fn inverse_inertia(a: u32, other: u32, factor: f32) -> f32 {
     let x = WEIGHED + a * NV;
     for (var i = 0u; i < bound(NV); i++) {
@@ -20,8 +20,8 @@ fn inverse_inertia(a: u32, other: u32, factor: f32) -> f32 {
     return sum;
 }
 
-// Replaces R of the rows of a block. Of a cone one row decides, and the others keep their ratio to it: of an elliptic one the normal, of a
-// pyramid its first edge.
+// Replaces R of the rows of a block. In a cone one row decides, and the others keep their ratio to it: the normal of an
+// elliptic one, the first edge of a pyramid.
 fn regularize_exactly(kind: u32, first: u32, dim: u32) {
     let d = row(D + first);
     let is_pyramid = kind == CONTACT_PYRAMID;

@@ -1,7 +1,7 @@
-// Forces on bodies from outside their tree of joints: applied ones, contacts, connects, welds and strings. Sisters of
-// `output/forces.rs` and `output/tendon_forces.rs` of clench-rigid, where signs are explained.
+// Forces on bodies from outside their tree of joints: applied ones, contacts, connects, welds and strings. CPU
+// counterparts: `output/forces.rs` and `output/tendon_forces.rs` of clench-rigid, which explain the signs.
 
-// Adds a force, and a couple, that act on a body at a point.
+// Adds a force and a couple on a body at a point.
 fn push(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
     if (body == 0u) {
         return;
@@ -11,7 +11,7 @@ fn push(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
     put_spatial(place, plus(fetch_spatial(place), times(Spatial(torque, force), sign)));
 }
 
-// The same in the sum of contacts: the force, then the torque at the centre of mass of the body.
+// Does the same and adds them to the sum of contacts: the force, then the torque at the body's centre of mass.
 fn push_by_contact(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
     let place = CONTACT_FORCE + 6u * body;
     let torque = couple + cross(at - fetch3(XIPOS + 3u * body), force);
@@ -38,7 +38,7 @@ fn push_held(equality: u32, force: vec3f, turn: vec3f) {
     push(words[EQ_PAIR + 2u * equality + 1u], -1.0, force, couple, held_point(equality, 1u));
 }
 
-// What constraints do along tendon `t`.
+// Returns the constraint force along tendon `t`.
 fn tendon_constraint_force(t: u32) -> f32 {
     let c = NJNT + t;
     var sum: f32 = 0.0;

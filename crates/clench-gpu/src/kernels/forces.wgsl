@@ -1,6 +1,6 @@
-// The acceleration that all forces but constraints cause. Sister of `dynamics/smooth.rs`.
+// The acceleration due to all forces except constraints. CPU counterpart: `dynamics/smooth.rs`.
 
-// What the user applies to bodies at their centres of mass does to dof i.
+// Returns the force on dof i due to user forces on bodies at their centres of mass.
 fn applied_to_bodies(i: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var b = words[DOF_BODY + i]; b < bound(NBODY); b++) {
@@ -13,7 +13,7 @@ fn applied_to_bodies(i: u32) -> f32 {
     return sum;
 }
 
-// Whether the user applies anything to bodies.
+// Returns true if the user applies any force to bodies.
 fn any_applied_to_bodies() -> bool {
     var most: f32 = 0.0;
     for (var k = 6u + member; k < bound(6u * NBODY); k += TEAM) {
@@ -37,7 +37,7 @@ fn smooth_acceleration() {
     solve_tree(QACC_SMOOTH);
 }
 
-// What depends on velocities and controls: a team an environment.
+// Runs everything that depends on velocities and controls. One team per environment.
 @compute @workgroup_size(GROUP, TEAM)
 fn forces(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);

@@ -1,14 +1,14 @@
-// Inputs, gains and biases of actuators, force = gain · input + bias. Sisters of `dynamics/gain.rs`, `activation.rs` and
-// `activation_rates.rs`.
+// Inputs, gains and biases of actuators, force = gain · input + bias. CPU counterparts: `dynamics/gain.rs`,
+// `activation.rs` and `activation_rates.rs`.
 //
-// Gain and bias are affine in the length and the velocity of the actuator, or those of a muscle, a controller or a motor. What a kind
-// lacks is a zero coefficient.
+// Gain and bias are affine in the length and the velocity of the actuator, or those of a muscle, a controller or a
+// motor. Terms that a kind lacks have a zero coefficient.
 
 fn affine(place: u32, length: f32, velocity: f32) -> f32 {
     return parameter(place) + parameter(place + 1u) * length + parameter(place + 2u) * velocity;
 }
 
-// Control `c` of actuator `u` as it acts: that of a delayed actuator is read from the past; then its range clamps.
+// Returns control `c` of actuator `u` after its delay, clamped to its range.
 fn acting_control(u: u32, c: u32) -> f32 {
     var ctrl = given(CTRL + c);
     if (ANY_DELAY && words[ACTUATOR_HISTORY + u] != NONE) {
@@ -20,7 +20,7 @@ fn acting_control(u: u32, c: u32) -> f32 {
     return clamp(ctrl, parameter(CTRL_RANGE + 2u * c), parameter(CTRL_RANGE + 2u * c + 1u));
 }
 
-// Activation `a` of actuator `u` as its gain takes it.
+// Returns activation `a` of actuator `u` as its gain uses it.
 fn acting(u: u32, a: u32, velocity: f32) -> f32 {
     let act = given(ACT + a);
     if (words[ACTUATOR_EARLY + u] == 1u) {
@@ -49,7 +49,7 @@ fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
     }
 }
 
-// What the gain multiplies: the control, or the activation.
+// Returns the input that the gain multiplies: the control or the activation.
 fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
     let a = words[ACTUATOR_ACT + u];
     var input: f32 = 0.0;
@@ -61,7 +61,8 @@ fn actuator_input(u: u32, length: f32, velocity: f32) -> f32 {
     return nearest_setpoint(u, input, length);
 }
 
-// Leaves the rates of the activations, and finds the force before any limit, but for what no limit holds; zero where the actuator is off.
+// Stores the rates of the activations, and returns the force before any limit, without the parts that no limit applies
+// to; zero if the actuator is off.
 fn unlimited_force(u: u32) -> f32 {
     let length = fetch(ACTUATOR_LENGTH + output_of(u));
     let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));

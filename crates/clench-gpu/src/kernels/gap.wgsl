@@ -1,12 +1,13 @@
-// The duality gap ½ gᵀM⁻¹g that the last solve has left, where somebody asks: a team an environment, also of one that stands still. The cost less ½ |a|²_M is
-// convex, so that the cost exceeds its minimum by at most this. Sister of `clench-solver/src/descent.rs`.
+// The duality gap ½ gᵀM⁻¹g of the last solve, on request: one team per environment, even a stopped one. The cost minus
+// ½ |a|²_M is convex, so that the cost exceeds its minimum by at most this. CPU counterpart:
+// `clench-solver/src/descent.rs`.
 
 @compute @workgroup_size(GROUP, TEAM)
 fn gap(@builtin(global_invocation_id) id: vec3u) {
     take_up(id.x);
     column = id.x % GROUP;
     member = select(BEHIND_ALL, id.y, env < envs);
-    // An integrator may have put its own factor there. Where M is singular, the gap is no number.
+    // An integrator may have stored its own factor there. If M is singular, the gap is NaN.
     _ = factor_mass();
     for (var i = member; i < bound(NV); i += TEAM) {
         put(PRECONDITIONED + i, fetch(GRADIENT + i));

@@ -1,17 +1,17 @@
-// One workgroup an environment: what its threads share. Every sum is taken in the same order by every thread, so that all
-// have the same bits and decide alike, and a run repeats itself.
+// The shared data of one workgroup per environment. Every thread computes every sum in the same order, so that all have
+// the same bits and take the same branches, and runs are reproducible.
 
 var<private> lane: u32;
-// What threads hand to each other, each its own; between two such exchanges a tile of a matrix.
+// Data exchanged between threads, one each; between two exchanges, a tile of a matrix.
 var<workgroup> scratch: array<vec4f, 80>;
 var<workgroup> verdict: u32;
 
-// The environment of a workgroup: the groups lie in rows of GRID.
+// Returns the environment of a workgroup; the groups lie in rows of GRID.
 fn environment_of(workgroup: vec3u) -> u32 {
     return workgroup.x + GRID * workgroup.y;
 }
 
-// Lets a branch that contains barriers be taken by all threads or none. All come with the same answer.
+// Makes a branch that contains barriers uniform. All threads pass the same answer.
 fn agreed(answer: u32) -> u32 {
     if (lane == 0u) {
         verdict = answer;
@@ -19,30 +19,30 @@ fn agreed(answer: u32) -> u32 {
     return workgroupUniformLoad(&verdict);
 }
 
-// Takes up the environment of a workgroup; false where there is none, or where it has failed and stands still.
+// Begins the environment of a workgroup. Returns false if it does not exist or has stopped.
 fn begin_together(workgroup: vec3u) -> bool {
     let runs = begin(environment_of(workgroup));
     return agreed(select(0u, 1u, runs)) == 1u;
 }
 
-// Waits until all threads of the group see what each has written.
+// Makes all writes visible to all threads of the group.
 fn join() {
     storageBarrier();
     workgroupBarrier();
 }
 
-// The sums of every eighth thread. No tile lies there.
+// The sums of every eighth thread. No tile overlaps it.
 var<workgroup> parts: array<vec4f, 8>;
 
-// The sum of what every eighth thread has put into `scratch`: those that add up side by side read side by side, and none waits for another at a bank
-// of the memory.
+// Returns the sum of every eighth element of `scratch`: adjacent threads read adjacent elements, without bank
+// conflicts.
 fn sum_of_every_eighth(first: u32) -> vec4f {
     let one_half = (scratch[first] + scratch[first + 8u]) + (scratch[first + 16u] + scratch[first + 24u]);
     let other_half = (scratch[first + 32u] + scratch[first + 40u]) + (scratch[first + 48u] + scratch[first + 56u]);
     return one_half + other_half;
 }
 
-// The sum over all 64 threads. No loop: a solve asks for so many that they would be half of its turns.
+// Sums over all 64 threads. It has no loop, which would be half of a solve's iterations.
 fn total(x: vec4f) -> vec4f {
     scratch[lane] = x;
     workgroupBarrier();
@@ -58,7 +58,7 @@ struct Sums {
     all: vec4f,
 }
 
-// The sums of what the threads before this one come with, and of what all do.
+// Returns the sums over the threads before this one, and over all.
 fn sums_up_to(x: vec4f) -> Sums {
     scratch[lane] = x;
     workgroupBarrier();

@@ -1,10 +1,10 @@
-// Gyroscopic forces of a free body without jointed children, integrated implicitly. Sister of `dynamics/gyroscopic.rs`, where they are
-// derived.
+// Gyroscopic forces of a free body without jointed children, integrated implicitly. CPU counterpart:
+// `dynamics/gyroscopic.rs`, which derives them.
 
 // Six equations, each with its right side as the seventh number.
 var<private> equations: array<f32, 42>;
 
-// Takes the joint's part of M − h D, which stands in QLD, and of the forces, in RATE.
+// Reads the joint's part of M − h D from QLD, and of the forces from RATE.
 fn begin_equations(dof: u32) {
     for (var r = 0u; r < bound(6u); r++) {
         for (var c = 0u; c < bound(6u); c++) {
@@ -34,7 +34,7 @@ fn add_bias_derivative(j: u32) {
     }
 }
 
-// Subtracts h times the skew part of D, which ellipsoids in a medium have.
+// Subtracts h times the skew part of D, due to ellipsoids in a medium.
 fn subtract_skew_drag(j: u32) {
     let dof = words[JNT_DOF + j];
     for (var b = words[JNT_BODY + j]; b < bound(NBODY); b++) {
@@ -50,7 +50,7 @@ fn subtract_skew_drag(j: u32) {
     }
 }
 
-// Solves by elimination with partial pivoting; the unknowns are left on the right.
+// Solves by elimination with partial pivoting; the solution replaces the right side.
 fn solve_equations() {
     for (var k = 0u; k < bound(6u); k++) {
         for (var r = k + 1u; r < bound(6u); r++) {
@@ -77,7 +77,7 @@ fn solve_equations() {
     }
 }
 
-// The accelerations of all such bodies, in MEAN_RATE.
+// Computes the accelerations of all such bodies, in MEAN_RATE.
 fn gyroscopic_accelerations() {
     for (var k = member; k < NFREE_TREE; k += TEAM) {
         let j = words[FREE_TREE_JNT + k];

@@ -1,26 +1,26 @@
-// Frames on two bodies that connects and welds hold together. Sisters of `constraint/held.rs`, `connect.rs` and `weld.rs`, where the
-// formulas are derived.
+// Anchor frames of connects and welds on two bodies. CPU counterparts: `constraint/held.rs`, `connect.rs` and
+// `weld.rs`, which derive the formulas.
 
-// The origin of the first or second frame of an equality, in the world.
+// Returns the origin of the first or second frame of an equality, in the world.
 fn held_point(equality: u32, side: u32) -> vec3f {
     let b = words[EQ_PAIR + 2u * equality + side];
     let anchor = parameter3(words[EQ_PRM + equality] + 3u * side);
     return fetch3(XPOS + 3u * b) + fetch_matrix(XMAT + 9u * b) * anchor;
 }
 
-// The orientation of a frame.
+// Returns the orientation of a frame.
 fn held_quat(equality: u32, side: u32) -> vec4f {
     let b = words[EQ_PAIR + 2u * equality + side];
     return quat_product(fetch4(XQUAT + 4u * b), parameter4(words[EQ_PRM + equality] + 6u + 4u * side));
 }
 
-// The inverse of the second frame's orientation.
+// Returns the inverse of the second frame's orientation.
 fn to_second_frame(equality: u32) -> vec4f {
     let second = held_quat(equality, 1u);
     return vec4f(second.x, -second.yzw);
 }
 
-// ρ, the orientation of the first frame in the second.
+// Returns ρ, the orientation of the first frame in the second.
 fn relative_quat(equality: u32) -> vec4f {
     return quat_product(to_second_frame(equality), held_quat(equality, 0u));
 }
@@ -29,7 +29,7 @@ fn torquescale(equality: u32) -> f32 {
     return parameter(words[EQ_PRM + equality] + 14u);
 }
 
-// The imaginary part of ½ (0, u) q.
+// Returns the imaginary part of ½ (0, u) q.
 fn half_product(u: vec3f, q: vec4f) -> vec3f {
     return 0.5 * (u * q.x + cross(u, q.yzw));
 }

@@ -1,4 +1,4 @@
-// W J of the rows on pieces with curvature, of which the Hessian M + Jᵀ W J is made.
+// W J of the rows on pieces with curvature, for the Hessian M + Jᵀ W J.
 
 fn weigh_edge(a: u32, i: u32, weight: f32) {
     put_row(WEIGHED + a * NV + i, weight * row(JACOBIAN + a * NV + i));
@@ -34,7 +34,7 @@ fn weigh(b: u32, i: u32) {
         case CONTACT_PYRAMID: {
             weigh_pyramid(b, first, block(b, BLOCK_DIM), i);
         }
-        // Of the pieces of quadratic costs, dry friction and one-sided costs alike, 1 has curvature.
+        // Piece 1 has curvature in quadratic costs, dry friction and one-sided costs.
         default: {
             let stiff = row(ACTIVE_SET + b) == 1.0;
             for (var a = first; a < first + block(b, BLOCK_DIM); a++) {
@@ -44,7 +44,7 @@ fn weigh(b: u32, i: u32) {
     }
 }
 
-// Whether a block is on a piece with curvature.
+// Returns true if a block is on a piece with curvature.
 fn is_stiff(b: u32) -> bool {
     let active_set = row(ACTIVE_SET + b);
     if (block(b, BLOCK_KIND) == DRY_FRICTION) {
@@ -53,7 +53,7 @@ fn is_stiff(b: u32) -> bool {
     return active_set != 0.0;
 }
 
-// Lists the stiff rows, in order, and weighs them; returns how many there are.
+// Lists the stiff rows, in order, and weighs them; returns their number.
 fn weigh_rows(nblock: u32) -> u32 {
     var count = 0u;
     for (var start = 0u; start < nblock; start += GROUP) {

@@ -1,6 +1,6 @@
-// Buffers of past controls: an owner's number, the times of samples, oldest first, counted from the present, and their values. Sister of
-// `history.rs` of clench-rigid. A buffer is four words at `h`: its first number in HISTORY, its samples, the numbers of each, and how it
-// is read between two.
+// Buffers of past controls: an owner's number, the times of samples, oldest first, relative to the present, and their
+// values. CPU counterpart: `history.rs` of clench-rigid. A buffer is four words at `h`: its offset in HISTORY, its
+// samples, the numbers of each, and the interpolation.
 
 fn sample_time(h: u32, k: u32) -> f32 {
     return given(HISTORY + words[h] + 1u + k);
@@ -10,13 +10,13 @@ fn sample_value(h: u32, k: u32, part: u32) -> f32 {
     return given(HISTORY + words[h] + 1u + words[h + 1u] + k * words[h + 2u] + part);
 }
 
-// How fast the value changes between two samples; samples of one time are told apart by one second.
+// Returns the slope between two samples; one second replaces a zero time difference.
 fn sample_slope(h: u32, before: u32, after: u32, part: u32) -> f32 {
     let time = sample_time(h, after) - sample_time(h, before);
     return (sample_value(h, after, part) - sample_value(h, before, part)) / select(1.0, time, time > 0.0);
 }
 
-// Between samples `k` − 1 and `k`.
+// Interpolates between samples `k` − 1 and `k`.
 fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
     let before = sample_value(h, k - 1u, part);
     let after = sample_value(h, k, part);
@@ -48,7 +48,8 @@ fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
     }
 }
 
-// A part of what the buffer holds of a time counted from the present. Before the oldest and after the newest sample these hold.
+// Returns a part of the buffer's value at a time relative to the present. It is constant before the oldest and after
+// the newest sample.
 fn read_history(h: u32, at: f32, part: u32) -> f32 {
     let same = max(8.0 * EPSILON * abs(at), TINY);
     var newest = 0u;

@@ -1,5 +1,5 @@
-// Keeps the controls of a step for those that they reach late, and what sensors with delays measured at its start. Sister of
-// `history.rs` of clench-rigid.
+// Stores the controls of a step for delayed actuators, and the measurements at its start for delayed sensors. CPU
+// counterpart: `history.rs` of clench-rigid.
 
 // Moves `count` numbers of a buffer down by `by`.
 fn shift_down(first: u32, count: u32, by: u32) {
@@ -8,7 +8,7 @@ fn shift_down(first: u32, count: u32, by: u32) {
     }
 }
 
-// Drops the oldest sample for one of the present; gives the place of its values.
+// Replaces the oldest sample by a new one at the present; returns the offset of its values.
 fn take_sample(h: u32) -> u32 {
     let samples = words[h + 1u];
     let width = words[h + 2u];
@@ -20,7 +20,7 @@ fn take_sample(h: u32) -> u32 {
     return values + (samples - 1u) * width;
 }
 
-// Lets a time step pass.
+// Ages the samples by a time step.
 fn age_samples(h: u32) {
     let times = HISTORY + words[h] + 1u;
     for (var k = 0u; k < words[h + 1u]; k++) {

@@ -1,5 +1,5 @@
-// Euler, implicit in the velocity derivatives of all smooth forces, Coriolis forces among them. Sister of `dynamics/implicit.rs`. A
-// team an environment, of which one thread factors and solves.
+// Euler, implicit in the velocity derivatives of all smooth forces including Coriolis forces. CPU counterpart:
+// `dynamics/implicit.rs`. One team per environment, of which one thread factors and solves.
 
 @compute @workgroup_size(GROUP, TEAM)
 fn implicit(@builtin(global_invocation_id) id: vec3u) {

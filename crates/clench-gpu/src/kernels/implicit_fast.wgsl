@@ -1,5 +1,5 @@
-// Euler, implicit in the velocity derivatives of damping, medium and actuation. Sister of `dynamics/implicit.rs`. A team an
-// environment.
+// Euler, implicit in the velocity derivatives of damping, medium and actuation. CPU counterpart:
+// `dynamics/implicit.rs`. One team per environment.
 
 @compute @workgroup_size(GROUP, TEAM)
 fn implicit_fast(@builtin(global_invocation_id) id: vec3u) {

@@ -1,6 +1,6 @@
-// The mass matrix by composite rigid bodies. Sister of `dynamics/inertia.rs`.
+// The mass matrix by composite rigid bodies. CPU counterpart: `dynamics/inertia.rs`.
 
-// The ten numbers of an inertia, read and written together: a card that waits for each by itself waits long.
+// The ten numbers of an inertia, read and written together, because separate accesses are slow on a GPU.
 struct Inertia {
     first: vec4f,
     second: vec4f,
@@ -22,7 +22,7 @@ fn sum_of_inertias(a: Inertia, b: Inertia) -> Inertia {
     return Inertia(a.first + b.first, a.second + b.second, a.third + b.third);
 }
 
-// The inertia of each body and all below it; of the world its own.
+// Sums inertias over each body and its descendants; not for the world.
 fn composite_inertias() {
     for (var level = NBODY_LEVEL; level > 0u; level--) {
         for (var n = words[BODY_LEVEL + level - 1u] + member; n < words[BODY_LEVEL + level]; n += TEAM) {
@@ -41,7 +41,7 @@ fn mass_matrix() {
     for (var i = member; i < bound(NV); i += TEAM) {
         let carried = momentum(CRB + 10u * words[DOF_BODY + i], fetch_spatial(CDOF + 6u * i));
         let end = words[TREE_START + i + 1u];
-        // Two at a time, of which the last may be the same.
+        // Two at a time; the last may repeat.
         for (var p = words[TREE_START + i]; p < end; p += 2u) {
             let next = min(p + 1u, end - 1u);
             let axis = fetch_spatial(CDOF + 6u * words[TREE_DOF + p]);
@@ -54,7 +54,7 @@ fn mass_matrix() {
     join();
 }
 
-// Adds the inertia of all tendons. Sister of `dynamics/tendon_armature.rs`.
+// Adds the inertia of all tendons. CPU counterpart: `dynamics/tendon_armature.rs`.
 fn add_tendon_inertia() {
     for (var t = 0u; is_first() && t < NTENDON; t++) {
         let armature = parameter(TENDON_ARMATURE + t);
@@ -63,7 +63,7 @@ fn add_tendon_inertia() {
     join();
 }
 
-// What depends on positions alone: a team an environment.
+// Computes everything that depends only on positions. One team per environment.
 @compute @workgroup_size(GROUP, TEAM)
 fn positions(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);

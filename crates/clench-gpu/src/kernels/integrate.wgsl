@@ -1,4 +1,4 @@
-// Advancing the state. Sister of `dynamics/integrate.rs` and `euler.rs`.
+// Advancing the state. CPU counterparts: `dynamics/integrate.rs` and `euler.rs`.
 
 // Moves qpos along the velocity at `velocity` (in work) for `time` seconds.
 fn integrate_positions(velocity: u32, time: f32) {
@@ -24,7 +24,7 @@ fn integrate_positions(velocity: u32, time: f32) {
     }
 }
 
-// Remembers the state at the start of a step.
+// Saves the state at the start of a step.
 fn save_start() {
     for (var i = member; i < bound(NQ); i += TEAM) {
         put(START_QPOS + i, given(QPOS + i));
@@ -50,7 +50,7 @@ fn restore_start() {
     }
 }
 
-// Takes whole turns off a rotation vector of more than half a turn, which stands for the same orientation then.
+// Reduces a rotation vector of more than half a turn by full turns to the same orientation.
 fn shorten(place: u32) {
     let vector = given3(place);
     let angle = length(vector);
@@ -62,8 +62,8 @@ fn shorten(place: u32) {
     }
 }
 
-// Moves activations a time step on, at the rates in `rates` (in work), for velocities of actuators in `velocities`. Those of actuators
-// that are off stay where they are, but for whole turns on a circle.
+// Advances activations by a time step, with the rates in `rates` and the actuator velocities in `velocities` (in work).
+// Those of disabled actuators are constant up to full turns on a circle.
 fn advance_activations(rates: u32, velocities: u32) {
     for (var a = member; ACTUATION && a < NA; a += TEAM) {
         let u = words[ACT_ACTUATOR + a];
@@ -85,8 +85,8 @@ fn advance_activations(rates: u32, velocities: u32) {
     }
 }
 
-// Lets the step count, or takes it back where it led nowhere. For springs that yield: the velocity that moved the positions, and lengths
-// and gradients of tendons at the start (all in work).
+// Completes the step, or reverts it after a fault. Springs that yield need the velocity that moved the positions, and
+// lengths and gradients of tendons at the start (all in work).
 fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     end_in_team();
     judge_results();
@@ -110,7 +110,7 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
             keep(QACC_WARMSTART + i, fetch(START_WARMSTART + i));
         }
     }
-    // The time passes when nobody looks at it any more.
+    // The time advances after its last use.
     join();
     if (is_first() && fault == RUNNING) {
         reports[STEPS * envs + env] += 1u;
@@ -119,13 +119,13 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     }
 }
 
-// Minus the change of a damper's force with its velocity.
+// Returns minus the velocity derivative of a damper's force.
 fn damping_slope(law: u32, velocity: f32) -> f32 {
     let v = abs(velocity);
     return parameter(law) + v * (2.0 * parameter(law + 1u) + v * 3.0 * parameter(law + 2u));
 }
 
-// What damping adds to the diagonal of M.
+// Returns the damping term of M's diagonal.
 fn added_inertia(i: u32) -> f32 {
     return TIMESTEP * damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
 }
@@ -149,7 +149,7 @@ fn factor_damped() {
     }
 }
 
-// The acceleration that advances the velocity: damping is implicit, so it solves (M + h B) a = τ + Jᵀf.
+// Computes the acceleration that advances the velocity: damping is implicit, so it solves (M + h B) a = τ + Jᵀf.
 fn damped_acceleration() {
     if (!IMPLICIT_DAMPING) {
         for (var i = member; i < bound(NV); i += TEAM) {
@@ -164,7 +164,7 @@ fn damped_acceleration() {
     solve_tree(RATE);
 }
 
-// Activations, then velocities by the acceleration in RATE, then positions with the new velocities.
+// Advances activations, then velocities by the acceleration in RATE, then positions with the new velocities.
 fn advance_semi_implicit() {
     advance_activations(ACT_DOT, ACTUATOR_VELOCITY);
     join();

@@ -1,7 +1,8 @@
-// The iterate of a solve: vectors over the dofs, and numbers of rows beside the Jacobian. Sister of `clench-solver/src/iterate.rs`.
+// The iterate of a solve: vectors over the dofs, and row data other than the Jacobian. CPU counterpart:
+// `clench-solver/src/iterate.rs`.
 
-// The vectors over the dofs, at these places, where the workgroup has room for them; else they lie with the rows of the environment.
-// Each is as long as the tiles of H together.
+// The vectors over the dofs, at these offsets, if they fit workgroup memory; else they are stored with the rows of the
+// environment. Each is as long as a row of the tiles of H.
 var<workgroup> vectors: array<f32, SHARED_VECTORS>;
 const QACC_AT: u32 = 0u;
 // M (a − a_unc).
@@ -14,7 +15,7 @@ const MASS_RAY_AT: u32 = 4u * WIDTH;
 const CONSTRAINT_AT: u32 = 5u * WIDTH;
 // The unconstrained acceleration.
 const SMOOTH_AT: u32 = 6u * WIDTH;
-// Of conjugate gradients M⁻¹g; this and the gradient as the last direction was made of them. Newton's method has its direction there.
+// Conjugate gradients: M⁻¹g; it and the gradient at the last direction. Newton's method: the direction.
 const PRECONDITIONED_AT: u32 = select(7u, 3u, NEWTON) * WIDTH;
 const LAST_PRECONDITIONED_AT: u32 = 8u * WIDTH;
 const LAST_GRADIENT_AT: u32 = 9u * WIDTH;
@@ -26,7 +27,7 @@ fn vector(place: u32) -> f32 {
     return row(VECTORS + place);
 }
 
-// All threads see it after the next `join_vectors`.
+// Writes an element; all threads see it after the next `join_vectors`.
 fn put_vector(place: u32, x: f32) {
     if (SHARE_VECTORS) {
         vectors[place] = x;
@@ -35,8 +36,8 @@ fn put_vector(place: u32, x: f32) {
     }
 }
 
-// Waits until all threads of the group see what each has written into vectors and tiles. Where these lie in the memory of the workgroup, that
-// is quicker than `join`, which waits for global memory.
+// Makes all writes to vectors and tiles visible to all threads of the group. If these are in workgroup memory, it is
+// faster than `join`, which waits for global memory.
 fn join_vectors() {
     if (!SHARE_ALL) {
         storageBarrier();
@@ -44,7 +45,7 @@ fn join_vectors() {
     workgroupBarrier();
 }
 
-// The number a of J x. Threads side by side have rows side by side: they read from J column by column.
+// Returns element a of J x. Adjacent threads have adjacent rows, so they read J column by column.
 fn jacobian_times(a: u32, x: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
@@ -53,7 +54,7 @@ fn jacobian_times(a: u32, x: u32) -> f32 {
     return sum;
 }
 
-// J a − aref, in RESIDUAL.
+// Computes J a − aref, in RESIDUAL.
 fn compute_residual(nrow: u32) {
     for (var a = lane; a < nrow; a += GROUP) {
         put_row(RESIDUAL + a, jacobian_times(a, QACC_AT) - row(AREF + a));
@@ -61,8 +62,8 @@ fn compute_residual(nrow: u32) {
     join();
 }
 
-// Evaluates every block, and the inertial cost ½ (a − a_unc)ᵀ M (a − a_unc): the cost of the blocks, how many changed their piece,
-// how many are on a curved one, and the inertial cost.
+// Evaluates every block, and the inertial cost ½ (a − a_unc)ᵀ M (a − a_unc). Returns the cost of the blocks, the number
+// that changed their piece, the number on a curved one, and the inertial cost.
 fn evaluate(nblock: u32) -> vec4f {
     var sum = vec4f();
     for (var b = lane; b < nblock; b += GROUP) {
@@ -79,7 +80,7 @@ fn evaluate(nblock: u32) -> vec4f {
     return total(sum);
 }
 
-// Jᵀf and the gradient; its norm.
+// Computes Jᵀf and the gradient; returns its norm.
 fn differentiate(nrow: u32) -> f32 {
     var square: f32 = 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
@@ -98,7 +99,7 @@ fn differentiate(nrow: u32) -> f32 {
     return sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
 }
 
-// M (a − a_unc) and J a − aref anew, without the rounding that steps have added up.
+// Recomputes M (a − a_unc) and J a − aref, without accumulated rounding.
 fn refresh(nrow: u32, at_smooth: bool) {
     if (at_smooth) {
         for (var i = lane; i < bound(NV); i += GROUP) {

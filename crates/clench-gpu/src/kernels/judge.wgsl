@@ -1,4 +1,4 @@
-// The verdict on a forward pass that is no step: a team an environment.
+// The check of a forward pass outside a step: one team per environment.
 
 @compute @workgroup_size(GROUP, TEAM)
 fn verdict(@builtin(global_invocation_id) id: vec3u) {

@@ -1,6 +1,7 @@
-// Forward kinematics: poses of bodies, inertial frames, joints, geoms and sites. Sister of `dynamics/kinematics.rs`.
+// Forward kinematics: poses of bodies, inertial frames, joints, geoms and sites. CPU counterpart:
+// `dynamics/kinematics.rs`.
 
-// The rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
+// Returns the rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
 fn joint_turn(joint: u32, kind: u32, q: u32) -> vec4f {
     if (kind == HINGE) {
         let angle = given(QPOS + q) - parameter(QPOS0 + q);
@@ -54,7 +55,7 @@ fn body_pose(b: u32) {
     put_matrix(XMAT + 9u * b, quat_matrix(xquat));
 }
 
-// What is fixed to a body: its inertial frame, its geoms and its sites.
+// Computes the poses of a body's inertial frame, geoms and sites.
 fn attached_poses(b: u32) {
     let xpos = fetch3(XPOS + 3u * b);
     let xquat = fetch4(XQUAT + 4u * b);

@@ -1,14 +1,14 @@
-// The exact line search: the root of the slope by Newton's method inside a bracket. Sister of
-// `clench-solver/src/line_search.rs`, whose names and reasons are the same.
+// The exact line search: the root of the slope by Newton's method inside a bracket. CPU counterpart:
+// `clench-solver/src/line_search.rs`, with the same names and explanations.
 
-// 0.01 √ε: a root is not worth finding more precisely.
+// 0.01 √ε: the resolution of a root.
 const RESOLUTION: f32 = 0.01 * ROOT_OF_EPSILON;
 const UNBOUNDED: f32 = 3.0e38;
 
 struct Step {
     alpha: f32,
     improvement: f32,
-    // The evaluations ran out before the search had closed in on a point.
+    // True if the evaluations ran out before convergence.
     cut: bool,
 }
 
@@ -21,7 +21,7 @@ struct Bracket {
     change_at_low: f32,
 }
 
-// M p and J p of the direction at RAY_AT.
+// Computes M p and J p of the direction at RAY_AT.
 fn prepare_ray(nrow: u32) {
     multiply_mass(RAY_AT, MASS_RAY_AT);
     for (var a = lane; a < nrow; a += GROUP) {
@@ -30,7 +30,7 @@ fn prepare_ray(nrow: u32) {
     join();
 }
 
-// Derivatives and change of the cost at α; `first` and `second` are the derivatives of its inertial part at 0.
+// Returns derivatives and change of the cost at α; `first` and `second` are the derivatives of its inertial part at 0.
 fn along(nblock: u32, alpha: f32, first: f32, second: f32) -> Along {
     var sum = Along(0.0, 0.0, 0.0);
     for (var b = lane; b < nblock; b += GROUP) {
@@ -41,7 +41,7 @@ fn along(nblock: u32, alpha: f32, first: f32, second: f32) -> Along {
     return join_along(inertial, Along(all.x, all.y, all.z));
 }
 
-// Takes in what was found at α and moves α; false where it does not move noticeably.
+// Updates the bracket with the result at α and moves α; returns false if it barely moves.
 fn narrow(bracket: ptr<function, Bracket>, at: Along) -> bool {
     let alpha = (*bracket).alpha;
     if (at.first < 0.0) {
@@ -69,7 +69,7 @@ fn narrow(bracket: ptr<function, Bracket>, at: Along) -> bool {
     return true;
 }
 
-// g·p, p·p, and the derivatives of the inertial part.
+// Returns g·p, p·p, and the derivatives of the inertial part.
 fn ray_products() -> vec4f {
     var sum = vec4f();
     for (var i = lane; i < bound(NV); i += GROUP) {
@@ -79,14 +79,14 @@ fn ray_products() -> vec4f {
     return total(sum);
 }
 
-// Goes to the minimiser along the ray; `slope_limit` is the slope that counts as zero, over the length of p.
+// Finds the minimiser along the ray; `slope_limit` is the slope that counts as zero, relative to the length of p.
 fn search(nblock: u32, slope_limit: f32) -> Step {
     let products = ray_products();
     let start = products.x;
     let descends = start < 0.0;
     let exact = max(4.0 * EPSILON * abs(products.z), -(RESOLUTION * start));
     let loose = min(slope_limit * sqrt(products.y), -(0.1 * start));
-    // A full step is the first guess along Newton's direction; along another it comes from the derivatives at 0.
+    // A full step is the first guess along Newton's direction; otherwise it comes from the derivatives at 0.
     let first = select(f32(0.0), f32(1.0), descends && NEWTON);
     let guesses = select(1u, 0u, NEWTON);
     var bracket = Bracket(0.0, UNBOUNDED, first, UNBOUNDED, UNBOUNDED, 0.0);
@@ -103,7 +103,7 @@ fn search(nblock: u32, slope_limit: f32) -> Step {
             break;
         }
         let steepness = abs(at.first);
-        // However loose the tolerance, the cost has to fall.
+        // The cost must fall regardless of the tolerance.
         let enough = steepness <= loose && change <= 1e-4 * bracket.alpha * start;
         open = steepness > exact && !enough;
         if (open) {
@@ -118,7 +118,7 @@ fn search(nblock: u32, slope_limit: f32) -> Step {
         alpha = bracket.low;
         change = bracket.change_at_low;
     }
-    // A convex function falls by no more than its slope at 0 promises.
+    // A convex function falls by no more than its slope at 0 predicts.
     let improvement = max(min(-change, -(alpha * start)), 0.0);
     return Step(alpha, improvement, open && bracket.high - bracket.low > RESOLUTION);
 }

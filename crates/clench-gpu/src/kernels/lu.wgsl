@@ -1,7 +1,8 @@
-// A = U L in the pattern of the tree, where A is not symmetric: U is unit upper, L lower triangular. Sister of
-// `clench-solver/src/tree/lu.rs`. QLD has the rows of the lower triangle, diagonal last, QLD_UPPER the columns of the upper one likewise.
+// A = U L in the pattern of the tree, for nonsymmetric A: U is unit upper, L lower triangular. CPU counterpart:
+// `clench-solver/src/tree/lu.rs`. QLD holds the rows of the lower triangle, diagonal last, QLD_UPPER likewise the
+// columns of the upper one.
 
-// Replaces the matrix by its factors; false where a pivot is zero or not finite.
+// Replaces the matrix by its factors; returns false if a pivot is zero or not finite.
 fn factor_lu() -> bool {
     var regular = true;
     for (var up = 0u; up < bound(NV); up++) {
@@ -26,7 +27,7 @@ fn factor_lu() -> bool {
     return regular;
 }
 
-// x ← A⁻¹ x, in place.
+// Computes x ← A⁻¹ x, in place.
 fn solve_lu(x: u32) {
     for (var up = 0u; up < bound(NV); up++) {
         let k = NV - 1u - up;

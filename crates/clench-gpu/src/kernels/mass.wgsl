@@ -1,7 +1,8 @@
-// The mass matrix of an environment as its workgroup multiplies with it. Sister of `clench-solver/src/tree/matrix.rs`. Where Newton's method keeps a dense
-// factor of H near, M is dense as well: threads side by side read numbers side by side. Else it has the pattern of the tree.
+// The mass matrix of an environment for products in its workgroup. CPU counterpart: `clench-solver/src/tree/matrix.rs`.
+// If Newton's method has a dense factor of H in workgroup memory, M is dense as well: adjacent threads read adjacent
+// numbers. Else it has the pattern of the tree.
 
-// Copies it beside the other numbers of the problem; returns its trace.
+// Copies it to the data of the problem; returns its trace.
 fn copy_mass() -> f32 {
     if (DENSE_MASS) {
         for (var k = lane; k < bound(NV * NV); k += GROUP) {
@@ -28,12 +29,12 @@ fn copy_mass() -> f32 {
     return total(vec4f(diagonal, 0.0, 0.0, 0.0)).x;
 }
 
-// How many dofs there are above one on its path: where it stands in the rows of those below it.
+// Returns the number of ancestors of a dof: its position in the rows of its descendants.
 fn depth(i: u32) -> u32 {
     return words[TREE_START + i + 1u] - words[TREE_START + i] - 1u;
 }
 
-// The entry (i, j) of M.
+// Returns the entry (i, j) of M.
 fn mass_entry(i: u32, j: u32) -> f32 {
     if (DENSE_MASS) {
         return row(MASS + NV * i + j);
@@ -47,7 +48,7 @@ fn mass_entry(i: u32, j: u32) -> f32 {
     return 0.0;
 }
 
-// The number i of M x: what stands before the diagonal, on it, and below it.
+// Returns element i of M x: the terms before the diagonal, on it, and below it.
 fn mass_times(x: u32, i: u32) -> f32 {
     var sum: f32 = 0.0;
     if (DENSE_MASS) {
@@ -65,7 +66,7 @@ fn mass_times(x: u32, i: u32) -> f32 {
     return sum;
 }
 
-// M x, for the vector at `x`, at `out`.
+// Computes M x, for the vector at `x`, at `out`.
 fn multiply_mass(x: u32, out: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         put_vector(out + i, mass_times(x, i));

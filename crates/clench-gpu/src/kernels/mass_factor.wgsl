@@ -1,11 +1,11 @@
 // The factor of the mass matrix.
 
-// Nothing is added to the diagonal of M.
+// Returns zero: nothing is added to the diagonal of M.
 fn added_inertia(i: u32) -> f32 {
     return 0.0;
 }
 
-// Factors M into QLD; false where this thread met a pivot that is not positive.
+// Factors M into QLD; returns false if this thread found a pivot that is not positive.
 fn factor_mass() -> bool {
     if (LONG_PATHS) {
         return !is_first() || articulated_factor();

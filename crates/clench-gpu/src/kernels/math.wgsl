@@ -1,6 +1,6 @@
-// Quaternions (w, x, y, z in the components x, y, z, w) and spatial vectors: sisters of `clench-math`.
+// Quaternions (w, x, y, z in the components x, y, z, w) and spatial vectors. CPU counterpart: `clench-math`.
 
-// Without a type, as in `elementary.wgsl`.
+// Untyped, as in `elementary.wgsl`.
 const PI = 3.141592653589793;
 const TWO_PI = 6.283185307179586;
 const HALF_PI = 1.5707963267948966;
@@ -8,7 +8,7 @@ const HALF_PI = 1.5707963267948966;
 // Below this length a vector or quaternion has no direction.
 const TINY: f32 = 1e-15;
 
-// The direction of a vector, x where it has none; then its length.
+// Returns the direction of a vector, x if it has none; then its length.
 fn direction(v: vec3f) -> vec4f {
     let norm = length(v);
     if (norm < TINY) {
@@ -54,7 +54,7 @@ fn quat_matrix(q: vec4f) -> mat3x3f {
     );
 }
 
-// Axis times angle, the angle in (−π, π].
+// Returns axis times angle, with the angle in (−π, π].
 fn quat_rotation_vector(q: vec4f) -> vec3f {
     let axis = direction(q.yzw);
     var angle = 2.0 * angle_of(axis.w, q.x);
@@ -64,12 +64,12 @@ fn quat_rotation_vector(q: vec4f) -> vec3f {
     return axis.xyz * angle;
 }
 
-// The rotation vector in the child's axes that takes `other` to `q`.
+// Returns the rotation vector in the child's axes that takes `other` to `q`.
 fn quat_difference(q: vec4f, other: vec4f) -> vec3f {
     return quat_rotation_vector(quat_product(vec4f(other.x, -other.yzw), q));
 }
 
-// The orientation after turning at the local angular velocity `omega` for `time` seconds.
+// Returns the orientation after rotating at the local angular velocity `omega` for `time` seconds.
 fn quat_integrate(q: vec4f, omega: vec3f, time: f32) -> vec4f {
     let axis = direction(omega);
     return quat_normalize(quat_product(q, quat_from_axis_angle(axis.xyz, axis.w * time)));
@@ -98,12 +98,12 @@ fn times(a: Spatial, s: f32) -> Spatial {
     return Spatial(a.angular * s, a.linear * s);
 }
 
-// Power of a force along a motion.
+// Returns the power of a force along a motion.
 fn spatial_dot(a: Spatial, b: Spatial) -> f32 {
     return dot(a.angular, b.angular) + dot(a.linear, b.linear);
 }
 
-// a × m, both motions.
+// Returns a × m, both motions.
 fn cross_motion(a: Spatial, m: Spatial) -> Spatial {
     return Spatial(
         cross(a.angular, m.angular),
@@ -111,7 +111,7 @@ fn cross_motion(a: Spatial, m: Spatial) -> Spatial {
     );
 }
 
-// a ×* f, a motion and a force.
+// Returns a ×* f, a motion and a force.
 fn cross_force(a: Spatial, f: Spatial) -> Spatial {
     return Spatial(
         cross(a.angular, f.angular) + cross(a.linear, f.linear),
@@ -119,7 +119,7 @@ fn cross_force(a: Spatial, f: Spatial) -> Spatial {
     );
 }
 
-// The momentum of the inertia at `place` (xx, yy, zz, xy, xz, yz; mass times offset; mass) that moves at `m`.
+// Returns the momentum of the inertia at `place` (xx, yy, zz, xy, xz, yz; mass times offset; mass) with the motion `m`.
 fn momentum(place: u32, m: Spatial) -> Spatial {
     let diagonal = fetch3(place);
     let off = fetch3(place + 3u);

@@ -1,6 +1,7 @@
-// Where everything lies. The sizes (NV, ...) and the offsets in capitals are constants written before this text, from
-// the model. State and work are arrays of fields, environment next to environment (`place * envs + env`), so that neighbouring
-// threads touch neighbouring numbers; `rows` holds what one workgroup solves, a block of ROWS numbers for each environment.
+// The memory layout. The sizes (NV, ...) and the offsets in capitals are constants of the model, written before this
+// text. State and work are arrays of fields with interleaved environments (`place * envs + env`), so that neighbouring
+// threads access neighbouring numbers; `rows` holds the problem of one workgroup, a block of ROWS numbers for each
+// environment.
 
 @group(0) @binding(0) var<storage, read> words: array<u32>;
 @group(0) @binding(1) var<storage, read> numbers: array<f32>;
@@ -8,13 +9,13 @@
 @group(0) @binding(3) var<storage, read_write> work: array<f32>;
 @group(0) @binding(4) var<storage, read_write> rows: array<f32>;
 @group(0) @binding(5) var<storage, read_write> reports: array<u32>;
-// The parameters of each environment, the first PARAMETERS of `numbers`, where some have their own; else `numbers` itself.
+// The parameters of each environment, the first PARAMETERS of `numbers`, if some have their own; else `numbers` itself.
 @group(0) @binding(6) var<storage, read> parameters: array<f32>;
 
-// The environment of this thread, and how many there are.
+// The environment of this thread, and the number of environments.
 var<private> env: u32;
 var<private> envs: u32;
-// Where the parameters of this environment begin, and how far one is from the next.
+// The start of the parameters of this environment, and their stride.
 var<private> parameter_start: u32;
 var<private> parameter_stride: u32;
 
@@ -26,7 +27,7 @@ fn take_up(index: u32) {
     parameter_stride = select(1u, envs, has_own);
 }
 
-// A number of the model as this environment has it.
+// Returns a parameter of this environment.
 fn parameter(place: u32) -> f32 {
     return parameters[place * parameter_stride + parameter_start];
 }
@@ -39,7 +40,7 @@ fn parameter4(place: u32) -> vec4f {
     return vec4f(parameter3(place), parameter(place + 3u));
 }
 
-// Takes up an environment; false where there is none, or where it has failed and stands still.
+// Begins an environment. Returns false if it does not exist or has stopped.
 fn begin(index: u32) -> bool {
     take_up(index);
     if (index >= envs) {
@@ -48,7 +49,7 @@ fn begin(index: u32) -> bool {
     return reports[STATUS * envs + env] == RUNNING;
 }
 
-// Notes that this step cannot be; what was noted first stays.
+// Records that this step failed; the first fault is kept.
 fn trouble(fault: u32) {
     if (reports[TROUBLE * envs + env] == RUNNING) {
         reports[TROUBLE * envs + env] = fault;
@@ -86,7 +87,7 @@ fn put4(place: u32, v: vec4f) {
     put(place + 3u, v.w);
 }
 
-// Matrices lie row by row, as users read them.
+// Matrices are row-major, as users read them.
 fn fetch_matrix(place: u32) -> mat3x3f {
     return transpose(mat3x3f(fetch3(place), fetch3(place + 3u), fetch3(place + 6u)));
 }
@@ -114,7 +115,7 @@ fn keep(place: u32, x: f32) {
     state[place * envs + env] = x;
 }
 
-// A row of the block of this environment.
+// Returns a number of the block of this environment.
 fn row(place: u32) -> f32 {
     return rows[env * ROWS + place];
 }
@@ -123,13 +124,13 @@ fn put_row(place: u32, x: f32) {
     rows[env * ROWS + place] = x;
 }
 
-// What a block is made of.
+// Returns a field of a block.
 fn block(b: u32, field: u32) -> u32 {
     return u32(row(BLOCKS + BLOCK_SIZE * b + field));
 }
 
-// Whether the device goes through loops to their end. Mesa's software device grants a thread so many turns of loops in all, and ends
-// every later loop after its first: this one tells.
+// Returns true if the device runs loops to their end. Mesa's software device limits the total iterations of a thread,
+// and ends every later loop after its first iteration: this loop detects that.
 fn loops_end() -> bool {
     var turns = 0u;
     for (var k = 0u; k < bound(4u); k++) {
@@ -138,14 +139,14 @@ fn loops_end() -> bool {
     return turns == 4u;
 }
 
-// Notes it where the device ended a loop before its end.
+// Records a fault if the device terminated a loop early.
 fn note_end() {
     if (!loops_end() && reports[STATUS * envs + env] == RUNNING) {
         trouble(UNFINISHED);
     }
 }
 
-// The end of a loop, told in a way that no compiler knows before: it would write the loop out, and take ten times as long.
+// Returns a loop's end in a form unknown at compile time: unrolling would make compilation ten times as long.
 fn bound(n: u32) -> u32 {
     return n + words[ZERO];
 }

@@ -1,11 +1,11 @@
-// Muscles. Sister of `dynamics/muscle.rs`, where the curves are explained. The parameters of one stand at `prm`: strength, resting
-// length, where its scaled length begins, lmin, lmax, vmax, fpmax, fvmax.
+// Muscles. CPU counterpart: `dynamics/muscle.rs`, which explains the curves. The parameters at `prm` are strength,
+// resting length, start of the scaled length, lmin, lmax, vmax, fpmax, fvmax.
 
 fn divisor(x: f32) -> f32 {
     return max(x, TINY);
 }
 
-// The rate of change of an activation under a control; `prm` has the time constants and the width between them.
+// Returns the rate of an activation under a control; `prm` holds the time constants and the width between them.
 fn muscle_rate(ctrl: f32, act: f32, prm: vec3f) -> f32 {
     let slowing = 0.5 + 1.5 * clamp(act, 0.0, 1.0);
     let rise = prm.x * slowing;
@@ -21,7 +21,7 @@ fn muscle_length(prm: u32, length: f32) -> f32 {
     return parameter(prm + 2u) + length / parameter(prm + 1u);
 }
 
-// The active force by length.
+// Returns the active force by length.
 fn active_by_length(l: f32, lmin: f32, lmax: f32) -> f32 {
     let left = 0.5 * (lmin + 1.0);
     let right = 0.5 * (1.0 + lmax);
@@ -40,7 +40,7 @@ fn active_by_length(l: f32, lmin: f32, lmax: f32) -> f32 {
     return 1.0 - 0.5 * top * top;
 }
 
-// The active force by velocity.
+// Returns the active force by velocity.
 fn active_by_velocity(v: f32, fvmax: f32) -> f32 {
     let above = fvmax - 1.0;
     if (v <= -1.0) {
@@ -55,7 +55,7 @@ fn active_by_velocity(v: f32, fvmax: f32) -> f32 {
     return fvmax;
 }
 
-// What the activation is multiplied by.
+// Returns the factor of the activation.
 fn muscle_gain(prm: u32, length: f32, velocity: f32) -> f32 {
     let l = muscle_length(prm, length);
     let v = velocity / divisor(parameter(prm + 1u) * parameter(prm + 5u));
@@ -63,7 +63,7 @@ fn muscle_gain(prm: u32, length: f32, velocity: f32) -> f32 {
     return -parameter(prm) * by_length * active_by_velocity(v, parameter(prm + 7u));
 }
 
-// How that changes with the velocity.
+// Returns its derivative with respect to the velocity.
 fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
     let scale = divisor(parameter(prm + 1u) * parameter(prm + 5u));
     let v = velocity / scale;
@@ -78,7 +78,7 @@ fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
     return -parameter(prm) * active_by_length(l, parameter(prm + 3u), parameter(prm + 4u)) * slope / scale;
 }
 
-// The passive force.
+// Returns the passive force.
 fn muscle_bias(prm: u32, length: f32) -> f32 {
     let l = muscle_length(prm, length);
     if (l <= 1.0) {

@@ -1,6 +1,6 @@
-// Where near pairs touch. Sister of `contact/detect.rs`.
+// The contacts of near pairs. CPU counterpart: `contact/detect.rs`.
 
-// A geom where it is.
+// A geom with its pose.
 struct Placed {
     center: vec3f,
     axes: mat3x3f,
@@ -30,8 +30,8 @@ fn on_plane(pair: u32, plane: Placed, b: Placed, geom: u32, range: f32) {
     }
 }
 
-// Methods that no pair of the model needs are left out. Drivers put the text of a function wherever it is called: hence one call of
-// the general one.
+// Finds the contacts of a pair. Methods that no pair of the model needs are omitted. Drivers inline a function at every
+// call site: hence one call of the general one.
 fn collide(pair: u32, a: u32, b: u32) {
     let first = placed(a);
     let second = placed(b);
@@ -64,8 +64,8 @@ fn collide(pair: u32, a: u32, b: u32) {
     }
 }
 
-// NTHREAD threads an environment, to which its near pairs are dealt, method by method: threads side by side, each of an environment of its own, mostly
-// find contacts by the same method.
+// NTHREAD threads per environment, among which its near pairs are distributed by method: adjacent threads, of different
+// environments, mostly use the same method.
 @compute @workgroup_size(GROUP)
 fn narrow_phase(@builtin(global_invocation_id) id: vec3u) {
     if (!begin(id.x)) {

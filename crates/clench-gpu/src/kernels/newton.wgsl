@@ -1,6 +1,6 @@
-// Newton's direction: −H⁻¹g with the Hessian of the pieces that the iterate is on. Sister of `clench-solver/src/newton.rs`.
+// Newton's direction: −H⁻¹g with the Hessian of the current pieces. CPU counterpart: `clench-solver/src/newton.rs`.
 
-// The factor is kept where no piece changed.
+// Reuses the factor if no piece has changed.
 fn direct_newton(same_hessian: bool, nblock: u32) {
     let rebuild = agreed(select(1u, 0u, same_hessian));
     if (rebuild == 1u) {

@@ -1,17 +1,17 @@
-// Removes the slow slip that soft friction allows: the friction forces alone are solved again without regularization, normal forces
-// fixed. Sister of `clench-solver/src/noslip.rs`, where it is derived. Of every friction row WEIGHED holds M⁻¹Jᵀ, and of a pyramid's RAY
-// the sum of its two edges' forces.
+// Removal of the slow slip of soft friction: only friction forces are solved again, without regularization and with
+// fixed normal forces. CPU counterpart: `clench-solver/src/noslip.rs`, which derives it. For every friction row WEIGHED
+// holds M⁻¹Jᵀ, and for a pyramid RAY holds the sum of its two edges' forces.
 
-// The most friction rows of a block.
+// The maximum number of friction rows of a block.
 const MAX_FRICTIONS: u32 = 5u;
-// Newton steps for the multiplier of an ellipse.
+// The maximum Newton steps for an ellipse's multiplier.
 const MULTIPLIER_STEPS: u32 = 20u;
 
-// Of the block at hand A, row by row, then J a − aref of its friction rows.
+// A of the current block, row by row, then J a − aref of its friction rows.
 var<workgroup> friction: array<f32, 30>;
 const SLIP_AT: u32 = MAX_FRICTIONS * MAX_FRICTIONS;
 
-// The friction row where those of a block begin; NONE where it has none.
+// Returns the first friction row of a block; NONE if it has none.
 fn first_friction(b: u32) -> u32 {
     let first = block(b, BLOCK_ROW);
     switch block(b, BLOCK_KIND) {
@@ -27,7 +27,7 @@ fn first_friction(b: u32) -> u32 {
     }
 }
 
-// Writes M⁻¹Jᵀ of a row. Sister of `solve_tree`.
+// Writes M⁻¹Jᵀ of a row. Corresponds to `solve_tree`.
 fn respond(a: u32) {
     let x = WEIGHED + a * NV;
     for (var i = 0u; i < bound(NV); i++) {
@@ -50,7 +50,7 @@ fn respond(a: u32) {
     }
 }
 
-// The responses and edge sums of a block; what its regularization costs, twice.
+// Computes the responses and edge sums of a block; returns twice the cost of its regularization.
 fn prepare_block(b: u32) -> f32 {
     let first = block(b, BLOCK_ROW);
     let end = first + block(b, BLOCK_DIM);
@@ -73,7 +73,7 @@ fn prepare_block(b: u32) -> f32 {
     return cost;
 }
 
-// Fills A and the slip of a block, an entry for each thread.
+// Fills A and the slip of a block, an entry per thread.
 fn fill_friction(start: u32, count: u32) {
     for (var k = lane; k < SLIP_AT + count; k += GROUP) {
         let i = k % MAX_FRICTIONS;
@@ -91,7 +91,7 @@ fn fill_friction(start: u32, count: u32) {
     join();
 }
 
-// How the friction of a block changes, solved row by row, each seeing what those before it changed.
+// Returns the change of a block's friction, solved row by row, each with the changes of those before it.
 fn change_rows(start: u32, count: u32, is_pyramid: bool) -> array<f32, MAX_FRICTIONS> {
     var change = array<f32, MAX_FRICTIONS>();
     for (var j = 0u; j < count; j++) {
@@ -111,14 +111,14 @@ fn change_rows(start: u32, count: u32, is_pyramid: bool) -> array<f32, MAX_FRICT
     return change;
 }
 
-// With the multiplier λ of an ellipse: g = −(B + λ I)⁻¹ c, its square, and gᵀ(B + λ I)⁻¹g.
+// For a multiplier λ of an ellipse: g = −(B + λ I)⁻¹ c, its square, and gᵀ(B + λ I)⁻¹g.
 struct Shifted {
     g: array<f32, MAX_FRICTIONS>,
     squared: f32,
     slope: f32,
 }
 
-// By Cholesky; pivots that rounding has consumed are replaced by its size.
+// Solves by Cholesky; pivots lost to rounding are replaced by `least`.
 fn shifted_minimum(b: array<f32, 25>, c: array<f32, MAX_FRICTIONS>, lambda: f32, least: f32, n: u32) -> Shifted {
     var l = b;
     var g = c;
@@ -132,7 +132,7 @@ fn shifted_minimum(b: array<f32, 25>, c: array<f32, MAX_FRICTIONS>, lambda: f32,
         }
         g[j] = -g[j];
     }
-    // Forward and back, then forward once more, for gᵀ(B + λ I)⁻¹g.
+    // Forward and backward, then forward again for gᵀ(B + λ I)⁻¹g.
     var found = Shifted(g, 0.0, 0.0);
     for (var round = 0u; round < bound(3u); round++) {
         for (var step = 0u; step < n; step++) {
@@ -158,7 +158,8 @@ fn shifted_minimum(b: array<f32, 25>, c: array<f32, MAX_FRICTIONS>, lambda: f32,
     return found;
 }
 
-// How the friction of a block changes that is best within Σ (f / μ)² ≤ normal²; its rows begin at `start`, behind the normal's.
+// Returns the change of a block's friction to the optimum within Σ (f / μ)² ≤ normal²; its rows begin at `start`, after
+// the normal's.
 fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
     var change = array<f32, MAX_FRICTIONS>();
     var b = array<f32, 25>();
@@ -184,14 +185,14 @@ fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
     var found = Shifted();
     for (var k = 0u; k < bound(MULTIPLIER_STEPS); k++) {
         found = shifted_minimum(b, c, lambda, trace * EPSILON, count);
-        // Newton's step for 1/r − 1/|g(λ)|; λ only grows, so a step back means that the root is reached.
+        // Newton's step for 1/r − 1/|g(λ)|; λ only grows, so a step back means that it has converged.
         let step = found.squared / found.slope * (sqrt(found.squared) - radius) / radius;
         if (!(step > lambda * EPSILON) || is_wild(step)) {
             break;
         }
         lambda += step;
     }
-    // Exactly onto the ellipse what rounding left outside.
+    // Scales points left outside by rounding onto the ellipse.
     let size = sqrt(found.squared);
     let shrink = select(1.0, radius / size, size > radius);
     for (var i = 0u; i < count; i++) {
@@ -200,7 +201,7 @@ fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
     return change;
 }
 
-// Improves the friction of a block, from row `start` on; by how much the objective falls.
+// Improves the friction of a block, from row `start` on; returns the decrease of the objective.
 fn improve_friction(b: u32, start: u32) -> f32 {
     let count = block(b, BLOCK_ROW) + block(b, BLOCK_DIM) - start;
     let kind = block(b, BLOCK_KIND);
@@ -219,7 +220,7 @@ fn improve_friction(b: u32, start: u32) -> f32 {
         }
         fall -= change[j] * slip;
     }
-    // All threads have read what some now write.
+    // All threads have read the data that some now overwrite.
     join();
     for (var j = 0u; j < count; j++) {
         for (var i = lane; i < bound(NV); i += GROUP) {
@@ -233,7 +234,8 @@ fn improve_friction(b: u32, start: u32) -> f32 {
     return fall;
 }
 
-// Sweeps over dry friction, then over contacts, until they gain no more. `scale` turns costs into what the tolerance is of.
+// Sweeps over dry friction, then over contacts, until convergence. `scale` converts costs to the units of the
+// tolerance.
 fn noslip(nrow: u32, nblock: u32, scale: f32) {
     var cost: f32 = 0.0;
     for (var b = lane; b < nblock; b += GROUP) {

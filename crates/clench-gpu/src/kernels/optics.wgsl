@@ -1,6 +1,7 @@
-// What cameras see: where a site is in the picture, and the line of sight of a pixel. Sister of `sensor/camera.rs`.
+// Camera projection: the image position of a site, and the line of sight of a pixel. CPU counterpart:
+// `sensor/camera.rs`.
 
-// A half line, its direction of unit length.
+// A half line with a unit direction.
 struct Line {
     origin: vec3f,
     along: vec3f,
@@ -10,7 +11,7 @@ fn resolution(camera: u32) -> vec2f {
     return vec2f(f32(words[camera + CAMERA_WIDTH]), f32(words[camera + CAMERA_HEIGHT]));
 }
 
-// The size of a pixel at unit distance, which is the inverse of the focal lengths in pixels.
+// Returns the size of a pixel at unit distance, the inverse of the focal lengths in pixels.
 fn size_of_pixel(c: u32) -> vec2f {
     let camera = CAMERAS + CAMERA_SIZE * c;
     if (words[camera + CAMERA_INTRINSIC] == 1u) {
@@ -21,7 +22,7 @@ fn size_of_pixel(c: u32) -> vec2f {
     return vec2f(2.0 * half.x / (half.y * resolution(camera).y));
 }
 
-// Where a camera sees a site, pixels from the upper left corner.
+// Returns the image position of a site, in pixels from the upper left corner.
 fn project(site: u32, c: u32) -> vec2f {
     let place = fetch3(SITE_XPOS + 3u * site) - fetch3(CAM_XPOS + 3u * c);
     let p = place * fetch_matrix(CAM_XMAT + 9u * c);
@@ -30,7 +31,7 @@ fn project(site: u32, c: u32) -> vec2f {
     return 0.5 * resolution(CAMERAS + CAMERA_SIZE * c) + offset;
 }
 
-// Where the optical axis meets the picture.
+// Returns the image position of the optical axis.
 fn optical_axis(c: u32) -> vec2f {
     let camera = CAMERAS + CAMERA_SIZE * c;
     if (words[camera + CAMERA_INTRINSIC] == 1u && words[camera + CAMERA_ORTHOGRAPHIC] == 0u) {
@@ -40,7 +41,7 @@ fn optical_axis(c: u32) -> vec2f {
     return 0.5 * resolution(camera);
 }
 
-// The line of sight through the middle of a pixel; pixels are counted line by line from the upper left corner.
+// Returns the line of sight through the centre of a pixel; pixels are counted line by line from the upper left corner.
 fn line_of_sight(c: u32, pixel: u32) -> Line {
     let camera = CAMERAS + CAMERA_SIZE * c;
     let width = words[camera + CAMERA_WIDTH];

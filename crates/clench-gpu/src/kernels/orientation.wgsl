@@ -1,13 +1,13 @@
-// Orientation servos: a torque that turns a ball joint, or a site in the frame of another, to a commanded orientation by the shortest way.
-// Sister of `dynamics/orientation.rs`.
+// Orientation servos: a torque that rotates a ball joint, or a site in the frame of another, to a commanded orientation
+// by the shortest rotation. CPU counterpart: `dynamics/orientation.rs`.
 
-// The orientation of a rotation vector.
+// Returns the orientation of a rotation vector.
 fn quat_from_rotation_vector(v: vec3f) -> vec4f {
     let axis = direction(v);
     return quat_from_axis_angle(axis.xyz, axis.w);
 }
 
-// The orientation that servo `u` goes for; leaves the rates of its activations.
+// Returns the target orientation of servo `u`; stores the rates of its activations.
 fn servo_target(u: u32) -> vec4f {
     let c = words[ACTUATOR_CTRL + u];
     let vector = vec3f(acting_control(u, c), acting_control(u, c + 1u), acting_control(u, c + 2u));
@@ -26,7 +26,7 @@ fn servo_target(u: u32) -> vec4f {
     return quat_from_rotation_vector(acts);
 }
 
-// The torque of servo `u` before any limit; zero where it is off.
+// Returns the torque of servo `u` before any limit; zero if it is off.
 fn servo_torque(u: u32) -> vec3f {
     let output = output_of(u);
     let now = quat_from_rotation_vector(fetch3(ACTUATOR_LENGTH + output));
@@ -37,7 +37,7 @@ fn servo_torque(u: u32) -> vec3f {
     return select(torque, vec3f(), words[ACTUATOR_OFF + u] == 1u);
 }
 
-// Holds the norm of the torque within a range from zero, and its direction.
+// Limits the norm of the torque to the upper end of its range; its direction stays.
 fn limit_torque(u: u32) {
     let place = ACTUATOR_FORCE + output_of(u);
     let torque = fetch3(place);
@@ -48,7 +48,7 @@ fn limit_torque(u: u32) {
     }
 }
 
-// ∂torque/∂ω, the same about each axis; zero where the limit holds the torque.
+// Returns ∂torque/∂ω, the same about each axis; zero if the limit is active.
 fn servo_slope(u: u32) -> f32 {
     let norm = length(fetch3(ACTUATOR_FORCE + output_of(u)));
     let held = norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - max(1e-10, 16.0 * EPSILON));

@@ -1,10 +1,10 @@
-// At most eight points on the outline of a convex polygon of contacts. Sister of `clench-collide/src/narrow/outline.rs`, where the
-// integral over a sector is derived.
+// At most eight points on the outline of a convex polygon of contacts. CPU counterpart:
+// `clench-collide/src/narrow/outline.rs`, which derives the integral over a sector.
 
-// The middle of the polygon's area, and the inverse root of its second moments: xx, xy, yy.
+// The centroid of the polygon, and the inverse root of its second moments: xx, xy, yy.
 var<private> outline_middle: vec2f;
 var<private> outline_round: vec3f;
-// The points that stand for the outline.
+// The sampled points of the outline.
 var<private> sampled: array<vec2f, PATCH_POINTS>;
 var<private> sampled_count: u32;
 
@@ -12,7 +12,7 @@ fn is_near(p: vec2f, q: vec2f, same: f32) -> bool {
     return dot(p - q, p - q) <= same * same;
 }
 
-// Drops corners from the end where the way to the next turns right, or not at all.
+// Drops corners from the end where the path to the next turns right or not at all.
 fn straighten(next: vec2f) {
     while (polygon_count >= 2u) {
         let p = polygon[polygon_count - 2u].xy;
@@ -24,8 +24,8 @@ fn straighten(next: vec2f) {
     }
 }
 
-// Leaves the corners of the convex hull of the polygon, which is star-shaped (Graham 1972); corners nearer than `same` to the one before
-// are left out.
+// Reduces the polygon, which is star-shaped, to the corners of its convex hull (Graham 1972); corners nearer than
+// `same` to the previous one are dropped.
 fn make_convex(same: f32) {
     var whole = polygon;
     let count = polygon_count;
@@ -38,7 +38,7 @@ fn make_convex(same: f32) {
         }
     }
     polygon_count = 0u;
-    // The first comes once more at the end, to straighten the way back to it.
+    // The first is repeated at the end, to straighten the path back to it.
     for (var k = 0u; k <= count; k++) {
         let next = whole[(first + k) % count].xy;
         if (k == count) {
@@ -55,7 +55,7 @@ fn make_convex(same: f32) {
     }
 }
 
-// Finds the middle and the moments of the polygon; of one without area, numbers that do no harm.
+// Finds the centroid and the moments of the polygon; harmless values if it has no area.
 fn find_moments() {
     let origin = polygon[0].xy;
     var area: f32 = 0.0;
@@ -77,7 +77,7 @@ fn find_moments() {
     let mean = first * (inverse / 3.0);
     second *= inverse / 6.0;
     let xy = second.y - mean.x * mean.y;
-    // A very thin polygon counts as a little wider.
+    // Widens a very thin polygon a little.
     var squares = second.xz - mean * mean;
     squares = max(squares, vec2f()) + (squares.x + squares.y) * ROOT_OF_EPSILON;
     let root = sqrt(max(squares.x * squares.y - xy * xy, SMALLEST));
@@ -93,7 +93,7 @@ fn rounded(v: vec2f) -> vec2f {
     return vec2f(dot(outline_round.xy, v), dot(outline_round.yz, v));
 }
 
-// The first corner that is furthest along a direction.
+// Returns the first corner furthest along a direction.
 fn furthest_corner(d: vec2f) -> u32 {
     var furthest = 0u;
     var height = -UNMOVABLE;
@@ -111,8 +111,8 @@ fn next_corner(k: u32) -> u32 {
     return select(k + 1u, 0u, k + 1u >= polygon_count);
 }
 
-// The point of the sector between two directions; `begin` is the corner that supports the first, and z the one that supports the
-// second.
+// Returns the point of the sector between two directions; `begin` is the corner that supports the first, and z the one
+// that supports the second.
 fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
     var corner = begin;
     var mean = vec2f();
@@ -126,7 +126,7 @@ fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
         if (at_end <= 0.0) {
             break;
         }
-        // Along this share of the way the next corner takes over.
+        // The fraction at which the next corner takes over.
         var share = passed;
         if (at_start < 0.0) {
             share = max(at_start / (at_start - at_end), passed);
@@ -137,7 +137,7 @@ fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
         edge_total++;
     }
     mean += polygon[corner].xy * (1.0 - passed);
-    // Outward from the middle, to the edge between those corners that is met first.
+    // Outward from the centroid, to the first edge between those corners.
     let outward = mean - outline_middle;
     var reach = UNMOVABLE;
     var at = begin;
@@ -157,7 +157,8 @@ fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
     return vec3f(mean, f32(corner));
 }
 
-// Samples the polygon's outline: a point for each sector, the first about the direction `first`; of those that coincide one.
+// Samples the polygon's outline: a point per sector, the first about the direction `first`; coincident points are
+// merged.
 fn sample_outline(first: vec2f, same: f32) {
     let toward = rounded(first);
     let size = length(toward);

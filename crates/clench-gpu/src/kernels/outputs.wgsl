@@ -1,6 +1,6 @@
-// Lengths, velocities, moment arms and forces of actuators: one each, but for orientation servos, which have three.
+// Lengths, velocities, moment arms and forces of actuators: one each, or three for orientation servos.
 
-// The first of actuator `u`.
+// Returns the first output of actuator `u`.
 fn output_of(u: u32) -> u32 {
     if (!ANY_ORIENTATION) {
         return u;
@@ -8,7 +8,7 @@ fn output_of(u: u32) -> u32 {
     return words[ACTUATOR_OUTPUT + u];
 }
 
-// Where its moment arms begin.
+// Returns the start of its moment arms.
 fn first_arm(u: u32) -> u32 {
     return words[ACTUATOR_ROW + output_of(u)];
 }

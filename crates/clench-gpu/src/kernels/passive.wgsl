@@ -1,8 +1,9 @@
-// Springs, dampers, gravity compensation, the medium, and contacts that adhere. Sisters of `dynamics/passive.rs`, `polynomial.rs` and `fluid.rs`.
+// Springs, dampers, gravity compensation, the medium, and contact adhesion. CPU counterparts: `dynamics/passive.rs`,
+// `polynomial.rs` and `fluid.rs`.
 //
-// A spring pulls with −(a x + b x² + c x³), a damper with −(a v + b v |v| + c v³).
+// The force of a spring is −(a x + b x² + c x³), that of a damper −(a v + b v |v| + c v³).
 
-// Adds the force of a spring that is stretched along `stretch` to three dofs.
+// Adds the force of a spring with the elongation `stretch` to three dofs.
 fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
     let k = stiffness(law, length(stretch));
     put3(qfrc, fetch3(qfrc) - stretch * k);
@@ -30,7 +31,7 @@ fn springs() {
     }
 }
 
-// The first that acts on dofs.
+// Computes the first force on dofs.
 fn dampers() {
     for (var i = member; i < bound(NV); i += TEAM) {
         let v = given(QVEL + i);
@@ -38,7 +39,7 @@ fn dampers() {
     }
 }
 
-// Tendons have dofs in common: one thread adds them all.
+// Tendons share dofs, so one thread adds them all.
 fn tendon_forces() {
     for (var t = 0u; is_first() && t < NTENDON; t++) {
         let force = tendon_passive_force(t);
@@ -48,12 +49,13 @@ fn tendon_forces() {
     }
 }
 
-// −(c₁ v + c₂ |v| v), axis by axis.
+// Returns −(c₁ v + c₂ |v| v), axis by axis.
 fn resistance(viscous: vec3f, quadratic: vec3f, v: vec3f) -> vec3f {
     return -(viscous * v + quadratic * abs(v) * v);
 }
 
-// The medium resists the box that has a body's mass and inertia, whose coefficients are numbers of the model, or the body's ellipsoids.
+// Computes the resistance to the box with a body's mass and inertia, whose coefficients are parameters, or to the
+// body's ellipsoids.
 fn fluid_forces() {
     for (var b = member; b < bound(NBODY); b += TEAM) {
         if (has_ellipsoids(b)) {
@@ -75,7 +77,7 @@ fn fluid_forces() {
     project_forces(QFRC_PASSIVE);
 }
 
-// Each body's weight, or the share of it that is lifted, is held at its centre of mass; `BODY_LIFT` is its mass times that share.
+// Applies the compensated share of each body's weight at its centre of mass; `BODY_LIFT` is its mass times that share.
 fn gravity_compensation() {
     clear_dofs(QFRC_GRAVCOMP);
     for (var b = member; b < bound(NBODY); b += TEAM) {
@@ -91,13 +93,13 @@ fn gravity_compensation() {
     }
 }
 
-// What contacts hold on with pulls their bodies together, against what their constraints give for it.
+// Applies the adhesion of contacts, which pulls their bodies together against the corresponding constraint forces.
 fn adhesion_forces() {
     for (var b = member; b < bound(NBODY); b += TEAM) {
         put_spatial(CFRC + 6u * b, Spatial(vec3f(), vec3f()));
     }
     join();
-    // Contacts have bodies in common: one thread adds them all.
+    // Contacts share bodies, so one thread adds them all.
     for (var c = 0u; is_first() && c < reports[NCON * envs + env]; c++) {
         let place = CONTACTS + CONTACT_SIZE * c;
         let pair = u32(fetch(place));

@@ -1,15 +1,15 @@
-// How far a segment inside a cylinder must move to be free of it. Sister of `clench-collide/src/narrow/penetration.rs`, where the
-// candidates are derived.
+// The penetration depth of a segment inside a cylinder. CPU counterpart: `clench-collide/src/narrow/penetration.rs`,
+// which derives the candidates.
 
-// Halvings of a right angle that leave less than a rounding error of it.
+// The number of halvings of a right angle to its rounding error.
 const ANGLE_HALVINGS: u32 = 26u;
 
-// The direction along `n`, either way, on whose side `center` lies.
+// Returns n or −n, whichever points to the side of `center`.
 fn towards(center: vec3f, n: vec3f) -> vec3f {
     return select(n, -n, dot(n, center) < 0.0);
 }
 
-// From the cylinder's axis to the nearest point of the segment, both projected along the axis.
+// Returns the direction from the cylinder's axis to the nearest point of the segment, both projected along the axis.
 fn radial_way_out(s: Segment, spare: vec3f) -> vec3f {
     let square = max(dot(s.axis.xy, s.axis.xy), TINY);
     let t = clamp(-dot(s.center.xy, s.axis.xy) / square, -s.half_length, s.half_length);
@@ -21,7 +21,7 @@ fn radial_way_out(s: Segment, spare: vec3f) -> vec3f {
     return vec3f(nearest / apart, 0.0);
 }
 
-// The best direction across the segment, between `a` and `b`.
+// Returns the best direction across the segment, between `a` and `b`.
 fn way_out_across(s: Segment, size: vec3f, a: vec3f, b: vec3f) -> vec3f {
     let r2 = size.x * size.x;
     let k2 = r2 * s.axis.z * s.axis.z;
@@ -48,7 +48,7 @@ fn way_out_across(s: Segment, size: vec3f, a: vec3f, b: vec3f) -> vec3f {
     return normalize(a * high.x + b * high.y);
 }
 
-// The unit direction in which to move a segment out of a cylinder, and how far.
+// Returns the unit direction that moves a segment out of a cylinder, and the depth.
 fn penetration_depth(s: Segment, size: vec3f) -> vec4f {
     let z = vec3f(0.0, 0.0, 1.0);
     let a = towards(s.center, direction(cross(z, s.axis)).xyz);
@@ -80,8 +80,8 @@ fn penetration_depth(s: Segment, size: vec3f) -> vec4f {
     return best;
 }
 
-// Where along the segment it is deepest, along the direction in which it gets out. Any point will do between two parallel flats;
-// then it is `otherwise`.
+// Returns the parameter of the segment's deepest point along the exit direction. Between two parallel flats any point
+// suffices; then it is `otherwise`.
 fn deepest_of_segment(s: Segment, size: vec3f, outward: vec3f, otherwise: f32) -> f32 {
     let tiny: f32 = 1e-6;
     let slope = dot(outward, s.axis);

@@ -1,6 +1,6 @@
-// Shapes on a plane, whose normal is its z axis. Sisters of `clench-collide/src/narrow/plane.rs`.
+// Shapes on a plane, whose normal is its z axis. CPU counterpart: `clench-collide/src/narrow/plane.rs`.
 
-// Adds the point of a surface that is `distance` above the plane.
+// Adds a point of a surface `distance` above the plane.
 fn add_on_plane(pair: u32, surface: vec3f, distance: f32, normal: vec3f, tangent: vec3f, range: f32) {
     if (distance <= range) {
         add_contact(pair, distance, surface - normal * (distance * 0.5), normal, tangent);
@@ -12,7 +12,7 @@ fn plane_sphere(pair: u32, normal: vec3f, above: f32, center: vec3f, size: vec3f
     add_on_plane(pair, surface, above - size.x, normal, tangent_from_normal(normal), range);
 }
 
-// The two ends of a capsule, the first tangent along its axis.
+// Adds the two ends of a capsule, the first tangent along its axis.
 fn plane_capsule(pair: u32, normal: vec3f, above: f32, center: vec3f, axis: vec3f, size: vec3f, range: f32) {
     let rise = dot(normal, axis) * size.y;
     let tangent = tangent_along(normal, axis);
@@ -21,7 +21,7 @@ fn plane_capsule(pair: u32, normal: vec3f, above: f32, center: vec3f, axis: vec3
     add_on_plane(pair, middle - axis * size.y, above - rise - size.x, normal, tangent, range);
 }
 
-// The lowest point of an ellipsoid: its support against the normal.
+// Adds the lowest point of an ellipsoid: its support against the normal.
 fn plane_ellipsoid(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
     let scaled = (transpose(axes) * normal) * size;
     let depth = length(scaled);
@@ -29,7 +29,7 @@ fn plane_ellipsoid(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: ma
     add_on_plane(pair, center - axes * support, above - depth, normal, tangent_from_normal(normal), range);
 }
 
-// The lowest points of both rims, then two more on the lower rim, so that the three there form a regular triangle.
+// Adds the lowest points of both rims, then two more on the lower rim, so that the three there form a regular triangle.
 fn plane_cylinder(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
     let up = axes[2];
     let cosine = dot(normal, up);
@@ -56,7 +56,7 @@ fn plane_cylinder(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat
     add_on_plane(pair, middle - sideways, flank, normal, tangent, range);
 }
 
-// The corners of a box on its lower side, at most four.
+// Adds the corners of a box on its lower side, at most four.
 fn plane_box(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
     let local = (transpose(axes) * normal) * size;
     let tangent = tangent_from_normal(normal);

@@ -1,9 +1,9 @@
-// A hull on a plane. Sister of `clench-collide/src/narrow/plane_mesh.rs`.
+// A hull on a plane. CPU counterpart: `clench-collide/src/narrow/plane_mesh.rs`.
 
 var<private> visited: array<u32, PATCH_POINTS>;
 var<private> visited_count: u32;
 
-// A point of the hull, in its frame, and in w its height above the plane.
+// Returns a point of the hull, in its frame, and in w its height above the plane.
 fn above_plane(p: vec3f, up: vec3f, origin: f32) -> vec4f {
     return vec4f(p, origin + dot(up, p));
 }
@@ -14,7 +14,7 @@ fn add_candidate(pair: u32, mesh: Placed, at: vec4f, normal: vec3f) {
     add_contact(pair, at.w, position, normal, tangent_from_normal(normal));
 }
 
-// Visits a vertex if it is near enough, is new, and there is room.
+// Visits a vertex if it is within range, new, and within the capacity.
 fn visit(vertex: u32, height: f32, range: f32) {
     if (height > range || visited_count == PATCH_POINTS) {
         return;
@@ -28,7 +28,8 @@ fn visit(vertex: u32, height: f32, range: f32) {
     visited_count++;
 }
 
-// The deepest vertex, those of the face that lies on the plane, and others around: all that are near, while there is room.
+// Visits the deepest vertex, those of the face that lies on the plane, and others around them: all within range, up to
+// the capacity.
 fn visit_around(hull: u32, deepest: u32, face: u32, up: vec3f, origin: f32, range: f32) {
     visited_count = 0u;
     visit(deepest, above_plane(vertex_of_hull(hull, deepest), up, origin).w, range);
@@ -52,8 +53,8 @@ fn visit_around(hull: u32, deepest: u32, face: u32, up: vec3f, origin: f32, rang
     }
 }
 
-// Points of the outline of a face with many corners, seen from its first edge. If these miss the deepest vertex they are seen from its
-// direction, and it is one of them.
+// Adds points of the outline of a face with many corners, sampled from its first edge, or from the direction of the
+// deepest vertex, including that, if these miss it.
 fn add_outline(pair: u32, mesh: Placed, hull: u32, face: u32, lowest: vec4f, normal: vec3f, up: vec3f, origin: f32, range: f32) {
     let corners = words[hull + HULL_FACE_CORNERS] + face;
     let begin = words[corners];
@@ -94,7 +95,7 @@ fn add_outline(pair: u32, mesh: Placed, hull: u32, face: u32, lowest: vec4f, nor
     for (var k = 0u; k < sampled_count; k++) {
         var at = above_plane(start + along * sampled[k].x + sideways * sampled[k].y, up, origin);
         if (k == lowest_at) {
-            // What is left of the difference is too little to move a point, not to be told.
+            // The remaining difference is too small to move a point, but is still reported.
             at.w = min(least, lowest.w);
         } else if (lowest_at == NONE && k == 0u) {
             at = lowest;

@@ -1,6 +1,6 @@
-// Springs that yield. Sister of `dynamics/plastic.rs`.
+// Springs that yield. CPU counterpart: `dynamics/plastic.rs`.
 
-// By how much a stretch is larger than the yield, towards its side of the rest; 0 where the spring does not yield.
+// Returns the excess of an elongation over the yield, with its sign; 0 if the spring does not yield.
 fn beyond(stretch: f32, most: f32) -> f32 {
     if (most <= 0.0 || abs(stretch) <= most) {
         return 0.0;
@@ -8,7 +8,7 @@ fn beyond(stretch: f32, most: f32) -> f32 {
     return select(stretch + most, stretch - most, stretch > 0.0);
 }
 
-// Turns the orientation at which a ball joint's spring rests about the axis of its stretch, until a turn by the yield is left.
+// Rotates the rest orientation of a ball joint's spring about the axis of its elongation, until that equals the yield.
 fn turn_rest(rest: u32, turn: vec4f, most: f32) {
     let old = given4(rest);
     let stretch = direction(quat_difference(quat_normalize(turn), old));
@@ -21,8 +21,8 @@ fn turn_rest(rest: u32, turn: vec4f, most: f32) {
     }
 }
 
-// Lets springs yield after a step that has moved the positions along the velocity at `velocity`, from where tendons had the length and
-// the gradient at `length` and `jacobian` (all in work).
+// Lets springs yield after a step that has moved the positions along the velocity at `velocity`, from tendon lengths
+// and gradients at `length` and `jacobian` (all in work).
 fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
     for (var j = member; j < NJNT; j += TEAM) {
         if (words[JNT_PLASTIC + j] == NONE) {

@@ -1,9 +1,10 @@
 // M⁻¹ by the LᵀDL of the tree, and the duality gap.
 //
-// Substitution with Lᵀ, from the leaves to the root, goes by levels or by dofs: then one dof after the other is subtracted from its ancestors, each a
-// thread's. Many small trees have few levels; of a large tree a dof near the root has much below it, so that the second takes fewer turns.
+// Substitution with Lᵀ, from the leaves to the root, runs by levels or by dofs. By dofs, each dof in turn is subtracted
+// from its ancestors, one per thread. Many small trees have few levels; in a large tree a dof near the root has many
+// descendants, so that the second takes fewer iterations.
 
-// What `substitution.wgsl` asks for: the workgroup, and where it has unknowns.
+// The interface of `substitution.wgsl`, for a workgroup.
 fn worker() -> u32 {
     return lane;
 }
@@ -24,7 +25,7 @@ fn join_unknowns() {
     join_vectors();
 }
 
-// x ← L⁻ᵀ x, in place, by dofs.
+// Computes x ← L⁻ᵀ x, in place, by dofs.
 fn substitute_by_dofs(x: u32) {
     for (var up = 1u; up < bound(NV); up++) {
         let i = NV - up;
@@ -37,8 +38,8 @@ fn substitute_by_dofs(x: u32) {
     }
 }
 
-// M⁻¹g at PRECONDITIONED_AT, for conjugate gradients; for Newton's method only L⁻ᵀg. Returns the duality gap ½ gᵀM⁻¹g: the cost less
-// ½ |a|²_M is convex, so the cost exceeds its minimum by at most this.
+// Computes M⁻¹g at PRECONDITIONED_AT for conjugate gradients; for Newton's method only L⁻ᵀg. Returns the duality gap ½
+// gᵀM⁻¹g: the cost minus ½ |a|²_M is convex, so the cost exceeds its minimum by at most this.
 fn precondition() -> f32 {
     for (var i = lane; i < bound(NV); i += GROUP) {
         put_vector(PRECONDITIONED_AT + i, vector(GRADIENT_AT + i));
@@ -54,7 +55,7 @@ fn precondition() -> f32 {
         let x = vector(PRECONDITIONED_AT + i);
         square += x * x * fetch(QLD_INVERSE + i);
     }
-    // Each thread looks at its own, and nobody may change them before.
+    // Each thread reads its own elements before they change.
     join_vectors();
     if (!NEWTON) {
         substitute_towards_leaves(PRECONDITIONED_AT);

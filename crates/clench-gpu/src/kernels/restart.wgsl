@@ -1,4 +1,4 @@
-// Back to the initial state of the model, where a word of `reports` asks for it.
+// Reset to the initial state of the model, if a word of `reports` requests it.
 
 @compute @workgroup_size(GROUP)
 fn restart(@builtin(global_invocation_id) id: vec3u) {

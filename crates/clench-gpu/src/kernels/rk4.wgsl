@@ -1,19 +1,19 @@
-// Fourth-order Runge–Kutta. Sister of `dynamics/rk4.rs`, where rotations are explained. A step is four times all stages before,
-// each followed by this one, which counts the stages in STAGE.
+// Fourth-order Runge–Kutta. CPU counterpart: `dynamics/rk4.rs`, which explains rotations. A step runs the whole forward
+// pass four times, each followed by this kernel, which counts the stages in STAGE.
 
 var<private> stage: u32;
 
-// The weight of a stage in the mean.
+// Returns the weight of a stage in the mean.
 fn weight() -> f32 {
     return select(f32(1.0 / 3.0), f32(1.0 / 6.0), stage == 0u || stage == 3u);
 }
 
-// How far along the rates of stage `s` the next one lies.
+// Returns the time from the start of the step to the stage after `s`.
 fn reach(s: u32) -> f32 {
     return select(f32(0.5), f32(1.0), s == 2u) * TIMESTEP;
 }
 
-// u̇ of the rotation vector u while its end turns at ω.
+// Returns u̇ of the rotation vector u for the angular velocity ω.
 fn increment_rate(u: vec3f, omega: vec3f) -> vec3f {
     let squared = dot(u, u);
     var c = 0.08333333333333333 + squared * (0.001388888888888889 + squared * (3.306878306878307e-5 + squared * 8.267195767195768e-7));
@@ -26,7 +26,7 @@ fn increment_rate(u: vec3f, omega: vec3f) -> vec3f {
     return omega + turned * 0.5 + cross(u, turned) * c;
 }
 
-// The rates of this stage: of positions in RATE, which holds those of the stage before.
+// Computes the rates of this stage: of positions in RATE, which holds those of the previous stage.
 fn collect_rates() {
     for (var j = member; j < bound(NJNT); j += TEAM) {
         let kind = words[JNT_KIND + j];
@@ -57,7 +57,7 @@ fn add_to_mean() {
     }
 }
 
-// Goes from where the state is for `time` seconds, at the rates in `rate` (in work) and accelerations in `qacc`.
+// Advances the state by `time` seconds, with the rates in `rate` (in work) and accelerations in `qacc`.
 fn go(rate: u32, qacc: u32, time: f32) {
     for (var i = member; i < bound(NV); i += TEAM) {
         keep(QVEL + i, given(QVEL + i) + fetch(qacc + i) * time);
@@ -65,7 +65,7 @@ fn go(rate: u32, qacc: u32, time: f32) {
     integrate_positions(rate, time);
 }
 
-// Remembers from where tendons that yield are moved.
+// Saves the lengths and gradients of yielding tendons.
 fn save_tendons() {
     for (var t = member; YIELDING_TENDONS && t < NTENDON; t += TEAM) {
         put(START_TEN_LENGTH + t, fetch(TEN_LENGTH + t));
@@ -101,15 +101,16 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
         for (var a = member; a < NA; a += TEAM) {
             keep(ACT + a, given(ACT + a) + fetch(ACT_DOT + a) * reach(stage));
         }
-        // The stage before is nearer than the last step.
+        // The previous stage is closer than the last step.
         for (var i = member; i < bound(NV); i += TEAM) {
             keep(QACC_WARMSTART + i, fetch(QACC + i));
         }
-        // The rest is of the last stage, which environments that take no part in a call are not at: this thread waits with theirs.
+        // The remaining work is for the last stage only. Excluded environments have no stage, so this thread waits as
+        // theirs do.
         member = BEHIND_ALL;
     }
     go(MEAN_RATE, MEAN_QACC, TIMESTEP);
-    // As in MuJoCo, the bristles of a motor's friction bend by the velocity that the step began with.
+    // As in MuJoCo, the bristles of a motor's friction bend with the velocity at the start of the step.
     advance_activations(MEAN_ACT_DOT, START_ACTUATOR_VELOCITY);
     finish_step(MEAN_RATE, START_TEN_LENGTH, START_TEN_JACOBIAN);
 }

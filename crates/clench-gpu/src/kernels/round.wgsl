@@ -1,6 +1,6 @@
-// Spheres and capsules among each other. Sisters of `clench-collide/src/narrow/ball.rs` and `capsule.rs`.
+// Pairs of spheres and capsules. CPU counterparts: `clench-collide/src/narrow/ball.rs` and `capsule.rs`.
 
-// The contact of two balls; `across` is the normal where their centres coincide.
+// Adds the contact of two balls; `across` is the normal if their centres coincide.
 fn ball_ball(pair: u32, a: vec3f, radius_a: f32, b: vec3f, radius_b: f32, across: vec3f, range: f32) {
     let offset = b - a;
     let squared = dot(offset, offset);
@@ -17,7 +17,7 @@ fn ball_ball(pair: u32, a: vec3f, radius_a: f32, b: vec3f, radius_b: f32, across
     add_contact(pair, gap, a + normal * (radius_a + gap * 0.5), normal, tangent_from_normal(normal));
 }
 
-// A unit vector across two axes; where these are parallel, across them near the world's x axis.
+// Returns a unit vector perpendicular to two axes; if these are parallel, one near the world's x axis.
 fn across_axes(a: vec3f, b: vec3f) -> vec3f {
     let across = cross(a, b);
     if (dot(across, across) >= 1e-24) {
@@ -38,7 +38,7 @@ fn sphere_capsule(pair: u32, a: Placed, b: Placed, range: f32) {
     ball_ball(pair, a.center, a.size.x, b.center + axis * along, b.size.x, across_axes(a.axes[2], axis), range);
 }
 
-// The nearest points of two segments; those of parallel ones at both ends of their overlap.
+// Adds contacts at the nearest points of two segments; for parallel ones, at both ends of their overlap.
 fn capsule_capsule(pair: u32, a: Placed, b: Placed, range: f32) {
     let first = a.axes[2];
     let second = b.axes[2];

@@ -1,6 +1,6 @@
-// Sensors with a delay or a period. Sister of `delay` in `sensor/mod.rs`.
+// Sensors with a delay or a period. CPU counterpart: `delay` in `sensor/mod.rs`.
 
-// Keeps what was measured, and puts what was measured before in the place of what is told late, or not measured now.
+// Stores the measurement, and outputs an earlier one if it is delayed or not due now.
 fn delay_sensor(s: u32, prm: u32, out: u32) {
     let h = words[s + SENSOR_HISTORY];
     let late = parameter(prm + 5u);

@@ -1,7 +1,7 @@
-// What sensors measure: one thread an environment, and only where somebody asks. Sisters of `sensor/reading.rs`, `frame.rs`,
-// `limit.rs` and `volume.rs`. A sensor is a row of SENSOR_SIZE words, and one of as many numbers as SENSOR_PRM_SIZE says.
+// Sensors: one thread per environment, on request. CPU counterparts: `sensor/reading.rs`, `frame.rs`, `limit.rs` and
+// `volume.rs`. A sensor is a row of SENSOR_SIZE words and one of SENSOR_PRM_SIZE numbers.
 
-// Where an object is.
+// Returns the position of an object.
 fn object_position(kind: u32, o: u32) -> vec3f {
     switch kind {
         case INERTIAL_FRAME: {
@@ -22,7 +22,7 @@ fn object_position(kind: u32, o: u32) -> vec3f {
     }
 }
 
-// Its axes as columns.
+// Returns its axes as columns.
 fn object_axes(kind: u32, o: u32) -> mat3x3f {
     switch kind {
         case INERTIAL_FRAME: {
@@ -43,7 +43,7 @@ fn object_axes(kind: u32, o: u32) -> mat3x3f {
     }
 }
 
-// Its orientation, with the sign that its body's has.
+// Returns its orientation, with the sign of its body's.
 fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
     let q = fetch4(XQUAT + 4u * body);
     switch kind {
@@ -56,7 +56,7 @@ fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
         case SITE_FRAME: {
             return quat_product(q, parameter4(SITE_QUAT + 4u * o));
         }
-        // As if it were fixed to its body, whatever it follows: so it is in MuJoCo.
+        // As in MuJoCo, as if it were fixed to its body in all modes.
         case CAMERA_FRAME: {
             return quat_product(q, parameter4(CAM_QUAT + 4u * o));
         }
@@ -66,7 +66,7 @@ fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
     }
 }
 
-// The acceleration of the body point at a place, with gravity's upward reaction.
+// Returns the acceleration of a body's point, with gravity's upward reaction.
 fn acceleration_at(b: u32, point: vec3f) -> Spatial {
     let cacc = fetch_spatial(CACC + 6u * b);
     let velocity = velocity_at(b, point);
@@ -74,7 +74,7 @@ fn acceleration_at(b: u32, point: vec3f) -> Spatial {
     return Spatial(cacc.angular, linear + cross(velocity.angular, velocity.linear));
 }
 
-// Two frames, and what is measured of the first relative to the second, if there is one.
+// Reads a sensor of a frame, relative to a second one if there is one.
 fn read_frame(kind: u32, s: u32, out: u32) {
     let object_kind = words[s + SENSOR_OBJECT_KIND];
     let o = words[s + SENSOR_OBJECT];
@@ -128,7 +128,7 @@ fn read_frame(kind: u32, s: u32, out: u32) {
     }
 }
 
-// What a site's body carries through its joints, about the site.
+// Returns the force that a site's body carries through its joints, about the site.
 fn carried_force(site: u32) -> Spatial {
     let body = words[SITE_BODY + site];
     let force = fetch_spatial(CFRC_INT + 6u * body);
@@ -162,14 +162,15 @@ fn read_site(kind: u32, site: u32, out: u32) {
     }
 }
 
-// Whether a point is inside a site's volume.
+// Returns true if a point is inside a site's volume.
 fn is_inside(s: u32, prm: u32, p: vec3f) -> bool {
     let site = words[s + SENSOR_REFERENCE];
     let local = (p - fetch3(SITE_XPOS + 3u * site)) * fetch_matrix(SITE_XMAT + 9u * site);
     return is_in_volume(words[s + SENSOR_SHAPE], parameter3(prm + 2u), local);
 }
 
-// The sum of the normal forces of those contacts of the site's body whose line of force meets the site's volume.
+// Returns the sum of the normal forces of those contacts of the site's body whose line of force intersects the site's
+// volume.
 fn touch(s: u32, prm: u32) -> f32 {
     let site = words[s + SENSOR_OBJECT];
     let own = words[SITE_BODY + site];
@@ -194,7 +195,7 @@ fn touch(s: u32, prm: u32) -> f32 {
     return sum;
 }
 
-// Distance, rate or force of the first limit of a coordinate that acts.
+// Returns the distance, rate or force of the first active limit of a coordinate.
 fn limit(c: u32, margin: f32, part: u32) -> f32 {
     for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         if (block(b, BLOCK_KIND) != LIMIT || (block(b, BLOCK_SOURCE) >> 1u) != c) {
@@ -216,7 +217,7 @@ fn limit(c: u32, margin: f32, part: u32) -> f32 {
     return 0.0;
 }
 
-// The momentum of a body and all below it about the world's origin.
+// Returns the momentum of a body and its descendants about the world's origin.
 fn subtree_momentum(s: u32) -> Spatial {
     var sum = Spatial(vec3f(), vec3f());
     for (var b = words[s + SENSOR_OBJECT]; b < words[s + SENSOR_REFERENCE]; b++) {
@@ -341,7 +342,7 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
             put(out, seen.x);
             put(out + 1u, seen.y);
         }
-        // What they meet is told by now.
+        // The ray kernel has already written these.
         case OF_RAYS: {
         }
         case OF_NOTHING: {

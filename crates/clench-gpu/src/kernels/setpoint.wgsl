@@ -1,6 +1,6 @@
-// What controllers are asked for, and PID controllers. Sisters of `dynamics/setpoint.rs` and `pid.rs`.
+// Setpoints of controllers, and PID controllers. CPU counterparts: `dynamics/setpoint.rs` and `pid.rs`.
 
-// The controls of an actuator with a controller, by what they mean; `first` is the first one as it acts.
+// The controls of an actuator with a controller, by meaning; `first` is the first after all limits.
 struct Setpoints {
     position: f32,
     velocity: f32,
@@ -45,7 +45,7 @@ fn setpoints_of(u: u32) -> Setpoints {
     return setpoints;
 }
 
-// The rate of an integral of an error; where the integral has reached its bound, a positive one, it only goes back.
+// Returns the rate of an integral of an error; at its limit, if positive, it can only decrease in magnitude.
 fn integral_rate(error: f32, integral: f32, bound: f32) -> f32 {
     if (bound > 0.0 && integral >= bound) {
         return min(error, 0.0);
@@ -56,7 +56,7 @@ fn integral_rate(error: f32, integral: f32, bound: f32) -> f32 {
     return error;
 }
 
-// The rates of the activations that both kinds of controller have, for an error of the position.
+// Computes the rates of the activations that both kinds of controller have, for an error of the position.
 fn controller_rates(u: u32, setpoints: Setpoints, error: f32, bound: f32) {
     let slew = state_of(u, STATE_SLEW);
     if (slew != NONE) {
@@ -73,7 +73,7 @@ fn pid_rates(u: u32, setpoints: Setpoints, length: f32) {
     controller_rates(u, setpoints, target_length - length, controller(u, OF_DYNAMICS));
 }
 
-// The part of the force of a PID controller that setpoints and the integral make.
+// Returns the part of a PID controller's force due to setpoints and the integral.
 fn pid_force(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> f32 {
     let target_length = nearest_setpoint(u, setpoints.position, length);
     let pull = setpoints.feedforward - controller(u, OF_BIAS + 1u) * target_length;

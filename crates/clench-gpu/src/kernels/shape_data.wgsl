@@ -1,4 +1,4 @@
-// What all environments share of shapes: their numbers, and height fields.
+// The shape data shared by all environments: numbers and height fields.
 
 fn shape3(place: u32) -> vec3f {
     return vec3f(numbers[place], numbers[place + 1u], numbers[place + 2u]);
@@ -8,11 +8,11 @@ fn shape4(place: u32) -> vec4f {
     return vec4f(shape3(place), numbers[place + 3u]);
 }
 
-// Row and column of a grid point are told as a vector; those beyond the border do not exist.
+// A height field. A grid point is a vector of row and column; those beyond the border do not exist.
 struct TerrainGrid {
     rows: i32,
     columns: i32,
-    // Where the heights are.
+    // The offset of the heights.
     heights: u32,
     half: vec2f,
     // Lengths of a cell along x and y, m.
@@ -23,7 +23,7 @@ struct TerrainGrid {
 
 var<private> grid: TerrainGrid;
 
-// Takes up the height field at a place.
+// Begins the height field at an offset.
 fn begin_grid(place: u32) {
     let sizes = words[place + 2u];
     grid.rows = i32(words[place]);
@@ -39,13 +39,13 @@ fn height_at(node: vec2i) -> f32 {
     return numbers[grid.heights + u32(node.x * grid.columns + node.y)];
 }
 
-// The cell at a point, or the nearest one.
+// Returns the cell at a point, or the nearest one.
 fn cell_at(x: f32, y: f32) -> vec2i {
     let cell = floor((vec2f(y, x) + grid.half.yx) / grid.step.yx);
     return vec2i(clamp(cell, vec2f(), vec2f(f32(grid.rows - 2), f32(grid.columns - 2))));
 }
 
-// Where the lowest corner of a cell is along x and y, m.
+// Returns the lowest corner of a cell along x and y, m.
 fn corner_of_cell(cell: vec2i) -> vec2f {
     return vec2f(f32(cell.y), f32(cell.x)) * grid.step - grid.half;
 }

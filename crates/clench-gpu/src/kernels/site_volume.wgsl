@@ -1,4 +1,5 @@
-// Volumes of sites: what is inside, and which rays meet them. Sister of `sensor/volume.rs`; the rays are those of `clench-collide`.
+// Volumes of sites: tests of points and rays. CPU counterpart: `sensor/volume.rs`; the rays are those of
+// `clench-collide`.
 
 fn is_in_volume(kind: u32, size: vec3f, p: vec3f) -> bool {
     let level = dot(p.xy, p.xy);
@@ -26,7 +27,7 @@ fn is_in_volume(kind: u32, size: vec3f, p: vec3f) -> bool {
     }
 }
 
-// Whether a ray meets a volume.
+// Returns true if a ray intersects a volume.
 fn meets_volume(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> bool {
     return is_met(within_shape(kind, size, o, d));
 }

@@ -1,8 +1,8 @@
-// How soft a constraint is. Sister of `constraint/softness.rs`, where the formulas are derived.
+// The softness of a constraint. CPU counterpart: `constraint/softness.rs`, which derives the formulas.
 
 const LEAST: f32 = 1e-15;
 
-// What solref and solimp (five numbers) ask for at a violation: impedance d, stiffness k d, damping b.
+// The softness by solref and solimp (five numbers) at a violation: impedance d, stiffness k d, damping b.
 struct Softness {
     impedance: f32,
     stiffness: f32,
@@ -17,7 +17,7 @@ fn is_mixed(solref: vec2f) -> bool {
     return (solref.x > 0.0) != (solref.y > 0.0);
 }
 
-// k, without the factor d, and b.
+// Returns k, without the factor d, and b.
 fn spring_damper(solref: vec2f, dmax_given: f32) -> vec2f {
     let dmax = clamp_impedance(dmax_given);
     if (solref.x > 0.0) {
@@ -28,7 +28,7 @@ fn spring_damper(solref: vec2f, dmax_given: f32) -> vec2f {
     return vec2f(-solref.x / (dmax * dmax), -solref.y / dmax);
 }
 
-// base^exponent for exponents from 1 on, exact for small whole ones: a device's own power is not.
+// Returns base^exponent for exponents of at least 1. It is exact for small integers, unlike a device's own power.
 fn raise(base: f32, exponent: f32) -> f32 {
     if (exponent != round(exponent) || exponent > 8.0) {
         return power_of(base, exponent);
@@ -40,7 +40,7 @@ fn raise(base: f32, exponent: f32) -> f32 {
     return power;
 }
 
-// Between 0 and 1 for x between 0 and 1.
+// Maps x in [0, 1] to [0, 1].
 fn spline(x: f32, midpoint: f32, power: f32) -> f32 {
     if (power == 1.0) {
         return x;
@@ -52,7 +52,7 @@ fn spline(x: f32, midpoint: f32, power: f32) -> f32 {
     return select(1.0 - y, y, below);
 }
 
-// The impedance at the violation `r`; solimp stands at `place`.
+// Returns the impedance at the violation `r`, with solimp at `place`.
 fn impedance(place: u32, r: f32) -> f32 {
     let dmin = clamp_impedance(parameter(place));
     let dmax = clamp_impedance(parameter(place + 1u));
@@ -71,7 +71,7 @@ fn impedance(place: u32, r: f32) -> f32 {
     return dmin + spline(x, midpoint, max(parameter(place + 4u), 1.0)) * (dmax - dmin);
 }
 
-// solref stands at `place`, then solimp.
+// Returns the softness, with solref at `place`, then solimp.
 fn soften(place: u32, r: f32) -> Softness {
     var solref = vec2f(parameter(place), parameter(place + 1u));
     if (is_mixed(solref)) {
@@ -82,7 +82,7 @@ fn soften(place: u32, r: f32) -> Softness {
     return Softness(d, law.x * d, law.y);
 }
 
-// R of a row that sees the inverse inertia `a`.
+// Returns R of a row with the inverse inertia `a`.
 fn regularization(d: f32, a: f32) -> f32 {
     return max((1.0 - d) * a / d, LEAST);
 }

@@ -1,6 +1,6 @@
-// How far joints are from where their springs rest. Sister of `dynamics/spring.rs`.
+// Displacements of joints from their springs' rest positions. CPU counterpart: `dynamics/spring.rs`.
 
-// Where the number `q` of a joint's position is where its spring rests.
+// Returns the rest value of the number `q` of a joint's position.
 fn rest(j: u32, q: u32) -> f32 {
     if (ANY_PLASTIC && words[JNT_PLASTIC + j] != NONE) {
         return given(PLASTIC + words[JNT_PLASTIC + j] + q - words[JNT_QPOS + j]);
@@ -12,17 +12,17 @@ fn rest3(j: u32, q: u32) -> vec3f {
     return vec3f(rest(j, q), rest(j, q + 1u), rest(j, q + 2u));
 }
 
-// Of the one number of a slide or hinge.
+// Returns that of a slide or hinge.
 fn joint_displacement(j: u32, q: u32) -> f32 {
     return given(QPOS + q) - rest(j, q);
 }
 
-// Of the three of a free joint's position.
+// Returns that of a free joint's position.
 fn joint_shift(j: u32, q: u32) -> vec3f {
     return given3(QPOS + q) - rest3(j, q);
 }
 
-// Of the four of an orientation, as a rotation vector.
+// Returns that of an orientation, as a rotation vector.
 fn joint_turn(j: u32, q: u32) -> vec3f {
     return quat_difference(quat_normalize(given4(QPOS + q)), vec4f(rest3(j, q), rest(j, q + 3u)));
 }

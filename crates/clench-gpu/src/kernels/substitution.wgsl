@@ -1,10 +1,10 @@
-// Substitution with the LᵀDL of the tree that is in QLD and QLD_INVERSE, by levels: the dofs that are equally far from the root do not wait for each other,
-// each is a thread's. Sums run in the order of `clench-solver/src/tree/factor.rs`.
+// Substitution with the LᵀDL of the tree in QLD and QLD_INVERSE, by levels: dofs equally far from the root are
+// independent, one per thread. The order of sums is that of `clench-solver/src/tree/factor.rs`.
 //
-// Teams and workgroups share this text. Each says, in `tree.wgsl` and in `precondition.wgsl`, which of how many workers a thread is, where the unknowns
-// at `x` are, and how its threads wait until all see them.
+// Teams and workgroups share this text. Each defines, in `tree.wgsl` and `precondition.wgsl`, the index of a thread and
+// the number of workers, the memory of the unknowns at `x`, and the barrier after which all see them.
 
-// x ← L⁻ᵀ x, in place: from the leaves to the root. Each dof subtracts all that is below it.
+// Computes x ← L⁻ᵀ x, in place, from the leaves to the root. Each dof subtracts all its descendants.
 fn substitute_towards_root(x: u32) {
     for (var level = NLEVEL; level > 0u; level--) {
         for (var n = words[LEVEL_START + level - 1u] + worker(); n < words[LEVEL_START + level]; n += workers()) {
@@ -19,7 +19,7 @@ fn substitute_towards_root(x: u32) {
     }
 }
 
-// x ← L⁻¹ D⁻¹ x, in place: from the root to the leaves. Each dof subtracts all that is above it.
+// Computes x ← L⁻¹ D⁻¹ x, in place, from the root to the leaves. Each dof subtracts all its ancestors.
 fn substitute_towards_leaves(x: u32) {
     for (var level = 0u; level < bound(NLEVEL); level++) {
         for (var n = words[LEVEL_START + level] + worker(); n < words[LEVEL_START + level + 1u]; n += workers()) {

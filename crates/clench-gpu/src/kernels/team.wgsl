@@ -1,33 +1,33 @@
-// A team: TEAM threads that share an environment, its dofs, its actuators, the bodies of a level of its tree. Threads side by side are of environments side
-// by side; all of a team are in one workgroup, and wait for each other by `join`.
+// A team: TEAM threads that share an environment's dofs, actuators and bodies of a tree level. Adjacent threads have
+// adjacent environments; all of a team are in one workgroup, and synchronize by `join`.
 
-// Which of its team a thread is, and where its loops start: over `k` from `member` on, TEAM at a time. One whose environment is not there or stands still is
-// behind the end of every loop, and only waits with the others.
+// The index of a thread in its team, and the start of its loops over `k`, with the stride TEAM. If its environment does
+// not exist or has stopped, it is beyond the end of every loop, and the thread only takes part in barriers.
 var<private> member: u32;
-// Which of the environments of the workgroup it is of.
+// The index of its environment in the workgroup.
 var<private> column: u32;
 
 const BEHIND_ALL: u32 = 0x40000000u;
 
-// Takes up the environment of a thread.
+// Begins the environment of a thread.
 fn begin_in_team(id: vec3u) {
     column = id.x % GROUP;
     member = select(BEHIND_ALL, id.y, begin(id.x));
 }
 
-// Whether this is the thread that does what one alone has to do.
+// Returns true for the thread that does serial work.
 fn is_first() -> bool {
     return member == 0u;
 }
 
-// Waits until all of the workgroup see what each has written, but for what lies in the memory of the workgroup.
+// Makes all writes visible to all of the workgroup, except in workgroup memory.
 fn join() {
     storageBarrier();
 }
 
 var<workgroup> votes: array<u32, GROUP * TEAM>;
 
-// The least of what each of a team comes with.
+// Returns the minimum over a team.
 fn least_of_team(x: u32) -> u32 {
     if (member < TEAM) {
         votes[GROUP * member + column] = x;
@@ -41,7 +41,7 @@ fn least_of_team(x: u32) -> u32 {
     return least;
 }
 
-// Notes it where the device ended a loop before its end.
+// Records a fault if the device terminated a loop early.
 fn end_in_team() {
     if (member < TEAM) {
         note_end();

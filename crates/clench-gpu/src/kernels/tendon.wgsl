@@ -1,5 +1,5 @@
-// The length of each tendon and its gradient, a row over the dofs that change it. Sisters of `dynamics/tendon.rs` and
-// `tendon_path.rs`.
+// The length of each tendon and its gradient, a row over the dofs that change it. CPU counterparts:
+// `dynamics/tendon.rs` and `tendon_path.rs`.
 
 fn fixed_tendon(t: u32) -> f32 {
     var length: f32 = 0.0;
@@ -11,8 +11,8 @@ fn fixed_tendon(t: u32) -> f32 {
     return length;
 }
 
-// Adds the gradient of the length between the points `p` and `q` of two bodies; `pull` is the unit vector from one to the other,
-// times the share of its length.
+// Adds the gradient of the length between the points `p` and `q` of two bodies; `pull` is the unit vector from one to
+// the other, times the factor of its length.
 fn add_span(t: u32, a: u32, p: vec3f, b: u32, q: vec3f, pull: vec3f) {
     for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
         let dof = words[TENDON_DOF + k];

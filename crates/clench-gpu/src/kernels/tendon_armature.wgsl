@@ -1,7 +1,7 @@
-// What tendons with inertia resist without any acceleration of dofs, because their gradients change. Sister of
+// The bias force of tendons with inertia, due to changes of their gradients. CPU counterparts:
 // `dynamics/tendon_armature.rs` and `tendon_path.rs`.
 
-// d²length/dt² of a straight part of a string while no dof accelerates.
+// Returns d²length/dt² of a straight part of a string at zero dof acceleration.
 fn span_acceleration(span: Span) -> f32 {
     if (span.bodies.x == span.bodies.y) {
         return 0.0;
@@ -19,7 +19,7 @@ fn span_acceleration(span: Span) -> f32 {
     return dot(unit.xyz, both) + across;
 }
 
-// Tendons have dofs in common: one thread adds them all.
+// Tendons share dofs, so one thread adds them all.
 fn tendon_bias() {
     for (var t = 0u; is_first() && t < NTENDON; t++) {
         let armature = parameter(TENDON_ARMATURE + t);

@@ -1,6 +1,6 @@
-// The forces of the springs and dampers of tendons. Sister of `dynamics/passive.rs`.
+// The forces of tendon springs and dampers. CPU counterpart: `dynamics/passive.rs`.
 
-// How far a tendon is outside the dead band of its spring.
+// Returns the elongation of a tendon beyond the dead band of its spring.
 fn tendon_stretch(t: u32) -> f32 {
     let length = fetch(TEN_LENGTH + t);
     if (ANY_PLASTIC && words[TENDON_PLASTIC + t] != NONE) {
@@ -10,12 +10,12 @@ fn tendon_stretch(t: u32) -> f32 {
     return length - clamp(length, parameter(TENDON_SPRING + 5u * t), parameter(TENDON_SPRING + 5u * t + 1u));
 }
 
-// a + b x + c x².
+// Returns a + b x + c x².
 fn stiffness(coefficients: vec3f, x: f32) -> f32 {
     return coefficients.x + x * (coefficients.y + x * coefficients.z);
 }
 
-// What its spring and its damper do along a tendon.
+// Returns the force of the spring and damper along a tendon.
 fn tendon_passive_force(t: u32) -> f32 {
     let x = tendon_stretch(t);
     let v = fetch(TEN_VELOCITY + t);

@@ -1,17 +1,18 @@
-// Square tiles of numbers, sixteen rows of four vectors: what the factorization of H is made of. A product of two is what the threads
-// of a workgroup share: each has four columns in a row of the result, in registers, and reads the factors from the memory of the
-// workgroup.
+// Square tiles of numbers, sixteen rows of four vectors, for the factorization of H. The threads of a workgroup share a
+// product of two: each has four columns in a row of the result, in registers, and reads the factors from workgroup
+// memory.
 
 const TILE: u32 = 16u;
 // Vectors of four numbers in a row of a tile.
 const QUADS: u32 = 4u;
 const QUADS_OF_TILE: u32 = TILE * QUADS;
 
-// Tiles of the lower triangle of a matrix, where the workgroup has room for them; else they lie with the rows of the environment. From RIGHT on, where the
-// last tile will be, the second factor of a product waits; the first is in `scratch`.
+// Tiles of the lower triangle of a matrix, if they fit workgroup memory; else they are stored with the rows of the
+// environment. The second factor of a product is staged from RIGHT on, in the memory of the last tile; the first is in
+// `scratch`.
 var<workgroup> tiles: array<vec4f, RIGHT + TILE * STRIDE>;
 
-// Where this thread's part of a tile is: its row, and its columns over four. There are as many threads as parts.
+// This thread's part of a tile: its row, and its columns divided by four. There are as many threads as parts.
 fn own_row() -> u32 {
     return lane / QUADS;
 }
@@ -20,20 +21,20 @@ fn own_quad() -> u32 {
     return lane % QUADS;
 }
 
-// From a row of a tile that waits for a product to the next, but for that from one half to the other, which is a vector longer. So the rows that
-// threads read at a time lie in different banks of the memory.
+// The stride of the rows of a staged tile, plus one vector between its halves. Thus rows that threads read together lie
+// in different memory banks.
 const STRIDE: u32 = QUADS + 1u;
 
 fn waiting_row(r: u32) -> u32 {
     return STRIDE * r + r / 8u;
 }
 
-// The tile (i, j), i ≥ j, of a lower triangle.
+// Indexes the tile (i, j), i ≥ j, of a lower triangle.
 fn tile_at(i: u32, j: u32) -> u32 {
     return i * (i + 1u) / 2u + j;
 }
 
-// Four numbers of a row of a tile.
+// Returns four numbers of a row of a tile.
 fn tile_quad(tile: u32, r: u32, quad: u32) -> vec4f {
     let place = QUADS_OF_TILE * tile + QUADS * r + quad;
     if (SHARE_TILES) {
@@ -50,7 +51,7 @@ fn tile_entry(tile: u32, r: u32, column: u32) -> f32 {
     return row(TILES + 4u * (QUADS_OF_TILE * tile + QUADS * r) + column);
 }
 
-// Keeps what each thread has of a tile. All see it after the next barrier.
+// Stores each thread's part of a tile. All see it after the next barrier.
 fn keep_tile(tile: u32, own: vec4f) {
     let place = QUADS_OF_TILE * tile + lane;
     if (SHARE_TILES) {
@@ -62,8 +63,8 @@ fn keep_tile(tile: u32, own: vec4f) {
     }
 }
 
-// This thread's part of A Bᵀ, of the tiles that wait, half by half: written out as a whole, it takes so many registers that a card has room for two thirds as
-// many workgroups.
+// Returns this thread's part of A Bᵀ of the staged tiles, half by half: unrolled, it needs so many registers that a GPU
+// fits only two thirds as many workgroups.
 fn tile_product() -> vec4f {
     let top = waiting_row(own_row());
     let columns = RIGHT + waiting_row(4u * own_quad());
@@ -79,7 +80,7 @@ fn tile_product() -> vec4f {
     return product;
 }
 
-// The part of a row of a tile times the vector at `x`.
+// Returns a row of a tile times the vector at `x`.
 fn times_row(tile: u32, r: u32, x: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var k = 0u; k < QUADS; k++) {
@@ -89,7 +90,7 @@ fn times_row(tile: u32, r: u32, x: u32) -> f32 {
     return sum;
 }
 
-// A column of a tile times the vector at `x`.
+// Returns a column of a tile times the vector at `x`.
 fn times_column(tile: u32, column: u32, x: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var quad = 0u; quad < bound(QUADS); quad++) {

@@ -1,18 +1,18 @@
-// The length of each actuator and its moment arms, a row over the dofs that it acts on. Sisters of `dynamics/transmission.rs` and
-// `site_transmission.rs`.
+// The length of each actuator and its moment arms, a row over the dofs that it acts on. CPU counterparts:
+// `dynamics/transmission.rs` and `site_transmission.rs`.
 
-// A force and a couple, in world axes, at a site, as a spatial force about the reference point of its tree.
+// Returns the spatial force, about the reference point of its tree, of a force and a couple at a site, in world axes.
 fn pull_at(site: u32, force: vec3f, couple: vec3f) -> Spatial {
     let arm = offset_of(words[SITE_BODY + site], fetch3(SITE_XPOS + 3u * site));
     return Spatial(couple + cross(arm, force), force);
 }
 
-// Writes the moment arms of a pull on the first site; of dofs that move the second alone, those of a pull on that.
+// Writes the moment arms of a pull on the first site; for dofs that move only the second, those of a pull on that.
 fn write_arms(u: u32, a: u32, first: Spatial, b: u32, second: Spatial) {
     write_arms_of(output_of(u), a, first, b, second);
 }
 
-// The same for one of several outputs.
+// Does the same for one of several outputs.
 fn write_arms_of(output: u32, a: u32, first: Spatial, b: u32, second: Spatial) {
     for (var k = words[ACTUATOR_ROW + output]; k < words[ACTUATOR_ROW + output + 1u]; k++) {
         let dof = words[ACTUATOR_DOF + k];
@@ -25,7 +25,7 @@ fn write_arms_of(output: u32, a: u32, first: Spatial, b: u32, second: Spatial) {
     }
 }
 
-// A torque on a joint that stands at the rotation `turn`, along the axes of the child.
+// Returns a torque on a joint at the rotation `turn`, along the axes of the child.
 fn to_child(u: u32, turn: vec4f, torque: vec3f) -> vec3f {
     if (words[ACTUATOR_IN_PARENT + u] == 1u) {
         return quat_rotate(vec4f(turn.x, -turn.yzw), torque);
@@ -62,7 +62,7 @@ fn on_tendon(u: u32, t: u32) -> f32 {
     return fetch(TEN_LENGTH + t) * gear;
 }
 
-// A wrench along the axes of a site, which has no length.
+// Transmits a wrench along the axes of a site, which has no length.
 fn on_site(u: u32, site: u32) -> f32 {
     let axes = fetch_matrix(SITE_XMAT + 9u * site);
     let gear = ACTUATOR_GEAR + 6u * u;
@@ -75,7 +75,8 @@ fn site_quat(site: u32) -> vec4f {
     return quat_product(fetch4(XQUAT + 4u * words[SITE_BODY + site]), parameter4(SITE_QUAT + 4u * site));
 }
 
-// The pose of a site in the frame of another: its position along the first three gears, and its rotation vector along the others.
+// Transmits to the pose of a site in the frame of another: its position along the first three gears, and its rotation
+// vector along the others.
 fn on_site_in_frame(u: u32, site: u32, frame: u32) -> f32 {
     let along = parameter3(ACTUATOR_GEAR + 6u * u);
     let about = parameter3(ACTUATOR_GEAR + 6u * u + 3u);
@@ -103,8 +104,8 @@ fn on_slider_crank(u: u32, crank: u32, slider: u32) -> f32 {
     return (along - root) * gear;
 }
 
-// The rotation of a ball joint, or of a site in the frame of another: three lengths, those of its rotation vector, and arms about the axes
-// of what is turned.
+// Transmits to the rotation of a ball joint, or of a site in the frame of another: three lengths, those of its rotation
+// vector, and arms about the axes of the rotated body.
 fn on_rotation(u: u32, element: u32, frame: u32) {
     let output = output_of(u);
     if (words[ACTUATOR_ON + u] == ON_ROTATION) {
@@ -120,7 +121,7 @@ fn on_rotation(u: u32, element: u32, frame: u32) {
     }
 }
 
-// A wrench at a site, the pose of a site in the frame of another, or a slider-crank.
+// Transmits a wrench at a site, the pose of a site in the frame of another, or a slider-crank.
 fn on_sites(u: u32, site: u32, other: u32) -> f32 {
     switch words[ACTUATOR_ON + u] {
         case ON_SITE: {
@@ -147,7 +148,7 @@ fn transmissions() {
         if (ANY_ON_TENDON && kind == ON_TENDON) {
             length = on_tendon(u, element);
         } else if (ANY_ON_CONTACTS && kind == ON_CONTACTS) {
-            // Its moment arms wait for the contacts.
+            // Its moment arms are computed after the contacts.
             length = 0.0;
         } else if (ANY_ON_SITE && kind > ON_TENDON) {
             length = on_sites(u, element, words[ACTUATOR_TARGET + 2u * u + 1u]);

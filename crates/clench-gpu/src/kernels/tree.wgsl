@@ -1,23 +1,24 @@
-// LᵀDL in the pattern of the kinematic tree: row i has the path from the root to dof i, itself last. Sister of
-// `clench-solver/src/tree/factor.rs`; the sums run in the same order.
+// LᵀDL in the pattern of the kinematic tree: row i has the path from the root to dof i, itself last. CPU counterpart:
+// `clench-solver/src/tree/factor.rs`; the order of sums is the same.
 //
-// The factor replaces the matrix in QLD: L below the diagonal, and on it, as in QLD_INVERSE, 1 / D. A team goes through the dofs level by level, those
-// that are equally far from the root at a time: what the rows below subtract from a row, the row gathers. In the memory of the workgroup the matrix
-// is no sooner factored: a card has room for fewer teams then.
+// The factor replaces the matrix in QLD: L below the diagonal, and on it, as in QLD_INVERSE, 1 / D. A team processes
+// the dofs level by level, those equally far from the root together: each row gathers the terms that the rows below
+// subtract from it. Workgroup memory would not make it faster: a GPU would fit fewer teams.
 
-// Copies the mass matrix to be factored.
+// Copies the mass matrix for the factorization.
 fn copy_mass_to_factor() {
     for (var p = member; p < bound(NNZ); p += TEAM) {
         put(QLD + p, fetch(QM + p));
     }
 }
 
-// Where the diagonal entry of row i is.
+// Returns the position of the diagonal entry of row i.
 fn pivot_of(i: u32) -> u32 {
     return words[TREE_START + i + 1u] - 1u;
 }
 
-// The entry number `above` of row i, of `level`, less what all rows below subtract. Those are not divided by their pivots yet.
+// Returns the entry number `above` of row i, of `level`, minus the terms of all rows below. Those are not yet divided
+// by their pivots.
 fn eliminated_entry(i: u32, above: u32, level: u32) -> f32 {
     var rest = fetch(QLD + words[TREE_START + i] + above);
     for (var p = words[BELOW_START + i + 1u]; p > words[BELOW_START + i]; p--) {
@@ -28,7 +29,7 @@ fn eliminated_entry(i: u32, above: u32, level: u32) -> f32 {
     return rest;
 }
 
-// Factors what stands in QLD; false where this thread met a pivot that is not positive.
+// Factors the matrix in QLD; returns false if this thread found a pivot that is not positive.
 fn factor_tree() -> bool {
     var positive = true;
     for (var level = NLEVEL; level > 0u; level--) {
@@ -57,7 +58,7 @@ fn factor_tree() -> bool {
     return positive;
 }
 
-// What `substitution.wgsl` asks for: the team, and where it has unknowns.
+// The interface of `substitution.wgsl`, for a team.
 fn worker() -> u32 {
     return member;
 }
@@ -78,7 +79,7 @@ fn join_unknowns() {
     join();
 }
 
-// x ← (LᵀDL)⁻¹ x, in place.
+// Computes x ← (LᵀDL)⁻¹ x, in place.
 fn solve_tree(x: u32) {
     join();
     substitute_towards_root(x);

@@ -1,7 +1,7 @@
-// Velocities of bodies and tendons, and Coriolis, centrifugal and gravity forces by recursive Newton–Euler. Sisters of
-// `dynamics/velocity.rs`, `bias.rs` and `project.rs`.
+// Velocities of bodies and tendons, and Coriolis, centrifugal and gravity forces by recursive Newton–Euler. CPU
+// counterparts: `dynamics/velocity.rs`, `bias.rs` and `project.rs`.
 
-// The velocity of a body, its acceleration while no dof has any, and the force for that, in CFRC.
+// Computes the velocity of a body, its bias acceleration, and the force for that, in CFRC.
 fn velocity_and_bias(b: u32) {
     let parent = words[BODY_PARENT + b];
     var cvel = fetch_spatial(CVEL + 6u * parent);
@@ -50,7 +50,7 @@ fn velocities_and_bias() {
     project_forces(QFRC_BIAS);
 }
 
-// Adds Σ J_bᵀ f_b to the dof forces at `qfrc`, for the spatial forces in CFRC, which are used up.
+// Adds Σ J_bᵀ f_b to the dof forces at `qfrc`, for the spatial forces in CFRC, which it overwrites.
 fn project_forces(qfrc: u32) {
     for (var level = NBODY_LEVEL; level > 1u; level--) {
         for (var n = words[BODY_LEVEL + level - 1u] + member; n < words[BODY_LEVEL + level]; n += TEAM) {
@@ -69,7 +69,7 @@ fn project_forces(qfrc: u32) {
     join();
 }
 
-// The spatial force of a force and a torque at the centre of mass of body `b`.
+// Returns the spatial force of a force and a torque at the centre of mass of body `b`.
 fn force_at_com(b: u32, force: vec3f, torque: vec3f) -> Spatial {
     let arm = fetch3(XIPOS + 3u * b) - fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + b]);
     return Spatial(torque + cross(arm, force), force);

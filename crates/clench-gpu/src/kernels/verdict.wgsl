@@ -1,10 +1,10 @@
-// What a step or forward pass must leave within bounds. Sister of `each_result` in `check.rs`.
+// Limits on the results of a step or forward pass. CPU counterpart: `each_result` in `check.rs`.
 
 fn is_far(x: f32) -> bool {
     return is_wild(x) || abs(x) > 1e10;
 }
 
-// A number to be judged: of which field it is, where in it, and whether it is beyond its bounds.
+// A checked number: its field, its index, its value, and whether it is beyond its limits.
 struct Judged {
     field: u32,
     index: u32,
@@ -12,7 +12,7 @@ struct Judged {
     beyond: bool,
 }
 
-// The k-th of all.
+// Returns the k-th checked number.
 fn judged(k: u32) -> Judged {
     var index = k;
     if (index < NV) {
@@ -39,7 +39,7 @@ fn judged(k: u32) -> Judged {
     return Judged(OF_ACT, index, x, is_wild(x));
 }
 
-// Notes the first number that is beyond its bounds, and where it is.
+// Records the first number beyond its limits, and its location.
 fn judge_results() {
     join();
     var worst = NONE;

@@ -1,11 +1,12 @@
-// The shortest string between two points around, or through, a sphere or an infinite cylinder. Sister of `dynamics/wrap.rs`, where it
-// is derived. In the plane across the cylinder's axis, or through the sphere's centre and both ends, points have two coordinates.
+// The shortest string between two points around, or through, a sphere or an infinite cylinder. CPU counterpart:
+// `dynamics/wrap.rs`, which derives it. In the plane across the cylinder's axis, or through the sphere's centre and
+// both ends, points have two coordinates.
 
-// Newton's method for a reflection: how far the angles may miss their sum, and how many steps there are at most.
+// Newton's method for a reflection: the tolerance of the sum of angles, and the maximum number of steps.
 const REFLECTION_TOLERANCE: f32 = max(1e-6, 16.0 * EPSILON);
 const REFLECTION_STEPS: u32 = 20u;
 
-// Whether a string touches its obstacle, where it meets and leaves it, and its length between.
+// True if a string touches its obstacle; the first and last point of contact, and its length between them.
 struct Wrapped {
     touches: bool,
     first: vec3f,
@@ -25,14 +26,14 @@ fn planar_cross(a: vec2f, b: vec2f) -> f32 {
     return a.x * b.y - a.y * b.x;
 }
 
-// The angle from one point to another seen from the origin, in [−π, π].
+// Returns the angle from one point to another seen from the origin, in [−π, π].
 fn planar_angle(a: vec2f, b: vec2f) -> f32 {
     let turn = planar_cross(a, b);
     let angle = angle_of(abs(turn), dot(a, b));
     return select(angle, -angle, turn < 0.0);
 }
 
-// `a` times the vector plus `b` times the vector turned by a quarter.
+// Returns `a` times the vector plus `b` times the vector rotated by a quarter turn.
 fn turned(v: vec2f, a: f32, b: f32) -> vec2f {
     return v * a + vec2f(-v.y, v.x) * b;
 }
@@ -45,8 +46,8 @@ fn planar_unit(v: vec2f) -> vec2f {
     return v * (1.0 / norm);
 }
 
-// Two axes of the plane through the origin and both points, the first towards the first point. Where all three lie on a line the
-// plane is the one that MuJoCo takes.
+// Returns two axes of the plane through the origin and both points, the first towards the first point. If all three are
+// collinear, it is the plane that MuJoCo chooses.
 fn plane_through(p: vec3f, q: vec3f) -> mat2x3f {
     let axis = direction(p).xyz;
     let normal = direction(cross(p, q));
@@ -61,7 +62,7 @@ fn plane_through(p: vec3f, q: vec3f) -> mat2x3f {
     return mat2x3f(axis, direction(cross(across, axis)).xyz);
 }
 
-// The shortest string around a circle that turns by the angle `turn`.
+// Finds the shortest string around a circle that turns by the angle `turn`.
 fn around(p: vec2f, q: vec2f, turn: f32, radius: f32) -> PlanarWrap {
     let square = radius * radius;
     let squares = vec2f(dot(p, p), dot(q, q));
@@ -76,7 +77,7 @@ fn around(p: vec2f, q: vec2f, turn: f32, radius: f32) -> PlanarWrap {
     return PlanarWrap(true, turned(p, along.x, across.x), turned(q, along.y, -across.y), radius * arc);
 }
 
-// Whether the interior of the segment comes to the circle.
+// Returns true if the interior of the segment reaches the circle.
 fn meets_circle(p: vec2f, q: vec2f, radius: f32) -> bool {
     let along = q - p;
     let square = dot(along, along);
@@ -84,12 +85,12 @@ fn meets_circle(p: vec2f, q: vec2f, radius: f32) -> bool {
     return square > TINY && share > 0.0 && share < 1.0 && length(p + along * share) <= radius;
 }
 
-// Arc sine of a number in [0, 1].
+// Returns the arc sine of a number in [0, 1].
 fn arc_sine(x: f32) -> f32 {
     return angle_of(x, sqrt(max(1.0 - x * x, 0.0)));
 }
 
-// The angle of incidence of a string that is reflected by the circle, and whether it was found (1).
+// Returns the angle of incidence of a string that is reflected by the circle, and whether it was found (1).
 fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
     var beta: f32 = HALF_PI;
     if (angle < TINY) {
@@ -115,7 +116,7 @@ fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
     return vec2f(beta, 0.0);
 }
 
-// The string that passes through the circle, straight if it does so of itself.
+// Finds the string that passes through the circle, straight if that already does.
 fn through(p: vec2f, q: vec2f, radius: f32) -> PlanarWrap {
     let distances = vec2f(length(p), length(q));
     if (any(distances <= vec2f(radius)) || radius < TINY || meets_circle(p, q, radius)) {
@@ -135,7 +136,7 @@ fn through(p: vec2f, q: vec2f, radius: f32) -> PlanarWrap {
     return PlanarWrap(true, point * radius, point * radius, 0.0);
 }
 
-// The string between the points `p` and `q` in the presence of a geom; `side` is the site that it passes by, or NONE.
+// Finds the string between the points `p` and `q` with a geom as obstacle; `side` is the site that it passes, or NONE.
 fn wrap(p: vec3f, q: vec3f, geom: u32, side: u32) -> Wrapped {
     let center = fetch3(GEOM_XPOS + 3u * geom);
     let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
@@ -185,7 +186,7 @@ struct Span {
     last: vec3f,
 }
 
-// How the string of a section runs from site to site.
+// Returns the path of the string of a section from site to site.
 fn section_path(s: u32) -> Wrapped {
     let p = fetch3(SITE_XPOS + 3u * words[SECTION_SITES + 2u * s]);
     let q = fetch3(SITE_XPOS + 3u * words[SECTION_SITES + 2u * s + 1u]);
@@ -196,7 +197,7 @@ fn section_path(s: u32) -> Wrapped {
     return Wrapped(false, p, q, 0.0);
 }
 
-// A straight string is one span; one that touches a geom has a span to either side of it.
+// Returns the number of spans: one for a straight string, two for one that touches a geom.
 fn span_count(path: Wrapped) -> u32 {
     return select(1u, 2u, path.touches);
 }

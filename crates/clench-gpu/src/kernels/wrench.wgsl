@@ -1,6 +1,6 @@
-// What contacts, connects and welds do. Sister of `of_contact` in `output/forces.rs`.
+// The forces of contacts, connects and welds. CPU counterpart: `of_contact` in `output/forces.rs`.
 
-// The three numbers of rows from `first` on, zero beyond the block's end.
+// Returns the three numbers of rows from `first` on, zero beyond the block's end.
 fn three_forces(first: u32, end: u32) -> vec3f {
     var f = vec3f();
     for (var k = 0u; k < 3u; k++) {
@@ -11,7 +11,8 @@ fn three_forces(first: u32, end: u32) -> vec3f {
     return f;
 }
 
-// Force and torque of a block's rows; of a contact those on its second body in its frame, less its adhesion, which pulls as a passive force.
+// Returns the force and torque of a block's rows; for a contact, those on its second body in its frame, minus its
+// adhesion, which pulls as a passive force.
 fn block_wrench(b: u32) -> Spatial {
     let first = block(b, BLOCK_ROW);
     let end = first + block(b, BLOCK_DIM);

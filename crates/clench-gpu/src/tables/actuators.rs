@@ -1,4 +1,4 @@
-//! Actuators: what they act on, the dynamics of their activations, and the coefficients of their gains and biases.
+//! Actuators: their transmissions, the dynamics of their activations, and the coefficients of their gains and biases.
 
 use super::{ENDLESS, NONE, Tables, starts};
 use clench_rigid::model::{
@@ -6,7 +6,7 @@ use clench_rigid::model::{
 };
 use std::f64::consts::TAU;
 
-/// What an actuator acts on.
+/// The kinds of transmission.
 const TRANSMISSIONS: [&str; 10] = [
     "ON_SCALAR",
     "ON_BALL",
@@ -19,7 +19,7 @@ const TRANSMISSIONS: [&str; 10] = [
     "ON_ROTATION",
     "ON_ROTATION_IN_FRAME",
 ];
-/// How its activation follows its control.
+/// The kinds of activation dynamics.
 const DYNAMICS: [&str; 7] = [
     "DYN_NONE",
     "DYN_INTEGRATOR",
@@ -29,7 +29,7 @@ const DYNAMICS: [&str; 7] = [
     "DYN_PID",
     "DYN_DC_MOTOR",
 ];
-/// What its gain, or its bias, is.
+/// The kinds of gain and bias.
 const LAWS: [&str; 5] = [
     "LAW_AFFINE",
     "LAW_MUSCLE",
@@ -37,7 +37,7 @@ const LAWS: [&str; 5] = [
     "LAW_DC_MOTOR",
     "LAW_ORIENTATION",
 ];
-/// What a control is for a controller.
+/// The kinds of control input of a controller.
 const INPUTS: [&str; 6] = [
     "INPUT_COMMAND",
     "INPUT_POSITION",
@@ -54,9 +54,9 @@ const STATES: [&str; 5] = [
     "STATE_BRISTLE",
     "STATE_CURRENT",
 ];
-/// Numbers of a law: three coefficients, or those of a muscle.
+/// The numbers of a law: three coefficients, or those of a muscle.
 const LAW_SIZE: usize = 9;
-/// The shortest time constant (s) of a filter, and the least divisor (MuJoCo's `mjMINVAL`).
+/// The minimum time constant (s) of a filter, and the minimum divisor (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
 
 impl Tables {
@@ -92,7 +92,7 @@ impl Tables {
         self.actuator_ranges(m);
     }
 
-    /// The moment arms on each dof, and which output each is of.
+    /// Adds the moment arms on each dof, and the output of each.
     fn arms_of_dofs(&mut self, m: &Model) {
         let mut arms = vec![Vec::new(); m.nv];
         let mut entry = 0;
@@ -110,7 +110,7 @@ impl Tables {
 
     fn transmissions(&mut self, m: &Model) {
         let each = || m.actuators.iter().map(|a| target(m, a));
-        // What no actuator needs is left out of the kernels.
+        // Kernels omit what no actuator needs.
         self.flag("ANY_ON_ROTATION", each().any(|t| (1..3).contains(&t.kind)));
         self.flag("ANY_ON_TENDON", each().any(|t| t.kind == 3));
         self.flag("ANY_ON_SITE", each().any(|t| (4..7).contains(&t.kind)));
@@ -168,7 +168,7 @@ impl Tables {
         self.numbers("ACT_RANGE", each().enumerate().flat_map(range));
     }
 
-    /// Controllers and motors: what each control is, which activations are states, and all parameters.
+    /// Adds controllers and motors: the kind of each control, the activations that are states, and all parameters.
     fn controllers(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter());
         let input = |input: &ControlInput| match input {
@@ -207,7 +207,7 @@ impl Tables {
         self.numbers("CONTROLLER_PRM", all.iter().flat_map(prm).flatten());
     }
 
-    /// Buffers of past controls, and how late they reach the actuators.
+    /// Adds buffers of past controls, and the delays of actuators.
     fn delays(&mut self, m: &Model) {
         let delayed = |a: &Actuator| a.history.is_some();
         self.flag("ANY_DELAY", m.actuators.iter().any(delayed));
@@ -240,7 +240,7 @@ impl Tables {
             match a.gain {
                 GainKind::Muscle => muscle(m, u, prm),
                 GainKind::Affine => affine([prm[0], prm[1], prm[2]]),
-                // What MuJoCo takes where its user gives no callback.
+                // MuJoCo's default without a callback.
                 GainKind::User => affine([1.0, 0.0, 0.0]),
                 _ => affine([prm[0], 0.0, 0.0]),
             }
@@ -289,14 +289,14 @@ impl Tables {
     }
 }
 
-/// Whether any part of an actuator is that of a controller or a motor.
+/// Returns true if any part of an actuator is that of a controller or a motor.
 fn has_controller(a: &Actuator) -> bool {
     let by_dynamics = matches!(a.dynamics, DynamicsKind::Pid | DynamicsKind::DcMotor);
     let by_gain = matches!(a.gain, GainKind::Pid | GainKind::DcMotor);
     by_dynamics || by_gain || a.bias == BiasKind::DcMotor
 }
 
-/// What an actuator acts on, as the device knows it.
+/// The target of an actuator, in the device's encoding.
 struct Target {
     kind: usize,
     elements: [usize; 2],
@@ -331,7 +331,7 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
     }
 }
 
-/// By how much the length of a servo on a circle changes in a whole turn; zero for what is no servo or on no circle. See
+/// Returns the length change of a servo on a circle in a full turn; zero for other actuators. See
 /// `dynamics/setpoint.rs`.
 fn whole_turn(m: &Model, u: usize) -> f64 {
     let (actuator, p) = (&m.actuators[u], &m.params);
@@ -357,13 +357,13 @@ fn range(limited: bool, range: [f64; 2]) -> [f64; 2] {
     if limited { range } else { [-ENDLESS, ENDLESS] }
 }
 
-/// a + b length + c velocity.
+/// Returns the coefficients of a + b length + c velocity.
 fn affine([a, b, c]: [f64; 3]) -> [f64; LAW_SIZE] {
     [a, b, c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 }
 
-/// What of a muscle does not change: its strength, its resting length, where its scaled length begins, and the shape of its curves.
-/// See `dynamics/muscle.rs`.
+/// Returns the constants of a muscle: its strength, its resting length, the start of its scaled length, and the shape
+/// of its curves. See `dynamics/muscle.rs`.
 fn muscle(m: &Model, u: usize, prm: &[f64; 10]) -> [f64; LAW_SIZE] {
     let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
     let [shortest, longest] = m.params.actuator_lengthrange[u];

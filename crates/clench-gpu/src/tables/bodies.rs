@@ -37,7 +37,7 @@ impl Tables {
         self.numbers("JNT_AXIS", vectors(&p.jnt_axis));
     }
 
-    /// The bodies that are equally far from the world, level by level, and the children of each body, the last one first.
+    /// Adds the bodies by depth in the tree, level by level, and the children of each body, the last first.
     fn body_levels(&mut self, m: &Model) {
         let mut depths = vec![0; m.nbody()];
         let mut children = vec![Vec::new(); m.nbody()];
@@ -78,7 +78,7 @@ impl Tables {
         self.numbers("QPOS_SPRING", m.params.qpos_spring.iter().copied());
     }
 
-    /// Dofs, the pattern of the mass matrix, and which bodies each dof moves.
+    /// Adds dofs, the pattern of the mass matrix, and the dofs that move each body.
     pub(super) fn dofs(&mut self, m: &Model) {
         let (tree, nv) = (&m.tree, m.nv);
         self.count("NV", nv);

@@ -1,4 +1,4 @@
-//! Cameras: what they are fixed to, what they follow, and their lenses.
+//! Cameras: their bodies, targets and lenses.
 
 use super::{NONE, Tables};
 use clench_rigid::model::{CameraMode, Model};
@@ -13,10 +13,10 @@ const CAMERA_FIELDS: [&str; 7] = [
     "CAMERA_ORTHOGRAPHIC",
     "CAMERA_INTRINSIC",
 ];
-/// How cameras follow bodies.
+/// The camera modes.
 const MODES: [&str; 5] = ["FIXED", "TRACK", "TRACK_COM", "TARGET_BODY", "TARGET_COM"];
 
-/// The code of a mode, and the body that the camera is turned towards.
+/// Returns the code of a mode, and the target body.
 fn mode(mode: CameraMode) -> [usize; 2] {
     match mode {
         CameraMode::Fixed => [0, NONE as usize],

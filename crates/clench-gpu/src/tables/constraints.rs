@@ -4,7 +4,7 @@ use super::{Capacity, Tables};
 use clench_rigid::model::{JointKind, Model};
 use clench_rigid::settings::StepSettings;
 
-/// What a block of the convex problem is.
+/// The kinds of block of the convex problem.
 const BLOCK_KINDS: [&str; 7] = [
     "HELD",
     "COUPLING",
@@ -14,9 +14,9 @@ const BLOCK_KINDS: [&str; 7] = [
     "CONTACT_PYRAMID",
     "CONTACT_ELLIPTIC",
 ];
-/// What is known of a block.
+/// The fields of a block.
 const BLOCK_FIELDS: [&str; 4] = ["BLOCK_KIND", "BLOCK_DIM", "BLOCK_ROW", "BLOCK_SOURCE"];
-/// How many numbers that is.
+/// The numbers of a block.
 pub(crate) const BLOCK_SIZE: usize = BLOCK_FIELDS.len();
 
 impl Tables {
@@ -84,7 +84,7 @@ impl Tables {
             );
         }
         self.count("NLIMIT", coordinates.len());
-        // A coordinate can be at both ends of its range, where that is narrower than the margins.
+        // Both limits of a coordinate can be active if its range is narrower than the margins.
         capacity.blocks += 2 * coordinates.len();
         capacity.rows += 2 * coordinates.len();
         // Joints, then tendons.

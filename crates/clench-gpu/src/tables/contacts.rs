@@ -1,4 +1,5 @@
-//! Pairs of geoms that may collide, with the parameters of their contacts: mixed here, once, by the rules of `clench-rigid`.
+//! Pairs of geoms that may collide, with the parameters of their contacts, combined once by the rules of
+//! `clench-rigid`.
 
 use super::distances::{Measured, measured};
 use super::{Capacity, Tables};
@@ -11,35 +12,37 @@ use clench_rigid::options::MaxContacts;
 use clench_rigid::settings::StepSettings;
 use std::f64::consts::PI;
 
-/// The contact pool of an environment, where the options leave it open and the pairs could fill a larger one, has as many contacts as J of their
-/// rows, kept three times over (J, its columns, W J), has room for in so many numbers. Contacts beyond are a fault, never left out in silence.
+/// The size of J for the contact pool of an environment, in numbers over its three copies (J, its columns, W J). It
+/// limits the pool if the options leave it open and the pairs could fill a larger one. Excess contacts are a fault,
+/// never dropped silently.
 const POOL_NUMBERS: usize = 12_000;
-/// Its bounds.
+/// The limits of the pool.
 const POOL: [usize; 2] = [48, 128];
-/// Pairs of a model for each thread of the narrow phase: most of them are far apart.
+/// The pairs of a model per thread of the narrow phase; most pairs are far apart.
 const PAIRS_OF_A_THREAD: usize = 32;
-/// The same where some are of any convex shapes, of which one takes as long as many others.
+/// The same with pairs of general convex shapes, each as costly as many others.
 const CONVEX_PAIRS_OF_A_THREAD: usize = 8;
-/// Threads of the narrow phase, at most: each has memory for all contacts of the environment.
+/// The maximum number of threads of the narrow phase; each has memory for all contacts of the environment.
 const MOST_THREADS: usize = 8;
-/// Vertices of the polytope of overlapping shapes. Single precision has no use for the 128 that the processor has room for.
+/// The maximum number of vertices of the polytope of overlapping shapes. Single precision does not benefit from the
+/// processor's 128.
 const POLYTOPE_VERTICES: usize = 64;
-/// Corners that stand for the round cap of a cylinder.
+/// The corners that approximate the round cap of a cylinder.
 const CAP_CORNERS: usize = 16;
-/// Corners of a face of a hull that are looked at, at most, as on the processor.
+/// The maximum number of corners used of a hull's face, as on the processor.
 const MAX_FACE_CORNERS: usize = 24;
-/// Corners of a box's face.
+/// The corners of a box's face.
 const BOX_CORNERS: usize = 4;
-/// Numbers of a contact on terrain while it is gathered: position, normal, distance.
+/// The numbers of a contact on terrain during collection: position, normal, distance.
 const TERRAIN_POINT_SIZE: usize = 7;
-/// Contacts of a feature that is clipped to a triangle: each side of that adds a corner.
+/// The maximum contacts of a feature clipped to a triangle, each side of which adds a corner.
 const FACE_LIST_POINTS: usize = MAX_FACE_CORNERS + 3;
-/// Contacts of a feature and the ground below a triangle.
+/// The maximum contacts of a feature and the ground below a triangle.
 const PATCH_LIST_POINTS: usize = 2 * PATCH_POINTS;
-/// Numbers of a contact: pair, distance, position, normal, two tangents.
+/// The numbers of a contact: pair, distance, position, normal, two tangents.
 pub(crate) const CONTACT_SIZE: usize = 14;
 
-/// The parameters of the contacts of a pair, in the order in which kernels read them.
+/// Returns the contact parameters of a pair, in the order in which kernels read them.
 fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
     let mixed = contact_params::<f64>(m, &m.params, pair);
     let weight = |g: u32| m.params.body_invweight0[m.geoms[g as usize].body][0];
@@ -55,7 +58,8 @@ fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
     row
 }
 
-/// Within what distance of their centres (of a plane: of the second's to it) two geoms may touch that are within a range of each other.
+/// Returns the maximum distance of the centres of two geoms (for a plane: from it to the second's) at which they may be
+/// within `range` of each other.
 fn reach<S: Scalar>(m: &Model, pair: &Candidate, range: f64) -> f64 {
     let is_empty = |&g: &u32| {
         let mesh = m.geoms[g as usize].mesh;
@@ -69,7 +73,7 @@ fn reach<S: Scalar>(m: &Model, pair: &Candidate, range: f64) -> f64 {
     (radii + range) * allowance::<S>().to_f64()
 }
 
-/// Pairs that collide, and behind them those whose distance is measured.
+/// Returns the pairs that collide, followed by those whose distance is measured.
 fn all_pairs(candidates: &[Candidate], measured: &[Measured]) -> Vec<Candidate> {
     let measured = measured.iter().map(|m| m.pair);
     candidates.iter().copied().chain(measured).collect()
@@ -144,7 +148,7 @@ impl Tables {
         if general {
             capacity.polytope = [vertices, faces];
         }
-        // Two manifolds with a point more than there is room for, and both lists.
+        // Two manifolds with one point more than their maximum, and both lists.
         let on_terrain = |c: &Candidate| c.kinds[0] == ShapeKind::HeightField;
         let any_terrain = candidates.iter().any(on_terrain);
         if any_terrain {
@@ -184,12 +188,12 @@ impl Tables {
         self.constant("CONTACT_SIZE", CONTACT_SIZE);
     }
 
-    /// Which contacts adhere of themselves, and which surfaces move by themselves.
+    /// Sets whether contacts have adhesion and whether surfaces move by themselves.
     fn surfaces(&mut self, m: &Model, candidates: &[Candidate], capacity: &mut Capacity) {
         let adheres = |c: &Candidate| contact_params::<f64>(m, &m.params, c).adhesion != 0.0;
         capacity.adheres = candidates.iter().any(adheres);
         self.flag("ANY_ADHESION", capacity.adheres);
-        // As in MuJoCo, without springs and dampers there is nothing passive at all.
+        // As in MuJoCo, there are no passive forces if springs and dampers are both off.
         let passive = m.flags.spring || m.flags.damper;
         self.flag("ADHESION_PULLS", capacity.adheres && passive);
         let moves = |c: &Candidate| {
@@ -201,8 +205,8 @@ impl Tables {
         self.numbers("GEOM_SURFACEVEL", surfaces);
     }
 
-    /// What general pairs have: hulls, curved shapes, faces that may lie on each other, and room for their corners. The data of shapes,
-    /// which no environment has of its own, stand behind all parameters.
+    /// Adds the data of general pairs: hulls, curved shapes, faces that may lie on each other, and the capacity for
+    /// their corners. Shape data, which is shared by all environments, follows all parameters.
     pub(crate) fn shapes(&mut self, m: &Model, candidates: &[Candidate]) {
         use ShapeKind::{Box, Cylinder, Ellipsoid, HeightField, Mesh, Plane, Sphere};
         let candidates = &all_pairs(candidates, &measured(m));
@@ -227,7 +231,7 @@ impl Tables {
         self.flag("MESH_ON_PLANE", candidates.iter().any(on_plane));
         self.flag("LARGE_FACES", hull_corners > PATCH_POINTS);
 
-        // Kernels for any model have room for what any can have.
+        // General kernels have the maximum capacity.
         let caps = self.general_kernels || flat_with(Cylinder);
         let hull_corners = if self.general_kernels {
             MAX_FACE_CORNERS
@@ -241,14 +245,15 @@ impl Tables {
         corners = corners.max(hull_corners.min(MAX_FACE_CORNERS));
         self.constant("PATCH_POINTS", PATCH_POINTS);
         self.constant("CAP_CORNERS", CAP_CORNERS);
-        // Half the angle of the sector of directions that a point of a patch stands for.
+        // Half the angle of a direction sector of a patch.
         self.real("HALF_SECTOR", PI / PATCH_POINTS as f64);
-        // The angle between the corners that stand for a round cap.
+        // The angle between the corners of a round cap.
         self.real("CAP_ANGLE", 2.0 * PI / CAP_CORNERS as f64);
         self.constant("MAX_FACE_CORNERS", MAX_FACE_CORNERS);
         self.constant("FEATURE_CORNERS", corners);
         self.flag("MANY_CORNERS", corners > BOX_CORNERS);
-        // Two polygons overlap in one of at most all their corners; on a round cap lie both ends of a chord for each side, too.
+        // The overlap of two polygons has at most all their corners; on a round cap it also has both ends of a chord
+        // for each side.
         let most = if caps {
             3 * corners + CAP_CORNERS
         } else {

@@ -1,5 +1,5 @@
-//! Pairs of geoms whose distance a sensor measures. They stand behind the pairs that collide, touch as far apart as the sensor's cutoff,
-//! and have one contact each, the deepest.
+//! Pairs of geoms whose distance a sensor measures. They follow the pairs that collide, have the sensor's cutoff as
+//! their contact range, and have one contact each, the deepest.
 
 use crate::methods::method_of_pair;
 use clench_collide::ShapeKind;
@@ -10,13 +10,13 @@ use clench_rigid::model::{Model, Sensor, SensorTarget};
 pub(super) struct Measured {
     /// The geoms.
     pub pair: Candidate,
-    /// Whether the sensor's first geom is the second of the pair.
+    /// True if the sensor's first geom is the second of the pair.
     pub turned: bool,
-    /// How far apart they may be, m.
+    /// The maximum distance, m.
     pub cutoff: f64,
 }
 
-/// The pairs of a sensor of distances, in its order; without those of shapes that have no distance.
+/// Returns the pairs of a distance sensor, in its order, without unsupported shapes.
 pub(super) fn pairs_of(m: &Model, sensor: &Sensor) -> Vec<Measured> {
     let SensorTarget::Geoms([first, second]) = &sensor.target else {
         return Vec::new();
@@ -41,13 +41,13 @@ pub(super) fn pairs_of(m: &Model, sensor: &Sensor) -> Vec<Measured> {
     pairs.filter(has_distance).collect()
 }
 
-/// Those of all sensors, one after the other.
+/// Returns the pairs of all sensors, one after another.
 pub(super) fn measured(m: &Model) -> Vec<Measured> {
     let each = m.sensors.iter().filter(|s| is_measured(m, s));
     each.flat_map(|s| pairs_of(m, s)).collect()
 }
 
-/// Whether a sensor is one of distances that a device measures: of no terrain, whose cells within a cutoff may be many.
+/// Returns true if a device measures a distance sensor: not on terrain, which may have many cells within a cutoff.
 pub(super) fn is_measured(m: &Model, sensor: &Sensor) -> bool {
     let SensorTarget::Geoms(sets) = &sensor.target else {
         return false;

@@ -1,25 +1,25 @@
-//! Equalities: which two frames or coordinates each holds together, and how softly.
+//! Equalities: the two frames or coordinates that each constrains, and its softness.
 
 use super::{Capacity, NONE, Tables};
 use clench_rigid::model::{Coupled, Model};
 use clench_rigid::settings::StepSettings;
 
-/// Numbers of an equality of frames: both anchors, both orientations, the length that scales rotations, the bodies' inverse weights
-/// of translations and of rotations, then solref and solimp.
+/// The numbers of an equality of frames: both anchors, both orientations, the length that scales rotations, the bodies'
+/// inverse weights of translations and of rotations, then solref and solimp.
 const HELD_SIZE: usize = 24;
-/// Numbers of an equality of coordinates: both initial values, five coefficients, the sum of the inverse weights, then solref and
-/// solimp.
+/// The numbers of an equality of coordinates: both initial values, five coefficients, the sum of the inverse weights,
+/// then solref and solimp.
 const COUPLING_SIZE: usize = 15;
 
 impl Tables {
-    /// Coordinates are joints, then tendons.
+    /// Adds equalities; coordinates are joints, then tendons.
     pub(super) fn equalities(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
         let on = s.flags.constraint && s.flags.equality;
         let count = if on { m.equalities.len() } else { 0 };
         let (mut kinds, mut pairs, mut places) = (Vec::new(), Vec::new(), Vec::new());
         let mut numbers = Vec::new();
         for (i, equality) in m.equalities[..count].iter().enumerate() {
-            // Frames that nothing moves are no constraint.
+            // Frames of static bodies are unconstrained.
             let moving =
                 |bodies: [usize; 2]| bodies.iter().any(|&b| m.bodies[b].last_dof.is_some());
             let rows = equality.target.rows();

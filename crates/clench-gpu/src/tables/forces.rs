@@ -1,4 +1,5 @@
-//! Springs, dampers, lifted weights and the medium, each reduced to the coefficients of its law; and the numbers of the step itself.
+//! Springs, dampers, gravity compensation and the medium, each reduced to its coefficients; and the settings of the
+//! step.
 
 use super::{NONE, Tables, starts};
 use clench_rigid::dynamics::ellipsoid::{ellipsoids, semi_axes};
@@ -9,10 +10,11 @@ use clench_rigid::settings::StepSettings;
 
 use std::f64::consts::PI;
 
-/// Below this mass (kg) a body feels no medium; also the least (kg m²) of a box's squared sides (MuJoCo's `mjMINVAL`).
+/// The minimum mass (kg) of a body on which the medium acts; also the minimum (kg m²) of a box's squared sides
+/// (MuJoCo's `mjMINVAL`).
 const TINY: f64 = 1e-15;
 
-/// Numbers of an ellipsoid in the medium.
+/// The numbers of an ellipsoid in the medium.
 const ELLIPSOID_SIZE: usize = 18;
 
 impl Tables {
@@ -46,7 +48,7 @@ impl Tables {
         self.medium(m);
     }
 
-    /// Which springs yield, where it stands at what they rest, and beyond what stretch they do.
+    /// Adds the springs that yield, the offsets of their rest positions, and their yield elongations.
     fn plastic(&mut self, m: &Model) {
         let p = &m.params;
         let place = |start: Option<usize>| start.unwrap_or(NONE as usize);
@@ -58,8 +60,8 @@ impl Tables {
         self.numbers("TENDON_YIELD", p.tendon_springyield.iter().copied());
     }
 
-    /// The mass of each body whose weight is lifted. As in MuJoCo a share below zero counts only where another is positive, and
-    /// without springs and dampers there is nothing passive at all.
+    /// Adds the compensated mass of each body. As in MuJoCo, a negative share counts only if another is positive, and
+    /// there are no passive forces if springs and dampers are both off.
     fn gravity_compensation(&mut self, m: &Model) {
         let p = &m.params;
         let lifted = m.flags.gravity && p.body_gravcomp.iter().any(|&share| share > 0.0);
@@ -68,7 +70,7 @@ impl Tables {
         self.numbers("BODY_LIFT", lift.map(|(mass, share)| mass * share));
     }
 
-    /// The coefficients of the resistance to the box that has a body's mass and inertia, see `dynamics/fluid.rs`.
+    /// Adds the drag coefficients of the box with a body's mass and inertia, see `dynamics/fluid.rs`.
     fn medium(&mut self, m: &Model) {
         let p = &m.params;
         let any = p.density != 0.0 || p.viscosity != 0.0;
@@ -121,7 +123,7 @@ impl Tables {
     }
 }
 
-/// The damper of dof `i` with that of its joint's actuators; none where dampers are off.
+/// Returns the damper of dof `i` including its joint's actuators; zero if dampers are off.
 fn damper(m: &Model, i: usize) -> [f64; 3] {
     let p = &m.params;
     if !m.flags.damper {
@@ -139,7 +141,7 @@ fn damper(m: &Model, i: usize) -> [f64; 3] {
     law
 }
 
-/// The inertia that is added to dof `i`: its own and that of its joint's actuators.
+/// Returns the armature of dof `i`: its own and that of its joint's actuators.
 fn armature(m: &Model, i: usize) -> f64 {
     let p = &m.params;
     let actuators = &m.joints[m.dofs[i].joint].reflecting;
@@ -147,7 +149,7 @@ fn armature(m: &Model, i: usize) -> f64 {
     p.dof_armature[i] + actuators.iter().map(reflected).sum::<f64>()
 }
 
-/// Viscous, then quadratic coefficients of body `b`, of rotations before translations.
+/// Returns the viscous, then the quadratic coefficients of body `b`, rotations before translations.
 fn drag(m: &Model, b: usize) -> [f64; 12] {
     let p = &m.params;
     let mass = p.body_mass[b];
@@ -181,7 +183,7 @@ fn drag(m: &Model, b: usize) -> [f64; 12] {
     all
 }
 
-/// The coefficients of the forces on geom `g`, as `kernels/ellipsoid.wgsl` reads them; see `dynamics/ellipsoid.rs`.
+/// Returns the force coefficients of geom `g`, as `kernels/ellipsoid.wgsl` reads them; see `dynamics/ellipsoid.rs`.
 fn ellipsoid(m: &Model, g: usize) -> [f64; ELLIPSOID_SIZE] {
     let p = &m.params;
     let heavy = p.body_mass[m.geoms[g].body] >= TINY;

@@ -1,9 +1,9 @@
-//! Buffers of past controls and of what sensors measured.
+//! Buffers of past controls and measurements.
 
 use super::{NONE, Tables};
 use clench_rigid::model::{History, Interpolation};
 
-/// The words of a buffer: its first number, its samples, the numbers of each, and how it is read between two.
+/// Returns the words of a buffer: its offset, its samples, the numbers of each, and the interpolation.
 fn row(history: &History) -> [usize; 4] {
     let between = match history.interpolation {
         Interpolation::Hold => 0,
@@ -14,7 +14,7 @@ fn row(history: &History) -> [usize; 4] {
 }
 
 impl Tables {
-    /// Adds a table of buffers, and tells where that of each owner is: `NONE` where it has none.
+    /// Adds a table of buffers. Returns the offset of each owner's, or `NONE`.
     pub(super) fn histories<'a>(
         &mut self,
         name: &str,
@@ -30,7 +30,7 @@ impl Tables {
         owners.map(&mut place).collect()
     }
 
-    /// How a buffer is read between two samples.
+    /// Adds the kinds of interpolation.
     pub(super) fn interpolations(&mut self) {
         for (code, name) in ["HOLD", "LINEAR", "CUBIC"].into_iter().enumerate() {
             self.constant(name, code);

@@ -1,4 +1,5 @@
-//! Convex polyhedra: the hulls of meshes that may touch, once each, and boxes that cylinders may touch; and height fields.
+//! Convex polyhedra: the hulls of meshes that may collide, once each, and boxes that may collide with cylinders; and
+//! height fields.
 
 use super::{Tables, starts};
 use clench_collide::{HeightField, Hull, ShapeKind, convex_hull};
@@ -6,7 +7,7 @@ use clench_math::Vec3;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
 
-/// Where the parts of a polyhedron are, in the order in which kernels find them behind its place.
+/// The counts and offsets of a polyhedron, in the order in which kernels read them.
 const PARTS: [&str; 11] = [
     "HULL_VERTEX_COUNT",
     "HULL_FACE_COUNT",
@@ -20,20 +21,20 @@ const PARTS: [&str; 11] = [
     "HULL_FACE_CORNERS",
     "HULL_FIRST",
 ];
-/// Directions from which a climb to the furthest vertex begins: an octant each.
+/// The start directions of hill climbing to the furthest vertex: one per octant.
 const OCTANTS: usize = 8;
 
-/// Hulls of at most this many faces are searched face by face, as on the processor.
+/// The maximum number of faces of a hull that is searched face by face, as on the processor.
 const FEW_FACES: usize = 64;
 
-/// An edge between two faces: its ends, the face that goes along it, and the one that comes back.
+/// An edge between two faces: its ends, and the faces that traverse it forward and backward.
 struct Crease {
     ends: [usize; 2],
     faces: [usize; 2],
 }
 
 impl Crease {
-    /// A point of it, its direction, and the cosine and the sine of the angle between the normals of its faces.
+    /// Returns a point of the edge, its direction, and the cosine and sine of the angle between its faces' normals.
     fn numbers(&self, hull: &Hull) -> [f64; 8] {
         let [start, end] = self.ends.map(|v| hull.vertices()[v]);
         let [m, n] = self.faces.map(|face| hull.normal(face));
@@ -44,7 +45,7 @@ impl Crease {
     }
 }
 
-/// The edges between the faces of a hull; none where it has many faces.
+/// Returns the edges between the faces of a hull; none if it has many faces.
 fn creases(hull: &Hull) -> Vec<Crease> {
     if hull.face_count() > FEW_FACES {
         return Vec::new();
@@ -68,7 +69,8 @@ fn creases(hull: &Hull) -> Vec<Crease> {
 }
 
 impl Tables {
-    /// The polyhedra and height fields of a model's pairs, and which of them each geom is: `NONE` where it is none. Gives the most corners of a face.
+    /// Adds the polyhedra and height fields of a model's pairs, and the one of each geom (`NONE` if it has none).
+    /// Returns the maximum number of corners of a face.
     pub(super) fn hulls(&mut self, m: &Model, candidates: &[Candidate]) -> usize {
         for (offset, name) in PARTS.iter().enumerate() {
             self.constant(name, offset);
@@ -115,7 +117,7 @@ impl Tables {
         most_corners
     }
 
-    /// Adds a polyhedron; where it is.
+    /// Adds a polyhedron. Returns its offset.
     fn hull(&mut self, hull: &Hull) -> usize {
         let (vertices, faces) = (0..hull.vertices().len(), 0..hull.face_count());
         let creases = creases(hull);
@@ -130,7 +132,7 @@ impl Tables {
         parts.push(self.lists(vertices.clone().map(|v| hull.neighbors(v))));
         parts.push(self.lists(vertices.map(|v| hull.faces_at(v))));
         parts.push(self.lists(faces.map(|face| hull.corners(face))));
-        // The last part is not a place but the vertices themselves.
+        // The last part holds vertices, not an offset.
         parts.extend((0..OCTANTS).map(|octant| {
             let sign = |axis: usize| if octant >> axis & 1 == 1 { -1.0 } else { 1.0 };
             hull.support(Vec3::new(sign(0), sign(1), sign(2)))
@@ -138,7 +140,7 @@ impl Tables {
         self.add_words(parts)
     }
 
-    /// Adds a height field: rows, columns, and where its sizes are, behind which its heights follow, m.
+    /// Adds a height field: rows, columns, and the offset of its sizes, followed by its heights, m. Returns its offset.
     pub(super) fn height_field(&mut self, field: &HeightField) -> usize {
         let [x, y, elevation, base] = field.size();
         let (rows, columns) = (field.rows(), field.columns());
@@ -149,7 +151,7 @@ impl Tables {
         self.add_words([rows, columns, place])
     }
 
-    /// Adds lists of numbers: where each begins and the last ends, then all of them.
+    /// Adds lists: the start of each and the end of the last, then all items. Returns their offset.
     fn lists<'a>(&mut self, lists: impl Iterator<Item = &'a [u32]> + Clone) -> usize {
         let begins = starts(lists.clone().map(<[u32]>::len));
         let items = self.words.len() + begins.len();
@@ -158,14 +160,14 @@ impl Tables {
         place
     }
 
-    /// Adds words; where they are.
+    /// Adds words. Returns their offset.
     pub(super) fn add_words(&mut self, values: impl IntoIterator<Item = usize>) -> usize {
         let place = self.words.len();
         self.words.extend(values.into_iter().map(|v| v as u32));
         place
     }
 
-    /// Adds numbers; where they are.
+    /// Adds numbers. Returns their offset.
     pub(super) fn add_numbers(&mut self, values: impl IntoIterator<Item = f64>) -> usize {
         let place = self.numbers.len();
         self.numbers.extend(values);
@@ -173,7 +175,7 @@ impl Tables {
     }
 }
 
-/// A box as a polyhedron; none where it is flat.
+/// Returns a box as a polyhedron; `None` if it is flat.
 fn hull_of_box(size: Vec3<f64>) -> Option<Hull> {
     let sign = |k: usize, axis: usize| if k >> axis & 1 == 1 { -1.0 } else { 1.0 };
     let corner = |k| size.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2)));

@@ -1,5 +1,5 @@
-//! The model as the device reads it: one array of words, one of numbers, and the layout by which the kernels find what they
-//! want in them. A table is one line of one of the files here; its name in capitals is its place.
+//! The model as the device reads it: an array of words, an array of numbers, and the layout of both. A table is one
+//! line of a file of this module; its name in capitals is its offset.
 
 mod actuators;
 mod bodies;
@@ -30,13 +30,14 @@ use std::fmt::Write;
 
 /// No element.
 pub(crate) const NONE: u32 = u32::MAX;
-/// The word that tells whether environments have parameters of their own: the one behind the first.
+/// The index of the word that is nonzero if environments have parameters of their own.
 pub(crate) const OWN_PARAMETERS: usize = 1;
-/// The word that tells how many environments there are. It is no constant, so that batches of all sizes share their kernels.
+/// The index of the word with the number of environments. It is not a constant, so that batches of all sizes share
+/// kernels.
 pub(crate) const ENVS: usize = 2;
-/// The word that tells whether distances are measured: somebody asks for sensors.
+/// The index of the word that is nonzero if sensors are requested, so that distances are measured.
 pub(crate) const MEASURES: usize = 3;
-/// What stands for a range without an end: a device may have no infinity.
+/// The value of an unlimited range; a device may not support infinity.
 const ENDLESS: f64 = 3e38;
 
 /// The arrays under construction, and the source text of the constants.
@@ -45,18 +46,18 @@ pub(crate) struct Tables {
     pub words: Vec<u32>,
     /// Numbers of the model.
     pub numbers: Vec<f64>,
-    /// Declarations in WGSL, which decide of the texts of the kernels.
+    /// Declarations in WGSL, which affect the texts of the kernels.
     pub constants: String,
-    /// Where the tables lie, and how much there is of what.
+    /// The offsets of the tables, and counts.
     pub layout: Layout,
-    /// Whether kernels are to serve any model: they ask the layout what this one has.
+    /// True if kernels serve any model: they read the layout for its features.
     pub general_kernels: bool,
 }
 
-/// How large the constraints of an environment can become.
+/// The maximum sizes of the constraints of an environment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Capacity {
-    /// Pairs of geoms that may collide, and those whose distance is measured.
+    /// Pairs of geoms that may collide or whose distance is measured.
     pub pairs: usize,
     /// Pairs whose distance is measured.
     pub measured: usize,
@@ -68,25 +69,25 @@ pub(crate) struct Capacity {
     pub blocks: usize,
     /// Rows of the convex problem.
     pub rows: usize,
-    /// Bodies whose articulated inertia is kept, where paths are long.
+    /// Bodies whose articulated inertia is stored, if paths are long.
     pub articulated: usize,
     /// Vertices of the polytope of overlapping shapes, and its faces.
     pub polytope: [usize; 2],
     /// Numbers of the manifolds on terrain, of the contacts of a face, and of those of a patch.
     pub terrain: [usize; 3],
-    /// Numbers of the mass matrix as a solve multiplies with it.
+    /// Numbers of the mass matrix in the form that a solve multiplies with.
     pub mass: usize,
-    /// Numbers of the factor of H that lie with the rows.
+    /// Numbers of the factor of H that are stored with the rows.
     pub tiles: usize,
-    /// Numbers of the solver's vectors that lie with the rows.
+    /// Numbers of the solver's vectors that are stored with the rows.
     pub vectors: usize,
-    /// Whether any contact adheres of itself.
+    /// True if any contact has adhesion.
     pub adheres: bool,
 }
 
 impl Tables {
-    /// The tables of a model, and how large its constraints can become. Numbers that environments may have for themselves; what they
-    /// share comes after them.
+    /// Builds the tables of a model and the capacity of its constraints. Numbers that can differ between environments
+    /// precede shared ones.
     pub(crate) fn new<S: Scalar>(
         model: &Model,
         settings: &StepSettings,
@@ -140,27 +141,27 @@ impl Tables {
         self.numbers.extend(values);
     }
 
-    /// The numbers of the model in the device's type.
+    /// Returns the model's numbers in the device's type.
     pub(crate) fn numbers_in<S: Scalar>(&self) -> Vec<S> {
         self.numbers.iter().map(|&x| S::new(x)).collect()
     }
 
-    /// Tells how many there are of something.
+    /// Adds a count.
     fn count(&mut self, name: &str, value: usize) {
         self.layout.count(name, value);
     }
 
-    /// Tells a number.
+    /// Adds a real number.
     fn real(&mut self, name: &str, value: f64) {
         self.layout.real(name, value);
     }
 
-    /// Declares a code, or a size on which the texts of the kernels depend.
+    /// Declares a code, or a size that affects the texts of the kernels.
     fn constant(&mut self, name: &str, value: usize) {
         let _ = writeln!(self.constants, "const {name}: u32 = {value}u;");
     }
 
-    /// Tells what a model has, or what is asked for: what it has not is left out of the texts.
+    /// Adds a feature of the model or a requested option; kernels omit code of unused ones.
     fn flag(&mut self, name: &str, value: bool) {
         if self.general_kernels {
             self.layout.flag(name, value);
@@ -170,7 +171,7 @@ impl Tables {
     }
 }
 
-/// Where the parts of consecutive owners begin, and where the last ends.
+/// Returns the start of each consecutive part, and the end of the last.
 fn starts(lengths: impl IntoIterator<Item = usize>) -> Vec<usize> {
     let mut starts = vec![0];
     let mut end = 0;

@@ -1,4 +1,4 @@
-//! Rays of sensors: where they go out, what is told of each, and the geoms that they may meet.
+//! Rays of sensors: their origins, the reported fields, and the geoms that they may hit.
 
 use super::{ENDLESS, NONE, Tables};
 use clench_collide::{ShapeKind, TriangleMesh, TriangleNode, allowance};
@@ -6,7 +6,7 @@ use clench_math::{Scalar, Vec3};
 use clench_rigid::model::{Model, RayField, RaySource, Sensor, SensorTarget};
 use std::iter::repeat_n;
 
-/// The words of a sensor that sends out rays.
+/// The words of a sensor with rays.
 const RAY_SENSOR_FIELDS: [&str; 8] = [
     "RAY_SOURCE",
     "RAY_ELEMENT",
@@ -17,15 +17,15 @@ const RAY_SENSOR_FIELDS: [&str; 8] = [
     "RAY_FIELD_START",
     "RAY_FIELD_END",
 ];
-/// Where rays go out.
+/// The origins of rays.
 const SOURCES: [&str; 2] = ["FROM_SITE", "FROM_CAMERA"];
-/// The words of a node of the tree of boxes over the triangles of a mesh.
+/// The words of a node of the bounding-box tree of a mesh's triangles.
 const NODE_FIELDS: [&str; 3] = ["NODE_NEXT", "NODE_FACE", "NODE_FACE_COUNT"];
-/// By how much the box of a node is larger than its triangles, over the largest coordinate of the mesh: a ray within a side of the
-/// box is not one beside it.
+/// The margin of a node's box, relative to the largest coordinate of the mesh, so that rays in the plane of a side hit
+/// it.
 const NODE_MARGIN: f64 = 1e-6;
 
-/// Where the rays of a sensor go out, and what is told of each; none where it has none.
+/// Returns the origin of a sensor's rays and the reported fields; `None` if it has no rays.
 fn rays_of(sensor: &Sensor) -> Option<(RaySource, &[RayField])> {
     match &sensor.target {
         SensorTarget::Rays { source, fields } => Some((*source, fields)),
@@ -33,7 +33,7 @@ fn rays_of(sensor: &Sensor) -> Option<(RaySource, &[RayField])> {
     }
 }
 
-/// How many rays go out from a source.
+/// Returns the number of rays of a source.
 fn rays_from(m: &Model, source: RaySource) -> usize {
     match source {
         RaySource::Site(_) => 1,
@@ -41,13 +41,13 @@ fn rays_from(m: &Model, source: RaySource) -> usize {
     }
 }
 
-/// How many rays all sensors send out.
+/// Returns the number of rays of all sensors.
 pub(crate) fn ray_count(m: &Model) -> usize {
     let sources = m.sensors.iter().filter_map(rays_of);
     sources.map(|(source, _)| rays_from(m, source)).sum()
 }
 
-/// The geoms that rays may meet.
+/// Returns the geoms that rays may hit.
 fn visible(m: &Model) -> impl Iterator<Item = usize> + Clone {
     (0..m.geoms.len()).filter(|&g| m.geoms[g].visible)
 }
@@ -92,7 +92,7 @@ impl Tables {
         let has = |kind: ShapeKind| visible(m).any(|g| m.geoms[g].kind == kind);
         self.flag("RAYS_MEET_MESHES", has(ShapeKind::Mesh));
         self.flag("RAYS_MEET_TERRAIN", has(ShapeKind::HeightField));
-        // Planes have no end.
+        // Planes are unbounded.
         let reach = |g: usize| match m.geoms[g].kind {
             ShapeKind::Plane => 0.0,
             _ => m.params.geom_rbound[g] * allowance::<S>().to_f64(),
@@ -100,8 +100,8 @@ impl Tables {
         self.numbers("RAY_REACH", visible(m).map(reach));
     }
 
-    /// The triangles and height fields that rays may meet, each once, and which of them each visible geom is. They stand behind all
-    /// parameters: no environment has its own.
+    /// Adds the triangles and height fields that rays may hit, each once, and the one of each visible geom. They follow
+    /// all parameters, because environments share them.
     pub(crate) fn ray_shapes(&mut self, m: &Model) {
         let mut of_mesh = vec![None; m.meshes.len()];
         let mut of_field = vec![None; m.height_fields.len()];
@@ -121,7 +121,8 @@ impl Tables {
         self.words("RAY_SHAPE", of_geom);
     }
 
-    /// Adds the triangles of a mesh: how many nodes their tree has, and where these, their boxes and the corners of the triangles are.
+    /// Adds a mesh: the number of tree nodes, and the offsets of these, their boxes and the triangles' corners. Returns
+    /// its offset.
     fn triangles(&mut self, mesh: &TriangleMesh) -> usize {
         let mut nodes = Vec::new();
         if !mesh.faces().is_empty() {
@@ -144,8 +145,8 @@ impl Tables {
     }
 }
 
-/// The nodes of a tree from one on, each before its children and these one after the other, with the number of the node that
-/// follows all below it: whoever passes a box by goes on there. No tree is deeper than 32.
+/// Lists the nodes of a subtree in depth-first order, each with the index of the node after its subtree: a ray that
+/// misses a box continues there. No tree is deeper than 32.
 fn depth_first<'a>(
     tree: &'a [TriangleNode],
     index: usize,

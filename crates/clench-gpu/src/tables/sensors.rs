@@ -1,4 +1,4 @@
-//! Sensors: how each is read, of what, and within which cutoff; and the actuators of each tendon.
+//! Sensors: their method, object and cutoff; and the actuators of each tendon.
 
 use super::distances::{is_measured, pairs_of};
 use super::{NONE, Tables, starts};
@@ -25,7 +25,7 @@ const SENSOR_FIELDS: [&str; 13] = [
 ];
 /// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site, its delay and its period.
 const SENSOR_PRM_SIZE: usize = 7;
-/// How a sensor is read.
+/// The methods that read sensors.
 const WAYS: [&str; 11] = [
     "OF_SCALAR",
     "OF_FRAME",
@@ -39,16 +39,16 @@ const WAYS: [&str; 11] = [
     "OF_PROJECTION",
     "OF_RAYS",
 ];
-/// The words of a query for contacts, before its fields and the sides of each geom.
+/// The words of a contact query, before its fields and the sides of each geom.
 const QUERY: [&str; 4] = [
     "QUERY_REDUCTION",
     "QUERY_SIZE",
     "QUERY_NFIELD",
     "QUERY_FIELDS",
 ];
-/// How contacts are reduced.
+/// The reductions of contacts.
 const REDUCTIONS: [&str; 4] = ["FIRST_ONES", "MIN_DIST", "MAX_FORCE", "NET_FORCE"];
-/// Kinds of object that have a frame.
+/// The kinds of object with a frame.
 const FRAMES: [&str; 6] = [
     "NO_FRAME",
     "INERTIAL_FRAME",
@@ -58,7 +58,7 @@ const FRAMES: [&str; 6] = [
     "CAMERA_FRAME",
 ];
 
-/// What a row of words says of a frame: the kind of its object, which it is, and the body that it is of.
+/// Returns the words of a frame: the kind of its object, its index, and its body.
 fn frame(m: &Model, object: FrameObject) -> [usize; 3] {
     let (kind, index, body) = match object {
         FrameObject::Inertial(b) => (1, b, b),
@@ -70,7 +70,8 @@ fn frame(m: &Model, object: FrameObject) -> [usize; 3] {
     [kind, index, body]
 }
 
-/// How a sensor is read on a device, if it can be: the way, the object and the reference, as [`SENSOR_FIELDS`] has them.
+/// Returns the method, the object and the reference of a sensor, as in [`SENSOR_FIELDS`]; `None` if the device does not
+/// support it.
 fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])> {
     use SensorKind as Kind;
     let none = [0; 3];
@@ -94,11 +95,11 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
                 (3, [2, *e, 0], [0, m.subtree(*e).end, 0])
             }
             Kind::BallQuat | Kind::BallAngVel => (4, [0, *e, 0], none),
-            // Known by their first output.
+            // Represented by their first output.
             Kind::ActuatorPos | Kind::ActuatorVel | Kind::ActuatorFrc => {
                 (6, [0, m.actuators[*e].outputs.start, 0], none)
             }
-            // Limits are known by coordinates: joints, then tendons.
+            // Limits are represented by coordinates: joints, then tendons.
             Kind::TendonLimitPos | Kind::TendonLimitVel | Kind::TendonLimitFrc => {
                 (0, [0, m.joints.len() + e, 0], none)
             }
@@ -112,7 +113,7 @@ fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])>
     })
 }
 
-/// A query for contacts, as kernels read it.
+/// Returns the words of a contact query.
 fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
     let reduction = match query.reduction {
         ContactReduction::None => 0,
@@ -134,12 +135,12 @@ fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
     row
 }
 
-/// Whether a device reads a sensor.
+/// Returns true if a device supports a sensor.
 pub(crate) fn is_read(m: &Model, sensor: &Sensor) -> bool {
     target(m, sensor).is_some()
 }
 
-/// Whether any sensor has a delay or a period, and so a buffer of what it measured.
+/// Returns true if any sensor has a delay or a period, and so a measurement buffer.
 pub(crate) fn has_sensor_history(m: &Model) -> bool {
     m.sensors.iter().any(|sensor| sensor.history.is_some())
 }
@@ -189,7 +190,7 @@ impl Tables {
                 SensorTarget::Element(site) if sensor.kind == SensorKind::Touch => Some(*site),
                 _ => None,
             };
-            // What rays meet is clipped where it is told.
+            // Rangefinders clip in the ray kernel.
             let unclipped = matches!(
                 sensor.kind,
                 SensorKind::Contact | SensorKind::FromTo | SensorKind::Rangefinder
@@ -223,7 +224,7 @@ impl Tables {
         self.pulls(m);
     }
 
-    /// The actuators that pull at each tendon, and their gears.
+    /// Adds the actuators of each tendon, and their gears.
     fn pulls(&mut self, m: &Model) {
         let of = |t: usize| {
             let each = m.actuators.iter().enumerate();

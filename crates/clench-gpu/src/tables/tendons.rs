@@ -1,4 +1,4 @@
-//! Tendons: what each is made of, which dofs change its length, and the laws of its spring and damper.
+//! Tendons: their paths, the dofs that change their length, and the laws of their springs and dampers.
 
 use super::{NONE, Tables, starts};
 use clench_rigid::model::{Model, Wrap};
@@ -19,7 +19,8 @@ impl Tables {
         self.tendon_laws(m);
     }
 
-    /// The terms of fixed tendons: a joint's position, where its derivative stands among those of all tendons, and its coefficient.
+    /// Adds the terms of fixed tendons: a joint's position, the index of its derivative among those of all tendons, and
+    /// its coefficient.
     fn fixed_tendons(&mut self, m: &Model) {
         let terms = |t: usize| {
             let tendon = &m.tendons[t];
@@ -41,7 +42,7 @@ impl Tables {
         self.numbers("TERM_COEF", each().map(|term| term.2));
     }
 
-    /// The sections of spatial tendons: two sites, and by how much the length between them counts.
+    /// Adds the sections of spatial tendons: two sites, and the factor of the length between them.
     fn spatial_tendons(&mut self, m: &Model) {
         let sections = |t: usize| match m.tendons[t].is_spatial() {
             true => Vec::from_iter(m.tendons[t].sections()),
@@ -61,7 +62,8 @@ impl Tables {
         self.flag("ANY_OBSTACLE", each().any(|s| s.obstacle.is_some()));
     }
 
-    /// The inertia of each tendon, the dead band and the coefficients of each spring, and those of each damper with its actuators'; none where the flags switch them off.
+    /// Adds the inertia of each tendon, the dead band and the coefficients of its spring, and those of its damper with
+    /// its actuators'; zero if the flags disable them.
     fn tendon_laws(&mut self, m: &Model) {
         let p = &m.params;
         let law = |on: bool, a: f64, [b, c]: [f64; 2]| if on { [a, b, c] } else { [0.0; 3] };

@@ -38,7 +38,7 @@ const LOGARITHM_64: [f64; 8] = [
 ];
 const LOGARITHM_32: [f64; 3] = [0.40000152179355647, 0.28547133361409, 0.23418582781918454];
 
-/// ln 2 in two parts, the first short enough to be multiplied exactly by any exponent.
+/// Returns ln 2 in two parts, the first short enough to be multiplied exactly by any exponent.
 #[inline(always)]
 fn ln_2<T: Real>() -> (T, T) {
     let high = by_precision::<T, _>(0.6931471805598903, 0.693145751953125);
@@ -46,13 +46,13 @@ fn ln_2<T: Real>() -> (T, T) {
     (T::new(high), T::new(low))
 }
 
-/// Exponential: 0 or ∞ past the ends of the range, gradual underflow between.
+/// Computes the exponential: 0 or ∞ past the ends of the range, with gradual underflow.
 #[kernel]
 pub(crate) fn exp<T: Real>(x: T) -> T {
     exp_extended(x, T::ZERO)
 }
 
-/// Natural logarithm: −∞ at 0, NaN below.
+/// Computes the natural logarithm: −∞ at 0, NaN below.
 #[kernel]
 pub(crate) fn ln<T: Real>(x: T) -> T {
     let infinity = T::splat(T::Scalar::INFINITY);
@@ -62,11 +62,12 @@ pub(crate) fn ln<T: Real>(x: T) -> T {
     T::select(x.ge(T::ZERO), y, T::new(f64::NAN))
 }
 
-/// `x` to the power `p`, for x ≥ 0 (NaN below): exp(p ln x) in extended precision. Anything to the power 0 is 1.
+/// Computes `x` to the power `p`, for x ≥ 0 (NaN below): exp(p ln x) in extended precision. Anything to the power 0 is
+/// 1.
 #[kernel]
 pub(crate) fn powf<T: Real>(x: T, p: T) -> T {
     let (zero, infinity) = (T::ZERO, T::splat(T::Scalar::INFINITY));
-    // A larger power over- or underflows for every x but 1, and could spoil the exact product below.
+    // A larger power overflows or underflows for every x but 1, and could make the product below inexact.
     let most = by_precision::<T, _>(f64::powi(2.0, 64), f64::powi(2.0, 32));
     let bounded_p = bounded(p, -most, most);
     let (high, low) = ln_extended(x);
@@ -80,12 +81,13 @@ pub(crate) fn powf<T: Real>(x: T, p: T) -> T {
     T::select(p.eq(zero), T::ONE, y)
 }
 
-/// e to the power `high + low`, `low` far below `high`.
+/// Computes e to the power `high + low`, with `low` far below `high`.
 ///
 /// x = k ln 2 + r with |r| ≤ ½ ln 2, and eˣ = 2ᵏ eʳ.
 #[inline(always)]
 fn exp_extended<T: Real>(high: T, low: T) -> T {
-    // A little past where the result is ∞ or 0; at the bounds a stray low part no longer matters, but must stay small.
+    // A little past the points at which the result is ∞ or 0. At these limits the low part no longer affects the
+    // result, but must stay small.
     let (least, most) = by_precision::<T, _>((-750.0, 712.0), (-108.0, 92.0));
     let high = bounded(high, least, most);
     let low = bounded(low, -1.0, 1.0);
@@ -93,12 +95,13 @@ fn exp_extended<T: Real>(high: T, low: T) -> T {
     let (ln2_high, ln2_low) = ln_2::<T>();
     let (r, tail) = ordered_sum(high - exponent * ln2_high, low - exponent * ln2_low);
     let power = T::ONE + (r + (tail + r * r * polynomial(r, &EXPONENTIAL_64, &EXPONENTIAL_32)));
-    // In two halves, for 2ᵏ itself may be out of range; only the second product can round.
+    // In two halves, since 2ᵏ itself may be out of range; only the second product can round.
     let half = nearest_integer(exponent * T::new(0.5));
     power * half.exp2_integer() * (exponent - half).exp2_integer()
 }
 
-/// Natural logarithm of a positive finite number as an unevaluated sum, good to some 10 bits beyond the precision.
+/// Computes the natural logarithm of a positive finite number as an unevaluated sum, accurate to about 10 bits beyond
+/// the precision.
 ///
 /// x = 2ᵏ m with m in [√½, √2), and ln m = 2 artanh s with s = (m − 1)/(m + 1).
 #[inline(always)]
@@ -117,7 +120,7 @@ fn ln_extended<T: Real>(x: T) -> (T, T) {
     let (z, z_error) = two_product(s, s);
     let z_low = z_error + two * s * s_low;
     let two_thirds = T::new(2.0 / 3.0);
-    // What the rounded ⅔ lacks.
+    // The rounding error of ⅔.
     let two_thirds_low = T::new(by_precision::<T, _>(
         3.700743415417188e-17,
         -1.9868215517249155e-08,
@@ -135,7 +138,7 @@ fn ln_extended<T: Real>(x: T) -> (T, T) {
     ordered_sum(sum, sum_error + (ln_m_low + exponent * ln2_low))
 }
 
-/// [`Real::split_exponent`], extended to subnormal numbers.
+/// Computes [`Real::split_exponent`], extended to subnormal numbers.
 #[inline(always)]
 fn split_any<T: Real>(x: T) -> (T, T) {
     let (digits, scale) =

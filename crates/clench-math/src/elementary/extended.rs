@@ -1,4 +1,4 @@
-//! Error-free sums and products: a pair (value, error) stands for their exact sum.
+//! Error-free sums and products: a pair (value, error) represents their exact sum.
 //!
 //! Dekker, *A floating-point technique for extending the available precision* (1971); Knuth, *The Art of Computer
 //! Programming*, volume 2, 4.2.2.
@@ -6,7 +6,7 @@
 use super::polynomial::by_precision;
 use crate::Real;
 
-/// a + b.
+/// Computes a + b.
 #[inline(always)]
 pub(super) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
@@ -15,14 +15,14 @@ pub(super) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     (sum, (a - a_part) + (b - b_part))
 }
 
-/// a + b where |a| ≥ |b|.
+/// Computes a + b for |a| ≥ |b|.
 #[inline(always)]
 pub(super) fn ordered_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// a × b, where neither comes within a few bits of overflow.
+/// Computes a × b, if neither is within a few bits of overflow.
 #[inline(always)]
 pub(super) fn two_product<T: Real>(a: T, b: T) -> (T, T) {
     let product = a * b;

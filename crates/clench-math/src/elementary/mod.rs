@@ -1,11 +1,11 @@
 //! Elementary functions, written once for every [`Real`]: branch-free in `T`, without fused multiply-add and without
 //! tables, so that lanes equal scalars to the bit on every processor.
 //!
-//! Each function reduces its argument to a small interval, evaluates a polynomial there and puts the pieces back
-//! together, carrying rounding errors along where they would show. Polynomials are minimax (Remez exchange in 60
-//! digits), coefficients lowest order first, one set for `f64` and a shorter one for `f32`.
+//! Each function reduces its argument to a small interval, evaluates a polynomial there and combines the parts, with
+//! compensation of rounding errors that would be visible. Polynomials are minimax (Remez exchange in 60 digits), with
+//! the coefficients lowest order first, one set for `f64` and a shorter one for `f32`.
 //!
-//! Largest errors found, in units in the last place (`f64`: 2 × 10⁷ random arguments against 48-digit values;
+//! The largest errors found, in units in the last place (`f64`: 2 × 10⁷ random arguments against 48-digit values;
 //! `f32`: every argument of sine and cosine up to 10⁵, 4 × 10⁷ pairs of atan2, 3 × 10⁶ of the rest):
 //!
 //! |       | sin  | cos  | atan2 | exp  | ln   | powf |
@@ -21,7 +21,7 @@ mod trigonometric;
 pub(crate) use exponential::{exp, ln, powf};
 pub(crate) use trigonometric::{atan2, sin_cos};
 
-/// The elementary functions of an implementation of [`Real`](crate::Real).
+/// Implements the elementary functions of a [`Real`](crate::Real).
 macro_rules! elementary_functions {
     () => {
         #[inline(always)]

@@ -1,8 +1,8 @@
-//! Polynomials, and the small steps that all functions share.
+//! Polynomials, and small steps shared by all functions.
 
 use crate::{Real, Scalar};
 
-/// A constant that depends on the lane's precision.
+/// Selects a constant by the lane's precision.
 #[inline(always)]
 pub(super) fn by_precision<T: Real, C>(double: C, single: C) -> C {
     if T::Scalar::DIGITS > f32::MANTISSA_DIGITS {
@@ -12,7 +12,7 @@ pub(super) fn by_precision<T: Real, C>(double: C, single: C) -> C {
     }
 }
 
-/// Σ cᵢ zⁱ, even and odd powers apart so that the two chains overlap.
+/// Computes Σ cᵢ zⁱ, with even and odd powers separate so that the two dependency chains overlap.
 #[inline(always)]
 pub(super) fn polynomial<T: Real>(z: T, double: &[f64], single: &[f64]) -> T {
     let coefficients = by_precision::<T, _>(double, single);
@@ -20,7 +20,7 @@ pub(super) fn polynomial<T: Real>(z: T, double: &[f64], single: &[f64]) -> T {
     every_other(squared, coefficients) + z * every_other(squared, &coefficients[1..])
 }
 
-/// c₀ + c₂ x + c₄ x² + …
+/// Computes c₀ + c₂ x + c₄ x² + …
 #[inline(always)]
 fn every_other<T: Real>(x: T, coefficients: &[f64]) -> T {
     let last = (coefficients.len() - 1) / 2;
@@ -31,15 +31,15 @@ fn every_other<T: Real>(x: T, coefficients: &[f64]) -> T {
     sum
 }
 
-/// The nearest integer, for magnitudes below a quarter of the first number without fraction bits (2⁵¹, 2²²).
+/// Computes the nearest integer, for magnitudes below a quarter of the first number without fraction bits (2⁵¹, 2²²).
 #[inline(always)]
 pub(super) fn nearest_integer<T: Real>(x: T) -> T {
-    // 1.5 × 2⁵² pushes the fraction bits out of the mantissa, rounding to even on the way.
+    // Adding 1.5 × 2⁵² shifts the fraction bits out of the mantissa, rounding to even.
     let shift = T::new(by_precision::<T, _>(6_755_399_441_055_744.0, 12_582_912.0));
     (x + shift) - shift
 }
 
-/// `x` held between two bounds; NaN stays NaN.
+/// Clamps `x` between two limits; NaN stays NaN.
 #[inline(always)]
 pub(super) fn bounded<T: Real>(x: T, low: f64, high: f64) -> T {
     T::new(high).min(T::new(low).max(x))

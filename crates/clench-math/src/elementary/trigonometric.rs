@@ -8,11 +8,11 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, SQRT_2};
 /// π/2 in parts short enough that their products with the number of quarter turns are exact, up to 2²⁰ quarter turns
 /// in `f64` and 2¹⁶ in `f32` (1.6 million and 100,000 rad).
 struct QuarterTurn {
-    /// Parts whose subtraction is exact too.
+    /// Parts whose subtraction is also exact.
     exact: &'static [f64],
-    /// Parts whose subtraction rounds; the rounding error is kept.
+    /// Parts whose subtraction rounds; the rounding error is stored.
     compensated: &'static [f64],
-    /// What remains. (No part is negative: then −0 comes through.)
+    /// The remainder. (No part is negative, so that −0 is preserved.)
     last: f64,
 }
 const QUARTER_TURN_64: QuarterTurn = QuarterTurn {
@@ -80,26 +80,26 @@ const ARC_TANGENT_32: [f64; 5] = [
     -0.06083443162048795,
 ];
 
-/// Sine and cosine.
+/// Computes sine and cosine.
 ///
-/// x = q π/2 + y with q an integer and |y| ≤ π/4; then (cos x, sin x) is (cos y, sin y) turned by q quarter turns,
+/// x = q π/2 + y with q an integer and |y| ≤ π/4. Then (cos x, sin x) is (cos y, sin y) rotated by q quarter turns,
 /// that is, multiplied as a complex number by (u, v) = (cos, sin)(q π/2), each −1, 0 or 1.
 #[inline(always)]
 pub(crate) fn sin_cos<T: Real>(x: T) -> (T, T) {
-    // Past a quarter of the mantissa's integers there is no telling quarter turns apart; infinity becomes NaN.
+    // Past a quarter of the mantissa's integers, quarter turns cannot be distinguished; infinity becomes NaN.
     let most = T::new(by_precision::<T, _>(f64::powi(2.0, 50), f64::powi(2.0, 21)));
     let x = T::select(x.abs().le(most), x, x * T::ZERO);
     let (quarters, angle, tail) = reduce_to_quarter_turn(x);
     let (sine, cosine) = small_sin_cos(angle, tail);
-    // q modulo 4, negated, in −2..=2, by its arithmetic: no bits, no branches. The order of the operations makes
-    // v = −0 for q = 0, so that the sine of −0 is −0.
+    // q modulo 4, negated, in −2..=2, by arithmetic, without bit operations or branches. The order of the operations
+    // makes v = −0 for q = 0, so that the sine of −0 is −0.
     let minus_q = T::new(4.0) * nearest_integer(quarters * T::new(0.25)) - quarters;
     let u = T::ONE - minus_q.abs();
     let v = minus_q * (minus_q.abs() - T::new(2.0));
     (sine * u + cosine * v, cosine * u - sine * v)
 }
 
-/// (q, y, tail of y): Cody and Waite's reduction, with the rounding errors of the last parts kept.
+/// Returns (q, y, tail of y): Cody and Waite's reduction, with the rounding errors of the last parts.
 #[inline(always)]
 fn reduce_to_quarter_turn<T: Real>(x: T) -> (T, T, T) {
     let parts = by_precision::<T, _>(&QUARTER_TURN_64, &QUARTER_TURN_32);
@@ -118,23 +118,23 @@ fn reduce_to_quarter_turn<T: Real>(x: T) -> (T, T, T) {
     (quarters, angle, (rest - angle) - excess)
 }
 
-/// Sine and cosine of `y + tail`, |y| ≤ π/4 and the tail below y's last place.
+/// Computes sine and cosine of `y + tail`, with |y| ≤ π/4 and the tail below y's last place.
 #[inline(always)]
 fn small_sin_cos<T: Real>(y: T, tail: T) -> (T, T) {
     let z = y * y;
     let half_z = z * T::new(0.5);
     let head = T::ONE - half_z;
-    // The tail adds to the sine by the slope, cos y ≈ 1 − z/2, and to the cosine by −sin y ≈ −y. The sign is y's: only
-    // −0 needs to be told.
+    // The tail adds to the sine by the slope, cos y ≈ 1 − z/2, and to the cosine by −sin y ≈ −y. The sign is that of y;
+    // only −0 needs the explicit copy.
     let sine = y + (z * y * polynomial(z, &SINE_64, &SINE_32) + tail * head);
     let sine = sine.copysign(y);
     let small = z * z * polynomial(z, &COSINE_64, &COSINE_32) - y * tail;
-    // 1 − z/2 rounds; what it loses comes back with the small terms.
+    // 1 − z/2 rounds; its error is added back with the small terms.
     let cosine = head + (((T::ONE - head) - half_z) + small);
     (sine, cosine)
 }
 
-/// Angle of the point (x, y), in [−π, π]; signed zeros and infinities as in IEEE 754.
+/// Computes the angle of the point (x, y), in [−π, π]; signed zeros and infinities as in IEEE 754.
 ///
 /// With s the smaller and l the larger of |x|, |y|, atan(s/l) is atan t or π/4 + atan t with t = s/l or
 /// (s − l)/(s + l), |t| ≤ tan(π/8); reflections at the diagonal (|y| > |x|) and at the y axis (x < 0) then turn an
@@ -158,7 +158,7 @@ pub(crate) fn atan2<T: Real>(y: T, x: T) -> T {
     let backward = one.copysign(x).lt(zero);
     eighths = T::select(backward, T::new(4.0) - eighths, eighths);
     sign = T::select(backward, -sign, sign);
-    // π/4 in two parts, the first ending in zeros (in f64 it does so by itself): its multiples up to 4 are exact.
+    // π/4 in two parts. The first ends in zeros (in f64 by itself), so its multiples up to 4 are exact.
     let high = T::new(by_precision::<T, _>(FRAC_PI_4, 0.785398006439209));
     let low = T::new(by_precision::<T, _>(
         3.061616997868383e-17,
@@ -170,8 +170,8 @@ pub(crate) fn atan2<T: Real>(y: T, x: T) -> T {
     T::select(known, angle.copysign(y), T::new(f64::NAN))
 }
 
-/// The smaller and the larger magnitude, made safe to divide and add: (0, 0) becomes (0, 1), (finite, ∞) too,
-/// (∞, ∞) becomes (1, 1), and numbers near overflow are scaled down.
+/// Makes the smaller and the larger magnitude safe to divide and add: (0, 0) and (finite, ∞) become (0, 1), (∞, ∞)
+/// becomes (1, 1), and numbers near overflow are scaled down.
 #[inline(always)]
 fn ratio_operands<T: Real>(s: T, l: T) -> (T, T) {
     let (zero, one) = (T::ZERO, T::ONE);

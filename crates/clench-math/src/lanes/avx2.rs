@@ -10,7 +10,7 @@ use std::mem::transmute;
 pub struct Avx2;
 
 impl Avx2 {
-    /// Whether the processor has all that these lanes use.
+    /// Returns true if the processor has all instructions that these lanes use.
     pub(crate) fn detected() -> bool {
         is_x86_feature_detected!("avx2")
     }
@@ -28,7 +28,8 @@ macro_rules! registers {
         const _: () = {
             use crate::scalar::$layout::*;
 
-            // SAFETY: a register is its numbers. All intrinsics belong to the set, whose presence the trait asks for.
+            // SAFETY: a register consists of its numbers. All intrinsics belong to the instruction set, whose presence
+            // the trait requires.
             unsafe impl Registers<$scalar, $lanes> for Avx2 {
                 type Vector = $vector;
                 type Mask = $vector;

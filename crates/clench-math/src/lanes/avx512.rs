@@ -4,19 +4,19 @@ use super::registers::Registers;
 use std::arch::x86_64::*;
 use std::mem::transmute;
 
-/// AVX-512 with its doubleword, byte and vector-length extensions: every processor that has it but Knights Landing.
+/// AVX-512 with its doubleword, byte and vector-length extensions: every processor with AVX-512 except Knights Landing.
 #[allow(unreachable_pub, reason = "one set can be part of `Scalar::Alone`")]
 #[derive(Clone, Copy)]
 pub struct Avx512;
 
 impl Avx512 {
-    /// Whether the processor has all that these lanes use.
+    /// Returns true if the processor has all instructions that these lanes use.
     pub(crate) fn detected() -> bool {
         is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512dq")
             && is_x86_feature_detected!("avx512bw")
             && is_x86_feature_detected!("avx512vl")
-            // What the compiler takes AVX-512 to include.
+            // The compiler takes AVX-512 to include these.
             && is_x86_feature_detected!("avx2")
             && is_x86_feature_detected!("fma")
             && is_x86_feature_detected!("f16c")
@@ -35,7 +35,8 @@ macro_rules! registers {
         const _: () = {
             use crate::scalar::$layout::*;
 
-            // SAFETY: a register is its numbers. All intrinsics belong to the set, whose presence the trait asks for.
+            // SAFETY: a register consists of its numbers. All intrinsics belong to the instruction set, whose presence
+            // the trait requires.
             unsafe impl Registers<$scalar, $lanes> for Avx512 {
                 type Vector = $vector;
                 type Mask = $mask;

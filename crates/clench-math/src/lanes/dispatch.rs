@@ -1,4 +1,4 @@
-//! Which instructions the processor has, and running a task in lanes of them.
+//! Detection of the processor's instruction sets, and dispatch of tasks to lanes of them.
 
 #[cfg(any(lanes = "avx2", lanes = "avx512", lanes = "neon", lanes = "portable"))]
 use super::Lanes;
@@ -12,13 +12,14 @@ use super::registers::Registers;
 use super::{avx2::Avx2, avx512::Avx512};
 use crate::real::{Real, Scalar};
 
-/// How the numbers of several environments are held side by side.
+/// The instruction set that holds the numbers of several environments in parallel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Instructions {
     /// One environment at a time.
     Scalar,
-    /// Plain arrays, 2 × `f64`, 4 × `f32`, on architectures whose registers have no lanes of ours. (On the others they would be
-    /// slower than the sets below, and as much code to compile; x86-64 without AVX2 goes one environment at a time.)
+    /// Plain arrays, 2 × `f64` or 4 × `f32`, on architectures without one of the sets below. (On the others they would
+    /// be slower than these sets, and as much code to compile; x86-64 without AVX2 processes one environment at a
+    /// time.)
     Portable,
     /// 2 × `f64`, 4 × `f32` on ARM.
     Neon,
@@ -29,7 +30,7 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// All, narrowest first.
+    /// All instruction sets, narrowest first.
     const ALL: [Instructions; 5] = [
         Instructions::Scalar,
         Instructions::Portable,
@@ -38,12 +39,12 @@ impl Instructions {
         Instructions::Avx512,
     ];
 
-    /// Returns whether lanes of these instructions were compiled and this processor has them.
+    /// Returns true if lanes of these instructions were compiled and this processor has them.
     pub fn available(self) -> bool {
         self.compiled() && self.detected()
     }
 
-    /// Returns whether lanes of these instructions were compiled: `build.rs` chooses them.
+    /// Returns true if lanes of these instructions were compiled; `build.rs` selects them.
     fn compiled(self) -> bool {
         match self {
             Instructions::Scalar => true,
@@ -54,7 +55,7 @@ impl Instructions {
         }
     }
 
-    /// Returns whether this processor has them.
+    /// Returns true if this processor has them.
     fn detected(self) -> bool {
         match self {
             Instructions::Scalar => true,
@@ -71,8 +72,8 @@ impl Instructions {
         }
     }
 
-    /// Returns what a user should know whose batches go one environment at a time on a processor that has lanes: the build left
-    /// them out.
+    /// Returns advice for users if the processor has lanes but the build omitted them, so that batches process one
+    /// environment at a time.
     pub fn advice() -> Option<&'static str> {
         let has_lanes = Self::ALL
             .into_iter()
@@ -83,25 +84,25 @@ impl Instructions {
         )
     }
 
-    /// Returns those that are [available for](Self::available_for) a precision, narrowest first.
+    /// Returns the instruction sets that are [available for](Self::available_for) a precision, narrowest first.
     pub fn all_available<S: Scalar>() -> impl DoubleEndedIterator<Item = Instructions> {
         Self::ALL.into_iter().filter(|i| i.available_for::<S>())
     }
 
-    /// Returns whether kernels in the precision `S` were compiled for these instructions, and this processor has them. Where one
-    /// instruction set was compiled, single precision has no scalar kernels.
+    /// Returns true if kernels in the precision `S` were compiled for these instructions and this processor has them.
+    /// If one instruction set was compiled, single precision has no scalar kernels.
     pub fn available_for<S: Scalar>(self) -> bool {
         self.available() && (self != Instructions::Scalar || S::ALONE == Instructions::Scalar)
     }
 
-    /// Returns the widest that are [available](Self::available).
+    /// Returns the widest instruction set that is [available](Self::available).
     pub fn widest() -> Instructions {
         Self::all_available::<f64>()
             .next_back()
             .unwrap_or(Instructions::Scalar)
     }
 
-    /// How many numbers of type `S` lie side by side.
+    /// Returns the number of lanes of type `S`.
     pub fn lanes<S: Scalar>(self) -> usize {
         let bytes = match self {
             Instructions::Scalar => return 1,
@@ -113,8 +114,8 @@ impl Instructions {
     }
 }
 
-/// What one environment in single precision is computed in: lanes, all of which hold the same numbers, where one set of them was
-/// compiled. That saves a scalar form of every kernel.
+/// The type in which one environment in single precision is computed: lanes that all hold the same numbers if one set
+/// of them was compiled, which saves a scalar version of every kernel.
 #[cfg(single = "avx2")]
 pub(crate) type Single = Lanes<f32, 8, Avx2>;
 #[cfg(single = "avx512")]
@@ -135,15 +136,15 @@ pub(crate) const SINGLE: Instructions = match () {
     _ => Instructions::Scalar,
 };
 
-/// Something to be done in lanes whose type is known at run time only.
+/// A task to run in lanes whose type is known only at run time.
 pub trait LaneTask<S: Scalar> {
-    /// What comes out.
+    /// The result.
     type Output;
-    /// Does it in lanes of type `T`.
+    /// Runs the task in lanes of type `T`.
     fn run<T: Real<Scalar = S>>(self) -> Self::Output;
 }
 
-/// Runs a closure compiled for the widest of the instructions that lanes are compiled for and this processor has.
+/// Runs a closure compiled for the widest instruction set that lanes are compiled for and this processor has.
 #[inline(always)]
 pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
     #[cfg(lanes = "avx512")]

@@ -1,12 +1,12 @@
-//! `Real` for N environments side by side.
+//! `Real` for N environments in parallel.
 //!
-//! [`Lanes`] gives the registers of an instruction set the operations of a number; [`Registers`] is what an instruction
-//! set must provide.
+//! [`Lanes`] implements the operations of a number on the registers of an instruction set; [`Registers`] is the
+//! interface that an instruction set must provide.
 //!
-//! All `unsafe` of the crate is here, for two reasons. Intrinsics, and functions compiled for an instruction set, must not
-//! run where the processor lacks it: sets other than [`Portable`] have no name outside, and `dispatch` gives lanes of
-//! them to a [`LaneTask`] only after the processor has said that it has them. ([`Scalar::Alone`] can be lanes too; who uses it
-//! asks for [`Scalar::ALONE`] first.) And lanes are looked at as the plain numbers that they are.
+//! All `unsafe` code of the crate is here, for two reasons. First, intrinsics and functions compiled for an instruction
+//! set must not run on a processor that lacks it. So sets other than [`Portable`] have no public name, and `dispatch`
+//! passes lanes of them to a [`LaneTask`] only after detecting them. ([`Scalar::Alone`] can also be lanes; its users
+//! check [`Scalar::ALONE`] first.) Second, lanes are accessed as the plain numbers that they consist of.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -42,29 +42,29 @@ pub struct Lanes<S: Scalar, const N: usize, I: Registers<S, N> = Portable>(I::Ve
 pub struct LaneMask<S: Scalar, const N: usize, I: Registers<S, N> = Portable>(I::Mask);
 
 impl<S: Scalar, const N: usize, I: Registers<S, N>> Lanes<S, N, I> {
-    /// One value a lane.
+    /// Creates lanes from one value per lane.
     #[inline(always)]
     pub fn from_array(values: [S; N]) -> Self {
         Lanes(I::from_array(values))
     }
-    /// The value of every lane.
+    /// Returns the value of every lane.
     #[inline(always)]
     pub fn to_array(self) -> [S; N] {
         I::to_array(self.0)
     }
-    /// Lane `i` holds `value(i)`.
+    /// Creates lanes in which lane `i` holds `value(i)`.
     #[inline(always)]
     pub fn from_fn(value: impl FnMut(usize) -> S) -> Self {
         Self::from_array(from_fn(value))
     }
-    /// The values, lane 0 first.
+    /// Returns the values, lane 0 first.
     #[inline(always)]
     pub fn iter(self) -> impl ExactSizeIterator<Item = S> {
         self.to_array().into_iter()
     }
 }
 
-// By hand: a derived method need not be inlined.
+// Implemented by hand, since a derived method need not be inlined.
 impl<S: Scalar, const N: usize, I: Registers<S, N>> Clone for Lanes<S, N, I> {
     #[inline(always)]
     fn clone(&self) -> Self {
@@ -170,12 +170,12 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
     }
     #[inline(always)]
     fn set_lane(&mut self, i: usize, value: S) {
-        // One store, where an array would be copied there and back.
+        // One store; an array would be copied back and forth.
         Self::as_scalars_mut(from_mut(self))[i] = value;
     }
     #[inline(always)]
     fn as_scalars(values: &[Self]) -> &[S] {
-        // SAFETY: the registers of an instruction set hold N numbers one after the other, and nothing else.
+        // SAFETY: the registers of an instruction set consist of N numbers one after the other.
         unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), N * values.len()) }
     }
     #[inline(always)]
@@ -251,7 +251,7 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
 }
 
 impl<S: Scalar, const N: usize, I: Registers<S, N>> LaneMask<S, N, I> {
-    /// One truth value a lane.
+    /// Creates a mask from one truth value per lane.
     #[inline(always)]
     pub fn from_array(values: [bool; N]) -> Self {
         let mut bits = 0;
@@ -260,12 +260,12 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> LaneMask<S, N, I> {
         }
         LaneMask(I::mask_from_bits(bits))
     }
-    /// The truth value of every lane.
+    /// Returns the truth value of every lane.
     #[inline(always)]
     pub fn to_array(self) -> [bool; N] {
         from_fn(|i| self.lane(i))
     }
-    /// The truth values, lane 0 first.
+    /// Returns the truth values, lane 0 first.
     #[inline(always)]
     pub fn iter(self) -> impl ExactSizeIterator<Item = bool> {
         self.to_array().into_iter()

@@ -1,6 +1,6 @@
 //! NEON: 2 × `f64` or 4 × `f32` in a register; a truth value is a lane of ones or zeros.
 //!
-//! Every 64-bit ARM processor has it, so nothing is detected and kernels are compiled for it anyway.
+//! Every 64-bit ARM processor has it, so there is no detection, and kernels are always compiled for it.
 
 use super::registers::Registers;
 use std::arch::aarch64::*;
@@ -27,7 +27,8 @@ macro_rules! registers {
             /// Bit `i` in lane `i`.
             const BIT_OF_LANE: $integers = unsafe { transmute::<[$integer; $lanes], _>($bit_of_lane) };
 
-            // SAFETY: a register is its numbers. All intrinsics belong to the set, which every such processor has.
+            // SAFETY: a register consists of its numbers. All intrinsics belong to the instruction set, which every
+            // such processor has.
             unsafe impl Registers<$scalar, $lanes> for Neon {
                 type Vector = $vector;
                 type Mask = $integers;
@@ -58,7 +59,7 @@ macro_rules! registers {
                         unsafe { $intrinsic($($arg),+) }
                     }
                 )*
-                // NEON's own minimum and maximum answer NaN if either is, and order the zeros.
+                // NEON's own minimum and maximum return NaN if either operand is NaN, and order the zeros.
                 #[inline(always)]
                 fn min(a: $vector, b: $vector) -> $vector {
                     unsafe { $blend($lt(a, b), a, b) }

@@ -1,4 +1,4 @@
-//! Lanes as plain arrays, which the compiler turns into whatever instructions its target has.
+//! Lanes as plain arrays, which the compiler translates to the instructions of its target.
 
 use super::registers::Registers;
 use crate::real::Scalar;
@@ -8,7 +8,7 @@ use std::array::from_fn;
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;
 
-// SAFETY: an array is its elements, and arrays need no instructions.
+// SAFETY: an array consists of its elements, and arrays need no particular instructions.
 unsafe impl<S: Scalar, const N: usize> Registers<S, N> for Portable {
     type Vector = [S; N];
     type Mask = [bool; N];

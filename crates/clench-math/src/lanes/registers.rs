@@ -1,17 +1,17 @@
-//! What an instruction set provides for lanes.
+//! The interface that an instruction set provides for lanes.
 
 use crate::real::Scalar;
 
 /// The registers of an instruction set that hold `N` numbers of type `S`, and its operations on them.
 ///
-/// Lane by lane each operation equals that of the scalar, to the bit (see [`Real`](crate::Real)).
+/// In each lane an operation equals that of the scalar, to the bit (see [`Real`](crate::Real)).
 ///
 /// # Safety
-/// `Vector` is `N` numbers one after the other, and nothing else, and any numbers make one.
+/// `Vector` must consist of exactly `N` numbers one after the other, and any numbers must be valid.
 ///
 /// Methods run instructions that the processor may lack, though they are safe to call. So an implementor other than
-/// `Portable` must have no name outside this module, which hands it to tasks only after detection
-/// ([`Scalar::in_lanes`](crate::Scalar::in_lanes)): whoever can call a method is running on a processor that has it.
+/// `Portable` must have no name outside this module, which passes it to tasks only after detection
+/// ([`Scalar::in_lanes`](crate::Scalar::in_lanes)): a caller of a method always runs on a processor that has it.
 pub unsafe trait Registers<S: Scalar, const N: usize>: Copy + Send + Sync + 'static {
     /// `N` numbers.
     type Vector: Copy + Send + Sync + 'static;
@@ -48,9 +48,9 @@ pub unsafe trait Registers<S: Scalar, const N: usize>: Copy + Send + Sync + 'sta
     fn eq(a: Self::Vector, b: Self::Vector) -> Self::Mask;
     fn select(mask: Self::Mask, yes: Self::Vector, no: Self::Vector) -> Self::Vector;
 
-    /// Bit `i` is lane `i`; higher bits are zero.
+    /// Returns the mask as bits: bit `i` is lane `i`; higher bits are zero.
     fn mask_bits(mask: Self::Mask) -> u32;
-    /// The inverse of [`mask_bits`](Self::mask_bits).
+    /// Creates a mask from bits; the inverse of [`mask_bits`](Self::mask_bits).
     fn mask_from_bits(bits: u32) -> Self::Mask;
     fn mask_and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn mask_or(a: Self::Mask, b: Self::Mask) -> Self::Mask;

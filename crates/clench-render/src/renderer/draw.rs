@@ -1,4 +1,4 @@
-//! The passes of a picture.
+//! The passes of an image.
 
 use super::{Draw, Renderer};
 use crate::canvas::Canvas;
@@ -10,7 +10,7 @@ use wgpu::{
 };
 
 impl Renderer {
-    /// Draws what the sun sees, or the light of the model that casts the shadow.
+    /// Draws the shadow map from the sun or from the model's light that casts the shadow.
     pub fn shade(&self, encoder: &mut CommandEncoder, draw: &Draw) {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("shadow"),
@@ -19,7 +19,7 @@ impl Renderer {
         });
         self.begin(&mut pass, draw);
         pass.set_pipeline(&self.passes.shadow);
-        // A plane shades nothing that is seen, and would shade itself. Sites are marks.
+        // Planes are excluded: they shade nothing visible and would shade themselves. So are sites, which are marks.
         let plane = clench::collide::ShapeKind::Plane;
         let casts = |&&k: &&usize| (self.model.geoms.get(k)).is_some_and(|geom| geom.kind != plane);
         let casting = draw.opaque.iter().filter(casts);
@@ -27,7 +27,7 @@ impl Renderer {
         self.draw_strings(&mut pass, draw);
     }
 
-    /// Draws the picture.
+    /// Draws the colours.
     pub fn paint(&self, encoder: &mut CommandEncoder, draw: &Draw, canvas: &Canvas) {
         let [r, g, b] = SKY.map(|x| f64::from(x).powf(2.2));
         let resolved = canvas.picture.create_view(&Default::default());
@@ -61,7 +61,7 @@ impl Renderer {
         }
     }
 
-    /// Draws distances and numbers of geoms.
+    /// Draws distances and geom indices.
     pub fn measure(&self, encoder: &mut CommandEncoder, draw: &Draw, canvas: &Canvas) {
         let views = [&canvas.geoms, &canvas.distances].map(|t| t.create_view(&Default::default()));
         let attachment = |view, nothing| {
@@ -100,7 +100,7 @@ impl Renderer {
         pass.set_vertex_buffer(0, self.corners.slice(..));
     }
 
-    /// Draws a geom or, by a number after those of geoms, a site.
+    /// Draws a geom or, with an index after those of geoms, a site.
     fn draw_one(&self, pass: &mut RenderPass, item: usize) {
         pass.draw(self.shapes[item].clone(), item as u32..item as u32 + 1);
     }

@@ -1,4 +1,4 @@
-//! Draws pictures of a model's simulations.
+//! A renderer of a model's simulations.
 
 mod draw;
 
@@ -23,28 +23,28 @@ use wgpu::{
 };
 use zerocopy::IntoBytes;
 
-/// The most pixels of a side.
+/// The maximum number of pixels of a side.
 const MAX_SIDE: u32 = 8192;
 
-/// What to draw of a simulation.
+/// The settings of an image of a simulation.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// From where; by all that moves where none is given.
+    /// The view; `None` for a free camera that shows all movable geoms.
     pub view: Option<View>,
-    /// Pixels in a row.
+    /// The width, pixels.
     pub width: u32,
-    /// Rows.
+    /// The height, pixels.
     pub height: u32,
-    /// Which groups of geoms and sites are seen.
+    /// The visible groups of geoms and sites.
     pub groups: Vec<usize>,
-    /// Whether colours are wanted.
+    /// True to draw colours.
     pub colors: bool,
-    /// Whether distances and geoms are wanted.
+    /// True to draw distances and geom indices.
     pub facts: bool,
 }
 
 impl Picture {
-    /// The colours of the groups 0 to 2, which MuJoCo shows too.
+    /// Creates settings for a colour image of the groups 0 to 2, which MuJoCo also shows.
     pub fn new(width: u32, height: u32) -> Self {
         Picture {
             view: None,
@@ -57,18 +57,18 @@ impl Picture {
     }
 }
 
-/// The shapes of a model on a device that draws.
+/// The shapes of a model on a GPU.
 pub struct Renderer {
     gpu: Gpu,
     passes: Passes,
     model: Arc<Model>,
     corners: Buffer,
-    /// The corners of each geom, of each site, of the ground, and of a part of a tendon.
+    /// The vertices of each geom, of each site, of the ground, and of a tendon segment.
     shapes: Vec<Range<u32>>,
-    /// Geoms, sites, and the ground where the model has none.
+    /// The geoms, the sites, and the ground if the model has none.
     items: Vec<Item>,
     textures: Textures,
-    /// The size of what moves at first, m.
+    /// The initial size of the movable geoms, m.
     extent: f32,
     shadow: TextureView,
     light: BindGroup,
@@ -76,10 +76,10 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Brings the shapes of a model to a device.
+    /// Uploads the shapes of a model to a GPU.
     ///
     /// # Errors
-    /// No device that draws, with what to install.
+    /// Returns an error with a remedy if no device can draw.
     pub fn new(model: &Arc<Model>) -> Result<Self, RenderError> {
         let gpu = Gpu::open()?;
         let passes = Passes::new(&gpu.device, !model.visuals.lights.is_empty());
@@ -122,20 +122,21 @@ impl Renderer {
         })
     }
 
-    /// The name of the device.
+    /// Returns the name of the device.
     pub fn device(&self) -> &str {
         &self.gpu.name
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 
-    /// Draws a simulation of the model as it is now.
+    /// Draws the present state of a simulation of the model.
     ///
     /// # Errors
-    /// A size or a camera that is not there; a state that cannot be evaluated; a device that fails.
+    /// Returns an error if the size is out of range, the camera does not exist, the state cannot be evaluated, or the
+    /// device fails.
     pub fn draw<T: Precision>(
         &mut self,
         sim: &mut Sim<T>,
@@ -182,7 +183,7 @@ impl Renderer {
         self.submit(&draw, wanted)
     }
 
-    /// Which geoms and sites are drawn, and in which order.
+    /// Returns the visible geoms and sites in drawing order.
     fn shown(&self, items: &[Item], camera: &Placed, wanted: &Picture) -> Shown {
         let groups = self.model.geoms.iter().map(|geom| geom.group);
         let groups: Vec<i32> = groups
@@ -193,7 +194,7 @@ impl Renderer {
         let all = (0..groups.len()).filter(seen);
         let (opaque, mut transparent): (Vec<_>, Vec<_>) =
             all.partition(|&g| items[g].color[3] >= 1.0);
-        // What is farther is drawn first, so that the nearer lies over it.
+        // Farther items are drawn first, so that nearer ones cover them.
         let distance = |&g: &usize| {
             let place = items[g].pose[3];
             (0..3)
@@ -201,7 +202,7 @@ impl Renderer {
                 .sum::<f32>()
         };
         transparent.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        // The ground is below all.
+        // The ground is drawn first.
         transparent.splice(..0, groups.len()..self.items.len());
         Shown {
             opaque,
@@ -209,7 +210,7 @@ impl Renderer {
         }
     }
 
-    /// The middle of what moves, around which the sun casts shadows.
+    /// Returns the centre of the movable geoms, around which the sun casts shadows.
     fn centre(&self, items: &[Item]) -> [f32; 3] {
         let moving = (0..self.model.geoms.len()).filter(|&g| self.model.geoms[g].body > 0);
         let mut count = 0.0;
@@ -221,10 +222,10 @@ impl Renderer {
         sum.map(|x| if count > 0.0 { x / count } else { 0.0 })
     }
 
-    /// What is told of a picture: the view, the items and the lights.
+    /// Creates the bind group of an image: the view, the items and the lights.
     fn scene_group(&self, contents: &[&[u8]; 3]) -> BindGroup {
         let device = &self.gpu.device;
-        // A buffer without anything in it cannot be bound.
+        // An empty buffer cannot be bound.
         let nothing = [0; 256];
         let buffer = |(index, contents): (usize, &&[u8])| {
             device.create_buffer_init(&BufferInitDescriptor {
@@ -255,7 +256,7 @@ impl Renderer {
         })
     }
 
-    /// Lets the device draw, and reads what it drew.
+    /// Submits the passes and reads the results.
     fn submit(&self, draw: &Draw, wanted: &Picture) -> Result<Image, RenderError> {
         let Some(canvas) = &self.canvas else {
             return Ok(Image::default());
@@ -300,17 +301,17 @@ impl Renderer {
     }
 }
 
-/// The geoms and sites of a picture, by their numbers among the items.
+/// The geoms and sites of an image, by their item indices.
 struct Shown {
     opaque: Vec<usize>,
     transparent: Vec<usize>,
 }
 
-/// What is drawn.
+/// The content of an image.
 pub struct Draw<'a> {
     pub scene: &'a BindGroup,
     pub opaque: &'a [usize],
     pub transparent: &'a [usize],
-    /// Parts of tendons, among the items.
+    /// The item indices of tendon segments.
     pub strings: Range<usize>,
 }

@@ -1,4 +1,4 @@
-//! Answers to questions about the states of environments, in lanes.
+//! Queries of the states of environments, answered in lanes.
 
 use super::cells::Cells;
 use super::env_rows::EnvRows;
@@ -19,24 +19,24 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, Vec3, write_lane};
 
-/// Numbers of a question.
+/// Input values of a query.
 #[derive(Clone, Copy, Debug)]
 pub enum Given<'a, S> {
-    /// The same for all environments.
+    /// The same values for all environments.
     Shared(&'a [S]),
-    /// Its own for each environment, one after the other.
+    /// Separate values for each environment, one after the other.
     Each(&'a [S]),
 }
 
 impl<S: Copy> Given<'_, S> {
-    /// All numbers.
+    /// Returns all values.
     pub(super) fn all(&self) -> &[S] {
         match self {
             Given::Shared(values) | Given::Each(values) => values,
         }
     }
 
-    /// How many numbers an environment has.
+    /// Returns the number of values per environment.
     pub(super) fn width(&self, count: usize) -> usize {
         match self {
             Given::Shared(values) => values.len(),
@@ -52,52 +52,51 @@ impl<S: Copy> Given<'_, S> {
     }
 }
 
-/// What is asked.
+/// The kind of a query.
 pub enum Question<'a, S> {
-    /// The Jacobian of an object: given nothing.
+    /// The Jacobian of an object. No input.
     Jacobian(FrameObject),
-    /// That of the centre of mass of a subtree, likewise.
+    /// The Jacobian of the centre of mass of a subtree. No input.
     SubtreeJacobian(usize),
-    /// The velocity of an object, or its acceleration: given nothing.
+    /// The velocity or acceleration of an object. No input.
     Velocity(FrameObject, Axes),
     Acceleration(FrameObject, Axes),
-    /// M x or M⁻¹ x: given x.
+    /// M x or M⁻¹ x. Input: x.
     MulMass,
     SolveMass,
-    /// What rays hit: given the rays.
+    /// The hits of rays. Input: the rays.
     Rays {
         frame: Option<FrameObject>,
         filter: &'a RayFilter,
     },
-    /// Heights of a height field: given places.
+    /// Heights of a height field. Input: positions.
     Heights {
         geom: usize,
         frame: Option<FrameObject>,
     },
-    /// Inverse dynamics: given accelerations.
+    /// Inverse dynamics. Input: accelerations.
     Inverse(Acceleration),
-    /// Inverse kinematics: given goals, and where to begin, if not in the present state.
+    /// Inverse kinematics. Input: goals, and optional start positions instead of the present ones.
     Kinematics {
         ik: &'a Ik,
         start: Option<Given<'a, S>>,
     },
 }
 
-/// A question to a group of environments.
+/// A query of a group of environments.
 pub struct Asking<'a, S: Scalar + Shared> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
     pub rows: EnvRows<'a, S>,
     pub question: Question<'a, S>,
     pub given: Given<'a, S>,
-    /// Numbers that an environment is given.
+    /// The number of input values per environment.
     pub width: usize,
     pub answers: Cells<'a, S>,
 }
 
 impl<S: Scalar + Shared> Asking<'_, S> {
-    /// Appends the answer for environments whose states are in lanes; the lanes in which it is one. `given` is room for the numbers
-    /// of the question, `search` for inverse kinematics.
+    /// Appends the answer for environments whose states are in lanes, and returns the lanes in which it is valid.
     pub fn answer<T: Real<Scalar = S>>(
         &self,
         group: &Group<T>,
@@ -154,7 +153,7 @@ impl<S: Scalar + Shared> Asking<'_, S> {
         }
     }
 
-    /// What follows from positions alone.
+    /// Appends the answer from the computed results.
     fn write_answer<T: Real<Scalar = S>>(
         &self,
         params: &Params<T>,
@@ -220,7 +219,7 @@ pub(super) fn write_vectors<T: Real>(vectors: [Vec3<T>; 2], out: &mut Vec<T>) {
     out.extend(vectors.iter().flat_map(|vector| vector.to_array()));
 }
 
-/// Room that answers take.
+/// Scratch memory of queries.
 pub struct AskMemory<T: Real> {
     given: Vec<T>,
     search: Option<Search<T>>,

@@ -1,7 +1,8 @@
-//! Questions to all environments of a batch at once, answered from the states in their rows, in lanes and over threads.
+//! Queries of all environments of a batch at once, answered from the states in their rows, in lanes and on several
+//! threads.
 //!
-//! Nothing is kept of an earlier step here, so that an answer always holds for the present state, also right after a step. An
-//! environment of which the state cannot be computed with gets NaN; one that does not run is asked like all others.
+//! No result of an earlier step is used, so that an answer always holds for the present state, even after a step. An
+//! environment whose state is invalid gets NaN. Environments that do not run are included.
 
 use super::answer::{Asking, Given, Question};
 use super::cells::Cells;
@@ -19,33 +20,33 @@ use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::FrameObject;
 
 impl<S: Precision> Batch<S> {
-    /// The Jacobian of an object in each environment (n, 6 × nv), see [`Sim::jacobian`](crate::Sim::jacobian), in the present
-    /// states.
+    /// Returns the Jacobian of an object in each environment (n, 6 × nv), see [`Sim::jacobian`](crate::Sim::jacobian).
     ///
     /// # Errors
-    /// An object that the model does not have; else as [`step`](Self::step).
+    /// Returns an error if there is no such object, or as [`step`](Self::step) does.
     pub fn jacobian(&mut self, object: FrameObject) -> Result<Rows<S>, SimError> {
         check_object(&self.model, object)?;
         let width = 6 * self.model.nv;
         self.ask(Question::Jacobian(object), Given::Shared(&[]), width)
     }
 
-    /// The Jacobian of the centre of mass of a body and all below it (n, 3 × nv), likewise, see
+    /// Returns the Jacobian of the centre of mass of a body's subtree (n, 3 × nv), see
     /// [`Sim::subtree_jacobian`](crate::Sim::subtree_jacobian).
     ///
     /// # Errors
-    /// As [`jacobian`](Self::jacobian).
+    /// See [`jacobian`](Self::jacobian).
     pub fn subtree_jacobian(&mut self, body: usize) -> Result<Rows<S>, SimError> {
         check_body(&self.model, body)?;
         let width = 3 * self.model.nv;
         self.ask(Question::SubtreeJacobian(body), Given::Shared(&[]), width)
     }
 
-    /// What rays hit in each environment, likewise, see [`Sim::rays`](crate::Sim::rays). Of each ray five numbers (n, k × 5): the
-    /// geom, −1 where there is none, the distance, then infinite, and the normal.
+    /// Returns the first hit of each ray in each environment, see [`Sim::rays`](crate::Sim::rays), as five values per
+    /// ray (n, k × 5): the geom, or −1; the distance, or infinity; the normal.
     ///
     /// # Errors
-    /// A wrong number of numbers; else as [`Sim::rays`](crate::Sim::rays) and [`step`](Self::step).
+    /// Returns an error if the number of values is wrong, or as [`Sim::rays`](crate::Sim::rays) and
+    /// [`step`](Self::step) do.
     pub fn rays(
         &mut self,
         rays: Given<S>,
@@ -58,10 +59,11 @@ impl<S: Precision> Batch<S> {
         self.ask(question, rays, width / RAY * HIT)
     }
 
-    /// Heights of a height field in each environment (n, k), likewise, see [`Sim::heights`](crate::Sim::heights).
+    /// Returns heights of a height field in each environment (n, k), see [`Sim::heights`](crate::Sim::heights).
     ///
     /// # Errors
-    /// A wrong number of numbers; else as [`Sim::heights`](crate::Sim::heights) and [`step`](Self::step).
+    /// Returns an error if the number of values is wrong, or as [`Sim::heights`](crate::Sim::heights) and
+    /// [`step`](Self::step) do.
     pub fn heights(
         &mut self,
         geom: usize,
@@ -73,12 +75,12 @@ impl<S: Precision> Batch<S> {
         self.ask(Question::Heights { geom, frame }, places, width / 2)
     }
 
-    /// The forces along dofs (n, nv) that cause the accelerations `qacc` in the present states, see
-    /// [`Sim::inverse`](crate::Sim::inverse); NaN in an environment in which that would be an error.
+    /// Returns the forces along dofs (n, nv) that cause the accelerations `qacc` in the present states, see
+    /// [`Sim::inverse`](crate::Sim::inverse). Environments that fail get NaN.
     ///
     /// # Errors
-    /// A wrong number of accelerations, or such that are not finite, and as [`Sim::inverse`](crate::Sim::inverse) what no
-    /// environment can answer; else as [`step`](Self::step).
+    /// Returns an error if the number of accelerations is wrong, if one is not finite, or if
+    /// [`Sim::inverse`](crate::Sim::inverse) does not support this kind, or as [`step`](Self::step) does.
     pub fn inverse(&mut self, qacc: Given<S>, given: Acceleration) -> Result<Rows<S>, SimError> {
         let nv = self.model.nv;
         self.check_numbers("qacc", &qacc, nv)?;
@@ -86,11 +88,12 @@ impl<S: Precision> Batch<S> {
         self.ask(Question::Inverse(given), qacc, nv)
     }
 
-    /// Positions of the joints that bring the tasks of `ik` to their goals in each environment, from the present states or from
-    /// `start` (nq numbers an environment), see [`Sim::ik`](crate::Sim::ik).
+    /// Returns joint positions that bring the tasks of `ik` to their goals in each environment, from the present states
+    /// or from `start` (nq per environment), see [`Sim::ik`](crate::Sim::ik).
     ///
     /// # Errors
-    /// Goals or starts of a wrong number, or with numbers that are not finite; else as [`step`](Self::step).
+    /// Returns an error if the number of goal or start values is wrong or one is not finite, or as [`step`](Self::step)
+    /// does.
     pub fn ik(
         &mut self,
         ik: &Ik,
@@ -107,7 +110,7 @@ impl<S: Precision> Batch<S> {
         Ok(rows.iter().map(|row| IkSolution::read(row, nq)).collect())
     }
 
-    /// Finite numbers, `width` an environment.
+    /// Checks for `width` finite values per environment.
     pub(super) fn check_numbers(
         &self,
         name: &'static str,
@@ -121,7 +124,7 @@ impl<S: Precision> Batch<S> {
         check_values(name, given.all(), total)
     }
 
-    /// As many numbers in each environment; how many.
+    /// Returns the number of values per environment.
     fn check_given(&self, name: &'static str, given: &Given<S>) -> Result<usize, SimError> {
         let width = given.width(self.count());
         if let Given::Each(values) = given {

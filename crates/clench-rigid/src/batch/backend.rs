@@ -1,100 +1,101 @@
-//! What a batch asks of a device that steps its environments in memory of its own, such as a graphics card: fields of the state
-//! go up, steps are done there, states and outputs come down. `on_device.rs` keeps both sides alike.
+//! The interface to a device that steps the environments of a batch in its own memory, such as a GPU. State fields are
+//! uploaded, states and outputs downloaded. `on_device.rs` keeps host and device consistent.
 
 use crate::output::Output;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::Model;
 
-/// A device that steps all environments of a batch in memory of its own.
+/// A device that steps all environments of a batch in its own memory.
 ///
-/// Fields of the state and outputs go by their names and in the forms of [`StateRows`](super::StateRows) and [`Output`], row after
-/// row; truth values are 0 and 1. Its errors are [`SimError::Backend`]: they say what the device cannot do, or that it failed.
+/// Fields of the state and outputs have the names and layouts of [`StateRows`](super::StateRows) and [`Output`], row by
+/// row; Boolean values are 0 and 1. Errors are [`SimError::Backend`]: they report an unsupported feature or a device
+/// failure.
 pub trait Backend<S>: Send {
-    /// Its name.
+    /// Returns its name.
     fn name(&self) -> String;
-    /// Bytes that an environment takes on it.
+    /// Returns the bytes per environment on the device.
     fn bytes_per_env(&self) -> usize;
-    /// Whether it holds a field of the state. Those that it does not hold stay what they are in the initial state; but for `start_time`, the
-    /// time of each environment when what it is told to do next begins (s), which it need not know.
+    /// Returns true if the device has this field of the state. Other fields keep their initial values. The exception is
+    /// `start_time`, the time of each environment at the start of the next command (s), which is optional.
     fn holds(&self, field: &str) -> bool;
-    /// Whether it computes an output that does not lie in the state.
+    /// Returns true if it computes this output, which is not in the state.
     fn computes(&self, output: Output) -> bool;
-    /// Computes these outputs from now on, besides those that it was asked for before.
+    /// Computes these outputs from now on, in addition to those requested before.
     ///
     /// # Errors
-    /// What of the model it cannot compute them of; that the device failed.
+    /// Returns an error if the device cannot compute them for this model, or if it failed.
     fn want(&mut self, outputs: &[Output]) -> Result<(), SimError>;
-    /// The parameters of a model, which differs from that of the batch in its parameters alone, as the device takes them.
+    /// Returns the device's parameters for a model that differs from the batch's only in parameters.
     ///
     /// # Errors
-    /// Parameters that the device cannot have for an environment alone.
+    /// Returns an error if the device does not support the parameter per environment.
     fn parameters_of(&self, model: &Model) -> Result<Vec<S>, SimError>;
-    /// Gives these environments such parameters in place of the model's.
+    /// Assigns parameters in that form to these environments in place of the model's.
     ///
     /// # Errors
-    /// That the device has no room for them, or failed.
+    /// Returns an error if the device runs out of memory or failed.
     fn set_parameters(&mut self, envs: &[usize], rows: &[Vec<S>]) -> Result<(), SimError>;
     /// Replaces a field of the state of all environments.
     ///
     /// # Errors
-    /// That the device failed.
+    /// Returns an error if the device failed.
     fn write(&mut self, field: &'static str, rows: &[S]) -> Result<(), SimError>;
     /// Copies a field of the state of all environments into `rows`.
     ///
     /// # Errors
-    /// That the device failed.
+    /// Returns an error if the device failed.
     fn read(&mut self, field: &'static str, rows: &mut [S]) -> Result<(), SimError>;
-    /// Copies an output that it computes into `rows`, as the last forward pass left it.
+    /// Copies an output of the last forward pass into `rows`.
     ///
     /// # Errors
-    /// That the device failed.
+    /// Returns an error if the device failed.
     fn read_output(&mut self, output: Output, rows: &mut [S]) -> Result<(), SimError>;
-    /// Advances the environments that are `running` by `steps` time steps, and tells of each what became of it. One that fails
-    /// keeps its last good state and goes no further; of those that do not run nothing changes.
+    /// Advances the environments that are `running` by `steps` time steps, and reports their outcomes. An environment
+    /// that fails keeps its last good state and stops. Environments that do not run do not change.
     ///
     /// # Errors
-    /// That the device failed.
+    /// Returns an error if the device failed.
     fn step(
         &mut self,
         steps: usize,
         running: &[bool],
         outcomes: &mut [Outcome],
     ) -> Result<(), SimError>;
-    /// Computes what follows from the states of those that are `running`, and leaves the states alone.
+    /// Computes the results of the states that are `running`, without changing the states.
     ///
     /// # Errors
-    /// That the device failed.
+    /// Returns an error if the device failed.
     fn forward(&mut self, running: &[bool], outcomes: &mut [Outcome]) -> Result<(), SimError>;
 }
 
-/// What became of an environment in a call.
+/// The outcome of a call for an environment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// How many steps it did.
+    /// The number of completed steps.
     pub steps: usize,
-    /// Why it did not do the next.
+    /// The failure that prevented the next step.
     pub trouble: Option<Trouble>,
 }
 
-/// Why a step could not be done.
+/// The reason why a step failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
     /// The mass matrix is not positive definite.
     Singular,
-    /// A number is not finite, or beyond 1e10.
+    /// A value is not finite, or beyond 1e10.
     Diverged {
-        /// Which quantity.
+        /// The name of the quantity.
         field: &'static str,
-        /// Where in it.
+        /// The index in it.
         index: usize,
-        /// What it became.
+        /// The value.
         value: f64,
     },
-    /// More contacts than there may be.
+    /// There are more contacts than allowed.
     ContactOverflow {
-        /// How many that is.
+        /// The maximum number of contacts.
         limit: usize,
     },
-    /// The device ended a loop before its end.
+    /// The device terminated a loop early.
     Unfinished,
 }

@@ -1,15 +1,15 @@
-//! Rows that several threads write at once, each its own environments.
+//! Rows that several threads write at once, each for its own environments.
 //!
-//! Which environments a thread steps follows from their contacts, so their rows cannot be dealt out beforehand as disjoint
-//! slices. Numbers are therefore written through atomic cells: on all processors an ordinary store, and no race whatever
-//! the groups are. What a step only reads goes through them too, since those who hold pointers to rows may write it meanwhile.
+//! The environments that a thread steps depend on their contacts, so the rows cannot be split beforehand into disjoint
+//! slices. Values are therefore written through atomic cells: an ordinary store on all processors, without data races
+//! for any grouping. Inputs of a step use them too, as holders of pointers to rows may write meanwhile.
 
 use super::Rows;
 use super::shared::Shared;
 use clench_dynamics::state::kind::Kind;
 use clench_math::{Real, Scalar};
 
-/// The rows of a table, shared by threads for the time of a call.
+/// The rows of a table, shared by threads during a call.
 pub struct Cells<'a, S: Shared> {
     cells: &'a [S::Cell],
     width: usize,
@@ -27,19 +27,19 @@ impl<'a, S: Shared> Cells<'a, S> {
         &self.cells[env * self.width..][..self.width]
     }
 
-    /// The number of an environment, where a row has one.
+    /// Returns the value of an environment in a table of width one.
     #[inline(always)]
     pub fn get(&self, env: usize) -> S {
         S::load(&self.row(env)[0])
     }
 
-    /// Sets the number of an environment, where a row has one.
+    /// Sets the value of an environment in a table of width one.
     #[inline(always)]
     pub fn set(&self, env: usize, value: S) {
         S::store(&self.row(env)[0], value);
     }
 
-    /// Replaces the row of an environment by as many values.
+    /// Replaces the row of an environment.
     #[inline(always)]
     pub fn put(&self, env: usize, values: impl IntoIterator<Item = S>) {
         for (cell, value) in self.row(env).iter().zip(values) {
@@ -47,19 +47,19 @@ impl<'a, S: Shared> Cells<'a, S> {
         }
     }
 
-    /// All numbers, row after row.
+    /// Returns all values, row by row.
     pub fn all(&self) -> impl ExactSizeIterator<Item = S> {
         self.cells.iter().map(S::load)
     }
 
-    /// Replaces all rows by as many values.
+    /// Replaces all rows.
     pub(crate) fn put_all(&self, values: impl Iterator<Item = S>) {
         for (cell, value) in self.cells.iter().zip(values) {
             S::store(cell, value);
         }
     }
 
-    /// Whether all bits of an environment's row are zero.
+    /// Returns true if all bits of an environment's row are zero.
     #[inline(always)]
     pub(crate) fn is_blank(&self, env: usize) -> bool {
         self.row(env)
@@ -70,7 +70,7 @@ impl<'a, S: Shared> Cells<'a, S> {
 }
 
 impl<C: Shared> Cells<'_, C> {
-    /// Copies the row of an environment into lane `lane` of as many elements.
+    /// Copies the row of an environment into lane `lane` of `out`.
     #[inline(never)]
     pub fn read<K: Kind<Cell<T::Scalar> = C>, T: Real>(
         &self,
@@ -85,7 +85,7 @@ impl<C: Shared> Cells<'_, C> {
         }
     }
 
-    /// Copies lane `lane` of elements, as many as a row has, into the row of an environment.
+    /// Copies lane `lane` of `elements` into the row of an environment.
     #[inline(never)]
     pub fn write<K: Kind<Cell<T::Scalar> = C>, T: Real>(
         &self,
@@ -102,7 +102,7 @@ impl<C: Shared> Cells<'_, C> {
 }
 
 impl<S: Scalar + Shared> Cells<'_, S> {
-    /// Copies lane `lane` of numbers into the row of an environment, from number `start` on.
+    /// Copies lane `lane` of `values` into the row of an environment, starting at index `start`.
     #[inline(always)]
     pub(crate) fn write_part<T: Real<Scalar = S>>(
         &self,

@@ -1,26 +1,26 @@
-//! How unlike the environments of a group are: what lanes lose.
+//! Divergence of the environments of a group: the loss of lane utilization.
 
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar};
 use std::ops::AddAssign;
 use std::slice::from_ref;
 
-/// Sums over steps (and forward passes) of groups, by which the loss to divergence can be judged; those in which an environment
-/// failed cost time too, and count. A group goes on as long as one of its environments needs it, and has a slot for every
-/// contact that any of them has.
+/// Sums over steps (and forward passes) of groups that measure the loss to divergence, including those in which an
+/// environment failed. A group iterates until the last of its environments converges, and has a slot for every contact
+/// of any of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Divergence {
-    /// Steps of groups.
+    /// The number of group steps.
     pub group_steps: u64,
-    /// Steps of environments.
+    /// The number of environment steps.
     pub env_steps: u64,
-    /// Lanes of those groups, idle ones included.
+    /// The lanes of the group steps, including idle ones.
     pub lane_steps: u64,
-    /// Solver iterations that groups went through.
+    /// Solver iterations of groups.
     pub group_iterations: u64,
-    /// Solver iterations that environments needed.
+    /// Solver iterations required by environments.
     pub env_iterations: u64,
-    /// Lanes times iterations of groups.
+    /// Lanes times solver iterations of groups.
     pub lane_iterations: u64,
     /// Contact slots of groups.
     pub contact_slots: u64,
@@ -29,31 +29,31 @@ pub struct Divergence {
 }
 
 impl Divergence {
-    /// The share of lanes that is still at work in an iteration of the solver; 1 where there were none.
+    /// Returns the fraction of lanes that are active in a solver iteration; 1 without iterations.
     pub fn live_share(&self) -> f64 {
         match self.lane_iterations {
             0 => 1.0,
             lanes => self.env_iterations as f64 / lanes as f64,
         }
     }
-    /// Solver iterations of a group, on average.
+    /// Returns the mean number of solver iterations of a group.
     pub fn iterations_per_group(&self) -> f64 {
         ratio(self.group_iterations, self.group_steps)
     }
-    /// Solver iterations of an environment, on average.
+    /// Returns the mean number of solver iterations of an environment.
     pub fn iterations_per_env(&self) -> f64 {
         ratio(self.env_iterations, self.env_steps)
     }
-    /// Contact slots of a group, on average.
+    /// Returns the mean number of contact slots of a group.
     pub fn slots_per_group(&self) -> f64 {
         ratio(self.contact_slots, self.group_steps)
     }
-    /// Contacts of an environment, on average.
+    /// Returns the mean number of contacts of an environment.
     pub fn contacts_per_env(&self) -> f64 {
         ratio(self.contacts, self.env_steps)
     }
 
-    /// Takes in a step of a group, in whose first `len` lanes environments are.
+    /// Adds a step of a group whose environments are in the first `len` lanes.
     pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
         let iterations = &T::as_scalars(from_ref(&ws.solver.stats().iterations))[..len];
         let iterations = iterations.iter().map(|x| x.to_f64() as u64);

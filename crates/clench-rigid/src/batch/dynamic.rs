@@ -1,4 +1,4 @@
-//! Constraints at run time in environments of a batch: each as a simulation of that environment does it.
+//! Constraints at run time in environments of a batch, each handled by a simulation of that environment.
 
 use super::{Batch, Precision};
 use crate::sim::{DynamicConstraint, Sim};
@@ -7,10 +7,10 @@ use clench_dynamics::error::SimError;
 use clench_math::Vec3;
 
 impl<S: Precision> Batch<S> {
-    /// Holds two bodies together as they lie now in each of these environments, see [`Sim::add_weld`].
+    /// Welds two bodies in their present relative pose in each of these environments, see [`Sim::add_weld`].
     ///
     /// # Errors
-    /// As [`Sim::add_weld`], and environments that the batch does not have. All states are then as before.
+    /// Returns an error as [`Sim::add_weld`] does, or if there is no such environment. No state changes.
     pub fn add_weld(
         &mut self,
         envs: &[usize],
@@ -20,10 +20,10 @@ impl<S: Precision> Batch<S> {
         self.change(envs, |_, sim| sim.add_weld(body1, body2))
     }
 
-    /// Holds two points together in each of these environments, see [`Sim::add_connect`].
+    /// Connects two points in each of these environments, see [`Sim::add_connect`].
     ///
     /// # Errors
-    /// As [`Sim::add_connect`], and environments that the batch does not have. All states are then as before.
+    /// Returns an error as [`Sim::add_connect`] does, or if there is no such environment. No state changes.
     pub fn add_connect(
         &mut self,
         envs: &[usize],
@@ -34,11 +34,11 @@ impl<S: Precision> Batch<S> {
         self.change(envs, |_, sim| sim.add_connect(body1, body2, anchor))
     }
 
-    /// Lets go of a constraint in each of these environments, the k-th of `constraints` in the k-th of `envs`.
+    /// Removes the k-th of `constraints` from the k-th of `envs`.
     ///
     /// # Errors
-    /// Constraints that are not there, environments that the batch does not have, or another number of them. All states are
-    /// then as before.
+    /// Returns an error if a constraint does not exist, if there is no such environment, or if their numbers differ. No
+    /// state changes.
     pub fn remove(
         &mut self,
         envs: &[usize],
@@ -49,10 +49,11 @@ impl<S: Precision> Batch<S> {
             .map(drop)
     }
 
-    /// Lets a weld or connect of the model hold its bodies as they lie now in each of these environments, see [`Sim::weld_here`].
+    /// Activates a weld or connect of the model at the present pose in each of these environments, see
+    /// [`Sim::weld_here`].
     ///
     /// # Errors
-    /// As [`Sim::weld_here`], and environments that the batch does not have.
+    /// Returns an error as [`Sim::weld_here`] does, or if there is no such environment.
     pub fn weld_here(&mut self, envs: &[usize], equality: usize) -> Result<(), SimError> {
         self.check_envs(envs)?;
         for &env in envs {
@@ -66,22 +67,22 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// For each environment the serial number of the last constraint that was added at run time, as [`Sim::last_serial`].
+    /// Returns [`Sim::last_serial`] of each environment.
     pub fn last_serials(&self) -> &[u32] {
         &self.serials
     }
 
-    /// As [`Sim::set_last_serial`], for each environment.
+    /// Calls [`Sim::set_last_serial`] for each environment.
     ///
     /// # Errors
-    /// Another number of them than of environments.
+    /// Returns an error if the length is wrong.
     pub fn set_last_serials(&mut self, serials: &[u32]) -> Result<(), SimError> {
         check_length("serials", serials.len(), self.serials.len())?;
         self.serials.copy_from_slice(serials);
         Ok(())
     }
 
-    /// Changes the states of environments one by one, or none of them.
+    /// Changes the states of these environments one by one, or none of them on failure.
     fn change<R>(
         &mut self,
         envs: &[usize],

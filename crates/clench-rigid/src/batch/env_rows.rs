@@ -1,4 +1,4 @@
-//! What users see of environments, as the threads of a call share it.
+//! The user-visible data of environments, shared by the threads of a call.
 
 use super::Rows;
 use super::shared::Shared;
@@ -6,15 +6,14 @@ use super::state_rows::{Inputs, MovingRows};
 use clench_dynamics::model::{ParamField, Params};
 use clench_math::{Real, Scalar};
 
-/// What users see of environments.
 pub struct EnvRows<'a, S: Scalar + Shared> {
     pub motion: MovingRows<'a, S>,
     pub inputs: Inputs<'a, S>,
-    /// Parameters that environments have for themselves.
+    /// Parameters of individual environments.
     pub params: &'a [ParamRows<S>],
 }
 
-/// A field of the parameters, a row an environment.
+/// A field of the parameters, one row per environment.
 pub struct ParamRows<S> {
     pub(super) field: ParamField,
     pub(super) rows: Rows<S>,
@@ -29,7 +28,7 @@ impl<S: Scalar + Shared> ParamRows<S> {
     pub fn splat<T: Real<Scalar = S>>(&self, env: usize, params: &mut Params<T>) {
         params.write_lanes(self.field, self.rows.row(env));
     }
-    /// Bytes that a row takes.
+    /// Returns the size of a row in bytes.
     pub(crate) fn row_bytes(&self) -> usize {
         self.rows.row_bytes()
     }

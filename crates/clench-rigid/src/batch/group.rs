@@ -1,12 +1,12 @@
-//! The environments that lie side by side in a stepper's lanes.
+//! The environments in a stepper's lanes.
 
 use clench_math::{Mask, Real};
 use std::marker::PhantomData;
 
-/// The most lanes that any instruction set has.
+/// The maximum number of lanes of any instruction set.
 pub(super) const MAX_LANES: usize = 16;
 
-/// The environments in the lanes, the first `len` of them.
+/// The environments in the first `len` lanes.
 pub struct Group<T> {
     envs: [u32; MAX_LANES],
     pub len: usize,
@@ -25,17 +25,17 @@ impl<T: Real> Group<T> {
         group
     }
 
-    /// Each environment with its lane.
+    /// Returns each environment with its lane.
     pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> {
         (0..self.len).map(|lane| (lane, self.envs[lane] as usize))
     }
 
-    /// Every lane with an environment: those left over repeat the last.
+    /// Returns every lane with an environment; unused lanes repeat the last one.
     pub fn fill(&self) -> impl Iterator<Item = (usize, usize)> {
         (0..T::LANES).map(|lane| (lane, self.envs[lane.min(self.len - 1)] as usize))
     }
 
-    /// Keeps the environments of some lanes.
+    /// Removes the environments outside these lanes.
     pub fn keep(&mut self, lanes: T::Mask) {
         let mut kept = 0;
         for lane in 0..self.len {

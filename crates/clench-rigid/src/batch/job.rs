@@ -1,4 +1,4 @@
-//! What a call asks of its threads, and what they report.
+//! The input and the reports of the threads of a call.
 
 use super::answer::Asking;
 use super::divergence::Divergence;
@@ -15,21 +15,21 @@ use clench_math::Scalar;
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 
-/// A call of a batch: steps, or a forward pass, of its running environments.
+/// A call of a batch: steps or a forward pass of its running environments.
 #[derive(Clone)]
 pub(super) struct Call<'a, S> {
     pub(super) pass: Pass,
-    /// Which of all its steps are done now.
+    /// The steps of the call that are done now.
     pub(super) range: Range<usize>,
-    /// How many steps it has.
+    /// The total number of steps.
     pub(super) steps: usize,
     pub(super) controls: Controls<'a, S>,
-    /// Which environments take part, if not all that run.
+    /// The environments that take part; all that run if `None`.
     pub(super) mask: Option<&'a [bool]>,
 }
 
 impl<S> Call<'_, S> {
-    /// A call of `steps` steps, with the controls that are in the state.
+    /// Creates a call of `steps` steps, with the controls in the state.
     pub(super) fn steps(steps: usize) -> Self {
         Call {
             pass: Pass::Step,
@@ -42,7 +42,7 @@ impl<S> Call<'_, S> {
 }
 
 impl<'a, S> Call<'a, S> {
-    /// One forward pass of the environments in a mask, or of all.
+    /// Creates a forward pass of the environments in a mask, or of all.
     pub(super) fn forward(pass: Pass, mask: Option<&'a [bool]>) -> Self {
         Call {
             pass,
@@ -52,60 +52,60 @@ impl<'a, S> Call<'a, S> {
     }
 }
 
-/// What a call asks of its threads, the same for every group.
+/// The input of the threads of a call, the same for every group.
 pub struct Job<'a, S: Scalar + Shared> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
     pub rows: EnvRows<'a, S>,
-    /// Where each environment stands in an order that puts those of like contacts side by side.
+    /// The sort key of each environment, which places environments with similar contacts next to each other.
     pub(crate) sort_keys: &'a [AtomicU64],
-    /// What is done.
+    /// The computation.
     pub pass: Pass,
-    /// For which states outputs hold, where any are kept.
+    /// The states of recorded outputs, if there are any.
     pub recorded: Option<RecordedStateCells<'a, S>>,
-    /// Where outputs go.
+    /// The destinations of outputs.
     pub targets: Targets<'a, S>,
     pub controls: Controls<'a, S>,
-    /// Of all steps of the call, those from `first` to `end` are done now.
+    /// The steps from `first` to `end` of all steps of the call are done now.
     pub first: usize,
     pub end: usize,
     pub steps: usize,
 }
 
-/// What a call does with environments.
+/// The computation of a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pass {
-    /// Their states advance.
+    /// Advances the states.
     Step,
-    /// Their states stay, and what follows from them is computed.
+    /// Computes the results of the states without changing them.
     Forward,
-    /// The same for somebody who only asks: nothing fails and nothing is counted.
+    /// The same for a query: nothing fails and nothing is counted.
     Query,
 }
 
-/// What a stepper has to report.
+/// The report of a stepper.
 #[derive(Default)]
 pub struct StepTotals {
-    /// Environments that cannot go on, and why.
+    /// Environments that failed, with their faults.
     pub faults: Vec<(u32, Fault)>,
-    /// Environments that started over from the initial state.
+    /// Environments that were reset to the initial state.
     pub resets: Vec<u32>,
     pub divergence: Divergence,
     pub quality: Quality,
 }
 
-/// A thread's scratch in lanes of some width.
+/// A thread's scratch memory in lanes of a fixed width.
 pub trait Stepper<S: Scalar + Shared>: Send {
-    /// How many environments it steps at once.
+    /// Returns its number of environments.
     fn lanes(&self) -> usize;
-    /// Does a job for a group of at most [`lanes`](Self::lanes) environments.
+    /// Runs a job for a group of at most [`lanes`](Self::lanes) environments.
     fn run(&mut self, group: &[u32], job: &Job<S>);
-    /// Answers a question about such a group.
+    /// Answers a query of such a group.
     fn ask(&mut self, group: &[u32], asking: &Asking<S>);
-    /// What happened since it was last cleared.
+    /// Returns the events since it was last cleared.
     fn totals(&mut self) -> &mut StepTotals;
-    /// Lets its clocks run, or not.
+    /// Starts or stops its clocks.
     fn run_clocks(&mut self, running: bool);
-    /// Where the time went while they ran.
+    /// Returns the time spent in each stage while they ran.
     fn profile(&mut self) -> Profile;
 }

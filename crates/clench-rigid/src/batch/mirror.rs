@@ -1,4 +1,4 @@
-//! What a device holds of the rows on this side, and what it is asked besides steps: outputs and parameters.
+//! The device's copy of the rows on the host, and its outputs and parameters.
 
 use super::backend::{Backend, Outcome};
 use super::env_rows::ParamRows;
@@ -9,39 +9,36 @@ use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField};
 use clench_dynamics::state::FIELDS;
 
-/// A device, and what it holds of the rows on this side.
+/// A device, and its copy of the rows on the host.
 pub(super) struct Mirror<S: Precision> {
     pub(super) backend: Box<dyn Backend<S>>,
-    /// Each field of [`FIELDS`] as it went up or came down.
+    /// Each field of [`FIELDS`] as last uploaded or downloaded.
     pub(super) held: Vec<Vec<S>>,
-    /// Which environments take part in a call, and still run in it.
+    /// True for environments that take part in a call and still run.
     pub(super) running: Vec<bool>,
-    /// Which of them do their step over from the initial state.
+    /// True for environments that repeat their step from the initial state.
     pub(super) restarted: Vec<bool>,
     pub(super) outcomes: Vec<Outcome>,
-    /// Room for a field or an output.
+    /// Memory for a field or an output.
     pub(super) numbers: Vec<S>,
-    /// Takes up the state of one environment after the other, once energies are recorded.
+    /// A simulation for the state of one environment after the other, created when energies are recorded.
     pub(super) sim: Option<Box<Sim<S>>>,
 }
 
 impl<S: Precision> Mirror<S> {
-    /// Bytes that an environment takes, on both sides.
+    /// Returns the bytes per environment on host and device.
     pub(super) fn bytes_per_env(&self, model: &Model) -> usize {
         let held: usize = FIELDS.iter().map(|field| field.numbers(model)).sum();
         let besides = 2 * size_of::<bool>() + size_of::<Outcome>();
         self.backend.bytes_per_env() + held * size_of::<S>() + besides
     }
 
-    /// The name of the device.
     pub(super) fn name(&self) -> String {
         self.backend.name()
     }
 
-    /// Lets the device compute these outputs from now on, but for those that follow from the rows.
-    ///
-    /// # Errors
-    /// Outputs that it does not compute.
+    /// Lets the device compute these outputs from now on, except those that follow from the rows. Returns an error if
+    /// it cannot.
     pub(super) fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
         let from_rows = |output: &Output| output.is_state() || *output == Output::energy;
         let there = |output: &Output| from_rows(output) || self.backend.computes(*output);
@@ -60,10 +57,10 @@ impl<S: Precision> Mirror<S> {
 }
 
 impl<S: Precision> Mirror<S> {
-    /// What the device takes as the parameters of environments of which `field` will have these rows.
+    /// Returns the device's parameters of environments whose `field` will have these rows.
     ///
     /// # Errors
-    /// Parameters that it cannot have for an environment alone.
+    /// Returns an error if the device does not support the parameter per environment.
     pub(super) fn parameters(
         &self,
         model: &Model,
@@ -87,7 +84,7 @@ impl<S: Precision> Mirror<S> {
         rows.map(one).collect()
     }
 
-    /// Gives environments parameters that [`parameters`](Self::parameters) made.
+    /// Assigns parameters from [`parameters`](Self::parameters) to environments.
     pub(super) fn set_parameters(
         &mut self,
         envs: &[usize],

@@ -1,9 +1,10 @@
-//! Many environments of one model, stepped side by side in lanes and spread over threads.
+//! Many environments of one model, stepped in SIMD lanes on several threads.
 //!
-//! What users see is in rows, one an environment ([`Rows`], [`StateRows`]). A call (`run.rs`) puts running environments of like
-//! contacts into groups; each thread has a stepper (`stepper.rs`), scratch in lanes, that claims a group, gathers its rows,
-//! steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that went well. What went wrong becomes a status. A device with
-//! memory of its own ([`Backend`]) may step in place of the threads (`on_device.rs`).
+//! User-visible data is in tables with one row per environment ([`Rows`], [`StateRows`]). A call (`run.rs`) groups
+//! running environments with similar contacts. Each thread has a stepper (`stepper.rs`) with scratch memory in lanes,
+//! which claims a group, gathers its rows, steps it as a [`Sim`](crate::Sim) would, and scatters the lanes that
+//! succeeded. A failure is reported as a status. A device with its own memory ([`Backend`]) may replace the threads
+//! (`on_device.rs`).
 
 mod answer;
 mod ask;
@@ -63,25 +64,25 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
-/// Bytes of memory that an environment takes beside its rows: its status, how often it was reset, the serial number of the constraint
-/// that was last added at run time, and its place in groups.
+/// The memory of an environment in addition to its rows, in bytes: its status, its number of resets, the serial number
+/// of the last constraint added at run time, its sort key and its index in groups.
 const BOOKKEEPING_BYTES: usize =
     size_of::<EnvStatus>() + size_of::<u64>() + size_of::<AtomicU64>() + 2 * size_of::<u32>();
 
-/// Whether an environment takes part in steps.
+/// The status of an environment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EnvStatus {
-    /// It does.
+    /// The environment runs.
     Running,
-    /// It stands still at its last good state until it is reset or revived.
+    /// The environment keeps its last good state until it is reset or revived.
     Failed(Fault),
 }
 
 /// Many environments of one model.
 ///
-/// Environment i moves as a [`Sim`](crate::Sim) alone would in the same precision, to the bit: whatever instructions, threads,
-/// neighbours and groups there are. One that cannot go on keeps its last good state and says why in
-/// [`status`](Self::status); its neighbours do not notice.
+/// Environment i moves exactly as a single [`Sim`](crate::Sim) in the same precision, bit for bit, independent of
+/// instructions, threads, neighbours and groups. An environment that fails keeps its last good state and reports the
+/// fault in [`status`](Self::status); its neighbours are not affected.
 pub struct Batch<S: Precision = f64> {
     /// The states of all environments.
     pub state: StateRows<S>,
@@ -90,22 +91,22 @@ pub struct Batch<S: Precision = f64> {
     settings: StepSettings,
     status: Vec<EnvStatus>,
     resets: Vec<u64>,
-    /// For each environment the serial number of the constraint that was last added at run time.
+    /// The serial number of the last constraint that was added at run time, for each environment.
     serials: Vec<u32>,
     params: Vec<ParamRows<S>>,
     outputs: Vec<OutputRows<S>>,
     recorded: Option<RecordedStates<S>>,
     initial: State<S>,
     scratch: State<S>,
-    /// What environments are sorted by, so that those of like contacts come together.
+    /// The sort keys, which place environments with similar contacts next to each other.
     sort_keys: Vec<AtomicU64>,
-    /// The environments that run, those of like contacts together.
+    /// The running environments in the order of their sort keys.
     order: Vec<u32>,
     steppers: Vec<Box<dyn Stepper<S>>>,
     threads: Threads,
-    /// The device that steps in place of the threads, if there is one.
+    /// The device that replaces the threads, if there is one.
     mirror: Option<Mirror<S>>,
-    /// The process that the device is of.
+    /// The process that owns the device.
     process: u32,
     divergence: Divergence,
     quality: Quality,
@@ -123,19 +124,19 @@ impl<S: Precision> fmt::Debug for Batch<S> {
 }
 
 impl<S: Precision> Batch<S> {
-    /// `count` environments in the model's initial state, with the model's options, on all processors.
+    /// Creates `count` environments in the model's initial state, with the model's options, on all processors.
     ///
     /// # Errors
-    /// As [`with_options`](Self::with_options).
+    /// See [`with_options`](Self::with_options).
     pub fn new(model: Arc<Model>, count: usize) -> Result<Self, SimError> {
         Batch::with_options(model, count, BatchOptions::default())
     }
 
-    /// `count` environments in the model's initial state.
+    /// Creates `count` environments in the model's initial state.
     ///
     /// # Errors
-    /// Options out of range; shapes that may meet and cannot be collided; instructions that the processor lacks; more
-    /// environments than memory holds.
+    /// Returns an error if an option is out of range, if a possible collision is not supported, if the processor lacks
+    /// the instructions, or if memory is insufficient.
     pub fn with_options(
         model: Arc<Model>,
         count: usize,
@@ -200,12 +201,13 @@ impl<S: Precision> Batch<S> {
         envs.iter().try_for_each(|&env| self.check_env(env))
     }
 
-    /// Users can write all of [`state`](Self::state), and so put other tables in place of its own: those must have the same shapes.
+    /// Checks the shapes of the tables in [`state`](Self::state), which users may replace.
     fn check_state(&self) -> Result<(), SimError> {
         self.state.check_shapes(&self.model, self.count())
     }
 
-    /// A process that was forked has neither the threads nor the device of the batch, and a call would wait for them for ever.
+    /// Returns an error after a fork: the new process has neither the threads nor the device, and a call would wait
+    /// forever.
     fn check_threads(&self) -> Result<(), SimError> {
         let device_is_lost = self.mirror.is_some() && self.process != std::process::id();
         if self.threads.are_lost() || device_is_lost {
@@ -214,8 +216,8 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Bytes that an environment takes: its state, the parameters of its own, the outputs that are kept and for which state they
-    /// hold, whether it runs, and its place in groups; on a device, what it takes there.
+    /// Returns the memory of an environment in bytes: its state, parameters, recorded outputs and their states,
+    /// bookkeeping, and memory on a device.
     pub fn bytes_per_env(&self) -> usize {
         let device = self.mirror.as_ref();
         let device = device.map_or(0, |mirror| mirror.bytes_per_env(&self.model));
@@ -225,61 +227,61 @@ impl<S: Precision> Batch<S> {
         state + params + row_bytes(&self.outputs) + recorded + BOOKKEEPING_BYTES + device
     }
 
-    /// How many environments there are.
+    /// Returns the number of environments.
     pub fn count(&self) -> usize {
         self.status.len()
     }
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
-    /// How it is stepped, decided.
+    /// Returns the resolved options.
     pub fn options(&self) -> BatchOptions {
         self.options
     }
-    /// All options, decided.
+    /// Returns all resolved options.
     pub fn settings(&self) -> &StepSettings {
         &self.settings
     }
-    /// How many environments a thread steps side by side.
+    /// Returns the number of environments that a thread steps at once.
     pub fn lanes(&self) -> usize {
         self.steppers.first().map_or(1, |stepper| stepper.lanes())
     }
-    /// How many threads step.
+    /// Returns the number of threads.
     pub fn threads(&self) -> usize {
         self.threads.count()
     }
-    /// Whether each environment runs.
+    /// Returns the status of each environment.
     pub fn statuses(&self) -> &[EnvStatus] {
         &self.status
     }
-    /// Whether environment `env` runs.
+    /// Returns the status of environment `env`.
     ///
     /// # Panics
-    /// If there is no such environment, as slices do.
+    /// Panics if the environment does not exist.
     pub fn status(&self, env: usize) -> EnvStatus {
         self.status[env].clone()
     }
-    /// How often each environment started over from the initial state, with the option `autoreset`, since the last
+    /// Returns the number of `autoreset` resets of each environment since the last
     /// [`clear_figures`](Self::clear_figures).
     pub fn resets(&self) -> &[u64] {
         &self.resets
     }
-    /// How unlike the environments of groups were since the last [`clear_figures`](Self::clear_figures).
+    /// Returns the divergence within groups since the last [`clear_figures`](Self::clear_figures).
     pub fn divergence(&self) -> Divergence {
         self.divergence
     }
-    /// How well steps went since then.
+    /// Returns the quality of steps since [`clear_figures`](Self::clear_figures).
     pub fn quality(&self) -> Quality {
         self.quality
     }
-    /// Lets clocks run in every thread, or not.
+    /// Starts or stops the clocks of every thread.
     pub fn run_clocks(&mut self, running: bool) {
         for stepper in &mut self.steppers {
             stepper.run_clocks(running);
         }
     }
-    /// Where the time of all threads went while the clocks ran.
+    /// Returns the time of all threads in each stage while the clocks ran.
     pub fn profile(&mut self) -> Profile {
         let mut profile = Profile::default();
         for stepper in &mut self.steppers {
@@ -287,7 +289,7 @@ impl<S: Precision> Batch<S> {
         }
         profile
     }
-    /// Begins the figures of [`divergence`](Self::divergence), [`quality`](Self::quality) and [`resets`](Self::resets) anew.
+    /// Resets [`divergence`](Self::divergence), [`quality`](Self::quality) and [`resets`](Self::resets).
     pub fn clear_figures(&mut self) {
         self.resets.fill(0);
         self.divergence = Divergence::default();

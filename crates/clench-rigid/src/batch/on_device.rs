@@ -1,5 +1,5 @@
-//! Steps on a device: what was written into rows since the last call goes up, what steps moved comes down, and what the device reports
-//! becomes statuses, times and new starts. Resets, snapshots and queries are answered from the rows, as without a device.
+//! Steps on a device. Rows written since the last call are uploaded, results are downloaded, and the device's reports
+//! become statuses, times and resets. Resets, snapshots and queries use the rows, as without a device.
 
 use super::backend::{Backend, Outcome, Trouble};
 use super::job::{Call, Pass};
@@ -17,13 +17,13 @@ use std::mem::{swap, take};
 use std::sync::Arc;
 
 impl<S: Precision> Batch<S> {
-    /// `count` environments in the model's initial state that `backend` steps, whose environments are in any state. Outputs that
-    /// it does not compute, and that do not follow from the rows, cannot be recorded; options are those that `backend` was made with, and constraints at run time cannot be
-    /// added. Figures are those of the processor's steps: none are counted of a backend's, so that [`quality`](Self::quality),
-    /// [`divergence`](Self::divergence) and [`profile`](Self::profile) stay at zero.
+    /// Creates `count` environments in the model's initial state that `backend` steps; its own environments may be in
+    /// any state. Outputs can be recorded if the device computes them or they follow from the rows. The options are
+    /// those that `backend` was created with, and constraints at run time cannot be added. [`quality`](Self::quality),
+    /// [`divergence`](Self::divergence) and [`profile`](Self::profile) stay zero, as they cover only steps on the CPU.
     ///
     /// # Errors
-    /// As [`with_options`](Self::with_options).
+    /// See [`with_options`](Self::with_options).
     pub fn with_backend(
         model: Arc<Model>,
         count: usize,
@@ -52,12 +52,12 @@ impl<S: Precision> Batch<S> {
         Ok(batch)
     }
 
-    /// The name of the device that steps the environments, if it is not the processor.
+    /// Returns the name of the device that steps the environments, or `None` for the CPU.
     pub fn device(&self) -> Option<String> {
         self.mirror.as_ref().map(Mirror::name)
     }
 
-    /// Refuses to change what a device takes from the model when the batch is made.
+    /// Returns an error if the batch is on a device, where `what` cannot change.
     pub(super) fn check_changeable(&self, what: &'static str) -> Result<(), SimError> {
         match &self.mirror {
             None => Ok(()),
@@ -68,7 +68,7 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Does a call on the device.
+    /// Runs a call on the device.
     pub(super) fn run_on_device(
         &mut self,
         mirror: &mut Mirror<S>,
@@ -88,7 +88,7 @@ impl<S: Precision> Batch<S> {
         let may_restart = self.settings.autoreset && call.pass == Pass::Step;
         self.upload(mirror, call.pass, may_restart, &mut summary)?;
         let held = matches!(call.controls, Controls::Held);
-        // Rounding of the time decides when a sensor with a period is due: every step is told its own.
+        // The rounded time determines when a sensor with a period is due, so every step gets its own time.
         let periods = &self.model.params.sensor_interval;
         let timed = periods.iter().any(|&period| period > 0.0);
         let alike = held && trace.is_empty() && !may_restart && !timed;
@@ -119,7 +119,7 @@ impl<S: Precision> Batch<S> {
         Ok(summary)
     }
 
-    /// Brings up what was written since the last call. An environment whose state no step can start from fails.
+    /// Uploads the fields that were written since the last call. An environment with an invalid state fails.
     fn upload(
         &mut self,
         mirror: &mut Mirror<S>,
@@ -157,7 +157,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Lets an environment fail whose state no step can start from.
+    /// Marks an environment with an invalid state as failed.
     fn refuse(
         &mut self,
         mirror: &mut Mirror<S>,
@@ -178,7 +178,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Brings the controls of a rollout's step up.
+    /// Uploads the controls of a rollout's step.
     fn control(
         &mut self,
         mirror: &mut Mirror<S>,
@@ -199,7 +199,7 @@ impl<S: Precision> Batch<S> {
         mirror.backend.write("ctrl", held)
     }
 
-    /// Does a number of steps, or a forward pass, and notes which environments failed or are to start over.
+    /// Runs `count` steps or a forward pass, and records which environments failed or must be reset.
     fn advance(
         &mut self,
         mirror: &mut Mirror<S>,
@@ -227,7 +227,7 @@ impl<S: Precision> Batch<S> {
             }
             let outcome = mirror.outcomes[env];
             let clock = &mut self.state.time.row_mut(env)[0];
-            // As rounded as the processor adds it up.
+            // Accumulated with the same rounding as on the CPU.
             let timestep = S::new(self.model.params.timestep).to_f64();
             (0..outcome.steps).for_each(|_| *clock += timestep);
             let time = *clock;
@@ -268,7 +268,7 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Lets those whose step failed do it from the initial state.
+    /// Repeats failed steps from the initial state.
     fn start_over(
         &mut self,
         mirror: &mut Mirror<S>,
@@ -276,7 +276,7 @@ impl<S: Precision> Batch<S> {
         step: usize,
         summary: &mut Summary,
     ) -> Result<(), SimError> {
-        // What the others did is not on this side yet.
+        // The steps of the other environments are not yet on the host.
         self.download(mirror, Pass::Step)?;
         let others = mirror.running.clone();
         swap(&mut mirror.running, &mut mirror.restarted);
@@ -299,7 +299,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Brings down what steps moved.
+    /// Downloads the fields that steps change.
     fn download(&mut self, mirror: &mut Mirror<S>, pass: Pass) -> Result<(), SimError> {
         if pass != Pass::Step {
             return Ok(());
@@ -315,7 +315,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Copies the outputs that are kept.
+    /// Copies the recorded outputs.
     fn fetch_kept(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
         let mut outputs = take(&mut self.outputs);
         let mut kept = outputs.iter_mut();
@@ -328,7 +328,7 @@ impl<S: Precision> Batch<S> {
         fetched
     }
 
-    /// The energies of the states of those that run, which are on this side already.
+    /// Computes the energies of the running environments from their states on the host.
     fn energies(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
         for env in (0..mirror.running.len()).filter(|&env| mirror.running[env]) {
             let sim = match &mut mirror.sim {
@@ -345,7 +345,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Copies an output of those that run into its rows, as step `step` of what they hold.
+    /// Copies an output of the running environments into its rows, at step `step`.
     fn fetch(
         &mut self,
         mirror: &mut Mirror<S>,

@@ -1,4 +1,4 @@
-//! How a batch is stepped.
+//! Options of a batch.
 
 use clench_dynamics::error::SimError;
 use clench_dynamics::options::RigidOptions;
@@ -6,21 +6,21 @@ use clench_math::{Instructions, Scalar};
 use clench_solver::Threads;
 use std::thread::available_parallelism;
 
-/// What a step of a group costs beside its lanes, in units of what a lane adds: groups of 1, 4 and 8 environments of a
-/// humanoid were measured to take times like 3.5, 6.5 and 10.5.
+/// The fixed cost of a group step; `LANE_COST` is the cost per lane in the same unit. Groups of 1, 4 and 8 environments
+/// of a humanoid take times in the ratio 3.5 : 6.5 : 10.5 (measured).
 const GROUP_COST: usize = 5;
 const LANE_COST: usize = 2;
 
-/// How a batch is stepped. Only [`options`](Self::options) changes what comes out.
+/// Options of a batch. Only [`options`](Self::options) affects the results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BatchOptions {
-    /// Options that go before those of the model.
+    /// Options that override those of the model.
     pub options: RigidOptions,
-    /// How environments lie side by side; by default as suits their number and the processor.
+    /// The instruction set, and so the number of lanes; by default the fastest for the batch.
     pub instructions: Option<Instructions>,
-    /// How many threads step, but no more than there are environments; by default as many as there are processors.
+    /// The number of threads, at most one per environment; by default one per processor.
     pub threads: Option<usize>,
-    /// Whether environments of like contacts are put side by side, which makes steps faster; by default they are.
+    /// True if environments with similar contacts are grouped, which makes steps faster; by default true.
     pub grouping: bool,
 }
 
@@ -64,8 +64,8 @@ impl BatchOptions {
     }
 }
 
-/// The instructions by which `count` environments are done soonest, if there are any: few environments do not fill wide lanes on all
-/// threads.
+/// Returns the fastest available instructions for `count` environments, if there are any. Few environments do not fill
+/// wide lanes on all threads.
 fn fastest<S: Scalar>(count: usize, threads: usize) -> Option<Instructions> {
     let time = |instructions: &Instructions| {
         let lanes = instructions.lanes::<S>();

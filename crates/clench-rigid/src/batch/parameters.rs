@@ -1,4 +1,4 @@
-//! Parameters that each environment has for itself, and options of all.
+//! Parameters of individual environments, and options of all.
 
 use super::env_rows::ParamRows;
 use super::{Batch, Precision, Rows};
@@ -10,18 +10,18 @@ use clench_dynamics::options::RigidOptions;
 use clench_dynamics::settings::StepSettings;
 
 impl<S: Precision> Batch<S> {
-    /// Gives environments numbers of their own in place of the model's. `field` is a field of
-    /// [`Params`](crate::model::Params), by its name; `values` are, for each of `envs` in turn, all numbers of the field,
-    /// element after element.
+    /// Assigns values of their own to environments in place of the model's. `field` is the name of a field of
+    /// [`Params`](crate::model::Params); `values` are, for each of `envs` in turn, all values of the field, element by
+    /// element.
     ///
-    /// What follows directly is computed with it: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`.
-    /// Quaternions and axes are normalized. All else that follows stays the model's until
-    /// [`set_constants`](Self::set_constants). An environment costs memory only for the fields that were set in any, and keeps
-    /// its numbers when it is reset or restored.
+    /// Dependent fields are updated: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions
+    /// and axes are normalized. All other derived values stay the model's until [`set_constants`](Self::set_constants).
+    /// Only fields that were set in some environment take memory. An environment keeps its values when it is reset or
+    /// restored.
     ///
     /// # Errors
-    /// A name that no field has, a field that follows from another, environments that the batch does not have, a wrong
-    /// number of numbers, or numbers that the field cannot have. All parameters are then as before.
+    /// Returns an error if the name is unknown, if the field is derived from another, if there is no such environment,
+    /// if the number of values is wrong, or if a value is invalid. No parameter changes.
     pub fn randomize(&mut self, field: &str, envs: &[usize], values: &[S]) -> Result<(), SimError> {
         let field = ParamField::settable(field)?;
         self.check_envs(envs)?;
@@ -31,7 +31,7 @@ impl<S: Precision> Batch<S> {
         let mut rows = values.chunks_mut(width.max(1));
         rows.try_for_each(|row| field.check_row(&self.model, row))?;
         let on_device = self.device_parameters(field, envs, &values)?;
-        // What may run out of memory, or cannot be, comes before the first change.
+        // Operations that may fail precede the first change.
         self.param_rows(field)?;
         let mut follower = None;
         if let Some(field) = field.follower() {
@@ -59,12 +59,12 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Computes the constants that follow from the parameters of environments in the initial configuration, as
+    /// Computes the derived parameters of environments in the initial configuration, as
     /// [`Sim::set_constants`](crate::Sim::set_constants) does.
     ///
     /// # Errors
-    /// Environments that the batch does not have; one whose mass matrix is not positive definite. All parameters are then as
-    /// before.
+    /// Returns an error if there is no such environment, or if a mass matrix is not positive definite. No parameter
+    /// changes.
     pub fn set_constants(&mut self, envs: &[usize]) -> Result<(), SimError> {
         self.check_envs(envs)?;
         let mut params = self.model.params.clone();
@@ -82,7 +82,7 @@ impl<S: Precision> Batch<S> {
             }
         }
         for (rows, field) in rows.iter().zip(CONSTANTS) {
-            // Subtree masses have followed already.
+            // Subtree masses are already up to date.
             if field != ParamField::body_subtreemass && self.differs(field, envs, rows) {
                 self.randomize(field.name(), envs, rows)?;
             }
@@ -90,7 +90,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Whether environments have other numbers of a field than these.
+    /// Returns true if environments have other values of a field.
     fn differs(&self, field: ParamField, envs: &[usize], values: &[S]) -> bool {
         let width = self.model.params.width(field).max(1);
         let of_model: Vec<S> = model_row(&self.model, field);
@@ -102,7 +102,7 @@ impl<S: Precision> Batch<S> {
         })
     }
 
-    /// What the device, if there is one, takes as the parameters of environments whose `field` will have these values.
+    /// Returns the device's parameters, if there is one, of environments whose `field` will have these values.
     fn device_parameters(
         &self,
         field: ParamField,
@@ -119,10 +119,10 @@ impl<S: Precision> Batch<S> {
         mirror.parameters(&self.model, &self.params, field, rows)
     }
 
-    /// The numbers of a field of the parameters, by its name, as environment `env` has them.
+    /// Returns a parameter field, by name, of environment `env`.
     ///
     /// # Errors
-    /// A name that no field has; an environment that the batch does not have.
+    /// Returns an error if the name is unknown, or if there is no such environment.
     pub fn param(&self, field: &str, env: usize) -> Result<Vec<S>, SimError> {
         let field = ParamField::find(field)?;
         self.check_env(env)?;
@@ -133,10 +133,11 @@ impl<S: Precision> Batch<S> {
         })
     }
 
-    /// Replaces the options that go before those of the model, for the steps to come.
+    /// Replaces the options that override those of the model, for subsequent steps.
     ///
     /// # Errors
-    /// Options out of range; shapes that may meet and cannot be collided. The options are then as before.
+    /// Returns an error if an option is out of range, or if a possible collision is not supported. The options are then
+    /// unchanged.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
         self.check_changeable("the options")?;
         self.settings = StepSettings::supported::<S>(&self.model, options)?;
@@ -147,7 +148,7 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// The rows of a field, which hold the model's numbers when they are new.
+    /// Returns the rows of a field. New rows contain the model's values.
     fn param_rows(&mut self, field: ParamField) -> Result<&mut Rows<S>, SimError> {
         let index = match self.params.iter().position(|own| own.field == field) {
             Some(index) => index,
@@ -162,7 +163,7 @@ impl<S: Precision> Batch<S> {
     }
 }
 
-/// The model's numbers of a field.
+/// Returns the model's values of a field.
 fn model_row<S: Precision>(model: &Model, field: ParamField) -> Vec<S> {
     let numbers = model.params.read_lane(field, 0);
     numbers.into_iter().map(S::new).collect()

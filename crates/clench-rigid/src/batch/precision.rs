@@ -20,9 +20,9 @@ use clench_math::{Instructions, Mask, Scalar};
 
 /// A number type of simulations and batches: `f64` or `f32`.
 ///
-/// From the same state, a step in `f32` leads to accelerations within 1e-3 of the largest of them (or of 1, if all are smaller)
-/// and to positions within 1e-6 (m, rad) of those in `f64`; what rests moves by less than 1e-6 m in a thousand steps. The
-/// tests hold steps of a humanoid and of loose parts, and a stack at rest, to these bounds.
+/// From the same state, a step in `f32` yields accelerations within 1e-3 of the largest of them (or of 1, if all are
+/// smaller) and positions within 1e-6 (m, rad) of those in `f64`; bodies at rest move by less than 1e-6 m in a thousand
+/// steps. The tests check these bounds for a humanoid, for loose parts, and for a stack at rest.
 pub trait Precision: Lanewise {}
 impl Precision for f64 {}
 impl Precision for f32 {}
@@ -30,11 +30,11 @@ impl Precision for f32 {}
 /// The number type that one environment is computed in.
 type Alone<S> = <S as Scalar>::Alone;
 
-/// Declares the functions of [`Lanewise`], each with its body, and compiles them for both precisions.
+/// Declares the functions of [`Lanewise`] with their bodies, and compiles them for both precisions.
 macro_rules! compile {
     ($($(#[$doc:meta])* fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block)*) => {
-        /// What simulations and batches need of a number type; outside this crate only its name is known. None of it is generic, so that
-        /// all kernels are compiled with this crate, and not with each of its users.
+        /// The operations of simulations and batches for a number type; only its name is public. They are not generic,
+        /// so that all kernels are compiled with this crate, and not with its users.
         pub trait Lanewise: Scalar + Shared {
             $($(#[$doc])* fn $name($($argument: $type),*) $(-> $result)?;)*
         }
@@ -48,32 +48,32 @@ macro_rules! compile {
 }
 
 compile! {
-    /// A thread's scratch in lanes of these instructions; `None` if they are not available.
+    /// Creates a thread's scratch memory in lanes of these instructions; `None` if they are not available.
     fn stepper(instructions: Instructions, model: &Model) -> Option<Box<dyn Stepper<Self>>> {
         Self::in_lanes(instructions, MakeStepper { model })
     }
 
-    /// The parameters of a model, for one environment.
+    /// Returns the parameters of a model, for one environment.
     fn params(model: &Model) -> Params<Alone<Self>> {
         model.params.broadcast()
     }
 
-    /// Room for what one environment computes.
+    /// Creates a workspace for one environment.
     fn workspace(model: &Model) -> Workspace<Alone<Self>> {
         (Step::compiled().workspace)(model)
     }
 
-    /// Whether a step can start from the state of one environment.
+    /// Returns true if a step can start from the state of one environment.
     fn good_inputs(state: &State<Self>) -> bool {
         check::good_inputs(state, check::has_occasional(state))
     }
 
-    /// Whether a step or forward pass of one environment went well.
+    /// Returns true if a step or forward pass of one environment succeeded.
     fn good_results(state: &State<Self>, ws: &Workspace<Alone<Self>>) -> bool {
         check::well_computed(ws).lane(0) && check::well_moved(state)
     }
 
-    /// [`pipeline::step`](clench_dynamics::pipeline::step) of one environment.
+    /// Runs [`pipeline::step`](clench_dynamics::pipeline::step) for one environment.
     fn step(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -84,7 +84,7 @@ compile! {
         (Step::compiled().step)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// [`pipeline::forward`](clench_dynamics::pipeline::forward) of one environment.
+    /// Runs [`pipeline::forward`](clench_dynamics::pipeline::forward) for one environment.
     fn forward(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -95,7 +95,7 @@ compile! {
         (Step::compiled().forward)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// [`pipeline::rest`](clench_dynamics::pipeline::rest) of one environment.
+    /// Runs [`pipeline::rest`](clench_dynamics::pipeline::rest) for one environment.
     fn rest(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -106,7 +106,7 @@ compile! {
         (Step::compiled().rest)(model, params, settings, state, ws, sensor::evaluate)
     }
 
-    /// [`pipeline::before_forces`](clench_dynamics::pipeline::before_forces) of one environment.
+    /// Runs [`pipeline::before_forces`](clench_dynamics::pipeline::before_forces) for one environment.
     fn before_forces(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -117,7 +117,7 @@ compile! {
         (Step::compiled().before_forces)(model, params, settings, state, ws);
     }
 
-    /// [`pipeline::step_from_forces`](clench_dynamics::pipeline::step_from_forces) of one environment.
+    /// Runs [`pipeline::step_from_forces`](clench_dynamics::pipeline::step_from_forces) for one environment.
     fn step_from_forces(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -128,7 +128,7 @@ compile! {
         (Step::compiled().step_from_forces)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// [`pipeline::position_stage`](clench_dynamics::pipeline::position_stage) of one environment.
+    /// Runs [`pipeline::position_stage`](clench_dynamics::pipeline::position_stage) for one environment.
     fn position_stage(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -138,7 +138,7 @@ compile! {
         (Step::compiled().position_stage)(model, params, state, ws);
     }
 
-    /// [`pipeline::state_energy`](clench_dynamics::pipeline::state_energy) of one environment.
+    /// Runs [`pipeline::state_energy`](clench_dynamics::pipeline::state_energy) for one environment.
     fn state_energy(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -148,22 +148,22 @@ compile! {
         (Step::compiled().state_energy)(model, params, state, scratch)
     }
 
-    /// An output of one environment, appended to `out`.
+    /// Appends an output of one environment to `out`.
     fn read(output: Output, source: &mut Source<Alone<Self>>, out: &mut Vec<Alone<Self>>) {
         output.read(source, out);
     }
 
-    /// What the joints of bodies of one environment carry.
+    /// Computes the joint reactions on bodies of one environment.
     fn body_forces(source: &mut Source<Alone<Self>>) {
         update_body_forces(source.model, source.params, source.state, source.ws);
     }
 
-    /// What the constraints of one environment push on.
+    /// Returns the forces of the constraints of one environment.
     fn pushes(source: &Source<Alone<Self>>) -> Vec<Push> {
         readout::pushes(source, 0)
     }
 
-    /// Where the tendons of one environment run.
+    /// Returns the tendon paths of one environment.
     fn tendon_lines(
         model: &Model,
         params: &Params<Alone<Self>>,
@@ -172,12 +172,12 @@ compile! {
         readout::tendon_lines(model, params, &ws.position)
     }
 
-    /// A search for positions of one environment.
+    /// Runs inverse kinematics for one environment.
     fn ik(model: &Model, params: &Params<Alone<Self>>, ik: &Ik, search: &mut Search<Alone<Self>>) {
         search.run(model, params, ik);
     }
 
-    /// [`inverse`](clench_dynamics::inverse::inverse) of one environment.
+    /// Runs [`inverse`](clench_dynamics::inverse::inverse) for one environment.
     fn inverse(
         model: &Model,
         params: &Params<Alone<Self>>,

@@ -1,15 +1,15 @@
-//! How well the steps of a run went: what it is judged by.
+//! Quality statistics of the steps of a run.
 //!
-//! A constraint is soft: some violation r of it is explained by what it carries and by what it stops. With R the
-//! regularization of its row, f its force, and k d the stiffness of its own solref and solimp (see `constraint::softness`):
+//! Constraints are soft: their force and their impacts explain some violation r. With R the regularization of a row, f
+//! its force, and k d the stiffness of its own solref and solimp (see `constraint::softness`):
 //!
 //! ```text
 //! at rest        aref = −k d r = −R f:                      r = R f / (k d), times β under the integrator `discrete`
 //! in an impact   critically damped, r″ = −k d r − b r′:     r ≤ v / (e √(k d)) at an approach of v
 //! ```
 //!
-//! The stiffness is that of the model as written. Where a time step is too long for it, a step is softer than that
-//! (`refsafe`), and what comes of it is not what the model asks for.
+//! The stiffness is that of the model as written. If a time step is too long for it, the step uses a softer constraint
+//! (`refsafe`), and the additional violation is not explained.
 
 use clench_collide::ShapeKind;
 use clench_dynamics::constraint::dynamic::softness;
@@ -23,33 +23,34 @@ use clench_solver::{Cost, Status};
 use std::f64::consts::E;
 use std::ops::AddAssign;
 
-/// No violation of an equality or a limit is suspicious that is smaller, m or rad: a finger's breadth, some six degrees.
+/// The maximum violation of an equality or a limit that is not suspicious, m or rad.
 const SUSPICIOUS_VIOLATION: f64 = 0.1;
-/// What an impact at this speed explains is not suspicious, m/s or rad/s: a fall from 1.3 m.
+/// The impact speed whose violation is not suspicious, m/s or rad/s: a fall from 1.3 m.
 const IMPACT_SPEED: f64 = 5.0;
 
-/// Sums and extremes over steps (and forward passes) of environments, but for those in which an environment failed.
+/// Sums and extremes over steps (and forward passes) of environments, except those in which an environment failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
-    /// Steps.
+    /// The number of steps.
     pub steps: u64,
-    /// Steps in which constraints acted.
+    /// The number of steps with active constraints.
     pub constrained: u64,
-    /// Steps whose solve stopped at the iteration limit.
+    /// The number of steps whose solve stopped at the iteration limit.
     pub unconverged: u64,
-    /// Largest duality gap: how far a solution's cost may lie above the minimum.
+    /// The largest duality gap, a bound on a solution's cost above the minimum.
     pub gap_max: f64,
-    /// Most contacts.
+    /// The largest number of contacts.
     pub contacts_max: u64,
-    /// Deepest penetration, m; 0 where nothing penetrates.
+    /// The deepest penetration, m; 0 without penetration.
     pub penetration_max: f64,
-    /// Steps in which some contact was too deep: deeper than half the thickness of one of its geoms, so that its centre or
-    /// middle plane is past the other's surface, and deeper than softness explains. Planes and height fields have no thickness
-    /// here: all below them is inside.
+    /// The number of steps in which some contact was too deep: deeper than softness explains, and deeper than half the
+    /// thickness of one of its geoms, so that its centre or middle plane is past the other's surface. Planes and height
+    /// fields have no thickness here: all below them is inside.
     pub deep: u64,
     /// The deepest of these contacts.
     pub deepest: Option<DeepContact>,
-    /// Steps in which some equality or limit was violated by more than 0.1 (m or rad), and more than softness explains.
+    /// The number of steps in which some equality or limit was violated by more than 0.1 (m or rad), and more than
+    /// softness explains.
     pub violated: u64,
     /// The worst of these violations.
     pub worst_violation: Option<Violation>,
@@ -58,22 +59,22 @@ pub struct Quality {
 /// A contact that is too deep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeepContact {
-    /// Between these geoms.
+    /// The geoms.
     pub geoms: [usize; 2],
-    /// m.
+    /// Penetration depth, m.
     pub depth: f64,
 }
 
-/// An equality or a limit that is not kept.
+/// A violated equality or limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
-    /// Which.
+    /// The constraint.
     pub source: ConstraintSource,
-    /// m or rad.
+    /// The violation, m or rad.
     pub size: f64,
 }
 
-/// What a step left in a workspace, and what it is read with.
+/// The results of a step in a workspace, and the data to interpret them.
 #[derive(Clone, Copy)]
 pub(crate) struct StepResults<'a, T: Real> {
     pub model: &'a Model,
@@ -83,7 +84,7 @@ pub(crate) struct StepResults<'a, T: Real> {
 }
 
 impl Quality {
-    /// Takes in the `good` ones of the first `len` lanes, in which environments are.
+    /// Adds those of the first `len` lanes that are `good`. The other lanes have no environment.
     pub(crate) fn count<T: Real>(&mut self, results: StepResults<T>, len: usize, good: T::Mask) {
         let stats = results.ws.solver.stats();
         let figures = figures(results);
@@ -113,15 +114,15 @@ impl Quality {
     }
 }
 
-/// The figures of a step, lane by lane.
+/// The statistics of a step, lane by lane.
 struct StepFigures<T: Real> {
-    /// How many contacts there are.
+    /// The number of contacts.
     contacts: T,
-    /// How deep the deepest is, m.
+    /// The deepest penetration, m.
     depth: T,
-    /// Where some contact is deeper than half the thickness of a geom.
+    /// True if some contact is deeper than half the thickness of a geom.
     deep: T::Mask,
-    /// Where some equality or limit is violated suspiciously.
+    /// True if some equality or limit has a suspicious violation.
     violated: T::Mask,
 }
 
@@ -149,7 +150,7 @@ fn figures<T: Real>(results: StepResults<T>) -> StepFigures<T> {
     figures
 }
 
-/// Half the thickness of the thinner geom of a contact.
+/// Returns half the thickness of the thinner geom of a contact.
 #[inline(always)]
 fn half_thickness<T: Real>(results: StepResults<T>, contact: &Contact<T>) -> T {
     let half = |g: usize| {
@@ -159,7 +160,7 @@ fn half_thickness<T: Real>(results: StepResults<T>, contact: &Contact<T>) -> T {
             ShapeKind::Sphere | ShapeKind::Capsule => x,
             ShapeKind::Cylinder => x.min(y),
             ShapeKind::Ellipsoid | ShapeKind::Box => x.min(y).min(z),
-            // One that is flat has no inside.
+            // A flat mesh has no inside.
             ShapeKind::Mesh => {
                 let half = x.min(y).min(z);
                 T::select(half.gt(T::ZERO), half, T::new(f64::INFINITY))
@@ -169,11 +170,11 @@ fn half_thickness<T: Real>(results: StepResults<T>, contact: &Contact<T>) -> T {
     half(contact.geoms[0]).min(half(contact.geoms[1]))
 }
 
-/// The blocks of equalities and limits by their number, with what is known of each and the positions of its rows.
+/// Returns the blocks of equalities and limits with their indices, their records and the positions of their rows.
 #[inline(always)]
 fn held<T: Real>(ws: &Workspace<T>) -> impl Iterator<Item = (usize, &BlockRecord<T>, &[T])> {
     let blocks = ws.record.blocks.iter().enumerate();
-    // Contacts come last.
+    // Contacts are at the end.
     let others =
         blocks.take_while(|(_, record)| !matches!(record.source, ConstraintSource::Contact(_)));
     let held = others.filter(|(_, record)| {
@@ -183,7 +184,7 @@ fn held<T: Real>(ws: &Workspace<T>) -> impl Iterator<Item = (usize, &BlockRecord
     held.map(|(i, record)| (i, record, &ws.record.pos[ws.problem.block(i).rows()]))
 }
 
-/// By how much a row of an equality or a limit at `pos` is violated.
+/// Returns the violation of a row of an equality or a limit at `pos`.
 #[inline(always)]
 fn violation<T: Real>(record: &BlockRecord<T>, pos: T) -> T {
     match record.source {
@@ -192,7 +193,7 @@ fn violation<T: Real>(record: &BlockRecord<T>, pos: T) -> T {
     }
 }
 
-/// The deepest contact of a lane among those that are too deep.
+/// Returns the deepest contact of a lane among those that are too deep.
 fn deepest<T: Real>(results: StepResults<T>, lane: usize) -> Option<DeepContact> {
     let number = |x: T| x.lane(lane).to_f64();
     let mut deepest = None;
@@ -220,7 +221,7 @@ fn deepest<T: Real>(results: StepResults<T>, lane: usize) -> Option<DeepContact>
     deepest
 }
 
-/// The worst violation of an equality or a limit in a lane, among those that softness does not explain.
+/// Returns the worst violation of an equality or a limit in a lane, among those that softness does not explain.
 fn worst_violation<T: Real>(results: StepResults<T>, lane: usize) -> Option<Violation> {
     let p = results.params;
     let mut worst = None;
@@ -245,7 +246,8 @@ fn worst_violation<T: Real>(results: StepResults<T>, lane: usize) -> Option<Viol
     worst
 }
 
-/// The violation of a row that softness explains, where it is `found` one: at rest under its force, and in an impact.
+/// Returns the violation of a row that softness explains, given a violation `found`: at rest under its force, and in an
+/// impact.
 fn explained<T: Real>(
     results: StepResults<T>,
     lane: usize,
@@ -264,7 +266,7 @@ fn explained<T: Real>(
     };
     let block = results.ws.problem.block(block);
     let force = number(results.ws.solver.force()[block.rows()][row]).abs();
-    // Each edge of a pyramid carries its share of the normal force.
+    // Each edge of a pyramid carries an equal part of the normal force.
     let shares = if block.cost == Cost::Pyramid {
         2 * (block.dim - 1)
     } else {
@@ -274,7 +276,7 @@ fn explained<T: Real>(
     at_rest + IMPACT_SPEED / (E * soft.stiffness.sqrt())
 }
 
-/// β: what a step that takes rows at its end has divided R of a block's rows by.
+/// Returns β, by which a step that evaluates rows at its end divides their R.
 fn implicit_factor<T: Real>(
     results: StepResults<T>,
     lane: usize,
@@ -291,7 +293,7 @@ fn implicit_factor<T: Real>(
     1.0 + h * soft.damping + h * h * soft.stiffness
 }
 
-/// How bad something is.
+/// A measure of severity.
 trait Bad: Copy {
     fn badness(&self) -> f64;
 }
@@ -308,7 +310,7 @@ impl Bad for Violation {
     }
 }
 
-/// The worse of two, if there are any; the first of equals.
+/// Returns the worse of two, if there are any; the first of equal ones.
 fn worse<B: Bad>(one: Option<B>, other: Option<B>) -> Option<B> {
     match (one, other) {
         (Some(one), Some(other)) if other.badness() > one.badness() => Some(other),

@@ -1,4 +1,4 @@
-//! Outputs that a batch keeps, and rollouts that record them step by step.
+//! Recorded outputs of a batch, and rollouts that record outputs step by step.
 
 use super::job::Call;
 use super::recorded_states::RecordedStates;
@@ -10,31 +10,31 @@ use clench_dynamics::check::check_length;
 use clench_dynamics::error::SimError;
 use std::mem::{replace, swap};
 
-/// So many steps of environments, and so many steps, are done before a rollout asks whether to go on: a fraction of a second.
+/// The number of environment steps, and of steps, after which a rollout asks whether to go on: a fraction of a second.
 const ENV_STEPS_A_PORTION: usize = 1 << 16;
 const STEPS_A_PORTION: usize = 1 << 12;
 
-/// What a rollout recorded.
+/// The recorded outputs of a rollout.
 #[derive(Debug)]
 pub struct Recording<S> {
     outputs: Vec<OutputRows<S>>,
     steps: usize,
-    /// What the rollout did.
+    /// The summary of the rollout.
     pub summary: Summary,
 }
 
 impl<S> Recording<S> {
-    /// A recorded output (n, steps × width), after each step; steps that an environment did not do are NaN. `None` if it
-    /// was not recorded.
+    /// Returns a recorded output after each step (n, steps × width). Missing steps are NaN. Returns `None` if it was
+    /// not recorded.
     pub fn get(&self, name: &str) -> Option<&Rows<S>> {
         find(&self.outputs, name)
     }
-    /// What was recorded, each output with its table as [`get`](Self::get) shows it.
+    /// Returns each recorded output with its table, in the layout of [`get`](Self::get).
     pub fn into_rows(self) -> impl Iterator<Item = (Output, Rows<S>)> {
         let outputs = self.outputs.into_iter();
         outputs.map(|own| (own.output, own.rows))
     }
-    /// How many steps were recorded.
+    /// Returns the number of recorded steps.
     pub fn steps(&self) -> usize {
         self.steps
     }
@@ -46,13 +46,14 @@ fn find<'a, S>(outputs: &'a [OutputRows<S>], name: &str) -> Option<&'a Rows<S>> 
 }
 
 impl<S: Precision> Batch<S> {
-    /// Keeps these outputs, by the names in [`Output`], from now on, and no others. Those that are new are computed at once from
-    /// the states of running environments. Every step and forward leaves them as of its last forward pass, in rows that
-    /// [`output`](Self::output) shows; for environments that do not run, and those that fail, rows stay as they are, zero at
-    /// first. Tables of outputs that were kept before stay where they are.
+    /// Records these outputs, by their names in [`Output`], from now on, and no others. New ones are computed at once
+    /// from the states of running environments. Every step and forward pass stores the values of its last forward pass
+    /// in rows that [`output`](Self::output) returns. Rows of environments that do not run, or that fail, are
+    /// unchanged, initially zero. Tables already recorded keep their address.
     ///
     /// # Errors
-    /// A name that no output has; more memory than there is; else as [`forward`](Self::forward). What is kept is then as before.
+    /// Returns an error if a name is unknown or if memory is insufficient, or as [`forward`](Self::forward) does. The
+    /// recorded outputs are then unchanged.
     pub fn record(&mut self, names: &[&str]) -> Result<(), SimError> {
         let wanted = each_once(names)?;
         let mut new = wanted.clone();
@@ -60,7 +61,8 @@ impl<S: Precision> Batch<S> {
         self.want(&new)?;
         let mut new = self.tables(&new, 1, S::ZERO)?;
         if !new.is_empty() {
-            // What is new is computed at once and by itself: what was kept before stays as it is, and holds for what it held.
+            // New outputs are computed at once and separately: recorded ones do not change, and hold for the same
+            // states as before.
             let first = match self.recorded {
                 None => Some(RecordedStates::new(&self.model, self.count())?),
                 Some(_) => None,
@@ -82,17 +84,18 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// An output that is kept (n, width); `None` if it is not. [`refresh`](Self::refresh) first where states were written.
+    /// Returns a recorded output (n, width); `None` if it is not recorded. Call [`refresh`](Self::refresh) first if
+    /// states were written.
     pub fn output(&self, name: &str) -> Option<&Rows<S>> {
         find(&self.outputs, name)
     }
 
-    /// Advances every running environment by `steps` time steps and records outputs, by the names in [`Output`], after each.
-    /// The controls go before those in [`state`](Self::state), which stay as they are.
+    /// Advances every running environment by `steps` time steps and records outputs, by their names in [`Output`],
+    /// after each. The controls override those in [`state`](Self::state), which do not change.
     ///
     /// # Errors
-    /// A name that no output has, a wrong number of controls, tables of `state` that are not those of this batch, more
-    /// memory than there is.
+    /// Returns an error if a name is unknown, if the number of controls is wrong, if tables of `state` have wrong
+    /// shapes, or if memory is insufficient.
     pub fn rollout(
         &mut self,
         steps: usize,
@@ -102,13 +105,14 @@ impl<S: Precision> Batch<S> {
         self.rollout_while(None, steps, controls, record, |_| true)
     }
 
-    /// As [`rollout`](Self::rollout), with all environments running from states of which `initial` holds what moves, environment
-    /// after environment (n, 1 + nq + nv + na): time, positions, velocities, activations. The solver starts anew, so that what
-    /// comes out depends on no earlier step; all else, such as applied forces, mocap poses, switches, and where springs that yield rest, is
-    /// as [`state`](Self::state) has it.
+    /// Runs a [`rollout`](Self::rollout) of all environments from initial states. `initial` holds time, positions,
+    /// velocities and activations, environment by environment (n, 1 + nq + nv + na). The solver starts without warm
+    /// start, so that no earlier step affects the results. All else, such as applied forces, mocap poses, switches and
+    /// plastic deformation of springs, is as in [`state`](Self::state).
     ///
     /// # Errors
-    /// As [`rollout`](Self::rollout), and a wrong number of initial numbers; the states are then as before.
+    /// Returns an error as [`rollout`](Self::rollout) does, or if the number of initial values is wrong; the states are
+    /// then unchanged.
     pub fn rollout_from(
         &mut self,
         initial: &[S],
@@ -119,11 +123,11 @@ impl<S: Precision> Batch<S> {
         self.rollout_while(Some(initial), steps, controls, record, |_| true)
     }
 
-    /// A [`rollout`](Self::rollout), or one from given states, that goes on only as long as `go_on` says, which is asked every
-    /// now and then and given the number of steps done. Steps that are not done are NaN.
+    /// Runs a [`rollout`](Self::rollout), optionally from initial states, while `go_on` returns true. `go_on` is called
+    /// at intervals with the number of completed steps. Missing steps are NaN.
     ///
     /// # Errors
-    /// As [`rollout_from`](Self::rollout_from).
+    /// See [`rollout_from`](Self::rollout_from).
     pub fn rollout_while(
         &mut self,
         initial: Option<&[S]>,
@@ -169,12 +173,12 @@ impl<S: Precision> Batch<S> {
         })
     }
 
-    /// How many numbers of an environment's state move.
+    /// Returns the number of values of an environment's initial state.
     fn moving(&self) -> usize {
         1 + self.model.nq + self.model.nv + self.model.na
     }
 
-    /// Lets all environments run from these states, of which [`moving`](Self::moving) numbers are given.
+    /// Starts all environments from these states of [`moving`](Self::moving) values each.
     fn start_from(&mut self, initial: &[S]) {
         let (nq, nv) = (self.model.nq, self.model.nv);
         let (motion, _) = self.state.share();
@@ -187,7 +191,7 @@ impl<S: Precision> Batch<S> {
         self.status.fill(EnvStatus::Running);
     }
 
-    /// Room for what a rollout records, once its controls are as many as they must be.
+    /// Allocates the tables of a rollout after checking the number of controls.
     fn recorder(
         &mut self,
         steps: usize,
@@ -205,15 +209,12 @@ impl<S: Precision> Batch<S> {
         self.tables(&record, steps, S::new(f64::NAN))
     }
 
-    /// Lets the device of this batch, if it has one, compute these outputs.
-    ///
-    /// # Errors
-    /// Outputs that it does not compute.
+    /// Lets the device of this batch, if there is one, compute these outputs.
     fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
         (self.mirror.as_mut()).map_or(Ok(()), |mirror| mirror.want(outputs))
     }
 
-    /// Tables for outputs, where a row has room for `steps` steps.
+    /// Allocates tables for outputs with rows of `steps` steps.
     fn tables(
         &self,
         outputs: &[Output],
@@ -234,7 +235,7 @@ impl<S: Precision> Batch<S> {
     }
 }
 
-/// The outputs of these names, each once.
+/// Returns the outputs of these names without duplicates.
 fn each_once(names: &[&str]) -> Result<Vec<Output>, SimError> {
     let mut outputs = Vec::new();
     for name in names {

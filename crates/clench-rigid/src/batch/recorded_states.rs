@@ -1,4 +1,4 @@
-//! For which positions and velocities recorded outputs hold.
+//! The positions and velocities for which recorded outputs hold.
 
 use super::cells::Cells;
 use super::shared::Shared;
@@ -9,8 +9,7 @@ use clench_dynamics::state::State;
 use clench_dynamics::state::kind::{Number, Quaternion, Vector};
 use clench_math::{Real, Scalar};
 
-/// What each environment's state was when its outputs were last recorded, as far as they depend on it. Kept only while
-/// outputs are.
+/// Each environment's state when its outputs were last recorded, as far as they depend on it. Stored only while needed.
 pub(super) struct RecordedStates<S> {
     qpos: Rows<S>,
     qvel: Rows<S>,
@@ -19,9 +18,8 @@ pub(super) struct RecordedStates<S> {
 }
 
 impl<S: Scalar + Shared> RecordedStates<S> {
-    /// Nothing is recorded yet.
     pub(super) fn new(model: &Model, count: usize) -> Result<Self, SimError> {
-        // Not equal to itself, nor to any other number.
+        // NaN differs from every number, including itself.
         let rows = |width| Rows::new(count, width, S::new(f64::NAN));
         Ok(RecordedStates {
             qpos: rows(model.nq)?,
@@ -31,13 +29,13 @@ impl<S: Scalar + Shared> RecordedStates<S> {
         })
     }
 
-    /// Bytes that an environment takes.
+    /// Returns the bytes per environment.
     pub(super) fn row_bytes(&self) -> usize {
         let tables = [&self.qpos, &self.qvel, &self.mocap_pos, &self.mocap_quat];
         tables.iter().map(|rows| rows.row_bytes()).sum()
     }
 
-    /// Whether what was recorded of environment `env` holds for its state.
+    /// Returns true if the recorded outputs of environment `env` hold for its state.
     pub(super) fn holds(&self, env: usize, state: &StateRows<S>) -> bool {
         self.qpos.row(env) == state.qpos.row(env)
             && self.qvel.row(env) == state.qvel.row(env)
@@ -45,7 +43,7 @@ impl<S: Scalar + Shared> RecordedStates<S> {
             && self.mocap_quat.row(env) == state.mocap_quat.row(env)
     }
 
-    /// Notes that what was recorded of environment `env` holds for the state in its rows.
+    /// Records that the outputs of environment `env` hold for the state in its rows.
     pub(super) fn note_row(&mut self, env: usize, state: &StateRows<S>) {
         self.qpos.row_mut(env).copy_from_slice(state.qpos.row(env));
         self.qvel.row_mut(env).copy_from_slice(state.qvel.row(env));
@@ -53,7 +51,7 @@ impl<S: Scalar + Shared> RecordedStates<S> {
         (self.mocap_quat.row_mut(env)).copy_from_slice(state.mocap_quat.row(env));
     }
 
-    /// What was recorded of environment `env` holds no longer.
+    /// Invalidates the recorded outputs of environment `env`.
     pub(super) fn forget(&mut self, env: usize) {
         self.qpos.row_mut(env).fill(S::new(f64::NAN));
         self.qvel.row_mut(env).fill(S::new(f64::NAN));
@@ -69,7 +67,7 @@ impl<S: Scalar + Shared> RecordedStates<S> {
     }
 }
 
-/// The tables as a step writes them.
+/// The tables in the form that a step writes.
 pub struct RecordedStateCells<'a, S: Scalar + Shared> {
     qpos: Cells<'a, S>,
     qvel: Cells<'a, S>,
@@ -78,7 +76,7 @@ pub struct RecordedStateCells<'a, S: Scalar + Shared> {
 }
 
 impl<S: Scalar + Shared> RecordedStateCells<'_, S> {
-    /// Notes the state of an environment, of which outputs were recorded.
+    /// Records the state of an environment whose outputs were recorded.
     pub fn note<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
         self.qpos.write::<Number, T>(env, lane, &state.qpos);
         self.qvel.write::<Number, T>(env, lane, &state.qvel);

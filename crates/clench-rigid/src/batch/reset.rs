@@ -1,4 +1,4 @@
-//! Environments one by one: reset, revived, taken out as a simulation.
+//! Operations on individual environments: reset, revive, extract as a simulation.
 
 use super::{Batch, EnvStatus, Precision, StateRows};
 use crate::sim::Sim;
@@ -7,10 +7,10 @@ use clench_dynamics::error::{SimError, no_such};
 use std::sync::Arc;
 
 impl<S: Precision> Batch<S> {
-    /// Environment `env` back to the model's initial state, running.
+    /// Resets environment `env` to the model's initial state and sets it running.
     ///
     /// # Errors
-    /// An environment that the batch does not have; tables of [`state`](Self::state) that are not those of this batch.
+    /// Returns an error if there is no such environment, or if tables of [`state`](Self::state) have wrong shapes.
     pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
@@ -19,10 +19,10 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// Environment `env` to a keyframe of the model, running; what a keyframe does not hold is as in the initial state.
+    /// Resets environment `env` to a keyframe of the model and sets it running. Other fields get their initial values.
     ///
     /// # Errors
-    /// As [`reset`](Self::reset), and a keyframe that the model does not have.
+    /// Returns an error as [`reset`](Self::reset) does, or if there is no such keyframe.
     pub fn reset_to_keyframe(&mut self, env: usize, key: usize) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
@@ -36,41 +36,41 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// As [`reset`](Self::reset), for every environment where `mask` is true.
+    /// Calls [`reset`](Self::reset) for every environment whose `mask` is true.
     ///
     /// # Errors
-    /// A mask of another length than there are environments; tables as for [`reset`](Self::reset).
+    /// Returns an error if the mask or tables of `state` have wrong shapes.
     pub fn reset_mask(&mut self, mask: &[bool]) -> Result<(), SimError> {
         check_length("mask", mask.len(), self.count())?;
         let mut masked = (0..self.count()).filter(|&env| mask[env]);
         masked.try_for_each(|env| self.reset(env))
     }
 
-    /// Lets environment `env` run on from the state in its rows.
+    /// Sets environment `env` running from the state in its rows.
     ///
     /// # Errors
-    /// An environment that the batch does not have.
+    /// Returns an error if there is no such environment.
     pub fn revive(&mut self, env: usize) -> Result<(), SimError> {
         self.check_env(env)?;
         self.status[env] = EnvStatus::Running;
         Ok(())
     }
 
-    /// A simulation of one environment, in the state and with the parameters of `env`.
+    /// Creates a simulation with the state and parameters of environment `env`.
     ///
     /// # Errors
-    /// As [`reset`](Self::reset).
+    /// See [`reset`](Self::reset).
     pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
         let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
         self.copy_to_sim(env, &mut sim)?;
         Ok(sim)
     }
 
-    /// Brings a simulation of the same model into the state and to the parameters of `env`: so one simulation can be asked about
-    /// many environments, one after the other.
+    /// Copies the state and parameters of environment `env` to a simulation of the same model, so that one simulation
+    /// can serve many environments in turn.
     ///
     /// # Errors
-    /// As [`reset`](Self::reset), and a simulation of another model.
+    /// Returns an error as [`reset`](Self::reset) does, or if the simulation has another model.
     pub fn copy_to_sim(&self, env: usize, sim: &mut Sim<S>) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;

@@ -1,17 +1,17 @@
-//! What users see of a batch: plain rows, one an environment, that never move.
+//! The user-visible tables of a batch: one row per environment, at a fixed address.
 
 use clench_dynamics::error::SimError;
 use std::fmt;
 use std::hint::black_box;
 
-/// Bytes to which rows are aligned: a cache line, the widest register, and what other array libraries ask for.
+/// The alignment of rows in bytes: a cache line, the widest register, and the requirement of other array libraries.
 const ALIGNMENT: usize = 64;
 
-/// A table with a row for each environment, row after row in memory.
+/// A table with one row per environment, stored row by row.
 ///
-/// The numbers begin at a multiple of 64 bytes, and stay where they are as long as the table lives.
+/// The values start at a multiple of 64 bytes, and their address is fixed for the lifetime of the table.
 pub struct Rows<E> {
-    /// With room to begin at an aligned address.
+    /// The values, with spare capacity for an aligned start.
     buffer: Vec<E>,
     start: usize,
     count: usize,
@@ -19,10 +19,7 @@ pub struct Rows<E> {
 }
 
 impl<E: Copy> Rows<E> {
-    /// `count` rows of `width` times `value`.
-    ///
-    /// # Errors
-    /// More memory than there is.
+    /// Creates `count` rows of `width` times `value`, or returns an error if memory is insufficient.
     pub(crate) fn new(count: usize, width: usize, value: E) -> Result<Self, SimError> {
         let spare = ALIGNMENT / size_of::<E>().max(1);
         let len = count.checked_mul(width);
@@ -44,10 +41,7 @@ impl<E: Copy> Rows<E> {
         })
     }
 
-    /// `count` rows that are each a copy of `row`; `filler` may be anything.
-    ///
-    /// # Errors
-    /// More memory than there is.
+    /// Creates `count` copies of `row`; `filler` may have any value.
     pub(crate) fn repeat(count: usize, row: &[E], filler: E) -> Result<Self, SimError> {
         let mut rows = Rows::new(count, row.len(), filler)?;
         (0..count).for_each(|i| rows.row_mut(i).copy_from_slice(row));
@@ -56,52 +50,52 @@ impl<E: Copy> Rows<E> {
 }
 
 impl<E> Rows<E> {
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn count(&self) -> usize {
         self.count
     }
-    /// How many numbers a row has.
+    /// Returns the number of values per row.
     pub fn width(&self) -> usize {
         self.width
     }
-    /// All rows, one after the other.
+    /// Returns all rows, one after the other.
     pub fn as_slice(&self) -> &[E] {
         &self.buffer[self.start..][..self.count * self.width]
     }
-    /// All rows, to be written.
+    /// Returns all rows for modification.
     pub fn as_mut_slice(&mut self) -> &mut [E] {
         &mut self.buffer[self.start..][..self.count * self.width]
     }
-    /// Where the numbers begin, for code that shares them beyond this table's borrows. The pointer stays valid, and the numbers
-    /// stay there, as long as the table lives, wherever it is moved.
+    /// Returns a pointer to the values, for code that shares them beyond this table's borrows. It stays valid for the
+    /// lifetime of the table, even if the table is moved.
     pub fn as_ptr(&self) -> *const E {
-        // `start` is within the buffer; no reference to the numbers is made on the way.
+        // `start` is within the buffer; no reference to the values is created.
         self.buffer.as_ptr().wrapping_add(self.start)
     }
-    /// As [`as_ptr`](Self::as_ptr), to be written.
+    /// Returns [`as_ptr`](Self::as_ptr) as a mutable pointer.
     pub fn as_mut_ptr(&mut self) -> *mut E {
         self.buffer.as_mut_ptr().wrapping_add(self.start)
     }
-    /// The row of environment `env`.
+    /// Returns the row of environment `env`.
     ///
     /// # Panics
-    /// If there is no such row, as slices do.
+    /// Panics if the row does not exist.
     pub fn row(&self, env: usize) -> &[E] {
         &self.as_slice()[env * self.width..][..self.width]
     }
-    /// The row of environment `env`, to be written.
+    /// Returns the row of environment `env` for modification.
     ///
     /// # Panics
-    /// If there is no such row, as slices do.
+    /// Panics if the row does not exist.
     pub fn row_mut(&mut self, env: usize) -> &mut [E] {
         let width = self.width;
         &mut self.as_mut_slice()[env * width..][..width]
     }
-    /// The rows in turn.
+    /// Returns an iterator over the rows.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[E]> {
         (0..self.count).map(|env| self.row(env))
     }
-    /// Bytes that a row takes.
+    /// Returns the size of a row in bytes.
     pub(crate) fn row_bytes(&self) -> usize {
         self.width * size_of::<E>()
     }
@@ -113,10 +107,7 @@ impl<E: fmt::Debug> fmt::Debug for Rows<E> {
     }
 }
 
-/// A number for each of `count` environments that users do not see.
-///
-/// # Errors
-/// More memory than there is.
+/// Allocates an internal value for each of `count` environments.
 pub(super) fn per_env<E>(count: usize, value: impl FnMut() -> E) -> Result<Vec<E>, SimError> {
     let mut values = Vec::new();
     if values.try_reserve_exact(count).is_err() {
@@ -127,15 +118,12 @@ pub(super) fn per_env<E>(count: usize, value: impl FnMut() -> E) -> Result<Vec<E
     Ok(values)
 }
 
-/// Asks for the memory of `count` rows of `bytes` bytes, and gives it back at once. Before many tables are made: a system that
-/// grants each of them may still have too little for all, and ends the process when they are written.
-///
-/// # Errors
-/// More memory than there is.
+/// Reserves and releases the memory of `count` rows of `bytes` bytes, before many tables are allocated: a system that
+/// grants each of them may still have too little for all, and kills the process when they are written.
 pub(super) fn try_reserve(count: usize, bytes: usize) -> Result<(), SimError> {
     let mut room = Vec::<u8>::new();
     let reserved = (count.checked_mul(bytes)).map(|total| room.try_reserve_exact(total));
-    // Without this the compiler would see that the memory is not used, and not ask for it.
+    // Prevents the compiler from removing the unused allocation.
     black_box(&room);
     match reserved {
         Some(Ok(())) => Ok(()),

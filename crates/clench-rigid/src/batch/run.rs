@@ -1,4 +1,4 @@
-//! Stepping a batch: environments are grouped, threads claim groups, and what went wrong becomes a status.
+//! Steps of a batch: environments are grouped, threads claim groups, and failures are reported as statuses.
 
 use super::env_rows::EnvRows;
 use super::job::{Call, Job, Pass, Stepper};
@@ -11,18 +11,18 @@ use clench_dynamics::error::SimError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Environments are grouped anew after this many steps of a call.
+/// The number of steps of a call after which environments are regrouped.
 const STEPS_A_GROUP: usize = 8;
 
 impl<S: Precision> Batch<S> {
     /// Advances every running environment by one time step.
     ///
-    /// With the option `autoreset` a step that cannot be done (but for too many contacts) starts over from the initial state,
-    /// applied forces, mocap poses and switches included, and counts in [`resets`](Self::resets). Controls start over too, but
-    /// for those of a rollout.
+    /// With the option `autoreset`, a step that fails (except for too many contacts) is repeated from the initial
+    /// state, including applied forces, mocap poses and switches, and is counted in [`resets`](Self::resets). Controls
+    /// are reset too, except those of a rollout.
     ///
     /// # Errors
-    /// Tables of [`state`](Self::state) that are not those of this batch; a batch of several threads after a fork.
+    /// Returns an error if tables of [`state`](Self::state) have wrong shapes, or after a fork of a batch with threads.
     pub fn step(&mut self) -> Result<Summary, SimError> {
         self.step_n(1)
     }
@@ -30,37 +30,36 @@ impl<S: Precision> Batch<S> {
     /// Advances every running environment by `steps` time steps, with the same controls and applied forces.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn step_n(&mut self, steps: usize) -> Result<Summary, SimError> {
         self.run(&Call::steps(steps), &mut [])
     }
 
-    /// Computes what follows from the states, and leaves them alone. An environment for which that fails stands still from
-    /// now on.
+    /// Computes the results of the states without changing them. An environment for which that fails stops running.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn forward(&mut self) -> Result<Summary, SimError> {
         self.run(&Call::forward(Pass::Forward, None), &mut [])
     }
 
-    /// As [`forward`](Self::forward), only for the running environments where `mask` is true. Of the others nothing changes:
-    /// their outputs stay as they are.
+    /// Runs [`forward`](Self::forward) only for the running environments whose `mask` is true. The outputs of the
+    /// others do not change.
     ///
     /// # Errors
-    /// As [`step`](Self::step), and a mask of another length than there are environments.
+    /// Returns an error as [`step`](Self::step) does, or if the mask has a wrong length.
     pub fn forward_mask(&mut self, mask: &[bool]) -> Result<Summary, SimError> {
         check_length("mask", mask.len(), self.count())?;
         self.run(&Call::forward(Pass::Forward, Some(mask)), &mut [])
     }
 
-    /// Computes the outputs that are kept anew for running environments whose positions, velocities, mocap poses or parameters were
-    /// written, or that were reset, since the last step or forward pass. Nothing is done for the others: after a step outputs are, as
-    /// in MuJoCo, those of the start of the last time step. Where a state cannot be stepped from, outputs stay as they are; the
-    /// next step or forward pass says so.
+    /// Recomputes the recorded outputs of running environments whose positions, velocities, mocap poses or parameters
+    /// were written, or that were reset, since the last step or forward pass. Others do not change: after a step,
+    /// outputs are those of the start of the last time step, as in MuJoCo. Nor do those of an invalid state, which the
+    /// next step or forward pass reports.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn refresh(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         let Some(recorded) = &self.recorded else {
@@ -75,13 +74,13 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
-    /// A forward pass that changes nothing but the outputs that are kept: no status, no figure, no state.
+    /// Runs a forward pass that changes only the recorded outputs: no status, no statistic, no state.
     pub(super) fn query(&mut self, mask: Option<&[bool]>) -> Result<(), SimError> {
         self.run(&Call::forward(Pass::Query, mask), &mut [])?;
         Ok(())
     }
 
-    /// Does a call, and puts the outputs of each of its steps into `trace`.
+    /// Runs a call, and stores the outputs of each of its steps in `trace`.
     pub(super) fn run(
         &mut self,
         call: &Call<S>,
@@ -94,7 +93,7 @@ impl<S: Precision> Batch<S> {
             self.mirror = Some(mirror);
             return done;
         }
-        // All groupings of a call run inside the pool, so that its threads need not be woken for each.
+        // All groups of a call run inside the pool, so that its threads need not be woken for each.
         let threads = self.threads.clone();
         Ok(threads.enter(|| self.run_here(call, trace)))
     }
@@ -138,7 +137,7 @@ impl<S: Precision> Batch<S> {
         summary
     }
 
-    /// Lists the environments that run and are not masked out, those of like contacts side by side.
+    /// Lists the running environments in the mask, with similar contacts next to each other.
     fn regroup(&mut self, mask: Option<&[bool]>) {
         let status = &self.status;
         let running = |env: &u32| status[*env as usize] == EnvStatus::Running;
@@ -152,7 +151,7 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Collects what the steppers report.
+    /// Collects the reports of the steppers.
     fn collect_reports(&mut self, summary: &mut Summary) {
         for stepper in &mut self.steppers {
             let totals = stepper.totals();
@@ -171,8 +170,7 @@ impl<S: Precision> Batch<S> {
     }
 }
 
-/// Does a job for all environments in `order`. Groups are claimed one by one, so that threads end together though groups take
-/// unlike times.
+/// Runs a job for all environments in `order`. Groups are claimed one by one to balance the load of the threads.
 pub(super) fn for_each_group<S: Precision>(
     steppers: &mut [Box<dyn Stepper<S>>],
     order: &[u32],

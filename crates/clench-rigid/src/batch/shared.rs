@@ -1,4 +1,4 @@
-//! Numbers in atomic cells, so that threads can share the rows that hold them.
+//! Values in atomic cells, so that threads can share the rows that contain them.
 
 #![allow(
     unsafe_code,
@@ -7,17 +7,17 @@
 
 use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering::Relaxed};
 
-/// What rows that threads share are made of.
+/// The element type of rows that threads share.
 pub trait Shared: Copy {
-    /// The same number where several threads write.
+    /// The type of the same value if several threads write it.
     type Cell: Sync;
-    /// Numbers as cells.
+    /// Returns values as cells.
     fn cells(values: &mut [Self]) -> &[Self::Cell];
-    /// The number in a cell.
+    /// Returns the value in a cell.
     fn load(cell: &Self::Cell) -> Self;
-    /// Puts a number into a cell.
+    /// Stores a value in a cell.
     fn store(cell: &Self::Cell, value: Self);
-    /// The bits of the number in a cell.
+    /// Returns the bits of the value in a cell.
     fn bits(cell: &Self::Cell) -> u64;
 }
 

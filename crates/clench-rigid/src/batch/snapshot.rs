@@ -1,9 +1,9 @@
-//! Saving and restoring environments.
+//! Snapshots of environments.
 
 use super::{Batch, EnvStatus, Precision, StateRows};
 use clench_dynamics::error::SimError;
 
-/// The states of some environments of a batch, and whether they run.
+/// The states and statuses of some environments of a batch.
 #[derive(Debug)]
 pub struct Snapshot<S> {
     state: StateRows<S>,
@@ -12,22 +12,22 @@ pub struct Snapshot<S> {
 }
 
 impl<S: Precision> Snapshot<S> {
-    /// Which environments were saved, in the order of the rows.
+    /// Returns the saved environments, in the order of the rows.
     pub fn envs(&self) -> &[usize] {
         &self.envs
     }
-    /// Their states.
+    /// Returns their states.
     pub fn state(&self) -> &StateRows<S> {
         &self.state
     }
 }
 
 impl<S: Precision> Batch<S> {
-    /// Saves the states of all environments: what is restored moves on as it would have, to the bit, as long as its
-    /// parameters are the same.
+    /// Saves the states of all environments. A restored environment continues bit for bit as the original, as long as
+    /// its parameters are the same.
     ///
     /// # Errors
-    /// As [`save_envs`](Self::save_envs).
+    /// See [`save_envs`](Self::save_envs).
     pub fn save(&self) -> Result<Snapshot<S>, SimError> {
         self.save_envs(&Vec::from_iter(0..self.count()))
     }
@@ -35,8 +35,8 @@ impl<S: Precision> Batch<S> {
     /// Saves the states of these environments.
     ///
     /// # Errors
-    /// Environments that the batch does not have; tables of [`state`](Self::state) that are not those of this batch; more
-    /// memory than there is.
+    /// Returns an error if there is no such environment, if tables of [`state`](Self::state) have wrong shapes, or if
+    /// memory is insufficient.
     pub fn save_envs(&self, envs: &[usize]) -> Result<Snapshot<S>, SimError> {
         self.check_envs(envs)?;
         self.check_state()?;
@@ -51,19 +51,19 @@ impl<S: Precision> Batch<S> {
         })
     }
 
-    /// Brings the environments of a snapshot back to what they were.
+    /// Restores the environments of a snapshot.
     ///
     /// # Errors
-    /// A snapshot of states of other sizes or of a larger batch; tables of [`state`](Self::state) that are not those of this
-    /// batch.
+    /// Returns an error if the snapshot has states of other sizes or belongs to a larger batch, or if tables of
+    /// [`state`](Self::state) have wrong shapes.
     pub fn restore(&mut self, snapshot: &Snapshot<S>) -> Result<(), SimError> {
         self.restore_to(snapshot, &snapshot.envs)
     }
 
-    /// Gives environment `envs[k]` the k-th state of a snapshot.
+    /// Assigns the k-th state of a snapshot to environment `envs[k]`.
     ///
     /// # Errors
-    /// As [`restore`](Self::restore), and another number of environments than were saved.
+    /// Returns an error as [`restore`](Self::restore) does, or if the number of environments is wrong.
     pub fn restore_to(&mut self, snapshot: &Snapshot<S>, envs: &[usize]) -> Result<(), SimError> {
         self.check_envs(envs)?;
         self.check_state()?;

@@ -1,4 +1,4 @@
-//! The states of a batch, a table a field: what users read and write, and how rows become lanes and lanes rows.
+//! The states of a batch, one table per field, and the copies between rows and lanes.
 
 use super::Rows;
 use super::cells::Cells;
@@ -12,7 +12,7 @@ use clench_dynamics::state::kind::{self, Kind};
 use clench_dynamics::state::{FIELDS, State};
 use clench_math::{Clock, Real, Scalar};
 
-/// What a row holds of a kind of element.
+/// The cell type of a kind of element.
 type Cell<K, S> = <K as Kind>::Cell<S>;
 
 macro_rules! declare_rows {
@@ -28,11 +28,12 @@ macro_rules! declare_rows {
             $occasional:ident $os:ident: $occasional_kind:ident, $on:ident, $ob:ident;
         )* }
     ) => {
-        /// The states of the environments of a batch, field by field, a row an environment: as many cells an element as its
-        /// [kind](crate::state::kind) has. To be read and written between steps; what a step reads is checked first.
+        /// The states of the environments of a batch, field by field, one row per environment, with the number of cells
+        /// per element of its [kind](crate::state::kind). They may be read and written between steps; a step checks its
+        /// input first.
         #[derive(Debug)]
         pub struct StateRows<S> {
-            /// s (n, 1), in double precision.
+            /// Time, s (n, 1), in double precision.
             pub time: Rows<f64>,
             $($(#[$moving_doc])* pub $moving: Rows<Cell<kind::$moving_kind, S>>,)*
             $($(#[$input_doc])* pub $input: Rows<Cell<kind::$input_kind, S>>,)*
@@ -40,10 +41,10 @@ macro_rules! declare_rows {
         }
 
         impl<S: Scalar + Shared> StateRows<S> {
-            /// Room for `count` states of a model, all zero: [`write`](Self::write) puts states in.
+            /// Allocates `count` states of a model, all zero; [`write`](Self::write) sets them.
             ///
             /// # Errors
-            /// More memory than there is.
+            /// Returns an error if memory is insufficient.
             pub fn new(model: &Model, count: usize) -> Result<Self, SimError> {
                 try_reserve(count, Self::row_bytes(model))?;
                 let mut widths = FIELDS.iter().map(|field| field.numbers(model));
@@ -56,7 +57,7 @@ macro_rules! declare_rows {
                 })
             }
 
-            /// Bytes that a state takes.
+            /// Returns the size of a state in bytes.
             pub(super) fn row_bytes(model: &Model) -> usize {
                 let cells = [
                     $(size_of::<Cell<kind::$moving_kind, S>>(),)*
@@ -68,7 +69,7 @@ macro_rules! declare_rows {
                 size_of::<f64>() + bytes.sum::<usize>()
             }
 
-            /// How many rows each table has, and of how many numbers, in the order of [`FIELDS`].
+            /// Returns the number of rows and the row width of each table, in the order of [`FIELDS`].
             fn shapes(&self) -> impl Iterator<Item = (usize, usize)> {
                 [
                     $((self.$moving.count(), self.$moving.width()),)*
@@ -78,7 +79,7 @@ macro_rules! declare_rows {
                 .into_iter()
             }
 
-            /// Takes row `from` of another table as row `to`.
+            /// Copies row `from` of another table to row `to`.
             pub(super) fn copy_row(&mut self, to: usize, other: &Self, from: usize) {
                 self.time.row_mut(to).copy_from_slice(other.time.row(from));
                 $(self.$moving.row_mut(to).copy_from_slice(other.$moving.row(from));)*
@@ -86,7 +87,7 @@ macro_rules! declare_rows {
                 $(self.$occasional.row_mut(to).copy_from_slice(other.$occasional.row(from));)*
             }
 
-            /// Puts the numbers of a field of [`FIELDS`], row after row, into `out`.
+            /// Copies the values of a field of [`FIELDS`], row by row, to `out`.
             pub(super) fn read_field(&mut self, name: &str, out: &mut Vec<S>) {
                 let (motion, inputs) = self.share();
                 out.clear();
@@ -101,7 +102,7 @@ macro_rules! declare_rows {
                 })*
             }
 
-            /// Replaces all rows of a field that steps move.
+            /// Replaces all rows of a field that steps change.
             pub(super) fn write_field(&mut self, name: &str, values: &[S]) {
                 let (motion, _) = self.share();
                 $(if name == stringify!($moving) {
@@ -110,10 +111,10 @@ macro_rules! declare_rows {
                 })*
             }
 
-            /// The names of the fields that steps move.
+            /// The names of the fields that steps change.
             pub(super) const MOVING: &[&str] = &[$(stringify!($moving)),*];
 
-            /// The tables as a step sees them.
+            /// Returns the tables in the form that a step uses.
             pub(super) fn share(&mut self) -> (MovingRows<'_, S>, Inputs<'_, S>) {
                 let motion = MovingRows {
                     time: Cells::new(&mut self.time),
@@ -127,7 +128,7 @@ macro_rules! declare_rows {
             }
         }
 
-        /// What a step reads and writes.
+        /// The fields that a step reads and writes.
         pub struct MovingRows<'a, S: Scalar + Shared> {
             time: Cells<'a, f64>,
             $($moving: Cells<'a, Cell<kind::$moving_kind, S>>,)*
@@ -147,19 +148,19 @@ macro_rules! declare_rows {
             }
         }
 
-        /// What a step only reads.
+        /// The fields that a step only reads.
         pub struct Inputs<'a, S: Scalar + Shared> {
             $($input: Cells<'a, Cell<kind::$input_kind, S>>,)*
             $($occasional: Cells<'a, Cell<kind::$occasional_kind, S>>,)*
         }
 
         impl<S: Scalar + Shared> Inputs<'_, S> {
-            /// Copies the row of an environment into lane `lane`, but for occasional inputs.
+            /// Copies the row of an environment, except occasional inputs, into lane `lane`.
             pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &mut State<T>) {
                 $(self.$input.read::<kind::$input_kind, T>(env, lane, &mut state.$input);)*
             }
 
-            /// Whether an environment has any occasional input; one of −0 counts, for outputs show it.
+            /// Returns true if an environment has any occasional input. −0 counts, because outputs show it.
             pub(crate) fn has_occasional(&self, env: usize) -> bool {
                 $(!self.$occasional.is_blank(env))||*
             }
@@ -190,15 +191,12 @@ macro_rules! declare_rows {
 clench_dynamics::state_fields!(declare_rows);
 
 impl<S: Scalar + Shared> StateRows<S> {
-    /// How many states there are.
+    /// Returns the number of states.
     pub fn count(&self) -> usize {
         self.time.count()
     }
 
-    /// Tables for `count` states of this model.
-    ///
-    /// # Errors
-    /// The first of another shape.
+    /// Returns an error if a table does not have the shape of `count` states of this model.
     pub(super) fn check_shapes(&self, model: &Model, count: usize) -> Result<(), SimError> {
         let times = (self.time.count(), self.time.width());
         let expected = FIELDS
@@ -214,7 +212,7 @@ impl<S: Scalar + Shared> StateRows<S> {
         Ok(())
     }
 
-    /// Tables that have row `env`, as long as the fields of this state.
+    /// Checks that the tables have row `env`, with the lengths of this state.
     fn check_row(&self, env: usize, state: &State<S>) -> Result<(), SimError> {
         if env >= self.time.count() {
             return Err(no_such("environment", env, self.time.count()));
@@ -228,11 +226,11 @@ impl<S: Scalar + Shared> StateRows<S> {
         Ok(())
     }
 
-    /// Copies row `env` into a state of the same model. Numbers are read one by one: who writes them meanwhile, by their address,
-    /// leaves some of the old and some of the new.
+    /// Copies row `env` into a state of the same model. Values are read one by one: concurrent writes through a pointer
+    /// may mix old and new values.
     ///
     /// # Errors
-    /// A row that there is not; a state of other lengths, which is then as before.
+    /// Returns an error if the row does not exist or the state has other lengths; the state is then unchanged.
     pub fn read(&mut self, env: usize, state: &mut State<S>) -> Result<(), SimError> {
         self.check_row(env, state)?;
         let (motion, inputs) = self.share();
@@ -242,10 +240,10 @@ impl<S: Scalar + Shared> StateRows<S> {
         Ok(())
     }
 
-    /// Copies a state of the same model into row `env`, number by number as [`read`](Self::read) does.
+    /// Copies a state of the same model into row `env`, value by value like [`read`](Self::read).
     ///
     /// # Errors
-    /// A row that there is not; a state of other lengths. The row is then as before.
+    /// Returns an error if the row does not exist or the state has other lengths. The row is then unchanged.
     pub fn write(&mut self, env: usize, state: &State<S>) -> Result<(), SimError> {
         self.check_row(env, state)?;
         let (motion, inputs) = self.share();
@@ -254,15 +252,15 @@ impl<S: Scalar + Shared> StateRows<S> {
         Ok(())
     }
 
-    /// Copies what a step only reads of a state, all but what it moves, into row `env`.
+    /// Copies the fields of a state that a step only reads into row `env`.
     pub(super) fn write_inputs(&mut self, env: usize, state: &State<S>) {
         self.share().1.write(env, 0, state);
     }
 }
 
 impl<S: Scalar + Shared> MovingRows<'_, S> {
-    /// Replaces the row of an environment by time, `nq` positions, `nv` velocities and activations. The solver starts anew, and everything is
-    /// awake.
+    /// Replaces the row of an environment by time, `nq` positions, `nv` velocities and activations. Clears the solver's
+    /// warm start and wakes all trees.
     pub fn start(&self, env: usize, row: &[S], nq: usize, nv: usize) {
         let (time, row) = row.split_at(1);
         let (qpos, row) = row.split_at(nq);

@@ -1,4 +1,4 @@
-//! A thread's scratch: environments come in by groups, are stepped side by side, and go out again.
+//! A thread's scratch memory, in which a group of environments is gathered, stepped in lanes and scattered.
 
 use super::answer::{AskMemory, Asking};
 use super::env_rows::EnvRows;
@@ -20,7 +20,7 @@ use clench_dynamics::{Step, check};
 use clench_math::{Clock, LaneTask, Mask, Real, Scalar, write_lane};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Makes a stepper in lanes picked at run time.
+/// Creates a stepper in lanes chosen at run time.
 pub(super) struct MakeStepper<'a> {
     pub model: &'a Model,
 }
@@ -39,23 +39,23 @@ pub(super) struct LaneStepper<T: Real> {
     initial: State<T>,
     params: Params<T>,
     ws: Workspace<T>,
-    /// Whether the state holds occasional inputs.
+    /// True if the state contains occasional inputs.
     has_occasional: bool,
     /// The output that is being copied.
     output: Vec<T>,
-    /// Environments that are to start over from the initial state, with the step in which they do.
+    /// Environments to be reset to the initial state, with the step to repeat.
     restarts: Vec<(u32, usize)>,
-    /// Room for answers.
+    /// Scratch memory of queries.
     memory: AskMemory<T>,
     totals: StepTotals,
 }
 
-/// Where the environments of a group begin.
+/// The start state of a group.
 #[derive(Clone, Copy, PartialEq)]
 enum Start {
-    /// In the state in their rows.
+    /// The state in the rows.
     Rows,
-    /// In the model's initial state.
+    /// The model's initial state.
     Initial,
 }
 
@@ -79,8 +79,8 @@ where
         }
     }
 
-    /// Copies the rows of a group into the lanes. Whatever a step uses of the rows is read here, once, and checked afterwards:
-    /// who holds pointers to rows and writes them meanwhile gets mixed numbers, and nothing worse.
+    /// Copies the rows of a group into the lanes. All that a step uses is read here, once, and then checked: concurrent
+    /// writes through pointers can only mix values.
     fn gather(&mut self, group: &Group<T>, rows: &EnvRows<T::Scalar>) {
         for (lane, env) in group.fill() {
             rows.motion.read(env, lane, &mut self.state);
@@ -103,7 +103,7 @@ where
         self.has_occasional = has_occasional;
     }
 
-    /// Does the steps of a job from `step` on.
+    /// Runs the steps of a job, starting with `step`.
     fn advance(
         &mut self,
         mut group: Group<T>,
@@ -134,7 +134,7 @@ where
         }
     }
 
-    /// Puts the controls of a rollout's step into the lanes.
+    /// Copies the controls of a rollout's step into the lanes.
     fn control(&mut self, group: &Group<T>, step: usize, job: &Job<T::Scalar>) {
         let nu = self.state.ctrl.len();
         for (lane, env) in group.fill() {
@@ -144,7 +144,7 @@ where
         }
     }
 
-    /// Removes from the group the environments whose state no step can start from. Returns whether all stay.
+    /// Removes environments with an invalid state from the group. Returns true if all remain.
     fn check_inputs(
         &mut self,
         group: &mut Group<T>,
@@ -162,7 +162,7 @@ where
         good.all()
     }
 
-    /// Notes that an environment cannot go on; with the option `autoreset`, that it is to start over, unless it has just done so.
+    /// Records that an environment failed, or must be reset if `autoreset` is on and it was not just reset.
     fn fail(
         &mut self,
         (env, fault): (usize, Fault),
@@ -183,8 +183,8 @@ where
         }
     }
 
-    /// One step of all lanes. Environments that fail in it leave the group and keep the rows that they have. Returns whether all
-    /// stay.
+    /// Runs one step of all lanes. Environments that fail leave the group, and their rows do not change. Returns true
+    /// if all remain.
     fn step(
         &mut self,
         group: &mut Group<T>,
@@ -222,7 +222,7 @@ where
         good.all()
     }
 
-    /// Copies the states of the lanes that are good into their rows.
+    /// Copies the states of the good lanes into their rows.
     fn scatter(&mut self, group: &Group<T>, good: T::Mask, job: &Job<T::Scalar>) {
         let mut signatures = [0; MAX_LANES];
         for contact in &self.ws.contacts {
@@ -257,7 +257,7 @@ where
         self.totals.quality.count(results, group.len, good);
     }
 
-    /// Copies what a step gave out to where it is wanted.
+    /// Copies the outputs of a step to their targets.
     fn record(&mut self, group: &Group<T>, good: T::Mask, step: usize, job: &Job<T::Scalar>) {
         let last = step + 1 == job.steps;
         if let Some(recorded) = job.recorded.as_ref().filter(|_| last) {
@@ -291,18 +291,18 @@ where
     }
 }
 
-/// The place of environments in which everything sleeps: together, for a group of them costs next to nothing.
+/// The rank of environments in which everything sleeps. A group of them costs almost nothing.
 const ASLEEP_RANK: u64 = u64::MAX;
 
-/// One of 64 bits for a pair of geoms.
+/// Returns one of 64 bits for a pair of geoms.
 fn contact_bit(a: u64, b: u64) -> u64 {
     // Fibonacci hashing: the upper bits of a multiple of the golden ratio spread neighbours well.
     let hash = (a << 32 | b).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     1 << (hash >> 58)
 }
 
-/// The place of a set of bits in Gray's order, where neighbours differ by one: better than the order of numbers, in which
-/// sets that differ much can be neighbours. Measured to save 3% of contact slots.
+/// Returns the rank of a bit set in Gray code order, where neighbours differ by one bit. In numerical order, very
+/// different sets can be neighbours. Saves 3% of contact slots (measured).
 fn gray_rank(mut bits: u64) -> u64 {
     for shift in [1, 2, 4, 8, 16, 32] {
         bits ^= bits >> shift;
@@ -324,7 +324,7 @@ where
         let targets = job.targets.iter();
         self.ws.read = { targets }.any(|target| target.last.is_some() || target.trace.is_some());
         self.advance(Group::new(envs), Start::Rows, job.first, job);
-        // Each by itself, which changes no bit of what comes out.
+        // Each is repeated separately, with identical results.
         while let Some((env, step)) = self.restarts.pop() {
             self.advance(Group::new(&[env]), Start::Initial, step, job);
         }

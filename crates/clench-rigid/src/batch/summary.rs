@@ -1,12 +1,12 @@
-//! What a call did.
+//! The summary of a call.
 
-/// What a call did.
+/// The summary of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// Environments that failed in this call.
+    /// The number of environments that failed in this call.
     pub failed: usize,
-    /// Environments that run on.
+    /// The number of environments that still run.
     pub running: usize,
-    /// How often environments started over from the initial state in this call, with the option `autoreset`.
+    /// The number of `autoreset` resets in this call.
     pub resets: usize,
 }

@@ -1,4 +1,4 @@
-//! The outputs that a batch keeps, and where a call puts them; the controls that it takes.
+//! The recorded outputs of a batch, and the output targets and controls of a call.
 
 use super::Rows;
 use super::cells::Cells;
@@ -14,15 +14,15 @@ pub(super) struct OutputRows<S> {
     pub(super) rows: Rows<S>,
 }
 
-/// Where an output goes.
+/// The targets of an output.
 pub struct Target<'a, S: Scalar + Shared> {
-    /// What it was in the last forward pass of a call.
+    /// Its values in the last forward pass of a call.
     pub last: Option<Cells<'a, S>>,
-    /// What it was after each step of a rollout.
+    /// Its values after each step of a rollout.
     pub trace: Option<Cells<'a, S>>,
 }
 
-/// Where each output goes, in the order of [`Output::ALL`].
+/// The targets of each output, in the order of [`Output::ALL`].
 pub(super) type Targets<'a, S> = [Target<'a, S>; Output::COUNT];
 
 /// Shares the tables of outputs with threads.
@@ -46,16 +46,16 @@ pub(super) fn targets<'a, S: Scalar + Shared>(
 /// The controls of a rollout.
 #[derive(Clone, Copy, Debug)]
 pub enum Controls<'a, S> {
-    /// Those in [`StateRows::ctrl`](super::StateRows::ctrl), all the time.
+    /// The controls in [`StateRows::ctrl`](super::StateRows::ctrl), in all steps.
     Held,
-    /// The same for all environments (steps, nu).
+    /// The same controls for all environments (steps, nu).
     Shared(&'a [S]),
-    /// Its own for each environment (n, steps, nu).
+    /// Separate controls for each environment (n, steps, nu).
     Each(&'a [S]),
 }
 
 impl<S> Controls<'_, S> {
-    /// The controls of an environment in a step, if they are not held.
+    /// Returns the controls of an environment in a step, unless held.
     pub(super) fn row(&self, env: usize, step: usize, steps: usize, nu: usize) -> Option<&[S]> {
         match self {
             Controls::Held => None,
@@ -65,7 +65,7 @@ impl<S> Controls<'_, S> {
     }
 }
 
-/// Bytes that the rows of an environment take.
+/// Returns the bytes per environment.
 pub(super) fn row_bytes<S>(outputs: &[OutputRows<S>]) -> usize {
     outputs.iter().map(|own| own.rows.row_bytes()).sum()
 }

@@ -7,20 +7,20 @@ use clench_dynamics::dynamics::jacobian::{point_jacobian, subtree_jacobian};
 use clench_dynamics::model::Model;
 use clench_math::{Quat, Real, Vec3, kernel};
 
-/// A, g, and what they say of the present place. `n` is the number of dofs that are solved for.
+/// A, g, errors and cost at the present positions. `n` is the number of dofs that are solved for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Equations<T> {
-    /// Lower triangle, row after row (n (n + 1) / 2).
+    /// Lower triangle of A, row by row (n (n + 1) / 2).
     pub matrix: Vec<T>,
     /// g (n).
     pub right: Vec<T>,
-    /// Squared length of each task's error without weights.
+    /// Squared norm of each task's unweighted error.
     pub errors: Vec<T>,
     /// ½ Σ |W e|².
     pub cost: T,
 }
 
-/// Room that building takes (6 × nv, nv).
+/// Scratch memory of `Equations::build` (6 × nv, nv).
 #[derive(Clone, Debug)]
 pub(super) struct Scratch<T> {
     jacobian: Vec<T>,
@@ -36,7 +36,7 @@ impl<T: Real> Scratch<T> {
     }
 }
 
-/// Where row `i` of a lower triangle begins.
+/// Returns the start of row `i` of a lower triangle.
 #[inline(always)]
 pub(super) fn row_start(i: usize) -> usize {
     i * (i + 1) / 2
@@ -53,7 +53,7 @@ impl<T: Real> Equations<T> {
         }
     }
 
-    /// Sets everything up where the bodies are.
+    /// Builds the equations at the present poses.
     #[kernel]
     pub fn build(
         &mut self,
@@ -77,7 +77,7 @@ impl<T: Real> Equations<T> {
         }
     }
 
-    /// A task whose error has three components.
+    /// Adds a task with three error components and returns its squared error.
     #[inline(always)]
     fn add_vector(
         &mut self,
@@ -162,8 +162,8 @@ impl<T: Real> Equations<T> {
         sum
     }
 
-    /// Solves (A + μ I) δ = g for the dofs that are not held, whose δ is zero where they are. `factor` is room for the factor of
-    /// Cholesky. False in lanes where the matrix is not positive definite.
+    /// Solves (A + μ I) δ = g for the dofs that are not held; δ of a held dof is zero. `factor` is scratch memory for
+    /// the Cholesky factor. Returns false in lanes where the matrix is not positive definite.
     #[kernel]
     pub fn solve(&self, damping: T, held: &[T::Mask], factor: &mut [T], step: &mut [T]) -> T::Mask {
         use clench_math::Mask;
@@ -203,7 +203,7 @@ impl<T: Real> Equations<T> {
         positive
     }
 
-    /// Takes over another's numbers in the lanes of `mask`.
+    /// Copies the values of `other` in the lanes of `mask`.
     #[kernel]
     pub fn blend(&mut self, mask: T::Mask, other: &Self) {
         let pairs = [
@@ -220,7 +220,7 @@ impl<T: Real> Equations<T> {
     }
 }
 
-/// The squared length of what counts of an error.
+/// Returns the squared error over positive weights.
 #[inline(always)]
 fn counted<T: Real>(error: Vec3<T>, weights: Vec3<T>) -> T {
     let mut sum = T::ZERO;

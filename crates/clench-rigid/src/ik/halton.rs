@@ -1,17 +1,17 @@
-//! Postures from which a search begins anew: points of Halton's sequence (Halton 1960) over the ranges of the joints, which cover them
-//! more evenly than random ones and are the same in every run.
+//! Start postures of restarts: points of Halton's sequence (Halton 1960) over the ranges of the joints. They cover the
+//! ranges more evenly than random points and are the same in every run.
 
 use super::Ik;
 use clench_dynamics::model::{JointKind, Model, Params};
 use clench_math::Real;
 use std::f64::consts::PI;
 
-/// The bases of the sequence, one a dof; from the last on they are used again, with another offset.
+/// The bases of the sequence, one per dof. Further dofs reuse them with another offset.
 const PRIMES: [u64; 24] = [
     2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89,
 ];
 
-/// Digit by digit mirrored at the point: a number between 0 and 1.
+/// Returns `index` with its digits mirrored at the radix point, between 0 and 1.
 fn radical_inverse(mut index: u64, base: u64) -> f64 {
     let (mut value, mut digit) = (0.0, 1.0);
     while index > 0 {
@@ -22,8 +22,8 @@ fn radical_inverse(mut index: u64, base: u64) -> f64 {
     value
 }
 
-/// Puts slides and hinges that are solved for where start `index` has them: within their ranges, or a half turn around `qpos` where a
-/// hinge has none. All else stays.
+/// Sets the slides and hinges that are solved for to start posture `index`: within their ranges, or half a turn around
+/// `qpos` for a hinge without range.
 #[inline(always)]
 pub(super) fn sample_posture<T: Real>(
     model: &Model,

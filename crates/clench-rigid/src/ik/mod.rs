@@ -1,17 +1,18 @@
 //! Inverse kinematics: positions of joints that bring objects to their goals, by damped least squares.
 //!
-//! Of tasks with errors e_k (goal less present value) and weights W_k
+//! Given tasks with errors e_k (goal minus present value) and weights W_k, it solves
 //!
 //! ```text
 //! minimise over q:   ½ Σ_k |W_k e_k(q)|²     within the limits of joints
 //! ```
 //!
-//! by the method of Levenberg and Marquardt with projection onto the limits (Kanzow, Yamashita & Fukushima 2004), see `search`.
-//! Like every method that goes downhill it ends in the minimum of the valley where it began: other starts may end elsewhere, and
-//! `restarts` tries some (`halton`).
+//! by the Levenberg–Marquardt method with projection onto the limits (Kanzow, Yamashita & Fukushima 2004), see
+//! `search`. Like every descent method it finds a local minimum, which depends on the start; `restarts` tries further
+//! starts (`halton`).
 //!
-//! What lives here: the tasks (this file), the linear equations of an iteration (`equations`), the iterations (`search`), other starts
-//! (`halton`). Poses and Jacobians come from `dynamics`. Loops of equality constraints, tendon limits and collisions are not looked at.
+//! This file defines the tasks, `equations` the linear equations of an iteration, `search` the iterations, `halton` the
+//! further starts. Poses and Jacobians come from `dynamics`. Loops of equality constraints, tendon limits and
+//! collisions are ignored.
 
 mod equations;
 mod halton;
@@ -24,21 +25,21 @@ use clench_dynamics::check::check_length;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{FrameObject, Model};
 
-/// What is brought to a goal.
+/// The quantity that a task brings to a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IkTarget {
-    /// The position of an object. Goal: a place in the world (3), m.
+    /// The position of an object. Goal: a world position (3), m.
     Position(FrameObject),
-    /// The orientation of an object. Goal: a quaternion (4). Its error is the rotation vector that is left, rad.
+    /// The orientation of an object. Goal: a quaternion (4). The error is the rotation vector from it to the goal, rad.
     Orientation(FrameObject),
-    /// The centre of mass of a body and all below it; that of the world is that of everything. Goal: a place (3), m.
+    /// The centre of mass of a body's subtree; body 0 stands for the whole model. Goal: a world position (3), m.
     CentreOfMass(usize),
-    /// All joints. Goal: positions (nq). Its error is the velocity that leads there in a second.
+    /// All joints. Goal: positions (nq). The error is the velocity that reaches the goal in one second.
     Posture,
 }
 
 impl IkTarget {
-    /// How many numbers a goal has.
+    /// Returns the number of values of a goal.
     pub fn goal_len(self, model: &Model) -> usize {
         match self {
             IkTarget::Position(_) | IkTarget::CentreOfMass(_) => 3,
@@ -47,8 +48,8 @@ impl IkTarget {
         }
     }
 
-    /// How many weights it has: one a component of its error, but one in all for orientations, whose error is no vector of
-    /// independent parts.
+    /// Returns the number of weights: one per component of the error, but a single one for an orientation, whose error
+    /// components are not independent.
     pub fn weight_len(self, model: &Model) -> usize {
         match self {
             IkTarget::Position(_) | IkTarget::CentreOfMass(_) => 3,
@@ -58,18 +59,18 @@ impl IkTarget {
     }
 }
 
-/// A target and how much it counts.
+/// A target and its weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IkTask {
-    /// What is brought to a goal.
+    /// The target.
     pub target: IkTarget,
-    /// The weight of each component of its error, see [`IkTarget::weight_len`]; not negative. A component of weight 0
-    /// does not count.
+    /// The weight of each component of the error, see [`IkTarget::weight_len`]; not negative. A component of weight 0
+    /// is ignored.
     pub weights: Vec<f64>,
 }
 
 impl IkTask {
-    /// A target of which every component has the same weight.
+    /// Creates a task whose components all have the same weight.
     pub fn new(model: &Model, target: IkTarget, weight: f64) -> Self {
         IkTask {
             target,
@@ -78,28 +79,28 @@ impl IkTask {
     }
 }
 
-/// How inverse kinematics are computed.
+/// Options of inverse kinematics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IkOptions {
-    /// The most iterations from one start.
+    /// The maximum number of iterations from one start.
     pub iterations: usize,
-    /// The error, m or rad, below which a task that counts is done. A posture is never waited for unless there is nothing else.
+    /// The error, m or rad, within which a task is reached. Posture tasks are ignored here unless there are no others.
     pub tolerance: f64,
-    /// Damping at the start, in parts of the present cost, see [`search`](self).
+    /// The initial damping, relative to the present cost, see [`search`](self).
     pub damping: f64,
-    /// The most that any dof moves in an iteration, m or rad: longer steps are shortened as a whole.
+    /// The maximum motion of a dof in an iteration, m or rad. Longer steps are scaled down as a whole.
     pub max_step: f64,
-    /// How often the search begins anew where it did not reach the goals, from postures spread evenly over the ranges of joints. The
-    /// best of all ends is what comes out, and iterations are those of all together.
+    /// The maximum number of restarts if the goals are not reached, from postures spread evenly over the ranges of
+    /// joints. The best result is returned, with the iterations of all starts together.
     pub restarts: usize,
-    /// Whether the limits of joints are kept: the start is moved within them, and no iterate leaves them.
+    /// True if joint limits are enforced: the start is projected onto them, and no iterate leaves them.
     pub limits: bool,
-    /// The dofs that may move (nv); all if it is empty.
+    /// The dofs that may move (nv); empty for all.
     pub dofs: Vec<bool>,
 }
 
 impl Default for IkOptions {
-    /// At most 100 iterations of any length, to 1e-6 m and rad, all dofs within their limits.
+    /// Returns at most 100 iterations of any length, to 1e-6 m and rad, all dofs within their limits.
     fn default() -> Self {
         IkOptions {
             iterations: 100,
@@ -113,16 +114,16 @@ impl Default for IkOptions {
     }
 }
 
-/// How inverse kinematics ended.
+/// The status of an inverse kinematics solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IkStatus {
-    /// Every task that counts is within the tolerance.
+    /// Every relevant task is within the tolerance.
     Reached,
-    /// Nothing near brings the tasks closer to their goals together: some goal is out of reach, or tasks contradict each other.
+    /// No nearby posture brings the tasks closer to their goals: some goal is out of reach, or tasks conflict.
     Stationary,
-    /// The iteration limit came first.
+    /// The iteration limit was reached.
     IterationLimit,
-    /// A number became infinite or undefined.
+    /// A value became infinite or undefined.
     NonFinite,
 }
 
@@ -134,7 +135,7 @@ impl IkStatus {
         IkStatus::NonFinite,
     ];
 
-    /// Its name in output, such as "iteration_limit".
+    /// Returns its name in output, such as "iteration_limit".
     pub fn name(self) -> &'static str {
         match self {
             IkStatus::Reached => "reached",
@@ -145,20 +146,20 @@ impl IkStatus {
     }
 }
 
-/// What inverse kinematics found.
+/// The result of inverse kinematics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IkSolution<T> {
-    /// Positions of the joints (nq).
+    /// The joint positions (nq).
     pub qpos: Vec<T>,
-    /// How large each task's error is there, without its weights (as many as tasks): m or rad.
+    /// The unweighted error of each task (one per task), m or rad.
     pub errors: Vec<T>,
-    /// Iterations.
+    /// The number of iterations.
     pub iterations: usize,
-    /// How it ended.
+    /// The status.
     pub status: IkStatus,
 }
 
-/// Tasks for a model, checked: which goals they have is said at each call.
+/// Validated tasks for a model. The goals are passed to each call.
 #[derive(Clone, Debug)]
 pub struct Ik {
     pub(crate) tasks: Vec<IkTask>,
@@ -168,9 +169,11 @@ pub struct Ik {
 }
 
 impl Ik {
+    /// Creates validated tasks.
+    ///
     /// # Errors
-    /// Tasks of objects that the model does not have, numbers of weights or dofs that it does not take, weights or options out of
-    /// their range.
+    /// Returns an error if an object does not exist, a number of weights or dofs is wrong, or a weight or option is out
+    /// of range.
     pub fn new(model: &Model, tasks: Vec<IkTask>, options: IkOptions) -> Result<Self, SimError> {
         for task in &tasks {
             match task.target {
@@ -225,24 +228,24 @@ impl Ik {
         })
     }
 
-    /// How many numbers the goals of all tasks have together, task after task.
+    /// Returns the number of goal values of all tasks together, task by task.
     pub fn goal_len(&self, model: &Model) -> usize {
         let lengths = self.tasks.iter().map(|task| task.target.goal_len(model));
         lengths.sum()
     }
 
-    /// The tasks.
+    /// Returns the tasks.
     pub fn tasks(&self) -> &[IkTask] {
         &self.tasks
     }
-    /// The options.
+    /// Returns the options.
     pub fn options(&self) -> &IkOptions {
         &self.options
     }
 }
 
 impl IkTask {
-    /// Whether the task's error depends on a dof.
+    /// Returns true if the task's error depends on the dof.
     fn is_moved_by(&self, model: &Model, dof: usize) -> bool {
         let in_chain = |body: usize| {
             let last = model.bodies[body].last_dof;

@@ -1,4 +1,4 @@
-//! The iterations, of all lanes side by side: a lane that is done stands still.
+//! The iterations of all lanes together; a finished lane does not change.
 //!
 //! With E the cost, A and g as in `equations`, an iteration tries δ from
 //!
@@ -6,10 +6,11 @@
 //! (A + μ I) δ = g       μ = λ (2 E + ε)
 //! ```
 //!
-//! Damping in proportion to the cost (Sugihara 2011) keeps steps short far from a goal, and fades as it is reached, so that the
-//! last iterations converge as Newton's do. λ is raised where a step does not lower the cost, and lowered where the cost falls as
-//! the linear model says. A step in which a dof moves too far is shortened as a whole, to s δ, of which the linear model promises
-//! ½ s δ·((2 − s) g + s μ δ). Dofs at a limit against which g presses are held; a step that passes a limit ends there.
+//! Damping in proportion to the cost (Sugihara 2011) keeps steps short far from a goal. It fades near the goal, where
+//! the iterations converge like Newton's. λ is raised if a step does not lower the cost, and lowered if the cost falls
+//! as the linear model predicts. A step in which a dof moves too far is scaled as a whole, to s δ, for which the linear
+//! model predicts a decrease of ½ s δ·((2 − s) g + s μ δ). Dofs at a limit against which g presses are held; a step
+//! that crosses a limit is projected onto it.
 
 use super::equations::{Equations, Scratch};
 use super::halton::sample_posture;
@@ -23,31 +24,31 @@ use clench_dynamics::state::State;
 use clench_math::{Mask, Quat, Real, Scalar, kernel};
 use std::ops::Range;
 
-/// ε: damping never fades altogether, for at singular postures A alone is no matrix to solve with.
+/// ε: the minimum damping. At singular postures A alone cannot be factored.
 const MIN_DAMPING: f64 = 1e-9;
-/// The factor by which λ grows where a step fails, and falls where one goes well.
+/// The factor by which a failed step raises λ; a good one lowers it by `LOWER`.
 const RAISE: f64 = 8.0;
 const LOWER: f64 = 4.0;
-/// λ stays above this, or it would take many failures to raise it again.
+/// The minimum of λ, from which few failures suffice to raise it again.
 const MIN_LAMBDA: f64 = 1e-6;
-/// A step that brings at least this part of what the linear model promised went well.
+/// The minimum ratio of actual to predicted decrease of a good step.
 const GOOD_RATIO: f64 = 0.5;
-/// Where the linear model promises no more than this part of the cost, nothing is to be gained.
+/// The predicted decrease, relative to the cost, up to which a point counts as stationary.
 const NEGLIGIBLE: f64 = 1e-10;
-/// A lane that failed so often in a row is stuck in rounding.
+/// The maximum number of consecutive failed steps; more are due to rounding.
 const FAILURES: f64 = 12.0;
 
-/// Memory of a search.
+/// The memory of a search.
 #[derive(Debug)]
 pub struct Search<T: Real> {
     compiled: Step<T>,
-    /// The positions that the search has reached; mocap poses are read as well.
+    /// The trial positions, in the end the result; mocap poses are input.
     pub state: State<T>,
-    /// Goals, task after task.
+    /// Goals, task by task.
     pub goals: Vec<T>,
-    /// Iterations of each lane.
+    /// The number of iterations of each lane.
     iterations: T,
-    /// [`IkStatus`] by its place in the list.
+    /// The index of the [`IkStatus`].
     status: T,
     position: Positions<T>,
     all: Range<usize>,
@@ -59,11 +60,11 @@ pub struct Search<T: Real> {
     held: Vec<T::Mask>,
     /// The step over all dofs (nv).
     velocity: Vec<T>,
-    /// Where the search stands, while `state` is where it tries (nq).
+    /// The current iterate, while `state` holds the trial positions (nq).
     qpos: Vec<T>,
 }
 
-/// The best end of several searches.
+/// The best result of several searches.
 struct Best<T: Real> {
     qpos: Vec<T>,
     here: Equations<T>,
@@ -93,14 +94,14 @@ impl<T: Real> Search<T> {
         }
     }
 
-    /// Whether it has the room that these tasks take: all that it keeps of earlier ones.
+    /// Returns true if the buffers fit these tasks. Nothing else remains of earlier searches.
     pub fn fits(&self, model: &Model, ik: &Ik) -> bool {
         self.goals.len() == ik.goal_len(model)
             && self.step.len() == ik.dofs.len()
             && self.here.errors.len() == ik.tasks.len()
     }
 
-    /// Searches from the positions of `state` and leaves what it found there.
+    /// Searches from the positions of `state` and leaves the result there.
     #[kernel]
     pub fn run(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
         if ik.options.limits {
@@ -137,7 +138,7 @@ impl<T: Real> Search<T> {
         self.status = best.status;
     }
 
-    /// Searches from the positions of `state` in the lanes of `live`, and leaves what it found there.
+    /// Searches from the positions of `state` in the lanes of `live`, and leaves the result there.
     #[inline(always)]
     fn descend(&mut self, model: &Model, params: &Params<T>, ik: &Ik, mut live: T::Mask) {
         let tolerance = T::new(ik.options.tolerance);
@@ -179,15 +180,15 @@ impl<T: Real> Search<T> {
         self.state.qpos.copy_from_slice(&self.qpos);
     }
 
-    /// Ends the live lanes of `mask`.
+    /// Finishes the live lanes of `mask`.
     #[inline(always)]
     fn end(&mut self, live: &mut T::Mask, mask: T::Mask, status: IkStatus) {
         self.status = T::select(*live & mask, status.code(), self.status);
         *live &= !mask;
     }
 
-    /// Goes a step from where the search stands and evaluates there; returns by how much the linear model says that the cost
-    /// falls.
+    /// Takes a step from the current iterate and evaluates the trial positions. Returns the decrease of the cost that
+    /// the linear model predicts.
     #[inline(always)]
     fn try_step(&mut self, model: &Model, params: &Params<T>, ik: &Ik, damping: T) -> T {
         if ik.options.limits {
@@ -221,7 +222,7 @@ impl<T: Real> Search<T> {
         T::select(positive, promised, T::splat(T::Scalar::INFINITY))
     }
 
-    /// Sets up `there` at the positions of the state.
+    /// Builds `there` at the positions of the state.
     #[inline(always)]
     fn evaluate(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
         let pos = &mut self.position;
@@ -232,7 +233,7 @@ impl<T: Real> Search<T> {
         (self.there).build(frames, &self.state.qpos, goals, &mut self.scratch);
     }
 
-    /// Lanes in which every task that counts is done: all but postures, or these where there is nothing else.
+    /// Returns the lanes in which every task is reached, ignoring postures unless there are no other tasks.
     #[inline(always)]
     fn is_reached(&self, ik: &Ik, tolerance: T) -> T::Mask {
         let is_posture = |target: IkTarget| target == IkTarget::Posture;
@@ -246,7 +247,7 @@ impl<T: Real> Search<T> {
         reached
     }
 
-    /// Appends what the search found, as [`IkSolution::read`] reads it.
+    /// Appends the result in the form that [`IkSolution::read`] reads.
     pub fn write(&self, out: &mut Vec<T>) {
         out.extend_from_slice(&self.state.qpos);
         out.extend([self.iterations, self.status]);
@@ -255,12 +256,12 @@ impl<T: Real> Search<T> {
 }
 
 impl<S: Scalar> IkSolution<S> {
-    /// How many numbers it is written as.
+    /// Returns the width of a written solution.
     pub(crate) fn width(model: &Model, ik: &Ik) -> usize {
         model.nq + 2 + ik.tasks.len()
     }
 
-    /// From the numbers that a search wrote, of which `nq` are positions.
+    /// Reads the values that a search wrote, of which the first `nq` are positions.
     pub(crate) fn read(row: &[S], nq: usize) -> Self {
         let (qpos, rest) = row.split_at(nq);
         let status = rest[1].to_f64();
@@ -283,7 +284,8 @@ impl IkStatus {
     }
 }
 
-/// Moves positions of joints that are solved for into their ranges. A ball joint turns back about the axis that it is turned about.
+/// Projects the positions of joints that are solved for onto their ranges. A ball joint is rotated back about its
+/// rotation axis.
 #[inline(always)]
 fn project<T: Real>(model: &Model, params: &Params<T>, ik: &Ik, qpos: &mut [T]) {
     let mut last = usize::MAX;

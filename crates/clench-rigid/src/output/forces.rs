@@ -1,7 +1,8 @@
-//! Forces on bodies from outside their tree of joints: applied ones, contacts, connects, welds and spatial tendons.
+//! External forces on bodies: applied forces, contacts, connects, welds and spatial tendons.
 //!
-//! A force F at a point p with a couple Q has the moment Q + (p − o) × F about o. The second body of a contact takes its
-//! force, the first its negative; a connect or weld pulls its first body along its rows, and the second against them.
+//! A force F at a point p with a couple Q has the moment Q + (p − o) × F about o. A contact force acts on the second
+//! body, and its negative on the first. A connect or weld pulls its first body along its rows, and the second against
+//! them.
 
 use super::source::Source;
 use super::tendon_forces::each_pull;
@@ -11,7 +12,7 @@ use clench_dynamics::model::EqualityTarget;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Real, Vec3, kernel};
 
-/// A force and a couple in world axes, and where the force acts.
+/// A force and a couple in world axes, and the point of action of the force.
 pub(crate) struct Wrench<T> {
     pub force: Vec3<T>,
     pub couple: Vec3<T>,
@@ -19,7 +20,7 @@ pub(crate) struct Wrench<T> {
 }
 
 impl<T: Real> Wrench<T> {
-    /// As a spatial force about `origin`.
+    /// Returns the spatial force about `origin`.
     #[kernel]
     fn about(&self, origin: Vec3<T>) -> Force<T> {
         let moment = self.couple + (self.at - origin).cross(self.force);
@@ -27,7 +28,7 @@ impl<T: Real> Wrench<T> {
     }
 }
 
-/// Appends what acts on each body from outside, about the centre of mass of its tree: torque, force.
+/// Appends the external torque and force on each body, about the centre of mass of its tree.
 #[kernel]
 pub(crate) fn external_forces<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     let start = out.len();
@@ -39,7 +40,8 @@ pub(crate) fn external_forces<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
             couple: applied.angular,
             at: pos.xipos[b],
         };
-        // From 0 on, which no force of −0 turns into −0: contacts of other lanes, which add 0, then change nothing.
+        // The sum starts from 0, which no force of −0 turns into −0, so that contacts of other lanes, which add 0,
+        // change nothing.
         let mut force = Force::ZERO;
         if b != 0 {
             force += wrench.about(com(b));
@@ -72,7 +74,7 @@ pub(crate) fn external_forces<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     });
 }
 
-/// Appends the force and torque of contacts on each body, at its centre of mass.
+/// Appends the contact force and torque on each body, at its centre of mass.
 #[kernel]
 pub(super) fn of_contacts<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     let start = out.len();
@@ -93,7 +95,7 @@ fn accumulate<T: Real, const N: usize>(row: &mut [T], values: [T; N]) {
     }
 }
 
-/// The forces of a block's rows, zero in the lanes that do not have it.
+/// Returns the forces of a block's rows, zero in the lanes that do not have it.
 fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
     let active = ws.record.blocks[block].active;
     let mut forces = [T::ZERO; 6];
@@ -104,8 +106,8 @@ fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
     forces
 }
 
-/// The force of a contact that is a constraint on its second body, in its frame: that of its rows less its adhesion, which pulls as a
-/// passive force. Zero in the lanes that do not have it.
+/// Returns the force of a contact with a constraint on its second body, in the contact frame: its rows minus its
+/// adhesion, which pulls as a passive force. Zero in the lanes without it.
 #[inline(always)]
 pub(crate) fn of_contact<T: Real>(ws: &Workspace<T>, contact: &Contact<T>) -> Option<[T; 6]> {
     let block = contact.block?;
@@ -115,7 +117,7 @@ pub(crate) fn of_contact<T: Real>(ws: &Workspace<T>, contact: &Contact<T>) -> Op
     Some(force)
 }
 
-/// Shows every contact that is a constraint: its bodies, and the force on the second.
+/// Calls `show` for every contact with a constraint: its bodies and the force on the second.
 #[kernel]
 fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<T>)) {
     for contact in &s.ws.contacts {
@@ -132,7 +134,7 @@ fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<
     }
 }
 
-/// Shows every connect and weld: where it comes from, its bodies, and the force on the first at the anchor of each.
+/// Calls `show` for every connect and weld: its source, its bodies, and the force on the first at each anchor.
 #[kernel]
 pub(crate) fn each_joint_of_bodies<T: Real>(
     s: &Source<T>,
@@ -158,7 +160,7 @@ pub(crate) fn each_joint_of_bodies<T: Real>(
     }
 }
 
-/// The frames that a connect or weld holds together, and whether it is a weld.
+/// Returns the anchor frames of a connect or weld, and true if it is a weld.
 fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(HeldFrames<T>, bool)> {
     match source {
         ConstraintSource::Dynamic { slot, bodies, weld } => {

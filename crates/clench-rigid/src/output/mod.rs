@@ -1,6 +1,6 @@
-//! What can be read of an environment by name, as a row of numbers.
+//! Outputs of an environment: rows of numbers that are read by name.
 //!
-//! Names, order and frames are MuJoCo's where it has the same thing.
+//! Names, order and frames are MuJoCo's if it has the same quantity.
 
 pub(crate) mod forces;
 pub(crate) mod source;
@@ -35,17 +35,18 @@ macro_rules! outputs {
             pub const ALL: &[Output] = &[$(Output::$name),*];
             pub(crate) const COUNT: usize = Output::ALL.len();
 
-            /// The name of the output.
+            /// Returns the name of the output.
             pub fn name(self) -> &'static str {
                 match self { $(Output::$name => stringify!($name),)* }
             }
 
-            /// Its shape in one environment, such as (nbody, 3) for [`xpos`](Self::xpos); empty for a single number.
+            /// Returns its shape in one environment, such as (nbody, 3) for [`xpos`](Self::xpos); empty for a single
+            /// number.
             pub fn shape(self, $m: &Model) -> Vec<usize> {
                 match self { $(Output::$name => vec![$($size),*],)* }
             }
 
-            /// What must be known to read it.
+            /// Returns the results that it requires.
             pub(crate) fn extent(self) -> Extent {
                 match self { $(Output::$name => Extent::$extent,)* }
             }
@@ -75,7 +76,7 @@ outputs! {
     xpos [m.nbody(), 3] of Positions => vectors(&s.ws.position.xpos, out);
     /// Orientations of bodies (nbody, 4).
     xquat [m.nbody(), 4] of Positions => quats(&s.ws.position.xquat, out);
-    /// The same as matrices, row by row (nbody, 9).
+    /// Orientations of bodies as matrices, row by row (nbody, 9).
     xmat [m.nbody(), 9] of Positions => matrices(&s.ws.position.xmat, out);
     /// Centres of mass of bodies, m (nbody, 3).
     xipos [m.nbody(), 3] of Positions => vectors(&s.ws.position.xipos, out);
@@ -93,22 +94,22 @@ outputs! {
     site_xpos [m.sites.len(), 3] of Positions => vectors(&s.ws.position.site_xpos, out);
     /// Orientations of sites, row by row (nsite, 9).
     site_xmat [m.sites.len(), 9] of Positions => matrices(&s.ws.position.site_xmat, out);
-    /// Jacobians of the positions of sites: velocities, world axes, by those of dofs (nsite, 3, nv).
+    /// Jacobians of the positions of sites, world axes (nsite, 3, nv).
     site_jacp [m.sites.len(), 3, m.nv] of Positions => site_jacobians(s, 0, out);
-    /// Jacobians of the orientations of sites: angular velocities likewise (nsite, 3, nv).
+    /// Jacobians of the orientations of sites, world axes (nsite, 3, nv).
     site_jacr [m.sites.len(), 3, m.nv] of Positions => site_jacobians(s, 3, out);
     /// Positions of cameras, m (ncam, 3).
     cam_xpos [m.cameras.len(), 3] of Positions => cameras(s, |(place, _)| out.extend(place.to_array()));
     /// Orientations of cameras, row by row (ncam, 9).
     cam_xmat [m.cameras.len(), 9] of Positions => cameras(s, |(_, axes)| matrices(&[axes], out));
-    /// Centre of mass of each body and all below it, m (nbody, 3).
+    /// Centre of mass of each body's subtree, m (nbody, 3).
     subtree_com [m.nbody(), 3] of Positions => vectors(&s.ws.position.subtree_com, out);
     /// Inertia of each body about the centre of mass of its tree: xx, yy, zz, xy, xz, yz, mass times offset, mass
     /// (nbody, 10).
     cinert [m.nbody(), 10] of Positions => inertias(&s.ws.position.cinert, out);
     /// Velocity of each body, angular, then linear at the centre of mass of its tree (nbody, 6).
     cvel [m.nbody(), 6] of Everything => motions(&s.ws.velocity.cvel, out);
-    /// Motion of each dof at unit velocity, likewise (nv, 6).
+    /// Motion of each dof at unit velocity, in the form of `cvel` (nv, 6).
     cdof [m.nv, 6] of Positions => motions(&s.ws.position.cdof, out);
     /// Lengths of tendons (ntendon).
     ten_length [m.tendons.len()] of Positions => out.extend_from_slice(&s.ws.position.ten_length);
@@ -116,53 +117,56 @@ outputs! {
     ten_J [m.tendons.len(), m.nv] of Positions => dense(s.model, (&s.model.tendon_dofs, s.model.tendons.len()), &s.ws.position.ten_jacobian, out);
     /// Velocities of tendons (ntendon).
     ten_velocity [m.tendons.len()] of Everything => out.extend_from_slice(&s.ws.velocity.ten_velocity);
-    /// Lengths of actuators, three of an orientation servo and one of any other (nout).
+    /// Lengths of actuators, three for an orientation servo and one for any other (nout).
     actuator_length [m.nout()] of Positions => out.extend_from_slice(&s.ws.position.actuator_length);
-    /// Moment arms of actuators, ∂length/∂q (nout, nv); those that act on contacts have theirs from the contacts.
+    /// Moment arms of actuators, ∂length/∂q (nout, nv). Those of actuators that act on contacts follow from the
+    /// contacts.
     actuator_moment [m.nout(), m.nv] of Everything => dense(s.model, (&s.model.actuator_dofs, s.model.nout()), &s.ws.position.actuator_moment, out);
     /// Velocities of actuators (nout).
     actuator_velocity [m.nout()] of Everything => out.extend_from_slice(&s.ws.velocity.actuator_velocity);
     /// Forces of actuators (nout).
     actuator_force [m.nout()] of Everything => out.extend_from_slice(&s.ws.force.actuator_force);
-    /// Power that actuators put in, W: the sum over those that drive. Those that brake do not count.
+    /// Power input of actuators, W: the sum over those that drive, without those that brake.
     actuator_power [] of Everything => out.push(driving_power(s.ws));
     /// Forces of actuators along dofs (nv).
     qfrc_actuator [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_actuator);
     /// Passive forces along dofs (nv).
     qfrc_passive [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_passive);
-    /// Coriolis, centrifugal and gravitational forces along dofs, on the left of the equation of motion (nv).
+    /// Coriolis, centrifugal and gravitational forces along dofs, on the left-hand side of the equation of motion (nv).
     qfrc_bias [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_bias);
-    /// All forces along dofs but those of constraints (nv).
+    /// All forces along dofs except constraint forces (nv).
     qfrc_smooth [m.nv] of Everything => out.extend_from_slice(&s.ws.force.qfrc_smooth);
     /// Constraint forces along dofs (nv).
     qfrc_constraint [m.nv] of Everything => out.extend_from_slice(&s.ws.qfrc_constraint);
-    /// What acts on each body from outside: applied forces, contacts, connects, welds and strings. Torque, then force, about
+    /// External forces on each body: applied forces, contacts, connects, welds and tendons. Torque, then force, about
     /// the centre of mass of its tree (nbody, 6).
     cfrc_ext [m.nbody(), 6] of Everything => forces::external_forces(s, out);
-    /// What each body's joints carry: the torque, then the force of its parent on it, about the centre of mass of its tree (nbody, 6).
+    /// Joint reactions on each body: the torque, then the force of its parent on it, about the centre of mass of its
+    /// tree (nbody, 6).
     cfrc_int [m.nbody(), 6] of Everything => wrenches(&body_forces(s).cfrc_int, out);
-    /// Acceleration of each body with gravity's upward reaction, angular, then linear at the centre of mass of its tree
-    /// (nbody, 6).
+    /// Acceleration of each body including gravity's upward reaction, angular, then linear at the centre of mass of its
+    /// tree (nbody, 6).
     cacc [m.nbody(), 6] of Everything => motions(&body_forces(s).cacc, out);
-    /// Force and torque of contacts on each body at its centre of mass, world axes (nbody, 6), in the form of `xfrc_applied`.
+    /// Force and torque of contacts on each body at its centre of mass, world axes (nbody, 6), in the form of
+    /// `xfrc_applied`.
     contact_force [m.nbody(), 6] of Everything => forces::of_contacts(s, out);
-    /// How many contacts there are.
+    /// The number of contacts.
     contact_count [] of Everything => out.push(count_contacts(s.ws));
-    /// Iterations of the constraint solver.
+    /// The number of iterations of the constraint solver.
     solver_iterations [] of Everything => out.push(s.ws.solver.stats().iterations);
-    /// What the sensors measured (nsensordata).
+    /// Sensor readings (nsensordata).
     sensordata [m.nsensordata()] of Everything => out.extend_from_slice(&s.ws.sensors.data);
     /// Potential and kinetic energy of the state, J.
     energy [2] of Nothing => read_energy(s, out);
 }
 
 impl Output {
-    /// How many numbers it has in one environment.
+    /// Returns the number of values in one environment.
     pub fn width(self, model: &Model) -> usize {
         self.shape(model).iter().product()
     }
 
-    /// Whether it lies in the state.
+    /// Returns true for a part of the state.
     pub(crate) fn is_state(self) -> bool {
         matches!(
             self,
@@ -170,10 +174,10 @@ impl Output {
         )
     }
 
-    /// The output of that name.
+    /// Returns the output of that name.
     ///
     /// # Errors
-    /// A name that no output has.
+    /// Returns an error if the name is unknown.
     pub fn find(name: &str) -> Result<Self, SimError> {
         let all = Output::ALL.iter();
         let found = all.clone().find(|output| output.name() == name);
@@ -221,7 +225,7 @@ fn inertias<T: Real>(values: &[Inertia<T>], out: &mut Vec<T>) {
     }
 }
 
-/// Rows of sparse numbers, each over all dofs.
+/// Appends the rows of a sparse matrix, each over all dofs.
 fn dense<T: Real>(
     model: &Model,
     (pattern, rows): (&RowPattern, usize),
@@ -237,7 +241,7 @@ fn dense<T: Real>(
     }
 }
 
-/// Three of the six rows of each site's Jacobian, from row `first` on.
+/// Appends three of the six rows of each site's Jacobian, starting with row `first`.
 fn site_jacobians<T: Real>(s: &Source<T>, first: usize, out: &mut Vec<T>) {
     let (model, pos) = (s.model, &s.ws.position);
     let frames = Frames {

@@ -1,11 +1,10 @@
-//! All that outputs are read from.
+//! The data that outputs are read from.
 
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::Real;
 
-/// All that outputs are read from.
 pub struct Source<'a, T: Real> {
     pub model: &'a Model,
     pub params: &'a Params<T>,

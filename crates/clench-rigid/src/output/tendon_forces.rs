@@ -1,8 +1,8 @@
 //! Forces of spatial tendons on bodies.
 //!
-//! A tendon that pulls with f, in the sense that J f are its forces along dofs, pulls at each end of each of its straight spans with
-//! f times the change of its length with that end. All that acts along a tendon counts: spring, damper, actuators, inertia, and
-//! the constraints.
+//! A tendon with force f, in the sense that J f are its forces along dofs, pulls at each end of each of its straight
+//! spans with f times the gradient of its length with respect to that end. The force includes spring, damper,
+//! actuators, inertia and constraints.
 
 use super::source::Source;
 use clench_dynamics::constraint::{ConstraintSource, equality_slope};
@@ -13,7 +13,7 @@ use clench_dynamics::dynamics::tendon_path::{Span, bias_acceleration, each_span}
 use clench_dynamics::model::{EqualityTarget, Transmission};
 use clench_math::{Mask, Real, kernel};
 
-/// Shows every span of every spatial tendon, with the force of the tendon.
+/// Calls `show` for every span of every spatial tendon, with the force of the tendon.
 #[kernel]
 pub(super) fn each_pull<T: Real>(s: &Source<T>, mut show: impl FnMut(Span<T>, T)) {
     for (t, tendon) in s.model.tendons.iter().enumerate() {
@@ -34,7 +34,7 @@ pub(super) fn each_pull<T: Real>(s: &Source<T>, mut show: impl FnMut(Span<T>, T)
     }
 }
 
-/// What springs, dampers, actuators and inertia do along tendon `t`.
+/// Returns the force of springs, dampers, actuators and inertia along tendon `t`.
 #[kernel]
 fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let (model, params, ws) = (s.model, s.params, &s.ws);
@@ -70,7 +70,7 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     force
 }
 
-/// What limits, dry friction and equalities do along tendon `t`.
+/// Returns the force of limits, dry friction and equalities along tendon `t`.
 #[kernel]
 fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let ws = &s.ws;
@@ -79,7 +79,7 @@ fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
         let block = ws.problem.block(index);
         let scale = match record.source {
             ConstraintSource::TendonFriction(of) if of == t => T::ONE,
-            // The row of a limit is the tendon's gradient, or minus that.
+            // The row of a limit is plus or minus the tendon's gradient.
             ConstraintSource::TendonLimit(of) if of == t => {
                 let mut along = T::ZERO;
                 for (&entry, (_, arm)) in

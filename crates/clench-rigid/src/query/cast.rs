@@ -1,4 +1,4 @@
-//! What many rays hit, and heights of terrain at many places, of an environment in lanes.
+//! Ray casts and terrain heights for an environment in lanes.
 
 use clench_collide::Ray;
 use clench_dynamics::dynamics::frames::Frames;
@@ -6,13 +6,13 @@ use clench_dynamics::geometry::{Geoms, RayFilter};
 use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar, Vec3, kernel};
 
-/// Numbers of a ray: its origin, its direction.
+/// The number of values of a ray: its origin, its direction.
 pub(crate) const RAY: usize = 6;
 
-/// Numbers of what a ray hits: the geom, or −1; how far, or infinity; the normal.
+/// The number of values of a hit: the geom, or −1; the distance, or infinity; the normal.
 pub(crate) const HIT: usize = 5;
 
-/// Appends what each of some rays hits, [`HIT`] numbers a ray. With a frame they are in its coordinates.
+/// Appends the first hit of each ray, [`HIT`] values per ray. With a frame, rays are in its coordinates.
 #[kernel]
 pub(crate) fn cast<T: Real>(
     geoms: Geoms<'_, T>,
@@ -40,8 +40,8 @@ pub(crate) fn cast<T: Real>(
     }
 }
 
-/// Appends the height of a height field's surface, in the world, over each of some places (x, y). With a frame these are from its
-/// position, along its x axis as seen from above.
+/// Appends the world height of a height field's surface at each position (x, y). With a frame, these are relative to
+/// its position, along its horizontally projected x axis.
 #[kernel]
 pub(crate) fn sample<T: Real>(
     geoms: Geoms<'_, T>,

@@ -1,7 +1,7 @@
-//! How objects and points of bodies move: Jacobians, how these change, velocities, accelerations.
+//! Motion of objects and points of bodies: Jacobians and their rates, velocities, accelerations.
 //!
-//! Of six numbers or rows three are linear, m/s, and then three angular, rad/s, so that a Jacobian times the velocities of the dofs
-//! is a velocity as it is given here.
+//! The first three of six values or rows are linear, m/s, the last three angular, rad/s, so that a Jacobian times the
+//! dof velocities is a velocity in the form that is returned here.
 
 use super::{check_body, check_object};
 use crate::Precision;
@@ -18,23 +18,23 @@ use clench_math::Vec3;
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Anchor<T> {
-    /// Where an object is.
+    /// The position of an object.
     Object(FrameObject),
-    /// The point of a body that is at a place in the world now, m.
+    /// The point of a body that is at a world position now, m.
     Point {
         /// The body.
         body: usize,
-        /// The place.
+        /// The world position.
         place: Vec3<T>,
     },
 }
 
 impl<T: Precision> Sim<T> {
-    /// Writes the Jacobian of an object or point to `jacobian` (6, nv), row by row: three rows of its velocity, three of its body's
-    /// angular velocity, world axes, where bodies are as in [`refresh`](Self::refresh). As MuJoCo's `mj_jac` and its kin.
+    /// Writes the Jacobian of an object or point to `jacobian` (6, nv), row by row: three rows of its velocity, three
+    /// of its body's angular velocity, world axes, at the poses of [`refresh`](Self::refresh). As MuJoCo's `mj_jac`.
     ///
     /// # Errors
-    /// An object that the model does not have, a wrong length; else as [`refresh`](Self::refresh).
+    /// Returns an error if there is no such object or a length is wrong, or as [`refresh`](Self::refresh) does.
     pub fn jacobian(&mut self, anchor: Anchor<T>, jacobian: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, jacobian.len())?;
         self.require(Extent::Positions)?;
@@ -45,10 +45,11 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Writes how fast that Jacobian changes (6, nv), as MuJoCo's `mj_jacDot`: 1/s times the units of the Jacobian.
+    /// Writes the time derivative of that Jacobian (6, nv), as MuJoCo's `mj_jacDot`: 1/s times the units of the
+    /// Jacobian.
     ///
     /// # Errors
-    /// As [`jacobian`](Self::jacobian).
+    /// See [`jacobian`](Self::jacobian).
     pub fn jacobian_rate(&mut self, anchor: Anchor<T>, rate: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, rate.len())?;
         self.require(Extent::Everything)?;
@@ -59,11 +60,11 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Writes the Jacobian of the centre of mass of a body and all below it to `jacobian` (3, nv), as MuJoCo's
+    /// Writes the Jacobian of the centre of mass of a body's subtree to `jacobian` (3, nv), as MuJoCo's
     /// `mj_jacSubtreeCom`.
     ///
     /// # Errors
-    /// As [`jacobian`](Self::jacobian).
+    /// See [`jacobian`](Self::jacobian).
     pub fn subtree_jacobian(&mut self, body: usize, jacobian: &mut [T]) -> Result<(), SimError> {
         check_body(self.model(), body)?;
         check_length("jacobian", jacobian.len(), 3 * self.model().nv)?;
@@ -75,11 +76,11 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// The velocity of an object, linear at its position and angular, as MuJoCo's `mj_objectVelocity` (which has them in the other
-    /// order), where bodies are and move as in [`refresh`](Self::refresh).
+    /// Returns the velocity of an object, linear at its position, then angular, in the state of
+    /// [`refresh`](Self::refresh). MuJoCo's `mj_objectVelocity` has them in the other order.
     ///
     /// # Errors
-    /// As [`jacobian`](Self::jacobian).
+    /// See [`jacobian`](Self::jacobian).
     pub fn velocity(&mut self, object: FrameObject, axes: Axes) -> Result<[Vec3<T>; 2], SimError> {
         check_object(self.model(), object)?;
         self.require(Extent::Everything)?;
@@ -87,11 +88,11 @@ impl<T: Precision> Sim<T> {
         Ok(along(self.frames(), axes, object, velocity).map(|vector| vector.lane(0)))
     }
 
-    /// The acceleration of an object, likewise, as MuJoCo's `mj_objectAcceleration`: what an accelerometer there feels, gravity's
-    /// upward reaction included, m/s² and rad/s².
+    /// Returns the acceleration of an object in the same form, as MuJoCo's `mj_objectAcceleration`: that of an
+    /// accelerometer, including gravity's upward reaction, m/s² and rad/s².
     ///
     /// # Errors
-    /// As [`jacobian`](Self::jacobian).
+    /// See [`jacobian`](Self::jacobian).
     pub fn acceleration(
         &mut self,
         object: FrameObject,

@@ -1,4 +1,4 @@
-//! Questions about where geoms are: what a ray hits, and how far apart two geoms are.
+//! Queries about geoms: ray casts and distances.
 
 use crate::Precision;
 use crate::known::Extent;
@@ -9,12 +9,13 @@ use clench_dynamics::geometry::{Geoms, RayFilter, RayHit};
 use clench_math::{Real, Vec3};
 
 impl<T: Precision> Sim<T> {
-    /// The geom that a ray hits first, where geoms are as in [`refresh`](Self::refresh), as MuJoCo's `mj_ray`: planes are hit
-    /// from above and within their size (where that is positive), meshes on their own triangles, from either side. A ray that begins inside another shape hits it where it leaves (MuJoCo's rays inside a height field also
-    /// end where the terrain meets its base). A direction without length hits nothing.
+    /// Returns the first geom that a ray hits at the poses of [`refresh`](Self::refresh), as MuJoCo's `mj_ray`. Planes
+    /// are hit from above and within their size (if that is positive), meshes on their own triangles, from either side.
+    /// A ray that starts inside another shape hits it at its exit (MuJoCo's rays inside a height field also end where
+    /// the terrain meets its base). A direction of zero length hits nothing.
     ///
     /// # Errors
-    /// As [`refresh`](Self::refresh).
+    /// See [`refresh`](Self::refresh).
     pub fn ray(
         &mut self,
         origin: Vec3<T>,
@@ -35,13 +36,13 @@ impl<T: Precision> Sim<T> {
         }))
     }
 
-    /// How far apart two geoms are, where they are as in [`refresh`](Self::refresh), whatever they collide with, as MuJoCo's
-    /// `mj_geomDistance`: signed, with the nearest points, the first geom's first. Nothing if they are further apart than `limit`
-    /// metres, which may be infinite, or have no distance: two planes or height fields, or a mesh that is flat. A mesh counts
-    /// as its convex hull.
+    /// Returns the signed distance between two geoms at the poses of [`refresh`](Self::refresh), as MuJoCo's
+    /// `mj_geomDistance`, with the nearest points, the first geom's first. Collision filters are ignored. Returns
+    /// `None` if the geoms are further apart than `limit` metres, which may be infinite, or have no distance: two
+    /// planes or height fields, or a flat mesh. A mesh is represented by its convex hull.
     ///
     /// # Errors
-    /// A geom that the model does not have; else as [`refresh`](Self::refresh).
+    /// Returns an error if there is no such geom, or as [`refresh`](Self::refresh) does.
     pub fn distance(
         &mut self,
         geom1: usize,

@@ -8,11 +8,12 @@ use clench_dynamics::error::SimError;
 use clench_math::{Real, write_lane};
 
 impl<T: Precision> Sim<T> {
-    /// Positions of the joints that bring the tasks of `ik` to their goals, task after task, from those of the present state, or
-    /// from `start` (nq). The state stays as it is.
+    /// Returns joint positions that bring the tasks of `ik` to their goals, task by task, starting from the present
+    /// state or from `start` (nq). The state does not change.
     ///
     /// # Errors
-    /// Goals or a start of a wrong length or with numbers that are not finite; a state as [`step`](Self::step) refuses it.
+    /// Returns an error if goals or start have a wrong length or values that are not finite, or if [`step`](Self::step)
+    /// would refuse the state.
     pub fn ik(
         &mut self,
         ik: &Ik,

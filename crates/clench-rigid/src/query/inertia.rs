@@ -1,4 +1,4 @@
-//! What the mass matrix and forces on bodies mean for the dofs.
+//! The mass matrix applied to vectors, and joint forces of forces on bodies.
 
 use super::check_body;
 use super::frames::Anchor;
@@ -13,11 +13,11 @@ use clench_dynamics::place::massless;
 use clench_math::{Mask, Real, Vec3};
 
 impl<T: Precision> Sim<T> {
-    /// Writes M x to `product` (nv), where bodies are as in [`refresh`](Self::refresh): with accelerations x, the forces along dofs
-    /// that they take (MuJoCo's `mj_mulM`).
+    /// Writes M x to `product` (nv) at the poses of [`refresh`](Self::refresh): for accelerations x, the required
+    /// forces along dofs (MuJoCo's `mj_mulM`).
     ///
     /// # Errors
-    /// A wrong length, numbers that are not finite; else as [`refresh`](Self::refresh).
+    /// Returns an error if a length is wrong or a value is not finite, or as [`refresh`](Self::refresh) does.
     pub fn mul_mass(&mut self, x: &[T], product: &mut [T]) -> Result<(), SimError> {
         check_values("x", x, self.model().nv)?;
         check_length("product", product.len(), x.len())?;
@@ -30,10 +30,11 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Replaces x (nv) by M⁻¹ x, likewise: with forces along dofs, the accelerations that they cause (MuJoCo's `mj_solveM`).
+    /// Replaces x (nv) by M⁻¹ x at the same poses: for forces along dofs, the accelerations that they cause (MuJoCo's
+    /// `mj_solveM`).
     ///
     /// # Errors
-    /// As [`mul_mass`](Self::mul_mass), and a mass matrix that is singular; x is then as before.
+    /// Returns an error as [`mul_mass`](Self::mul_mass) does, or if the mass matrix is singular; x is then unchanged.
     pub fn solve_mass(&mut self, x: &mut [T]) -> Result<(), SimError> {
         check_values("x", x, self.model().nv)?;
         self.require(Extent::Positions)?;
@@ -49,11 +50,11 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Adds to `qfrc` (nv) the forces along dofs of a force, N, and a torque, N m, on a body at a place in the world, all in world
-    /// axes, where bodies are as in [`refresh`](Self::refresh) (MuJoCo's `mj_applyFT`).
+    /// Adds to `qfrc` (nv) the forces along dofs of a force, N, and a torque, N m, on a body at a world position, in
+    /// world axes, at the poses of [`refresh`](Self::refresh) (MuJoCo's `mj_applyFT`).
     ///
     /// # Errors
-    /// A body that the model does not have, a wrong length; else as [`refresh`](Self::refresh).
+    /// Returns an error if there is no such body or a length is wrong, or as [`refresh`](Self::refresh) does.
     pub fn add_joint_forces(
         &mut self,
         body: usize,

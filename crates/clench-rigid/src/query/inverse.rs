@@ -7,7 +7,7 @@ use clench_dynamics::error::SimError;
 use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::Integrator;
 
-/// An acceleration of this kind, of which inverse dynamics know what to make.
+/// Returns an error if inverse dynamics do not support this kind of acceleration.
 pub(crate) fn check_acceleration(model: &Model, given: Acceleration) -> Result<(), SimError> {
     let stages = model.integrator == Integrator::Rk4;
     match given {
@@ -17,16 +17,18 @@ pub(crate) fn check_acceleration(model: &Model, given: Acceleration) -> Result<(
 }
 
 impl<T: Precision> Sim<T> {
-    /// Writes to `qfrc_inverse` (nv) the forces along dofs that cause the acceleration `qacc` (nv) in the present state, contacts
-    /// and all other constraints included: what actuators and applied forces have to add up to (MuJoCo's `mj_inverse`). Nothing
-    /// is searched for, and what was computed before stays as it is. Whatever sleeps takes part.
+    /// Writes to `qfrc_inverse` (nv) the forces along dofs that cause the acceleration `qacc` (nv) in the present
+    /// state, in addition to contacts and all other constraints: the required sum of actuator and applied forces
+    /// (MuJoCo's `mj_inverse`). It needs no iterative solve, and earlier results do not change. Sleeping trees are
+    /// included.
     ///
-    /// Forward dynamics with these forces find the same acceleration, as exactly as their solver converges; after a solve that
-    /// ends in `noslip` they do not.
+    /// Forward dynamics with these forces yield the same acceleration up to the convergence of the solver, unless the
+    /// solve ends with `noslip`.
     ///
     /// # Errors
-    /// Wrong lengths, numbers that are not finite, a mass matrix that is singular, [`Acceleration::Discrete`] with the integrator
-    /// of Runge and Kutta, which has no acceleration of its own; else as [`refresh`](Self::refresh).
+    /// Returns an error if a length is wrong, a value is not finite, the mass matrix is singular, or
+    /// [`Acceleration::Discrete`] is combined with the Runge–Kutta integrator, which has no acceleration of its own; or
+    /// as [`refresh`](Self::refresh) does.
     pub fn inverse(
         &mut self,
         qacc: &[T],

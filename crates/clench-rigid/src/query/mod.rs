@@ -1,6 +1,6 @@
-//! Questions to a simulation. What depends on positions, or on velocities, is computed when it is asked for and not known; no
-//! query changes a status, a figure or a bit of a later step. A file a subject; what is here asks, and computes nothing that
-//! has a place in `dynamics`.
+//! Queries of a simulation, one file per subject. Results that depend on positions or velocities are computed on demand
+//! if they are stale. No query changes a status, a statistic or a bit of a later step. The computations themselves are
+//! in `dynamics`.
 
 mod cast;
 mod frames;
@@ -18,7 +18,7 @@ pub(crate) use scan::{check_places, check_rays};
 use clench_dynamics::error::{SimError, no_such};
 use clench_dynamics::model::{FrameObject, Model};
 
-/// An object that the model has.
+/// Returns an error if there is no such object.
 pub(crate) fn check_object(model: &Model, object: FrameObject) -> Result<(), SimError> {
     let (kind, index, count) = match object {
         FrameObject::Inertial(body) | FrameObject::Body(body) => ("body", body, model.nbody()),
@@ -32,7 +32,7 @@ pub(crate) fn check_object(model: &Model, object: FrameObject) -> Result<(), Sim
     }
 }
 
-/// A body that the model has.
+/// Returns an error if there is no such body.
 pub(crate) fn check_body(model: &Model, body: usize) -> Result<(), SimError> {
     check_object(model, FrameObject::Body(body))
 }

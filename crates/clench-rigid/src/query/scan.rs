@@ -1,4 +1,4 @@
-//! Many rays at once, and heights of terrain at many places: what a lidar or a walking policy looks at.
+//! Many rays and terrain heights at once, for example for a lidar or a walking policy.
 
 use super::cast::{HIT, RAY, cast, sample};
 use super::check_object;
@@ -11,7 +11,7 @@ use clench_dynamics::geometry::{RayFilter, RayHit};
 use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar, Vec3};
 
-/// Rays that can be cast: whole ones, finite, in the frame of an object that the model has.
+/// Returns an error unless rays and frame are valid.
 pub(crate) fn check_rays<S: Scalar>(
     model: &Model,
     frame: Option<FrameObject>,
@@ -22,7 +22,7 @@ pub(crate) fn check_rays<S: Scalar>(
     check_values("rays", rays, rays.len())
 }
 
-/// Places where heights can be asked for, of a geom that is a height field.
+/// Returns an error unless positions, geom and frame are valid.
 pub(crate) fn check_places<S: Scalar>(
     model: &Model,
     geom: usize,
@@ -41,11 +41,12 @@ pub(crate) fn check_places<S: Scalar>(
 }
 
 impl<T: Precision> Sim<T> {
-    /// What each of some rays (k, 6: origin, direction) hits first, as [`ray`](Self::ray) says. With a `frame` they are in its
-    /// coordinates, so that they move with it.
+    /// Returns the first hit of each ray (k, 6: origin, direction), see [`ray`](Self::ray). With a `frame`, rays are in
+    /// its coordinates and move with it.
     ///
     /// # Errors
-    /// A wrong length, numbers that are not finite, an object that the model does not have; else as [`refresh`](Self::refresh).
+    /// Returns an error if a length is wrong, a value is not finite, or there is no such object, or as
+    /// [`refresh`](Self::refresh) does.
     pub fn rays(
         &mut self,
         rays: &[T],
@@ -68,12 +69,12 @@ impl<T: Precision> Sim<T> {
         Ok(hits.chunks_exact(HIT).map(hit).collect())
     }
 
-    /// The height, in the world, of the surface of a height field over each of some places (k, 2: x, y), m; beyond its edges that
-    /// over the nearest place on them. With a `frame` places are from its position, along its x axis as seen from above. Exact
-    /// where the field's z axis points upwards, as terrain's does.
+    /// Returns the world height of a height field's surface at each position (k, 2: x, y), m; beyond its edges, that at
+    /// the nearest edge point. With a `frame`, positions are relative to its position, along its horizontally projected
+    /// x axis. Exact if the field's z axis points upwards.
     ///
     /// # Errors
-    /// A geom that is no height field; else as [`rays`](Self::rays).
+    /// Returns an error if the geom is not a height field, or as [`rays`](Self::rays) does.
     pub fn heights(
         &mut self,
         geom: usize,

@@ -1,11 +1,11 @@
-//! Where lights are.
+//! Poses of lights.
 
 use clench_dynamics::model::{CameraMode, Light, Model};
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Real, Scalar, Vec3};
 
-/// Where each light of a model is, m, and the unit vector along which it shines, both in world axes, by the rules of MuJoCo's
-/// `mj_camlight`, for the bodies of lane 0.
+/// Returns the position, m, and unit direction of each light of a model in world axes, by the rules of MuJoCo's
+/// `mj_camlight`, for lane 0.
 pub fn light_places<T: Real>(model: &Model, ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
     let place = |light: &Light| {
         let (pos, dir) = light_place(light, ws);

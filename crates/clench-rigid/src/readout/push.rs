@@ -1,8 +1,8 @@
-//! What constraints but contacts push on, in world coordinates: for pictures, which draw it as arrows.
+//! Forces and torques of constraints other than contacts, in world coordinates, for drawing as arrows.
 //!
-//! Connects and welds push on two bodies at their anchors. A limit or an equality of joints is a generalized force Jᵀf on the dofs
-//! of its joints: along the axis of a slide, about that of a hinge, about the three axes of a ball. What acts along tendons has no
-//! place of its own and is left out.
+//! Connects and welds act on two bodies at their anchors. A limit or an equality of joints is a generalized force Jᵀf
+//! on the dofs of its joints: along the axis of a slide, about that of a hinge, about the three axes of a ball.
+//! Constraints of tendons have no single point of action and are omitted.
 
 use super::blocks::active_blocks;
 use crate::output::{Source, each_joint_of_bodies};
@@ -11,14 +11,14 @@ use clench_dynamics::model::{EqualityTarget, JointKind};
 use clench_math::{Real, Scalar, Vec3};
 use clench_solver::Block;
 
-/// What a constraint does to a body.
+/// The force and torque of a constraint on a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
     /// The constraint.
     pub source: ConstraintSource,
     /// The body on which it acts.
     pub body: usize,
-    /// Where, m.
+    /// The point of action, m.
     pub at: [f64; 3],
     /// Force, N.
     pub force: [f64; 3],
@@ -26,7 +26,8 @@ pub struct Push {
     pub torque: [f64; 3],
 }
 
-/// What the constraints of lane `lane` push on. A connect or weld comes once, for its first body if that can move, else for its second.
+/// Returns the forces of the constraints of lane `lane`. A connect or weld appears once, for its first body if that can
+/// move, otherwise for its second.
 pub(crate) fn pushes<T: Real>(s: &Source<T>, lane: usize) -> Vec<Push> {
     let mut found = Vec::new();
     let plain = |v: Vec3<T>| v.to_array().map(|x| x.lane(lane).to_f64());
@@ -59,12 +60,12 @@ pub(crate) fn pushes<T: Real>(s: &Source<T>, lane: usize) -> Vec<Push> {
             found.extend(of_joints(s, source, &block, forces, lane));
         }
     }
-    // What a lane does not have pushes with nothing.
+    // Constraints that the lane does not have are zero.
     found.retain(|push| push.force.iter().chain(&push.torque).any(|&x| x != 0.0));
     found
 }
 
-/// What a block pushes on each joint whose dofs it holds.
+/// Returns the forces of a block on each joint whose dofs it contains.
 fn of_joints<T: Real>(
     s: &Source<T>,
     source: ConstraintSource,
@@ -94,7 +95,7 @@ fn of_joints<T: Real>(
         match described.kind {
             JointKind::Slide => push.force = plain(pos.xaxis[joint]).map(|x| size * x),
             JointKind::Hinge => push.torque = plain(pos.xaxis[joint]).map(|x| size * x),
-            // Dofs of a ball, and the last three of a free joint, turn about the axes of the body.
+            // Dofs of a ball, and the last three of a free joint, rotate about the axes of the body.
             JointKind::Ball | JointKind::Free => {
                 let axis = plain(pos.cdof[dof as usize].angular);
                 push.torque = axis.map(|x| size * x);

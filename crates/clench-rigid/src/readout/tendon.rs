@@ -1,20 +1,20 @@
-//! Where tendons run, for pictures.
+//! Tendon paths for rendering.
 
 use clench_dynamics::dynamics::tendon_path::each_span;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::stages::Positions;
 use clench_math::{Real, Scalar, Vec3};
 
-/// A straight part of a tendon.
+/// A straight segment of a tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonLine {
     /// The tendon.
     pub tendon: usize,
-    /// Its ends in the world, m.
+    /// Its end points in the world, m.
     pub ends: [[f32; 3]; 2],
 }
 
-/// The straight parts of all tendons of lane 0. Where a string lies on a geom, a chord stands for its arc.
+/// Returns the straight segments of all spatial tendons of lane 0. An arc around a geom is replaced by its chord.
 pub(crate) fn tendon_lines<T: Real>(
     model: &Model,
     params: &Params<T>,

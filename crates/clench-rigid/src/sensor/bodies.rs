@@ -1,7 +1,8 @@
 //! Accelerations of bodies and forces between them, constraints included, and the momenta of subtrees.
 //!
-//! A recursive Newton–Euler pass with the joint accelerations found (Featherstone 2008, §5.3): a body's acceleration takes the force
-//! I a + v ×* I v, of which what acts from outside is one part; the joints to its parent and children carry the rest.
+//! A recursive Newton–Euler pass with the solved joint accelerations (Featherstone 2008, §5.3). A body with
+//! acceleration a requires the force I a + v ×* I v. External forces supply one part, the joints to its parent and
+//! children the remainder.
 
 use super::reading::Reading;
 use crate::output::forces::external_forces;
@@ -11,7 +12,7 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Motion, Real, Vec3, kernel};
 
-/// Computes accelerations and forces from the last forward pass.
+/// Computes body accelerations and joint forces from the last forward pass.
 #[kernel]
 pub(crate) fn update<T: Real>(
     model: &Model,
@@ -28,7 +29,7 @@ pub(crate) fn update<T: Real>(
         ws,
     };
     external_forces(&source, &mut bodies.external);
-    // The bias accelerations have gravity and all that velocities cause; the joints' own accelerations come to them.
+    // The bias accelerations contain gravity and all velocity terms; the joint accelerations are added to them.
     bodies.cacc[0] = Motion::ZERO;
     bodies.cfrc_int[0] = Force::ZERO;
     for (b, body) in model.bodies.iter().enumerate().skip(1) {
@@ -56,16 +57,16 @@ pub(crate) fn update<T: Real>(
     ws.sensors.bodies = bodies;
 }
 
-/// How a body and all below it move.
+/// The motion of a body's subtree.
 pub(super) struct Subtree<T> {
-    /// Velocity of their centre of mass.
+    /// Velocity of its centre of mass.
     pub velocity: Vec3<T>,
-    /// Angular momentum about it.
+    /// Angular momentum about its centre of mass.
     pub(crate) angular_momentum: Vec3<T>,
 }
 
 impl<T: Real> Reading<'_, T> {
-    /// What a site's body carries through its joints, world axes, about the site.
+    /// Returns the joint reaction on a site's body, world axes, about the site.
     #[kernel]
     pub(super) fn force_at(&self, site: usize) -> Force<T> {
         let body = self.model.sites[site].body;
@@ -75,7 +76,7 @@ impl<T: Real> Reading<'_, T> {
         Force::new(force.angular - arm.cross(force.linear), force.linear)
     }
 
-    /// Adds up the momenta of a body and all below it.
+    /// Adds up the momenta of a body's subtree.
     #[kernel]
     pub(super) fn subtree(&self, body: usize) -> Subtree<T> {
         let (model, pos) = (self.model, &self.ws.position);
@@ -83,7 +84,7 @@ impl<T: Real> Reading<'_, T> {
         for b in model.subtree(body) {
             let root = pos.subtree_com[model.bodies[b].root];
             let own = pos.cinert[b] * self.ws.velocity.cvel[b];
-            // From the centre of mass of the body's tree to the world's origin, which all trees share.
+            // Momentum about the world's origin, which all trees share.
             momentum += Force::new(own.angular + root.cross(own.linear), own.linear);
         }
         let mass = self.params.body_subtreemass[body];

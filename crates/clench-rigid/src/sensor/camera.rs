@@ -1,19 +1,20 @@
-//! What cameras see: where a site is in the picture, and the line of sight of a pixel.
+//! Camera sensors: the projection of a site into the image, and the line of sight of a pixel.
 //!
-//! In the camera's frame a pinhole with focal lengths f_x, f_y, measured in pixels, has the point (x, y, z) at f_x x / −z to the
-//! right and f_y y / −z above the optical axis. With a field of view φ and a picture of h pixels, f = ½ h / tan(½ φ).
+//! A pinhole camera with focal lengths f_x, f_y, in pixels, projects the point (x, y, z) of its frame to f_x x / −z to
+//! the right of and f_y y / −z above the optical axis. With a field of view φ and an image height of h pixels, f = ½ h
+//! / tan(½ φ).
 
 use super::reading::Reading;
 use clench_collide::Ray;
 use clench_dynamics::dynamics::camera::camera_pose;
 use clench_math::{Real, Vec3, kernel};
 
-/// A point nearer to the camera's plane than this (m, MuJoCo's `mjMINVAL`) is seen as if it were so far away.
+/// The minimum distance from the camera's plane, m (MuJoCo's `mjMINVAL`). Nearer points are moved to it.
 const MIN_DEPTH: f64 = 1e-15;
 
 impl<T: Real> Reading<'_, T> {
-    /// Where a camera sees a site, pixels from the upper left corner. As in MuJoCo, lines of sight meet in the camera even if it is
-    /// orthographic, and the principal point is the middle of the picture.
+    /// Projects a site into the image of a camera, pixels from the upper left corner. As in MuJoCo, the projection is
+    /// perspective even if the camera is orthographic, and the principal point is the centre of the image.
     #[kernel]
     pub(super) fn project(&self, site: usize, camera: usize, out: &mut [T]) {
         let (place, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
@@ -28,7 +29,7 @@ impl<T: Real> Reading<'_, T> {
         out[1] = T::new(0.5 * height as f64) + fy * p.y / z;
     }
 
-    /// Focal lengths in pixels.
+    /// Returns the focal lengths in pixels.
     #[kernel]
     fn focal_lengths(&self, camera: usize) -> [T; 2] {
         let structure = &self.model.cameras[camera];
@@ -50,14 +51,14 @@ impl<T: Real> Reading<'_, T> {
         half.sin_cos()
     }
 
-    /// The line of sight through the middle of each pixel, line by line from the upper left corner.
+    /// Calls `show` with the line of sight through the centre of each pixel, row by row from the upper left corner.
     pub(super) fn lines_of_sight(&self, camera: usize, mut show: impl FnMut(usize, &Ray<T>)) {
         let (place, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
         let structure = &self.model.cameras[camera];
         let [width, height] = structure.resolution;
         let focal = self.focal_lengths(camera);
         let center = self.optical_axis(camera);
-        // The picture is as wide as high where lines of sight are parallel: so it is in MuJoCo.
+        // As in MuJoCo, the image of an orthographic camera is as wide as it is high.
         let extent = self.params.cam_fovy[camera];
         let pixel = [width, height].map(|n| extent / T::new(n as f64));
         let z = axes.column(2);
@@ -81,8 +82,8 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// Where the optical axis meets the picture, pixels from its upper left corner. As in MuJoCo, the principal point of a pinhole
-    /// is counted from that corner, else the axis is in the middle.
+    /// Returns the image point of the optical axis, pixels from the upper left corner. As in MuJoCo, the principal
+    /// point of a pinhole camera is relative to that corner; otherwise the axis is central.
     fn optical_axis(&self, camera: usize) -> [T; 2] {
         let structure = &self.model.cameras[camera];
         let [width, height] = structure.resolution.map(|n| T::new(n as f64));

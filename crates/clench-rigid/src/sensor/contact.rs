@@ -1,9 +1,9 @@
-//! Contacts between two sides: which there are, a fixed number of them or their sum.
+//! Contact sensors: the contacts between two sides, a fixed number of them or their sum.
 //!
-//! A contact matches where one of its geoms belongs to the first side and the other to the second. Its normal then points from the
-//! first side to the second: where the geoms come the other way round, normal and first tangent change their sign. The force of the
-//! contact is then the opposite one, so in that frame only its component along the second tangent changes its sign, and likewise of
-//! the torque and the velocities.
+//! A contact matches if one of its geoms belongs to the first side and the other to the second. Its normal then points
+//! from the first side to the second: if the geoms are in the opposite order, normal and first tangent change their
+//! sign. The force is negated as well, so that in the new frame only its component along the second tangent changes its
+//! sign. The same holds for the torque and the velocities.
 
 use super::reading::Reading;
 use crate::output::forces::of_contact;
@@ -11,22 +11,22 @@ use clench_dynamics::contact::Contact;
 use clench_dynamics::model::{ContactField, ContactQuery, ContactReduction, ContactSide};
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 
-/// The most numbers that are told of a contact.
+/// The maximum number of values per contact.
 const MAX_SIZE: usize = 23;
 
-/// A contact that matches.
+/// A matching contact.
 struct Match<'a, T: Real> {
     contact: &'a Contact<T>,
-    /// Which of all contacts it is.
+    /// The index of the contact.
     index: T,
-    /// Lanes in which it matches.
+    /// The lanes in which it matches.
     lanes: T::Mask,
-    /// −1 where the normal is to be turned.
+    /// −1 if the normal is reversed, otherwise 1.
     sign: T,
 }
 
 impl<T: Real> Reading<'_, T> {
-    /// What a sensor of contacts tells; zeros where there are fewer contacts than it has room for.
+    /// Writes the reading of a contact sensor; unused slots are zero.
     #[kernel]
     pub(super) fn read_contacts(&self, query: &ContactQuery, out: &mut [T]) {
         out.fill(T::ZERO);
@@ -38,7 +38,7 @@ impl<T: Real> Reading<'_, T> {
         if query.reduction == ContactReduction::NetForce {
             return self.read_net_force(query, count, &mut out[..size]);
         }
-        // Slot after slot takes the contact that follows the last one by its key, then by its number.
+        // Each slot takes the next contact after the previous slot's, ordered by key, then by index.
         let mut last = [T::new(f64::NEG_INFINITY), -T::ONE];
         for slot in out.chunks_exact_mut(size) {
             let mut best = [T::new(f64::INFINITY), -T::ONE];
@@ -64,7 +64,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// What contacts are sorted by, the smallest first.
+    /// Returns the sort key of a contact; the smallest comes first.
     fn key(&self, reduction: ContactReduction, contact: &Contact<T>) -> T {
         match reduction {
             ContactReduction::MinDist => contact.dist,
@@ -73,7 +73,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// Shows the contacts that match, in order.
+    /// Calls `show` for the matching contacts, in order.
     #[kernel]
     fn each_match(&self, query: &ContactQuery, mut show: impl FnMut(Match<'_, T>)) {
         for (index, contact) in self.ws.contacts.iter().enumerate() {
@@ -96,7 +96,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// Whether geoms in contact match, and with which sign.
+    /// Returns the sign of the normal if the geoms match.
     fn direction(&self, query: &ContactQuery, geoms: [usize; 2]) -> Option<f64> {
         let belongs = |geom: usize, side: &ContactSide| match side {
             ContactSide::Any => true,
@@ -112,7 +112,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// Force and torque of a contact on its second geom in its frame; zero where it is no constraint.
+    /// Returns force and torque of a contact on its second geom in the contact frame; zero without constraint.
     fn wrench(&self, contact: &Contact<T>) -> Force<T> {
         let Some(force) = of_contact(self.ws, contact) else {
             return Force::ZERO;
@@ -120,7 +120,7 @@ impl<T: Real> Reading<'_, T> {
         Force::new(Vec3::from_slice(&force[3..]), Vec3::from_slice(&force))
     }
 
-    /// What is told of one contact.
+    /// Writes the fields of one contact.
     fn write_contact(
         &self,
         query: &ContactQuery,
@@ -151,7 +151,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// How the second body moves relative to the first where they touch, in the contact's frame.
+    /// Returns the velocity of the second body relative to the first at the contact point, in the contact frame.
     #[kernel]
     fn relative_motion(&self, contact: &Contact<T>) -> Motion<T> {
         let [first, second] = contact.geoms.map(|geom| {
@@ -167,7 +167,8 @@ impl<T: Real> Reading<'_, T> {
         )
     }
 
-    /// All that match as one contact in world axes: it acts at the mean of their positions, each weighted by its force.
+    /// Writes the matching contacts as one contact in world axes. It acts at the mean of their positions, weighted by
+    /// their forces.
     #[kernel]
     fn read_net_force(&self, query: &ContactQuery, count: T, mut out: &mut [T]) {
         let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);

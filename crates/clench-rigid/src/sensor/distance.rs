@@ -1,4 +1,4 @@
-//! The smallest distance of two sets of geoms. Distances are searched for in each lane alone.
+//! The smallest distance between two sets of geoms. Each lane is searched separately.
 
 use super::reading::Reading;
 use clench_collide::{Pose, Separation, Shape, distance};
@@ -7,7 +7,7 @@ use clench_math::{Real, Vec3};
 use std::ops::Range;
 
 impl<T: Real> Reading<'_, T> {
-    /// A distance, its direction or its ends, up to the cutoff.
+    /// Writes a distance, its direction or its end points, up to the cutoff.
     pub(super) fn read_distance(&self, sensor: &Sensor, sets: &[Range<usize>; 2], out: &mut [T]) {
         for lane in 0..T::LANES {
             let limit = T::Scalar::new(sensor.cutoff);
@@ -29,7 +29,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// The nearest pair of geoms of two sets, the first of several; nothing beyond the limit.
+    /// Returns the nearest pair of geoms of two sets, the first of equals; `None` beyond the limit.
     fn nearest(
         &self,
         [first, second]: &[Range<usize>; 2],
@@ -52,7 +52,7 @@ impl<T: Real> Reading<'_, T> {
         best
     }
 
-    /// A geom in one lane, with a hull even if it does not collide.
+    /// Returns a geom in one lane; a mesh has a hull even if it does not collide.
     pub(super) fn solid(
         &self,
         geom: usize,
@@ -63,7 +63,7 @@ impl<T: Real> Reading<'_, T> {
     }
 }
 
-/// From the first end to the second, as MuJoCo has it: against the normal where the geoms overlap.
+/// Returns the direction from the first end to the second, as in MuJoCo: against the normal if the geoms overlap.
 fn direction<T: Real>(found: &Separation<T>) -> Vec3<T> {
     let overlap = found.distance.lt(T::ZERO);
     Vec3::select(overlap, -found.normal, found.normal)

@@ -1,16 +1,16 @@
-//! How far objects jut out of the volume of a site. It is searched for in each lane alone.
+//! Protrusion of objects from the volume of a site. Each lane is searched separately.
 
 use super::reading::Reading;
 use clench_collide::{Ascent, Pose, Shape, protrusion, protrusion_of_points};
 use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar};
 
-/// A shape, and where it is.
+/// A shape and its pose.
 type Placed<'a, S> = (Shape<'a, S>, Pose<S>);
 
 impl<T: Real> Reading<'_, T> {
-    /// The furthest that any part of an object juts out of a site's volume; negative, by the least clearance, where all of it lies
-    /// inside, m.
+    /// Returns the maximum protrusion of an object from a site's volume, m; minus the smallest clearance if all of it
+    /// is inside.
     pub(super) fn protrusion(&self, site: usize, object: FrameObject) -> T {
         let mut out = T::ZERO;
         for lane in 0..T::LANES {
@@ -32,7 +32,7 @@ impl<T: Real> Reading<'_, T> {
         (shape.lane(lane), pose.lane(lane))
     }
 
-    /// How far a geom juts out. A mesh that is flat has no hull, but corners.
+    /// Returns the protrusion of a geom. A flat mesh has no hull, and its vertices are used.
     fn of_geom(&self, geom: usize, lane: usize, volume: &Placed<T::Scalar>) -> T::Scalar {
         let solid = self.solid(geom, lane);
         let mesh = self.model.geoms[geom].mesh;
@@ -46,7 +46,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// How far a shape juts out; what has no bounds was refused when the model was built.
+    /// Returns the protrusion of a shape. Unbounded shapes are rejected when the model is built.
     fn of_shape(
         &self,
         (inner, pose): &Placed<T::Scalar>,

@@ -1,14 +1,14 @@
-//! Frames of objects: where they are, how they move and accelerate.
+//! Frame sensors: poses, velocities and accelerations of objects.
 //!
-//! With R, p, ω, v of the reference frame, an object at p' that moves with ω', v' has there the position Rᵀ(p' − p), the angular
-//! velocity Rᵀ(ω' − ω) and the linear velocity Rᵀ(v' − v − ω × (p' − p)).
+//! Given R, p, ω, v of the reference frame, an object at p' that moves with ω', v' has the relative position Rᵀ(p' −
+//! p), angular velocity Rᵀ(ω' − ω) and linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
 use super::reading::Reading;
 use clench_dynamics::model::{FrameObject, SensorKind};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
-    /// A sensor of a frame, relative to another or in the world.
+    /// Writes a frame sensor, relative to another frame or to the world.
     #[kernel]
     pub(super) fn read_frame(
         &self,
@@ -46,17 +46,17 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// Where an object is.
+    /// Returns the position of an object.
     pub(super) fn position(&self, object: FrameObject) -> Vec3<T> {
         self.frames().position(object)
     }
 
-    /// Its axes as columns.
+    /// Returns its axes as columns.
     pub(super) fn rotation(&self, object: FrameObject) -> Mat3<T> {
         self.frames().rotation(object)
     }
 
-    /// Its orientation, with the sign that its body's has.
+    /// Returns its orientation, with the sign of its body's quaternion.
     fn orientation(&self, object: FrameObject) -> Quat<T> {
         self.frames().orientation(object)
     }
@@ -72,7 +72,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// The velocity of the body point at an object's position, world axes.
+    /// Returns the velocity of the body point at an object's position, world axes.
     pub(super) fn velocity(&self, object: FrameObject) -> Motion<T> {
         self.frames().velocity(object, &self.ws.velocity)
     }
@@ -93,7 +93,8 @@ impl<T: Real> Reading<'_, T> {
         )
     }
 
-    /// The acceleration of the body point at an object's position, world axes, with gravity's upward reaction.
+    /// Returns the acceleration of the body point at an object's position, world axes, including gravity's upward
+    /// reaction.
     pub(super) fn acceleration(&self, object: FrameObject) -> Motion<T> {
         let cacc = &self.ws.sensors.bodies.cacc;
         self.frames().acceleration(object, &self.ws.velocity, cacc)

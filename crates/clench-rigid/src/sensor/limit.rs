@@ -1,12 +1,12 @@
-//! Limits of joints and tendons as constraints.
+//! Sensors of joint and tendon limits.
 
 use super::reading::Reading;
 use clench_dynamics::constraint::ConstraintSource;
 use clench_math::{Mask, Real, kernel};
 
-/// The row of a limit; zero where it does not act.
+/// The row of a limit; zero if the limit is inactive.
 pub(super) struct LimitReading<T> {
-    /// Distance to the limit less the margin.
+    /// Distance to the limit minus the margin.
     pub pos: T,
     /// Its rate of change.
     pub vel: T,
@@ -15,7 +15,7 @@ pub(super) struct LimitReading<T> {
 }
 
 impl<T: Real> Reading<'_, T> {
-    /// The first limit of a joint or tendon that acts.
+    /// Returns the first active limit of a joint or tendon.
     #[kernel]
     pub(super) fn limit(&self, source: ConstraintSource) -> LimitReading<T> {
         let ws = self.ws;

@@ -1,7 +1,7 @@
-//! What sensors measure, evaluated after a forward pass and before the state moves on.
+//! Sensors, evaluated after a forward pass and before the state is integrated.
 //!
-//! The kinds are a table in `model/sensor.rs`; here stands how each is read. A file a subject: frames in motion, forces between
-//! bodies, limits, volumes of sites and what juts out of them, distances, rays, skins that feel.
+//! The kinds are a table in `model/sensor.rs`; this module reads them, one file per subject: frames in motion, forces
+//! between bodies, limits, volumes of sites and protrusion from them, distances, rays, tactile skins.
 
 pub(crate) mod bodies;
 mod camera;
@@ -23,7 +23,7 @@ use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 use reading::Reading;
 
-/// Evaluates all sensors of the model, if anybody wants them, or will.
+/// Evaluates all sensors of the model if they are read now or later.
 #[kernel]
 pub(crate) fn evaluate<T: Real>(
     model: &Model,
@@ -61,7 +61,7 @@ pub(crate) fn evaluate<T: Real>(
     ws.sensors.data = data;
 }
 
-/// Keeps what was measured, and puts what was measured before in the place of what is told late, or not measured now.
+/// Stores the present measurements, and replaces delayed readings, and those not due now, by earlier measurements.
 #[kernel]
 fn delay<T: Real>(
     model: &Model,
@@ -92,12 +92,12 @@ fn delay<T: Real>(
     }
 }
 
-/// Whether a cutoff holds the numbers of a kind of sensor within it.
+/// Returns true if the cutoff clips the values of this kind of sensor.
 fn is_clipped(kind: SensorKind) -> bool {
     !matches!(kind, SensorKind::FromTo | SensorKind::Contact)
 }
 
-/// Holds numbers within the cutoff.
+/// Clips values to the cutoff.
 #[kernel]
 fn clip<T: Real>(sensor: &Sensor, out: &mut [T]) {
     let cutoff = T::new(sensor.cutoff);

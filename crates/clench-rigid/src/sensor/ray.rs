@@ -1,4 +1,4 @@
-//! Rangefinders: the nearest geom along rays from a site or a camera, geoms of its own body and invisible ones left out.
+//! Rangefinders: the nearest geom along rays from a site or a camera, without geoms of its own body and invisible ones.
 
 use super::reading::Reading;
 use clench_collide::Ray;
@@ -8,7 +8,7 @@ use clench_dynamics::model::{RayField, RaySource};
 use clench_math::{Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
-    /// What rays meet, ray after ray.
+    /// Writes the hits of all rays, ray by ray.
     #[kernel]
     pub(super) fn read_rays(&self, source: RaySource, fields: &[RayField], out: &mut [T]) {
         let pos = &self.ws.position;
@@ -34,7 +34,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// What one ray meets, from a sensor on `body` that looks along `axis`.
+    /// Writes the hit of one ray from a sensor on `body` whose viewing direction is `axis`.
     #[kernel]
     fn read_ray(
         &self,

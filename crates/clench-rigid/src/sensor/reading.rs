@@ -1,4 +1,4 @@
-//! All that sensors are read from.
+//! The data that sensors are read from.
 
 use clench_dynamics::Step;
 use clench_dynamics::constraint::ConstraintSource;
@@ -12,7 +12,6 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
 
-/// All that sensors are read from.
 #[derive(Clone, Copy)]
 pub(super) struct Reading<'a, T: Real> {
     pub(super) model: &'a Model,
@@ -39,7 +38,7 @@ impl<'a, T: Real> Reading<'a, T> {
         }
     }
 
-    /// Writes the numbers of a sensor.
+    /// Writes the values of a sensor.
     #[kernel]
     pub(super) fn read(&self, sensor: &Sensor, out: &mut [T]) {
         match &sensor.target {
@@ -77,7 +76,7 @@ impl<'a, T: Real> Reading<'a, T> {
         }
     }
 
-    /// A sensor of a site, joint, tendon, actuator or body.
+    /// Reads a sensor of a site, joint, tendon, actuator or body.
     #[kernel]
     fn read_element(&self, kind: SensorKind, element: usize, out: &mut [T]) {
         use SensorKind as Kind;
@@ -123,7 +122,7 @@ impl<'a, T: Real> Reading<'a, T> {
         }
     }
 
-    /// The total force of a tendon's actuators.
+    /// Returns the total force of a tendon's actuators.
     fn tendon_actuator_force(&self, tendon: usize) -> T {
         let mut sum = T::ZERO;
         for actuator in &self.model.actuators {

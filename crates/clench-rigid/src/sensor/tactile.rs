@@ -1,13 +1,14 @@
-//! Skins that feel: at each vertex of a mesh that stands in a geom's frame, how deep it is in what touches the geom's body, and how
-//! fast it slides there. Depths are those of MuJoCo's functions of distance (`engine_collision_sdf.c`), which inside of a box or an
-//! ellipsoid are not the distance to its surface.
+//! Tactile skins: at each vertex of a mesh in a geom's frame, the penetration into geoms that touch the geom's body,
+//! and the sliding velocity there. Depths are those of MuJoCo's signed distance functions (`engine_collision_sdf.c`),
+//! which inside a box or an ellipsoid are not the distance to the surface.
 
 use super::reading::Reading;
 use clench_collide::ShapeKind;
 use clench_math::{Mask, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
-    /// All depths, then all speeds along first tangents, then along second ones. Meshes and terrain that are touched tell nothing.
+    /// Writes all depths, then all speeds along first tangents, then along second ones. Contacts with meshes and
+    /// terrain are ignored.
     #[kernel]
     pub(super) fn read_taxels(&self, mesh: usize, geom: usize, out: &mut [T]) {
         out.fill(T::ZERO);
@@ -19,7 +20,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// The geom, from one on, that next touches what is welded to a body, and the lanes in which it does.
+    /// Returns the first geom from `from` on that touches a body welded to `body`, and the lanes in which it does.
     #[kernel]
     fn next_touched(&self, body: usize, from: usize) -> Option<(usize, T::Mask)> {
         let weld = |geom: usize| self.model.bodies[self.model.geoms[geom].body].weld;
@@ -40,7 +41,7 @@ impl<T: Real> Reading<'_, T> {
         found
     }
 
-    /// Adds what the vertices feel of one geom.
+    /// Adds the readings of the vertices due to one geom.
     #[kernel]
     fn feel(&self, mesh: usize, geom: usize, other: usize, lanes: T::Mask, out: &mut [T]) {
         let mesh = &self.model.meshes[mesh];
@@ -72,7 +73,7 @@ impl<T: Real> Reading<'_, T> {
         }
     }
 
-    /// The velocity of a point that moves with a geom.
+    /// Returns the velocity of a point that moves with a geom.
     #[inline(always)]
     fn velocity_at(&self, geom: usize, point: Vec3<T>) -> Vec3<T> {
         let body = self.model.geoms[geom].body;
@@ -82,12 +83,13 @@ impl<T: Real> Reading<'_, T> {
     }
 }
 
-/// A point or tangent of a mesh with the 24 bits a coordinate that MuJoCo keeps.
+/// Rounds a point or tangent of a mesh to single precision, in which MuJoCo stores it.
 fn rounded<T: Real>(v: &Vec3<f64>) -> Vec3<T> {
     Vec3::from_f64(v.to_array().map(|x| f64::from(x as f32)))
 }
 
-/// A shape's function of distance at a point of its frame, negative inside; `None` for shapes that have none.
+/// Returns the signed distance function of a shape at a point of its frame, negative inside; `None` for shapes without
+/// one.
 #[inline(always)]
 fn signed_distance<T: Real>(kind: ShapeKind, size: Vec3<T>, point: Vec3<T>) -> Option<T> {
     let half_height = size.y;
@@ -120,7 +122,8 @@ fn divide<T: Real>(a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
     Vec3::new(a.x / b.x, a.y / b.y, a.z / b.z)
 }
 
-/// Outside the distance; inside how far a face is along a field that turns from the centre's direction to the normals of the faces.
+/// Returns the distance outside; inside, minus the distance to a face along a field that turns from the centre's
+/// direction to the normals of the faces.
 #[inline(always)]
 fn box_distance<T: Real>(size: Vec3<T>, point: Vec3<T>) -> T {
     let beyond = Vec3::new(point.x.abs(), point.y.abs(), point.z.abs()) - size;

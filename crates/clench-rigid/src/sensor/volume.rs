@@ -1,4 +1,4 @@
-//! Volumes of sites: what touches there, and what is inside.
+//! Volumes of sites: touch sensors and containment.
 
 use super::reading::Reading;
 use crate::output::forces::of_contact;
@@ -7,8 +7,8 @@ use clench_dynamics::model;
 use clench_math::{Mask, Mat3, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
-    /// The sum of the normal forces of those contacts of a site's body whose line of force meets the site's volume on its way into
-    /// the body.
+    /// Returns the sum of the normal forces of those contacts of a site's body whose line of force, followed into the
+    /// body, meets the site's volume.
     #[kernel]
     pub(super) fn touch(&self, site: usize) -> T {
         let (shape, pose) = self.volume(site);
@@ -37,7 +37,7 @@ impl<T: Real> Reading<'_, T> {
         sum
     }
 
-    /// 1 where a point is inside a site's volume, else 0.
+    /// Returns 1 if a point is inside a site's volume, otherwise 0.
     #[kernel]
     pub(super) fn is_inside(&self, site: usize, point: Vec3<T>) -> T {
         let (shape, pose) = self.volume(site);
@@ -50,7 +50,7 @@ impl<T: Real> Reading<'_, T> {
         T::select(shape.contains(point), T::ONE, T::ZERO)
     }
 
-    /// A site's volume and where it is, that of a mesh with the hull in the frame of the hull.
+    /// Returns a site's volume and its pose. For a mesh, they are the hull and the frame of the hull.
     pub(super) fn solid_volume(&self, site: usize) -> (Shape<'_, T>, Pose<T>) {
         let (shape, pose) = self.volume(site);
         let Some(mesh) = self.model.sites[site].mesh else {
@@ -78,8 +78,8 @@ impl<T: Real> Reading<'_, T> {
     }
 }
 
-/// The hull of a site's mesh, of `extent` along its axes, and in its frame a point of the site's frame, in which the mesh has its
-/// author's coordinates.
+/// Returns the hull of a site's mesh, of size `extent`, and transforms `point` from the site's frame, in which the mesh
+/// has its original coordinates, to that of the hull.
 #[inline(always)]
 fn in_frame_of_hull<T: Real>(
     mesh: &model::Mesh,
@@ -98,7 +98,7 @@ fn hull_of<T: Real>(mesh: &model::Mesh, extent: Vec3<T>) -> Shape<'_, T> {
     })
 }
 
-/// The axes of a mesh's hull in the frame of a site.
+/// Returns the axes of a mesh's hull in the frame of a site.
 #[inline(always)]
 fn axes_of<T: Real>(mesh: &model::Mesh) -> Mat3<T> {
     Mat3::from_f64(mesh.quat.to_matrix().rows.map(Vec3::to_array))

@@ -1,4 +1,5 @@
-//! The state of a simulation in the number type that it is computed in, see [`Scalar::Alone`]: the state itself, or a copy in lanes.
+//! The state of a simulation in the number type that it is computed in, see [`Scalar::Alone`]: the state itself, or a
+//! copy in lanes.
 
 use clench_dynamics::Step;
 use clench_dynamics::model::Model;
@@ -6,15 +7,15 @@ use clench_dynamics::state::State;
 use clench_math::{Real, Scalar};
 use std::any::Any;
 
-/// Room for a copy in lanes, where the state has to be copied.
+/// Memory for a copy in lanes, if one is needed.
 pub(super) type Room<S> = Option<Box<State<<S as Scalar>::Alone>>>;
 
-/// Room for the states of a model.
+/// Allocates memory for the states of a model.
 pub(super) fn room<S: Scalar>(model: &Model) -> Room<S> {
     (S::Alone::LANES > 1).then(|| Box::new(State::new(model)))
 }
 
-/// Shows a state to `pass`.
+/// Calls `pass` with a state.
 pub(super) fn read<S: Scalar, R>(
     state: &State<S>,
     room: &mut Room<S>,
@@ -30,7 +31,7 @@ pub(super) fn read<S: Scalar, R>(
     }
 }
 
-/// Lets `pass` move a state.
+/// Calls `pass` with a state that it advances.
 pub(super) fn change<S: Scalar, R>(
     state: &mut State<S>,
     room: &mut Room<S>,

@@ -1,4 +1,5 @@
-//! Constraints that are added and removed while a simulation runs, and equalities of the file that hold the present pose.
+//! Constraints that are added and removed while a simulation runs, and equalities of the model that adopt the present
+//! pose.
 
 use super::Sim;
 use crate::Precision;
@@ -9,10 +10,10 @@ use clench_dynamics::sleep::wake_in_state;
 use clench_dynamics::state::State;
 use clench_math::{Quat, Vec3};
 
-/// Serial numbers begin anew after as many: single precision holds them exactly.
+/// Serial numbers stay below this, so that single precision is exact.
 const SERIALS: u32 = 1 << 24;
 
-/// A constraint that was added at run time, as long as it is there.
+/// A handle of a constraint that was added at run time, valid until its removal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DynamicConstraint {
     slot: u32,
@@ -20,12 +21,12 @@ pub struct DynamicConstraint {
 }
 
 impl DynamicConstraint {
-    /// As a number, never the same for two constraints of one simulation that are there at once.
+    /// Returns the handle as a number, unique among the present constraints of a simulation.
     pub fn to_code(self) -> u64 {
         u64::from(self.serial) << 32 | u64::from(self.slot)
     }
 
-    /// The constraint of which [`to_code`](Self::to_code) gave this number.
+    /// Returns the constraint of a number from [`to_code`](Self::to_code).
     pub fn from_code(code: u64) -> Self {
         DynamicConstraint {
             slot: code as u32,
@@ -33,7 +34,7 @@ impl DynamicConstraint {
         }
     }
 
-    /// The one in a slot of a state, if there is any.
+    /// Returns the constraint in a slot of a state, if there is one.
     fn in_slot<T: Precision>(model: &Model, state: &State<T>, slot: usize) -> Option<Self> {
         tied(model, state, slot, 0)?;
         Some(DynamicConstraint {
@@ -44,12 +45,12 @@ impl DynamicConstraint {
 }
 
 impl<T: Precision> Sim<T> {
-    /// Holds two bodies together as they lie now, as a weld does: what a suction gripper grips. A constraint of the state: it is saved
-    /// and restored with it, and a reset removes it. It is as soft as MuJoCo's welds are by default.
+    /// Welds two bodies in their present relative pose, as a suction gripper does. The constraint is part of the state:
+    /// it is saved and restored with it, and a reset removes it. It has the default softness of MuJoCo's welds.
     ///
     /// # Errors
-    /// Bodies that the model does not have, twice the same, or two that nothing moves; no free slot (see
-    /// [`Model::max_dynamic_constraints`]); a state as [`step`](Self::step) refuses it.
+    /// Returns an error if there is no such body, if the bodies are the same or neither can move, if no slot is free
+    /// (see [`Model::max_dynamic_constraints`]), or if [`step`](Self::step) would refuse the state.
     pub fn add_weld(&mut self, body1: usize, body2: usize) -> Result<DynamicConstraint, SimError> {
         self.refresh_positions()?;
         let slot = self.free_slot([body1, body2])?;
@@ -60,11 +61,11 @@ impl<T: Precision> Sim<T> {
         Ok(self.occupy(slot, WELD, [body1, body2]))
     }
 
-    /// Holds two points together, `anchor` in the frame of the first body and the point of the second that lies there now, as a connect
-    /// does: a ball joint. Otherwise as [`add_weld`](Self::add_weld).
+    /// Connects two points like a ball joint: `anchor` in the frame of the first body, and the point of the second body
+    /// that is there now. Otherwise as [`add_weld`](Self::add_weld).
     ///
     /// # Errors
-    /// As [`add_weld`](Self::add_weld), and an anchor that is not finite.
+    /// Returns an error as [`add_weld`](Self::add_weld) does, or if the anchor is not finite.
     pub fn add_connect(
         &mut self,
         body1: usize,
@@ -85,10 +86,10 @@ impl<T: Precision> Sim<T> {
         Ok(self.occupy(slot, CONNECT, [body1, body2]))
     }
 
-    /// Lets go of what a constraint holds that was added at run time.
+    /// Removes a constraint that was added at run time.
     ///
     /// # Errors
-    /// One that is not there any more.
+    /// Returns an error if the constraint no longer exists.
     pub fn remove(&mut self, constraint: DynamicConstraint) -> Result<(), SimError> {
         let slot = constraint.slot as usize;
         let there = slot < self.state.dynamic_kind.len()
@@ -109,28 +110,30 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// The serial number of the last constraint that was added at run time. No state has it, so that what is restored gives no number
-    /// that a program may still hold; a copy of the whole simulation takes it along.
+    /// Returns the serial number of the last constraint that was added at run time. It is not part of the state, so
+    /// that no number is reused after a restore. A copy of the whole simulation must copy it.
     pub fn last_serial(&self) -> u32 {
         self.last_serial
     }
 
-    /// Lets serial numbers of constraints go on after this one, as those of the simulation do that this is a copy of.
+    /// Sets the last serial number, for a simulation that is a copy of another.
     pub fn set_last_serial(&mut self, serial: u32) {
         self.last_serial = serial;
     }
 
-    /// The constraints that were added at run time and are there, in the order of their slots.
+    /// Returns the present constraints that were added at run time, in the order of their slots.
     pub fn dynamic_constraints(&self) -> impl Iterator<Item = DynamicConstraint> {
         let slots = 0..self.state.dynamic_kind.len();
         slots.filter_map(|slot| DynamicConstraint::in_slot(&self.model, &self.state, slot))
     }
 
-    /// Lets a weld or connect of the model hold its bodies as they lie now, and switches it on. The pose goes into the parameters of this
-    /// simulation (`eq_anchor1` and `eq_quat1` of a weld, `eq_anchor2` of a connect), the switch into the state.
+    /// Activates a weld or connect of the model at the present pose of its bodies. The pose is written to the
+    /// parameters of this simulation (`eq_anchor1` and `eq_quat1` of a weld, `eq_anchor2` of a connect), the activation
+    /// to the state.
     ///
     /// # Errors
-    /// An equality that the model does not have, or of another kind; a state as [`step`](Self::step) refuses it.
+    /// Returns an error if there is no such equality, if it is of another kind, or if [`step`](Self::step) would refuse
+    /// the state.
     pub fn weld_here(&mut self, equality: usize) -> Result<(), SimError> {
         let Some(found) = self.model.equalities.get(equality) else {
             return Err(no_such("equality", equality, self.model.equalities.len()));
@@ -162,7 +165,7 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// A slot for a constraint between these bodies.
+    /// Returns a free slot for a constraint between these bodies.
     fn free_slot(&self, bodies: [usize; 2]) -> Result<usize, SimError> {
         let count = self.model.nbody();
         if let Some(&body) = bodies.iter().find(|&&body| body >= count) {
@@ -184,9 +187,9 @@ impl<T: Precision> Sim<T> {
         free.ok_or(SimError::NoFreeSlot { most })
     }
 
-    /// Puts a constraint, whose frames are there already, into a slot.
+    /// Assigns a slot to a constraint whose frames are already stored there.
     fn occupy(&mut self, slot: usize, kind: f64, bodies: [usize; 2]) -> DynamicConstraint {
-        // Numbers in the state can be from another simulation, which counted further.
+        // The state may contain serial numbers of another simulation, which counted further.
         let serials = self.state.dynamic_serial.iter();
         let last = serials.fold(self.last_serial, |last, serial| {
             last.max(serial.to_f64() as u32)
@@ -205,7 +208,7 @@ impl<T: Precision> Sim<T> {
         }
     }
 
-    /// The point of the first body, and how a frame is turned in it, where a point and a frame of the second lie now.
+    /// Returns the present pose, in the frame of the first body, of a point and a rotation of the second.
     fn present_pose(
         &self,
         [body1, body2]: [usize; 2],
@@ -217,7 +220,7 @@ impl<T: Precision> Sim<T> {
         (self.carry([body2, body1], point), quat.lane(0))
     }
 
-    /// A point of one body in the frame of another, where they lie now.
+    /// Transforms a point of one body to the frame of another, at their present poses.
     fn carry(&self, [from, to]: [usize; 2], point: Vec3<T>) -> Vec3<T> {
         let pos = &self.ws.position;
         let world = pos.xpos[from] + pos.xmat[from] * Vec3::splat(point);

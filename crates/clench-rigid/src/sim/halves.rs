@@ -1,4 +1,4 @@
-//! Steps in two halves, for controllers that need what depends on positions and velocities of the step that they control.
+//! Steps in two halves, for controllers that need quantities that depend on the positions and velocities of the step.
 
 use super::Sim;
 use crate::Precision;
@@ -7,11 +7,11 @@ use clench_dynamics::error::SimError;
 use clench_dynamics::profile::Stage;
 
 impl<T: Precision> Sim<T> {
-    /// The first half of a step: all that depends on positions and velocities alone, which can then be read. What follows from controls
-    /// too, such as accelerations and forces of contacts, is that of the step before.
+    /// Runs the first half of a step: everything that depends only on positions and velocities, which can then be read.
+    /// Other results, such as accelerations and contact forces, are those of the previous step.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn step1(&mut self) -> Result<(), SimError> {
         self.check_present()?;
         self.on_threads(|model, params, settings, state, ws| {
@@ -22,12 +22,12 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// The second half of a step, with the controls and applied forces that are set by now. After [`step1`](Self::step1), both together
-    /// are a [`step`](Self::step), to the bit; where positions, velocities or anything but controls and forces were written in between,
-    /// or nothing was begun, the whole step is done here.
+    /// Runs the second half of a step, with the present controls and applied forces. After [`step1`](Self::step1), both
+    /// halves together equal a [`step`](Self::step) bit for bit. If anything but controls and forces was written in
+    /// between, or [`step1`](Self::step1) was not called, it runs the whole step.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn step2(&mut self) -> Result<(), SimError> {
         let begun = self.halfway && self.known.extent(&self.state) == Extent::Positions;
         if !begun || !self.known.same_velocities(&self.state) || self.settings.flags.sleep {
@@ -45,17 +45,17 @@ impl<T: Precision> Sim<T> {
         }
         self.state.copy_moving_from(&self.last_good);
         if self.settings.autoreset {
-            // It fails once more, and starts over as the options say.
+            // The step fails again and is handled by `autoreset`.
             return self.step();
         }
         result
     }
 
-    /// A step whose controls `control` sets, when positions and velocities of the step are known: it reads what it needs of the
-    /// simulation and writes `state.ctrl`, or applied forces.
+    /// Runs a step. After the results of positions and velocities are computed, `control` reads the simulation and
+    /// writes `state.ctrl` or applied forces.
     ///
     /// # Errors
-    /// As [`step`](Self::step), and those of `control`.
+    /// See [`step`](Self::step); also the errors of `control`.
     pub fn step_with(
         &mut self,
         control: impl FnOnce(&mut Self) -> Result<(), SimError>,

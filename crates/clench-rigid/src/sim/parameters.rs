@@ -1,4 +1,4 @@
-//! Numbers and options of a simulation, changed while it runs.
+//! Parameters and options of a simulation, changed while it runs.
 
 use super::Sim;
 use crate::Precision;
@@ -9,13 +9,13 @@ use clench_dynamics::options::RigidOptions;
 use clench_dynamics::settings::StepSettings;
 
 impl<T: Precision> Sim<T> {
-    /// Replaces the numbers of a field of [`params`](Self::params), element after element, and computes what follows from
-    /// them: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. All else
-    /// that follows stays as it is until [`set_constants`](Self::set_constants).
+    /// Replaces the values of a field of [`params`](Self::params), element by element, and updates dependent fields:
+    /// `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. All
+    /// other derived values stay the same until [`set_constants`](Self::set_constants).
     ///
     /// # Errors
-    /// A name that no field has, a field that follows from another, a wrong number of numbers, or numbers that the field
-    /// cannot have. The parameters are then as before.
+    /// Returns an error if the name is unknown, if the field is derived from another, if the number of values is wrong,
+    /// or if a value is invalid. The parameters are then unchanged.
     pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
         let field = ParamField::settable(field)?;
         let mut row = values.to_vec();
@@ -27,13 +27,14 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// Computes the constants that follow from the parameters in the initial configuration, as MuJoCo's `mj_setConst` does: subtree
-    /// masses, the inverse inertias `*_invweight0` by which constraints are scaled, `dof_length`, `tendon_length0`,
-    /// `actuator_acc0`, frames of cameras (`cam_*0`), second anchors of connects, anchors at sites. Call it after masses, inertias,
-    /// positions or armatures have changed, unless constraints are to stay as soft as those of the original model.
+    /// Computes the derived parameters in the initial configuration, as MuJoCo's `mj_setConst` does: subtree masses,
+    /// the inverse inertias `*_invweight0` by which constraints are scaled, `dof_length`, `tendon_length0`,
+    /// `actuator_acc0`, frames of cameras (`cam_*0`), second anchors of connects, anchors at sites. Call it after
+    /// masses, inertias, positions or armatures have changed, unless constraints should keep the softness of the
+    /// original model.
     ///
     /// # Errors
-    /// A mass matrix that is not positive definite. The parameters are then as before.
+    /// Returns an error if the mass matrix is not positive definite. The parameters are then unchanged.
     pub fn set_constants(&mut self) -> Result<(), SimError> {
         let mut params = self.model.params.clone();
         for &field in ParamField::ALL {
@@ -51,10 +52,10 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// The numbers of a field of [`params`](Self::params), by its name, element after element.
+    /// Returns a field of [`params`](Self::params), by name, element by element.
     ///
     /// # Errors
-    /// A name that no field has.
+    /// Returns an error if the name is unknown.
     pub fn param(&self, field: &str) -> Result<Vec<T>, SimError> {
         let field = ParamField::find(field)?;
         Ok(self.params.read_lane(field, 0))
@@ -63,27 +64,28 @@ impl<T: Precision> Sim<T> {
     /// Sets the time step, s.
     ///
     /// # Errors
-    /// A time step that is not positive and finite.
+    /// Returns an error if the time step is not positive and finite.
     pub fn set_timestep(&mut self, timestep: f64) -> Result<(), SimError> {
         self.set_param("timestep", &[T::new(timestep)])
     }
 
-    /// The model's numbers as this simulation uses them.
+    /// Returns the parameters of this simulation.
     pub fn params(&self) -> &Params<T::Alone> {
         &self.params
     }
-    /// The model's numbers, to be changed for this simulation alone. Arrays keep their lengths, and nothing is checked or
-    /// derived anew, as [`set_param`](Self::set_param) does.
+    /// Returns the parameters for modification in this simulation. Arrays keep their lengths. Unlike
+    /// [`set_param`](Self::set_param), it checks and updates nothing.
     pub fn params_mut(&mut self) -> &mut Params<T::Alone> {
         self.forget();
         Model::forget_same_frames(&mut self.model);
         &mut self.params
     }
 
-    /// Replaces the options that the user set, for the steps to come.
+    /// Replaces the options that the user set, for subsequent steps.
     ///
     /// # Errors
-    /// Options out of range; shapes that may meet and cannot be collided. The options are then as before.
+    /// Returns an error if an option is out of range, or if a possible collision is not supported. The options are then
+    /// unchanged.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
         self.settings = StepSettings::supported::<T>(&self.model, options)?;
         self.options = options;

@@ -1,4 +1,4 @@
-//! What constraints push on, and where tendons run, asked of a simulation.
+//! Constraint forces and tendon paths of a simulation.
 
 use super::Sim;
 use crate::Precision;
@@ -6,18 +6,18 @@ use crate::readout::{Push, TendonLine};
 use clench_dynamics::error::SimError;
 
 impl<T: Precision> Sim<T> {
-    /// What constraints but contacts pushed on in the last step or forward; what is not known is computed, as
-    /// [`refresh`](Self::refresh) says.
+    /// Returns the forces of constraints other than contacts in the last step or forward pass. Stale results are
+    /// refreshed.
     ///
     /// # Errors
-    /// A state as [`step`](Self::step) refuses it.
+    /// Returns an error if [`step`](Self::step) would refuse the state.
     pub fn pushes(&mut self) -> Result<Vec<Push>, SimError> {
         self.refresh()?;
         Ok(self.read(|source| T::pushes(source)))
     }
 
-    /// The straight parts of all spatial tendons where they were computed last, by a step, forward pass or [`refresh`](Self::refresh). Where
-    /// a string lies on a geom, a chord stands for its arc.
+    /// Returns the straight segments of all spatial tendons from the last step, forward pass or
+    /// [`refresh`](Self::refresh). An arc around a geom is replaced by its chord.
     pub fn tendon_lines(&self) -> Vec<TendonLine> {
         T::tendon_lines(&self.model, &self.params, &self.ws)
     }

@@ -1,4 +1,4 @@
-//! Judging the steps of a simulation.
+//! Quality statistics of a simulation's steps.
 
 use super::Sim;
 use crate::Precision;
@@ -6,7 +6,7 @@ use crate::batch::{Quality, StepResults};
 use clench_math::Mask;
 
 impl Quality {
-    /// Takes in the last step of a simulation, which must have gone well.
+    /// Adds the last step of a simulation, which must have succeeded.
     pub fn note<T: Precision>(&mut self, sim: &Sim<T>) {
         let results = StepResults {
             model: sim.model(),

@@ -1,10 +1,11 @@
-//! Steps in which everything sleeps as before.
+//! Steps in which everything remains asleep.
 
 use super::{Sim, alone};
 use crate::Precision;
 
 impl<T: Precision> Sim<T> {
-    /// Does a step that finds everything asleep as the last one left it. Whether it was one: nothing has to be checked then.
+    /// Runs a step if everything is asleep as the last step left it. Returns true if it did; no further check is then
+    /// needed.
     pub(super) fn rest(&mut self) -> bool {
         let as_left = self.settings.flags.sleep
             && !self.halfway

@@ -9,16 +9,16 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_solver::Threads;
 
-/// More threads are taken for a mistake.
+/// The maximum number of threads.
 const MAX_THREADS: usize = 1024;
 
 impl<T: Precision> Sim<T> {
-    /// Has so many threads share the work of each step and forward pass from now on: pairs of geoms, islands, and the Hessian of a large
-    /// island. Results stay the same to the bit. It pays for scenes of many bodies, whose steps take a millisecond or more; many environments are a
-    /// [`Batch`](crate::Batch).
+    /// Sets the number of threads that share each subsequent step and forward pass: pairs of geoms, islands, and the
+    /// Hessian of a large island. Results are identical bit for bit. They pay off for scenes whose steps take a
+    /// millisecond or more; for many environments use a [`Batch`](crate::Batch).
     ///
     /// # Errors
-    /// A number that is 0 or more than 1024; threads that the system does not start.
+    /// Returns an error if `count` is 0 or more than 1024, or if the system cannot start the threads.
     pub fn set_threads(&mut self, count: usize) -> Result<(), SimError> {
         if !(1..=MAX_THREADS).contains(&count) {
             return Err(SimError::OutOfRange {
@@ -32,12 +32,12 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    /// How many threads share the work of a step; 1 unless [`set_threads`](Self::set_threads) was called.
+    /// Returns the number of threads of a step; 1 unless [`set_threads`](Self::set_threads) was called.
     pub fn threads(&self) -> usize {
         self.ws.threads.count()
     }
 
-    /// Threads of a process that this one was forked from do not answer.
+    /// Returns an error after a fork, as the threads do not exist in the new process.
     pub(super) fn check_threads(&self) -> Result<(), SimError> {
         match self.ws.threads.are_lost() {
             true => Err(SimError::Forked),
@@ -45,7 +45,7 @@ impl<T: Precision> Sim<T> {
         }
     }
 
-    /// Does a pass where its parts can be shared.
+    /// Runs a pass in whose parts the threads can share.
     pub(super) fn on_threads(
         &mut self,
         pass: impl FnOnce(

@@ -1,8 +1,8 @@
-//! What the solvers ask of the cost of a block, and in what terms it answers.
+//! The interface between the solvers and the cost of a block.
 
 use clench_math::{Mask, Real};
 
-/// Most rows of a block: a weld, or a contact with spin and roll.
+/// The maximum number of rows of a block: a weld, or a contact with spin and roll.
 pub(crate) const MAX_DIM: usize = 6;
 
 /// The parameters of one block, row by row; see [`BlockMut`](crate::BlockMut).
@@ -11,18 +11,18 @@ pub(crate) struct Rows<'a, T> {
     pub d: &'a [T],
     pub r: &'a [T],
     pub shape: &'a [T],
-    /// Added to R by a stage of [continuation](crate::continuation); only elliptic cones heed it.
+    /// Added to R by a stage of [continuation](crate::continuation); used only by elliptic cones.
     pub softer: T,
 }
 
-/// What evaluating the blocks adds up to.
+/// The sums over all evaluated blocks.
 #[derive(Clone, Copy)]
 pub(crate) struct Totals<T: Real> {
     /// Σ s(y).
     pub cost: T,
-    /// Entries of the active set that differ from those of the last evaluation.
+    /// The number of entries of the active set that differ from those of the last evaluation.
     pub changes: T,
-    /// Where some block is on a piece whose Hessian varies: an elliptic cone's surface.
+    /// The lanes in which some block is on a piece whose Hessian varies: an elliptic cone's surface.
     pub curved: T::Mask,
 }
 
@@ -36,7 +36,7 @@ impl<T: Real> Totals<T> {
         }
     }
 
-    /// Records the piece that a row or edge is on now.
+    /// Records the current piece of a row or edge.
     #[inline(always)]
     pub(crate) fn mark(&mut self, piece: &mut T, now: T) {
         self.changes += T::select(piece.eq(now), T::ZERO, T::ONE);
@@ -44,31 +44,31 @@ impl<T: Real> Totals<T> {
     }
 }
 
-/// The Hessian block of one cost, as far as its [`Form`] says it is written.
+/// The Hessian block of one cost; its [`Form`] says which entries are written.
 pub(crate) type Weight<T> = [[T; MAX_DIM]; MAX_DIM];
 
-/// Which entries of a [`Weight`] can be nonzero.
+/// The entries of a [`Weight`] that can be nonzero.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Form {
     /// None.
     Zero,
     /// The diagonal.
     Diagonal,
-    /// First row, first column, diagonal (row 0 and the diagonal are written).
+    /// The first row, the first column and the diagonal (row 0 and the diagonal are written).
     Arrow,
     /// All.
     Full,
 }
 
 impl Form {
-    /// A diagonal with nonzero entries, or nothing.
+    /// Returns `Diagonal` if there are nonzero entries, else `Zero`.
     #[inline(always)]
     pub(super) fn diagonal_if(nonzero: bool) -> Form {
         if nonzero { Form::Diagonal } else { Form::Zero }
     }
 }
 
-/// By how much the derivative along a ray has grown since its start, and the second derivative.
+/// The growth of the derivative along a ray since its start, and the second derivative.
 #[derive(Clone, Copy)]
 pub(crate) struct Slope<T> {
     pub growth: T,
@@ -83,13 +83,14 @@ pub(crate) struct RankOne<T> {
     pub side: Option<(usize, T)>,
 }
 
-/// What Newton, CG and the line search ask of a constraint's cost. (Noslip, continuation and the checks of input match on
-/// [`Cost`] where they need more.)
+/// The operations of a constraint's cost that Newton, CG and the line search use. (Noslip, continuation and the input
+/// checks match on [`Cost`] if they need more.)
 ///
-/// `y` is J a − aref. The active set says which piece of its cost each row or edge is on. A lane without the constraint has D = 0: it adds
-/// nothing, and its active set never changes.
+/// `y` is J a − aref. The active set holds the piece of its cost that each row or edge is on. A lane without the
+/// constraint has D = 0: it adds nothing, and its active set never changes.
 pub(crate) trait BlockCost<T: Real> {
-    /// How many entries of the active set a block of `dim` rows has: one for each row or edge that changes its piece on its own.
+    /// Returns the number of active-set entries of a block of `dim` rows: one for each row or edge that changes its
+    /// piece independently.
     fn active_len(dim: usize) -> usize;
     /// Writes the force −∇s(y) and the active set, and adds to the totals.
     fn evaluate(
@@ -99,13 +100,14 @@ pub(crate) trait BlockCost<T: Real> {
         active_set: &mut [T],
         totals: &mut Totals<T>,
     );
-    /// Writes ∇²s(y), whose active set is known.
+    /// Writes ∇²s(y) for an up-to-date active set.
     fn hessian(rows: Rows<T>, y: &[T], active_set: &[T], weight: &mut Weight<T>) -> Form;
-    /// Calls `emit` with each rank-one change of the Hessian block from the active set `old` to `new`; no piece of either may be
-    /// curved.
+    /// Calls `emit` with each rank-one change of the Hessian block from the active set `old` to `new`; no piece of
+    /// either may be curved.
     fn changes(rows: Rows<T>, old: &[T], new: &[T], emit: impl FnMut(RankOne<T>));
-    /// Adds the derivatives of α ↦ s(y + α dy), the first less what it is at 0: for α ≥ 0 a sum of terms that are not negative.
+    /// Adds the derivatives of α ↦ s(y + α dy), the first minus its value at 0. For α ≥ 0 this is a sum of nonnegative
+    /// terms.
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>);
-    /// The Bregman divergence s(y + α dy) − s(y) − α ∇s(y)·dy ≥ 0, without the cancellation of subtracting values.
+    /// Computes the Bregman divergence s(y + α dy) − s(y) − α ∇s(y)·dy ≥ 0 without cancellation.
     fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T;
 }

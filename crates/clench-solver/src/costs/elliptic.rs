@@ -9,7 +9,7 @@
 //! middle                  s = ½ K (N − μT)²          friction slips, the force is on the cone's surface
 //! ```
 //!
-//! Since D_j = D₀ (μ_j/μ)² (the regularization that makes the three meet), Σ D y² = (D₀/μ²)(N² + T²), and
+//! Since D_j = D₀ (μ_j/μ)² (the regularization that makes the three zones continuous), Σ D y² = (D₀/μ²)(N² + T²), and
 //! (1 + μ²)(N² + T²) = (N − μT)² + (μN + T)². So with p = min(N − μT, 0) and q = min(μN + T, 0), all zones are
 //!
 //! ```text
@@ -31,16 +31,16 @@ pub(crate) struct Elliptic;
 struct Zone<T: Real> {
     k: T,
     mu: T,
-    /// N − μT and μN + T, each where negative.
+    /// N − μT and μN + T if negative, else 0.
     p: T,
     q: T,
     /// T.
     t: T,
-    /// Direction of slip, zero where there is none.
+    /// The direction of slip, zero without slip.
     u: [T; MAX_DIM],
     /// μ² − μ N/T in the middle zone.
     c: T,
-    /// Middle zone, bottom zone; neither in lanes without the contact.
+    /// The middle and the bottom zone; false in lanes without the contact.
     middle: T::Mask,
     bottom: T::Mask,
 }
@@ -50,7 +50,7 @@ impl<T: Real> Zone<T> {
     fn new(rows: Rows<T>, y: impl Fn(usize) -> T) -> Self {
         let dim = rows.d.len();
         let exists = rows.d[0].gt(T::ZERO);
-        // A lane without the contact may have no coefficients either: 1 keeps it finite.
+        // A lane without the contact may have zero coefficients; 1 keeps it finite.
         let mu = T::select(exists, rows.shape[0], T::ONE);
         let k = rows.d[0] / (mu * mu * (T::ONE + mu * mu) * stiffening(rows));
         let n = mu * y(0);
@@ -89,7 +89,7 @@ impl<T: Real> Zone<T> {
     }
 }
 
-/// By how much the block would be stiffer without the continuation.
+/// Returns the factor by which the block would be stiffer without continuation.
 #[inline(always)]
 fn stiffening<T: Real>(rows: Rows<T>) -> T {
     T::ONE + rows.d[0] * rows.softer
@@ -111,7 +111,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
     ) {
         let zone = Zone::new(rows, |j| y[j]);
         let normal = -(zone.k * zone.mu * (zone.p + zone.mu * zone.q));
-        // In the middle, friction is exactly on the cone: written through the normal force.
+        // In the middle zone friction is exactly on the cone, so it follows from the normal force.
         let slip = zone.k * (zone.mu * zone.p - zone.q);
         force[0] = normal;
         for j in 1..rows.d.len() {
@@ -174,7 +174,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
 
     #[inline(always)]
     fn changes(rows: Rows<T>, old: &[T], new: &[T], mut emit: impl FnMut(RankOne<T>)) {
-        // Between top (0) and bottom (2) all rows come or go.
+        // Between top (0) and bottom (2) all rows become active or inactive.
         let change = T::new(0.5) * (new[0] - old[0]);
         for row in 0..rows.d.len() {
             emit(RankOne {
@@ -227,14 +227,14 @@ impl<T: Real> BlockCost<T> for Elliptic {
             ..
         } = Path::new(rows, y, dy, alpha);
         let mu = before.mu;
-        // How far p and q end from their tangents at the start.
+        // The distances of p and q from their tangents at the start.
         let p = T::select(in_p, -(mu * bend), dp - alpha * (dn - mu * along));
         let q = T::select(in_q, bend, dq - alpha * (mu * dn + along));
         before.k * (T::new(0.5) * (dp * dp + dq * dq) + before.p * p + before.q * q)
     }
 }
 
-/// A block on its way from y to y + α dy, with T and u at both ends.
+/// A block moving from y to y + α dy, with T and u at both ends.
 struct Path<T: Real> {
     before: Zone<T>,
     after: Zone<T>,
@@ -244,18 +244,18 @@ struct Path<T: Real> {
     /// N' and |U'|².
     dn: T,
     squares: T,
-    /// u₀·U' and by how much u·U' grows.
+    /// u₀·U' and the growth of u·U'.
     along: T,
     turn: T,
     /// T₁ − T₀ − α u₀·U' ≥ 0.
     bend: T,
-    /// Where p, and where q, is negative at both ends.
+    /// The lanes in which p, and in which q, is negative at both ends.
     in_p: T::Mask,
     in_q: T::Mask,
 }
 
 impl<T: Real> Path<T> {
-    /// Differences are written so that they keep their digits where the step is small.
+    /// Computes the differences in a form that avoids cancellation for small steps.
     #[inline(always)]
     fn new(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> Self {
         let before = Zone::new(rows, |j| y[j]);
@@ -267,7 +267,7 @@ impl<T: Real> Path<T> {
             along += before.u[j] * du;
             squares += du * du;
         }
-        // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²). The bend is how far T₁ is above its tangent T₀ + α u₀·U'.
+        // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²). The bend is the height of T₁ above its tangent T₀ + α u₀·U'.
         let across = (squares - along * along).max(T::ZERO);
         let straight = before.t + alpha * along;
         let ahead = straight.gt(T::ZERO);

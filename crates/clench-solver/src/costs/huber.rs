@@ -1,4 +1,4 @@
-//! Dry friction of loss η: a quadratic that turns linear where the force reaches η.
+//! Dry friction of loss η: quadratic, then linear once the force reaches η.
 //!
 //! With c = clamp(y, −Rη, Rη):
 //!
@@ -85,7 +85,7 @@ impl<T: Real> BlockCost<T> for Huber {
     }
 }
 
-/// One row on its way from y₀ to y₁.
+/// One row moving from y₀ to y₁.
 struct Turn<T: Real> {
     /// c₁ − c₀.
     change: T,
@@ -101,7 +101,7 @@ impl<T: Real> Turn<T> {
         let end = y + step;
         let (c0, c1) = (y.clamp(-bound, bound), end.clamp(-bound, bound));
         let ends_inside = end.abs().lt(bound);
-        // Within the quadratic stretch both follow from the step, which keeps all its digits.
+        // Within the quadratic piece both follow from the step, without cancellation.
         let inside = y.abs().lt(bound) & ends_inside;
         Turn {
             change: T::select(inside, step, c1 - c0),
@@ -111,7 +111,7 @@ impl<T: Real> Turn<T> {
     }
 }
 
-/// −1, 0 or 1: which side of the quadratic stretch `y` is on.
+/// Returns −1, 0 or 1: the side of the quadratic piece that `y` is on.
 #[inline(always)]
 fn side<T: Real>(bound: T, y: T) -> T {
     T::select(y.abs().lt(bound), T::ZERO, T::ONE.copysign(y))

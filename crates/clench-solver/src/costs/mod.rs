@@ -16,7 +16,7 @@ pub(crate) use one_sided::OneSided;
 pub(crate) use pyramid::Pyramid;
 pub(crate) use quadratic::Quadratic;
 
-/// Runs an expression with `$c` standing for the [`BlockCost`] of `$cost`.
+/// Evaluates an expression with `$c` set to the [`BlockCost`] of `$cost`.
 macro_rules! with_cost {
     ($cost:expr, $c:ident => $body:expr) => {
         match $cost {
@@ -45,7 +45,7 @@ macro_rules! with_cost {
 }
 pub(crate) use with_cost;
 
-/// How many entries of the active set a block of this cost has.
+/// Returns the number of active-set entries of a block with this cost.
 pub(crate) fn active_len(cost: Cost, dim: usize) -> usize {
     with_cost!(cost, C => <C as BlockCost<f64>>::active_len(dim))
 }
@@ -56,7 +56,7 @@ pub enum Cost {
     /// ½ D y² always: equalities.
     #[default]
     Quadratic,
-    /// ½ D y² where y < 0: limits, frictionless contacts.
+    /// ½ D y² for y < 0, else 0: limits, frictionless contacts.
     OneSided,
     /// ½ D y² near zero, η |y| − ½ R η² beyond: dry friction of loss η.
     Huber,

@@ -1,4 +1,4 @@
-//! Limits and frictionless contacts: only pushing costs, and only y < 0 pushes.
+//! Limits and frictionless contacts: the cost is nonzero only for y < 0, and the force only pushes.
 //!
 //! With m = min(y, 0):
 //!
@@ -73,13 +73,14 @@ impl<T: Real> BlockCost<T> for OneSided {
     }
 }
 
-/// 1 where the constraint exists and is violated, else 0.
+/// Returns 1 if the constraint exists and is violated, else 0.
 #[inline(always)]
 pub(super) fn active<T: Real>(d: T, y: T) -> T {
     T::select(d.gt(T::ZERO) & y.lt(T::ZERO), T::ONE, T::ZERO)
 }
 
-/// How far min(y, 0) moves when y moves by `step`. That is the step itself where both are violated: it keeps all its digits.
+/// Returns the change of min(y, 0) when y changes by `step`. If both ends are violated it is the step itself, without
+/// cancellation.
 #[inline(always)]
 fn violation_change<T: Real>(y: T, step: T) -> T {
     let end = y + step;
@@ -87,7 +88,7 @@ fn violation_change<T: Real>(y: T, step: T) -> T {
     T::select(both, step, end.min(T::ZERO) - y.min(T::ZERO))
 }
 
-/// Adds to the slope what one one-sided term does that starts at `y` and moves by `alpha` times `dy`.
+/// Adds to the slope the contribution of one one-sided term that starts at `y` and moves by `alpha` times `dy`.
 #[inline(always)]
 pub(super) fn add_edge_slope<T: Real>(d: T, y: T, dy: T, alpha: T, slope: &mut Slope<T>) {
     let step = alpha * dy;
@@ -95,7 +96,7 @@ pub(super) fn add_edge_slope<T: Real>(d: T, y: T, dy: T, alpha: T, slope: &mut S
     slope.second += T::select((y + step).lt(T::ZERO), d, T::ZERO) * dy * dy;
 }
 
-/// s(y + step) − s(y) − s'(y) step of one one-sided term.
+/// Computes s(y + step) − s(y) − s'(y) step of one one-sided term.
 #[inline(always)]
 pub(super) fn edge_divergence<T: Real>(d: T, y: T, step: T) -> T {
     let change = violation_change(y, step);

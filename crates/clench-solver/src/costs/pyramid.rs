@@ -1,4 +1,4 @@
-//! Frictional contact with the cone linearised: a one-sided cost on each edge.
+//! Frictional contact with a linearised cone: a one-sided cost on each edge.
 //!
 //! The block's rows are the contact frame (normal, then tangents, spin, rolls); the edges are combinations of them:
 //!
@@ -9,8 +9,8 @@
 //! W₀₀ = D Σ active       W₀_j = D μ_j (active_j+ − active_j−)       W_jj = D μ_j² (active_j+ + active_j−)
 //! ```
 //!
-//! So the Hessian is an arrow, and friction obeys Σ |force_j| / μ_j ≤ force₀. Pieces: each edge 1 or 0, in the order
-//! 1+, 1−, 2+, 2−, ... All rows have the same D.
+//! The Hessian is therefore an arrow, and friction obeys Σ |force_j| / μ_j ≤ force₀. Pieces: each edge 1 or 0, in the
+//! order 1+, 1−, 2+, 2−, ... All rows have the same D.
 
 use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
 use super::one_sided::{active, add_edge_slope, edge_divergence};

@@ -1,5 +1,5 @@
-//! What is true of every cost: its force is minus its gradient, its Hessian block the derivative of that, and what it says
-//! along a ray is what it says at points.
+//! Properties of every cost: its force is minus its gradient, its Hessian block is the derivative of that, and its
+//! values along a ray agree with those at points.
 
 use super::*;
 use crate::Cost;

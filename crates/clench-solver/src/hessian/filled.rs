@@ -1,4 +1,4 @@
-//! The Hessian in what elimination fills.
+//! The Hessian stored as the entries that elimination fills.
 
 use super::rank_one::each_of_change;
 use crate::costs::{Form, RankOne, Weight};
@@ -12,14 +12,14 @@ use clench_math::{Mask, Real, kernel};
 pub(super) struct FilledForm<T: 'static> {
     pattern: SparsePattern,
     factor: SparseFactor<T>,
-    /// Where some lanes are factored while others keep what they have.
+    /// The target when only some lanes are factored and the others keep their factor.
     spare: SparseFactor<T>,
-    /// The vector of a rank-one update; zeros between updates.
+    /// The vector of a rank-one update; zero between updates.
     direction: Vec<T>,
 }
 
-/// Calls `work` for so many windows of about the same size, with their values. (More windows than threads do not pay: for each, all blocks are looked
-/// through.)
+/// Calls `work` for `count` windows of about the same size, with their values. (More windows than threads do not pay:
+/// each inspects all blocks.)
 fn split<T: Real>(
     threads: &Threads,
     window: Window,
@@ -40,7 +40,7 @@ fn split<T: Real>(
 }
 
 impl<T: Real> FilledForm<T> {
-    /// Fits the pattern to that of M with couplings. False where it would have more than `most` entries.
+    /// Fits the pattern to that of M with couplings. Returns false if it would have more than `most` entries.
     pub(super) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         if !self.pattern.analyse(tree, couplings, most) {
             return false;
@@ -51,12 +51,12 @@ impl<T: Real> FilledForm<T> {
         true
     }
 
-    /// How much more arithmetic whole paths would take.
+    /// Returns the ratio of the arithmetic with whole paths to that of this form.
     pub(super) fn saves(&mut self) -> f64 {
         self.pattern.cost_of_paths() / self.pattern.cost()
     }
 
-    /// Number of entries.
+    /// Returns the number of entries.
     pub(super) fn nnz(&self) -> usize {
         self.pattern.nnz()
     }
@@ -80,7 +80,7 @@ impl<T: Real> FilledForm<T> {
         };
         let assemble = |window: &Window, values: &mut [T]| {
             window.set_matrix(problem.tree(), &problem.mass, values);
-            // The columns of a body follow each other: even of a single environment they fill registers.
+            // The columns of a body are consecutive: they fill registers even in a single environment.
             T::vectorize_rows(
                 #[inline(always)]
                 || problem.jacobian.add_gram(&weigh, window, values),
@@ -113,7 +113,7 @@ impl<T: Real> FilledForm<T> {
         (self.factor).update(&self.pattern, last as usize, direction, change.sigma)
     }
 
-    /// `x ← H⁻¹ x`.
+    /// Computes `x ← H⁻¹ x`.
     #[inline(always)]
     pub(super) fn solve(&mut self, x: &mut [T]) {
         self.factor.solve(&self.pattern, x);

@@ -1,10 +1,11 @@
 //! The Hessian H = M + Jᵀ W J of the problem, and its factorization H = LᵀDL.
 //!
-//! Rows are eliminated from the last to the first, as for M itself: then a constraint within one branch of the tree
-//! creates no fill. A constraint between branches makes one hang on the other, and what comes out is a tree again, the
-//! elimination tree. H is stored in one of two forms. [`PathForm`] stores the paths of that tree whole, like M those of the model's: the
-//! model's tree where no constraint couples branches, a chain for the dense choice. [`FilledForm`] stores what is filled, for heaps of
-//! many bodies. Both sum in the same order, so **all choices agree to the bit**.
+//! Rows are eliminated from the last to the first, as for M itself, so a constraint within one branch of the tree
+//! creates no fill. A constraint between branches makes one a descendant of the other; the result is again a tree, the
+//! elimination tree. H is stored in one of two forms. [`PathForm`] stores whole paths of that tree, as M stores those
+//! of the model's tree: it is the model's tree if no constraint couples branches, and a chain for the dense choice.
+//! [`FilledForm`] stores only the filled entries, for heaps of many bodies. Both sum in the same order, so **all
+//! choices agree to the bit**.
 
 mod filled;
 mod paths;
@@ -23,21 +24,22 @@ pub(crate) struct Hessian<T: 'static> {
     paths: PathForm<T>,
     filled: FilledForm<T>,
     is_filled: bool,
-    /// What the pattern was made from: the model's parents, the couplings that are not within a branch, the choice.
+    /// The inputs of the pattern: the model's parents, the couplings between branches, the dense choice.
     parents: Vec<Option<u32>>,
     couplings: Vec<u32>,
     dense: bool,
-    /// The couplings of the problem at hand.
+    /// The couplings of the current problem.
     found: Vec<u32>,
 }
 
-/// Smaller problems store paths: to find what is filled takes longer than it saves.
+/// Smaller problems store paths: the analysis of the fill takes longer than it saves.
 const MIN_FILLED_DOFS: usize = 36;
-/// Whole paths are stored unless they take more than this many times the arithmetic of the filled form, whose blocks are small.
+/// Whole paths are stored unless they take more than this many times the arithmetic of the filled form, whose blocks
+/// are small.
 const WORTH_FILLED: f64 = 2.0;
 
 impl<T: Real> Hessian<T> {
-    /// Fits the pattern to a problem. False where it would have more than `most` entries.
+    /// Fits the pattern to a problem. Returns false if it would have more than `most` entries.
     pub(crate) fn prepare(&mut self, problem: &Problem<T>, dense: bool, most: usize) -> bool {
         let tree = problem.tree();
         self.found.clear();
@@ -53,7 +55,7 @@ impl<T: Real> Hessian<T> {
             self.parents.clear();
             self.parents.extend_from_slice(tree.parents());
             if !self.choose(tree, most) {
-                // Forgotten, so that the next problem of this pattern is refused as well.
+                // Invalidated, so that the next problem of this pattern is refused as well.
                 self.parents.clear();
                 return false;
             }
@@ -66,7 +68,7 @@ impl<T: Real> Hessian<T> {
         nnz <= most
     }
 
-    /// Chooses how H is stored, and fits the pattern. False where it would have more than `most` entries.
+    /// Chooses the form of H, and fits the pattern. Returns false if it would have more than `most` entries.
     fn choose(&mut self, tree: &Tree, most: usize) -> bool {
         self.is_filled = !self.dense
             && tree.nv() >= MIN_FILLED_DOFS
@@ -77,15 +79,15 @@ impl<T: Real> Hessian<T> {
             return true;
         }
         if self.dense {
-            // The one coupling of a dense Hessian is that of all dofs.
+            // A dense Hessian has a single coupling of all dofs.
             self.found.push(tree.nv() as u32);
             self.found.extend(0..tree.nv() as u32);
         }
         self.paths.rebuild(tree, &self.found, most)
     }
 
-    /// Factors H = M + Jᵀ W J in the lanes of `mask`, by the threads if they pay. `weigh` writes the Hessian block of a
-    /// constraint.
+    /// Factors H = M + Jᵀ W J in the lanes of `mask`, on the threads if that pays. `weigh` writes the Hessian block of
+    /// a constraint.
     #[inline(always)]
     pub(crate) fn factor(
         &mut self,
@@ -102,7 +104,7 @@ impl<T: Real> Hessian<T> {
         }
     }
 
-    /// Applies a rank-one change of a block's Hessian. False in lanes whose factor it spoils.
+    /// Applies a rank-one change of a block's Hessian. Returns false in lanes whose factor becomes unusable.
     pub(crate) fn update(
         &mut self,
         problem: &Problem<T>,
@@ -116,7 +118,7 @@ impl<T: Real> Hessian<T> {
         }
     }
 
-    /// `x ← H⁻¹ x`.
+    /// Computes `x ← H⁻¹ x`.
     #[inline(always)]
     pub(crate) fn solve(&mut self, x: &mut [T]) {
         if self.is_filled {

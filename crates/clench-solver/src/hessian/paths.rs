@@ -1,4 +1,4 @@
-//! The Hessian in whole paths of its elimination tree.
+//! The Hessian stored as whole paths of its elimination tree.
 
 use super::rank_one::each_of_change;
 use crate::costs::{Form, RankOne, Weight};
@@ -13,7 +13,7 @@ pub(super) struct PathForm<T> {
     tree: Tree,
     matrix: TreeMatrix<T>,
     factor: TreeFactor<T>,
-    /// Where some lanes are factored while others keep what they have.
+    /// The target when only some lanes are factored and the others keep their factor.
     spare: TreeFactor<T>,
     /// The vector of a rank-one update, along its path.
     direction: Vec<T>,
@@ -21,7 +21,7 @@ pub(super) struct PathForm<T> {
 }
 
 impl<T: Real> PathForm<T> {
-    /// Fits the tree to that of M with couplings. False where it would have more than `most` entries.
+    /// Fits the tree to that of M with couplings. Returns false if it would have more than `most` entries.
     pub(super) fn rebuild(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         if !(self.tree).rebuild_coupled(tree, couplings, most, &mut self.scratch) {
             return false;
@@ -32,7 +32,7 @@ impl<T: Real> PathForm<T> {
         true
     }
 
-    /// Number of entries.
+    /// Returns the number of entries.
     pub(super) fn nnz(&self) -> usize {
         self.tree.nnz()
     }
@@ -82,7 +82,7 @@ impl<T: Real> PathForm<T> {
         self.factor.update(tree, last, direction, change.sigma)
     }
 
-    /// H = M.
+    /// Sets H = M.
     #[kernel]
     fn set(&mut self, tree: &Tree, mass: &TreeMatrix<T>) {
         if self.tree.nnz() == tree.nnz() {
@@ -98,7 +98,7 @@ impl<T: Real> PathForm<T> {
         }
     }
 
-    /// `x ← H⁻¹ x`.
+    /// Computes `x ← H⁻¹ x`.
     #[inline(always)]
     pub(super) fn solve(&self, x: &mut [T]) {
         self.factor.solve(&self.tree, x);

@@ -5,7 +5,7 @@ use crate::costs::RankOne;
 use crate::jacobian::BlockIndex;
 use clench_math::Real;
 
-/// The vector of a rank-one change of a block's Hessian, entry by entry.
+/// Calls `put` with each entry of the vector of a rank-one change of a block's Hessian.
 #[inline(always)]
 pub(super) fn each_of_change<T: Real>(
     problem: &Problem<T>,

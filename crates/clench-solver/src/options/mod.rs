@@ -1,28 +1,28 @@
-//! What a user may set, and the plain settings that a solve reads.
+//! The solver options that a user can set, and the resolved settings that a solve reads.
 
 mod table;
 
 use clench_math::Real;
 
-/// Which algorithm minimises.
+/// The minimisation algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConstraintSolver {
     /// Newton's method with a factored Hessian.
     #[default]
     Newton,
-    /// Conjugate gradients preconditioned by the mass matrix: matrix-vector products only.
+    /// Conjugate gradients, preconditioned by the mass matrix; needs only matrix-vector products.
     Cg,
 }
 
-/// A choice that the model decides unless the user does.
+/// A setting that is chosen per model unless the user sets it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
-    /// Decided per model.
+    /// Chosen per model.
     #[default]
     Auto,
-    /// Always.
+    /// Always on.
     On,
-    /// Never.
+    /// Always off.
     Off,
 }
 
@@ -31,7 +31,7 @@ macro_rules! declare_options {
         $(#[$doc:meta])*
         $name:ident: $type:ident = $default:expr $(=> $single:expr)?, $range:ident, $argument:expr, $mjcf:expr;
     )*}) => {
-        /// Options of the solver. Every field knows whether it was set.
+        /// The options of the solver. A field is `None` until it is set.
         ///
         /// ```
         /// use clench_solver::SolverOptions;
@@ -43,12 +43,13 @@ macro_rules! declare_options {
             $( $(#[$doc])* pub $name: Option<$type>, )*
         }
 
-        /// [`SolverOptions`] with every field decided.
+        /// [`SolverOptions`] with a value for every field.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Settings {
             $( $(#[$doc])* pub $name: $type, )*
-            /// Most numbers in the factor of a Hessian, or in the matrix of `noslip`: a problem, or an island of it, that needs more
-            /// ends as [`Status::TooLarge`](crate::Status::TooLarge). No option: whoever sets up the problem says what it may take.
+            /// The maximum number of entries in the factor of a Hessian, or in the matrix of `noslip`. A problem or
+            /// island that needs more ends with [`Status::TooLarge`](crate::Status::TooLarge). This is not an option:
+            /// the code that sets up the problem sets it.
             pub max_matrix: usize,
         }
 
@@ -75,12 +76,12 @@ macro_rules! declare_options {
 crate::solver_options!(declare_options);
 
 impl SolverOptions {
-    /// Nothing set.
+    /// Creates options with nothing set.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Decides every field, by its default where it was not set; `T` is the number that the solve computes in.
+    /// Resolves every field, using the default if it is not set. `T` is the number type of the solve.
     pub fn resolve<T: Real>(self) -> Settings {
         self.resolve_for(size_of::<T::Scalar>() < size_of::<f64>())
     }

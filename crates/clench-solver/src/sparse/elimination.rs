@@ -1,8 +1,8 @@
-//! Who factors which supernode: any number of threads share one elimination.
+//! The assignment of supernodes to threads: any number of threads share one elimination.
 //!
-//! Threads claim supernodes in the order of elimination and wait for those that they need, all of which were claimed earlier. The earliest that is
-//! not done needs nobody, so there is no deadlock, however few threads take part. A supernode is written by the one thread that has
-//! claimed it, and read by the others once it is done.
+//! Threads claim supernodes in the order of elimination and wait for those that they need, all of which were claimed
+//! earlier. The earliest unfinished one waits for no other, so there is no deadlock with any number of threads. A
+//! supernode is written only by the thread that claimed it, and read by the others once it is done.
 
 use super::pattern::{SparsePattern, Supernode};
 use crate::threads::pause;
@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread::panicking;
 
-/// Memory of a supernode that is being factored: its blocks of the matrix (in the end of L) and of U, its pieces of D and 1 / D.
+/// The memory of a supernode that is being factored: its blocks of the matrix (finally of L) and of U, its parts of D
+/// and 1 / D.
 pub(super) struct Open<'a, T> {
     index: usize,
     pub values: &'a mut [T],
@@ -19,14 +20,15 @@ pub(super) struct Open<'a, T> {
     pub inverse: &'a mut [T],
 }
 
-/// The blocks of L and U of a supernode that is done.
+/// The blocks of L and U of a finished supernode.
 #[derive(Debug)]
 pub(super) struct Done<'a, T> {
     pub lower: &'a [T],
     pub upper: &'a [T],
 }
 
-/// The memory of supernodes that nobody has claimed: `values` and `upper` from the next block on, `diagonal` and `inverse` up to its last dof.
+/// The memory of the unclaimed supernodes: `values` and `upper` from the next block on, `diagonal` and `inverse` up to
+/// its last dof.
 struct Unclaimed<'a, T> {
     next: usize,
     values: &'a mut [T],
@@ -35,21 +37,21 @@ struct Unclaimed<'a, T> {
     inverse: &'a mut [T],
 }
 
-/// A factorization that threads share.
+/// A factorization shared by threads.
 pub(super) struct Elimination<'a, T> {
     unclaimed: Mutex<Unclaimed<'a, T>>,
     done: Vec<OnceLock<Done<'a, T>>>,
-    /// A thread has panicked: what it had claimed is never done.
+    /// True once a thread has panicked; the supernodes that it claimed are never finished.
     abandoned: AtomicBool,
 }
 
-/// The memory in which an elimination notes what is done, empty between eliminations.
+/// The memory in which an elimination records finished supernodes; empty between eliminations.
 #[derive(Debug)]
 pub(super) struct Spare<T: 'static>(Vec<OnceLock<Done<'static, T>>>);
 
 impl<'a, T> Elimination<'a, T> {
-    /// Hands an elimination to `work`, whose threads [`claim`](Self::claim) what there is. `memory` holds the blocks of the matrix, room for
-    /// those of U, for the diagonal and for its inverse.
+    /// Passes an elimination to `work`, whose threads [`claim`](Self::claim) the supernodes. `memory` holds the blocks
+    /// of the matrix, and memory for those of U, for the diagonal and for its inverse.
     pub(super) fn run(
         pattern: &SparsePattern,
         memory: [&'a mut [T]; 4],
@@ -76,7 +78,7 @@ impl<'a, T> Elimination<'a, T> {
         spare.0 = emptied(elimination.done);
     }
 
-    /// The next supernode, for this thread alone.
+    /// Claims the next supernode for the calling thread.
     pub(super) fn claim<'p>(
         &self,
         pattern: &'p SparsePattern,
@@ -97,7 +99,7 @@ impl<'a, T> Elimination<'a, T> {
         Some((s, open))
     }
 
-    /// Lets others read a supernode that was claimed.
+    /// Lets the other threads read a claimed supernode.
     pub(super) fn close(&self, open: Open<'a, T>) {
         let Open {
             index,
@@ -105,14 +107,14 @@ impl<'a, T> Elimination<'a, T> {
             upper,
             ..
         } = open;
-        // Nobody else has claimed it, so nobody else has set it.
+        // Only this thread has claimed it, so it is not set yet.
         let _ = self.done[index].set(Done {
             lower: values,
             upper,
         });
     }
 
-    /// A supernode, once the thread that claimed it is done. None if it never will be.
+    /// Waits for a supernode to be finished. Returns `None` if it never will be.
     #[inline(always)]
     pub(super) fn wait(&self, index: usize) -> Option<&Done<'a, T>> {
         match self.done[index].get() {
@@ -135,11 +137,11 @@ impl<'a, T> Elimination<'a, T> {
     }
 }
 
-/// While it lives, a panic of this thread tells the others not to wait.
+/// A guard: if the thread panics while it exists, the other threads stop waiting.
 pub(super) struct Watch<'e>(&'e AtomicBool);
 
 impl<T> Elimination<'_, T> {
-    /// Watches over a thread that claims supernodes.
+    /// Returns a guard for a thread that claims supernodes.
     pub(super) fn watch(&self) -> Watch<'_> {
         Watch(&self.abandoned)
     }
@@ -159,14 +161,15 @@ impl<T> Default for Spare<T> {
     }
 }
 
-/// A copy has memory of its own.
+/// A clone starts with empty memory.
 impl<T> Clone for Spare<T> {
     fn clone(&self) -> Self {
         Spare::default()
     }
 }
 
-/// The memory of a vector for elements that differ in nothing but how long they live: no element is left, and none is made.
+/// Empties a vector and reuses its memory for elements that differ only in their lifetime. No element remains and none
+/// is created.
 fn emptied<'b, T>(mut done: Vec<OnceLock<Done<'_, T>>>) -> Vec<OnceLock<Done<'b, T>>> {
     done.clear();
     done.into_iter().map(|_| OnceLock::new()).collect()

@@ -1,9 +1,10 @@
-//! The factorization H = LᵀDL of what a [`SparsePattern`] stores.
+//! The factorization H = LᵀDL over a [`SparsePattern`].
 //!
-//! A supernode's rows are done once what the rows below take off them, `A_ij −= L_ki U_kj` with U = D L, is subtracted, in tiles that stay in
-//! registers, and their own block is factored. (This is the left-looking form: Davis, *Direct Methods for Sparse Linear Systems*, 2006, §4.8.)
-//! Every entry is changed by the rows below in the same order as over a [`Tree`](crate::Tree), from the last to the first, and by each alone,
-//! **so that both give the same bits**, and so do any number of threads, which share the supernodes ([`Elimination`]).
+//! To factor a supernode, the contributions of the rows below, `A_ij −= L_ki U_kj` with U = D L, are subtracted in
+//! tiles that stay in registers; then its own block is factored. (This is the left-looking form: Davis, *Direct Methods
+//! for Sparse Linear Systems*, 2006, §4.8.) Every entry is changed by one row below at a time, in the same order as
+//! over a [`Tree`](crate::Tree), from the last to the first. **So both give the same bits**, with any number of
+//! threads, which share the supernodes ([`Elimination`]).
 
 use super::elimination::{Elimination, Open, Spare};
 use super::pattern::{MAX_DOFS, SparsePattern, Supernode};
@@ -11,23 +12,23 @@ use super::tiles::{NARROW, Rows, Tiles};
 use crate::Threads;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
-/// The matrix, and in its place the factor.
+/// The matrix, replaced by its factor.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SparseFactor<T: 'static> {
     /// The blocks of the supernodes, row by row: of the matrix, then of L.
     pub(super) values: Vec<T>,
-    /// The same of U, as of the factorization: updates leave it alone.
+    /// The blocks of U as of the factorization; updates do not change them.
     upper: Vec<T>,
     /// The diagonal of the matrix, then D; 1 / D.
     diagonal: Vec<T>,
     pub(super) inverse: Vec<T>,
-    /// Of a solve, the numbers in a supernode's columns.
+    /// The entries of x in a supernode's columns, during a solve.
     pub(super) gathered: Vec<T>,
     spare: Spare<T>,
 }
 
 impl<T: Real> SparseFactor<T> {
-    /// Makes room for a matrix over `pattern`.
+    /// Resizes the memory for a matrix over `pattern`.
     pub(crate) fn resize(&mut self, pattern: &SparsePattern) {
         for v in [&mut self.values, &mut self.upper] {
             v.resize(pattern.nnz(), T::ZERO);
@@ -37,12 +38,12 @@ impl<T: Real> SparseFactor<T> {
         }
     }
 
-    /// The matrix, to be written before it is factored.
+    /// Returns the values of the matrix, to be written before factoring.
     pub(crate) fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
 
-    /// Factors the matrix; a pivot that rounding has consumed is replaced by the diagonal it came from.
+    /// Factors the matrix. A pivot lost to rounding is replaced by the original diagonal entry.
     pub(crate) fn factor_safely(&mut self, pattern: &SparsePattern, threads: &Threads) {
         let (memory, spare) = (
             [
@@ -54,7 +55,7 @@ impl<T: Real> SparseFactor<T> {
             &mut self.spare,
         );
         Elimination::run(pattern, memory, spare, |elimination| {
-            // Its tiles have columns enough to fill registers with, even of a single environment.
+            // Tiles have enough columns to fill registers, even in a single environment.
             threads.on_each(|| {
                 T::vectorize_rows(
                     #[inline(always)]
@@ -64,8 +65,9 @@ impl<T: Real> SparseFactor<T> {
         });
     }
 
-    /// Turns the factor of A into that of A + σ x xᵀ, where the last dof with a number in x (by dof) is `last`; x is zero afterwards. False in lanes
-    /// where the change consumes a pivot. See [`TreeFactor::update`](crate::TreeFactor).
+    /// Updates the factor of A to that of A + σ x xᵀ. `last` is the last dof with a nonzero entry in x, which is
+    /// indexed by dof and zero afterwards. Returns false in lanes in which the change consumes a pivot. See
+    /// [`TreeFactor::update`](crate::TreeFactor).
     #[kernel]
     pub fn update(
         &mut self,
@@ -108,7 +110,7 @@ impl<T: Real> SparseFactor<T> {
         good
     }
 
-    /// Takes the lanes of `mask` from `other`, a factor over the same pattern.
+    /// Copies the lanes of `mask` from `other`, a factor over the same pattern.
     #[kernel]
     pub fn take(&mut self, mask: T::Mask, other: &SparseFactor<T>) {
         for (to, from) in [
@@ -123,7 +125,7 @@ impl<T: Real> SparseFactor<T> {
     }
 }
 
-/// Factors supernodes until none is left that another thread does not have in hand.
+/// Factors supernodes until all are claimed.
 #[inline(always)]
 fn eliminate<T: Real>(pattern: &SparsePattern, elimination: &Elimination<T>) {
     let _watch = elimination.watch();
@@ -156,13 +158,14 @@ fn eliminate<T: Real>(pattern: &SparsePattern, elimination: &Elimination<T>) {
     }
 }
 
-/// Turns the rows of a supernode, from which all rows below are taken off, into those of L, and leaves those of U beside them.
+/// Replaces the rows of a supernode, from which all rows below are subtracted, by those of L, and copies those of U to
+/// `open.upper`.
 #[inline(always)]
 fn factor_block<T: Real>(s: &Supernode, open: &mut Open<T>) {
     let (width, shared) = (s.width(), s.shared());
     let floor = T::splat(T::Scalar::EPSILON);
     let block = &mut *open.values;
-    // What row k takes off row m is this times row k. First in the columns of the supernode itself, which give the pivots.
+    // Row k times this is subtracted from row m. First in the supernode's own columns, which give the pivots.
     let mut multipliers = [[T::ZERO; MAX_DOFS]; MAX_DOFS];
     for m in (0..s.len).rev() {
         let (above, below) = block.split_at_mut((m + 1) * width);
@@ -180,7 +183,7 @@ fn factor_block<T: Real>(s: &Supernode, open: &mut Open<T>) {
         open.diagonal[m] = pivot;
         open.inverse[m] = T::ONE / pivot;
     }
-    // Then in the columns left of them.
+    // Then in the columns to the left.
     let mut column = 0;
     while column < shared {
         column += match shared - column {
@@ -197,7 +200,7 @@ fn factor_block<T: Real>(s: &Supernode, open: &mut Open<T>) {
     }
 }
 
-/// Subtracts from each row of a block, the last first, multiples of the rows after it, in N columns; returns their number.
+/// Subtracts from each row of a block, last to first, multiples of the rows after it, in N columns. Returns N.
 #[inline(always)]
 fn subtract_multiples<T: Real, const N: usize>(
     block: &mut [T],

@@ -1,10 +1,12 @@
-//! Symmetric matrices of which only what the factorization fills is stored, and that factorization.
+//! Symmetric matrices that store only the entries filled by the factorization, and that factorization.
 //!
-//! The pattern of a [`Tree`](crate::Tree) stores whole paths to a root. Among many coupled trees, as in a heap of bodies, a path of the
-//! elimination tree leads past most of them, while few of its entries are ever filled. Here the entries of a row are those that
-//! elimination fills, and rows that fill alike form a supernode: a dense block, at which the arithmetic runs.
+//! The pattern of a [`Tree`](crate::Tree) stores whole paths to a root. With many coupled trees, as in a heap of
+//! bodies, a path of the elimination tree passes through most of them, while few of its entries are ever filled. Here a
+//! row stores only the entries that elimination fills. Rows that fill equally form a supernode: a dense block, on which
+//! the arithmetic runs.
 //!
-//! Here live the analysis of a pattern ([`SparsePattern`]) and its numbers ([`SparseFactor`]); nothing of costs or constraints.
+//! This module contains the analysis of a pattern ([`SparsePattern`]) and its numbers ([`SparseFactor`]). It does not
+//! depend on costs or constraints.
 
 mod elimination;
 mod factor;

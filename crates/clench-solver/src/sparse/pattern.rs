@@ -1,9 +1,10 @@
-//! Which entries elimination fills: the symbolic analysis.
+//! The symbolic analysis: the entries that elimination fills.
 //!
-//! Rows are eliminated from the last to the first. What row i has left of its diagonal when its turn comes is what the matrix has
-//! there and what the rows have that were eliminated before and whose own last entry was in column i (its children in the elimination
-//! tree). A row with the same entries as the one after it, but for that one's own column, joins its supernode. (George & Liu,
-//! *Computer Solution of Large Sparse Positive Definite Systems*, 1981; Davis, *Direct Methods for Sparse Linear Systems*, 2006, §4.)
+//! Rows are eliminated from the last to the first. Left of its diagonal, row i holds the entries of the matrix and
+//! those of its children in the elimination tree: the rows eliminated before whose last entry is in column i. A row
+//! with the same entries as the next row, except for that row's own column, joins its supernode. (George & Liu,
+//! *Computer Solution of Large Sparse Positive Definite Systems*, 1981; Davis, *Direct Methods for Sparse Linear
+//! Systems*, 2006, §4.)
 
 use crate::Tree;
 use crate::minimum_degree::merge;
@@ -13,77 +14,78 @@ use std::ops::Range;
 /// The filled pattern of a symmetric matrix, in supernodes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SparsePattern {
-    /// In the order of elimination: those of the last dofs come first.
+    /// The supernodes in the order of elimination: those of the last dofs come first.
     supernodes: Vec<Supernode>,
     /// The supernode of each dof.
     supernode_of: Vec<u32>,
-    /// The columns that supernodes have left of their own, ascending, and the runs in which they follow each other.
+    /// The columns to the left of each supernode's own, ascending, and the runs of consecutive columns.
     columns: Vec<u32>,
     runs: Vec<Run>,
-    /// What each supernode has taken off by those eliminated before it.
+    /// The updates of each supernode by earlier ones.
     updates: Vec<Update>,
     nnz: usize,
     scratch: Scratch,
 }
 
-/// Consecutive dofs whose rows share their columns. Row m of a supernode has its `columns` and those of its first m + 1 dofs; all of its rows
-/// are stored with the same length, so that it is one dense block.
+/// Consecutive dofs whose rows share their columns. Row m of a supernode has its `columns` and those of its first m + 1
+/// dofs. All its rows are stored with the same length, as one dense block.
 #[derive(Clone, Debug)]
 pub(crate) struct Supernode {
     pub first: usize,
-    /// How many dofs: 1 to [`MAX_DOFS`].
+    /// The number of dofs: 1 to [`MAX_DOFS`].
     pub len: usize,
     columns: Range<usize>,
     runs: Range<usize>,
     updates: Range<usize>,
-    /// Where its block starts among the values.
+    /// The start of its block in the values.
     pub start: usize,
 }
 
 impl Supernode {
-    /// How many columns are left of its own.
+    /// Returns the number of columns to the left of its own.
     #[inline(always)]
     pub(crate) fn shared(&self) -> usize {
         self.columns.len()
     }
-    /// The stored length of its rows.
+    /// Returns the stored length of its rows.
     #[inline(always)]
     pub(crate) fn width(&self) -> usize {
         self.shared() + self.len
     }
-    /// Where its block lies among the values.
+    /// Returns the range of its block in the values.
     #[inline(always)]
     pub(crate) fn block(&self) -> Range<usize> {
         self.start..self.start + self.len * self.width()
     }
 }
 
-/// Consecutive dofs among the columns of a supernode. They are neighbours in every row that has them.
+/// Consecutive dofs in the columns of a supernode. They are adjacent in every row that has them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     pub dof: u32,
-    /// The place of the first among the columns.
+    /// The index of the first in the columns.
     pub place: u32,
     pub len: u32,
 }
 
-/// What a supernode takes off a later one.
+/// The update of a later supernode by an earlier one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Update {
     /// The earlier supernode.
     pub source: u32,
-    /// The place among its columns of the first that is a row of the later one, and how many are.
+    /// The index in its columns of the first that is a row of the later one, and their number.
     pub place: u32,
     pub count: u32,
 }
 
-/// Longer supernodes are cut: a factor of more rows gains little from being one block.
+/// The maximum number of dofs. Longer supernodes are split: larger blocks gain little.
 pub(super) const MAX_DOFS: usize = 12;
 
-/// Memory of an analysis.
+/// Scratch memory of an analysis.
 #[derive(Clone, Debug, Default)]
 struct Scratch {
-    /// The couplings whose last dof is this one, as places in their list; the supernodes whose last column it is.
+    /// For each dof: the couplings whose last dof it is, as offsets into their list; the supernodes whose last column
+    /// it is.
     couplings: Lists,
     children: Lists,
     /// The row for which each column was found last.
@@ -93,7 +95,7 @@ struct Scratch {
     has_child: Vec<bool>,
 }
 
-/// Lists are counted before they are written one after the other.
+/// The two passes over a list: counting, then writing.
 #[derive(Clone, Copy, PartialEq)]
 enum Pass {
     Count,
@@ -101,7 +103,7 @@ enum Pass {
 }
 
 impl SparsePattern {
-    /// Analyses the pattern of M over `tree` with `couplings` (each a count, then ascending dofs) coupled as well. False where it
+    /// Analyses the pattern of M over `tree` with `couplings` (each a count, then ascending dofs). Returns false if it
     /// would have more than `most` entries.
     pub(crate) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
         let nv = tree.nv();
@@ -147,7 +149,7 @@ impl SparsePattern {
         fits
     }
 
-    /// Lists what each supernode has taken off, in the order of elimination.
+    /// Lists the updates of each supernode, in the order of elimination.
     fn list_updates(&mut self) {
         let mut count = 0;
         for pass in [Pass::Count, Pass::Write] {
@@ -196,7 +198,7 @@ impl SparsePattern {
         } = &mut self.scratch;
         let row = dof as u32;
         union.clear();
-        // The columns of the matrix. A row of M that has a child gets its columns from there.
+        // The columns of the matrix. A row of M that has a child gets its columns from the child.
         if !has_child[dof] {
             union.extend(tree.row(dof).iter().filter(|&&column| column < row));
             (union.iter()).for_each(|&column| found[column as usize] = row);
@@ -214,7 +216,7 @@ impl SparsePattern {
         if union.len() > own {
             union.sort_unstable();
         }
-        // The columns of the rows that were eliminated before, but for this row's own.
+        // The columns of the rows eliminated before, except this row's own.
         for child in children.iter(row).chain(open) {
             let columns = &self.columns[self.supernodes[child as usize].columns.clone()];
             let columns = &columns[..columns.len() - 1];
@@ -227,14 +229,14 @@ impl SparsePattern {
         }
     }
 
-    /// The supernode begun last, if its last column is `dof`.
+    /// Returns the open supernode if its last column is `dof`.
     fn open_child(&self, dof: usize) -> Option<u32> {
         let open = self.supernodes.last()?;
         let is_last = self.columns[open.columns.clone()].last() == Some(&(dof as u32));
         is_last.then_some(self.supernodes.len() as u32 - 1)
     }
 
-    /// Completes the supernode begun last. False where there are more than `most` entries by now.
+    /// Completes the open supernode. Returns false if there are now more than `most` entries.
     fn close(&mut self, most: usize) -> bool {
         let Some(last) = self.supernodes.last_mut() else {
             return true;
@@ -259,41 +261,41 @@ impl SparsePattern {
         self.nnz <= most
     }
 
-    /// Number of stored values.
+    /// Returns the number of stored values.
     pub(crate) fn nnz(&self) -> usize {
         self.nnz
     }
-    /// Number of dofs.
+    /// Returns the number of dofs.
     pub(crate) fn nv(&self) -> usize {
         self.supernode_of.len()
     }
-    /// In the order of elimination.
+    /// Returns the supernodes in the order of elimination.
     #[inline(always)]
     pub(crate) fn supernodes(&self) -> &[Supernode] {
         &self.supernodes
     }
-    /// The supernode of a dof.
+    /// Returns the supernode of a dof.
     #[inline(always)]
     pub(crate) fn supernode_of(&self, dof: usize) -> &Supernode {
         &self.supernodes[self.supernode_of[dof] as usize]
     }
-    /// The columns left of a supernode's own, ascending.
+    /// Returns the columns to the left of a supernode's own, ascending.
     #[inline(always)]
     pub(crate) fn columns(&self, supernode: &Supernode) -> &[u32] {
         &self.columns[supernode.columns.clone()]
     }
-    /// The same in runs.
+    /// Returns the same columns as runs.
     #[inline(always)]
     pub(crate) fn runs(&self, supernode: &Supernode) -> &[Run] {
         &self.runs[supernode.runs.clone()]
     }
-    /// What a supernode has taken off by earlier ones, in the order of elimination.
+    /// Returns the updates of a supernode by earlier ones, in the order of elimination.
     #[inline(always)]
     pub(crate) fn updates(&self, supernode: &Supernode) -> &[Update] {
         &self.updates[supernode.updates.clone()]
     }
 
-    /// The place in its supernode's rows of a column that they have.
+    /// Returns the index of a column in the rows of its supernode.
     #[inline(always)]
     pub(super) fn place(&self, supernode: &Supernode, column: usize) -> usize {
         if column >= supernode.first {
@@ -304,13 +306,13 @@ impl SparsePattern {
         run.place as usize + column - run.dof as usize
     }
 
-    /// Multiplications of a factorization, about.
+    /// Returns the approximate number of multiplications of a factorization.
     pub(crate) fn cost(&self) -> f64 {
         let of = |s: &Supernode| s.len as f64 * (s.width() as f64).powi(2) / 2.0;
         self.supernodes.iter().map(of).sum()
     }
 
-    /// The operations of a factorization that stores the paths of the elimination tree whole.
+    /// Returns the same number for storage of whole elimination-tree paths.
     pub(crate) fn cost_of_paths(&mut self) -> f64 {
         let depths = &mut self.scratch.found;
         let mut cost = 0.0;

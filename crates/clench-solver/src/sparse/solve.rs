@@ -1,11 +1,11 @@
-//! Solving with the factor, supernode by supernode.
+//! Solves with the factor, supernode by supernode.
 
 use super::factor::SparseFactor;
 use super::pattern::{SparsePattern, Supernode};
 use clench_math::{Real, array, kernel};
 
 impl<T: Real> SparseFactor<T> {
-    /// `x ← A⁻¹ x`.
+    /// Computes `x ← A⁻¹ x`.
     #[kernel]
     pub fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
         for s in pattern.supernodes() {
@@ -19,7 +19,7 @@ impl<T: Real> SparseFactor<T> {
         }
     }
 
-    /// What the rows of a supernode, of which the rows below are taken off, do to the rows above.
+    /// Subtracts the contributions of a supernode's rows, of which the rows below are done, from the rows above.
     #[inline(always)]
     fn solve_transposed(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
         let (width, shared) = (s.width(), s.shared());
@@ -41,13 +41,13 @@ impl<T: Real> SparseFactor<T> {
         }
     }
 
-    /// `x ← L⁻¹ x` in the rows of a supernode, of which the rows above are done.
+    /// Computes `x ← L⁻¹ x` in the rows of a supernode, once the rows above are done.
     #[inline(always)]
     fn solve_rows(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
         let (width, shared) = (s.width(), s.shared());
         self.gather(pattern.columns(s), x);
         let block = &self.values[s.block()];
-        // Several sums run side by side: each waits for itself.
+        // Several sums run in parallel, since each depends on its own last term.
         let mut m = 0;
         while m < s.len {
             let count = if s.len - m >= SUMS { SUMS } else { 1 };
@@ -76,10 +76,10 @@ impl<T: Real> SparseFactor<T> {
     }
 }
 
-/// Sums that run side by side in a solve.
+/// The number of sums that run in parallel in a solve.
 const SUMS: usize = 6;
 
-/// `own −= rows · x` for N rows.
+/// Computes `own −= rows · x` for N rows.
 #[inline(always)]
 fn subtract_products<T: Real, const N: usize>(own: &mut [T], rows: &[T], width: usize, x: &[T]) {
     let mut sums: [T; N] = array(|m| own[m]);

@@ -20,7 +20,7 @@ impl Rng {
     }
 }
 
-/// A forest of chains and branches, and couplings between any of its dofs.
+/// Creates a forest of chains and branches, and couplings between any of its dofs.
 fn random_scene(rng: &mut Rng, nv: usize, couplings: usize) -> (Tree, Vec<u32>) {
     let parents = Vec::from_iter((0..nv).map(|i| match rng.unit() {
         x if i == 0 || x < 0.2 => None,
@@ -38,7 +38,7 @@ fn random_scene(rng: &mut Rng, nv: usize, couplings: usize) -> (Tree, Vec<u32>) 
     (tree, list)
 }
 
-/// The couplings as lists of dofs.
+/// Calls `act` with the dofs of each coupling.
 fn each(mut couplings: &[u32], mut act: impl FnMut(&[u32])) {
     while let Some((&count, rest)) = couplings.split_first() {
         let (dofs, rest) = rest.split_at(count as usize);
@@ -64,7 +64,7 @@ fn add(
     });
 }
 
-/// M + Σ w jᵀj with random numbers, in a pattern.
+/// Writes M + Σ w jᵀj with random numbers into a pattern.
 fn fill(rng: &mut Rng, scene: &(Tree, Vec<u32>), pattern: &impl Pattern, values: &mut [f64]) {
     let (tree, couplings) = scene;
     for dof in 0..tree.nv() {

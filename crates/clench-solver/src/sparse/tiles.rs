@@ -1,20 +1,20 @@
-//! What a supernode that is done takes off the rows of one above it, in tiles that stay in registers.
+//! Subtracts the contributions of a finished supernode from rows of one above it, in tiles that stay in registers.
 
 use super::pattern::{Run, Supernode};
 use clench_math::{Real, array};
 
-/// Columns of a tile: those of a free body, and of two.
+/// The number of columns of a tile: those of one free body, and of two.
 pub(super) const NARROW: usize = 6;
 const WIDE: usize = 12;
 
-/// A supernode that is done, and one above it.
+/// A finished supernode, and one above it.
 pub(super) struct Tiles<'a, T> {
-    /// L and U of the former, how many rows they have, and the length of these.
+    /// L and U of the finished supernode, the number of its rows and their length.
     pub lower: &'a [T],
     pub upper: &'a [T],
     pub len: usize,
     pub width: usize,
-    /// The block of the latter.
+    /// The block of the supernode above.
     pub above: &'a mut [T],
     pub target: &'a Supernode,
 }
@@ -22,13 +22,13 @@ pub(super) struct Tiles<'a, T> {
 /// Rows of the supernode above.
 pub(super) struct Rows<'a> {
     pub dofs: &'a [u32],
-    /// The place of the first among the columns of the supernode that is done.
+    /// The index of the first in the columns of the finished supernode.
     pub place: usize,
 }
 
 impl<T: Real> Tiles<'_, T> {
-    /// Subtracts from some rows, up to their diagonal, what the supernode takes off. Right of the diagonal, where nothing is stored, the block
-    /// takes numbers that nobody reads.
+    /// Subtracts the contributions of the finished supernode from some rows, up to their diagonal. To the right of the
+    /// diagonal nothing is stored; values written there are never read.
     #[inline(always)]
     pub(super) fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
         let last = rows.place + rows.dofs.len();
@@ -53,14 +53,14 @@ impl<T: Real> Tiles<'_, T> {
         }
     }
 
-    /// The same for `len` columns from `place` on, which are those from `to` on in the rows of the target.
+    /// Does the same for `len` columns from `place` on, which start at `to` in the rows of the target.
     #[inline(always)]
     fn subtract_run(&mut self, rows: &Rows, place: usize, len: usize, to: usize) {
         let mut column = 0;
         while column < len {
             let (from, to) = (place + column, to + column);
             column += match len - column {
-                // As many as fit into registers: of scalars more than of lanes.
+                // As many columns as fit into registers: more for scalars than for lanes.
                 WIDE.. if T::LANES == 1 => self.subtract_columns::<WIDE>(rows, from, to),
                 NARROW.. => self.subtract_columns::<NARROW>(rows, from, to),
                 2.. => self.subtract_columns::<2>(rows, from, to),
@@ -69,7 +69,7 @@ impl<T: Real> Tiles<'_, T> {
         }
     }
 
-    /// The same for N columns; returns their number.
+    /// Does the same for N columns; returns N.
     #[inline(always)]
     fn subtract_columns<const N: usize>(&mut self, rows: &Rows, from: usize, to: usize) -> usize {
         let mut row = 0;
@@ -84,7 +84,7 @@ impl<T: Real> Tiles<'_, T> {
         N
     }
 
-    /// R rows by N columns.
+    /// Does the same for R rows and N columns.
     #[inline(always)]
     fn subtract_tile<const R: usize, const N: usize>(
         &mut self,

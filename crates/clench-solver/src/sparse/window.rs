@@ -1,4 +1,4 @@
-//! Some rows of a [`SparsePattern`], so that threads can write a matrix side by side.
+//! A subset of the rows of a [`SparsePattern`], so that threads can write a matrix in parallel.
 
 use super::pattern::{SparsePattern, Supernode};
 use crate::jacobian::{Part, Pattern};
@@ -6,24 +6,24 @@ use crate::{Tree, TreeMatrix};
 use clench_math::{Real, kernel};
 use std::ops::Range;
 
-/// Consecutive supernodes, whose values lie in one piece.
+/// Consecutive supernodes, whose values are contiguous.
 #[derive(Clone)]
 pub(crate) struct Window<'a> {
     pattern: &'a SparsePattern,
     supernodes: Range<usize>,
-    /// Their dofs: rows are eliminated from the last to the first.
+    /// The dofs; rows are eliminated from the last to the first.
     dofs: Range<u32>,
-    /// Where their values begin among all.
+    /// The offset of their values in those of the pattern.
     offset: usize,
 }
 
 impl<'a> Window<'a> {
-    /// All rows of a pattern.
+    /// Returns a window of all rows of a pattern.
     pub(crate) fn whole(pattern: &'a SparsePattern) -> Self {
         Window::new(pattern, 0..pattern.supernodes().len())
     }
 
-    /// Some supernodes of a pattern.
+    /// Returns a window of some supernodes of a pattern.
     fn new(pattern: &'a SparsePattern, supernodes: Range<usize>) -> Self {
         let dofs = match &pattern.supernodes()[supernodes.clone()] {
             [] => 0..0,
@@ -39,7 +39,7 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// Two windows, the first of `part` of `whole` equal parts of the supernodes.
+    /// Splits the window in two, the first with `part` of `whole` equal parts of the supernodes.
     pub(crate) fn split(self, part: usize, whole: usize) -> (Self, Self) {
         let Range { start, end } = self.supernodes;
         let middle = start + (end - start) * part / whole;
@@ -47,13 +47,13 @@ impl<'a> Window<'a> {
         (of(start..middle), of(middle..end))
     }
 
-    /// Number of stored values.
+    /// Returns the number of stored values.
     pub(crate) fn len(&self) -> usize {
         let blocks = self.pattern.supernodes()[self.supernodes.clone()].iter();
         blocks.map(|s| s.block().len()).sum()
     }
 
-    /// `values` becomes a matrix over `tree`, whose entries the pattern holds.
+    /// Writes into `values` a matrix over `tree`, whose entries the pattern contains.
     #[kernel]
     pub fn set_matrix<T: Real>(&self, tree: &Tree, matrix: &TreeMatrix<T>, values: &mut [T]) {
         values.fill(T::ZERO);
@@ -70,7 +70,7 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// The supernode of a row, and where the row starts.
+    /// Returns the supernode of a row, and the start of the row.
     #[inline(always)]
     fn row(&self, dof: u32) -> (&'a Supernode, usize) {
         let s = self.pattern.supernode_of(dof as usize);
@@ -79,7 +79,7 @@ impl<'a> Window<'a> {
     }
 }
 
-/// How many of the first dofs follow each other.
+/// Returns the length of the leading run of consecutive dofs.
 #[inline(always)]
 fn run_length(dofs: &[u32]) -> usize {
     1 + dofs
@@ -94,7 +94,7 @@ impl Pattern for Window<'_> {
         let (Some(first), Some(&last)) = (dofs.first(), dofs.last()) else {
             return false;
         };
-        // Most blocks are told by their ends.
+        // The first and last dof decide most blocks.
         last >= self.dofs.start
             && *first < self.dofs.end
             && (self.dofs.contains(&last) || dofs.iter().any(|dof| self.dofs.contains(dof)))
@@ -114,7 +114,7 @@ impl Pattern for Window<'_> {
                     let own = column == row;
                     let end = match own {
                         true => rows.end,
-                        // Columns that follow each other are neighbours.
+                        // Consecutive columns are adjacent.
                         false => column + run_length(&dofs[column..row]),
                     };
                     act(&Part {

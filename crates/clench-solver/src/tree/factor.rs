@@ -1,8 +1,8 @@
 //! The factorization LᵀDL in the pattern of a tree.
 //!
-//! With U = D L, row i is `U_i = A_i − Σ_k L_ki U_k` over the descendants k of i, of whose rows it takes the beginning. A few
-//! rows and columns at a time stay in registers while the sum runs. Every entry sums in the same order, from the last
-//! descendant to the first, and an entry that is zero contributes an exact zero, **so that a larger pattern gives the same
+//! With U = D L, row i is `U_i = A_i − Σ_k L_ki U_k` over the descendants k of i, of whose rows it uses the prefix. A
+//! few rows and columns at a time stay in registers while the sum runs. Every entry sums in the same order, from the
+//! last descendant to the first, and a zero entry contributes an exact zero, **so a larger pattern gives the same
 //! bits**.
 
 use super::{Tree, TreeMatrix, TreeSupernode, with_len};
@@ -10,13 +10,13 @@ use crate::runs::runs;
 use crate::transfer::Transfer;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
-/// Columns summed at a time.
+/// The number of columns summed at a time.
 const WIDTH: usize = 4;
 
 /// The factorization A = LᵀDL of a [`TreeMatrix`], L unit lower triangular in the same pattern.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeFactor<T> {
-    /// L, row by row; its diagonal of ones is not stored but left as it comes.
+    /// L, row by row; its unit diagonal is not stored, and those entries are undefined.
     lower: Vec<T>,
     /// U = D L, needed only while factoring.
     scaled: Vec<T>,
@@ -26,19 +26,19 @@ pub struct TreeFactor<T> {
 }
 
 impl<T: Real> TreeFactor<T> {
-    /// An empty factor, to be filled by [`factor`](Self::factor).
+    /// Creates an empty factor, to be filled by [`factor`](Self::factor).
     pub fn zeros(tree: &Tree) -> Self {
         let mut factor = TreeFactor::default();
         factor.resize(tree);
         factor
     }
 
-    /// Whether it is a factor of nothing.
+    /// Returns true if the factor has no dofs.
     pub fn is_empty(&self) -> bool {
         self.diagonal.is_empty()
     }
 
-    /// Becomes a factor of nothing, and keeps its memory.
+    /// Empties the factor but keeps its memory.
     pub fn clear(&mut self) {
         self.lower.clear();
         self.scaled.clear();
@@ -46,7 +46,7 @@ impl<T: Real> TreeFactor<T> {
         self.inverse.clear();
     }
 
-    /// Becomes the same as another, in the memory that it has.
+    /// Copies another factor into the existing memory.
     pub fn copy_from(&mut self, other: &TreeFactor<T>) {
         self.lower.clone_from(&other.lower);
         self.diagonal.clone_from(&other.diagonal);
@@ -61,18 +61,18 @@ impl<T: Real> TreeFactor<T> {
         self.inverse.resize(tree.nv(), T::ZERO);
     }
 
-    /// Factors `matrix`. False in lanes that met a pivot that is not positive: their factor is not usable.
+    /// Factors `matrix`. Returns false in lanes with a pivot that is not positive: their factor is not usable.
     pub fn factor(&mut self, tree: &Tree, matrix: &TreeMatrix<T>) -> T::Mask {
         self.factor_above(tree, matrix, T::ZERO)
     }
 
-    /// Factors `matrix`; a pivot that rounding has consumed is replaced by the diagonal it came
-    /// from, so that what is solved with it stays finite and a direction of descent.
+    /// Factors `matrix`. A pivot lost to rounding is replaced by the original diagonal entry, so that solutions stay
+    /// finite and directions of descent.
     pub(crate) fn factor_safely(&mut self, tree: &Tree, matrix: &TreeMatrix<T>) {
         self.factor_above(tree, matrix, T::splat(T::Scalar::EPSILON));
     }
 
-    /// Factors; pivots below `floor` times the diagonal are replaced by the diagonal.
+    /// Factors `matrix`; pivots below `floor` times the diagonal are replaced by the diagonal.
     #[kernel]
     fn factor_above(&mut self, tree: &Tree, matrix: &TreeMatrix<T>, floor: T) -> T::Mask {
         self.resize(tree);
@@ -84,7 +84,7 @@ impl<T: Real> TreeFactor<T> {
         positive
     }
 
-    /// Computes the rows of a supernode, of whose descendants it is done.
+    /// Computes the rows of a supernode whose descendants are done.
     #[inline(always)]
     fn factor_supernode<const LEN: usize>(
         &mut self,
@@ -106,7 +106,7 @@ impl<T: Real> TreeFactor<T> {
         };
         let rows: [&[T]; LEN] = tree.supernode_rows(&matrix.values, first);
 
-        // What the rows of the supernode have in the columns of the supernode: pivots, and multipliers between its rows.
+        // The rows of the supernode in its own columns: pivots, and multipliers between its rows.
         let mut block = below.block(depth, &rows);
         let mut inverse = [T::ZERO; LEN];
         let mut positive = T::Mask::splat(true);
@@ -141,8 +141,8 @@ impl<T: Real> TreeFactor<T> {
         positive
     }
 
-    /// Writes row `i` of a factor whose pivot D_i is known, and D_i L_ij as a function of the ancestor j. False in lanes
-    /// whose pivot is not positive: their factor is not usable.
+    /// Writes row `i` of a factor from its pivot D_i, and D_i L_ij as a function of the ancestor j. Returns false in
+    /// lanes whose pivot is not positive: their factor is not usable.
     #[inline(always)]
     pub fn set_row(
         &mut self,
@@ -161,9 +161,9 @@ impl<T: Real> TreeFactor<T> {
         pivot.gt(T::ZERO) & pivot.is_finite()
     }
 
-    /// Turns the factor of A into that of A + σ x xᵀ, x given along the path to dof `last` and
-    /// overwritten. Where σ is zero nothing changes, to the bit. False in lanes where the change
-    /// consumes a pivot: their factor is not usable any more.
+    /// Updates the factor of A to that of A + σ x xᵀ, with x stored along the path to dof `last` and overwritten. If σ
+    /// is zero the factor stays the same to the bit. Returns false in lanes in which the change consumes a pivot: their
+    /// factor is no longer usable.
     ///
     /// Method C1 of Gill, Golub, Murray and Saunders (*Methods for modifying matrix
     /// factorizations*, 1974), from the last row to the first.
@@ -196,7 +196,7 @@ impl<T: Real> TreeFactor<T> {
         good
     }
 
-    /// Takes the lanes of `mask` from `other`, a factor over the same tree.
+    /// Copies the lanes of `mask` from `other`, a factor over the same tree.
     #[kernel]
     pub(crate) fn take(&mut self, mask: T::Mask, other: &TreeFactor<T>) {
         for (to, from) in [
@@ -210,7 +210,7 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// Becomes the part of `whole`, the factor over `tree`, that belongs to the complete trees of `dofs`.
+    /// Copies the part of `whole`, the factor over `tree`, that belongs to the complete trees of `dofs`.
     pub(crate) fn gather<L: Real>(
         &mut self,
         tree: &Tree,
@@ -233,7 +233,7 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// `x ← A⁻¹ x`.
+    /// Computes `x ← A⁻¹ x`.
     #[kernel]
     pub fn solve(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
@@ -245,7 +245,7 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// `x ← L⁻¹ x` in the rows of a supernode, of whose ancestors it is done.
+    /// Computes `x ← L⁻¹ x` in the rows of a supernode whose ancestors are done.
     #[inline(always)]
     fn solve_supernode<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
         let shared = &tree.row(first)[..tree.depth(first)];
@@ -265,7 +265,7 @@ impl<T: Real> TreeFactor<T> {
         x[first..first + LEN].copy_from_slice(&sums);
     }
 
-    /// `x ← D^(-1/2) L^(-T) x`: afterwards `x·y` is the product `xᵀA⁻¹y` of what was given.
+    /// Computes `x ← D^(-1/2) L^(-T) x`: afterwards `x·y` is the product `xᵀA⁻¹y` of the inputs.
     #[kernel]
     pub fn solve_half(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
@@ -274,8 +274,8 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// As [`solve_half`](Self::solve_half), to the bit, for an x that is zero but on the path to dof `last`: `x` holds what is on it,
-    /// in the order of `tree.row(last)`.
+    /// Computes the same as [`solve_half`](Self::solve_half), to the bit, for an x that is zero outside the path to dof
+    /// `last`. `x` holds the entries on the path, in the order of `tree.row(last)`.
     pub fn solve_half_along(&self, tree: &Tree, last: usize, x: &mut [T]) {
         let path = tree.row(last);
         for (place, &dof) in path.iter().enumerate().rev() {
@@ -290,7 +290,7 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// `x ← L^(-T) x`.
+    /// Computes `x ← L^(-T) x`.
     #[inline(always)]
     fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
         for &TreeSupernode { first, len } in tree.supernodes.iter().rev() {
@@ -298,7 +298,7 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// What the rows of a supernode, of whose descendants it is done, do to their ancestors.
+    /// Subtracts the contributions of the rows of a supernode, whose descendants are done, from their ancestors.
     #[inline(always)]
     fn solve_transposed_supernode<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
         let shared = &tree.row(first)[..tree.depth(first)];
@@ -320,18 +320,18 @@ impl<T: Real> TreeFactor<T> {
     }
 }
 
-/// The descendants of a supernode, whose rows are done.
+/// The finished descendants of a supernode.
 struct Below<'a, T> {
     /// L and U from the supernode's end on.
     lower: &'a [T],
     scaled: &'a [T],
-    /// Where the rows of the descendants start, from `offset` on.
+    /// The starts of the rows of the descendants, all from `offset` on.
     rows: &'a [u32],
     offset: usize,
 }
 
 impl<T: Real> Below<'_, T> {
-    /// `N` columns of the supernode's rows of A, from `column` on, less what the descendants take off.
+    /// Returns `N` columns of the supernode's rows of A, from `column` on, minus the contributions of the descendants.
     #[inline(always)]
     fn window<const LEN: usize, const N: usize>(
         &self,
@@ -346,9 +346,9 @@ impl<T: Real> Below<'_, T> {
         for &start in self.rows.iter().rev() {
             let start = start as usize - self.offset;
             debug_assert!(start + depth + LEN <= self.lower.len() && column + N <= depth);
-            // SAFETY: `start` is where the row of a descendant of the supernode starts, which holds more than
-            // `depth + LEN` entries: a tree is built so, and `lower` and `scaled` reach to its end.
-            // The checks were half of the instructions of this loop, the hottest of all.
+            // SAFETY: `start` is the start of the row of a descendant of the supernode, which by construction of the
+            // tree has more than `depth + LEN` entries, and `lower` and `scaled` extend to its end. The checks were
+            // half of the instructions of this loop, the hottest of all.
             unsafe {
                 for m in 0..LEN {
                     let multiplier = *self.lower.get_unchecked(start + depth + m);
@@ -361,7 +361,7 @@ impl<T: Real> Below<'_, T> {
         sums
     }
 
-    /// The same for the columns of the supernode itself, of which row m has the first m + 1.
+    /// Returns the same for the supernode's own columns, of which row m has the first m + 1.
     #[inline(always)]
     fn block<const LEN: usize>(&self, depth: usize, rows: &[&[T]; LEN]) -> [[T; LEN]; LEN] {
         let mut sums = [[T::ZERO; LEN]; LEN];
@@ -383,7 +383,7 @@ impl<T: Real> Below<'_, T> {
     }
 }
 
-/// Where the columns of a supernode's ancestors go, and what of its rows is known already.
+/// The output for the columns of a supernode's ancestors, and the finished part of its rows.
 struct Columns<'a, T, const LEN: usize> {
     depth: usize,
     starts: [usize; LEN],
@@ -394,7 +394,7 @@ struct Columns<'a, T, const LEN: usize> {
 }
 
 impl<T: Real, const LEN: usize> Columns<'_, T, LEN> {
-    /// Computes them all, a few at a time.
+    /// Computes all columns, a few at a time.
     #[inline(always)]
     fn fill(&mut self, below: &Below<T>, rows: &[&[T]; LEN]) {
         let depth = self.depth;
@@ -407,7 +407,7 @@ impl<T: Real, const LEN: usize> Columns<'_, T, LEN> {
                 for column in (0..=depth - WIDTH).step_by(WIDTH) {
                     self.write::<WIDTH>(column, below.window(depth, column, rows));
                 }
-                // The last columns, some perhaps once more.
+                // The last columns, some possibly computed twice.
                 if !depth.is_multiple_of(WIDTH) {
                     let column = depth - WIDTH;
                     self.write::<WIDTH>(column, below.window(depth, column, rows));
@@ -416,7 +416,7 @@ impl<T: Real, const LEN: usize> Columns<'_, T, LEN> {
         }
     }
 
-    /// Takes off what the supernode's later rows take off, and writes `N` columns from `column` on.
+    /// Subtracts the contributions of the supernode's later rows, and writes `N` columns from `column` on.
     #[inline(always)]
     fn write<const N: usize>(&mut self, column: usize, mut sums: [[T; N]; LEN]) {
         for m in (0..LEN).rev() {

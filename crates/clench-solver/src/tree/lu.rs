@@ -1,13 +1,14 @@
-//! A matrix that is not symmetric, in the symmetric pattern of a tree, and its factorization without fill.
+//! A nonsymmetric matrix in the symmetric pattern of a tree, and its factorization without fill.
 //!
-//! Eliminated from the last row to the first, as LᵀDL is, A = U L with U unit upper and L lower triangular: taking row k from
-//! the rows above it changes entries between ancestors of k alone, and those are in the pattern. There is no pivoting: a pivot
-//! is lost only where a principal minor vanishes, and A is a mass matrix with something small added.
+//! Elimination runs from the last row to the first, as for LᵀDL: A = U L with U unit upper and L lower triangular.
+//! Subtracting row k from the rows above changes only entries between ancestors of k, which are in the pattern. There
+//! is no pivoting: a pivot vanishes only if a principal minor does, and A is a mass matrix plus a small term.
 
 use super::Tree;
 use clench_math::{Mask, Real, kernel};
 
-/// A square matrix with the pattern of a [`Tree`] in both triangles; [`factor`](Self::factor) replaces it by its factors.
+/// A square matrix with the pattern of a [`Tree`] in both triangles; [`factor`](Self::factor) replaces it by its
+/// factors.
 #[derive(Clone, Debug, Default)]
 pub struct TreeLu<T> {
     /// Row i of the lower triangle: ancestors ascending, diagonal last.
@@ -17,7 +18,7 @@ pub struct TreeLu<T> {
 }
 
 impl<T: Real> TreeLu<T> {
-    /// The zero matrix.
+    /// Creates the zero matrix.
     pub fn zeros(tree: &Tree) -> Self {
         TreeLu {
             lower: vec![T::ZERO; tree.nnz()],
@@ -25,14 +26,14 @@ impl<T: Real> TreeLu<T> {
         }
     }
 
-    /// Row `i` of the lower triangle and column `i` of the upper one, to be written.
+    /// Returns row `i` of the lower triangle and column `i` of the upper one for writing.
     #[inline(always)]
     pub fn dof_mut<'a>(&'a mut self, tree: &Tree, i: usize) -> (&'a mut [T], &'a mut [T]) {
         let range = tree.starts[i]..tree.starts[i + 1];
         (&mut self.lower[range.clone()], &mut self.upper[range])
     }
 
-    /// `out = A x`, of the matrix before it is factored.
+    /// Computes `out = A x` with the matrix before it is factored.
     #[kernel]
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
         for k in 0..tree.nv() {
@@ -48,7 +49,7 @@ impl<T: Real> TreeLu<T> {
         }
     }
 
-    /// Replaces the matrix by its factors. False in lanes that met a pivot that is zero or not finite.
+    /// Replaces the matrix by its factors. Returns false in lanes with a pivot that is zero or not finite.
     #[kernel]
     pub fn factor(&mut self, tree: &Tree) -> T::Mask {
         let mut regular = T::Mask::splat(true);
@@ -60,7 +61,7 @@ impl<T: Real> TreeLu<T> {
             for (p, &i) in chain[..depth].iter().enumerate() {
                 let multiplier = self.upper[start + p] / pivot;
                 self.upper[start + p] = multiplier;
-                // The row of k lies behind those of its ancestors.
+                // The row of k is stored after those of its ancestors.
                 let (above, below) = self.lower.split_at_mut(start);
                 let row = &mut above[tree.starts[i as usize]..];
                 for (entry, &own) in row.iter_mut().zip(&below[..=p]) {

@@ -11,23 +11,23 @@ pub struct TreeMatrix<T> {
 }
 
 impl<T: Real> TreeMatrix<T> {
-    /// The zero matrix.
+    /// Creates the zero matrix.
     pub fn zeros(tree: &Tree) -> Self {
         TreeMatrix {
             values: vec![T::ZERO; tree.nnz()],
         }
     }
-    /// The stored values of row `i`.
+    /// Returns the stored values of row `i`.
     #[inline(always)]
     pub fn row<'a>(&'a self, tree: &Tree, i: usize) -> &'a [T] {
         &self.values[tree.starts[i]..tree.starts[i + 1]]
     }
-    /// The stored values of row `i`, to be written.
+    /// Returns the stored values of row `i` for writing.
     #[inline(always)]
     pub fn row_mut<'a>(&'a mut self, tree: &Tree, i: usize) -> &'a mut [T] {
         &mut self.values[tree.starts[i]..tree.starts[i + 1]]
     }
-    /// `out = A x`.
+    /// Computes `out = A x`.
     #[kernel]
     pub fn mul(&self, tree: &Tree, x: &[T], out: &mut [T]) {
         for &TreeSupernode { first, len } in &tree.supernodes {
@@ -57,7 +57,7 @@ impl<T: Real> TreeMatrix<T> {
         }
         out[first..first + LEN].copy_from_slice(&sums);
     }
-    /// All nv × nv entries, row-major.
+    /// Returns all nv × nv entries, row-major.
     pub fn to_dense(&self, tree: &Tree) -> Vec<T> {
         let nv = tree.nv();
         let mut dense = vec![T::ZERO; nv * nv];

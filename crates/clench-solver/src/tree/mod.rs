@@ -1,11 +1,11 @@
 //! The sparsity of a joint-space mass matrix, and its factorization without fill.
 //!
-//! Entry (i, j) of M is nonzero only where one degree of freedom is an ancestor of the other. Numbered from the root
-//! outwards (every parent before its children), the factorization M = LᵀDL, computed from the last row to the first,
-//! creates no entry outside this pattern (Featherstone, *Rigid Body Dynamics Algorithms*, §6.5).
+//! Entry (i, j) of M is nonzero only if one degree of freedom is an ancestor of the other. With every parent numbered
+//! before its children, the factorization M = LᵀDL, computed from the last row to the first, creates no entry outside
+//! this pattern (Featherstone, *Rigid Body Dynamics Algorithms*, §6.5).
 //!
-//! A row lists a path from a root, so the row of an ancestor is the beginning of the row of each of its descendants, and a
-//! column keeps its place in all of them. The kernels here live on that: they run over contiguous values, without indices.
+//! A row lists a path from a root. So the row of an ancestor is a prefix of the row of each of its descendants, and a
+//! column has the same index in all of them. The kernels use this: they run over contiguous values, without indices.
 
 mod factor;
 mod lu;
@@ -19,7 +19,7 @@ pub use lu::TreeLu;
 pub use matrix::TreeMatrix;
 use std::collections::HashMap;
 
-/// Which degrees of freedom (dofs) hang on which: the sparsity pattern of M.
+/// The sparsity pattern of M: the forest of degrees of freedom (dofs).
 ///
 /// Row `i` of the pattern lists the ancestors of dof `i` in ascending order and ends with `i` itself: the lower
 /// triangle of M in compressed rows.
@@ -32,25 +32,26 @@ pub struct Tree {
     ntree: usize,
     /// All dofs in supernodes, ascending.
     supernodes: Vec<TreeSupernode>,
-    /// For each dof, where the rows of its descendants start, in ascending order.
+    /// For each dof, the starts of the rows of its descendants, ascending.
     descendants: Vec<u32>,
     descendant_starts: Vec<usize>,
 }
 
-/// A few dofs of which each is the only child of the one before. Their rows share all columns but the last few, and what
-/// lies below the last lies below all of them, so that kernels run over several rows at once: a column is looked up once, and sums that would wait for themselves run side by side.
+/// A few dofs, each the only child of the one before. Their rows share all columns but the last few, and all have the
+/// same descendants after the last. So kernels process several rows at once: a column is looked up once, and dependent
+/// sums run in parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TreeSupernode {
-    /// The first dof; the others follow.
+    /// The first dof; the others follow it.
     pub first: usize,
-    /// How many there are: 1 to [`MAX_SUPERNODE`].
+    /// The number of dofs: 1 to [`MAX_SUPERNODE`].
     pub len: usize,
 }
 
-/// As many rows as fit into registers together with what they meet.
+/// The maximum number of dofs: as many rows as fit into registers together with their operands.
 pub(crate) const MAX_SUPERNODE: usize = 4;
 
-/// Runs an expression with the constant `$len` standing for the length of a supernode.
+/// Evaluates an expression with the constant `$len` set to the length of a supernode.
 macro_rules! with_len {
     ($value:expr, $len:ident => $body:expr) => {
         match $value {
@@ -76,17 +77,17 @@ macro_rules! with_len {
 pub(crate) use with_len;
 
 impl Tree {
-    /// A forest from the parent of each dof.
+    /// Creates a forest from the parent of each dof.
     ///
     /// # Errors
-    /// A parent that does not come before its child.
+    /// Returns an error if a parent does not precede its child.
     pub fn new(parents: &[Option<usize>]) -> Result<Tree, ProblemError> {
         let mut tree = Tree::default();
         tree.rebuild(parents.len(), |i| parents[i])?;
         Ok(tree)
     }
 
-    /// The full lower triangle: a chain of `n` dofs.
+    /// Creates the full lower triangle: a chain of `n` dofs.
     pub fn dense(n: usize) -> Tree {
         let mut tree = Tree::default();
         let chain = tree.rebuild(n, |i| i.checked_sub(1));
@@ -145,7 +146,7 @@ impl Tree {
         }
     }
 
-    /// The values of the rows of a supernode: row m has depth + m + 1.
+    /// Returns the values of the rows of a supernode; row m has depth + m + 1.
     #[inline(always)]
     pub(crate) fn supernode_rows<'a, T, const LEN: usize>(
         &self,
@@ -159,7 +160,8 @@ impl Tree {
         rows
     }
 
-    /// For each tree the first one of the same shape, whose dofs have the same parents, counted from the tree's own first dof.
+    /// Returns, for each tree, the first one of the same shape: its dofs have the same parents, relative to the tree's
+    /// first dof.
     pub(crate) fn alike(&self) -> Vec<u32> {
         let mut shapes: Vec<Vec<Option<u32>>> = vec![Vec::new(); self.ntree];
         let mut place = vec![0; self.nv()];
@@ -189,7 +191,7 @@ impl Tree {
         }
         self.descendants.clear();
         self.descendants.resize(self.descendant_starts[nv], 0);
-        // Filling each list from its end moves its start back to where it belongs.
+        // Filling each list from its end restores its start.
         for i in (0..nv).rev() {
             for c in self.starts[i]..self.starts[i + 1] - 1 {
                 let end = &mut self.descendant_starts[self.columns[c] as usize + 1];
@@ -203,13 +205,13 @@ impl Tree {
         }
     }
 
-    /// The same dofs, with `couplings` (each a count, then ascending dofs) coupled as well: the elimination tree, whose paths
-    /// hold all entries that eliminating the coupled matrix from its last row fills.
+    /// Rebuilds the pattern from the same dofs with `couplings` (each a count, then ascending dofs): the elimination
+    /// tree, whose paths contain all entries filled by eliminating the coupled matrix from its last row.
     ///
-    /// Liu's algorithm, from the last dof to the first: the tree that holds a neighbour so far comes to hang on the dof.
-    /// Of a coupling only the pairs of neighbouring dofs matter, since the dofs above already hang on them.
+    /// Liu's algorithm, from the last dof to the first: the current tree of a neighbour becomes a child of the dof. Of
+    /// a coupling, only the pairs of neighbouring dofs are needed, since the dofs above are already connected.
     ///
-    /// False, and nothing is done, where the pattern would have more than `most` entries.
+    /// Returns false and changes nothing if the pattern would have more than `most` entries.
     pub(crate) fn rebuild_coupled(
         &mut self,
         tree: &Tree,
@@ -237,7 +239,7 @@ impl Tree {
         roots.clear();
         roots.extend(0..nv as u32);
         for &(low, high) in &*edges {
-            // The root of the tree that holds `high`, shortening the way for later.
+            // The root of the tree that contains `high`, with path compression.
             let mut root = high as usize;
             while roots[root] as usize != root {
                 roots[root] = roots[roots[root] as usize];
@@ -248,7 +250,7 @@ impl Tree {
                 parents[root] = Some(low as usize);
             }
         }
-        // From here on `roots` holds the lengths of rows.
+        // From here on `roots` holds row lengths.
         let mut entries = 0;
         for i in 0..nv {
             roots[i] = 1 + parents[i].map_or(0, |parent| roots[parent]);
@@ -262,55 +264,55 @@ impl Tree {
         true
     }
 
-    /// Where the rows of the descendants of dof `i` start.
+    /// Returns the starts of the rows of the descendants of dof `i`.
     #[inline(always)]
     pub(crate) fn descendants(&self, i: usize) -> &[u32] {
         &self.descendants[self.descendant_starts[i]..self.descendant_starts[i + 1]]
     }
-    /// How many ancestors dof `i` has: its place in every row that it is in.
+    /// Returns the number of ancestors of dof `i`, which is its index in every row that contains it.
     #[inline(always)]
     pub(crate) fn depth(&self, i: usize) -> usize {
         self.starts[i + 1] - self.starts[i] - 1
     }
 
-    /// Number of dofs.
+    /// Returns the number of dofs.
     #[inline(always)]
     pub fn nv(&self) -> usize {
         self.parents.len()
     }
-    /// The parent of each dof.
+    /// Returns the parent of each dof.
     #[inline(always)]
     pub(crate) fn parents(&self) -> &[Option<u32>] {
         &self.parents
     }
-    /// The parent of a dof, `None` for a root.
+    /// Returns the parent of a dof, `None` for a root.
     pub fn parent(&self, dof: usize) -> Option<usize> {
         self.parents[dof].map(|p| p as usize)
     }
-    /// Ancestors of dof `i`, ascending, then `i` itself.
+    /// Returns the ancestors of dof `i`, ascending, then `i` itself.
     #[inline(always)]
     pub fn row(&self, i: usize) -> &[u32] {
         &self.columns[self.starts[i]..self.starts[i + 1]]
     }
-    /// Where row `i` starts among the stored values; `row_start(nv)` is their number.
+    /// Returns the start of row `i` in the stored values; `row_start(nv)` is their number.
     #[inline(always)]
     pub fn row_start(&self, i: usize) -> usize {
         self.starts[i]
     }
-    /// Number of stored values.
+    /// Returns the number of stored values.
     #[inline(always)]
     pub fn nnz(&self) -> usize {
         self.columns.len()
     }
-    /// Which tree of the forest a dof belongs to, counted by their roots.
+    /// Returns the index of the tree that contains a dof, in the order of their roots.
     pub fn tree_of(&self, dof: usize) -> usize {
         self.trees[dof] as usize
     }
-    /// Number of trees in the forest.
+    /// Returns the number of trees in the forest.
     pub fn ntree(&self) -> usize {
         self.ntree
     }
-    /// Whether all of `dofs` (ascending) lie on the path from a root to the last of them.
+    /// Returns true if all of `dofs` (ascending) lie on the path from a root to the last of them.
     pub(crate) fn is_path(&self, dofs: &[u32]) -> bool {
         let Some(&last) = dofs.last() else {
             return true;
@@ -321,12 +323,12 @@ impl Tree {
     }
 }
 
-/// Scratch of [`Tree::rebuild_coupled`].
+/// Scratch memory of [`Tree::rebuild_coupled`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CouplingScratch {
     /// (lower, higher) dof.
     edges: Vec<(u32, u32)>,
     parents: Vec<Option<usize>>,
-    /// Union-find.
+    /// The union-find structure.
     roots: Vec<u32>,
 }

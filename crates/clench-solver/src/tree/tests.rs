@@ -30,7 +30,7 @@ fn random_tree(rng: &mut Rng, nv: usize) -> Tree {
     Tree::new(&parents).unwrap()
 }
 
-/// Diagonally dominant in the pattern of the tree.
+/// Creates a diagonally dominant matrix in the pattern of the tree.
 fn random_matrix(rng: &mut Rng, tree: &Tree) -> TreeMatrix<f64> {
     let mut matrix = TreeMatrix::zeros(tree);
     for i in 0..tree.nv() {

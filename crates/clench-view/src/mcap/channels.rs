@@ -1,7 +1,8 @@
-//! What is told under which name, and what its messages look like: a line of a table each.
+//! The channels of a recording with their topics and schemas, one line of a table each.
 //!
-//! The schemas of `SceneUpdate` and `FrameTransforms` name the fields that we fill and the lists that we leave empty, as Foxglove
-//! documents them (<https://docs.foxglove.dev/docs/sdk/schemas>); quaternions there have w last.
+//! The schemas of `SceneUpdate` and `FrameTransforms` contain the fields that this crate fills and the lists that it
+//! leaves empty, as Foxglove documents them (<https://docs.foxglove.dev/docs/sdk/schemas>); their quaternions have w
+//! last.
 
 use super::messages::{self, Moment};
 use clench::Model;
@@ -13,12 +14,12 @@ pub(crate) struct Channel {
     pub topic: &'static str,
     pub schema_name: &'static str,
     pub schema: Value,
-    /// Whether the first moment has one alone.
+    /// True if only the first moment has a message.
     pub once: bool,
     pub message: MessageKind,
 }
 
-/// What a channel tells.
+/// The content of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MessageKind {
     Frames,
@@ -33,7 +34,7 @@ pub(crate) enum MessageKind {
 }
 
 impl MessageKind {
-    /// What it says at a moment, whose time is given in Foxglove's form.
+    /// Builds the message of a moment; `time` is in Foxglove's format.
     pub(crate) fn message<T: Precision>(self, moment: &Moment<T>, time: &Value) -> Value {
         match self {
             MessageKind::Frames => messages::frames(moment, time),
@@ -49,7 +50,7 @@ impl MessageKind {
     }
 }
 
-/// The channels of a model.
+/// Returns the channels of a model.
 pub(crate) fn channels(model: &Model) -> Vec<Channel> {
     let channel = |topic, schema_name, schema, message| Channel {
         topic,

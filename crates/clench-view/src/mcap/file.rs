@@ -1,16 +1,17 @@
-//! MCAP files (<https://mcap.dev/spec>): messages in chunks without compression, and at the end statistics and an index of the chunks.
+//! MCAP files (<https://mcap.dev/spec>): messages in uncompressed chunks, followed by statistics and an index of the
+//! chunks.
 //!
-//! All is made of records: a byte that says the kind, the length of the content, and the content.
+//! A file consists of records: a byte for the kind, the length of the content, and the content.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::mem::take;
 
-/// What a file begins and ends with.
+/// The first and last bytes of a file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// A chunk with so many bytes is written.
+/// The size at which a chunk is written, bytes.
 const CHUNK: usize = 1 << 20;
-/// How chunks are compressed: not at all.
+/// The compression of chunks: none.
 const COMPRESSION: &str = "";
 
 /// Kinds of records.
@@ -29,11 +30,11 @@ enum Kind {
     DataEnd = 15,
 }
 
-/// A record in the making.
+/// A record under construction.
 struct Record(Vec<u8>);
 
 impl Record {
-    /// A kind and a length.
+    /// The size of the kind and the length, bytes.
     const START: usize = 9;
 
     fn new(kind: Kind) -> Self {
@@ -54,7 +55,7 @@ impl Record {
     fn u64(self, number: u64) -> Self {
         self.raw(&number.to_le_bytes())
     }
-    /// Bytes behind their number: text, a list or a map.
+    /// Appends bytes preceded by their length: text, a list or a map.
     fn bytes(self, bytes: &[u8]) -> Self {
         self.u32(bytes.len() as u32).raw(bytes)
     }
@@ -71,12 +72,12 @@ impl Record {
     }
 }
 
-/// An entry of a map from channels to numbers.
+/// Encodes an entry of a map from channels to numbers.
 fn of_channel(id: u16, number: u64) -> Vec<u8> {
     [&id.to_le_bytes()[..], &number.to_le_bytes()].concat()
 }
 
-/// The first and the last of times, which need not come in order.
+/// Extends the interval of times, which need not be ordered.
 fn widen(times: &mut Option<[u64; 2]>, time: u64) {
     let [first, last] = times.get_or_insert([time; 2]);
     (*first, *last) = (time.min(*first), time.max(*last));
@@ -90,19 +91,19 @@ pub(crate) struct Stream {
     pub schema: Vec<u8>,
 }
 
-/// A file in the making. One that is dropped is finished, as far as its output takes it.
+/// A file under construction. Dropping it finishes it as far as the output allows.
 pub(crate) struct McapFile<W: Write> {
     to: W,
     position: u64,
-    /// Of the part of the file that is being written.
+    /// The checksum of the part of the file that is being written.
     checksum: crc32fast::Hasher,
-    /// Whether nothing may follow: the file is whole, or the output took something in part.
+    /// True if nothing may follow: the file is complete, or a write to the output failed.
     ended: bool,
     /// Records that are repeated at the end.
     schemas: Vec<u8>,
     channels: Vec<u8>,
     schema_count: u16,
-    /// Messages of each channel.
+    /// The message count of each channel.
     counts: Vec<u64>,
     times: Option<[u64; 2]>,
     chunk: Chunk,
@@ -110,20 +111,20 @@ pub(crate) struct McapFile<W: Write> {
     chunk_count: u32,
 }
 
-/// Messages that are not in the file yet, in the first chunk after what they are.
+/// Pending messages of the next chunk.
 #[derive(Default)]
 struct Chunk {
     records: Vec<u8>,
     times: Option<[u64; 2]>,
-    /// Times and places of the messages of each channel.
+    /// The times and offsets of the messages of each channel.
     indexes: BTreeMap<u16, Vec<u8>>,
 }
 
 impl<W: Write> McapFile<W> {
-    /// A file of these streams, whose channels have their places in the list as numbers.
+    /// Creates a file of these streams; the index of a stream in the list is its channel number.
     ///
     /// # Errors
-    /// An output that takes nothing.
+    /// Returns an error if the output cannot be written.
     pub(crate) fn new(to: W, library: &str, streams: &[Stream]) -> io::Result<Self> {
         const PROFILE: &str = "";
         const NO_METADATA: &[u8] = &[];
@@ -131,7 +132,7 @@ impl<W: Write> McapFile<W> {
         let mut known: Vec<(&str, &[u8])> = Vec::new();
         for (channel, stream) in (0..).zip(streams) {
             let schema = (stream.schema_name, &stream.schema[..]);
-            // Numbers of schemas count from 1: 0 means that there is none.
+            // Schema numbers start at 1: 0 means no schema.
             let place = known.iter().position(|&other| other == schema);
             let place = place.unwrap_or_else(|| {
                 let record = Record::new(Kind::Schema).u16(known.len() as u16 + 1);
@@ -181,10 +182,10 @@ impl<W: Write> McapFile<W> {
         put
     }
 
-    /// Adds a message; `time` in nanoseconds.
+    /// Adds a message; `time` is in nanoseconds.
     ///
     /// # Errors
-    /// An output that takes no more.
+    /// Returns an error if the output cannot be written.
     pub(crate) fn message(
         &mut self,
         channel: u16,
@@ -207,7 +208,7 @@ impl<W: Write> McapFile<W> {
         }
     }
 
-    /// Writes the messages that are not in the file yet, and where they are.
+    /// Writes the pending messages and their index.
     fn put_chunk(&mut self) -> io::Result<()> {
         let Chunk {
             records,
@@ -238,10 +239,10 @@ impl<W: Write> McapFile<W> {
         Ok(())
     }
 
-    /// Hands all messages to the output, where they can be read from then on.
+    /// Writes all pending messages and flushes the output, so that they can be read.
     ///
     /// # Errors
-    /// An output that takes no more.
+    /// Returns an error if the output cannot be written.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
         self.put_chunk()?;
         self.to.flush()
@@ -261,10 +262,10 @@ impl<W: Write> McapFile<W> {
         record.bytes(&Vec::from_iter(counts)).end()
     }
 
-    /// Writes what is missing: messages, statistics, the index. Nothing can follow.
+    /// Writes the pending messages, the statistics and the index. No message can follow.
     ///
     /// # Errors
-    /// An output that takes no more.
+    /// Returns an error if the output cannot be written.
     pub(crate) fn finish(&mut self) -> io::Result<()> {
         if self.ended {
             return Ok(());
@@ -272,7 +273,7 @@ impl<W: Write> McapFile<W> {
         self.put_chunk()?;
         let checksum = take(&mut self.checksum).finalize();
         self.put(&Record::new(Kind::DataEnd).u32(checksum).end())?;
-        // The second part of the file, with a checksum of its own, tells readers what is where in the first.
+        // The second part of the file, with its own checksum, is the index of the first.
         self.checksum.reset();
         let start = self.position;
         let groups = [
@@ -292,7 +293,7 @@ impl<W: Write> McapFile<W> {
         self.put(&offsets)?;
         let footer = Record::new(Kind::Footer).u64(start).u64(offsets_start);
         let mut footer = footer.u32(0).end();
-        // Its checksum is of all up to there.
+        // The checksum covers all bytes before it.
         let checksum_at = footer.len() - size_of::<u32>();
         self.checksum.update(&footer[..checksum_at]);
         let checksum = take(&mut self.checksum).finalize();
@@ -306,7 +307,7 @@ impl<W: Write> McapFile<W> {
 
 impl<W: Write> Drop for McapFile<W> {
     fn drop(&mut self) {
-        // Nobody is left who could be told.
+        // Nothing can receive an error here.
         let _ = self.finish();
     }
 }
@@ -331,7 +332,7 @@ mod tests {
         ]
     }
 
-    /// A message of so many bytes on each of the first two channels at each of these times.
+    /// Writes a message of `size` bytes on each of the first two channels at each of these times.
     fn write(times: &[u64], size: usize) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut file = McapFile::new(&mut bytes, "test", &streams()).unwrap();
@@ -347,7 +348,7 @@ mod tests {
         bytes
     }
 
-    /// Everything in a file, whose checksums are all looked at, without what is in chunks.
+    /// Reads all records outside of chunks and validates their checksums.
     fn records(bytes: &[u8]) -> Vec<Found<'static>> {
         let options = LinearReaderOptions::default()
             .with_emit_chunks(true)

@@ -9,7 +9,7 @@ use clench::rigid::{Precision, Sim};
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
-/// The numbers of the solver.
+/// The names of the solver statistics.
 pub(crate) const SOLVER: [&str; 6] = [
     "iterations",
     "gap",
@@ -18,30 +18,30 @@ pub(crate) const SOLVER: [&str; 6] = [
     "contacts",
     "islands",
 ];
-/// Energies, J.
+/// The names of the energies, J.
 pub(crate) const ENERGY: [&str; 2] = ["potential", "kinetic"];
 
-/// What the arrow of the whole weight is as long as, over the size of the model.
+/// The length of the arrow of the total weight over the size of the model.
 const WEIGHT: f64 = 1.1;
-/// Thickness of an arrow's shaft over the size of the model.
+/// The thickness of an arrow's shaft over the size of the model.
 const THICK: f64 = 0.015;
 
 const NORMAL: [f32; 4] = [0.18, 0.49, 0.88, 1.0];
 const FRICTION: [f32; 4] = [0.94, 0.54, 0.14, 1.0];
 const HELD: [f32; 4] = [0.55, 0.36, 0.82, 1.0];
 
-/// What messages are made of.
+/// The input of the messages.
 pub(crate) struct Moment<'a, T: Precision> {
     pub sim: &'a Sim<T>,
-    /// Potential and kinetic, J.
+    /// The potential and kinetic energy, J.
     pub energy: [f64; 2],
     pub pushes: &'a [Push],
     pub frames: &'a [String],
-    /// Metres a newton.
+    /// The length of arrows, m/N.
     pub scale: f64,
 }
 
-/// A name of its own for the frame of each body.
+/// Returns a unique frame name for each body.
 pub(crate) fn frame_names(model: &Model) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut name = |(index, body): (usize, &clench::rigid::model::Body)| {
@@ -58,8 +58,8 @@ pub(crate) fn frame_names(model: &Model) -> Vec<String> {
     model.bodies.iter().enumerate().map(&mut name).collect()
 }
 
-/// A length that suits the model, m: the root of the mean square of how far its masses are from their centre at first, and the sizes
-/// of what they are.
+/// Returns a length scale of the model, m: the maximum, over the geoms of movable bodies, of the offsets of body and
+/// geom plus the bounding radius.
 fn size(model: &Model) -> f64 {
     let (p, count) = (&model.params, model.geoms.len());
     let moving = (0..count).filter(|&g| model.geoms[g].body > 0);
@@ -72,13 +72,13 @@ fn size(model: &Model) -> f64 {
     if far > 0.0 { far } else { 1.0 }
 }
 
-/// How long arrows are, m/N: that of the whole weight is a little longer than the model.
+/// Returns the length of arrows, m/N; the arrow of the total weight is slightly longer than the model.
 pub(crate) fn force_scale(model: &Model) -> f64 {
     let weight = 9.81 * model.params.body_mass.iter().sum::<f64>();
     WEIGHT * size(model) / weight.max(1e-9)
 }
 
-/// A name, or what stands for it.
+/// Returns the name, or a substitute if it is empty.
 fn named(name: &str, kind: &str, index: usize) -> String {
     match name {
         "" => format!("{kind} {index}"),
@@ -86,20 +86,20 @@ fn named(name: &str, kind: &str, index: usize) -> String {
     }
 }
 
-/// The joints with one coordinate.
+/// Iterates over the joints with one coordinate.
 fn plain_joints(model: &Model) -> impl Iterator<Item = (usize, &clench::rigid::model::Joint)> {
     let joints = model.joints.iter().enumerate();
     joints.filter(|(_, joint)| matches!(joint.kind, JointKind::Slide | JointKind::Hinge))
 }
 
-/// Their names.
+/// Returns the names of the joints with one coordinate.
 pub(crate) fn joint_names(model: &Model) -> Vec<String> {
     plain_joints(model)
         .map(|(j, joint)| named(&joint.name, "joint", j))
         .collect()
 }
 
-/// The names of all controls.
+/// Returns the names of all controls.
 pub(crate) fn control_names(model: &Model) -> Vec<String> {
     let mut names = Vec::with_capacity(model.nu());
     for (a, actuator) in model.actuators.iter().enumerate() {
@@ -112,7 +112,7 @@ pub(crate) fn control_names(model: &Model) -> Vec<String> {
     names
 }
 
-/// The names of all sensors.
+/// Returns the names of all sensors.
 pub(crate) fn sensor_names(model: &Model) -> Vec<String> {
     let sensors = model.sensors.iter().enumerate();
     sensors
@@ -120,7 +120,7 @@ pub(crate) fn sensor_names(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Where the frames of bodies are.
+/// Builds the message of the poses of body frames.
 pub(crate) fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let position = &moment.sim.workspace().position;
     let transform = |body: usize| {
@@ -138,7 +138,7 @@ pub(crate) fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     json!({ "transforms": transforms })
 }
 
-/// An entity of a scene with these lists of things in it.
+/// Builds a scene entity with these lists of primitives.
 fn entity(time: &Value, frame: &str, id: &str, things: Map<String, Value>) -> Value {
     let mut entity = json!({
         "timestamp": time,
@@ -159,7 +159,7 @@ fn update(entities: Vec<Value>) -> Value {
     json!({"deletions": [], "entities": entities})
 }
 
-/// What bodies look like, each in its frame.
+/// Builds the message of the shapes of bodies, each in its body frame.
 pub(crate) fn shapes<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let model = moment.sim.model();
     let of_body = |body: usize| {
@@ -170,7 +170,7 @@ pub(crate) fn shapes<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     update((0..model.nbody()).filter_map(of_body).collect())
 }
 
-/// What pushes on what: contacts, and after them connects, welds and limits.
+/// Builds the message of forces: contacts, then connects, welds and limits.
 pub(crate) fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let mut arrows = Vec::new();
     let thick = THICK * size(moment.sim.model());
@@ -203,7 +203,7 @@ pub(crate) fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     update(vec![entity(time, &moment.frames[0], "forces", things)])
 }
 
-/// Straight parts of tendons.
+/// Builds the message of the straight segments of tendons.
 pub(crate) fn tendons<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let model = moment.sim.model();
     let line = |TendonLine { tendon, ends }| {
@@ -223,12 +223,12 @@ pub(crate) fn tendons<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     update(vec![entity(time, &moment.frames[0], "tendons", things)])
 }
 
-/// Numbers under names.
+/// Builds an object of named numbers.
 fn record(names: impl IntoIterator<Item = impl Into<String>>, numbers: Vec<Value>) -> Value {
     Value::Object(names.into_iter().map(Into::into).zip(numbers).collect())
 }
 
-/// How the last solve went.
+/// Builds the message of the last solve's statistics.
 pub(crate) fn solver<T: Precision>(moment: &Moment<T>) -> Value {
     let (stats, contacts) = (moment.sim.stats(), moment.sim.contacts());
     let depths = contacts
@@ -245,12 +245,12 @@ pub(crate) fn solver<T: Precision>(moment: &Moment<T>) -> Value {
     record(SOLVER, numbers)
 }
 
-/// Energies.
+/// Builds the message of the energies.
 pub(crate) fn energy<T: Precision>(moment: &Moment<T>) -> Value {
     record(ENERGY, moment.energy.map(|x| json!(x)).to_vec())
 }
 
-/// Positions (m, rad) and velocities of slides and hinges.
+/// Builds the message of positions (m, rad) and velocities of slides and hinges.
 pub(crate) fn joints<T: Precision>(moment: &Moment<T>) -> Value {
     let (model, state) = (moment.sim.model(), &moment.sim.state);
     let of = |(_, joint): (usize, &clench::rigid::model::Joint)| {
@@ -260,13 +260,13 @@ pub(crate) fn joints<T: Precision>(moment: &Moment<T>) -> Value {
     record(joint_names(model), plain_joints(model).map(of).collect())
 }
 
-/// Controls.
+/// Builds the message of the controls.
 pub(crate) fn controls<T: Precision>(moment: &Moment<T>) -> Value {
     let numbers = moment.sim.state.ctrl.iter().map(|x| json!(x.to_f64()));
     record(control_names(moment.sim.model()), numbers.collect())
 }
 
-/// What each sensor measures.
+/// Builds the message of the sensor values.
 pub(crate) fn sensors<T: Precision>(moment: &Moment<T>) -> Value {
     let model = moment.sim.model();
     let data = &moment.sim.workspace().sensors.data;

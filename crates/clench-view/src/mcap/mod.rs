@@ -1,8 +1,8 @@
-//! A run as an MCAP file, which Foxglove shows and whose messages many tools of robotics read.
+//! Recordings of runs as MCAP files, which Foxglove shows and many robotics tools read.
 //!
-//! Poses, shapes and forces are Foxglove's own messages, encoded in JSON; what is plotted comes as JSON objects with a schema
-//! each. The log time is the simulated one. Shapes are told once, in the frames of their bodies; poses and forces with every
-//! frame. Chunks are written whole, so a file that was cut off can be read up to the last of them.
+//! Poses, shapes and forces are Foxglove messages, encoded in JSON; plotted values are JSON objects with a schema each.
+//! The log time is the simulated time. Shapes are written once, in the frames of their bodies; poses and forces with
+//! every frame. Chunks are written whole, so a truncated file can be read up to its last complete chunk.
 
 mod channels;
 mod file;
@@ -18,37 +18,37 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
-/// What has been recorded reaches the file after so long at the latest.
+/// The maximum interval between flushes to the file.
 const FLUSH: Duration = Duration::from_secs(1);
 
-/// Why a frame could not be recorded.
+/// An error of recording a frame.
 #[derive(Debug, thiserror::Error)]
 pub enum McapRecordError {
-    /// The simulation has no frame to give.
+    /// The state of the simulation cannot be evaluated.
     #[error(transparent)]
     Sim(#[from] SimError),
-    /// The file takes no more.
+    /// The file cannot be written.
     #[error(transparent)]
     File(#[from] io::Error),
 }
 
-/// Writes what happens in a simulation to a file, moment by moment.
+/// Records a simulation to a file, frame by frame.
 pub struct McapRecorder<W: Write> {
     file: McapFile<W>,
     channels: Vec<Channel>,
     frames: Vec<String>,
-    /// How many moments there are.
+    /// The number of recorded frames.
     moments: usize,
     flushed: Instant,
-    /// Metres a newton, of arrows.
+    /// The length of arrows, m/N.
     scale: f64,
 }
 
 impl<W: Write> McapRecorder<W> {
-    /// A recording of a model without any moment yet.
+    /// Creates a recording of a model without frames.
     ///
     /// # Errors
-    /// A file that takes nothing.
+    /// Returns an error if the file cannot be written.
     pub fn new(to: W, model: &Model) -> Result<Self, McapRecordError> {
         let channels = channels(model);
         let stream = |channel: &Channel| Stream {
@@ -68,19 +68,20 @@ impl<W: Write> McapRecorder<W> {
         })
     }
 
-    /// How many moments there are.
+    /// Returns the number of recorded frames.
     pub fn len(&self) -> usize {
         self.moments
     }
-    /// Whether there is none.
+    /// Returns true if there is no frame.
     pub fn is_empty(&self) -> bool {
         self.moments == 0
     }
 
-    /// Records what is now. Times before 0 are told as 0: MCAP has none.
+    /// Records the present state. Negative times are recorded as 0: MCAP has none.
     ///
     /// # Errors
-    /// A state that cannot be evaluated; a file that takes no more. Nothing can be recorded after the latter.
+    /// Returns an error if the state cannot be evaluated or the file cannot be written. Nothing can be recorded after
+    /// the latter.
     pub fn append<T: Precision>(&mut self, sim: &mut Sim<T>) -> Result<(), McapRecordError> {
         sim.refresh()?;
         let energy = sim.energy()?;
@@ -110,16 +111,16 @@ impl<W: Write> McapRecorder<W> {
         Ok(())
     }
 
-    /// Writes what is not in the file yet and the index of all.
+    /// Writes pending messages and the index.
     ///
     /// # Errors
-    /// A file that takes no more.
+    /// Returns an error if the file cannot be written.
     pub fn finish(mut self) -> Result<(), McapRecordError> {
         Ok(self.file.finish()?)
     }
 }
 
-/// A time as Foxglove's messages have it.
+/// Converts a time to the format of Foxglove's messages.
 fn time(nanoseconds: u64) -> Value {
     json!({"sec": nanoseconds / 1_000_000_000, "nsec": nanoseconds % 1_000_000_000})
 }

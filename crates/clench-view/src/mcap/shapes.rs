@@ -1,4 +1,4 @@
-//! Shapes of geoms as things of Foxglove's scenes, in the frames of their bodies.
+//! Geom shapes as primitives of Foxglove scenes, in the frames of their bodies.
 
 use crate::surfaces;
 use clench::Model;
@@ -7,32 +7,32 @@ use clench::math::{Quat, Vec3};
 use clench::rigid::model::Appearance;
 use serde_json::{Map, Value, json};
 
-/// Half the side of a plane without one, m.
+/// Half the side of an infinite plane, m.
 const FAR: f64 = 20.0;
-/// Groups of geoms that are shown, as in MuJoCo.
+/// The visible groups of geoms, as in MuJoCo.
 const SHOWN: std::ops::Range<i32> = 0..3;
 
-/// A point or a size.
+/// Encodes a point or a size.
 pub(crate) fn point([x, y, z]: [f64; 3]) -> Value {
     json!({"x": x, "y": y, "z": z})
 }
 
-/// A quaternion, of ours with w first.
+/// Encodes a quaternion; the input has w first.
 pub(crate) fn turn([w, x, y, z]: [f64; 4]) -> Value {
     json!({"x": x, "y": y, "z": z, "w": w})
 }
 
-/// A place and a quaternion.
+/// Encodes a position and a quaternion.
 pub(crate) fn pose(at: [f64; 3], quat: [f64; 4]) -> Value {
     json!({"position": point(at), "orientation": turn(quat)})
 }
 
-/// Red, green, blue and opacity.
+/// Encodes a colour: red, green, blue and opacity.
 pub(crate) fn color([r, g, b, a]: [f32; 4]) -> Value {
     json!({"r": r, "g": g, "b": b, "a": a})
 }
 
-/// The things that a body looks like, in lists by their kind.
+/// Returns the primitives of a body, in lists by their kind.
 pub(crate) fn of_body(model: &Model, body: usize) -> Map<String, Value> {
     let mut things = Map::new();
     let geoms = model.geoms.iter().enumerate();
@@ -51,7 +51,7 @@ pub(crate) fn of_body(model: &Model, body: usize) -> Map<String, Value> {
     things
 }
 
-/// A colour; one that is painted by a texture has the mean of the texture's.
+/// Returns the colour of an element; a texture contributes its mean colour.
 fn seen_color(model: &Model, appearance: Appearance) -> [f32; 4] {
     let visuals = &model.visuals;
     let mut color = visuals.rgba(appearance);
@@ -123,7 +123,7 @@ fn of_geom(model: &Model, g: usize, kind: ShapeKind, rgba: [f32; 4]) -> Vec<(&'s
     }
 }
 
-/// The upper side of a height field.
+/// Triangulates the upper surface of a height field.
 fn terrain(field: &clench::collide::HeightField) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let (rows, columns, heights) = (field.rows(), field.columns(), field.heights());
     let [half_x, half_y, elevation, _] = field.size();

@@ -1,1 +1,1 @@
-"""Gymnasium's MuJoCo v5 tasks, a file each: the vector environment, and the single one over it."""
+"""Gymnasium's MuJoCo v5 tasks, one per file: the vector environment, and the single environment based on it."""

@@ -20,13 +20,13 @@ class AntVectorEnv(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, forward_reward_weight, ctrl_cost_weight, contact_cost_weight, healthy_reward, main_body, \
 terminate_when_unhealthy, healthy_z_range, contact_force_range, reset_noise_scale, \
 exclude_current_positions_from_observation, include_cfrc_ext_in_observation
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     normal_velocity_noise = True
@@ -71,11 +71,12 @@ exclude_current_positions_from_observation, include_cfrc_ext_in_observation
         self._forces = self.batch.cfrc_ext[:, 1:].reshape(num_envs, -1)
 
     def before_step(self) -> None:
-        """Keeps where the torso was, of which the step's mean velocity is worked out."""
+        """Stores the position of the torso, to compute the step's mean velocity."""
         self._xy_before = self._torso_xy.copy()
 
     def observe(self) -> Array:
-        """Positions, without x and y unless asked for, velocities, and clipped external forces; none before a step."""
+        """Returns positions, by default without x and y, velocities, and clipped external forces, which are zero before
+        a step."""
         parts = [self.batch.qpos[:, self.skipped :], self.batch.qvel]
         if not self.include_cfrc_ext_in_observation:
             return np.concatenate(parts, axis=1)
@@ -86,7 +87,7 @@ exclude_current_positions_from_observation, include_cfrc_ext_in_observation
         return observation
 
     def reward(self, action: Array) -> Array:
-        """Speed along x and being upright, less controls and contact forces."""
+        """Rewards speed along x and an upright posture, less the costs of controls and contact forces."""
         z, (low, high) = self.batch.qpos[:, 2], self.healthy_z_range
         self._healthy = (low <= z) & (z <= high)
         self._velocity = (self._torso_xy - self._xy_before) / self.dt
@@ -98,11 +99,11 @@ exclude_current_positions_from_observation, include_cfrc_ext_in_observation
         return total
 
     def terminated(self) -> Array:
-        """Who is not upright."""
+        """Returns true for environments whose torso is not upright."""
         return ~self._healthy if self.terminate_when_unhealthy else super().terminated()
 
     def info(self) -> Mapping[str, Array]:
-        """Where it is, how fast, and the terms of the reward."""
+        """Returns the position, the velocity, and the terms of the reward."""
         return {
             **self.reset_info(),
             "x_velocity": self._velocity[:, 0],
@@ -114,12 +115,12 @@ exclude_current_positions_from_observation, include_cfrc_ext_in_observation
         }
 
     def reset_info(self) -> Mapping[str, Array]:
-        """Where it is."""
+        """Returns the position."""
         xy = self.batch.qpos[:, :2]
         return {"x_position": xy[:, 0], "y_position": xy[:, 1], "distance_from_origin": row_norms(xy)}
 
 
 class AntEnv(SingleEnv):
-    """One Ant."""
+    """A single Ant environment."""
 
     task = AntVectorEnv

@@ -14,12 +14,12 @@ class HalfCheetahVectorEnv(PlanarRunner):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, forward_reward_weight, ctrl_cost_weight, reset_noise_scale, \
 exclude_current_positions_from_observation
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     normal_velocity_noise = True
@@ -49,6 +49,6 @@ exclude_current_positions_from_observation
 
 
 class HalfCheetahEnv(SingleEnv):
-    """One HalfCheetah."""
+    """A single HalfCheetah environment."""
 
     task = HalfCheetahVectorEnv

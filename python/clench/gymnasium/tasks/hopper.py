@@ -17,12 +17,12 @@ class HopperVectorEnv(UprightRunner):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, forward_reward_weight, ctrl_cost_weight, healthy_reward, terminate_when_unhealthy, \
 healthy_state_range, healthy_z_range, healthy_angle_range, reset_noise_scale, exclude_current_positions_from_observation
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ healthy_state_range, healthy_z_range, healthy_angle_range, reset_noise_scale, ex
         self.healthy_angle_range = healthy_angle_range
 
     def healthy(self) -> NDArray[Any]:
-        """High and upright enough, with no number of the state but x and z out of range."""
+        """Returns true if height, angle and all state variables except x and z are within their ranges."""
         qpos, qvel = self.batch.qpos, self.batch.qvel
         states = between(qpos[:, 2:], self.healthy_state_range).all(axis=1)
         states &= between(qvel, self.healthy_state_range).all(axis=1)
@@ -70,6 +70,6 @@ healthy_state_range, healthy_z_range, healthy_angle_range, reset_noise_scale, ex
 
 
 class HopperEnv(SingleEnv):
-    """One Hopper."""
+    """A single Hopper environment."""
 
     task = HopperVectorEnv

@@ -21,14 +21,14 @@ class HumanoidVectorEnv(Person):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, forward_reward_weight, ctrl_cost_weight, contact_cost_weight, contact_cost_range, \
 healthy_reward, terminate_when_unhealthy, healthy_z_range, reset_noise_scale, \
 exclude_current_positions_from_observation, include_cinert_in_observation, include_cvel_in_observation, \
 include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -75,11 +75,11 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         self._com_xy = self.batch.subtree_com[:, 0, :2]
 
     def before_step(self) -> None:
-        """Keeps where the centre of mass was, of which the step's mean velocity is worked out."""
+        """Stores the position of the centre of mass, to compute the step's mean velocity."""
         self._xy_before = self._com_xy.copy()
 
     def reward(self, action: Array) -> Array:
-        """Speed along x and being upright, less controls and contact forces."""
+        """Rewards speed along x and an upright posture, less the costs of controls and contact forces."""
         self._healthy = between(self.batch.qpos[:, 2], self.healthy_z_range)
         self._velocity = (self._com_xy - self._xy_before) / self.dt
         self._forward = self.forward_reward_weight * self._velocity[:, 0]
@@ -90,11 +90,11 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         return total
 
     def terminated(self) -> Array:
-        """Who fell, or flew."""
+        """Returns true for environments whose torso is too low or too high."""
         return ~self._healthy if self.terminate_when_unhealthy else super().terminated()
 
     def info(self) -> Mapping[str, Array]:
-        """Where it is, how fast, and the terms of the reward."""
+        """Returns the position, the velocity, and the terms of the reward."""
         return {
             **self.reset_info(),
             "x_velocity": self._velocity[:, 0],
@@ -106,7 +106,7 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         }
 
     def reset_info(self) -> Mapping[str, Array]:
-        """Where it is, and its tendons."""
+        """Returns the position, and the lengths and velocities of the tendons."""
         xy = self.batch.qpos[:, :2]
         return {
             "x_position": xy[:, 0],
@@ -117,6 +117,6 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
 
 
 class HumanoidEnv(SingleEnv):
-    """One Humanoid."""
+    """A single Humanoid environment."""
 
     task = HumanoidVectorEnv

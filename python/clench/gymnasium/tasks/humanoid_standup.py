@@ -21,13 +21,13 @@ class HumanoidStandupVectorEnv(Person):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, uph_cost_weight, ctrl_cost_weight, impact_cost_weight, impact_cost_range, reset_noise_scale, \
 exclude_current_positions_from_observation, include_cinert_in_observation, include_cvel_in_observation, \
 include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         As in gymnasium, where ``uph_cost_weight`` has no effect.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -66,7 +66,8 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         self.impact_cost_range = impact_cost_range
 
     def reward(self, action: Array) -> Array:
-        """Height over the time of a step of the simulator, less controls and impacts, and one for being there."""
+        """Rewards height divided by the duration of a simulation step, less the costs of controls and impacts, plus
+        one."""
         self._up = self.batch.qpos[:, 2] / self.timestep
         self._ctrl = -self.ctrl_cost_weight * row_squares(action)
         self._impact = -np.clip(self.impact_cost_weight * row_squares(self._forces), *self.impact_cost_range)
@@ -74,7 +75,7 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         return total
 
     def info(self) -> Mapping[str, Array]:
-        """Where it is, and the terms of the reward."""
+        """Returns the position, and the terms of the reward."""
         return {
             **self.reset_info(),
             "reward_linup": self._up,
@@ -83,7 +84,7 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
         }
 
     def reset_info(self) -> Mapping[str, Array]:
-        """Where it is, and its tendons."""
+        """Returns the position, and the lengths and velocities of the tendons."""
         qpos = self.batch.qpos
         return {
             "x_position": qpos[:, 0],
@@ -94,6 +95,6 @@ include_qfrc_actuator_in_observation, include_cfrc_ext_in_observation
 
 
 class HumanoidStandupEnv(SingleEnv):
-    """One HumanoidStandup."""
+    """A single HumanoidStandup environment."""
 
     task = HumanoidStandupVectorEnv

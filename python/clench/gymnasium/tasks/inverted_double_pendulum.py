@@ -20,11 +20,11 @@ class InvertedDoublePendulumVectorEnv(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, healthy_reward, reset_noise_scale
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     normal_velocity_noise = True
@@ -51,19 +51,20 @@ class InvertedDoublePendulumVectorEnv(Task):
         self._tip = self.batch.site_xpos[:, 0]
 
     def observe(self) -> Array:
-        """The cart, sines and cosines of the poles' angles, velocities, and the constraint force on the cart."""
+        """Returns the cart's position, sines and cosines of the poles' angles, velocities, and the constraint force on
+        the cart."""
         cart, angles = self.batch.qpos[:, :1], self.batch.qpos[:, 1:]
         velocities = np.clip(self.batch.qvel, -10.0, 10.0)
         force = np.clip(self.batch.qfrc_constraint[:, :1], -10.0, 10.0)
         return np.concatenate([cart, np.sin(angles), np.cos(angles), velocities, force], axis=1)
 
     def terminated(self) -> Array:
-        """Whose tip is not above 1 m."""
+        """Returns true for environments whose tip is not above 1 m."""
         low: Array = self._tip[:, 2] <= 1.0
         return low
 
     def reward(self, action: Array) -> Array:
-        """Being upright, less the tip's distance from where it should be, less the speed of the poles."""
+        """Rewards an upright posture, less the costs of the tip's distance from its target and of the poles' speeds."""
         x, y = self._tip[:, 0], self._tip[:, 2]
         first, second = self.batch.qvel[:, 1], self.batch.qvel[:, 2]
         self._survive = self.healthy_reward * ~self.terminated()
@@ -73,11 +74,11 @@ class InvertedDoublePendulumVectorEnv(Task):
         return total
 
     def info(self) -> Mapping[str, Array]:
-        """The terms of the reward."""
+        """Returns the terms of the reward."""
         return {"reward_survive": self._survive, "distance_penalty": self._distance, "velocity_penalty": self._speed}
 
 
 class InvertedDoublePendulumEnv(SingleEnv):
-    """One InvertedDoublePendulum."""
+    """A single InvertedDoublePendulum environment."""
 
     task = InvertedDoublePendulumVectorEnv

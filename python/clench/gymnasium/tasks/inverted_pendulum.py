@@ -20,11 +20,11 @@ class InvertedPendulumVectorEnv(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, reset_noise_scale
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -41,25 +41,25 @@ class InvertedPendulumVectorEnv(Task):
         )
 
     def observe(self) -> Array:
-        """Positions and velocities."""
+        """Returns positions and velocities."""
         return np.concatenate([self.batch.qpos, self.batch.qvel], axis=1)
 
     def terminated(self) -> Array:
-        """Whose pole leans by more than 0.2 rad."""
+        """Returns true for environments whose pole leans by more than 0.2 rad."""
         leans: Array = np.abs(self.batch.qpos[:, 1]) > 0.2
         return leans
 
     def reward(self, action: Array) -> Array:
-        """One while the pole is upright."""
+        """Returns 1 while the pole is upright."""
         self._upright = ~self.terminated()
         return self._upright
 
     def info(self) -> Mapping[str, Array]:
-        """The reward."""
+        """Returns the reward."""
         return {"reward_survive": self._upright.astype(int)}
 
 
 class InvertedPendulumEnv(SingleEnv):
-    """One InvertedPendulum."""
+    """A single InvertedPendulum environment."""
 
     task = InvertedPendulumVectorEnv

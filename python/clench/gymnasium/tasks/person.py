@@ -1,4 +1,4 @@
-"""What Humanoid and HumanoidStandup share: a body with a free root, of which nearly everything is observed."""
+"""The common part of Humanoid and HumanoidStandup: a body with a free root, of which nearly everything is observed."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ class Person(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     exclude_current_positions_from_observation : bool
-        Whether x and y are left out.
+        True to omit x and y.
     include_cinert_in_observation : bool
-        Whether ``cinert`` is observed, of all bodies but the world.
+        True to observe ``cinert`` of all bodies except the world.
     include_cvel_in_observation : bool
-        Whether ``cvel`` is, likewise.
+        True to observe ``cvel`` of all bodies except the world.
     include_qfrc_actuator_in_observation : bool
-        Whether ``qfrc_actuator`` is, of all dofs but the root's.
+        True to observe ``qfrc_actuator`` of all dofs except the root's.
     include_cfrc_ext_in_observation : bool
-        Whether ``cfrc_ext`` is, of all bodies but the world; zero before the first step.
+        True to observe ``cfrc_ext`` of all bodies except the world; zero before the first step.
     outputs : tuple of str
-        What the task needs besides.
+        Additional outputs that the task needs.
     **kwargs
-        What :class:`Task` takes.
+        Arguments of :class:`Task`.
     """
 
     def __init__(
@@ -67,12 +67,12 @@ class Person(Task):
         self._observed_forces = self._forces.shape[1] if include_cfrc_ext_in_observation else 0
 
     def observe(self) -> Array:
-        """All parts side by side."""
+        """Returns all parts, concatenated."""
         observation = np.concatenate(self._parts, axis=1)
         if self._observed_forces:
             observation[self.fresh, -self._observed_forces :] = 0.0
         return observation
 
     def tendon_info(self) -> Mapping[str, Array]:
-        """Lengths and velocities of the tendons."""
+        """Returns the lengths and velocities of the tendons."""
         return {"tendon_length": self.batch.ten_length, "tendon_velocity": self.batch.ten_velocity}

@@ -14,20 +14,20 @@ Array = NDArray[Any]
 
 
 class PlanarRunner(Task):
-    """Rewarded for speed along x, charged for controls.
+    """A runner that is rewarded for speed along x, less the cost of controls.
 
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     forward_reward_weight : float
         Weight of the speed.
     ctrl_cost_weight : float
         Weight of the sum of squared controls.
     exclude_current_positions_from_observation : bool
-        Whether x is left out of what is observed.
+        True to omit x from the observation.
     **kwargs
-        What :class:`Task` takes.
+        Arguments of :class:`Task`.
     """
 
     def __init__(
@@ -45,15 +45,15 @@ class PlanarRunner(Task):
         self.skipped = 1 if exclude_current_positions_from_observation else 0
 
     def before_step(self) -> None:
-        """Keeps x, of which the step's mean speed is worked out."""
+        """Stores x, to compute the step's mean speed."""
         self._x_before = self.batch.qpos[:, 0].copy()
 
     def observe(self) -> Array:
-        """Positions, without x unless asked for, and velocities."""
+        """Returns positions, by default without x, and velocities."""
         return np.concatenate([self.batch.qpos[:, self.skipped :], self.batch.qvel], axis=1)
 
     def reward(self, action: Array) -> Array:
-        """Speed less controls."""
+        """Rewards speed, less the cost of controls."""
         self._x_velocity = (self.batch.qpos[:, 0] - self._x_before) / self.dt
         self._forward = self.forward_reward_weight * self._x_velocity
         self._ctrl = -self.ctrl_cost_weight * row_squares(action)
@@ -61,7 +61,7 @@ class PlanarRunner(Task):
         return total
 
     def info(self) -> Mapping[str, Array]:
-        """Where it is, how fast, and the terms of the reward."""
+        """Returns the position, the velocity, and the terms of the reward."""
         return {
             **self.reset_info(),
             "x_velocity": self._x_velocity,
@@ -70,23 +70,23 @@ class PlanarRunner(Task):
         }
 
     def reset_info(self) -> Mapping[str, Array]:
-        """Where it is."""
+        """Returns the position."""
         return {"x_position": self.batch.qpos[:, 0]}
 
 
 class UprightRunner(PlanarRunner):
-    """A runner that is over when it falls.
+    """A runner whose episode ends when it falls.
 
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     healthy_reward : float
-        What being upright is worth.
+        Reward of an upright posture.
     terminate_when_unhealthy : bool
-        Whether falling ends the episode.
+        True if a fall ends the episode.
     **kwargs
-        What :class:`PlanarRunner` takes.
+        Arguments of :class:`PlanarRunner`.
     """
 
     def __init__(
@@ -97,31 +97,31 @@ class UprightRunner(PlanarRunner):
         self.terminate_when_unhealthy = terminate_when_unhealthy
 
     def healthy(self) -> Array:
-        """Who is upright, (n,) booleans."""
+        """Returns booleans (n,): True if the runner is upright."""
         raise NotImplementedError
 
     def observe(self) -> Array:
-        """Positions, without x unless asked for, and velocities clipped to 10."""
+        """Returns positions, by default without x, and velocities clipped to 10."""
         observation = super().observe()
         velocities = observation[:, -self.init_qvel.size :]
         np.clip(velocities, -10.0, 10.0, out=velocities)
         return observation
 
     def reward(self, action: Array) -> Array:
-        """Speed and being upright, less controls."""
+        """Rewards speed and an upright posture, less the cost of controls."""
         self._healthy = self.healthy()
         self._survive = self.healthy_reward * self._healthy
         total: Array = super().reward(action) + self._survive
         return total
 
     def terminated(self) -> Array:
-        """Who fell."""
+        """Returns true for environments whose runner fell."""
         return ~self._healthy if self.terminate_when_unhealthy else super().terminated()
 
     def info(self) -> Mapping[str, Array]:
-        """Where it is, how fast, and the terms of the reward."""
+        """Returns the position, the velocity, and the terms of the reward."""
         return {**super().info(), "reward_survive": self._survive}
 
     def reset_info(self) -> Mapping[str, Array]:
-        """Where it is."""
+        """Returns the position."""
         return {**super().reset_info(), "z_distance_from_origin": self.batch.qpos[:, 1] - self.init_qpos[1]}

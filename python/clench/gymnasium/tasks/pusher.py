@@ -20,11 +20,11 @@ class PusherVectorEnv(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, reward_near_weight, reward_dist_weight, reward_control_weight
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -47,12 +47,12 @@ class PusherVectorEnv(Task):
         )
 
     def observe(self) -> Array:
-        """Angles and velocities of the arm, and where its tip, the cylinder and the goal are."""
+        """Returns angles and velocities of the arm, and the positions of its tip, the cylinder and the goal."""
         arm = [self.batch.qpos[:, :7], self.batch.qvel[:, :7]]
         return np.concatenate([*arm, self._tip, self._object, self._goal], axis=1)
 
     def reward(self, action: Array) -> Array:
-        """Less the distances from cylinder to tip and to goal, less the controls."""
+        """Returns minus the costs of the distances from cylinder to tip and to goal, and of controls."""
         self._near = -self.reward_near_weight * row_norms(self._object - self._tip)
         self._dist = -self.reward_dist_weight * row_norms(self._object - self._goal)
         self._ctrl = -self.reward_control_weight * row_squares(action)
@@ -60,11 +60,11 @@ class PusherVectorEnv(Task):
         return total
 
     def info(self) -> Mapping[str, Array]:
-        """The terms of the reward."""
+        """Returns the terms of the reward."""
         return {"reward_dist": self._dist, "reward_ctrl": self._ctrl, "reward_near": self._near}
 
     def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
-        """The arm nearly still, the cylinder at a distance from the goal."""
+        """Returns a state with the arm nearly at rest and the cylinder at a distance from the goal."""
 
         def place() -> Array:
             return np.array([rng.uniform(-0.3, 0.0), rng.uniform(-0.2, 0.2)])
@@ -80,6 +80,6 @@ class PusherVectorEnv(Task):
 
 
 class PusherEnv(SingleEnv):
-    """One Pusher."""
+    """A single Pusher environment."""
 
     task = PusherVectorEnv

@@ -20,11 +20,11 @@ class ReacherVectorEnv(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, reward_dist_weight, reward_control_weight
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -45,24 +45,25 @@ class ReacherVectorEnv(Task):
         )
 
     def observe(self) -> Array:
-        """Cosines and sines of the arm's angles, the target, the arm's velocities, and from target to fingertip."""
+        """Returns cosines and sines of the arm's angles, the target, the arm's velocities, and the vector from target
+        to fingertip."""
         qpos, angles = self.batch.qpos, self.batch.qpos[:, :2]
         away = (self._fingertip - self._target)[:, :2]
         return np.concatenate([np.cos(angles), np.sin(angles), qpos[:, 2:], self.batch.qvel[:, :2], away], axis=1)
 
     def reward(self, action: Array) -> Array:
-        """Less the distance, less the controls."""
+        """Returns minus the costs of the distance and of controls."""
         self._dist = -self.reward_dist_weight * row_norms(self._fingertip - self._target)
         self._ctrl = -self.reward_control_weight * row_squares(action)
         total: Array = self._dist + self._ctrl
         return total
 
     def info(self) -> Mapping[str, Array]:
-        """The terms of the reward."""
+        """Returns the terms of the reward."""
         return {"reward_dist": self._dist, "reward_ctrl": self._ctrl}
 
     def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
-        """The arm nearly straight and still, the target anywhere in a disc."""
+        """Returns a state with the arm nearly straight and at rest, and the target anywhere in a disc."""
         qpos = self.init_qpos + rng.uniform(-0.1, 0.1, self.init_qpos.size)
         goal = rng.uniform(-0.2, 0.2, 2)
         while np.linalg.norm(goal) >= 0.2:
@@ -74,6 +75,6 @@ class ReacherVectorEnv(Task):
 
 
 class ReacherEnv(SingleEnv):
-    """One Reacher."""
+    """A single Reacher environment."""
 
     task = ReacherVectorEnv

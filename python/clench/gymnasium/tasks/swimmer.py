@@ -20,12 +20,12 @@ class SwimmerVectorEnv(Task):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, forward_reward_weight, ctrl_cost_weight, reset_noise_scale, \
 exclude_current_positions_from_observation
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -48,15 +48,15 @@ exclude_current_positions_from_observation
         self.skipped = 2 if exclude_current_positions_from_observation else 0
 
     def before_step(self) -> None:
-        """Keeps x and y, of which the step's mean velocity is worked out."""
+        """Stores x and y, to compute the step's mean velocity."""
         self._xy_before = self.batch.qpos[:, :2].copy()
 
     def observe(self) -> Array:
-        """Positions, without x and y unless asked for, and velocities."""
+        """Returns positions, by default without x and y, and velocities."""
         return np.concatenate([self.batch.qpos[:, self.skipped :], self.batch.qvel], axis=1)
 
     def reward(self, action: Array) -> Array:
-        """Speed along x less controls."""
+        """Rewards speed along x, less the cost of controls."""
         self._velocity = (self.batch.qpos[:, :2] - self._xy_before) / self.dt
         self._forward = self.forward_reward_weight * self._velocity[:, 0]
         self._ctrl = -self.ctrl_cost_weight * row_squares(action)
@@ -64,7 +64,7 @@ exclude_current_positions_from_observation
         return total
 
     def info(self) -> Mapping[str, Array]:
-        """Where it is, how fast, and the terms of the reward."""
+        """Returns the position, the velocity, and the terms of the reward."""
         return {
             **self.reset_info(),
             "x_velocity": self._velocity[:, 0],
@@ -74,12 +74,12 @@ exclude_current_positions_from_observation
         }
 
     def reset_info(self) -> Mapping[str, Array]:
-        """Where it is."""
+        """Returns the position."""
         xy = self.batch.qpos[:, :2]
         return {"x_position": xy[:, 0], "y_position": xy[:, 1], "distance_from_origin": row_norms(xy)}
 
 
 class SwimmerEnv(SingleEnv):
-    """One Swimmer."""
+    """A single Swimmer environment."""
 
     task = SwimmerVectorEnv

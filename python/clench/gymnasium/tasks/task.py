@@ -1,4 +1,4 @@
-"""What gymnasium's MuJoCo v5 tasks have in common."""
+"""The base class of gymnasium's MuJoCo v5 tasks."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from clench.gymnasium.models import gymnasium_model
 
 Array = NDArray[Any]
 
-# How gymnasium's window is set up. Taken, so that its arguments can be passed on as they are; there is no window here.
+# Arguments of gymnasium's window. They are accepted so that its keyword arguments can be used, and ignored.
 _WINDOW = ("default_camera_config", "max_geom", "visual_options")
 
 
 class Task(BatchEnv):
-    """A task of gymnasium's: a file among its models, and noise on the initial state.
+    """A task of gymnasium: one of its model files, and noise on the initial state.
 
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file : str
-        A file that gymnasium brings, or a path that starts with ``/``, ``.`` or ``~``.
+        A model file of gymnasium, or a path that starts with ``/``, ``.`` or ``~``.
     reset_noise_scale : float
-        How much initial states vary.
+        Scale of the noise on the initial state.
     **kwargs
-        What :class:`BatchEnv` takes. Gymnasium's arguments about drawing have no effect.
+        Arguments of :class:`BatchEnv`. Gymnasium's rendering arguments have no effect.
     """
 
     normal_velocity_noise = False
-    """Whether the noise of velocities is normal; else it is uniform, as that of positions."""
+    """True if the noise of velocities is normal, false if it is uniform, like that of positions."""
 
     def __init__(self, num_envs: int, *, xml_file: str, reset_noise_scale: float = 0.0, **kwargs: Any) -> None:
         for name in _WINDOW:
@@ -44,7 +44,7 @@ class Task(BatchEnv):
         self.reset_noise_scale = reset_noise_scale
 
     def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array]:
-        """The model's initial state with noise, in gymnasium's order of draws."""
+        """Returns the model's initial state with noise, drawn in gymnasium's order."""
         scale, nv = self.reset_noise_scale, self.init_qvel.size
         qpos = self.init_qpos + rng.uniform(-scale, scale, self.init_qpos.size)
         noise = scale * rng.standard_normal(nv) if self.normal_velocity_noise else rng.uniform(-scale, scale, nv)
@@ -52,18 +52,18 @@ class Task(BatchEnv):
 
 
 def row_squares(rows: Array) -> Array:
-    """The sum of squares of each row."""
+    """Computes the sum of squares of each row."""
     squares: Array = np.einsum("ij,ij->i", rows, rows)
     return squares
 
 
 def row_norms(rows: Array) -> Array:
-    """The Euclidean norm of each row."""
+    """Computes the Euclidean norm of each row."""
     norms: Array = np.sqrt(row_squares(rows))
     return norms
 
 
 def between(values: Array, bounds: tuple[float, float]) -> Array:
-    """Which values lie strictly between the bounds."""
+    """Returns true for values strictly between the bounds."""
     inside: Array = (bounds[0] < values) & (values < bounds[1])
     return inside

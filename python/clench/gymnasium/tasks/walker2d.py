@@ -17,12 +17,12 @@ class Walker2dVectorEnv(UprightRunner):
     Parameters
     ----------
     num_envs : int
-        How many environments.
+        Number of environments.
     xml_file, frame_skip, forward_reward_weight, ctrl_cost_weight, healthy_reward, terminate_when_unhealthy, \
 healthy_z_range, healthy_angle_range, reset_noise_scale, exclude_current_positions_from_observation
         As in gymnasium.
     **kwargs
-        What :class:`clench.gymnasium.BatchEnv` takes.
+        Arguments of :class:`clench.gymnasium.BatchEnv`.
     """
 
     def __init__(
@@ -57,13 +57,13 @@ healthy_z_range, healthy_angle_range, reset_noise_scale, exclude_current_positio
         self.healthy_angle_range = healthy_angle_range
 
     def healthy(self) -> NDArray[Any]:
-        """High and upright enough."""
+        """Returns true if height and angle are within their ranges."""
         qpos = self.batch.qpos
         healthy: NDArray[Any] = between(qpos[:, 1], self.healthy_z_range)
         return healthy & between(qpos[:, 2], self.healthy_angle_range)
 
 
 class Walker2dEnv(SingleEnv):
-    """One Walker2d."""
+    """A single Walker2d environment."""
 
     task = Walker2dVectorEnv

@@ -1,4 +1,4 @@
-//! The two bodies that the search for the largest gap is about: shapes, or the ground under a triangle of terrain.
+//! The bodies of the search for the largest gap: shapes, or the ground below a triangle of terrain.
 
 use super::prism::Prism;
 use crate::shape::{Core, Curvature, EllipsoidCore, Feature};
@@ -9,9 +9,9 @@ use clench_math::{Scalar, Vec3};
 #[derive(Clone)]
 pub(super) struct Body<'a, S> {
     core: AnyCore<'a, S>,
-    /// Radius of the ball that is added to the core, m.
+    /// The radius of the ball that is added to the core, m.
     pub radius: S,
-    /// Radius of a sphere about the origin that holds the body, m.
+    /// The radius of a sphere about the origin that encloses the body, m.
     pub bounding_radius: S,
 }
 
@@ -23,11 +23,11 @@ enum AnyCore<'a, S> {
     Cylinder(Cylinder<S>),
     Box(Cuboid<S>),
     Hull(Mesh<'a, S>),
-    /// Under the triangle of a height field that is at hand.
+    /// The ground below a triangle of a height field.
     Prism(&'a Prism<S>),
 }
 
-/// The same expression for every variant of [`AnyCore`], with the core in it bound to a name.
+/// Evaluates an expression for each variant of [`AnyCore`], with the core bound to a name.
 macro_rules! of_core {
     ($body:expr, $core:ident => $answer:expr) => {
         match &$body.core {
@@ -43,7 +43,7 @@ macro_rules! of_core {
 }
 
 impl<'a, S: Scalar> Body<'a, S> {
-    /// The body of a bounded convex shape; a point for any other.
+    /// Creates the body of a bounded convex shape; a point for any other.
     pub(super) fn new(shape: &Shape<'a, S>) -> Self {
         let core = match *shape {
             Shape::Plane(_) | Shape::HeightField(_) => AnyCore::Point(Sphere { radius: S::ZERO }),
@@ -57,7 +57,7 @@ impl<'a, S: Scalar> Body<'a, S> {
         Body::of_core(core, shape.bounding_radius())
     }
 
-    /// One triangle of a height field.
+    /// Creates the body below a triangle.
     pub(super) fn of_prism(prism: &'a Prism<S>) -> Self {
         Body::of_core(AnyCore::Prism(prism), prism.bounding_radius())
     }
@@ -72,7 +72,7 @@ impl<'a, S: Scalar> Body<'a, S> {
         body
     }
 
-    /// The cylinder that it is, if it is one.
+    /// Returns the cylinder if the body is one.
     pub(super) fn as_cylinder(&self) -> Option<&Cylinder<S>> {
         match &self.core {
             AnyCore::Cylinder(cylinder) => Some(cylinder),

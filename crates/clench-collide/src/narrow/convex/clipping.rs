@@ -1,28 +1,28 @@
-//! Features projected along the contact's normal, and clipping one against the other.
+//! Features projected along the contact normal, and their clipping.
 //!
-//! In the projection an edge is a segment and a face a convex polygon, with a height that is linear over it. One is clipped
-//! against the sides of the other. A round cap is its circle where it matters: what is left of a segment or a polygon over it are their
-//! corners within the circle, the ends of their chords, and such points of the circle as lie in the polygon.
+//! In the projection an edge is a segment and a face a convex polygon, with a linear height. One is clipped against the
+//! sides of the other. A round cap clips as a circle: it keeps corners within the circle, the ends of chords, and
+//! sample points of the circle inside the polygon.
 
 use crate::narrow::polygon::Polygon;
 use crate::shape::{Feature, MAX_CORNERS};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// Edges at less than this angle lie side by side; others cross.
+/// The angle below which edges are parallel; others cross.
 const PARALLEL: f64 = 1e-3;
 
-/// An edge or a face, projected: x and y across the normal, z along it.
+/// A projected edge or face: x and y across the normal, z along it.
 pub(super) struct ProjectedFeature<S> {
     corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
-    /// The slope of its height.
+    /// The slope of the height.
     slope: (S, S),
-    /// The round cap that the polygon stands for.
+    /// The round cap that the polygon samples.
     disc: Option<Disc<S>>,
 }
 
-/// A round cap: two axes in its plane, a point that has its middle's coordinates along them, its radius, and the way from its middle
-/// to its first corner.
+/// A round cap: two axes in its plane, a point with the coordinates of its middle along them, its radius, and the
+/// vector from its middle to its first corner.
 struct Disc<S> {
     x: Vec3<S>,
     y: Vec3<S>,
@@ -32,8 +32,8 @@ struct Disc<S> {
 }
 
 impl<S: Scalar> ProjectedFeature<S> {
-    /// A feature whose body has this origin and these axes in the projection; `below` if the normal points out of its body, which
-    /// turns the order of corners round.
+    /// Projects a feature of a body with the given origin and axes in the projection. `below` is true if the normal
+    /// points into the body, which reverses the order of corners.
     pub(super) fn new(feature: &Feature<S>, origin: Vec3<S>, axes: &Mat3<S>, below: bool) -> Self {
         let mut corners = ArrayVec::new();
         let place = |corner: &Vec3<S>| origin + *axes * *corner;
@@ -71,30 +71,30 @@ impl<S: Scalar> ProjectedFeature<S> {
         self.corners.len() == 2
     }
 
-    /// Whether it is a round cap.
+    /// Returns true if it is a round cap.
     pub(super) fn is_cap(&self) -> bool {
         self.disc.is_some()
     }
 
-    /// From the middle of a round cap to its first corner.
+    /// Returns the vector from the middle of a round cap to its first corner.
     pub(super) fn cap_direction(&self) -> Option<Vec3<S>> {
         self.disc.as_ref().map(|disc| disc.first)
     }
 
-    /// A direction that turns with the body: to the first corner of a round cap, along the first edge of any other face.
+    /// Returns a direction that rotates with the body: to the first corner of a round cap, else along the first edge.
     pub(super) fn direction(&self) -> Vec3<S> {
         let along_edge = || self.corners[1] - self.corners[0];
         self.cap_direction().unwrap_or_else(along_edge)
     }
 
-    /// The height of the feature's plane at a point of the projection.
+    /// Returns the height of the feature's plane at a point of the projection.
     pub(super) fn height(&self, p: Vec3<S>) -> S {
         let origin = self.corners[0];
         origin.z + self.slope.0 * (p.x - origin.x) + self.slope.1 * (p.y - origin.y)
     }
 
-    /// Fills `out` with where this and another overlap in the projection, or are at most `slack` m from it: the corners of a polygon,
-    /// the ends of a segment, or a point. The heights of these are open.
+    /// Sets `out` to the overlap of two features in the projection, extended by `slack` m: the corners of a polygon,
+    /// the ends of a segment, or a point. Their heights are undefined.
     pub(super) fn overlap(&self, other: &ProjectedFeature<S>, slack: S, out: &mut Polygon<S>) {
         out.clear();
         if let (&[p, p_end], &[q, q_end]) = (&self.corners[..], &other.corners[..])
@@ -102,7 +102,7 @@ impl<S: Scalar> ProjectedFeature<S> {
         {
             return out.push(crossing((p, p_end), (q, q_end)));
         }
-        // An edge is cut by a face, a polygon by a circle, many sides by few.
+        // A face clips an edge, a circle a polygon, few sides many.
         let self_is_cut = self.is_edge()
             || (!other.is_edge()
                 && (other.disc.is_some()
@@ -133,7 +133,7 @@ impl<S: Scalar> ProjectedFeature<S> {
         }
     }
 
-    /// Whether a point of the projection lies in this face.
+    /// Returns true if a point of the projection lies in this face.
     fn covers(&self, p: Vec3<S>, slack: S) -> bool {
         if let Some(disc) = &self.disc {
             let (x, y) = self.in_plane(disc, p);
@@ -146,13 +146,13 @@ impl<S: Scalar> ProjectedFeature<S> {
         })
     }
 
-    /// The coordinates, in the plane of this cap and from its middle, of the point above or below a point of the projection.
+    /// Returns the coordinates, in the plane of this cap and from its middle, of a point of the projection.
     fn in_plane(&self, disc: &Disc<S>, p: Vec3<S>) -> (S, S) {
         let arm = Vec3::new(p.x, p.y, self.height(p)) - disc.center;
         (disc.x.dot(arm), disc.y.dot(arm))
     }
 
-    /// The part of an edge or a face within this round cap.
+    /// Clips an edge or a face to this round cap.
     fn clip_to_disc(
         &self,
         disc: &Disc<S>,
@@ -168,7 +168,7 @@ impl<S: Scalar> ProjectedFeature<S> {
             return;
         }
         let corners = &cut.corners;
-        // What holds all corners holds the face.
+        // If all corners are inside, so is the face.
         if corners.iter().all(|p| self.covers(*p, slack)) {
             corners.iter().for_each(|corner| out.push(*corner));
             return;
@@ -193,8 +193,8 @@ impl<S: Scalar> ProjectedFeature<S> {
         out.sort_around();
     }
 
-    /// Where along a segment it enters and leaves this cap's circle, its ends being 0 and 1; both where it is nearest to the
-    /// middle if it misses the circle.
+    /// Returns the parameters, 0 to 1 on the segment, at which it enters and leaves this cap's circle; twice that
+    /// nearest to the middle if it misses the circle.
     fn chord(&self, disc: &Disc<S>, p: Vec3<S>, q: Vec3<S>) -> (S, S) {
         let (from, to) = (self.in_plane(disc, p), self.in_plane(disc, q));
         let along = (to.0 - from.0, to.1 - from.1);
@@ -216,7 +216,7 @@ fn parallel<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> bool {
     turn(u, v).squared() <= lengths * S::new(PARALLEL * PARALLEL)
 }
 
-/// Where two segments cross in the projection, or come nearest to that.
+/// Returns the crossing of two segments in the projection, or the nearest approximation.
 fn crossing<S: Scalar>((p, p_end): (Vec3<S>, Vec3<S>), (q, q_end): (Vec3<S>, Vec3<S>)) -> Vec3<S> {
     let (u, v, offset) = (p_end - p, q_end - q, q - p);
     let inverse = S::ONE / turn(u, v);

@@ -1,22 +1,24 @@
-//! The largest gap of a cylinder and a polyhedron of few faces that overlap, among the few directions that can have it.
+//! The largest gap of an overlapping cylinder and polyhedron with few faces, among a few candidate directions.
 //!
-//! Where two bodies overlap, the penetration depth is attained at a smooth point of the boundary of their difference, which has
-//! exactly one normal n. With a cylinder of axis z and a polyhedron that leaves
+//! If two bodies overlap, the penetration depth is attained at a smooth point of the boundary of their difference,
+//! which has exactly one normal n. For a cylinder with axis z and a polyhedron the candidates are
 //!
 //! ```text
 //! m, z         a normal of a face; of a cap            z × b       an edge b across the side of the cylinder
 //! n across z   a corner on the side                    n across b  an edge b on the cap circle
 //! ```
 //!
-//! A corner on the side matters only where all of the polyhedron is beside the axis, and then it is the corner nearest to it.
-//! Seen along b the cap circle is an ellipse, the edge a point, and n the normal of the ellipse that goes through that point.
+//! A corner on the side is relevant only if the whole polyhedron is beside the axis, and then it is the corner nearest
+//! to it. Seen along b the cap circle is an ellipse, the edge a point, and n the normal of the ellipse through that
+//! point.
 //!
-//! An edge touches along the directions between the normals of its faces. Let g be the gap through the edge on the way from one
-//! of them, m, to a direction n at the angle θ where it is as large as it gets. A support function and its second derivative have
-//! no negative sum, so g″ ≤ −g, and g(n) ≤ g(m) cos θ + g′(m) sin θ. That bounds g′(m) from below, most weakly at the other normal;
-//! g′(m) is how far beyond the edge, in the face's plane, the cylinder touches along m. So most edges need not be searched.
+//! An edge touches along the directions between the normals of its faces. Let g be the gap through the edge on the path
+//! from one of them, m, to the direction n of the largest g at the angle θ. A support function plus its second
+//! derivative is not negative, so g″ ≤ −g, and g(n) ≤ g(m) cos θ + g′(m) sin θ. This bounds g′(m) from below, most
+//! weakly at the other normal. g′(m) is the distance beyond the edge, in the face's plane, at which the cylinder
+//! touches along m. So most edges need not be searched.
 //!
-//! If the bodies are apart some of these directions show it, but then the largest gap may be along another.
+//! If the bodies are apart, some of these directions prove it, but the largest gap may be along another.
 
 use super::{
     ellipse::Ellipse,
@@ -29,7 +31,7 @@ use crate::{Cuboid, Cylinder};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// The largest gap of a prism and a cylinder if it is not positive, else one that is.
+/// Returns the largest gap of a prism and a cylinder if it is not positive, else any positive one.
 pub(super) fn prism_gap<S: Scalar>(
     pair: &Pair<S>,
     prism: &Prism<S>,
@@ -66,7 +68,7 @@ pub(super) fn prism_gap<S: Scalar>(
     }
 }
 
-/// The largest gap of a cylinder and a box if it is not positive, else one that is.
+/// Returns the largest gap of a cylinder and a box if it is not positive, else any positive one.
 pub(super) fn box_gap<S: Scalar>(
     pair: &Pair<S>,
     cylinder: &Cylinder<S>,
@@ -74,7 +76,7 @@ pub(super) fn box_gap<S: Scalar>(
     limit: S,
 ) -> Gap<S> {
     let size = cuboid.half_lengths;
-    // Of each axis first what is along it, then what is against it.
+    // For each axis, first along it, then against it.
     let sign = |bits: usize, k: usize| [S::ONE, -S::ONE][bits >> k & 1];
     let unit = |k: usize| Mat3::IDENTITY.rows[k];
     let corners = (0..8).map(|k| size.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2))));
@@ -100,7 +102,8 @@ pub(super) fn box_gap<S: Scalar>(
     FramedCylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit)
 }
 
-/// The largest gap of a cylinder and a hull if it is not positive, else one that is; nothing where the hull has many faces.
+/// Returns the largest gap of a cylinder and a hull if it is not positive, else any positive one; `None` if the hull
+/// has many faces.
 pub(super) fn hull_gap<S: Scalar>(
     pair: &Pair<S>,
     cylinder: &Cylinder<S>,
@@ -131,12 +134,12 @@ struct FramedCylinder<S> {
     half: S,
 }
 
-/// A face, and where the cylinder touches along its normal.
+/// A face, and the point at which the cylinder touches along its normal.
 struct Face<S> {
     outward: Vec3<S>,
-    /// How far the cylinder has to go to leave across it, m.
+    /// The distance that the cylinder must move to separate across the face, m.
     depth: S,
-    /// The point of the cylinder that is furthest against it, as its cross product with the normal.
+    /// The cross product of the cylinder's point that is furthest against the face with the normal.
     moment: Vec3<S>,
 }
 
@@ -144,34 +147,34 @@ struct Face<S> {
 struct PolyhedronEdge<S> {
     /// One of its ends.
     start: Vec3<S>,
-    /// The unit direction to the other.
+    /// The unit direction to the other end.
     along: Vec3<S>,
-    /// The cross product of the two.
+    /// The cross product of `start` and `along`.
     moment: Vec3<S>,
-    /// The number of the face that goes along it, and of the one that comes back.
+    /// The index of the face to its left, and of the one to its right, seen from outside.
     faces: [usize; 2],
     /// The cosine and the sine of the angle between their normals.
     turn: (S, S),
 }
 
 impl<S: Scalar> PolyhedronEdge<S> {
-    /// Whether the gap through it may be as large as it gets, and no deeper than `depth`, between its faces.
+    /// Returns true if the gap through the edge may have its maximum between its faces, at no more than `depth`.
     #[inline(always)]
     fn may_touch(&self, [m, n]: [&Face<S>; 2], depth: S) -> bool {
         let (cosine, sine) = self.turn;
-        // How far within the edge the cylinder touches a face.
+        // The distance inside the edge at which the cylinder touches a face.
         let within = [
             self.along.dot(m.moment) + m.outward.dot(self.moment),
             -self.along.dot(n.moment) - n.outward.dot(self.moment),
         ];
         let near = |within: S, face: &Face<S>| within * sine <= depth - face.depth * cosine;
-        // Both, without a branch that cannot be predicted.
+        // Test both without an unpredictable branch.
         near(within[0], m) & near(within[1], n)
     }
 }
 
 impl<S: Scalar> FramedCylinder<S> {
-    /// The first of a pair, in the frame of the second.
+    /// Returns the first body of a pair, in the frame of the second.
     fn first(pair: &Pair<S>, shape: &Cylinder<S>) -> Self {
         FramedCylinder {
             axis: pair.rotation.rows[2],
@@ -181,7 +184,7 @@ impl<S: Scalar> FramedCylinder<S> {
         }
     }
 
-    /// What the search finds, in the frame of the first of a pair.
+    /// Runs the search in the frame of the first body of a pair.
     #[inline(always)]
     fn gap(
         &self,
@@ -199,10 +202,10 @@ impl<S: Scalar> FramedCylinder<S> {
         }
     }
 
-    /// The direction from the cylinder to the polyhedron with the largest gap if that is not positive, else one whose gap is; one
-    /// beyond `limit` will do.
+    /// Returns the direction from the cylinder to the polyhedron with the largest gap if it is not positive, else any
+    /// with a positive gap; one beyond `limit` ends the search.
     ///
-    /// Of each face the outward unit normal and how far the polyhedron reaches along it.
+    /// `faces` yields the outward unit normal of each face and the extent of the polyhedron along it.
     #[inline(always)]
     fn search(
         &self,
@@ -246,7 +249,7 @@ impl<S: Scalar> FramedCylinder<S> {
         }
     }
 
-    /// The caps, and the corner nearest to the axis against the side.
+    /// Tries the caps, and the corner nearest to the axis against the side.
     #[inline(always)]
     fn corners(&self, corners: impl Iterator<Item = Vec3<S>> + Clone, best: &mut LargestGap<S>) {
         let (mut low, mut high) = (S::INFINITY, -S::INFINITY);
@@ -264,7 +267,7 @@ impl<S: Scalar> FramedCylinder<S> {
         best.offer(-high - self.half, || -self.axis);
         let moment = self.axis.cross(least.1);
         let (normal, distance) = moment.cross(self.axis).normalize();
-        // A corner on the axis is as far from all of the side.
+        // A corner on the axis is equally far from all of the side.
         let normal = if distance > S::ZERO {
             normal
         } else {
@@ -278,7 +281,7 @@ impl<S: Scalar> FramedCylinder<S> {
         }
     }
 
-    /// An edge against the side and the cap circles, along directions that do not point out of either of its faces.
+    /// Tries an edge against the side and the cap circles, along directions between its faces' inward normals.
     fn edge(&self, edge: &PolyhedronEdge<S>, [m, n]: [&Face<S>; 2], best: &mut LargestGap<S>) {
         let across = edge.along.cross(self.axis);
         let (cosine, sine) = (edge.along.dot(self.axis).abs(), across.norm());
@@ -288,7 +291,7 @@ impl<S: Scalar> FramedCylinder<S> {
         let across = across * (S::ONE / sine);
         let inward = [m.outward.cross(edge.along), edge.along.cross(n.outward)];
         let from_middle = edge.start - self.middle;
-        // Seen along the edge, with x across the axis, the edge is where x is positive.
+        // Seen along the edge, with x across the axis, the edge is at positive x.
         let x = across.dot(from_middle);
         let side = S::ONE.copysign(x);
         let (x, out) = (x.abs(), inward.map(|d| across.dot(d) * side));

@@ -1,19 +1,19 @@
-//! The largest gap of two cylinders that overlap, among the few directions that can have it, unless it may be across two cap
+//! The largest gap of two overlapping cylinders among a few candidate directions, unless it may be across two cap
 //! circles.
 //!
-//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]) few directions are normals at a smooth point of
-//! the boundary of the difference. With the axes z and u these are
+//! As for a cylinder and a polyhedron (see [`super::cylinder_polyhedron`]), few directions are normals at a smooth
+//! point of the boundary of the difference. With the axes z and u these are
 //!
 //! ```text
 //! z, u       a cap                     n across z or u  a circle on the side of the other: the normal of an ellipse
 //! z × u      a side across a side      any other n      a circle across a circle
 //! ```
 //!
-//! Seen along its axis a cylinder is a circle, the other a rectangle with halves of an ellipse at its ends; their middle lines are
-//! the same, so the smallest depth is in the quarter that the offset points to.
+//! Along its own axis one cylinder is projected to a circle, the other to a rectangle with half ellipses at its ends.
+//! Their middle lines coincide, so the smallest depth is in the quarter of the offset.
 //!
-//! A direction across two cap circles with a depth below d joins one to the other: each passes within d of both the cap and the
-//! side of the other cylinder, inside. Where they do not, the other directions are all there are.
+//! A direction across two cap circles with a depth below d joins one to the other: each passes, inside, within d of
+//! both the cap and the side of the other cylinder. If they do not, the other directions are sufficient.
 
 use super::{
     ellipse::Ellipse,
@@ -24,15 +24,15 @@ use crate::Cylinder;
 use crate::shape::Solid;
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two cap circles,
-/// or no common point is at hand.
+/// Returns the largest gap of two overlapping cylinders, or a positive one if they are apart. It is not settled if it
+/// may be across two cap circles, or if no common point is known.
 pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) -> Gap<S> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
     let (cosine, sine) = (
         axes[1].z,
         (axes[1].x.squared() + axes[1].y.squared()).sqrt(),
     );
-    // No point of either is moved noticeably by so small a tilt.
+    // Such a tilt moves no point noticeably.
     if sine * pair.largest <= pair.tolerance {
         return parallel(pair);
     }
@@ -58,7 +58,7 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) 
     axes.into_iter().for_each(&mut offer);
     offer(across);
     let [first, second] = &cylinders;
-    // At the ends of a flat ellipse the normal is anywhere in a quarter, of one hardly less flat it is determined.
+    // The normal at the ends of a flat ellipse is ambiguous; a slightly rounder one makes it unique.
     let ellipse = Ellipse::new(cosine.abs().max(S::EPSILON), sine);
     for (own, other) in [(first, second), (second, first)] {
         let [x, y, _] = own.offset;
@@ -78,11 +78,11 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) 
     }
 }
 
-/// The same where the axes are parallel: then the difference is a cylinder too, which is left across a cap or across its side.
+/// Returns the same for parallel axes: the difference is then a cylinder too, which is left across a cap or its side.
 fn parallel<S: Scalar>(pair: &Pair<S>) -> Gap<S> {
     let (x, y) = (pair.offset.x, pair.offset.y);
     let (side, distance) = Vec3::new(x, y, S::ZERO).normalize();
-    // Around a common axis all directions are as good, and one that turns with the first body stays.
+    // If the axes coincide all directions are equal; use one that rotates with the first body.
     let side = if distance > pair.tolerance {
         side
     } else {
@@ -95,7 +95,7 @@ fn parallel<S: Scalar>(pair: &Pair<S>) -> Gap<S> {
     best
 }
 
-/// Whether a direction across two cap circles may have a smaller depth than `depth`.
+/// Returns true if a direction across two cap circles may have a smaller depth than `depth`.
 fn circles_cross<S: Scalar>([a, b]: &[SkewCylinder<S>; 2], angle: (S, S), depth: S) -> bool {
     ENDS.into_iter().any(|ends| {
         let [end, other] = ends.map(S::new);
@@ -103,22 +103,23 @@ fn circles_cross<S: Scalar>([a, b]: &[SkewCylinder<S>; 2], angle: (S, S), depth:
     })
 }
 
-/// Whether the axes' nearest points are within both cylinders: then they overlap, if no gap is across both axes.
+/// Returns true if the nearest points of the axes are within both cylinders. Then they overlap, unless a gap is across
+/// both axes.
 fn axes_pass<S: Scalar>([a, b]: &[SkewCylinder<S>; 2], sine: S) -> bool {
     a.offset[1].abs() <= b.half * sine && b.offset[1].abs() <= a.half * sine
 }
 
-/// Whether the deepest point of one, along the normal, is within the other.
+/// Returns true if the deepest point of one, along the normal, is within the other.
 fn deepest_inside<S: Scalar>(pair: &Pair<S>, [a, b]: [&Cylinder<S>; 2], normal: Vec3<S>) -> bool {
     let deepest = pair.vertex(normal);
     a.contains(pair.offset + pair.rotation * deepest.b)
         || b.contains(pair.rotation.transpose_mul(deepest.a - pair.offset))
 }
 
-/// Signs of the caps of both.
+/// The signs of both cylinders' caps.
 const ENDS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
 
-/// A cylinder, and where the other one is from its middle: across both axes, along `side`, and along its own axis.
+/// A cylinder, and the offset of the other one from its middle: across both axes, along `side`, and along its own axis.
 struct SkewCylinder<S> {
     radius: S,
     half: S,
@@ -128,12 +129,12 @@ struct SkewCylinder<S> {
 }
 
 impl<S: Scalar> SkewCylinder<S> {
-    /// Whether a cap circle of another cylinder passes within `depth` of this one's cap and side, inside, at one of its ends; `ends` select
-    /// that end and the circle. (Or it may pass.)
+    /// Returns true if a cap circle of another cylinder may pass, inside, within `depth` of this one's cap and side at
+    /// one of its ends; `ends` select that end and the circle.
     ///
-    /// The cap circle runs through (x + r C, y − r γ S, z + r σ S) with C = cos θ and S = sin θ, where γ and σ are the cosine and the
-    /// sine between the axes. Within `depth` of the cap S is in an interval; there the cap circle is in one of two rectangles,
-    /// projected along the axis, that must reach into a ring.
+    /// The cap circle runs through (x + r C, y − r γ S, z + r σ S) with C = cos θ and S = sin θ, where γ and σ are the
+    /// cosine and the sine between the axes. Within `depth` of the cap S is in an interval. There the cap circle,
+    /// projected along the axis, is in one of two rectangles, which must overlap a ring.
     #[inline]
     fn near_circle(&self, other: &Self, ends: [S; 2], (cosine, sine): (S, S), depth: S) -> bool {
         let [x, y, z] = self.offset;
@@ -164,7 +165,7 @@ impl<S: Scalar> SkewCylinder<S> {
     }
 }
 
-/// How far the numbers of an interval are from 0, at least and at most.
+/// Returns the minimum and maximum magnitude in an interval.
 #[inline]
 fn distances<S: Scalar>((low, high): (S, S)) -> (S, S) {
     (low.max(-high).max(S::ZERO), high.max(-low))

@@ -1,21 +1,22 @@
 //! The normals of an ellipse through a point.
 //!
-//! With C = cos θ and S = sin θ the ellipse is at (C, b S), its normal there (b C, S) goes through the point (x, y) where
+//! With C = cos θ and S = sin θ the ellipse is at (C, b S). Its normal there, (b C, S), goes through the point (x, y)
+//! if
 //!
 //! ```text
 //! G(θ) = (1 − b²) S C − x S + b y C = 0,      G + G″ = −3 (1 − b²) S C ≤ 0 in the first quarter.
 //! ```
 //!
-//! Being no more curved than a sinusoid, G has at most two roots there, from − to + and from + to −. The second one is where the
-//! gap along the normal is a maximum, and Newton's method with sinusoids for tangents comes down to it from the y axis without
-//! passing it.
+//! Being no more curved than a sinusoid, G has at most two roots there, from − to + and from + to −. At the second the
+//! gap along the normal is a maximum, and Newton's method with sinusoids for tangents approaches it from the y axis
+//! without overshoot.
 
 use clench_math::Scalar;
 
-/// Newton's method stops after this many steps, converged or not. Four are usual.
+/// The maximum number of Newton steps. Four are usual.
 const STEPS: usize = 16;
 
-/// An ellipse with semi-axes 1 along x and b ≤ 1 along y: a circle seen aslant.
+/// An ellipse with semi-axes 1 along x and b ≤ 1 along y: an obliquely projected circle.
 pub(super) struct Ellipse<S> {
     minor: S,
     /// 1 − b².
@@ -23,7 +24,7 @@ pub(super) struct Ellipse<S> {
 }
 
 impl<S: Scalar> Ellipse<S> {
-    /// The projection of a unit circle whose axis is at an angle of this cosine and sine to the line of sight.
+    /// Projects a unit circle whose axis has this cosine and sine to the line of sight.
     pub(super) fn new(cosine: S, sine: S) -> Self {
         Ellipse {
             minor: cosine,
@@ -31,8 +32,8 @@ impl<S: Scalar> Ellipse<S> {
         }
     }
 
-    /// The unit normal in the first quarter that goes through a point with x ≥ 0 and along which the gap between ellipse and point
-    /// is the largest around, if there is one.
+    /// Returns the unit normal in the first quarter that goes through a point with x ≥ 0 and along which the gap
+    /// between ellipse and point has a local maximum, if there is one.
     #[inline]
     pub(super) fn normal_through(&self, (x, y): (S, S)) -> Option<(S, S)> {
         let (square, height) = (self.square, self.minor * y);

@@ -1,18 +1,18 @@
-//! How deep two cores overlap: the expanding polytope algorithm (van den Bergen 2001).
+//! The depth of two overlapping cores: the expanding polytope algorithm (van den Bergen 2001).
 //!
-//! The difference of the cores holds the origin, and its boundary point nearest to the origin gives the penetration depth and direction.
-//! A polytope of its vertices grows: the face nearest to the origin is replaced by faces to the vertex that is furthest
-//! along its normal. Any direction m bounds the depth from above by how far the difference reaches along it, the
-//! polytope's nearest face bounds it from below:
+//! The difference of the cores contains the origin, and its boundary point nearest to the origin gives the penetration
+//! depth and direction. A polytope of its vertices grows: the face nearest to the origin is replaced by faces to the
+//! vertex that is furthest along its normal. The extent of the difference along any direction m is an upper bound of
+//! the depth, the polytope's nearest face a lower bound:
 //!
 //! ```text
 //! nearest face  ≤  depth  ≤  m·w(−m).
 //! ```
 //!
-//! Bodies with flat faces end exactly, at a face that cannot be moved. For curved bodies the upper bound comes from
-//! Newton's method, to the last digits, and the lower bound need only show that no other direction gives a noticeably smaller depth.
-//! Where the polytope runs out of room before it has, in the middle of thin round bodies, the directions across two creases
-//! of the gap are tried too: among depths that are nearly equal the smallest lies there.
+//! Bodies with flat faces end exactly, at a face that cannot be moved. For curved bodies Newton's method gives an
+//! accurate upper bound, and the lower bound need only exclude noticeably smaller depths. If the polytope's capacity is
+//! exhausted before, in the middle of thin round bodies, the directions across two creases of the gap are tried too:
+//! among nearly equal depths the smallest is there.
 
 use super::{
     pair::{Gap, Pair, Vertex},
@@ -22,18 +22,18 @@ use super::{
 };
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// Rounds until an answer is given, certain or not. Most move a face, some find that it cannot be moved.
+/// The maximum number of rounds. Most move a face, some find that it cannot be moved.
 const ROUNDS: usize = 2 * VERTICES;
-/// By how much, as a share of the smaller body, the true depth of curved bodies may be smaller than the one found.
+/// The maximum error of the depth of curved bodies, relative to the smaller body.
 const SLACK: f64 = 1e-4;
-/// Newton's method is tried where a face can be moved by less than this share of the smaller body.
+/// The distance that a face can be moved, relative to the smaller body, below which Newton's method is tried.
 const NEAR: f64 = 0.1;
 
-/// A polytope begins with vertices that are further apart than this share of the smaller body, if it can.
+/// The preferred minimum distance of the initial vertices, relative to the smaller body.
 const FAR: f64 = 0.05;
 
-/// The largest gap of overlapping cores, which is negative. The simplex holds the origin, and ends on the face of the difference
-/// that the gap belongs to.
+/// Returns the largest gap of overlapping cores, which is negative. The simplex must contain the origin, and becomes
+/// the face of the difference that the gap belongs to.
 pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, simplex: &mut Simplex<S>) -> Gap<S> {
     let mut polytope = Polytope::empty(pair);
     match enclose(pair, simplex.vertices()) {
@@ -43,10 +43,10 @@ pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, simplex: &mut Simpl
     expand(pair, start, &mut polytope, simplex)
 }
 
-/// Four vertices with a volume, among them the given ones where these span something.
+/// Returns four vertices that span a volume, including the given ones if they span enough.
 ///
 /// # Errors
-/// The difference has no volume: the gap across it, which is the largest.
+/// Returns the gap across the difference, the largest, as an error if it has no volume.
 fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>; 4], Gap<S>> {
     let least = pair.largest * S::EPSILON * S::new(16.0);
     let axes = Mat3::IDENTITY.rows;
@@ -66,10 +66,11 @@ fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>;
     Ok([first, second, third, fourth])
 }
 
-/// The given vertex that is furthest; if that is not far, the furthest along or against any of the directions, if further.
+/// Returns the given vertex that is furthest; if it is not far, the furthest along or against any of the directions, if
+/// further.
 ///
 /// # Errors
-/// None is further than `least`: the gap along the first direction, or against it.
+/// Returns the gap along or against the first direction as an error if none is beyond `least`.
 fn furthest<S: Scalar>(
     pair: &Pair<S>,
     given: &[Vertex<S>],
@@ -104,7 +105,7 @@ fn furthest<S: Scalar>(
     Err(gap)
 }
 
-/// Grows until the depth is known.
+/// Expands the polytope until the depth is known.
 fn expand<S: Scalar>(
     pair: &Pair<S>,
     start: Vec3<S>,
@@ -113,12 +114,12 @@ fn expand<S: Scalar>(
 ) -> Gap<S> {
     let mut best = pair.gap(start);
     let mut touching = polytope.corners(0);
-    // Whether Newton's method has already refined the best direction.
+    // True if Newton's method has refined the best direction.
     let mut refined = false;
     let mut known = false;
     for _ in 0..ROUNDS {
         let (nearest, distance) = polytope.nearest();
-        // By how much the depth through the nearest face may still be smaller.
+        // The tolerance for a smaller depth through the nearest face.
         let slack = if best.settled {
             (pair.smallest * S::new(SLACK)).max(pair.tolerance)
         } else {
@@ -150,7 +151,7 @@ fn expand<S: Scalar>(
             break;
         }
         if !polytope.add(nearest, &vertex) {
-            // Rounding lets no vertex lie beyond it.
+            // Rounding prevents any vertex beyond it.
             polytope.close(nearest);
         }
         if better && pair.curved && movable < pair.smallest.max(distance) * S::new(NEAR) {

@@ -1,16 +1,15 @@
-//! Distance of two cores that are apart (Gilbert, Johnson & Keerthi 1988).
+//! The distance of two separate cores (Gilbert, Johnson & Keerthi 1988).
 //!
-//! The difference of the cores is a convex set of vectors w from the first to the second, and its point v nearest to the
-//! origin is the way from one to the other. A simplex of its vertices is kept: v is the simplex' nearest point, the vertex
-//! that is furthest against v is added, and so on. For any unit n
+//! The difference of the cores is a convex set of vectors w from the first to the second; its point v nearest to the
+//! origin is their separation. Repeatedly, v is set to the nearest point of a simplex of vertices, and the vertex
+//! furthest against v is added. For any unit n
 //!
 //! ```text
 //! n·w(n)  ≤  distance  ≤  |v|,
 //! ```
 //!
-//! so the loop knows how far it may be off. Against curved bodies it would take many iterations, each new vertex a little nearer to
-//! the touching point; there Newton's method takes over as soon as the bounds are near each other, and its direction is
-//! confirmed by the same bounds.
+//! so the loop knows its error bound. Curved bodies would take many iterations, each new vertex a little nearer to the
+//! touching point. There Newton's method is used once the bounds are close, and the same bounds confirm its direction.
 
 use super::{
     pair::{Gap, Pair},
@@ -19,31 +18,31 @@ use super::{
 };
 use clench_math::{Scalar, Vec3};
 
-/// The search ends after this many iterations, whether its answer is certain or not. Five to ten are usual.
+/// The maximum number of iterations. Five to ten are usual.
 const MAX_ITERATIONS: usize = 64;
-/// Newton's method is tried once the bounds differ by less than this share of the smaller body.
+/// The difference of the bounds, relative to the smaller body, below which Newton's method is tried.
 const NEAR: f64 = 0.1;
-/// The multiple of √ε, as a share of the larger coordinates, below which the direction of v is noise.
+/// The multiple of √ε, relative to the smaller body, below which the direction of v is noise.
 const NOISE: f64 = 4.0;
 
-/// The share of the smaller body by which the bounds may differ at the end of a search.
+/// The maximum difference of the bounds at the end of a search, relative to the smaller body.
 const MAX_DIFFERENCE: f64 = 1e-6;
 
-/// What is known of two cores.
+/// The result for two cores.
 pub(super) enum Cores<S> {
-    /// Further apart than the limit, as this gap shows.
+    /// The cores are further apart than the limit, as this gap proves.
     Apart(Gap<S>),
     /// The largest gap.
     Near(Gap<S>),
-    /// They overlap or touch.
+    /// The cores overlap or touch.
     Overlap,
 }
 
-/// The distance of the cores if it is at most `limit`. The simplex begins with the vertex along `start`, and ends as what the
-/// nearest points are made of, or holds the origin, but for rounding, where the cores overlap.
+/// Computes the largest gap of the cores if it is at most `limit`. The simplex must be the vertex along `start`, and
+/// becomes the vertices of the nearest points, or contains the origin, up to rounding, if the cores overlap.
 ///
-/// Vertices that nearly coincide make slivers, whose nearest point may be false. So the end of a search is checked against the bounds:
-/// where it contradicts them, another search begins with the best direction known, without Newton's vertices.
+/// Nearly coincident vertices form slivers, whose nearest point may be wrong. So the result is checked against the
+/// bounds: if it contradicts them, another search starts from the best known direction, without Newton's method.
 pub(super) fn gjk<S: Scalar>(
     pair: &Pair<S>,
     start: Vec3<S>,
@@ -75,17 +74,17 @@ pub(super) fn gjk<S: Scalar>(
     }
 }
 
-/// Why a search has ended.
+/// The reason why a search has ended.
 enum End<S> {
-    /// A gap beyond the limit.
+    /// A gap exceeds the limit.
     Beyond,
     /// The origin seems to be in the simplex.
     Inside,
-    /// Nothing is nearer to the origin than a point at this distance.
+    /// No point is nearer to the origin than this distance.
     Nearest(S),
 }
 
-/// Adds vertices until nothing is nearer; `newton` helps with curved bodies.
+/// Adds vertices until none is nearer; `newton` enables Newton's method.
 fn search<S: Scalar>(
     pair: &Pair<S>,
     limit: S,
@@ -107,7 +106,7 @@ fn search<S: Scalar>(
         if length - best.gap <= pair.tolerance {
             return End::Nearest(length);
         }
-        // Along v, not n: so the processor need not wait for the square root.
+        // Along v, not n, to avoid waiting for the square root.
         let vertex = pair.vertex(v);
         let n = v * (S::ONE / length);
         let gap = n.dot(vertex.w);

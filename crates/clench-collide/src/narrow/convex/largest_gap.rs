@@ -2,17 +2,17 @@
 
 use clench_math::{Scalar, Vec3};
 
-/// The largest gap so far, and its direction.
+/// The largest gap found and its direction.
 pub(super) struct LargestGap<S> {
     pub gap: S,
     pub normal: Vec3<S>,
-    /// What the gap along an exact direction must exceed: between equals, to the tolerance, the first one is kept.
+    /// The minimum for another gap: of gaps equal to the tolerance, the first is kept.
     bar: S,
     tolerance: S,
 }
 
 impl<S: Scalar> LargestGap<S> {
-    /// No gap as yet, and any direction.
+    /// Starts without a gap, with an arbitrary direction.
     pub(super) fn new(tolerance: S) -> Self {
         LargestGap {
             gap: -S::INFINITY,
@@ -22,7 +22,7 @@ impl<S: Scalar> LargestGap<S> {
         }
     }
 
-    /// Takes a better direction.
+    /// Keeps the direction if its gap is larger.
     #[inline]
     pub(super) fn offer(&mut self, gap: S, normal: impl FnOnce() -> Vec3<S>) {
         if gap > self.bar {
@@ -31,7 +31,7 @@ impl<S: Scalar> LargestGap<S> {
         }
     }
 
-    /// The penetration depth that another direction must undercut to be taken.
+    /// Returns the penetration depth that another direction must undercut.
     #[inline]
     pub(super) fn depth(&self) -> S {
         (-self.bar).max(S::ZERO)

@@ -1,5 +1,4 @@
-//! Any two convex shapes, by their support functions: how far apart or how deep they are, along which normal, and the points
-//! where they touch.
+//! Pairs of convex shapes, by their support functions: distance or depth, normal, and contact points.
 
 mod body;
 mod clipping;
@@ -31,8 +30,8 @@ use patch::patch;
 use simplex::Simplex;
 pub(super) use terrain::terrain;
 
-/// The contacts of two shapes that are bounded and convex. `axis`, a direction in which they were apart before, may show at once that there
-/// are none; where a search finds that they are apart, its direction becomes the next `axis`.
+/// Computes the contacts of two bounded convex shapes. `axis`, the last separating direction, may prove at once that
+/// there are none; a search that finds them apart updates it.
 #[kernel]
 pub(super) fn convex<T: Real>(
     a: AnyPlaced<T>,
@@ -53,10 +52,10 @@ pub(super) fn convex<T: Real>(
     });
 }
 
-/// The contacts of one environment.
+/// Computes the contacts of one environment.
 ///
 /// # Errors
-/// The bodies are more than `margin` apart: a direction that shows it, in the frame of the first.
+/// Returns a separating direction in the frame of the first as an error if the bodies are more than `margin` apart.
 pub(super) fn points<S: Scalar>(
     a: AnyPlaced<S>,
     b: AnyPlaced<S>,
@@ -79,7 +78,7 @@ pub(super) fn points<S: Scalar>(
     if let Some(apart) = known.filter(|known| known.gap > margin) {
         return Err(apart.normal);
     }
-    // Of bodies that are apart the gap found so is not always the distance.
+    // If the bodies are apart, this gap is not always the distance.
     if let Some(certain) = known.filter(|known| known.settled && known.gap <= S::ZERO) {
         patch_along(&pair, a, certain, margin, points);
         return Ok(());
@@ -93,15 +92,15 @@ pub(super) fn points<S: Scalar>(
     Ok(())
 }
 
-/// A direction to begin with, and the vertex along it.
+/// Returns a start direction and the vertex along it.
 #[inline(always)]
 fn begin<S: Scalar>(pair: &Pair<S>) -> (Vec3<S>, Simplex<S>) {
     let start = pair.start();
     (start, Simplex::new(pair.vertex(start)))
 }
 
-/// The largest gap between two cores, or, if the bodies are more than `margin` apart, one that shows it. The simplex begins with
-/// the vertex along `start` and ends as what the nearest points are made of.
+/// Returns the largest gap between two cores, or as an error a separating one if the bodies are more than `margin`
+/// apart. The simplex must be the vertex along `start` and becomes the vertices of the nearest points.
 fn nearest<S: Scalar>(
     pair: &Pair<S>,
     start: Vec3<S>,
@@ -121,7 +120,7 @@ fn nearest<S: Scalar>(
     }
 }
 
-/// The contacts of one environment whose normal and distance along it are known already; the normal in the first shape's frame.
+/// Computes the contacts of one environment from a known normal, in the first shape's frame, and gap.
 pub(super) fn points_along<S: Scalar>(
     (a, b): (AnyPlaced<S>, AnyPlaced<S>),
     (normal, gap): (Vec3<S>, S),
@@ -136,7 +135,7 @@ pub(super) fn points_along<S: Scalar>(
     patch_along(&Pair::new(a, b), a, known, margin, points);
 }
 
-/// The contacts of a pair whose largest gap was found without a simplex.
+/// Computes the contacts of a pair whose largest gap was found without a simplex.
 fn patch_along<S: Scalar>(
     pair: &Pair<S>,
     a: AnyPlaced<S>,

@@ -1,7 +1,7 @@
-//! Where two features overlap when they are projected along the normal.
+//! The overlap of two features projected along the normal.
 //!
-//! At each corner of the overlap the contact's distance is the difference of the features' heights. For many corners stand
-//! a few points on the outline (see [`Outline`]), and the deepest.
+//! At each corner of the overlap the contact's distance is the difference of the features' heights. Many corners are
+//! replaced by a few points on the outline (see [`Outline`]) and the deepest point.
 
 use super::clipping::ProjectedFeature;
 use super::pair::{Pair, Vertex, across};
@@ -13,18 +13,18 @@ use crate::shape::Feature;
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// Points of a patch are merged where they are nearer to each other than this share of the smaller body.
+/// The distance below which points of a patch are merged, relative to the smaller body.
 const SAME_POINT: f64 = 1e-5;
-/// The deepest point of a patch may be less deep than the pair by at most this share of the smaller body.
+/// The error of the patch's depth, relative to the smaller body.
 const MAX_MISS: f64 = 1e-6;
 
 /// A point of the patch, projected along the normal.
 #[derive(Clone, Copy)]
 pub(super) struct PatchPoint<S> {
-    /// Where it is across the normal.
+    /// The position across the normal.
     pub x: S,
     pub y: S,
-    /// Where the surfaces of both bodies are along the normal.
+    /// The heights of both surfaces along the normal.
     pub heights: (S, S),
 }
 
@@ -32,7 +32,7 @@ impl<S: Scalar> PatchPoint<S> {
     fn distance(&self) -> S {
         self.heights.1 - self.heights.0
     }
-    /// The same with another distance.
+    /// Returns the same point with another distance.
     fn at_distance(&self, distance: S) -> Self {
         let middle = (self.heights.0 + self.heights.1) * S::new(0.5);
         let half = distance * S::new(0.5);
@@ -49,17 +49,17 @@ pub(super) type PatchPoints<S> = ArrayVec<PatchPoint<S>, { CAPACITY + 1 }>;
 /// Two features of a pair, projected along the normal of the largest gap.
 pub(super) struct Overlap<'a, S> {
     pair: &'a Pair<'a, S>,
-    /// Two directions across the normal, and the normal.
+    /// Rows: two directions across the normal, and the normal.
     projection: Mat3<S>,
     features: [ProjectedFeature<S>; 2],
     /// The gap of the cores along the normal.
     gap: S,
-    /// The deepest point may be less deep than the pair by so much, m.
+    /// The tolerance of the deepest point's distance, m.
     slack: S,
 }
 
 impl<'a, S: Scalar> Overlap<'a, S> {
-    /// The features of both bodies, each in its body's frame, along the unit normal `n`.
+    /// Projects the features of both bodies, each in its body's frame, along the unit normal `n`.
     pub(super) fn new(
         pair: &'a Pair<'a, S>,
         features: [&Feature<S>; 2],
@@ -82,8 +82,8 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         }
     }
 
-    /// The points of the patch that are at most `reach` apart; `simplex` tells the nearest points of the cores where the features
-    /// do not.
+    /// Returns the points of the patch that are at most `reach` apart; `simplex` yields the nearest points of the cores
+    /// if the features do not.
     pub(super) fn points(&self, simplex: &Simplex<S>, reach: S) -> PatchPoints<S> {
         let (polygon, mut found) = self.corners();
         let lowest = deepest(&found, self.pair.tolerance);
@@ -96,7 +96,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         };
         let same = self.pair.smallest * S::new(SAME_POINT);
         if lowest.distance() > reach {
-            // The features are further apart than the bodies: one point stands for the patch.
+            // The features are further apart than the bodies: use one point.
             found.clear();
             found.push(lowest.at_distance(self.gap));
         } else if found.len() > PATCH_POINTS {
@@ -107,16 +107,16 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         found
     }
 
-    /// A place in the projection, in the first body's frame.
+    /// Transforms a point of the projection to the first body's frame.
     pub(super) fn unproject(&self, place: Vec3<S>) -> Vec3<S> {
         self.projection.transpose_mul(place)
     }
 
-    /// The point of the patch at a place of the projection.
+    /// Returns the point of the patch at a point of the projection.
     fn at(&self, place: &Vec3<S>) -> PatchPoint<S> {
         let [a, b] = &self.features;
         let on_a = a.height(*place);
-        // Just beyond a corner the features' planes go on, but the bodies do not.
+        // Just beyond a corner the features' planes continue, but the bodies do not.
         let on_b = b.height(*place).max(on_a + self.gap);
         PatchPoint {
             x: place.x,
@@ -125,11 +125,11 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         }
     }
 
-    /// The overlap, and the points at its corners.
+    /// Returns the overlap, and the points at its corners.
     fn corners(&self) -> (Polygon<S>, PatchPoints<S>) {
         let [a, b] = &self.features;
         let (mut polygon, mut found) = (Polygon::empty(), PatchPoints::new());
-        // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
+        // Rounding may miss an edge that touches the border of a face.
         for beyond in [S::ZERO, self.pair.tolerance, self.slack] {
             found.clear();
             a.overlap(b, beyond, &mut polygon);
@@ -142,7 +142,8 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         (polygon, found)
     }
 
-    /// The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
+    /// Returns the nearest points of the cores: the support points along the normal if they face each other, else those
+    /// of the simplex.
     fn witness(&self, simplex: &Simplex<S>) -> PatchPoint<S> {
         let pair = self.pair;
         let n = self.projection.rows[2];
@@ -161,16 +162,16 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         witness.at_distance(self.gap)
     }
 
-    /// The direction in which points of an outline begin, which turns with a body: to the first corner of a round cap, or along the
-    /// first edge.
+    /// Returns the start direction of an outline, which rotates with a body: to the first corner of a round cap, or
+    /// along the first edge.
     fn first_direction(&self) -> Vec3<S> {
         let [a, b] = &self.features;
         let cap = b.cap_direction().filter(|_| !a.is_cap());
         cap.unwrap_or_else(|| a.direction())
     }
 
-    /// At most [`PATCH_POINTS`] points: all corners of the outline if they are no more, else a sample of it. Where that misses the lowest
-    /// point, it is sampled anew, beginning with the lowest point.
+    /// Returns at most [`PATCH_POINTS`] points: all corners of the outline if they are few enough, else a sample. If
+    /// the sample misses the lowest point, it samples again starting with that point.
     fn sample(&self, outline: &Outline<S>, lowest: PatchPoint<S>) -> PatchPoints<S> {
         let from = |first| -> PatchPoints<S> {
             let places = outline.sample(first);
@@ -190,7 +191,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
             found = from(Vec3::new(lowest.x - middle.x, lowest.y - middle.y, S::ZERO));
             found[0] = lowest;
         }
-        // What is left of the difference is too small to move a point for, but the contact has the true depth.
+        // The remaining difference is too small to move a point, but the contact gets the true depth.
         let least = least_distance(&found);
         if let Some(point) = found.iter_mut().find(|s| s.distance() <= least) {
             *point = point.at_distance(least.min(lowest.distance()));
@@ -199,7 +200,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
     }
 }
 
-/// Merges points that coincide into the deepest of them.
+/// Merges coincident points into the deepest of them.
 fn merge<S: Scalar>(found: &mut PatchPoints<S>, same: S) {
     let mut kept = 0;
     for k in 0..found.len() {
@@ -224,7 +225,7 @@ fn least_distance<S: Scalar>(found: &PatchPoints<S>) -> S {
     distances.fold(S::INFINITY, |least, d| least.min(d))
 }
 
-/// The first of the deepest points; those that the tolerance cannot tell apart are equally deep.
+/// Returns the first of the deepest points, up to the tolerance.
 fn deepest<S: Scalar>(found: &PatchPoints<S>, tolerance: S) -> Option<PatchPoint<S>> {
     let least = least_distance(found) + tolerance;
     let mut found = found.iter().copied();

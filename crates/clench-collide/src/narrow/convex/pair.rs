@@ -1,8 +1,9 @@
 //! Two bodies in the frame of the first, and the gap between them along a direction.
 //!
-//! Along a unit direction n from the first body to the second the gap is g(n) = n·w(n), where w(n) = b(−n) − a(n) leads from
-//! the point of the first that is furthest along n to that of the second furthest against it. The signed distance of the
-//! bodies is the largest gap. Its gradient on the sphere is the part of w across n, its Hessian there −(H_A + H_B + g 1).
+//! Along a unit direction n from the first body to the second the gap is g(n) = n·w(n), where w(n) = b(−n) − a(n) is
+//! the vector from the point of the first that is furthest along n to that of the second furthest against it. The
+//! signed distance of the bodies is the largest gap. Its gradient on the sphere is the part of w across n, its Hessian
+//! there −(H_A + H_B + g 1).
 
 use super::body::Body;
 use crate::narrow::placed::AnyPlaced;
@@ -13,27 +14,27 @@ use clench_math::{Mat3, Real, Scalar, Vec3};
 pub(super) struct Pair<'a, S> {
     pub a: Body<'a, S>,
     pub b: Body<'a, S>,
-    /// The axes of the second as columns.
+    /// The axes of the second body as columns.
     pub rotation: Mat3<S>,
-    /// The origin of the second.
+    /// The origin of the second body.
     pub offset: Vec3<S>,
-    /// The smaller of the bodies' sizes, m: what tolerances are shares of.
+    /// The size of the smaller body, m: the scale of tolerances.
     pub smallest: S,
-    /// Coordinates are at most this large, m: what rounding errors are shares of.
+    /// The maximum magnitude of coordinates, m: the scale of rounding errors.
     pub largest: S,
-    /// How exactly the gap is to be found, m.
+    /// The required accuracy of the gap, m.
     pub tolerance: S,
     pub curved: bool,
 }
 
-/// A point of the difference of the cores, and the points that it is the difference of.
+/// A point of the difference of the cores, and the two points that it is the difference of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertex<S> {
-    /// From the first body to the second.
+    /// The vector from the first body to the second.
     pub w: Vec3<S>,
-    /// On the first, in its frame.
+    /// The point on the first body, in its frame.
     pub a: Vec3<S>,
-    /// On the second, in its own frame.
+    /// The point on the second body, in its frame.
     pub b: Vec3<S>,
 }
 
@@ -42,12 +43,12 @@ pub(super) struct Vertex<S> {
 pub(super) struct Gap<S> {
     pub normal: Vec3<S>,
     pub gap: S,
-    /// Whether it is the largest in its neighbourhood, and the direction exact.
+    /// True if the gap is a local maximum and the direction exact.
     pub settled: bool,
 }
 
 impl<S: Scalar> Gap<S> {
-    /// Takes the other if its gap is larger; between equals, to the tolerance, a settled one. Whether it did.
+    /// Takes the other gap if it is larger; of gaps equal to the tolerance, a settled one. Returns true if it did.
     pub(super) fn improve(&mut self, other: Gap<S>, tolerance: S) -> bool {
         let handicap = match (self.settled, other.settled) {
             (true, false) => tolerance,
@@ -63,7 +64,8 @@ impl<S: Scalar> Gap<S> {
 }
 
 impl<'a, S: Scalar> Pair<'a, S> {
-    /// In the frame of the first; where that is a sphere, along the axes of the world, since a sphere has none of its own.
+    /// Creates a pair in the frame of the first shape; if that is a sphere, which has no axes of its own, with the axes
+    /// of the world.
     pub(super) fn new(a: AnyPlaced<'a, S>, b: AnyPlaced<'a, S>) -> Self {
         let (body_a, body_b) = (Body::new(&a.shape), Body::new(&b.shape));
         let (rotation, offset) = if body_a.is_point() {
@@ -75,7 +77,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         Pair::between(body_a, body_b, rotation, offset)
     }
 
-    /// Two bodies, the second where its axes and its origin are in the frame of the first.
+    /// Creates a pair from two bodies and the axes and origin of the second in the frame of the first.
     pub(super) fn between(
         a: Body<'a, S>,
         b: Body<'a, S>,
@@ -98,7 +100,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// The direction between points of the cores that are near to each other.
+    /// Returns the direction between nearby points of the cores.
     pub(super) fn start(&self) -> Vec3<S> {
         let from = self.a.nearest(|| self.offset).unwrap_or(Vec3::ZERO);
         let beside = || self.rotation.transpose_mul(from - self.offset);
@@ -114,14 +116,14 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// The vertex w(n), n being of any length.
+    /// Returns the vertex w(n) for n of any length.
     #[inline]
     pub(super) fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
         let local = -self.rotation.transpose_mul(normal);
         self.difference(self.a.support(normal, normal), self.b.support(local, local))
     }
 
-    /// The one of several vertices w(n) that is furthest against `side`, which is next to n.
+    /// Returns the vertex, among several vertices w(n), that is furthest against `side`, which is near n.
     #[inline]
     pub(super) fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
         let local = |v| -self.rotation.transpose_mul(v);
@@ -135,7 +137,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         Vertex { w, a, b }
     }
 
-    /// The gap g(n).
+    /// Returns the gap g(n).
     #[inline]
     pub(super) fn gap(&self, normal: Vec3<S>) -> Gap<S> {
         Gap {
@@ -145,8 +147,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
-    /// Directions across two creases of the gap, from the first body to the second: the normals of flat faces, and what is
-    /// across an edge of each body. Of hulls there would be too many.
+    /// Returns directions across two creases of the gap, from the first body to the second: normals of flat faces and
+    /// those across an edge of each body; none for hulls, which have too many.
     pub(super) fn crossings(&self) -> ArrayVec<Vec3<S>, 15> {
         let (own, other) = (Mat3::IDENTITY, self.rotation);
         let mut found = ArrayVec::new();
@@ -171,7 +173,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         found
     }
 
-    /// uᵀ (H_A + H_B) v at a direction, for each of some pairs of vectors u, v across it.
+    /// Computes uᵀ (H_A + H_B) v at a direction, for pairs of vectors u, v across it.
     #[inline]
     pub(super) fn curvature<const N: usize>(
         &self,
@@ -189,7 +191,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 }
 
-/// Two unit vectors that make a right-handed frame with a unit vector after them (Duff et al. 2017).
+/// Returns two unit vectors that form a right-handed frame with the unit vector n as the third (Duff et al. 2017).
 #[inline]
 pub(super) fn across<S: Scalar>(n: Vec3<S>) -> (Vec3<S>, Vec3<S>) {
     let sign = S::ONE.copysign(n.z);

@@ -1,4 +1,4 @@
-//! The points of a contact: one where a corner or a curved body touches, else those of the overlap of two features.
+//! The contact points: one where a corner or a curved body touches, else those of the overlap of two features.
 
 use super::overlap::Overlap;
 use super::pair::{Gap, Pair};
@@ -7,8 +7,8 @@ use crate::narrow::per_lane::{Point, Points};
 use crate::narrow::placed::AnyPlaced;
 use clench_math::{Scalar, Vec3};
 
-/// Adds the contacts of a pair whose largest gap is known; `simplex` tells the nearest points of the cores where no feature
-/// does.
+/// Adds the contacts of a pair with known largest gap; `simplex` yields the nearest points of the cores if the features
+/// do not.
 pub(super) fn patch<S: Scalar>(
     pair: &Pair<S>,
     a: AnyPlaced<S>,
@@ -17,13 +17,13 @@ pub(super) fn patch<S: Scalar>(
     margin: S,
     points: &mut Points<S>,
 ) {
-    // It is normalized once more, since squares of very short vectors lose digits.
+    // Normalize again, since squares of very short vectors lose digits.
     let n = best.normal.normalize().0;
     let radii = (pair.a.radius, pair.b.radius);
     let half = best.gap * S::new(0.5);
     let shift = (radii.0 - radii.1) * S::new(0.5);
     let distance = best.gap - radii.0 - radii.1;
-    // The frame of a sphere is that of the world: see [`Pair::new`].
+    // The frame of a sphere has the axes of the world: see [`Pair::new`].
     if pair.a.is_point() {
         points.push(Point {
             position: a.pose.position + n * (half + shift),
@@ -44,7 +44,7 @@ pub(super) fn patch<S: Scalar>(
         return add_one(pair.offset - n * half);
     }
     let feature_a = pair.a.feature(n);
-    // A corner is where it is, however exact the normal.
+    // The position of a corner does not depend on the normal.
     if let (&[corner], false) = (&feature_a.corners[..], pair.a.is_curved()) {
         return add_one(corner + n * half);
     }

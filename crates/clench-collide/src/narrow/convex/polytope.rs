@@ -1,27 +1,27 @@
-//! A convex polytope about the origin that grows vertex by vertex.
+//! A convex polytope around the origin that grows vertex by vertex.
 //!
-//! Its triangles know what lies across each side. A new vertex removes the triangles that are visible from it, which are found by walking
-//! from one of them, and the hole is closed by triangles from its border, the horizon, to the new vertex. Triangles keep their signed
-//! distance, so an origin that rounding has put outside does no harm.
+//! Each triangle stores its neighbours. A new vertex removes the triangles that are visible from it, which are found by
+//! traversal from one of them, and the hole is closed by triangles from its border, the horizon, to the new vertex.
+//! Triangles store signed distances, so the origin may be outside by rounding.
 
 use super::pair::{Pair, Vertex};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Room for vertices; a polytope of this many has 2·VERTICES − 4 triangles.
+/// The vertex capacity; a polytope of this size has 2·VERTICES − 4 triangles.
 pub(super) const VERTICES: usize = 128;
 const FACES: usize = 2 * VERTICES - 4;
-/// Vertices nearer than this share of the smaller body are one.
+/// The distance below which vertices are merged, relative to the smaller body.
 const SAME: f64 = 1e-6;
 
-/// A side of a face: the face's number and which of its sides, counted from corner to next corner.
+/// A side of a face: the index of the face and of the side, counted from corner to next corner.
 #[derive(Clone, Copy)]
 struct HalfEdge {
     face: u8,
     side: u8,
 }
 
-/// An edge of the horizon: the side of a face that stays, with the corners that it goes from and to.
+/// An edge of the horizon: the side of a remaining face, with its start and end corners.
 #[derive(Clone, Copy)]
 struct HorizonEdge {
     side: HalfEdge,
@@ -30,14 +30,14 @@ struct HorizonEdge {
 
 #[derive(Clone, Copy)]
 struct Face<S> {
-    /// Counter-clockwise as seen from outside.
+    /// The corners, counter-clockwise seen from outside.
     corners: [u8; 3],
     removed: bool,
-    /// The same edges as sides of the faces across.
+    /// The same edges as sides of the neighbouring faces.
     across: [HalfEdge; 3],
-    /// Outward unit vector; zero if the face has no area.
+    /// The outward unit vector; zero if the face has no area.
     normal: Vec3<S>,
-    /// From the origin, signed.
+    /// The signed distance from the origin.
     distance: S,
 }
 
@@ -45,22 +45,22 @@ struct Face<S> {
 pub(super) struct Polytope<S> {
     vertices: ArrayVec<Vertex<S>, VERTICES>,
     faces: ArrayVec<Face<S>, FACES>,
-    /// The distance of each face that may still be moved; infinite for others.
+    /// The distance of each face that may still move; infinite for others.
     distances: ArrayVec<S, FACES>,
-    /// Faces visible from the vertex to be added.
+    /// The faces visible from the new vertex.
     visible: ArrayVec<u8, FACES>,
-    /// The horizon, in order: sides of the faces that stay.
+    /// The horizon, in order: sides of the remaining faces.
     horizon: ArrayVec<HorizonEdge, FACES>,
-    /// How far beyond a face a vertex must be to count, m.
+    /// The minimum distance of a new vertex beyond a face, m.
     rounding: S,
-    /// The square of the distance up to which vertices count as one, m²: faces between them would be noise.
+    /// The squared distance up to which vertices are merged, m²: faces between them would be noise.
     same: S,
-    /// A point inside.
+    /// A point inside the polytope.
     middle: Vec3<S>,
 }
 
 impl<S: Scalar> Polytope<S> {
-    /// Nothing yet.
+    /// Creates an empty polytope.
     #[inline(always)]
     pub(super) fn empty(pair: &Pair<S>) -> Self {
         let same = (pair.smallest * S::new(SAME)).max(pair.tolerance);
@@ -76,7 +76,7 @@ impl<S: Scalar> Polytope<S> {
         }
     }
 
-    /// Begins with a tetrahedron that has a volume.
+    /// Starts with a tetrahedron that has a volume.
     pub(super) fn begin(&mut self, [a, b, c, d]: &[Vertex<S>; 4]) {
         self.middle = (a.w + b.w + c.w + d.w) * S::new(0.25);
         let volume = (b.w - a.w).cross(c.w - a.w).dot(d.w - a.w);
@@ -84,7 +84,7 @@ impl<S: Scalar> Polytope<S> {
         for vertex in [a, b, c, d] {
             self.vertices.push(*vertex);
         }
-        // Seen against d, the first face turns counter-clockwise now.
+        // The first face is now counter-clockwise seen from outside.
         for (number, (corners, across)) in [
             ([0, 1, 2], [(1, 0), (2, 0), (3, 0)]),
             ([1, 0, 3], [(0, 0), (3, 2), (2, 1)]),
@@ -99,13 +99,13 @@ impl<S: Scalar> Polytope<S> {
         }
     }
 
-    /// Puts a face in the place of that with a number, or after the last.
+    /// Replaces the face `number`, or appends it.
     #[inline(always)]
     fn insert(&mut self, number: usize, corners: [u8; 3], across: [HalfEdge; 3]) {
         let [a, b, c] = corners.map(|k| self.vertices[k as usize].w);
         let normal = (b - a).cross(c - a);
         let area = normal.norm();
-        // A face without area, to rounding, may even look inwards.
+        // A face without area, up to rounding, may even point inwards.
         let flat = normal.dot(a - self.middle) <= area * self.rounding;
         let normal = if flat {
             Vec3::ZERO
@@ -130,7 +130,8 @@ impl<S: Scalar> Polytope<S> {
         }
     }
 
-    /// The face nearest to the origin of those that may still be moved, and its distance, infinite if there is none.
+    /// Returns the face nearest to the origin of those that may still move, and its distance; infinite if there is
+    /// none.
     pub(super) fn nearest(&self) -> (usize, S) {
         let mut nearest = (0, S::INFINITY);
         for (k, &distance) in self.distances.iter().enumerate() {
@@ -141,7 +142,7 @@ impl<S: Scalar> Polytope<S> {
         nearest
     }
 
-    /// The outward unit vector of a face.
+    /// Returns the outward unit vector of a face.
     pub(super) fn normal(&self, face: usize) -> Vec3<S> {
         self.faces[face].normal
     }
@@ -149,21 +150,21 @@ impl<S: Scalar> Polytope<S> {
     pub(super) fn close(&mut self, face: usize) {
         self.distances[face] = S::INFINITY;
     }
-    /// Whether there is no room for another vertex.
+    /// Returns true if the vertex capacity is reached.
     pub(super) fn is_full(&self) -> bool {
         self.vertices.is_full()
     }
-    /// The corners of a face, as numbers of vertices, which stay.
+    /// Returns the vertex indices of a face's corners; indices stay valid.
     pub(super) fn corners(&self, face: usize) -> [u8; 3] {
         self.faces[face].corners
     }
-    /// Vertices by their numbers.
+    /// Returns vertices by index.
     pub(super) fn vertices(&self, numbers: [u8; 3]) -> [Vertex<S>; 3] {
         numbers.map(|k| self.vertices[k as usize])
     }
 
-    /// Replaces the faces that are visible from a vertex by faces to it; `visible` is one of them. Nothing happens, and the answer is no,
-    /// if the vertex is one of theirs or rounding has broken the horizon.
+    /// Replaces the faces that are visible from a vertex by faces to it; `visible` is one of them. Returns false
+    /// without changes if the capacity is reached, the vertex is one of theirs, or rounding has broken the horizon.
     pub(super) fn add(&mut self, visible: usize, vertex: &Vertex<S>) -> bool {
         let from = |k: u8| (self.vertices[k as usize].w - vertex.w).norm_squared();
         let corners = self.faces[visible].corners;
@@ -192,15 +193,15 @@ impl<S: Scalar> Polytope<S> {
         self.visible.push(face as u8);
     }
 
-    /// Follows the visible faces across a side: a face that is not visible from `w` stays, and its side is part of the horizon; others are
-    /// removed, and followed further.
+    /// Traverses the visible faces across a side. A face that is not visible from `w` remains and its side is added to
+    /// the horizon; others are removed and traversed further.
     #[inline(always)]
     fn find_horizon(&mut self, across: HalfEdge, w: Vec3<S>) {
         let face = &self.faces[across.face as usize];
         if face.removed {
             return;
         }
-        // One without area has no normal and goes with its neighbours.
+        // A face without area has no normal and is removed with its neighbours.
         let has_area = face.normal != Vec3::ZERO;
         if has_area && face.normal.dot(w) - face.distance <= self.rounding {
             let from = across.side as usize;
@@ -209,15 +210,15 @@ impl<S: Scalar> Polytope<S> {
                 side: across,
                 ends: [face.corners[from], face.corners[to]],
             };
-            // A side is listed once, unless the polytope is broken, and then the horizon is not closed.
+            // Only a broken polytope lists a side twice; then the horizon is not closed.
             let _ = self.horizon.try_push(edge);
             return;
         }
         self.remove_from(across, &w);
     }
 
-    /// Removes a face, entered across one of its sides, and its neighbours as far as they are visible from `w`. Few are: so the test of
-    /// each is inlined into its callers, and only this is a call.
+    /// Removes a face, entered across one of its sides, and its neighbours that are visible from `w`. Few are visible,
+    /// so only this function is a call; the visibility test is inlined.
     #[inline(never)]
     fn remove_from(&mut self, entered: HalfEdge, w: &Vec3<S>) {
         let across = self.faces[entered.face as usize].across;
@@ -227,7 +228,7 @@ impl<S: Scalar> Polytope<S> {
         }
     }
 
-    /// Whether the visible faces are a patch with one border: then it has two sides more than they are.
+    /// Returns true if the visible faces have a single border: it then has two more sides than there are faces.
     fn horizon_is_closed(&self) -> bool {
         let Some(last) = self.horizon.last() else {
             return false;
@@ -241,7 +242,7 @@ impl<S: Scalar> Polytope<S> {
             })
     }
 
-    /// Stitches new faces from the horizon to the vertex added last, in the places of the visible faces and two more.
+    /// Adds faces from the horizon to the last vertex, at the indices of the visible faces and two more.
     fn stitch(&mut self) {
         let tip = (self.vertices.len() - 1) as u8;
         let (old, count) = (self.faces.len(), self.horizon.len());
@@ -255,8 +256,8 @@ impl<S: Scalar> Polytope<S> {
             let next = if k + 1 < count { k + 1 } else { 0 };
             let after = number(&self.visible, next);
             let HorizonEdge { side, ends } = self.horizon[k];
-            // From the end of the horizon's side to its start, on to the tip and back: the next face in the horizon is across the
-            // second side, the one before across the last.
+            // From the end of the horizon's side to its start, on to the tip and back: the next face in the horizon is
+            // across the second side, the previous one across the last.
             let [second, last] =
                 [(after, 2), (before, 1)].map(|(face, side)| HalfEdge { face, side });
             self.insert(face as usize, [ends[1], ends[0], tip], [side, second, last]);

@@ -1,10 +1,10 @@
-//! A triangle of terrain with the ground below it: a convex body of six corners.
+//! A triangle of terrain with the ground below it: a convex body with six corners.
 
 use crate::hull::FACE_COSINE;
 use crate::shape::{Core, Feature, most_level};
 use clench_math::{Scalar, Vec3};
 
-/// Three corners on top, counter-clockwise seen from above, and the three below them.
+/// Three top corners, counter-clockwise seen from above, and the three below them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prism<S> {
     corners: [Vec3<S>; 6],
@@ -18,7 +18,7 @@ pub(super) const FACES: [&[usize]; 5] = [
     &[1, 4, 5, 2],
     &[2, 5, 3, 0],
 ];
-/// The ends of each edge, the face that goes along it from the first to the second, and the other.
+/// For each edge: its ends, the face that traverses it from the first to the second, and the other face.
 pub(super) const EDGES: [[usize; 4]; 9] = [
     [0, 1, 0, 2],
     [1, 2, 0, 3],
@@ -30,9 +30,9 @@ pub(super) const EDGES: [[usize; 4]; 9] = [
     [1, 4, 3, 2],
     [2, 5, 4, 3],
 ];
-/// A unit direction that rises by more is no normal of a wall, by [`FACE_COSINE`].
+/// The z component, by [`FACE_COSINE`], above which a unit direction matches no wall.
 const RISE: f64 = 0.1;
-/// The corners that share an edge with each.
+/// The neighbours of each corner.
 const NEIGHBORS: [[usize; 3]; 6] = [
     [1, 2, 3],
     [2, 0, 4],
@@ -43,7 +43,7 @@ const NEIGHBORS: [[usize; 3]; 6] = [
 ];
 
 impl<S: Scalar> Prism<S> {
-    /// The prism between a triangle and the horizontal plane at `bottom`.
+    /// Creates the prism between a triangle and the horizontal plane at `bottom`.
     pub(super) fn new(top: [Vec3<S>; 3], bottom: S) -> Self {
         let [p, q, r] = top;
         let below = |v: Vec3<S>| Vec3::new(v.x, v.y, bottom);
@@ -52,12 +52,12 @@ impl<S: Scalar> Prism<S> {
         }
     }
 
-    /// The three on top and those below them.
+    /// Returns the three top corners and those below them.
     pub(super) fn corners(&self) -> &[Vec3<S>; 6] {
         &self.corners
     }
 
-    /// The outward unit normals of its faces.
+    /// Returns the outward unit normals of the faces.
     pub(super) fn normals(&self) -> [Vec3<S>; 5] {
         let [p, q, r, ..] = self.corners;
         let wall = |from: Vec3<S>, to: Vec3<S>| {
@@ -73,7 +73,7 @@ impl<S: Scalar> Prism<S> {
         ]
     }
 
-    /// The radius of a sphere about the origin that holds it, m.
+    /// Returns the radius of a sphere about the origin that encloses the prism, m.
     pub(super) fn bounding_radius(&self) -> S {
         let most = |along: [S; 4]| along.into_iter().fold(S::ZERO, |most, x| most.max(x.abs()));
         let [p, q, r, below, ..] = self.corners;
@@ -81,7 +81,7 @@ impl<S: Scalar> Prism<S> {
         Vec3::new(x, y, most([p.z, q.z, r.z, below.z])).norm()
     }
 
-    /// The number of the corner that is furthest along `d`.
+    /// Returns the index of the corner that is furthest along `d`.
     #[inline]
     fn furthest(&self, d: Vec3<S>) -> usize {
         let first = if d.z < S::ZERO { 3 } else { 0 };
@@ -103,9 +103,9 @@ impl<S: Scalar> Core<S> for Prism<S> {
     }
 
     fn feature(&self, d: Vec3<S>) -> Feature<S> {
-        // A cosine as the squares of two lengths that it is the quotient of.
+        // The squares of a cosine's numerator and denominator.
         let mut best = (S::new(FACE_COSINE).squared(), S::ONE, None);
-        // A direction that rises this steeply can be the normal of the top alone.
+        // A direction that rises this steeply can only be the normal of the top.
         let faces = if d.z > S::new(RISE) {
             &FACES[..1]
         } else {

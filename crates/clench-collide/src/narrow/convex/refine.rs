@@ -1,37 +1,38 @@
-//! Newton's method for the direction of the largest gap, near it.
+//! Local maximization of the gap by Newton's method.
 //!
-//! With the gap's gradient w − g n across the direction n and its Hessian −(H_A + H_B + g 1), a step is the t across n with
+//! With the gap's gradient w − g n across the direction n and its Hessian −(H_A + H_B + g 1), a step is the t across n
+//! with
 //!
 //! ```text
 //! (H_A + H_B + g 1) t = w − g n,      n ← (n + t) / |n + t|.
 //! ```
 //!
-//! Where an edge (or face) of a body is what touches, the support function has a crease there, and n stays across that
-//! edge: one unknown is left, or none. Near the axis of a cylinder the gap of its flat cap is tried as well, since the
-//! support function of a disc comes to a point there.
+//! If an edge (or face) of a body touches, the support function has a crease there and n stays across that edge, which
+//! leaves one unknown, or none. Near the axis of a cylinder the gap of its flat cap is tried as well, since the support
+//! function of a disc is not smooth there.
 //!
-//! Every direction's gap is a lower bound of the signed distance, so whatever is found is compared by its gap alone.
+//! Every direction's gap is a lower bound of the signed distance, so results are compared by their gaps alone.
 
 use super::pair::{Gap, Pair, Vertex, across};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// Newton converges quadratically, so more steps than this mean that it does not.
+/// The maximum number of steps. Newton's method converges quadratically or not at all.
 const MAX_STEPS: usize = 12;
-/// How often a step that makes the gap smaller is halved before Newton's method is given up.
+/// The maximum number of halvings of a step that decreases the gap.
 const MAX_HALVINGS: usize = 3;
-/// The largest turn of a step, rad.
+/// The maximum rotation of a step, rad.
 const MAX_TURN: f64 = 0.3;
-/// The last step turns by less than this in double precision; then the next would turn by some times its square.
+/// The rotation of the last step, in double precision; the next one's would be of the order of its square.
 const CONVERGED_TURN: f64 = 2e-6;
 
-/// Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
+/// The orthonormal directions of the touching edges: none, one edge, or two that span a face (or cross).
 pub(super) struct ActiveEdges<S> {
     directions: ArrayVec<Vec3<S>, 2>,
 }
 
 impl<S: Scalar> ActiveEdges<S> {
-    /// The span of the edges between the corners that some vertices are made of.
+    /// Computes the span of the edges between the corners of some vertices.
     pub(super) fn of(pair: &Pair<S>, vertices: &[Vertex<S>]) -> Self {
         let mut active = ActiveEdges {
             directions: ArrayVec::new(),
@@ -62,7 +63,7 @@ impl<S: Scalar> ActiveEdges<S> {
         self.directions.iter().fold(v, |v, &f| v - f * f.dot(v))
     }
 
-    /// The direction nearest to `n` across the edges; `n` if they leave none.
+    /// Returns the direction across the edges that is nearest to `n`; `n` if there is none.
     fn project(&self, n: Vec3<S>) -> Vec3<S> {
         let across = match self.directions[..] {
             [f, g] => {
@@ -79,7 +80,7 @@ impl<S: Scalar> ActiveEdges<S> {
         }
     }
 
-    /// Whether turning off the edge, to either side, would make the gap smaller. (Not asked of two.)
+    /// Returns true if leaving the edge, to either side, decreases the gap. (Not tested for two edges.)
     fn hold(&self, pair: &Pair<S>, n: Vec3<S>) -> bool {
         let [f] = self.directions[..] else {
             return true;
@@ -88,7 +89,7 @@ impl<S: Scalar> ActiveEdges<S> {
         along(f) <= pair.tolerance && along(-f) <= pair.tolerance
     }
 
-    /// The vertices at the direction `n`: one for each corner of what touches.
+    /// Returns the vertices at the direction `n`: one for each touching corner.
     pub(super) fn vertices(&self, pair: &Pair<S>, n: Vec3<S>) -> ArrayVec<Vertex<S>, 4> {
         let tilt = S::EPSILON.sqrt();
         let beside = |side| pair.vertex_beside(n, n + side * tilt);
@@ -103,7 +104,7 @@ impl<S: Scalar> ActiveEdges<S> {
 }
 
 impl<S: Scalar> Gap<S> {
-    /// Makes the direction exact, if it is not, where a curved body touches with the feature that some vertices span.
+    /// Refines the direction if it is not exact and a curved body touches the feature spanned by some vertices.
     pub(super) fn settle(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
         if pair.curved && !self.settled {
             let active = ActiveEdges::of(pair, vertices);
@@ -112,7 +113,7 @@ impl<S: Scalar> Gap<S> {
     }
 }
 
-/// The largest gap in the neighbourhood of a direction.
+/// Returns the largest gap near a direction.
 pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> Gap<S> {
     let start = active.project(start);
     if active.directions.is_full() {
@@ -129,11 +130,11 @@ pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveE
 enum Cap<S> {
     /// The gap across it, the largest around.
     Touches(Gap<S>),
-    /// The gap grows beside it: a direction to start from.
+    /// The gap increases beside it, from this start direction.
     Passes(Vec3<S>),
 }
 
-/// The best cap that faces `n` more or less, if the gap across it is larger than that of `n`.
+/// Returns the best cap that approximately faces `n`, if the gap across it is larger than that of `n`.
 fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
     let mut best = None;
     let mut found = None;
@@ -152,7 +153,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
             continue;
         }
         best = Some(gap);
-        // From the middle of the cap to the other body's point: within the disc, or the gap grows towards it.
+        // From the middle of the cap to the other body's point: within the disc, or the gap increases towards it.
         let to_middle = if k == 0 {
             vertex.a - body.corner(vertex.a)
         } else {
@@ -163,7 +164,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
         let (toward, distance) = lateral.normalize();
         let passes = distance > radius * (S::ONE + S::new(1e-9)) && distance > S::new(1e-15);
         found = Some(if passes {
-            // Beside the axis, for on the axis itself no point of the circle is distinguished.
+            // Beside the axis, since on it no point of the circle is distinguished.
             let start = axis + toward * S::EPSILON.sqrt();
             let [bend] = pair.curvature(start, [(toward, toward)]);
             let turn = (distance - radius) / (bend + gap).max(pair.tolerance);
@@ -180,7 +181,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
     found
 }
 
-/// Newton's iteration; a step that makes the gap smaller is halved.
+/// Runs Newton's iteration; a step that decreases the gap is halved.
 fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> Gap<S> {
     let last = S::new(CONVERGED_TURN).max(S::EPSILON * S::new(256.0));
     let mut w = pair.vertex(start).w;
@@ -213,7 +214,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
             halvings += 1;
             turn = turn * S::new(0.5);
         }
-        // Where a cap's circle touches, next to the axis, even the smallest turn changes the gap.
+        // If a cap's circle touches, next to the axis, even the smallest rotation changes the gap.
         if size <= last && best.gap - before <= pair.tolerance {
             best.settled = down && active.hold(pair, best.normal);
             return best;
@@ -222,7 +223,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
     best
 }
 
-/// The step t, and whether the gap curves down there; nothing where it curves up both ways.
+/// Returns the step t, and true if the gap is concave there; `None` if it is convex in both directions.
 fn step<S: Scalar>(
     pair: &Pair<S>,
     at: &Gap<S>,
@@ -245,7 +246,7 @@ fn step<S: Scalar>(
     if most <= S::ZERO {
         return None;
     }
-    // Around an axis that both bodies share the gap does not change; on a saddle, away from it is up.
+    // Around an axis that both bodies share the gap is constant; on a saddle, increase the distance from it.
     let floor = most * S::new(1e-6);
     let shift = (floor - least).max(S::ZERO);
     let (ee, ff) = (ee + gap + shift, ff + gap + shift);

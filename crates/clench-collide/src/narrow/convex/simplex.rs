@@ -1,14 +1,14 @@
-//! The point nearest to the origin in the hull of up to four vertices.
+//! The point nearest to the origin in the convex hull of up to four vertices.
 
 use super::pair::Vertex;
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
-/// One to four vertices. Of those added one by one, all but the last are known to be needed for the nearest point.
+/// One to four vertices. If they were added one by one, the nearest point depends on all but perhaps the last.
 #[derive(Clone, Debug)]
 pub(super) struct Simplex<S> {
     vertices: ArrayVec<Vertex<S>, 4>,
-    /// The nearest point is the sum of weight times vertex.
+    /// The weights of the vertices in the nearest point.
     weights: [S; 4],
 }
 
@@ -21,7 +21,7 @@ impl<S: Scalar> Simplex<S> {
             weights: [S::ONE, S::ZERO, S::ZERO, S::ZERO],
         }
     }
-    /// Some vertices, at most four; which of them the nearest point needs is open.
+    /// Creates a simplex of at most four vertices without solving for the nearest point.
     pub(super) fn unsolved(vertices: &[Vertex<S>]) -> Self {
         let mut simplex = Simplex::new(vertices[0]);
         simplex.vertices.extend(vertices[1..].iter().copied());
@@ -30,7 +30,7 @@ impl<S: Scalar> Simplex<S> {
     pub(super) fn vertices(&self) -> &[Vertex<S>] {
         &self.vertices
     }
-    /// The nearest point as what it is on the first body and on the second, each in its own frame.
+    /// Returns the nearest point as points on the first and the second body, each in its own frame.
     pub(super) fn nearest(&self) -> (Vec3<S>, Vec3<S>) {
         let mut solved = Simplex::new(self.vertices[0]);
         for vertex in &self.vertices()[1..] {
@@ -44,8 +44,8 @@ impl<S: Scalar> Simplex<S> {
         nearest
     }
 
-    /// Adds a vertex and drops those that the nearest point does without. Gives that point, or nothing where the origin is
-    /// inside.
+    /// Adds a vertex and drops those that the nearest point does not need. Returns that point, or `None` if the origin
+    /// is inside.
     pub(super) fn add(&mut self, vertex: Vertex<S>) -> Option<Vec3<S>> {
         self.vertices.push(vertex);
         let nearest = match self.vertices.len() {
@@ -72,7 +72,7 @@ impl<S: Scalar> Simplex<S> {
                 kept += 1;
             }
         }
-        // None is left where no weight is a number.
+        // No vertex is left if no weight is a number.
         self.vertices.truncate(kept.max(1));
     }
 
@@ -84,7 +84,8 @@ impl<S: Scalar> Simplex<S> {
         on_triangle([i, j, k].map(|k| (k, self.w(k))))
     }
 
-    /// The nearest of the three faces with the new vertex, of those that the origin is beyond; nothing if it is beyond none.
+    /// Returns the nearest point on the three faces at the new vertex, of those that the origin is beyond; `None` if it
+    /// is beyond none.
     fn on_tetrahedron(&self) -> Option<Nearest<S>> {
         let new = self.w(3);
         let mut best: Option<Nearest<S>> = None;
@@ -115,8 +116,8 @@ fn on_segment<S: Scalar>((i, p): (usize, Vec3<S>), (j, q): (usize, Vec3<S>)) -> 
     Nearest::edge((i, p), (j, q), ahead, square)
 }
 
-/// The point of a triangle nearest to the origin, by the regions of space in which a corner, an edge or the inside is nearest
-/// (Ericson, Real-Time Collision Detection, 5.1.5). Its corners have numbers.
+/// Returns the point of a triangle nearest to the origin, by the regions of space in which a corner, an edge or the
+/// inside is nearest (Ericson, Real-Time Collision Detection, 5.1.5). The corners have indices.
 pub(super) fn on_triangle<S: Scalar>(
     [(i, a), (j, b), (k, c)]: [(usize, Vec3<S>); 3],
 ) -> Nearest<S> {
@@ -150,7 +151,7 @@ pub(super) fn on_triangle<S: Scalar>(
     let (sum, normal) = (va + vb + vc, ab.cross(ac));
     let square = normal.norm_squared();
     if !(sum > zero && square > zero) {
-        // Without area.
+        // The triangle has no area.
         let (a, b, c) = ((i, a), (j, b), (k, c));
         let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| on_segment(p, q));
         return sides[1..]
@@ -158,7 +159,7 @@ pub(super) fn on_triangle<S: Scalar>(
             .fold(sides[0], |best, side| best.nearer(*side));
     }
     let (v, w) = (vb / sum, vc / sum);
-    // Along the normal the point keeps its direction where the weighted sum would lose it.
+    // Projection onto the normal keeps the point's direction, which the weighted sum would lose.
     Nearest {
         point: normal * (normal.dot(a) / square),
         of: [i, j, k],
@@ -175,7 +176,7 @@ pub(super) struct Nearest<S> {
 }
 
 impl<S: Scalar> Nearest<S> {
-    /// Whether it is on no side of a triangle.
+    /// Returns true if the point is on no side of a triangle.
     pub(super) fn is_inside(&self) -> bool {
         self.of[1] != self.of[2]
     }
@@ -186,7 +187,7 @@ impl<S: Scalar> Nearest<S> {
             weights: [S::ONE, S::ZERO, S::ZERO],
         }
     }
-    /// The point that is the share `ahead` / `whole` of the way from one vertex to another.
+    /// Returns the point at the fraction `ahead` / `whole` from one vertex to another.
     fn edge((i, p): (usize, Vec3<S>), (j, q): (usize, Vec3<S>), ahead: S, whole: S) -> Self {
         if whole <= S::ZERO {
             return Nearest::vertex(i, p);

@@ -1,10 +1,10 @@
-//! Actuators: what they pull on, and the kinds of their dynamics, gain and bias.
+//! Actuators: their transmissions, and the kinds of their dynamics, gain and bias.
 
 use super::History;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What an actuator pulls on.
+/// The transmission of an actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transmission {
     /// A joint, axes in the child frame.
@@ -17,7 +17,8 @@ pub enum Transmission {
     Site(usize),
     /// The pose of the first site in the frame of the second.
     SiteInFrame([usize; 2]),
-    /// The slider of a slider-crank, by the site of the crank's pin and the one whose axis z the slider moves along.
+    /// The slider of a slider-crank, given by the site of the crank's pin and the site whose z axis the slider moves
+    /// along.
     SliderCrank([usize; 2]),
     /// The contacts of a body.
     Body(usize),
@@ -27,7 +28,7 @@ pub enum Transmission {
     RotationInFrame([usize; 2]),
 }
 
-/// How a control becomes an activation.
+/// The activation dynamics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DynamicsKind {
     /// No activation: the control acts directly.
@@ -45,7 +46,7 @@ pub enum DynamicsKind {
     DcMotor,
     /// The states of a PID controller; see [`pid`](crate::dynamics::pid).
     Pid,
-    /// MuJoCo leaves it to a callback; without one activations stay as they are.
+    /// A user callback in MuJoCo; without one activations are constant.
     User,
 }
 
@@ -59,13 +60,13 @@ pub enum GainKind {
     Affine,
     /// Active force of a muscle by length and velocity.
     Muscle,
-    /// Torque of a direct-current motor's current.
+    /// Torque constant of a direct-current motor.
     DcMotor,
     /// Setpoints of a PID controller.
     Pid,
     /// Stiffness of an orientation servo; see [`orientation`](crate::dynamics::orientation).
     So3,
-    /// MuJoCo leaves it to a callback; without one it is 1.
+    /// A user callback in MuJoCo; without one it is 1.
     User,
 }
 
@@ -83,33 +84,33 @@ pub enum BiasKind {
     DcMotor,
     /// Damping of an orientation servo.
     So3,
-    /// MuJoCo leaves it to a callback; without one it is zero.
+    /// A user callback in MuJoCo; without one it is zero.
     User,
 }
 
-/// What a control of an actuator is.
+/// The meaning of a control of an actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ControlInput {
-    /// What the gain multiplies.
+    /// The input of the gain.
     Command,
-    /// A position that a controller goes for.
+    /// The target position of a controller.
     Position,
-    /// A velocity that it goes for.
+    /// Its target velocity.
     Velocity,
     /// A force or torque that it adds.
     Feedforward,
-    /// The voltage at the terminals of a motor, beside its controller's.
+    /// The terminal voltage of a motor, in addition to its controller's.
     Voltage,
-    /// A part of the rotation vector that an orientation servo goes for.
+    /// A component of the target rotation vector of an orientation servo.
     RotationVector,
-    /// A part of the quaternion that it goes for.
+    /// A component of its target quaternion.
     Quaternion,
 }
 
-/// Which activations hold a state of a controller or motor.
+/// The activations that are states of a controller or motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ControllerStates {
-    /// The first control as it acts, where its rate is limited.
+    /// The effective first control, if its rate is limited.
     pub slew: Option<usize>,
     /// The integral of the position error.
     pub integral: Option<usize>,
@@ -126,44 +127,44 @@ pub struct ControllerStates {
 pub struct Actuator {
     /// Name, possibly empty.
     pub name: String,
-    /// What it pulls on.
+    /// Its transmission.
     pub transmission: Transmission,
     /// Its dynamics.
     pub dynamics: DynamicsKind,
-    /// Its activations; the last one acts.
+    /// Its activations; the last one is the effective one.
     pub acts: Range<usize>,
-    /// Its lengths, velocities and forces: one, but for orientation servos.
+    /// Its lengths, velocities and forces: one, except for orientation servos.
     pub outputs: Range<usize>,
     /// Its gain.
     pub gain: GainKind,
     /// Its bias.
     pub bias: BiasKind,
-    /// Which activations are states of its controller or motor.
+    /// The activations that are states of its controller or motor.
     pub states: ControllerStates,
     /// Its controls.
     pub controls: Range<usize>,
-    /// What each of them is.
+    /// The meaning of each control.
     pub inputs: Vec<ControlInput>,
-    /// Which of them are clamped.
+    /// True for each control that is clamped.
     pub ctrllimited: Vec<bool>,
     /// The buffer of its past controls.
     pub history: Option<History>,
-    /// Its force is clamped.
+    /// True if its force is clamped.
     pub forcelimited: bool,
-    /// Its activation is clamped.
+    /// True if its activation is clamped.
     pub actlimited: bool,
-    /// The activation as of the end of the step acts.
+    /// True if the activation at the end of the step is used.
     pub actearly: bool,
-    /// Switched off by its group.
+    /// True if its group is disabled.
     pub disabled: bool,
     /// Group.
     pub group: i32,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
 }
 
 impl Actuator {
-    /// The activation that acts, if it has any.
+    /// Returns the effective activation, if it has any.
     #[inline(always)]
     pub fn act(&self) -> Option<usize> {
         self.acts.clone().last()

@@ -1,4 +1,4 @@
-//! The tree: bodies, what moves them, and the frames on them.
+//! The tree: bodies, their joints, and the frames on them.
 
 use crate::model::Origin;
 use clench_collide::ShapeKind;
@@ -19,7 +19,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// Position coordinates of the joint.
+    /// Returns the number of position coordinates.
     pub fn nq(self) -> usize {
         match self {
             JointKind::Free => 7,
@@ -27,7 +27,7 @@ impl JointKind {
             JointKind::Slide | JointKind::Hinge => 1,
         }
     }
-    /// Degrees of freedom of the joint.
+    /// Returns the number of degrees of freedom.
     pub fn nv(self) -> usize {
         match self {
             JointKind::Free => 6,
@@ -62,17 +62,19 @@ pub struct Body {
     pub mocap: Option<usize>,
     /// Last dof of the nearest ancestor-or-self that has any: the end of the chain that moves this body.
     pub last_dof: Option<usize>,
-    /// The inertial frame coincides with the body frame.
+    /// True if the inertial frame coincides with the body frame.
     pub simple_inertia: bool,
-    /// Its part of the mass matrix is diagonal wherever it is, and MuJoCo keeps nothing but the diagonal of it (its `body_simple`).
+    /// True if its part of the mass matrix is diagonal in every configuration, and MuJoCo stores only its diagonal (its
+    /// `body_simple`).
     pub diagonal_inertia: bool,
-    /// Some of its geoms feel a surrounding medium as ellipsoids, and it does not as a box.
+    /// True if fluid forces act on its geoms as ellipsoids, and not on the body as a box.
     pub fluid_ellipsoids: bool,
-    /// Its constraints are scaled by the mean over all directions, even where it only slides along coordinate axes.
+    /// True if its constraints are scaled by the mean over all directions, even if it only slides along coordinate
+    /// axes.
     pub never_simple: bool,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -89,21 +91,22 @@ pub struct Joint {
     pub qpos: usize,
     /// First degree of freedom.
     pub dof: usize,
-    /// The first number in [`State::plastic`](crate::State::plastic) of where its spring rests; none where the spring does not yield.
+    /// The index in [`State::plastic`](crate::State::plastic) of the rest position of its spring; `None` if the spring
+    /// does not yield.
     pub plastic: Option<usize>,
-    /// Its range is a limit.
+    /// True if its range is a limit.
     pub limited: bool,
-    /// Its total actuator force is limited.
+    /// True if its total actuator force is limited.
     pub actfrclimited: bool,
-    /// Gravity compensation counts as actuation.
+    /// True if gravity compensation counts as actuation.
     pub actgravcomp: bool,
     /// The actuators that may damp it or add inertia to it, in order.
     pub reflecting: Vec<usize>,
     /// Group.
     pub group: i32,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -114,13 +117,13 @@ pub struct Dof {
     pub body: usize,
     /// Joint that it belongs to.
     pub joint: usize,
-    /// The dof before it on the way to the root.
+    /// The dof before it on the path to the root.
     pub parent: Option<usize>,
-    /// Whether any of its environments may have dry friction here (frictionloss > 0 in the model).
+    /// True if it may have dry friction in any environment (frictionloss > 0 in the model).
     pub frictionloss: bool,
 }
 
-/// A named frame on a body, with a volume in which sensors feel.
+/// A named frame on a body, with a volume for sensors.
 #[derive(Clone, Debug)]
 pub struct Site {
     /// Name, possibly empty.
@@ -133,6 +136,6 @@ pub struct Site {
     pub group: i32,
     /// The mesh whose convex hull it is, for `ShapeKind::Mesh`.
     pub mesh: Option<usize>,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
 }

@@ -2,19 +2,20 @@
 
 use std::sync::Arc;
 
-/// How a camera's frame follows bodies.
+/// The tracking mode of a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraMode {
     /// Fixed to its body.
     Fixed,
-    /// At a constant offset from its body, with a constant orientation, both in world axes and as they are at `qpos0`.
+    /// At a constant offset from its body, with a constant orientation, both in world axes and with their values at
+    /// `qpos0`.
     Track,
-    /// The same at an offset from the centre of mass of its body and all below it. If it names a body, the offset is the one from that
-    /// body's centre of mass at `qpos0`, as in MuJoCo.
+    /// The same at an offset from the centre of mass of its body's subtree. If it names a body, the offset is the one
+    /// from the centre of mass of that body's subtree at `qpos0`, as in MuJoCo.
     TrackCom(Option<usize>),
-    /// Placed as one that is fixed, turned towards a body.
+    /// Positioned as a fixed one, and pointed at a body.
     TargetBody(usize),
-    /// Turned towards the centre of mass of a body and all below it.
+    /// Pointed at the centre of mass of a body and its descendants.
     TargetBodyCom(usize),
 }
 
@@ -25,14 +26,14 @@ pub struct Camera {
     pub name: String,
     /// Body that carries it.
     pub body: usize,
-    /// How its frame follows bodies.
+    /// Its tracking mode.
     pub mode: CameraMode,
-    /// Whether its lines of sight are parallel.
+    /// True if the projection is orthographic.
     pub orthographic: bool,
     /// Pixels: width, height.
     pub resolution: [usize; 2],
-    /// Whether its field of view comes from a focal length and the size of its sensor, not from `fovy`.
+    /// True if its field of view comes from a focal length and the size of its sensor, not from `fovy`.
     pub intrinsic: bool,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
 }

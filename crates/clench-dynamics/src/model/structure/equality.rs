@@ -1,6 +1,6 @@
 //! Equality constraints.
 
-/// What an equality constraint holds.
+/// The relation that an equality constraint enforces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EqualityTarget {
@@ -21,33 +21,33 @@ pub enum EqualityTarget {
     },
     /// A joint follows another by `params.eq_polycoef`.
     Joint {
-        /// The joint that follows.
+        /// The follower joint.
         joint1: usize,
-        /// The joint that leads.
+        /// The leader joint.
         joint2: Option<usize>,
     },
     /// A tendon follows another by `params.eq_polycoef`.
     Tendon {
-        /// The tendon that follows.
+        /// The follower tendon.
         tendon1: usize,
-        /// The tendon that leads.
+        /// The leader tendon.
         tendon2: Option<usize>,
     },
 }
 
-/// What an equality couples, whatever it asks of it.
+/// The elements that an equality couples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coupled {
     /// Two bodies.
     Bodies([usize; 2]),
-    /// A joint that follows, and one that leads.
+    /// A follower joint and its leader.
     Joints(usize, Option<usize>),
-    /// A tendon that follows, and one that leads.
+    /// A follower tendon and its leader.
     Tendons(usize, Option<usize>),
 }
 
 impl EqualityTarget {
-    /// One line a kind: its word in MJCF, its number in MuJoCo, its rows, and what it couples.
+    /// Returns the facts of a kind: its keyword in MJCF, its number in MuJoCo, its rows, and what it couples.
     #[inline(always)]
     fn facts(self) -> (&'static str, i32, usize, Coupled) {
         use Coupled::*;
@@ -61,19 +61,19 @@ impl EqualityTarget {
         }
     }
 
-    /// The kind in a word, as MJCF has it.
+    /// Returns the keyword of the kind in MJCF.
     pub fn kind(self) -> &'static str {
         self.facts().0
     }
-    /// The kind as a number, MuJoCo's `mjtEq`.
+    /// Returns the number of the kind, MuJoCo's `mjtEq`.
     pub fn code(self) -> i32 {
         self.facts().1
     }
-    /// How many rows it has.
+    /// Returns the number of its rows.
     pub fn rows(self) -> usize {
         self.facts().2
     }
-    /// What it couples.
+    /// Returns the elements that it couples.
     #[inline(always)]
     pub fn coupled(self) -> Coupled {
         self.facts().3
@@ -85,10 +85,10 @@ impl EqualityTarget {
 pub struct Equality {
     /// Name, possibly empty.
     pub name: String,
-    /// What it holds.
+    /// The relation that it enforces.
     pub target: EqualityTarget,
-    /// The sites that are held together, where it names sites and not bodies.
+    /// The sites that it couples, if it names sites and not bodies.
     pub sites: Option<[usize; 2]>,
-    /// On in the initial state.
+    /// True if initially active.
     pub active0: bool,
 }

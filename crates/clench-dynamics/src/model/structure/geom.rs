@@ -1,4 +1,4 @@
-//! What collides: geoms, the meshes and height fields that they are made of, and pairs.
+//! Collision elements: geoms, their meshes and height fields, and pairs.
 
 use crate::model::{MeshSpec, Origin};
 use clench_collide::{Hull, ShapeKind, TriangleMesh, convex_hull};
@@ -24,17 +24,17 @@ pub struct Geom {
     pub conaffinity: u32,
     /// Dimensions of the contact.
     pub condim: u32,
-    /// Whose parameters win.
+    /// Priority of its contact parameters.
     pub priority: i32,
     /// Group.
     pub group: i32,
-    /// Whether it can be seen: rays pass through what cannot.
+    /// True if it is visible: rays pass through invisible geoms.
     pub visible: bool,
-    /// Feels a surrounding medium as an ellipsoid.
+    /// True if fluid forces act on it as an ellipsoid.
     pub fluid_ellipsoid: bool,
-    /// The user's own numbers, as many for each element of its kind.
+    /// The user's own numbers.
     pub user: Arc<[f64]>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -45,31 +45,31 @@ pub struct Geom {
 pub struct Mesh {
     /// Name.
     pub name: String,
-    /// Its centre of mass where its author put it (scaled, about the reference pose), m.
+    /// Its centre of mass in the coordinates of its author (scaled, about the reference pose), m.
     pub pos: Vec3<f64>,
-    /// Its principal axes there.
+    /// Orientation of its principal axes there.
     pub quat: Quat<f64>,
     /// Vertices, m.
     pub vertices: Vec<Vec3<f64>>,
     /// Triangles, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
-    /// Places in a picture that lies on the mesh, across and down, each from 0 to 1; none where its author gave none.
+    /// Texture coordinates, across and down, each from 0 to 1; none if its author gave none.
     pub texcoords: Vec<[f32; 2]>,
-    /// Which of these each corner of each triangle has; as many as `faces` where there are any.
+    /// The texture coordinates of each corner of each triangle; as many as `faces` if there are any.
     pub face_texcoords: Vec<[u32; 3]>,
-    /// Two tangents at each vertex, unit vectors; none where its author gave none.
+    /// Two tangents at each vertex, unit vectors; none if its author gave none.
     pub tangents: Vec<[Vec3<f64>; 2]>,
-    /// What collides, and the volume of sites; `None` where no geom with this mesh collides and no site is it.
+    /// The collision shape, and the volume of sites; `None` if no colliding geom and no site uses the mesh.
     pub hull: Option<Hull>,
-    /// As its author gave it, which is what a saved model says.
+    /// The mesh as its author gave it; a saved model writes this.
     pub spec: MeshSpec,
-    /// What queries need of it, made when they first do.
+    /// Data for queries, computed on demand.
     pub on_demand: OnDemand,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
-/// What of a mesh only queries need.
+/// Data of a mesh that only queries use.
 #[derive(Clone, Debug, Default)]
 pub struct OnDemand {
     triangles: OnceLock<TriangleMesh>,
@@ -77,16 +77,16 @@ pub struct OnDemand {
 }
 
 impl Mesh {
-    /// Its triangles, for rays. The first call takes some 0.4 µs a triangle (0.1 s for 200,000).
+    /// Returns its triangles, for rays. The first call takes some 0.4 µs per triangle (0.1 s for 200,000).
     pub fn triangles(&self) -> &TriangleMesh {
         self.on_demand.triangles.get_or_init(|| {
-            // Whoever writes numbers that are not finite into a model gets meshes that no ray hits.
+            // A model with numbers that are not finite gets meshes that no ray hits.
             let mesh = TriangleMesh::new(self.vertices.clone(), self.faces.clone());
             mesh.unwrap_or_default()
         })
     }
 
-    /// Its hull, whether it collides or not. `None` where it is flat.
+    /// Returns its hull, even if it does not collide. `None` if it is flat.
     pub fn any_hull(&self) -> Option<&Hull> {
         let make = || {
             let surface = convex_hull(&self.vertices, None).ok()?;
@@ -97,7 +97,7 @@ impl Mesh {
     }
 }
 
-/// Terrain; its numbers are structure, as those of a [`Mesh`].
+/// Terrain. Its numbers are structure, as those of a [`Mesh`].
 #[derive(Clone, Debug)]
 pub struct HeightField {
     /// Name.

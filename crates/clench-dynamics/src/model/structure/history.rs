@@ -1,33 +1,33 @@
-//! Where buffers of past values lie.
+//! The layout of buffers of past values.
 
 use std::ops::Range;
 
 /// A buffer of past values in the `history` of a state; see [`history`](crate::history).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct History {
-    /// Its first number.
+    /// The index of its first number.
     pub start: usize,
-    /// How many samples it keeps, at least one.
+    /// The number of samples, at least one.
     pub samples: usize,
-    /// How many numbers a sample has, at least one.
+    /// The number of numbers per sample, at least one.
     pub width: usize,
-    /// How it is read between samples.
+    /// The interpolation between samples.
     pub interpolation: Interpolation,
 }
 
 impl History {
-    /// How many numbers it takes.
+    /// Returns its number of numbers.
     pub fn size(&self) -> usize {
         1 + self.samples * (1 + self.width)
     }
 
-    /// Where the times of its samples are, oldest first.
+    /// Returns the range of the times of its samples, oldest first.
     #[inline(always)]
     pub fn times(&self) -> Range<usize> {
         self.start + 1..self.start + 1 + self.samples
     }
 
-    /// Where their values are.
+    /// Returns the range of their values.
     #[inline(always)]
     pub fn values(&self) -> Range<usize> {
         let first = self.start + 1 + self.samples;
@@ -35,14 +35,14 @@ impl History {
     }
 }
 
-/// How a buffer is read between two samples.
+/// The interpolation of a buffer between two samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// The earlier sample holds.
     #[default]
     Hold,
-    /// By a straight line.
+    /// Linear interpolation.
     Linear,
-    /// By a cubic through both, with slopes from their neighbours (Catmull and Rom), zero at the ends.
+    /// Cubic interpolation with slopes from the neighbours (Catmull and Rom), zero at the ends.
     Cubic,
 }

@@ -5,20 +5,20 @@
 pub struct Keyframe {
     /// Name, possibly empty.
     pub name: String,
-    /// s.
+    /// Time, s.
     pub time: f64,
-    /// (nq).
+    /// Positions (nq).
     pub qpos: Vec<f64>,
-    /// (nv).
+    /// Velocities (nv).
     pub qvel: Vec<f64>,
-    /// (na).
+    /// Activations (na).
     pub act: Vec<f64>,
-    /// (nplastic).
+    /// Spring rest positions (nplastic).
     pub plastic: Vec<f64>,
-    /// (nu).
+    /// Controls (nu).
     pub ctrl: Vec<f64>,
-    /// (3 nmocap).
+    /// Mocap positions (3 nmocap).
     pub mocap_pos: Vec<f64>,
-    /// (4 nmocap).
+    /// Mocap orientations (4 nmocap).
     pub mocap_quat: Vec<f64>,
 }

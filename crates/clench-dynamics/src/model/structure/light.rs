@@ -1,4 +1,4 @@
-//! Lights. Only viewers ask for them.
+//! Lights. Only viewers use them.
 
 use super::camera::CameraMode;
 use clench_math::Vec3;
@@ -10,7 +10,7 @@ pub struct Light {
     pub name: String,
     /// Body that carries it.
     pub body: usize,
-    /// How it follows bodies, as a camera does.
+    /// Its tracking mode, as a camera's.
     pub mode: CameraMode,
     /// Position in the body frame, m.
     pub pos: Vec3<f64>,
@@ -20,43 +20,43 @@ pub struct Light {
     pub pos0: Vec3<f64>,
     /// Offset from the centre of mass that it follows at `qpos0`, in world axes, m.
     pub poscom0: Vec3<f64>,
-    /// Where it shines at `qpos0`, in world axes.
+    /// Its direction at `qpos0`, in world axes.
     pub dir0: Vec3<f64>,
-    /// What it shines like.
+    /// Its optical properties.
     pub properties: LightProperties,
 }
 
-/// What a light shines like, in MuJoCo's terms.
+/// The optical properties of a light, in MuJoCo's terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightProperties {
-    /// Where its light goes.
+    /// The kind of light.
     pub kind: LightKind,
-    /// Whether it shines.
+    /// True if it is on.
     pub active: bool,
-    /// Whether things in its way cast shadows.
+    /// True if it casts shadows.
     pub castshadow: bool,
-    /// At the distance d from it light is divided by a + b d + c d², unless it is directional.
+    /// Attenuation [a, b, c]: at distance d light is divided by a + b d + c d², unless it is directional.
     pub attenuation: [f64; 3],
-    /// A spot shines so far about its direction, degrees.
+    /// The cutoff angle of a spot, degrees.
     pub cutoff: f64,
-    /// A spot is weaker by this power of the cosine of the angle to its direction.
+    /// The intensity of a spot falls with this power of the cosine of the angle to its direction.
     pub exponent: f64,
-    /// Colour of its light from everywhere, each part from 0 to 1.
+    /// Ambient colour, each part from 0 to 1.
     pub ambient: [f64; 3],
-    /// Colour of its light on what faces it.
+    /// Diffuse colour.
     pub diffuse: [f64; 3],
-    /// Colour of its highlights.
+    /// Specular colour.
     pub specular: [f64; 3],
 }
 
-/// Where the light of a light goes.
+/// The kind of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightKind {
     /// From its position, about its direction.
     Spot,
-    /// Along its direction everywhere, like the sun's.
+    /// Along its direction everywhere, like sunlight.
     Directional,
-    /// From its position into all directions.
+    /// From its position in all directions.
     Point,
 }
 
@@ -77,16 +77,16 @@ impl Default for LightProperties {
     }
 }
 
-/// The light that goes with the camera.
+/// The light at the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Headlight {
-    /// Whether it shines.
+    /// True if it is on.
     pub active: bool,
-    /// Colour of its light from everywhere, each part from 0 to 1.
+    /// Ambient colour, each part from 0 to 1.
     pub ambient: [f64; 3],
-    /// Colour of its light on what faces it.
+    /// Diffuse colour.
     pub diffuse: [f64; 3],
-    /// Colour of its highlights.
+    /// Specular colour.
     pub specular: [f64; 3],
 }
 

@@ -1,17 +1,17 @@
-//! Meshes, as their author gives them.
+//! Meshes as their author gives them.
 
 use crate::model::Origin;
 use clench_math::{Quat, Vec3};
 
-/// How the mass of a mesh is spread.
+/// The mass distribution of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MeshInertia {
     /// Evenly over its convex hull.
     Convex,
-    /// Evenly over what it encloses; its triangles must agree on where outside is.
+    /// Evenly over the enclosed volume; its triangles must have consistent orientation.
     Exact,
-    /// Evenly over the pyramids from its centroid to each triangle, those that face inwards counted as if they faced outwards.
-    /// MuJoCo's default: too much where a mesh is not convex.
+    /// Evenly over the pyramids from its centroid to each triangle, with those that face inwards counted as if they
+    /// faced outwards. MuJoCo's default: too large for a mesh that is not convex.
     #[default]
     Legacy,
     /// Evenly over its surface.
@@ -20,32 +20,32 @@ pub enum MeshInertia {
 
 /// A mesh: triangles that geoms refer to by name.
 ///
-/// Each vertex v stands for `scale · refquat⁻¹ (v − refpos)`. What collides is the convex hull.
+/// Each vertex v represents `scale · refquat⁻¹ (v − refpos)`. The convex hull collides.
 #[derive(Clone, Debug)]
 pub struct MeshSpec {
     /// Name.
     pub name: String,
     /// Vertices, at least four.
     pub vertices: Vec<Vec3<f64>>,
-    /// Triangles, counter-clockwise seen from outside; none stands for the convex hull.
+    /// Triangles, counter-clockwise seen from outside; empty for the convex hull.
     pub faces: Vec<[u32; 3]>,
-    /// Places in a picture that lies on the mesh, across and down: one a vertex, or those that `face_texcoords` names.
+    /// Texture coordinates, across and down: one per vertex, or those that `face_texcoords` indexes.
     pub texcoords: Vec<[f32; 2]>,
-    /// Which of these each corner of each triangle has; none stands for those of the vertices.
+    /// The texture coordinates of each corner of each triangle; empty for those of the vertices.
     pub face_texcoords: Vec<[u32; 3]>,
-    /// Two tangents at each vertex, along which a tactile sensor measures; or none.
+    /// Two tangents at each vertex, along which a tactile sensor measures; or empty.
     pub tangents: Vec<[Vec3<f64>; 2]>,
-    /// Subtracted from the vertices.
+    /// The position subtracted from the vertices.
     pub refpos: Vec3<f64>,
-    /// Turned back from the vertices.
+    /// Rotation that is undone on the vertices.
     pub refquat: Quat<f64>,
-    /// Multiplied, last; negative numbers mirror.
+    /// Factors applied last; negative ones mirror.
     pub scale: Vec3<f64>,
-    /// How its mass is spread.
+    /// Its mass distribution.
     pub inertia: MeshInertia,
-    /// Most vertices of the convex hull; `None` for any number.
+    /// Maximum number of vertices of the convex hull; `None` for any number.
     pub max_hull_vertices: Option<usize>,
-    /// Where it was written.
+    /// The source location.
     pub origin: Option<Origin>,
 }
 
@@ -69,7 +69,7 @@ impl Default for MeshSpec {
 }
 
 impl MeshSpec {
-    /// The convex hull of points, m.
+    /// Creates the convex hull of points, m.
     pub fn hull(name: impl Into<String>, points: &[[f64; 3]]) -> Self {
         MeshSpec {
             name: name.into(),
@@ -78,7 +78,7 @@ impl MeshSpec {
             ..MeshSpec::default()
         }
     }
-    /// Triangles between vertices (m), counter-clockwise seen from outside, that enclose its mass.
+    /// Creates a mesh of triangles between vertices (m), counter-clockwise seen from outside, that enclose its mass.
     pub fn triangles(name: impl Into<String>, vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Self {
         MeshSpec {
             faces: faces.to_vec(),
@@ -86,7 +86,7 @@ impl MeshSpec {
             ..MeshSpec::hull(name, vertices)
         }
     }
-    /// Its size, along each axis; negative numbers mirror.
+    /// Scales it along each axis; negative factors mirror.
     #[must_use]
     pub fn scaled(mut self, scale: [f64; 3]) -> Self {
         self.scale = Vec3::from_array(scale);

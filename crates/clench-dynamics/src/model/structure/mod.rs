@@ -1,4 +1,4 @@
-//! Records of structure: what each element is and what it belongs to. No number that a user might randomize.
+//! Structure records: the kind and the relations of each element. No number that a user might randomize.
 
 mod actuator;
 mod body;

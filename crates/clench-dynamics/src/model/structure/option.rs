@@ -1,6 +1,6 @@
-//! What a model says of the step itself: integrator and feature switches.
+//! The options of a model for the step itself: integrator and feature switches.
 
-/// How velocity and position advance.
+/// The integration method of velocity and position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
     /// Semi-implicit Euler, joint damping implicit.
@@ -8,20 +8,21 @@ pub enum Integrator {
     Euler,
     /// Euler, implicit in the derivatives of damping and actuation with respect to velocity.
     ImplicitFast,
-    /// Euler, implicit in the derivatives of all forces but constraints' with respect to velocity, Coriolis forces included.
+    /// Euler, implicit in the derivatives of all forces except constraint forces with respect to velocity, including
+    /// Coriolis forces.
     Implicit,
     /// Fourth-order Runge–Kutta.
     Rk4,
-    /// Velocity stepping: constraints are solved for in a metric that has the damping and the stiffness of smooth forces, and what is
-    /// found is the step.
+    /// Velocity stepping: constraints are solved in a metric that includes the damping and the stiffness of smooth
+    /// forces, and the solution is the step.
     Discrete,
 }
 
-/// Feature switches: MuJoCo's disable flags, said positively and on by default, and of its enable flags those that act on motion
-/// or on inverse dynamics.
+/// Feature switches: MuJoCo's disable flags, stated positively and on by default, and those of its enable flags that
+/// affect motion or inverse dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flags {
-    /// Any constraint at all.
+    /// All constraints.
     pub constraint: bool,
     /// Equality constraints.
     pub equality: bool,
@@ -53,14 +54,14 @@ pub struct Flags {
     pub eulerdamp: bool,
     /// Sensors.
     pub sensor: bool,
-    /// Several contacts of a pair whose contacts MuJoCo finds by its general algorithm (see `clench_collide::multiccd_matters`);
-    /// without it the deepest alone.
+    /// Several contacts of a pair whose contacts MuJoCo finds by its general algorithm (see
+    /// `clench_collide::multiccd_matters`); otherwise only the deepest.
     pub multiccd: bool,
-    /// Constraints see the inverse inertia of the present configuration, not an estimate of that at qpos0. Off by default.
+    /// Constraints use the inverse inertia of the present configuration, not an estimate at qpos0. Off by default.
     pub diagexact: bool,
-    /// Trees that rest sleep.
+    /// Trees at rest sleep.
     pub sleep: bool,
-    /// Inverse dynamics are given the acceleration by which a step changes the velocity, see
+    /// The input of inverse dynamics is the acceleration by which a step changes the velocity, see
     /// [`Acceleration`](crate::inverse::Acceleration). Off by default.
     pub invdiscrete: bool,
 }

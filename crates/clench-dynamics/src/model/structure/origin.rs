@@ -1,4 +1,4 @@
-//! The place in a file where an element of a model was written.
+//! The source location of an element of a model.
 
 use std::fmt;
 use std::sync::Arc;

@@ -1,9 +1,9 @@
-//! Where the rows of a matrix over dofs may be nonzero.
+//! The sparsity pattern of a matrix over dofs.
 
 use std::ops::Range;
 
-/// The dofs of each row of a sparse matrix over dofs, ascending, each once. The entries of all rows stand one after the other
-/// in an array of their own.
+/// The dofs of each row of a sparse matrix over dofs, ascending, without duplicates. The entries of all rows are stored
+/// row after row in a separate array.
 #[derive(Clone, Debug, Default)]
 pub struct RowPattern {
     dofs: Vec<u32>,
@@ -11,7 +11,7 @@ pub struct RowPattern {
 }
 
 impl RowPattern {
-    /// Appends a row that may be nonzero at `dofs`, given in any order and as often as one likes.
+    /// Appends a row that may be nonzero at `dofs`, in any order and possibly with duplicates.
     pub fn push(&mut self, dofs: impl IntoIterator<Item = u32>) {
         let start = self.dofs.len();
         self.dofs.extend(dofs);
@@ -27,30 +27,30 @@ impl RowPattern {
         self.ends.push(kept);
     }
 
-    /// Entries of all rows.
+    /// Returns the number of entries.
     pub fn len(&self) -> usize {
         self.dofs.len()
     }
 
-    /// Whether no row has an entry.
+    /// Returns true if no row has an entry.
     pub fn is_empty(&self) -> bool {
         self.dofs.is_empty()
     }
 
-    /// Where the entries of a row stand.
+    /// Returns the range of the entries of a row.
     #[inline(always)]
     pub fn range(&self, row: usize) -> Range<usize> {
         let start = row.checked_sub(1).map_or(0, |before| self.ends[before]);
         start..self.ends[row]
     }
 
-    /// The dofs of a row.
+    /// Returns the dofs of a row.
     #[inline(always)]
     pub fn dofs(&self, row: usize) -> &[u32] {
         &self.dofs[self.range(row)]
     }
 
-    /// The dofs of a row with their entries, `entries` being those of all rows.
+    /// Returns the dofs of a row with their entries; `entries` are those of all rows.
     #[inline(always)]
     pub fn row<'a, T: Copy>(
         &'a self,

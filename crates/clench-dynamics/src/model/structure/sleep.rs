@@ -1,22 +1,22 @@
-//! Kinematic trees, and which of them may sleep.
+//! Kinematic trees, and their sleep policies.
 
 use std::ops::Range;
 
-/// Whether a tree may sleep.
+/// The sleep policy of a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SleepPolicy {
-    /// As what acts on the tree says: nothing that could move it unseen, then it may.
+    /// The tree may sleep if nothing can move it undetected.
     #[default]
     Auto,
-    /// It never does.
+    /// The tree never sleeps.
     Never,
-    /// It may.
+    /// The tree may sleep.
     Allowed,
-    /// It may, and begins asleep.
+    /// The tree may sleep, and starts asleep.
     Init,
 }
 
-/// A body whose degrees of freedom depend on no others, and all below it.
+/// A body whose degrees of freedom depend on no others, and its descendants.
 #[derive(Clone, Debug)]
 pub struct KinematicTree {
     /// Its bodies.
@@ -27,6 +27,6 @@ pub struct KinematicTree {
     pub dofs: Range<usize>,
     /// Index of the mocap body that carries it.
     pub mocap: Option<usize>,
-    /// Whether it may sleep, decided: never [`SleepPolicy::Auto`].
+    /// The resolved policy: never [`SleepPolicy::Auto`].
     pub sleep: SleepPolicy,
 }

@@ -1,41 +1,41 @@
-//! Pictures on surfaces: those of files, and those that follow from a few numbers by the rules of MuJoCo's compiler.
+//! Textures: those of files, and those that are computed from a few numbers by the rules of MuJoCo's compiler.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use std::sync::Arc;
 
-/// A picture on surfaces.
+/// A texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// Name.
     pub name: String,
-    /// What it lies on.
+    /// The surface that it covers.
     pub kind: TextureKind,
-    /// What it shows.
+    /// Its picture.
     pub picture: TexturePicture,
 }
 
-/// What a texture lies on.
+/// The surface that a texture covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureKind {
-    /// A plane, or by its texture coordinates a mesh.
+    /// A plane, or a mesh by its texture coordinates.
     Plane,
-    /// A cube around a geom: six square pictures below each other, as seen from inside, of what is to the right (x), left, up (y), down,
-    /// to the front (z) and back. One square picture alone is on all sides.
+    /// A cube around a geom: six square pictures below each other, as seen from inside: right (x), left, up (y), down,
+    /// front (z) and back. A single square picture is on all sides.
     Cube,
-    /// A cube around everything, whose up is z.
+    /// A skybox, with z up.
     Sky,
 }
 
-/// What a texture shows.
+/// The picture of a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TexturePicture {
-    /// The picture of a file.
+    /// An image from a file.
     Pixels(Arc<Pixels>),
     /// A pattern.
     Computed(Pattern),
 }
 
-/// Rows of pixels from above, of three bytes each: red, green, blue, as a screen shows them.
+/// Rows of pixels from the top, of three bytes each: red, green, blue, as displayed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pixels {
     /// Pixels in a row.
@@ -49,24 +49,24 @@ pub struct Pixels {
 /// A picture that is computed from a few numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
-    /// What it shows.
+    /// The base pattern.
     pub pattern: TexturePattern,
     /// First colour, each part from 0 to 1.
     pub rgb1: [f64; 3],
     /// Second colour.
     pub rgb2: [f64; 3],
-    /// What is drawn over it.
+    /// The mark drawn over it.
     pub mark: TextureMark,
-    /// Colour of that.
+    /// Colour of the mark.
     pub markrgb: [f64; 3],
     /// Width and height of a plane, or of a side of a cube, pixels.
     pub size: [usize; 2],
 }
 
-/// What a computed texture shows.
+/// The base pattern of a computed texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TexturePattern {
-    /// From the first colour at the edges, or below, to the second in the middle, or above.
+    /// A gradient from the first colour at the edges, or below, to the second in the middle, or above.
     Gradient,
     /// Two by two fields.
     Checker,
@@ -74,7 +74,7 @@ pub enum TexturePattern {
     Flat,
 }
 
-/// What is drawn over a computed texture.
+/// The mark drawn over a computed texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TextureMark {
     /// Nothing.
@@ -83,12 +83,12 @@ pub enum TextureMark {
     Edge,
     /// A cross in the middle.
     Cross,
-    /// Dots, of which each pixel is one with this probability. They are the same each time, but not those of MuJoCo.
+    /// Random dots: each pixel is one with this probability. They are the same each time, but differ from MuJoCo's.
     Random(f64),
 }
 
 impl Texture {
-    /// Its pixels; those of a pattern are computed now.
+    /// Returns its pixels; those of a pattern are computed on each call.
     pub fn pixels(&self) -> Arc<Pixels> {
         match &self.picture {
             TexturePicture::Pixels(pixels) => Arc::clone(pixels),
@@ -99,7 +99,7 @@ impl Texture {
         }
     }
 
-    /// The mean of its colours, from 0 to 1.
+    /// Returns the mean of its colours, from 0 to 1.
     pub fn mean(&self) -> [f64; 3] {
         let pixels = self.pixels();
         let (rows, _) = pixels.rgb.as_chunks::<3>();
@@ -108,15 +108,15 @@ impl Texture {
     }
 }
 
-/// A side that a pattern is on.
+/// A side of a pattern.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Plane,
-    /// To the right or left of a cube.
+    /// The right or left side of a cube.
     Beside,
     Up,
     Down,
-    /// To the front or back.
+    /// The front or back.
     Ahead,
 }
 
@@ -174,7 +174,7 @@ impl Pattern {
         Pixels { width, height, rgb }
     }
 
-    /// Opposite fields have the same colour; to the front and back they change places.
+    /// Returns the colour of a checker field. Opposite fields have the same colour; front and back have them swapped.
     fn checker(&self, side: Side, row: usize, column: usize) -> [f64; 3] {
         let same = (row < self.size[1] / 2) == (column < self.size[0] / 2);
         match same == (side != Side::Ahead) {
@@ -183,7 +183,7 @@ impl Pattern {
         }
     }
 
-    /// By the distance from the middle of a plane; on a cube by the elevation above its middle.
+    /// Computes a gradient by the distance from the middle of a plane, or by the elevation above the middle of a cube.
     fn gradient(&self, side: Side, row: usize, column: usize) -> [f64; 3] {
         let along = |k: usize, count: usize| 2.0 * k as f64 / (count as f64 - 1.0) - 1.0;
         let (x, y) = (along(column, self.size[0]), -along(row, self.size[1]));
@@ -198,10 +198,10 @@ impl Pattern {
     }
 }
 
-/// The first colour where `at` is 1, the second where it is −1, between them along a sigmoid.
+/// Blends two colours: the first at `at` = 1, the second at −1, between them along a sigmoid.
 fn blend(first: [f64; 3], second: [f64; 3], at: f64) -> [f64; 3] {
     let share = 0.5 * (1.0 + at / (1.0 + at * at).sqrt() / FRAC_1_SQRT_2);
-    // A single row or column has no place between its ends.
+    // The position is undefined for a single row or column.
     let share = if share.is_nan() {
         0.0
     } else {
@@ -214,7 +214,7 @@ fn bytes(rgb: [f64; 3]) -> [u8; 3] {
     rgb.map(|part| (255.0 * part) as u8)
 }
 
-/// Numbers from 0 to 1 that look like chance (SplitMix64 by Steele, Lea and Flood).
+/// Pseudo-random numbers from 0 to 1 (SplitMix64 by Steele, Lea and Flood).
 struct Dots(u64);
 
 impl Dots {

@@ -1,9 +1,9 @@
-//! A Collada file as XML: its elements by name and by id, and the numbers that they hold.
+//! A Collada file as XML: its elements by name and by id, and their numbers.
 
 use roxmltree::{Document, Node};
 use std::collections::HashMap;
 
-/// A file whose elements are known by their ids.
+/// A file with its elements indexed by id.
 pub(super) struct File<'a> {
     ids: HashMap<&'a str, Node<'a, 'a>>,
 }
@@ -19,12 +19,13 @@ impl<'a> File<'a> {
         File { ids }
     }
 
-    /// The element that the `url` of another refers to.
+    /// Returns the element that the `url` of another refers to.
     pub(super) fn referred(&self, node: Node<'a, 'a>) -> Result<Node<'a, 'a>, String> {
         self.by_id(node, "url")
     }
 
-    /// The element that the `source` of an input refers to. Some files use an id again in each mesh: that in the input's own is meant.
+    /// Returns the element that the `source` of an input refers to. Ids may repeat across meshes: that in the input's
+    /// own takes precedence.
     pub(super) fn source(&self, input: Node<'a, 'a>) -> Result<Node<'a, 'a>, String> {
         let written = input.attribute("source").unwrap_or_default();
         let mesh = input.ancestors().nth(2);
@@ -44,17 +45,17 @@ impl<'a> File<'a> {
     }
 }
 
-/// The first child of a name.
+/// Returns the first child with a name.
 pub(super) fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
     children(node, name).next()
 }
 
-/// All children of a name.
+/// Returns all children with a name.
 pub(super) fn children<'a>(node: Node<'a, 'a>, name: &str) -> impl Iterator<Item = Node<'a, 'a>> {
     (node.children()).filter(move |child| child.is_element() && child.tag_name().name() == name)
 }
 
-/// The numbers that an element holds.
+/// Parses the numbers of an element.
 pub(super) fn numbers<T: std::str::FromStr>(node: Node) -> Result<Vec<T>, String> {
     let texts = node.children().filter_map(|child| child.text());
     let words = texts.flat_map(str::split_ascii_whitespace);
@@ -66,7 +67,7 @@ pub(super) fn numbers<T: std::str::FromStr>(node: Node) -> Result<Vec<T>, String
         .collect()
 }
 
-/// What is wrong with an element, and where it stands.
+/// Formats an error message with the line and name of an element.
 pub(super) fn at(node: Node, message: &str) -> String {
     let line = node.document().text_pos_at(node.range().start).row;
     format!("line {line}: <{}>: {message}", node.tag_name().name())

@@ -7,13 +7,13 @@ use crate::mesh::triangles::Triangles;
 use clench_math::Vec3;
 use roxmltree::Node;
 
-/// Most numbers of a corner: no file has more than a vertex, a normal, a colour and some places in pictures.
+/// The maximum numbers per corner: no file has more than a vertex, a normal, a colour and some texture coordinates.
 const MAX_INPUTS: usize = 64;
 
-/// All groups of faces of a geometry; none where it is no surface, but a spline.
+/// Reads all groups of faces of a geometry; none for a spline.
 ///
 /// # Errors
-/// Faces that name what is not there, or of a kind that is not read.
+/// Returns an error if faces refer to missing elements or are not supported.
 pub(super) fn read<'a>(file: &File<'a>, geometry: Node<'a, 'a>) -> Result<Vec<Polygons>, String> {
     let mut found = Vec::new();
     let groups = child(geometry, "mesh")
@@ -29,12 +29,12 @@ pub(super) fn read<'a>(file: &File<'a>, geometry: Node<'a, 'a>) -> Result<Vec<Po
     Ok(found)
 }
 
-/// Faces over vertices of their own numbering.
+/// Faces with their own numbering of vertices.
 pub(super) struct Polygons {
     positions: Vec<Vec3<f64>>,
-    /// Vertices of all faces, one face after the other.
+    /// The vertices of all faces, one face after the other.
     corners: Vec<usize>,
-    /// How many of them each face has.
+    /// The number of corners of each face.
     counts: Vec<usize>,
 }
 
@@ -82,12 +82,12 @@ impl Polygons {
         })
     }
 
-    /// How many vertices and corners there are.
+    /// Returns the number of vertices and corners.
     pub(super) fn size(&self) -> usize {
         self.positions.len() + self.corners.len()
     }
 
-    /// Adds the triangles, as they stand in the scene. Vertices that no face has do not count.
+    /// Adds the triangles, transformed to the scene. Omits vertices that no face uses.
     pub(super) fn append(&self, found: &mut Triangles, transform: &Transform) {
         let mut numbers: Vec<Option<u32>> = vec![None; self.positions.len()];
         let mut rest = &self.corners[..];
@@ -117,7 +117,7 @@ impl Polygons {
     }
 }
 
-/// Which of the numbers of a corner an input has.
+/// Returns the offset of an input in the numbers of a corner.
 fn offset(input: Node) -> Result<usize, String> {
     match input.attribute("offset").unwrap_or("0").trim().parse() {
         Ok(offset) if offset < MAX_INPUTS => Ok(offset),
@@ -125,7 +125,7 @@ fn offset(input: Node) -> Result<usize, String> {
     }
 }
 
-/// The points of `<vertices>`.
+/// Returns the points of `<vertices>`.
 fn positions<'a>(file: &File<'a>, vertices: Node<'a, 'a>) -> Result<Vec<Vec3<f64>>, String> {
     let mut inputs = children(vertices, "input");
     let input = inputs.find(|input| input.attribute("semantic") == Some("POSITION"));

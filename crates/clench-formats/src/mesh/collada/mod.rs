@@ -1,7 +1,7 @@
-//! Collada (`.dae`): the triangles of a scene, in metres, each where the nodes of the scene put it.
+//! Collada (`.dae`) files: the triangles of a scene, in metres, with the transforms of the scene's nodes.
 //!
-//! As RViz and other programs of ROS have it, `<unit>` scales the mesh and `<up_axis>` does not turn it: robots are written
-//! that way. Materials, lights, cameras and lines are passed over. What is deformed by a skeleton is an error.
+//! As in RViz and other ROS programs, `<unit>` scales the mesh and `<up_axis>` does not rotate it: robots are written
+//! that way. Materials, lights, cameras and lines are skipped. Geometry deformed by a skeleton is an error.
 
 mod file;
 mod geometry;
@@ -17,9 +17,10 @@ use scene::Instance;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// Most elements and attributes of a file; large scenes have some ten thousand. The parser takes some 300 bytes for each.
+/// The maximum number of elements and attributes of a file; large scenes have some ten thousand. Each takes some 300
+/// bytes in the parser.
 const MAX_MARKS: u64 = 1_000_000;
-/// Most vertices and corners of faces in a scene, in which a mesh may stand many times.
+/// The maximum number of vertices and face corners in a scene, counting each instance of a mesh.
 const MAX_SIZE: usize = 20_000_000;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
@@ -63,7 +64,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     }
 }
 
-/// How many metres the file's unit is long.
+/// Returns the length of the file's unit in metres.
 fn unit<'a>(root: Node<'a, 'a>) -> Result<f64, String> {
     let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
     let Some((node, written)) = unit.and_then(|unit| Some((unit, unit.attribute("meter")?))) else {

@@ -1,13 +1,13 @@
-//! `<visual_scene>`: which meshes stand where.
+//! `<visual_scene>`: the meshes and their transforms.
 
 use super::file::{File, at, child, children};
 use super::transform;
 use crate::mesh::affine::Transform;
 use roxmltree::Node;
 
-/// Deepest nesting of nodes, and of nodes that stand for others.
+/// The maximum nesting depth of nodes, including node instances.
 const MAX_DEPTH: usize = 64;
-/// Most nodes, those counted again that stand for others.
+/// The maximum number of nodes, counting each instance.
 const MAX_NODES: usize = 100_000;
 
 /// A mesh of the scene.
@@ -16,10 +16,11 @@ pub(super) struct Instance<'a> {
     pub transform: Transform,
 }
 
-/// All meshes of the file's scene; those of the first where the file does not say which, and of a file without one each mesh once.
+/// Returns all meshes of the file's scene: of the first scene if the file names none, and each mesh once if it has
+/// none.
 ///
 /// # Errors
-/// Meshes that are not there, that a skeleton deforms, or nodes too many or too deep.
+/// Returns an error if a mesh is missing or deformed by a skeleton, or nodes are too many or too deep.
 pub(super) fn instances<'a>(
     file: &File<'a>,
     root: Node<'a, 'a>,
@@ -45,14 +46,14 @@ pub(super) fn instances<'a>(
     }
 }
 
-/// A node to be looked into, and how what holds it stands.
+/// A node to visit, with the transform of its parent.
 struct Pending<'a> {
     node: Node<'a, 'a>,
     around: Transform,
     depth: usize,
 }
 
-/// The meshes of all nodes below a scene, in order.
+/// Returns the meshes of all nodes below a scene, in order.
 fn below<'a>(file: &File<'a>, scene: Node<'a, 'a>) -> Result<Vec<Instance<'a>>, String> {
     let (mut found, mut visited) = (Vec::new(), 0);
     let mut pending = vec![Pending {

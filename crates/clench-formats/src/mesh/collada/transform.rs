@@ -1,14 +1,14 @@
-//! `<matrix>`, `<translate>`, `<rotate>` and `<scale>`: how a node stands in the one around it.
+//! `<matrix>`, `<translate>`, `<rotate>` and `<scale>`: the transform of a node in its parent.
 
 use super::file::{at, numbers};
 use crate::mesh::affine::Transform;
 use clench_math::{Quat, Vec3};
 use roxmltree::Node;
 
-/// What the elements of a node say together; the last acts first.
+/// Composes the transforms of a node's elements; the last acts first.
 ///
 /// # Errors
-/// An element with another number of numbers than it has, or of a kind that is not read.
+/// Returns an error if an element has the wrong number of numbers or is of an unsupported kind.
 pub(super) fn of_node(node: Node) -> Result<Transform, String> {
     let mut total = Transform::IDENTITY;
     for element in node.children().filter(Node::is_element) {
@@ -29,7 +29,7 @@ pub(super) fn of_node(node: Node) -> Result<Transform, String> {
     Ok(total)
 }
 
-/// A turn about an axis, by degrees; none where the axis is zero.
+/// Creates a rotation about an axis by degrees; the identity for a zero axis.
 fn rotation([x, y, z, degrees]: [f64; 4]) -> Transform {
     let axis = Vec3::new(x, y, z);
     let length = axis.dot(axis).sqrt();
@@ -40,7 +40,7 @@ fn rotation([x, y, z, degrees]: [f64; 4]) -> Transform {
     Transform::rotation(turn)
 }
 
-/// The numbers of an element that has exactly so many.
+/// Parses the numbers of an element with exactly `N`.
 fn exactly<const N: usize>(element: Node) -> Result<[f64; N], String> {
     let found: Vec<f64> = numbers(element)?;
     let count = found.len();

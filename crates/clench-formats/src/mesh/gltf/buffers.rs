@@ -1,4 +1,4 @@
-//! The numbers of a glTF file, in bytes that come with it, in its text, or in files beside it.
+//! The binary data of a glTF file: appended, embedded in its text, or in separate files.
 
 use super::json::{Accessor, Primitive, Root};
 use crate::base64;
@@ -6,7 +6,7 @@ use crate::mesh::Beside;
 use clench_math::Vec3;
 use std::borrow::Cow;
 
-/// Codes of the types of numbers.
+/// The codes of the number types.
 const U8: u32 = 5121;
 const U16: u32 = 5123;
 const U32: u32 = 5125;
@@ -20,7 +20,7 @@ pub(super) struct Buffers<'a> {
 
 impl<'a> Buffers<'a> {
     /// # Errors
-    /// Bytes that are not there or cannot be decoded.
+    /// Returns an error if bytes are missing or cannot be decoded.
     pub(super) fn new(
         root: &'a Root,
         binary: Option<&'a [u8]>,
@@ -38,7 +38,7 @@ impl<'a> Buffers<'a> {
         Ok(Buffers { root, bytes })
     }
 
-    /// The vertices of an accessor.
+    /// Returns the vertices of an accessor.
     pub(super) fn positions(&self, accessor: usize) -> Result<Vec<Vec3<f64>>, String> {
         let accessor = self.accessor(accessor)?;
         if (accessor.component_type, accessor.kind.as_str()) != (F32, "VEC3") {
@@ -51,7 +51,8 @@ impl<'a> Buffers<'a> {
         Ok(self.items(accessor, 12)?.map(point).collect())
     }
 
-    /// The corners of the triangles of a primitive with so many vertices, which are the corners in turn where it has no indices.
+    /// Returns the corners of the triangles of a primitive with the given number of vertices. Without indices, these
+    /// are the vertices in order.
     pub(super) fn corners(
         &self,
         primitive: &Primitive,
@@ -64,7 +65,7 @@ impl<'a> Buffers<'a> {
         let count = listed.len();
         Ok(match primitive.mode() {
             4 => listed.as_chunks::<3>().0.to_vec(),
-            // Of a strip every other triangle is wound the other way.
+            // In a strip, every other triangle has reversed winding.
             5 => (listed.windows(3).enumerate())
                 .map(|(k, corner)| match k % 2 {
                     0 => [corner[0], corner[1], corner[2]],
@@ -97,7 +98,7 @@ impl<'a> Buffers<'a> {
         found.ok_or_else(|| format!("there is no accessor {number}"))
     }
 
-    /// The items of an accessor, each of so many bytes.
+    /// Returns the items of an accessor, of `size` bytes each.
     fn items(
         &self,
         accessor: &Accessor,
@@ -127,7 +128,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// The bytes that a URI stands for: they are in it, or in a file that it names.
+/// Returns the bytes of a URI: embedded in it or in the file that it names.
 fn fetch(uri: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
     let Some(data) = uri.strip_prefix("data:") else {
         return beside.read(&percent_decoded(uri));
@@ -137,7 +138,7 @@ fn fetch(uri: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
     base64::decode(encoded).map_err(|error| format!("not in base 64: {error}"))
 }
 
-/// A file name, in which `%20` stands for a space.
+/// Decodes a file name in which `%20` stands for a space.
 fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

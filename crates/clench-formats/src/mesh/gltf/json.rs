@@ -1,4 +1,4 @@
-//! What is read of a glTF file's text. All else in it is passed over.
+//! The parts of a glTF file's text that are read; everything else is ignored.
 
 use serde::Deserialize;
 
@@ -40,7 +40,7 @@ pub(super) struct Node {
     pub skin: Option<usize>,
     #[serde(default)]
     pub children: Vec<usize>,
-    /// Column by column.
+    /// Column-major.
     pub matrix: Option<[f64; 16]>,
     pub translation: Option<[f64; 3]>,
     /// x, y, z, w.
@@ -61,7 +61,7 @@ pub(super) struct Primitive {
 }
 
 impl Primitive {
-    /// What each few vertices are: points (0), lines (1 to 3), triangles (4), a strip (5) or a fan of them (6).
+    /// Returns the primitive type: points (0), lines (1 to 3), triangles (4), a strip (5) or a fan of triangles (6).
     pub(super) fn mode(&self) -> u32 {
         self.mode.unwrap_or(4)
     }

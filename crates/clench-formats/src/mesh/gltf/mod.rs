@@ -1,7 +1,7 @@
-//! glTF 2.0 (`.glb`, `.gltf`): the triangles of a scene, in metres, each where the nodes of the scene put it.
+//! glTF 2.0 (`.glb`, `.gltf`) files: the triangles of a scene, in metres, with the transforms of the scene's nodes.
 //!
-//! Coordinates stay as they are written: like those of Collada files, robots' meshes are not turned from y to z upwards. Materials,
-//! lights, cameras, lines and points are passed over. What is deformed by a skeleton, or compressed, is an error.
+//! Coordinates are used as written: like Collada files, robots' meshes are not rotated from y-up to z-up. Materials,
+//! lights, cameras, lines and points are skipped. Geometry that is compressed or deformed by a skeleton is an error.
 
 mod buffers;
 mod json;
@@ -15,15 +15,16 @@ use json::{Primitive, Root};
 use scene::Instance;
 use std::collections::HashMap;
 
-/// Most values of a file's text; large scenes have some ten thousand. The parser takes some 200 bytes for each.
+/// The maximum number of values in a file's text; large scenes have some ten thousand. Each takes some 200 bytes in the
+/// parser.
 const MAX_MARKS: usize = 2_000_000;
-/// Most primitives, vertices and faces in a scene, in which a mesh may stand many times.
+/// The maximum number of primitives, vertices and faces in a scene, counting each instance of a mesh.
 const MAX_SIZE: usize = 20_000_000;
 
-/// What a binary file begins with.
+/// The first bytes of a binary file.
 const MAGIC: &[u8] = b"glTF";
 
-/// Extensions that only say how surfaces look.
+/// Prefixes of extensions that only affect appearance.
 const ONLY_SEEN: [&str; 4] = [
     "KHR_materials_",
     "KHR_texture_",
@@ -67,7 +68,7 @@ pub(super) fn read(bytes: &[u8], beside: &mut Beside) -> Result<Triangles, Strin
     }
 }
 
-/// The text of a binary file, and the bytes that come with it.
+/// Returns the text and the binary chunk of a binary file.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     let short = || "the file ends too early".to_owned();
     let word = |at: usize| -> Result<usize, String> {
@@ -106,13 +107,13 @@ fn check(root: &Root) -> Result<(), String> {
     }
 }
 
-/// The accessor of the vertices.
+/// Returns the accessor of the vertices.
 fn position(primitive: &Primitive) -> Result<usize, String> {
     let missing = || "a primitive has no positions".to_owned();
     primitive.attributes.position.ok_or_else(missing)
 }
 
-/// Adds triangles as they stand in the scene. Vertices that no face has do not count.
+/// Adds triangles, transformed to the scene. Omits vertices that no face uses.
 fn append(
     found: &mut Triangles,
     corners: &[[usize; 3]],

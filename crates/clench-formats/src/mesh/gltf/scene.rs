@@ -1,12 +1,12 @@
-//! Nodes: which meshes stand where.
+//! Nodes: the meshes and their transforms.
 
 use super::json::{Mesh, Node, Root};
 use crate::mesh::affine::Transform;
 use clench_math::Quat;
 
-/// Deepest nesting of nodes.
+/// The maximum nesting depth of nodes.
 const MAX_DEPTH: usize = 64;
-/// Most nodes of a scene, those counted again that stand in several.
+/// The maximum number of nodes of a scene, counting each instance.
 const MAX_NODES: usize = 100_000;
 
 /// A mesh of the scene.
@@ -15,18 +15,18 @@ pub(super) struct Instance<'a> {
     pub transform: Transform,
 }
 
-/// A node to be looked into, and how what holds it stands.
+/// A node to visit, with the transform of its parent.
 struct Pending {
     node: usize,
     around: Transform,
     depth: usize,
 }
 
-/// All meshes of the file's scene, in order; those of the first where the file does not say which, and of a file without one each
-/// mesh once.
+/// Returns all meshes of the file's scene in order: of the first scene if the file names none, and each mesh once if it
+/// has none.
 ///
 /// # Errors
-/// Nodes and meshes that are not there, that a skeleton deforms, or nodes too many or too deep.
+/// Returns an error if a node or mesh is missing, a skeleton deforms a mesh, or nodes are too many or too deep.
 pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
     let all = |mesh| Instance {
         mesh,
@@ -73,7 +73,7 @@ pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
     Ok(found)
 }
 
-/// Adds nodes so that the first comes off first.
+/// Pushes nodes in reverse, so that the first is popped first.
 fn push(pending: &mut Vec<Pending>, nodes: &[usize], (around, depth): (Transform, usize)) {
     let pushed = nodes.iter().rev().map(|&node| Pending {
         node,
@@ -83,7 +83,7 @@ fn push(pending: &mut Vec<Pending>, nodes: &[usize], (around, depth): (Transform
     pending.extend(pushed);
 }
 
-/// How a node stands in the one around it.
+/// Returns the transform of a node in its parent.
 fn own(node: &Node) -> Transform {
     if let Some(m) = node.matrix {
         return Transform::from_rows(

@@ -1,4 +1,4 @@
-//! `<attach>`: a body, a frame or the whole world of another model, or a body or frame of this one.
+//! `<attach>`: attaches a body, a frame or the whole world of another model, or a body or frame of this one.
 
 use super::composer::{Composer, Level, check_depth};
 use super::models::Part;
@@ -13,7 +13,7 @@ use crate::mjcf::schema;
 use crate::mjcf::sections::sections;
 
 impl Composer<'_, '_> {
-    /// What stands in place of an `<attach>`, inside of these elements.
+    /// Returns the replacement of an `<attach>` inside these elements.
     pub(super) fn attach(
         &mut self,
         element: &Element,
@@ -99,7 +99,7 @@ impl Composer<'_, '_> {
         Ok(frame)
     }
 
-    /// Copies what an attached model has outside its tree.
+    /// Copies a section of an attached model outside its tree.
     fn copy_section(
         &mut self,
         at: &Element,
@@ -130,7 +130,7 @@ impl Composer<'_, '_> {
         Ok(())
     }
 
-    /// Takes over what the model's conflict rule lets it take of an attached model's options.
+    /// Merges the options of an attached model as the conflict rule allows.
     fn merge_options(&mut self, element: &Element, options: &Settings) -> Result<(), LoadError> {
         if options.is_empty() {
             return Ok(());
@@ -165,7 +165,7 @@ impl Composer<'_, '_> {
         }
     }
 
-    /// Attaches a part of the model itself, as far as it is read.
+    /// Attaches a part of the model itself that has been read.
     fn attach_own(
         &mut self,
         element: &Element,
@@ -189,7 +189,7 @@ impl Composer<'_, '_> {
         Ok(frame)
     }
 
-    /// A copy of a body or frame of the model itself, as far as it is read, and the class around it.
+    /// Copies a body or frame of the model itself that has been read; returns it with its enclosing class.
     fn find_own(
         &self,
         element: &Element,
@@ -226,7 +226,7 @@ impl Composer<'_, '_> {
         Err(element.error(message))
     }
 
-    /// Renames a copied part; elements in it without a class start from the one that they had where they came from.
+    /// Renames a copied part; elements in it without a class keep the default class of their origin.
     fn finish(
         &mut self,
         element: &Element,
@@ -247,7 +247,7 @@ impl Composer<'_, '_> {
     }
 }
 
-/// A body or frame by name, and the class that elements without one of their own start from around it.
+/// Returns a body or frame by name, and the default class around it.
 fn find<'a>(
     around: &'a Element,
     tag: &str,
@@ -265,13 +265,13 @@ fn find<'a>(
     None
 }
 
-/// The class that a body or frame gives to the elements in it.
+/// Returns the default class that a body or frame sets for its elements.
 fn class_within(element: &Element) -> Option<&str> {
     let own = element.text("childclass");
     own.or_else(|| element.text("class").filter(|_| element.tag == "frame"))
 }
 
-/// An element of the tree up to where it is being expanded.
+/// Copies an element of the tree, up to the point of expansion.
 fn read_so_far(open: &[Level]) -> Option<Element> {
     let mut inner: Option<Element> = None;
     for level in open.iter().rev() {

@@ -1,16 +1,16 @@
-//! What is kept of the keyframe of an attached model until the whole model is known.
+//! The keyframes of attached models, until the whole model is read.
 
 use clench_builder::KeyframeSpec;
 
 /// A keyframe in parts.
 #[derive(Clone, Debug)]
 pub(crate) struct AttachedKeyframe {
-    /// Its name, time and place; it has no numbers of its own.
+    /// Its name, time and location; it has no numbers of its own.
     pub(super) spec: KeyframeSpec,
     pub(super) parts: Vec<Fragment>,
 }
 
-/// What a keyframe says of an element.
+/// The part of a keyframe that concerns one element.
 #[derive(Clone, Debug)]
 pub(super) struct Fragment {
     /// The number of the element.

@@ -1,4 +1,4 @@
-//! Expanding the body tree of one model.
+//! Expansion of the body tree of one model.
 
 use super::attached_keyframe::AttachedKeyframe;
 use super::models::Models;
@@ -9,18 +9,18 @@ use super::shared::Shared;
 use crate::LoadError;
 use crate::mjcf::document::{self, Element, MAX_DEPTH};
 
-/// Expands the body tree of one model.
+/// An expander of the body tree of one model.
 pub(super) struct Composer<'a, 's> {
     pub models: Models,
-    /// The model's own settings.
+    /// The index of the model's own settings.
     pub source: usize,
     pub names: Names,
     pub settings: Settings,
-    /// Its sections outside the tree that can grow.
+    /// The sections outside the tree that can grow.
     pub lists: Vec<Element>,
-    /// Those parts of the world that are expanded.
+    /// The expanded parts of the world.
     pub worlds: Vec<Element>,
-    /// The keyframes of the models that are attached.
+    /// The keyframes of attached models.
     pub keyframes: Vec<AttachedKeyframe>,
     pub shared: &'a mut Shared<'s>,
 }
@@ -85,7 +85,7 @@ impl Composer<'_, '_> {
         Ok(())
     }
 
-    /// Copies the elements of a section that follow a part of the tree into a namespace.
+    /// Copies the elements of a section that belong to a part of the tree into a namespace.
     pub(super) fn copy_following(
         &mut self,
         at: &Element,
@@ -108,7 +108,7 @@ impl Composer<'_, '_> {
     }
 }
 
-/// Refuses a copy that would stand too deep.
+/// Rejects a copy that would be nested too deeply.
 pub(super) fn check_depth(at: &Element, around: usize, what: &Element) -> Result<(), LoadError> {
     let (mut deepest, mut pending) = (0, vec![(what, around + 1)]);
     while let Some((element, depth)) = pending.pop() {

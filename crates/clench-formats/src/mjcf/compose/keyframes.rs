@@ -1,9 +1,9 @@
 //! Keyframes of attached models.
 //!
-//! A keyframe is the numbers of a whole model, one after the other. Before a model is attached, its keyframes are cut into what each
-//! says of single joints, mocap bodies, tendons and actuators, and these elements are numbered; the number goes with an element wherever it is
-//! copied. In the end a keyframe says what it says of those elements that are there. As in MuJoCo 4.0 keyframes are named with the
-//! prefix of the attachment, and of replicas the first is meant.
+//! A keyframe is the concatenation of the numbers of a whole model. Before a model is attached, its keyframes are split
+//! into the parts of single joints, mocap bodies, tendons and actuators, and these elements are numbered; copies of an
+//! element retain its number. Finally a keyframe is assembled for the elements that exist. As in MuJoCo 4.0, keyframe
+//! names get the prefix of the attachment, and a keyframe refers to the first of several replicas.
 
 use super::attached_keyframe::{AttachedKeyframe, Fragment};
 use super::composer::Composer;
@@ -19,10 +19,11 @@ use crate::mjcf::{keyframe, relations};
 use clench_builder::{BuildError, KeyframeElement, KeyframePart, KeyframeSpec};
 use std::collections::HashMap;
 
-/// Cuts the keyframes of a model that will be attached, and numbers its elements. Those of models that it attaches itself follow.
+/// Splits the keyframes of a model that will be attached, and numbers its elements. Keyframes of models attached to it
+/// follow.
 ///
 /// # Errors
-/// What cannot be read of the model; a vector that is longer than the model's.
+/// Returns an error if the model cannot be read or a vector is longer than the model's.
 pub(super) fn cut(
     root: &mut Element,
     attached: Vec<AttachedKeyframe>,
@@ -39,7 +40,7 @@ pub(super) fn cut(
     Ok(keyframes)
 }
 
-/// Numbers what has a part of the state.
+/// Numbers the elements that have a part of the state.
 fn number(root: &mut Element, shared: &mut Shared) {
     let tree = root.children.iter_mut();
     let mut pending: Vec<&mut Element> = tree
@@ -54,15 +55,15 @@ fn number(root: &mut Element, shared: &mut Shared) {
     }
 }
 
-/// Which numbers of a model's state belong to which element.
+/// The layout of a model's state by element.
 struct Layout {
-    /// Number, positions and velocities of each joint.
+    /// Each joint's number, and counts of positions and velocities.
     joints: Vec<(u32, [usize; 2])>,
-    /// Number, controls and activations of each actuator.
+    /// Each actuator's number, and counts of controls and activations.
     actuators: Vec<(u32, [usize; 2])>,
-    /// Number of each mocap body.
+    /// Each mocap body's number.
     mocaps: Vec<(u32, [usize; 2])>,
-    /// Number of each joint and tendon, and how many numbers say where its spring rests; 0 where that does not yield.
+    /// Each joint's and tendon's number, and the count of its spring's rest coordinates; 0 if it does not yield.
     springs: Vec<(u32, usize)>,
 }
 
@@ -153,7 +154,7 @@ impl Layout {
     }
 }
 
-/// Refuses a vector that ends within an element, of which each has so many numbers.
+/// Rejects a vector that ends within an element; `counts` are the sizes of the elements.
 fn require_whole(
     element: &Element,
     name: &str,
@@ -173,7 +174,7 @@ fn require_whole(
     Err(element.error(format!("{name} has {count} numbers, {what}")))
 }
 
-/// Takes the first numbers of a vector; none where it has fewer, as where a keyframe says only how the state begins.
+/// Takes the first numbers of a vector; none if it has fewer, as in a keyframe of only the leading part of the state.
 fn take(rest: &mut &[f64], count: usize) -> Vec<f64> {
     match rest.split_at_checked(count) {
         Some((taken, others)) => {
@@ -185,7 +186,7 @@ fn take(rest: &mut &[f64], count: usize) -> Vec<f64> {
 }
 
 impl Composer<'_, '_> {
-    /// Adds the keyframes of a model of which this part of the tree and these last tendons and actuators are copies.
+    /// Adds the keyframes of an attached model for these copies: a part of the tree and the last tendons and actuators.
     pub(super) fn attach_keyframes(
         &mut self,
         element: &Element,
@@ -234,7 +235,7 @@ impl Composer<'_, '_> {
     }
 }
 
-/// What elements the numbers mean in a model that is read: joints and mocap bodies in order, and its actuators.
+/// Resolves the numbers to elements of the complete model: joints and mocap bodies in order, actuators and tendons.
 pub(crate) fn resolve(
     keyframes: &[AttachedKeyframe],
     root: &Element,

@@ -1,8 +1,8 @@
-//! `<attach>` and `<replicate>`: makes one model of several, and many elements of one, before anything else is read.
+//! `<attach>` and `<replicate>`: composes one model of several, and many elements of one, before anything else is read.
 //!
-//! Both copy a part of a body tree into a frame, put a prefix or suffix to its names, and copy the elements outside the tree that
-//! refer to it. What is left holds bodies and frames only; the elements of an attached model go on being read with that model's own
-//! settings.
+//! Both copy a part of a body tree into a frame, add a prefix or suffix to its names, and copy the elements outside the
+//! tree that refer to it. The result contains bodies and frames only; elements of an attached model are still read with
+//! its own settings.
 
 mod attach;
 mod attached_keyframe;
@@ -31,23 +31,23 @@ use shared::Shared;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A model of several files made into one, and how to read its elements.
+/// A model composed of several files, and the settings for reading its elements.
 #[derive(Debug)]
 pub(crate) struct Composed {
     pub root: Element,
     pub sources: Sources,
     /// The keyframes of attached models.
     pub keyframes: Vec<AttachedKeyframe>,
-    /// What a user should know of what was done.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// What was left out because it is not supported yet.
+    /// The elements omitted because they are not supported yet.
     pub left_out: Vec<String>,
 }
 
-/// Makes one model of a document whose includes are expanded.
+/// Composes a model from a document whose includes are expanded.
 ///
 /// # Errors
-/// Where something attached cannot be found or read, attaches itself, or where the copies are more than the budget.
+/// Returns an error if an attached model is missing, invalid or attaches itself, or if the copies exceed the budget.
 pub(crate) fn compose(
     mut root: Element,
     file: Option<&Path>,
@@ -77,8 +77,8 @@ pub(crate) fn compose(
     })
 }
 
-/// Replaces every attachment and replication in a model. Returns its options, with what they took from attached models, and the
-/// keyframes of these.
+/// Replaces every attachment and replication in a model. Returns its merged options, and the keyframes of attached
+/// models.
 fn compose_model(
     root: &mut Element,
     directory: &Path,
@@ -118,7 +118,7 @@ fn compose_model(
 /// Reads the `<model>`s among the assets of a model.
 ///
 /// # Errors
-/// Where one cannot be read, is no MJCF, or is one of the models that this one is attached to.
+/// Returns an error if one cannot be read, is not MJCF, or is a model that this one is attached to.
 fn read_models(root: &Element, shared: &mut Shared) -> Result<Models, LoadError> {
     let mut models = Models::default();
     let assets = sections(root, "asset").flat_map(|section| &section.children);
@@ -131,7 +131,7 @@ fn read_models(root: &Element, shared: &mut Shared) -> Result<Models, LoadError>
     Ok(models)
 }
 
-/// Takes the sections whose elements can be copied out of a model, each kind as one.
+/// Takes the sections whose elements can be copied out of a model, merging those of each kind.
 fn take_lists(root: &mut Element) -> Vec<Element> {
     let kinds = relations::FOLLOWING.iter().chain(&["asset", "keyframe"]);
     let mut lists = Vec::new();
@@ -149,10 +149,10 @@ fn take_lists(root: &mut Element) -> Vec<Element> {
     lists
 }
 
-/// Deepest nesting of models in models.
+/// The maximum nesting depth of models.
 pub(crate) const MAX_NESTING: usize = 50;
 
-/// Reads the model that an element names, with all that it attaches itself.
+/// Reads the model that an element names, with all its attachments.
 fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError> {
     let name = element.required_text("file")?;
     check_type(element, name)?;
@@ -191,7 +191,7 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError>
     })
 }
 
-/// Refuses what is no MJCF by what the element says of it, or by its name.
+/// Rejects a file that is not MJCF by its content type or its name.
 pub(crate) fn check_type(element: &Element, name: &str) -> Result<(), LoadError> {
     let known = match element.text("content_type") {
         Some(media_type) => ["text/xml", "application/xml"].contains(&media_type),

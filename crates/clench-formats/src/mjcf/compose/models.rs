@@ -4,14 +4,14 @@ use super::attached_keyframe::AttachedKeyframe;
 use super::settings::Settings;
 use crate::mjcf::document::Element;
 
-/// A model that can be attached: all of it, its options, and its keyframes in parts.
+/// A model that can be attached: its elements, its options, and its split keyframes.
 pub(super) struct Part {
     pub root: Element,
     pub settings: Settings,
     pub keyframes: Vec<AttachedKeyframe>,
 }
 
-/// The models that a model can attach, by name, in the order in which they are written.
+/// The models that a model can attach, by name, in file order.
 #[derive(Default)]
 pub(super) struct Models(pub(super) Vec<(String, Part)>);
 

@@ -1,4 +1,4 @@
-//! Names: what an element is called, what it refers to, and how a namespace changes both.
+//! Names: those of elements, their references, and the effect of a namespace on both.
 
 use crate::mjcf::document::Element;
 use std::collections::HashMap;
@@ -44,10 +44,10 @@ const REFERENCES: &[(&str, Kind)] = &[
     ("actuator", Kind::Actuator),
 ];
 
-/// Attributes that refer to an element of the kind that another attribute says.
+/// Attributes that refer to an element of the kind given by another attribute.
 const TYPED_REFERENCES: &[(&str, &str)] = &[("objname", "objtype"), ("refname", "reftype")];
 
-/// What those other attributes say.
+/// The values of those other attributes.
 const TYPES: &[(&str, Kind)] = &[
     ("body", Kind::Body),
     ("xbody", Kind::Body),
@@ -63,7 +63,7 @@ const TYPES: &[(&str, Kind)] = &[
 /// The body that has the same name in every model.
 const WORLD: &str = "world";
 
-/// Whether a name means that body; a site or a geom may have the same one.
+/// Returns true if a name means that body; a site or a geom may have the same name.
 pub(super) fn is_world(kind: Kind, name: &str) -> bool {
     kind == Kind::Body && name == WORLD
 }
@@ -73,14 +73,14 @@ fn lookup<V: Copy>(table: &[(&str, V)], key: &str) -> Option<V> {
     found.map(|(_, value)| *value)
 }
 
-/// A reference of an element: which of its attributes, and to what kind of element.
+/// A reference of an element: the index of the attribute, and the kind of its target.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reference {
     pub attribute: usize,
     pub kind: Kind,
 }
 
-/// The references in an element's own attributes.
+/// Returns the references in an element's own attributes.
 pub(super) fn references(element: &Element) -> Vec<Reference> {
     let kind = |name: &str| {
         let typed = || element.text(lookup(TYPED_REFERENCES, name)?);
@@ -92,7 +92,7 @@ pub(super) fn references(element: &Element) -> Vec<Reference> {
         .collect()
 }
 
-/// What kind of element others may call this one, by its tag in the tree or by the section that it stands in.
+/// Returns the kind by which others refer to an element, from its section and tag.
 pub(super) fn kind_of(section: &str, tag: &str) -> Option<Kind> {
     match (section, tag) {
         ("worldbody", "body") => Some(Kind::Body),
@@ -107,12 +107,12 @@ pub(super) fn kind_of(section: &str, tag: &str) -> Option<Kind> {
     }
 }
 
-/// What is put before and after the names of what is attached or replicated.
+/// The prefix and suffix of the names of attached or replicated elements.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Namespace<'a> {
     pub prefix: &'a str,
     pub suffix: &'a str,
-    /// Whether the elements come from another model, so that their assets are renamed as well.
+    /// True if the elements come from another model, so that their assets are renamed as well.
     pub foreign: bool,
 }
 
@@ -121,7 +121,7 @@ impl Namespace<'_> {
         format!("{}{name}{}", self.prefix, self.suffix)
     }
 
-    /// As [`apply`](Self::apply), for a name that refers to an element.
+    /// Like [`apply`](Self::apply), for a name that refers to an element.
     pub(super) fn refer(&self, kind: Kind, name: &str) -> String {
         match is_world(kind, name) {
             true => name.to_owned(),
@@ -129,7 +129,7 @@ impl Namespace<'_> {
         }
     }
 
-    /// Renames an element, but not what it refers to; one without a name stays so.
+    /// Renames an element, but not its references; an unnamed one is unchanged.
     pub(super) fn rename(&self, element: &mut Element) {
         self.rename_attribute(element, "name");
     }
@@ -141,7 +141,7 @@ impl Namespace<'_> {
         }
     }
 
-    /// Renames an element of the body tree and all in it, with what it refers to.
+    /// Renames an element of the body tree and its descendants, with their references.
     pub(super) fn rename_tree(&self, element: &mut Element) {
         self.rename(element);
         self.rename_attribute(element, "target");
@@ -160,7 +160,7 @@ impl Namespace<'_> {
         }
     }
 
-    /// Renames an asset of another model, with the assets that it refers to. What is called after its file gets that name.
+    /// Renames an asset of another model, with its references to assets. An asset without a name gets that of its file.
     pub(super) fn rename_asset(&self, element: &mut Element) {
         if element.text("name").is_none_or(str::is_empty) {
             let file = element.text("file").unwrap_or_default().replace('\\', "/");
@@ -180,19 +180,19 @@ impl Namespace<'_> {
     }
 }
 
-/// Which names there are, and how many elements of each.
+/// The names in use, with their numbers of elements.
 #[derive(Debug, Default)]
 pub(super) struct Names(HashMap<(Kind, String), usize>);
 
 impl Names {
-    /// Adds the name of an element that stands in a section.
+    /// Adds the name of an element in a section.
     pub(super) fn add(&mut self, section: &str, element: &Element) {
         if let Some(key) = key(section, element) {
             *self.0.entry(key).or_default() += 1;
         }
     }
 
-    /// Takes the name of such an element away.
+    /// Removes the name of an element in a section.
     pub(super) fn remove(&mut self, section: &str, element: &Element) {
         let Some(key) = key(section, element) else {
             return;
@@ -205,7 +205,7 @@ impl Names {
         }
     }
 
-    /// Adds the names of an element of the body tree and of all in it.
+    /// Adds the names of an element and its descendants.
     pub(super) fn add_tree(&mut self, element: &Element) {
         self.add("worldbody", element);
         for child in &element.children {
@@ -213,7 +213,7 @@ impl Names {
         }
     }
 
-    /// Takes them away.
+    /// Removes the names of an element and its descendants.
     pub(super) fn remove_tree(&mut self, element: &Element) {
         self.remove("worldbody", element);
         for child in &element.children {
@@ -221,7 +221,7 @@ impl Names {
         }
     }
 
-    /// Whether there is such an element.
+    /// Returns true if the element exists.
     pub(super) fn has(&self, kind: Kind, name: &str) -> bool {
         is_world(kind, name) || self.0.contains_key(&(kind, name.to_owned()))
     }

@@ -1,24 +1,25 @@
-//! Elements outside the body tree that refer to it: which of them follow a part of the tree that is attached or replicated.
+//! Elements outside the body tree that refer to it, and their copying with an attached or replicated part of the tree.
 //!
-//! As in MuJoCo 4.0, an element is copied where all that it refers to is there under its new name. Of a contact pair, an exclusion
-//! and a sensor with two objects one of them is enough, and of a tendon one element of its path: the rest is then looked for under
-//! its old name. What refers to nothing, such as a clock, is copied always; an actuator of the world never.
+//! As in MuJoCo 4.0, an element is copied if all its references resolve under their new names. For a contact pair, an
+//! exclusion and a sensor with two objects one of them suffices, and for a tendon one element of its path: the others
+//! are then resolved under their old names. Elements without references, such as a clock, are always copied; an
+//! actuator of the world never.
 
 use super::names::{Kind, Names, Namespace, Reference, is_world, references};
 use crate::mjcf::document::Element;
 use std::collections::HashSet;
 
-/// Sections whose elements follow what they refer to, in the order in which they are copied.
+/// The sections whose elements are copied with their targets, in the order of copying.
 pub(super) const FOLLOWING: [&str; 6] = [
     "contact", "tendon", "equality", "actuator", "sensor", "custom",
 ];
 
-/// Whether an element of a section can follow a part of its own model; the user's numbers and texts cannot.
+/// Returns true if an element of a section can be copied with a part of its own model; user numbers and texts cannot.
 pub(super) fn follows(section: &str, element: &Element) -> bool {
     section != "custom" || element.tag == "tuple"
 }
 
-/// What became of references that hold only together.
+/// The outcome for references that are resolved together.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Fate {
     Renamed,
@@ -26,7 +27,7 @@ enum Fate {
     Lost,
 }
 
-/// The copy of an element in a namespace, if what it refers to is there.
+/// Copies an element into a namespace, if its references resolve there.
 pub(super) fn copy(
     section: &str,
     element: &Element,
@@ -51,7 +52,7 @@ pub(super) fn copy(
         }
         _ => {
             let parts = std::iter::once(element).chain(&element.children);
-            // The world is everybody's, but what acts on it belongs to its own model.
+            // The world is shared, but an actuator of it belongs to its own model.
             let acts_on_world =
                 |kind: Kind, name: &str| section == "actuator" && is_world(kind, name);
             let renamed = |part: &Element| {
@@ -78,7 +79,7 @@ pub(super) fn copy(
     Some(copy)
 }
 
-/// The new name of what a reference means.
+/// Returns the new name of a reference's target.
 fn target(element: &Element, reference: Reference, namespace: &Namespace) -> String {
     namespace.refer(reference.kind, &element.attributes[reference.attribute].1)
 }
@@ -90,7 +91,7 @@ fn rename_references(element: &mut Element, namespace: &Namespace) {
     }
 }
 
-/// Turns references to their new names where those are there, and else leaves them if the old ones are.
+/// Renames references if the new names exist; otherwise leaves them unchanged if the old ones do.
 fn follow(
     element: &mut Element,
     group: &[Reference],
@@ -119,7 +120,7 @@ fn follow(
     }
 }
 
-/// Whether all that an element refers to is there.
+/// Returns true if all references of an element exist.
 pub(super) fn resolves(element: &Element, names: &Names) -> bool {
     let parts = std::iter::once(element).chain(&element.children);
     parts.into_iter().all(|part| {
@@ -128,7 +129,7 @@ pub(super) fn resolves(element: &Element, names: &Names) -> bool {
     })
 }
 
-/// Whether an element refers to one of these, or to nothing at all.
+/// Returns true if an element refers to one of these, or has no references.
 pub(super) fn concerns(element: &Element, these: &HashSet<(Kind, String)>) -> bool {
     let mut count = 0;
     for part in std::iter::once(element).chain(&element.children) {

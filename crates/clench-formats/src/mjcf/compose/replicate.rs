@@ -1,4 +1,4 @@
-//! `<replicate>`: its content again and again, each time displaced once more and with its number in the names.
+//! `<replicate>`: repeats its content, each copy displaced from the previous one and with its number in the names.
 
 use super::composer::Composer;
 use super::names::{Kind, Namespace, kind_of};
@@ -9,19 +9,19 @@ use crate::mjcf::orientation::Pose;
 use clench_math::Vec3;
 use std::collections::HashSet;
 
-/// What a `<replicate>` says, and where the replica stands that comes next.
+/// The parameters of a `<replicate>`, and the pose of the next replica.
 struct Replicas {
     count: usize,
     separator: String,
     euler: [f64; 3],
-    /// From each replica to the next.
+    /// The displacement between replicas.
     step: Pose,
-    /// From the first replica to the next one to be made.
+    /// The displacement of the next replica from the first.
     displaced: Pose,
 }
 
 impl Composer<'_, '_> {
-    /// The frames that stand in place of a `<replicate>` whose content is expanded.
+    /// Returns the frames that replace a `<replicate>` whose content is expanded.
     pub(super) fn replicate(&mut self, mut element: Element) -> Result<Vec<Element>, LoadError> {
         let mut replicas = self.read_replicas(&element)?;
         refuse_joints(&element)?;
@@ -72,7 +72,8 @@ impl Composer<'_, '_> {
         })
     }
 
-    /// Where a replica stands. As in MuJoCo, angles are multiplied rather than rotations accumulated, so that no error builds up.
+    /// Returns the pose of a replica. As in MuJoCo, angles are multiplied rather than rotations accumulated, so that no
+    /// error builds up.
     fn place(&self, replicas: &mut Replicas, number: usize, element: &Element) -> Pose {
         let compiler = &self.shared.sources.of(element).compiler;
         let quat = compiler.euler(replicas.euler.map(|angle| angle * number as f64));
@@ -93,7 +94,7 @@ impl Composer<'_, '_> {
         count
     }
 
-    /// Where in each section the elements stand that follow what is replicated.
+    /// Returns the indices, by section, of the elements to copy with the replicated part.
     fn following(&self, element: &Element) -> Vec<(&'static str, Vec<usize>)> {
         let mut concerned = HashSet::new();
         let mut pending: Vec<&Element> = element.children.iter().collect();
@@ -120,7 +121,7 @@ impl Composer<'_, '_> {
         following
     }
 
-    /// Copies them for one replica.
+    /// Copies these elements for one replica.
     fn follow(
         &mut self,
         at: &Element,
@@ -132,7 +133,7 @@ impl Composer<'_, '_> {
             let from: Vec<Element> = indices.iter().map(|&index| list[index].clone()).collect();
             let from: Vec<&Element> = from.iter().collect();
             let copied = self.copy_following(at, section, &from, namespace)?;
-            // A copy that refers to nothing is copied again with the next replica.
+            // A copy without references is copied again with the next replica.
             let list = self.list(section);
             let nothing = HashSet::new();
             indices.extend(
@@ -144,7 +145,7 @@ impl Composer<'_, '_> {
         Ok(())
     }
 
-    /// Takes away the names of what was replicated, and the elements that referred to it.
+    /// Removes the names of the replicated part, and the elements that referred to it.
     fn forget(&mut self, element: &Element) {
         let mut lost = Vec::new();
         for section in FOLLOWING {
@@ -181,7 +182,7 @@ fn name_of(section: &str, element: &Element) -> Option<(Kind, String)> {
     Some((kind_of(section, &element.tag)?, element.string("name")))
 }
 
-/// A frame in place of an element, with its class.
+/// Creates a frame at the location of an element, with its class.
 fn frame_of(element: &Element, place: &Pose) -> Element {
     let mut frame = Element::in_place_of(element, "frame");
     let words = |numbers: &[f64]| {
@@ -202,7 +203,7 @@ fn frame_of(element: &Element, place: &Pose) -> Element {
     frame
 }
 
-/// The elements that stand in the body of an element, in frames or not.
+/// Returns the elements of the enclosing body, also in frames.
 fn of_the_body<'a>(element: &'a Element) -> Vec<&'a Element> {
     let (mut found, mut pending): (_, Vec<&'a Element>) =
         (Vec::new(), element.children.iter().collect());
@@ -224,7 +225,7 @@ fn refuse_joints(element: &Element) -> Result<(), LoadError> {
     }
 }
 
-/// Drops the inertia of the body around, which, as in MuJoCo, is neither repeated nor kept.
+/// Drops the inertia of the enclosing body, which, as in MuJoCo, is neither repeated nor retained.
 pub(super) fn drop_inertia(element: &mut Element) {
     let mut pending = vec![element];
     while let Some(part) = pending.pop() {

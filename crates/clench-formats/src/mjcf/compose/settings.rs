@@ -1,12 +1,12 @@
-//! What becomes of the options and sizes of a model that is attached to another, as `<compiler conflict="..."/>` says, after MuJoCo's table of
-//! attributes that can be merged.
+//! Merging of an attached model's options and sizes as `<compiler conflict="..."/>` specifies, after MuJoCo's table of
+//! mergeable attributes.
 //!
-//! A value counts as given where the file says it, or where it was taken over from a model attached before.
+//! A value counts as given if it is in the file or was merged from a model attached before.
 
 use super::super::compiler::Conflict;
 use crate::mjcf::document::Element;
 
-/// What is made of two values that differ.
+/// The rule for merging two different values.
 #[derive(Clone, Copy)]
 enum Merge {
     Least,
@@ -15,7 +15,7 @@ enum Merge {
     Never,
 }
 
-/// An attribute of `<option>`, and how two of its values are merged.
+/// The attributes of `<option>`, with the rules for merging their values.
 const OPTIONS: &[(&str, Merge)] = &[
     ("timestep", Merge::Least),
     ("tolerance", Merge::Least),
@@ -45,7 +45,7 @@ const OPTIONS: &[(&str, Merge)] = &[
     ("o_friction", Merge::Never),
 ];
 
-/// Attributes of `<size>`, of which the largest counts; -1 stands for nothing said.
+/// The attributes of `<size>`, merged to the largest value; -1 means unset.
 const SIZES: &[&str] = &[
     "nuser_body",
     "nuser_jnt",
@@ -57,10 +57,10 @@ const SIZES: &[&str] = &[
     "nuser_sensor",
 ];
 
-/// The sections that hold them.
+/// The sections that contain them.
 pub(super) const SECTIONS: &[&str] = &["option", "size"];
 
-/// Flags that are off where nothing is said; all others are on.
+/// Flags that are off by default; all others are on.
 const OFF_BY_DEFAULT: &[&str] = &[
     "override",
     "energy",
@@ -84,10 +84,10 @@ impl Settings {
         !self.0.iter().any(says)
     }
 
-    /// Takes over what an attached model says, as far as the rule allows. Returns the names of the attributes that changed.
+    /// Merges the settings of an attached model as the rule allows. Returns the names of the attributes that changed.
     ///
     /// # Errors
-    /// What stands against each other.
+    /// Returns a message with the conflicts.
     pub(super) fn merge(
         &mut self,
         other: &Settings,
@@ -126,7 +126,7 @@ impl Settings {
         Ok(self.take(other, option, sizes, flags))
     }
 
-    /// Appends sections with values of an attached model. Returns their names.
+    /// Appends sections with values of an attached model. Returns the names of the values.
     fn take(
         &mut self,
         other: &Settings,
@@ -178,7 +178,7 @@ impl Settings {
                     (Some(own), Some(its)) if (own < its) == matches!(merge, Merge::Least) => {
                         Verdict::Same
                     }
-                    _ => Verdict::Becomes(its.join(" ")), // The reader of the option refuses it if it is not a number.
+                    _ => Verdict::Becomes(its.join(" ")), // The reader of the option rejects it if it is not a number.
                 }
             }
             _ => Verdict::Conflict(format!(
@@ -189,7 +189,7 @@ impl Settings {
         }
     }
 
-    /// Only flags that differ from their defaults are taken over.
+    /// Merges a flag only if it differs from its default.
     fn compare_flag(&self, name: &str, value: &str, rule: Conflict) -> Verdict {
         let own = self.flag(name);
         match (rule, own) {
@@ -203,7 +203,7 @@ impl Settings {
         }
     }
 
-    /// The words of an attribute after all sections: later ones replace them from the first on.
+    /// Returns the words of an attribute after all sections; later ones overwrite the leading words.
     fn value(&self, name: &str) -> Option<Vec<String>> {
         let mut texts = self.0.iter().filter_map(|section| section.text(name));
         let mut value = words(texts.next()?);
@@ -216,7 +216,7 @@ impl Settings {
         Some(value).filter(|value| !(SIZES.contains(&name) && *value == ["-1"]))
     }
 
-    /// Flags and what was said of them, the last word of each.
+    /// Returns the flags with their last values.
     fn flags(&self) -> impl Iterator<Item = (&str, &str)> {
         let elements = self.0.iter().flat_map(|section| &section.children);
         let all: Vec<&(String, String)> = elements.flat_map(|flags| &flags.attributes).collect();
@@ -231,7 +231,7 @@ impl Settings {
         flags.find_map(|(known, value)| (known == name).then_some(value))
     }
 
-    /// The groups of actuators that are disabled.
+    /// Returns the disabled groups of actuators.
     fn groups(&self) -> Option<String> {
         let texts = (self.0.iter())
             .filter_map(|section| section.text("actuatorgroupdisable"))
@@ -240,7 +240,7 @@ impl Settings {
     }
 }
 
-/// What becomes of an attribute.
+/// The result of comparing an attribute.
 enum Verdict {
     Same,
     Becomes(String),
@@ -251,7 +251,7 @@ fn words(text: &str) -> Vec<String> {
     text.split_ascii_whitespace().map(str::to_owned).collect()
 }
 
-/// Whether two values are the same words or numbers.
+/// Returns true if two values are the same words or numbers.
 fn same(a: &[String], b: &[String]) -> bool {
     let equal = |(a, b): (&String, &String)| {
         let number = |word: &String| word.parse::<f64>().ok();
@@ -260,7 +260,7 @@ fn same(a: &[String], b: &[String]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(equal)
 }
 
-/// Whether a flag says something else than its default, which is what MuJoCo's bits say.
+/// Returns true if a flag differs from its default, as encoded in MuJoCo's bits.
 fn is_set(name: &str, value: &str) -> bool {
     (value == "enable") == OFF_BY_DEFAULT.contains(&name)
 }

@@ -1,4 +1,4 @@
-//! What all models of a composition share.
+//! The state shared by all models of a composition.
 
 use crate::LoadError;
 use crate::mjcf::document::Element;
@@ -8,23 +8,23 @@ use crate::mjcf::source::Sources;
 use crate::spending::Spending;
 use std::path::PathBuf;
 
-/// What all models of a composition share.
+/// The state shared by all models of a composition.
 pub(super) struct Shared<'a> {
     pub sources: Sources,
     pub spending: &'a mut Spending,
-    /// Folders of packages, where URDF files look for meshes.
+    /// The package folders in which URDF files look for meshes.
     pub packages: &'a [PathBuf],
-    /// The files of the models that are being read, the outermost first.
+    /// The files of the models being read, outermost first.
     pub open: Vec<PathBuf>,
-    /// The number that was last given to an element.
+    /// The last number assigned to an element.
     pub last_number: u32,
     pub notes: Vec<String>,
-    /// What was left out because it is not supported yet, if it may be.
+    /// The omitted unsupported elements; `None` if omission is not allowed.
     pub left_out: Option<Vec<String>>,
 }
 
 impl Shared<'_> {
-    /// Holds a document against the schema, after what can be left out is.
+    /// Checks a document against the schema, after any allowed omissions.
     pub(super) fn check(&mut self, root: &mut Element) -> Result<(), LoadError> {
         if let Some(left_out) = &mut self.left_out {
             leave_out(root, left_out);
@@ -32,13 +32,13 @@ impl Shared<'_> {
         schema::check(root)
     }
 
-    /// A number that no element has.
+    /// Returns an unused element number.
     pub(super) fn next_number(&mut self) -> u32 {
         self.last_number += 1;
         self.last_number
     }
 
-    /// Takes copies of an element and all in it, before they are made.
+    /// Counts copies of an element and its descendants against the budget.
     pub(super) fn charge(&mut self, at: &Element, what: &Element) -> Result<(), LoadError> {
         let (mut count, mut bytes, mut pending) = (0, 0, vec![what]);
         while let Some(element) = pending.pop() {

@@ -1,4 +1,4 @@
-//! URDF files that are attached: read as a model, and written as the MJCF that means the same.
+//! Attached URDF files: read as a model, and converted to equivalent MJCF.
 
 use super::shared::Shared;
 use crate::LoadError;
@@ -8,13 +8,13 @@ use crate::mjcf::sections::entries;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The document of an MJCF model that means what a URDF file in a directory does.
+/// Returns the MJCF document equivalent to a URDF file in a directory.
 ///
-/// As in MuJoCo 4.0, the model that it is attached to says whether links that no joint moves are fused, the file itself whether what is
-/// only seen is left out. Options are those that the file gives: a saved model has all of them.
+/// As in MuJoCo 4.0, the model that it is attached to decides whether static links are fused, and the file itself
+/// whether visual geometry is omitted. Options are those that the file gives: a saved model has all of them.
 ///
 /// # Errors
-/// What cannot be read or built, or not be said in MJCF.
+/// Returns an error if the file cannot be read, built or expressed in MJCF.
 pub(super) fn as_mjcf(
     element: &Element,
     root: &Element,

@@ -2,7 +2,7 @@
 
 use super::rule::{NONE, Rule, section};
 
-/// What an actuator reads: what all of them do, what the named groups of attributes are, and what it alone does.
+/// Lists the attributes of an actuator: common ones, those of the named groups, and its own.
 macro_rules! reads {
     ($($group:ident)*: $own:literal) => {
         concat!("name class group nsample interp delay ctrlrange user ", $(group!($group), " ",)* $own)

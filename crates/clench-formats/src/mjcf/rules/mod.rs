@@ -1,7 +1,7 @@
-//! The elements and attributes of MJCF (MuJoCo 4.0) and what this reader does with each.
+//! The elements and attributes of MJCF (MuJoCo 4.0) and their treatment by this reader.
 //!
-//! A rule belongs to an element name, or to `parent/name` where the parent gives the name a meaning of its own. An
-//! attribute under `later` may carry the value with which it does nothing (`adhesion=0`); that value is accepted.
+//! A rule belongs to an element name, or to `parent/name` if the name has another meaning in that parent. An attribute
+//! under `later` may carry the value without effect (`adhesion=0`); that value is accepted.
 
 pub(crate) use rule::{NONE, Rule};
 
@@ -15,7 +15,7 @@ mod top;
 mod tree;
 mod visual;
 
-/// One rule an element.
+/// Returns all rules, one per element.
 pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
     let files = [
         top::RULES,

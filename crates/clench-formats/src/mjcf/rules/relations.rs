@@ -1,4 +1,4 @@
-//! Sections that name elements of the tree, but for actuators.
+//! Sections that refer to elements of the tree, except actuators.
 
 use super::rule::{NONE, Rule, section};
 

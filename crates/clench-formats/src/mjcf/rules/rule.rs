@@ -1,20 +1,20 @@
-//! What an element may have.
+//! The permitted content of an element.
 
-/// What an element may have; every field is a list of words.
+/// The permitted content of an element; every field is a list of names.
 #[derive(Debug)]
 pub(crate) struct Rule {
     pub element: &'static str,
     /// Attributes that are read.
     pub read: &'static str,
-    /// Attributes that do not act on motion. What some of them say of colours and surfaces is kept for viewers.
+    /// Attributes without effect on motion. Some, for colours and surfaces, are stored for viewers.
     pub ignored: &'static str,
-    /// Attributes that are not supported yet, each with the value that does nothing if there is one.
+    /// Attributes not supported yet, each with its value without effect, if any.
     pub later: &'static str,
-    /// Children, in any number.
+    /// Repeatable children.
     pub children: &'static str,
-    /// Children of which there can be only one.
+    /// Children that may occur only once.
     pub once: &'static str,
-    /// Children that are not supported yet.
+    /// Children not supported yet.
     pub later_children: &'static str,
 }
 
@@ -28,7 +28,7 @@ pub(crate) const NONE: Rule = Rule {
     later_children: "",
 };
 
-/// An element that only matters to the eye, to memory or to a user's program.
+/// Creates the rule of an element that only concerns appearance, memory or user programs.
 pub(in crate::mjcf) const fn ignored(
     element: &'static str,
     attributes: &'static str,
@@ -42,7 +42,7 @@ pub(in crate::mjcf) const fn ignored(
     }
 }
 
-/// A section: it holds elements and has no attributes.
+/// Creates the rule of a section: elements and no attributes.
 pub(in crate::mjcf) const fn section(
     element: &'static str,
     children: &'static str,

@@ -1,4 +1,4 @@
-//! The top level: compiler, options, defaults, keyframes, and what belongs to a user's program.
+//! The top level: compiler, options, defaults, keyframes, and user data.
 
 use super::rule::{NONE, Rule, ignored, section};
 
@@ -29,7 +29,7 @@ pub(super) const RULES: &[Rule] = &[
         read: "timestep gravity wind magnetic density viscosity integrator cone jacobian solver impratio tolerance \
             ls_tolerance noslip_tolerance iterations ls_iterations noslip_iterations o_margin o_solref o_solimp \
             o_friction actuatorgroupdisable sleep_tolerance ccd_tolerance ccd_iterations",
-        // For signed distance fields, which are refused where a file asks for them.
+        // For signed distance fields, which are rejected.
         ignored: "sdf_iterations sdf_initpoints",
         once: "flag",
         ..NONE
@@ -39,10 +39,11 @@ pub(super) const RULES: &[Rule] = &[
         read: "constraint equality frictionloss limit contact spring damper gravity clampctrl warmstart \
             filterparent actuation refsafe island eulerdamp multiccd autoreset sensor sleep override \
             diagexact invdiscrete",
-        // `nativeccd` and `midphase` choose between algorithms that look for the same contacts.
-        // The energy is there whenever it is asked for; so is what `fwdinv` compares.
+        // `nativeccd` and `midphase` select algorithms that find the same contacts. Energy, and the comparison of
+        // `fwdinv`, are always available on request.
         ignored: "energy fwdinv midphase nativeccd",
-        // `ipc` is a mode of flexes. `speculative` contacts, which MuJoCo 4.0 calls subject to change, sweep shapes through a step.
+        // `ipc` is a mode of flexes. `speculative` contacts, which MuJoCo 4.0 calls subject to change, sweep shapes
+        // through a step.
         later: "ipc=disable speculative=disable",
         ..NONE
     },
@@ -67,7 +68,7 @@ pub(super) const RULES: &[Rule] = &[
     },
     section("extension", "", "plugin"),
     section("deformable", "skin", "flex"),
-    // Which kinds of sensor there are, and with which attributes, says the table of sensors.
+    // The table of sensors defines their kinds and attributes.
     section("sensor", "", "plugin"),
     section("keyframe", "key", ""),
     Rule {

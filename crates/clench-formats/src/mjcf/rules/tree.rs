@@ -1,13 +1,13 @@
-//! The tree of bodies.
+//! The body tree.
 
 use super::rule::{NONE, Rule, ignored, section};
 
-/// What stands in the world, a body, a frame or a replica.
+/// The content of the world, a body, a frame or a replica.
 const IN_A_BODY: &str =
     "body frame replicate attach geom site camera light inertial joint freejoint";
 const IN_A_BODY_LATER: &str = "plugin flexcomp";
 
-/// Attributes of bodies that MuJoCo takes at frames too, and makes nothing of there; at replicas there are more of them.
+/// The attributes of bodies that MuJoCo also accepts, without effect, on frames; replicas accept more of them.
 const OF_BODIES: &str = "mocap gravcomp simple fuse sleep user";
 
 pub(super) const RULES: &[Rule] = &[

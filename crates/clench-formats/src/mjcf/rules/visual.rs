@@ -1,4 +1,4 @@
-//! What is only seen.
+//! Visual settings.
 
 use super::rule::{NONE, Rule, ignored};
 

@@ -1,4 +1,4 @@
-//! Actuators: what their controls measure decides what their gains are multiplied by.
+//! Scaling of actuators: the quantity that a control measures determines the factor of its gains.
 
 use super::{Along, Coordinate, Frames, located};
 use crate::LoadError;
@@ -7,7 +7,7 @@ use clench_builder::{ActuatorSpec, BuildError, ModelBuilder, SensorSubject, Tran
 use clench_dynamics::model::{Attachment, BiasKind, ControlInput, DynamicsKind, GainKind};
 use std::collections::BTreeMap;
 
-/// The factors of the controls and the activations of an actuator, in their order.
+/// The factors of the controls and the activations of an actuator, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct States {
     pub controls: Vec<f64>,
@@ -15,10 +15,10 @@ pub(super) struct States {
 }
 
 impl Frames {
-    /// Scales the actuators, and tells of each what becomes of its control and its activation.
+    /// Scales the actuators, and returns the factors of their controls and activations.
     ///
     /// # Errors
-    /// An actuator whose parameters cannot be scaled.
+    /// Returns an error if the parameters of an actuator cannot be scaled.
     pub(super) fn scale_actuators(
         &self,
         shortcuts: &[Shortcut],
@@ -45,7 +45,7 @@ impl Frames {
         Ok(states)
     }
 
-    /// The scale along what an actuator pulls on; gears that turn where others pull get lengths.
+    /// Returns the scale along a transmission; rotational gears next to translational ones scale as lengths.
     fn along_transmission(&self, actuator: &mut ActuatorSpec) -> Along {
         let (scale, free) = match &actuator.transmission {
             TransmissionSpec::Joint(joint) | TransmissionSpec::JointInParent(joint) => {
@@ -100,7 +100,7 @@ fn scale_actuator(
         return refuse("its parameters cannot be scaled; use scaling \"geometry\"");
     }
     let command = Command::new(actuator, written);
-    // What cannot be counted is refused when the model is built.
+    // An invalid count is rejected when the model is built.
     let states = command.states(actuator, written, along).unwrap_or_default();
     let is_servo = |actuator: &ActuatorSpec| actuator.gainprm[0] == -actuator.biasprm[1];
     let was_servo = actuator.gain == GainKind::Fixed && is_servo(actuator);
@@ -109,7 +109,7 @@ fn scale_actuator(
     scale_setpoints(actuator, along);
     let first = states.controls.first().copied().unwrap_or(1.0);
     let activation = states.activations.first().copied().unwrap_or(1.0);
-    // As in MuJoCo, a servo that is none once it is scaled inherits no range.
+    // As in MuJoCo, a servo that is no longer one after scaling inherits no range.
     if was_servo && !is_servo(actuator) {
         actuator.inheritrange = 0.0;
     }
@@ -127,14 +127,14 @@ fn scale_actuator(
     Ok(states)
 }
 
-/// What the only control of an actuator is.
+/// The quantity of an actuator's only control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Command {
-    /// A position or velocity of what the actuator pulls on.
+    /// A position or velocity along the transmission.
     Coordinate,
     /// A pressure in a cylinder.
     Pressure,
-    /// A number without a dimension.
+    /// A dimensionless number.
     Number,
 }
 
@@ -145,7 +145,7 @@ impl Command {
         match (actuator.inputs.as_deref(), written) {
             _ if !single => Command::Number,
             (Some([Position | Velocity]), _) => Command::Coordinate,
-            // A pressure is an input without a part in the force of its own.
+            // A pressure is an input without its own term of the force.
             (Some([]), _) => Command::Pressure,
             (Some(_), _) => Command::Number,
             (None, Shortcut::Position | Shortcut::Velocity | Shortcut::IntVelocity) => {
@@ -156,7 +156,7 @@ impl Command {
         }
     }
 
-    /// Its factor.
+    /// Returns its factor.
     fn scale(self, along: Along) -> f64 {
         match self {
             Command::Coordinate => along.coordinate,
@@ -165,7 +165,7 @@ impl Command {
         }
     }
 
-    /// The same, where forces follow.
+    /// Returns its factor for forces.
     fn unit(self, along: Along) -> f64 {
         match self {
             Command::Coordinate => along.unit,
@@ -174,7 +174,7 @@ impl Command {
         }
     }
 
-    /// The factors of all controls and activations.
+    /// Returns the factors of all controls and activations.
     fn states(
         self,
         actuator: &ActuatorSpec,
@@ -214,7 +214,7 @@ fn scale_gain(actuator: &mut ActuatorSpec, command: Command, along: Along) {
     }
 }
 
-/// As in MuJoCo, a bias is left as it is where gain or bias is a muscle's and the other is not.
+/// Scales the bias. As in MuJoCo, it is unchanged if only one of gain and bias is a muscle's.
 fn scale_bias(actuator: &mut ActuatorSpec, along: Along) {
     if (actuator.gain == GainKind::Muscle) != (actuator.bias == BiasKind::Muscle) {
         return;
@@ -227,7 +227,7 @@ fn scale_bias(actuator: &mut ActuatorSpec, along: Along) {
         BiasKind::Affine | BiasKind::So3 => {
             actuator.biasprm[0] *= along.force;
             actuator.biasprm[1] *= gain;
-            // Above zero it is a damping ratio.
+            // A positive value is a damping ratio.
             if actuator.biasprm[2] < 0.0 {
                 actuator.biasprm[2] *= gain;
             }
@@ -242,7 +242,7 @@ fn scale_bias(actuator: &mut ActuatorSpec, along: Along) {
     }
 }
 
-/// The largest integral of a position error, and the largest rate of a setpoint.
+/// Scales the limit of the integral of a position error, and the maximum rate of a setpoint.
 fn scale_setpoints(actuator: &mut ActuatorSpec, along: Along) {
     let limits = match (actuator.dynamics, &mut actuator.dynprm) {
         (DynamicsKind::Pid, [integral, rate, ..]) => [integral, rate],
@@ -254,7 +254,7 @@ fn scale_setpoints(actuator: &mut ActuatorSpec, along: Along) {
     }
 }
 
-/// The peak force of a muscle; a negative one stands for what follows from its acceleration.
+/// Scales the peak force of a muscle; a negative one is derived from its acceleration.
 fn scale_muscle(parameters: &mut [f64; 10], force: f64) {
     if parameters[2] >= 0.0 {
         parameters[2] *= force;

@@ -1,4 +1,5 @@
-//! What stands in the tree: joints, geoms, sites, cameras, lights, inertias. Their positions are scaled with the frame.
+//! Scaling of elements of the tree: joints, geoms, sites, cameras, lights, inertias. Their positions are scaled with
+//! the frame.
 
 use super::{Coordinate, Scale};
 use crate::mjcf::stretch::{Deformation, Stretch, nearly_equal};
@@ -11,7 +12,7 @@ use clench_dynamics::model::JointKind;
 use clench_math::{Mat3, Vec3};
 
 impl Coordinate {
-    /// What the coordinate of a joint measures; a free joint has both.
+    /// Returns the quantity that a joint coordinate measures; a free joint has both.
     pub(super) fn of_joint(kind: JointKind) -> Option<Coordinate> {
         match kind {
             JointKind::Slide => Some(Coordinate::Length),
@@ -22,10 +23,10 @@ impl Coordinate {
 }
 
 impl Scale {
-    /// As in MuJoCo, what a free joint has along its degrees of freedom stays as it is. Gives the factor of lengths along its axis.
+    /// Scales a joint; returns the factor of lengths along its axis. As in MuJoCo, a free joint is unchanged.
     ///
     /// # Errors
-    /// An axis that the frame, whose map in the axes of the body this is, turns.
+    /// Returns an error if `stretch`, the frame's map in the axes of the body, rotates the joint axis.
     pub(in crate::mjcf) fn joint(
         self,
         joint: &mut JointSpec,
@@ -58,7 +59,7 @@ impl Scale {
     /// Scales a geom.
     ///
     /// # Errors
-    /// A shape that would be another one.
+    /// Returns an error if the kind of shape would change.
     pub(in crate::mjcf) fn geom(
         self,
         geom: &mut GeomSpec,
@@ -67,7 +68,7 @@ impl Scale {
         let stretch = deformation.stretch;
         geom.size = match stretch {
             Stretch::Uniform(_) => geom.size * self.length,
-            // What is fitted to a mesh has its size from that.
+            // A shape fitted to a mesh gets its size from the mesh.
             Stretch::General(_) if !geom.mesh.is_empty() => geom.size,
             Stretch::General(_) => self.shape(geom.kind, geom.size, deformation)?,
         };
@@ -90,7 +91,7 @@ impl Scale {
         Ok(())
     }
 
-    /// The size of a shape after a map that differs between its axes.
+    /// Returns the size of a shape after a map that is not uniform.
     fn shape(
         self,
         kind: ShapeKind,
@@ -128,9 +129,9 @@ impl Scale {
         Ok(size.scale_by(Vec3::from_array(factors)))
     }
 
-    /// Scales a site. It only marks a place: where it would get another shape, it has the sizes along its axes.
+    /// Scales a site. As it is only a marker, its kind is retained: the sizes are scaled along its axes.
     pub(in crate::mjcf) fn site(self, site: &mut SiteSpec, deformation: Deformation) {
-        // Numbers that its kind does not use stay as they are written.
+        // Numbers that its kind does not use are unchanged.
         let factors = match site.kind {
             ShapeKind::Sphere => [self.length, 1.0, 1.0],
             kind => along_and_across(kind, deformation),
@@ -159,7 +160,7 @@ impl Scale {
         *quadratic /= self.length * self.length;
     }
 
-    /// Scales the inertia of a body, in whose axes the frame has this map.
+    /// Scales the inertia of a body; `stretch` is the frame's map in its axes.
     pub(in crate::mjcf) fn inertial(self, inertial: &mut InertialSpec, stretch: Stretch) {
         inertial.mass *= self.mass;
         if self.by_axis {
@@ -173,7 +174,8 @@ impl Scale {
         };
     }
 
-    /// The inertia after a map A: the second moments of mass Σ = ½ tr(I) − I become A Σ Aᵀ, times the factor of masses.
+    /// Returns the inertia after a map A: the second moments of mass Σ = ½ tr(I) − I become A Σ Aᵀ, times the mass
+    /// factor.
     fn stretched(self, inertial: &InertialSpec, stretch: Stretch) -> InertiaSpec {
         let inertia = match inertial.inertia {
             InertiaSpec::Diagonal(moments) => {
@@ -199,7 +201,7 @@ impl Scale {
     }
 }
 
-/// The factors of the sizes of a shape that has an axis or three.
+/// Returns the factors of the sizes of a shape with one axis or three.
 fn along_and_across(kind: ShapeKind, deformation: Deformation) -> [f64; 3] {
     let [x, y, z] = deformation.stretch.factors().to_array();
     let across = match deformation.stretch {

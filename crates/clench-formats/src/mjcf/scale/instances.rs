@@ -1,4 +1,4 @@
-//! Meshes and height fields in every size that frames ask for.
+//! Meshes and height fields in every size that frames require.
 
 use super::{FrameId, Frames, located};
 use crate::LoadError;
@@ -10,8 +10,8 @@ use clench_math::{Quat, Vec3};
 use std::collections::{HashMap, HashSet};
 
 impl Frames {
-    /// The name of a mesh or height field in the shape that a frame asks for, whose map in its axes is this: its own for the first one
-    /// that is asked for, and one made of that and a number for each other.
+    /// Assigns the name of a mesh or height field in the shape given by a frame's map: its own for the first shape,
+    /// with a number appended for each other.
     pub(in crate::mjcf) fn instance(&mut self, asset: &mut String, stretch: Stretch) {
         if asset.is_empty() {
             return;
@@ -31,7 +31,7 @@ impl Frames {
         }
     }
 
-    /// Remembers a geom, number `geom` of a body, if its mesh decides how its density is scaled.
+    /// Records a geom, number `geom` of a body, if its mesh determines the scaling of its density.
     pub(in crate::mjcf) fn add_mesh(
         &mut self,
         spec: &GeomSpec,
@@ -46,7 +46,7 @@ impl Frames {
         }
     }
 
-    /// The density of a shell is mass over area, not over volume.
+    /// Corrects the density of shells, which is mass over area, not over volume.
     pub(super) fn weigh_shells(&self, builder: &mut ModelBuilder) {
         let shells: HashSet<&str> = (builder.meshes.iter())
             .filter(|mesh| mesh.inertia == MeshInertia::Shell)
@@ -62,10 +62,10 @@ impl Frames {
         }
     }
 
-    /// Makes meshes and height fields of the sizes that were asked for.
+    /// Makes meshes and height fields of the requested sizes.
     ///
     /// # Errors
-    /// More memory for them than is left.
+    /// Returns an error if they exceed the memory budget.
     pub(super) fn make_instances(
         &self,
         builder: &mut ModelBuilder,
@@ -111,7 +111,7 @@ impl Frames {
     }
 }
 
-/// Assets by name; of one name, the first.
+/// Indexes assets by name; the first of a name takes precedence.
 fn numbered<'a>(
     names: impl DoubleEndedIterator<Item = &'a String> + ExactSizeIterator,
 ) -> HashMap<String, usize> {
@@ -119,21 +119,21 @@ fn numbered<'a>(
     names.map(|(place, name)| (name.clone(), place)).collect()
 }
 
-/// Gives a height field the sizes that a map makes of its own.
+/// Scales a height field by a map.
 fn stretch_field(field: &mut HeightFieldSpec, stretch: Stretch) {
     let [x, y, z] = stretch.factors().to_array();
     let [half_x, half_y, top, base] = field.size;
     field.size = [half_x * x, half_y * y, top * z, base * z];
 }
 
-/// Gives a mesh the shape that a map makes of it.
+/// Deforms a mesh by a map.
 fn stretch_mesh(mesh: &mut MeshSpec, stretch: Stretch) {
     let along_axes = Stretch::along_axes(stretch.factors());
     if stretch == along_axes {
         mesh.scale = mesh.scale.scale_by(stretch.factors());
         return;
     }
-    // The vertices are written as they end up, but for the signs of a scale that mirrors, which also turns the triangles.
+    // The vertices are final except for the signs of a mirroring scale, which also flips the triangles.
     let back = mesh.refquat.normalize().conjugate();
     let signs = Vec3::from_array(mesh.scale.to_array().map(|x| 1.0_f64.copysign(x)));
     for vertex in &mut mesh.vertices {
@@ -150,7 +150,7 @@ fn stretch_mesh(mesh: &mut MeshSpec, stretch: Stretch) {
     mesh.scale = signs;
 }
 
-/// The name of an asset in one of its sizes, as MuJoCo gives it.
+/// Returns the name of an asset in one of its sizes, as in MuJoCo.
 fn instance_name(name: &str, number: usize) -> String {
     match number {
         0 => name.to_owned(),

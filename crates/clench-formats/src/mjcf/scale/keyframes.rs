@@ -1,4 +1,5 @@
-//! Stored states. What attached models say of theirs is scaled where the elements end up, as in MuJoCo 4.0.
+//! Scaling of stored states. Those of attached models are scaled at the final location of the elements, as in MuJoCo
+//! 4.0.
 
 use super::actuators::States;
 use super::{FrameId, Frames, PlacedJoint};
@@ -8,8 +9,8 @@ use clench_dynamics::model::JointKind;
 use clench_math::Vec3;
 
 impl Frames {
-    /// Scales what keyframes say of positions, velocities, springs, controls and activations, whether of the whole model or, where
-    /// they come from attached models, of single elements.
+    /// Scales positions, velocities, springs, controls and activations of keyframes, whole or, from attached models, by
+    /// element.
     pub(super) fn scale_keyframes(&self, actuators: &[States], builder: &mut ModelBuilder) {
         let maps = Maps {
             joints: self.of_joints(),
@@ -22,9 +23,9 @@ impl Frames {
         }
     }
 
-    /// What becomes of the state of joints.
+    /// Returns the maps of the state of joints.
     fn of_joints(&self) -> Vec<OfJoint> {
-        // Joints are numbered by body, and those of one body as they are read.
+        // Joints are numbered by body, and within a body in the order of reading.
         let mut joints = self.all_joints.clone();
         joints.sort_by_key(|joint| joint.body);
         joints
@@ -52,7 +53,7 @@ impl Frames {
         }
     }
 
-    /// What becomes of where the springs of tendons rest; nothing where they do not yield.
+    /// Returns the maps of the rest lengths of tendon springs; none if they do not yield.
     fn of_tendons(&self, builder: &ModelBuilder) -> Vec<Vec<Map>> {
         let tendons = builder.tendons.iter().zip(&self.all_tendons);
         tendons
@@ -64,7 +65,8 @@ impl Frames {
             .collect()
     }
 
-    /// What becomes of the position of something in the world that a frame carries: it moves with the frame, and away from it.
+    /// Returns the map of a position in the world that a frame transforms: an object moves with the frame, and relative
+    /// to it.
     fn moved(&self, frame: FrameId) -> Map {
         let frame = &self.list[frame];
         let offset = frame.position - frame.stretch.apply(frame.unscaled);
@@ -72,14 +74,14 @@ impl Frames {
     }
 }
 
-/// What becomes of the state of a joint.
+/// The maps of the state of a joint.
 struct OfJoint {
     qpos: Vec<Map>,
     qvel: Vec<Map>,
     plastic: Vec<Map>,
 }
 
-/// What becomes of the state of each element.
+/// The maps of the state of each element.
 struct Maps<'a> {
     joints: Vec<OfJoint>,
     mocaps: Vec<Map>,
@@ -133,18 +135,18 @@ impl Maps<'_> {
     }
 }
 
-/// What becomes of the next numbers.
+/// A map of the next numbers.
 #[derive(Clone, Copy, Debug)]
 enum Map {
-    /// One is multiplied by this.
+    /// Multiplies one number by this factor.
     Number(f64),
-    /// Three are a point: they are mapped, and this is added.
+    /// Applies the map to three numbers, a point, and adds the offset.
     Point(Stretch, Vec3<f64>),
 }
 
 impl Map {
-    /// Maps the first of these numbers, and gives the others. Where a point is cut short, as it can be in a keyframe that
-    /// is refused when the model is built, it stays.
+    /// Maps the first of these numbers, and returns the others. A truncated point, rejected when the model is built, is
+    /// unchanged.
     fn apply(self, numbers: &mut [f64]) -> &mut [f64] {
         match self {
             Map::Number(factor) => match numbers {
@@ -166,7 +168,7 @@ impl Map {
     }
 }
 
-/// Numbers that are multiplied by these.
+/// Returns maps that multiply by these factors.
 fn numbers(factors: &[f64]) -> Vec<Map> {
     factors.iter().map(|&factor| Map::Number(factor)).collect()
 }
@@ -175,7 +177,7 @@ fn apply<'a>(given: &mut Option<Vec<f64>>, maps: impl IntoIterator<Item = &'a Ma
     map_numbers(given.as_deref_mut().unwrap_or_default(), maps);
 }
 
-/// Numbers of another count than the maps are told of when the model is built.
+/// Maps numbers in order. A mismatch of counts is reported when the model is built.
 fn map_numbers<'a>(numbers: &mut [f64], maps: impl IntoIterator<Item = &'a Map>) {
     let mut rest = numbers;
     for map in maps {

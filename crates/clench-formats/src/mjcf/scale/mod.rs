@@ -1,13 +1,14 @@
-//! Frames that scale what is in them: `scale`, `scaling` and `massscale`.
+//! Frames that scale their contents: `scale`, `scaling` and `massscale`.
 //!
-//! A frame multiplies lengths by s and masses by m, which is s³ where the file does not say. What follows depends on the policy. With
-//! `similar` the frame changes the units of length and mass: a quantity of dimension Lᵃ Mᵇ Tᶜ becomes sᵃ mᵇ as large. With `geometry`
-//! only lengths, masses and inertias change; forces, stiffnesses, dampings and gains stay. Frames in frames multiply, each by its own
-//! policy. Scales that differ between axes, which only `geometry` takes, act by axis on positions, sizes and the travel of slides;
-//! whatever has no direction follows the cube root of their product, and what they would deform is refused. What names elements of the
-//! tree (pairs, tendons, equalities, actuators, sensors, keyframes) follows the scale of
-//! these: a geometric mean where two of them differ, and for a tendon the frames that hold all that it passes. The dimensions are
-//! those of MuJoCo's table of units (XMLunits), the rules for two scales were found beside MuJoCo 4.0.
+//! A frame multiplies lengths by s and masses by m, which defaults to s³. Other quantities depend on the policy. With
+//! `similar` the units of length and mass change: a quantity of dimension Lᵃ Mᵇ Tᶜ is multiplied by sᵃ mᵇ. With
+//! `geometry` only lengths, masses and inertias change, not forces, stiffnesses, dampings and gains. Nested frames
+//! multiply, each by its own policy. Scales that differ between axes, only allowed with `geometry`, act by axis on
+//! positions, sizes and the travel of slides; quantities without direction follow the cube root of their product, and a
+//! change of the kind of shape is rejected. Elements that refer to the tree (pairs, tendons, equalities, actuators,
+//! sensors, keyframes) get the scale of their targets: the geometric mean of two different ones, and for a tendon that
+//! of the frames that enclose its entire path. The dimensions are those of MuJoCo's table of units (XMLunits); the
+//! rules for two scales were determined by comparison with MuJoCo 4.0.
 
 mod actuators;
 mod elements;
@@ -26,18 +27,18 @@ use clench_dynamics::model::JointKind;
 use clench_math::Vec3;
 use std::collections::BTreeMap;
 
-/// The factors by which the frames around an element multiply its numbers.
+/// The factors by which the enclosing frames multiply an element's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
-    /// Lengths that have no direction.
+    /// The factor of lengths without direction.
     pub length: f64,
-    /// Masses.
+    /// The factor of masses.
     pub mass: f64,
     /// The unit of length that forces follow.
     unit_length: f64,
     /// The unit of mass that forces follow.
     unit_mass: f64,
-    /// Whether a frame's scale differs between axes, even where another makes up for it.
+    /// True if a frame's scale differs between axes, even if another frame compensates it.
     by_axis: bool,
 }
 
@@ -50,7 +51,7 @@ impl Scale {
         by_axis: false,
     };
 
-    /// What a frame says, and what it makes of positions.
+    /// Reads the scale of a frame, and its linear map of positions.
     fn read(element: &Element) -> Result<(Scale, Stretch), LoadError> {
         let axes = match element.list("scale")?.unwrap_or_default()[..] {
             [] => [1.0; 3],
@@ -87,12 +88,12 @@ impl Scale {
         Ok((scale, Stretch::along_axes(Vec3::from_array(axes))))
     }
 
-    /// The scale of a frame in this one.
+    /// Returns the scale of a frame in this one.
     fn then(self, inner: Scale) -> Scale {
         self.zip(inner, |outer, inner| outer * inner)
     }
 
-    /// The geometric mean of two scales.
+    /// Returns the geometric mean of two scales.
     fn mean(self, other: Scale) -> Scale {
         match self == other {
             true => self,
@@ -110,17 +111,17 @@ impl Scale {
         }
     }
 
-    /// The factor of a quantity of dimension M Lᵃ that follows forces; any power of time may go with it.
+    /// Returns the factor of a quantity of dimension M Lᵃ, times any power of time, that follows forces.
     fn force(self, lengths: i32) -> f64 {
         self.unit_mass * self.unit_length.powi(lengths)
     }
 
-    /// The same along a coordinate: forces and lengths, or torques and angles.
+    /// Returns the factors along a coordinate: forces and lengths, or torques and angles.
     fn along(self, coordinate: Coordinate) -> Along {
         self.along_direction(coordinate, self.length)
     }
 
-    /// The same in a direction in which lengths have this factor.
+    /// Like `along`, in a direction with this factor of lengths.
     fn along_direction(self, coordinate: Coordinate, length: f64) -> Along {
         match coordinate {
             Coordinate::Length => Along {
@@ -139,7 +140,7 @@ impl Scale {
     }
 }
 
-/// What a coordinate measures.
+/// The quantity that a coordinate measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Coordinate {
     Length,
@@ -149,18 +150,18 @@ enum Coordinate {
 /// The factors of the quantities along a coordinate.
 #[derive(Clone, Copy, Debug)]
 struct Along {
-    /// Positions and velocities.
+    /// The factor of positions and velocities.
     coordinate: f64,
-    /// The same, where forces follow.
+    /// The factor of the coordinate's unit for forces.
     unit: f64,
-    /// Forces or torques.
+    /// The factor of forces or torques.
     force: f64,
-    /// Pressures.
+    /// The factor of pressures.
     pressure: f64,
 }
 
 impl Along {
-    /// A stiffness or damping: forces for a coordinate, its square and its cube.
+    /// Scales a stiffness or damping: coefficients of a coordinate, its square and its cube.
     fn polynomial(self, coefficients: &mut [f64; 3]) {
         let mut factor = self.force;
         for coefficient in coefficients {
@@ -169,31 +170,31 @@ impl Along {
         }
     }
 
-    /// Force for a coordinate, or for its rate.
+    /// Returns the factor of force per coordinate or rate.
     fn gain(self) -> f64 {
         self.force / self.unit
     }
 
-    /// Torque, whatever the coordinate is: M L² of lengths, and the torque of angles, whose unit is 1.
+    /// Returns the factor of torque: M L² for lengths, and the torque of angles, whose unit is 1.
     fn turning(self) -> f64 {
         self.force * self.unit
     }
 }
 
-/// A frame that scales, by its number; 0 stands for none.
+/// The index of a frame that scales; 0 stands for none.
 pub(super) type FrameId = usize;
 
 /// A frame that scales.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
-    /// The frame around it.
+    /// The enclosing frame.
     outer: FrameId,
-    /// The scale of what is in it.
+    /// The scale of its contents.
     scale: Scale,
-    /// Its position in the body, and what it would be without scales.
+    /// Its position in the body, with and without scales.
     position: Vec3<f64>,
     unscaled: Vec3<f64>,
-    /// What becomes of directions in it, in the axes of the body.
+    /// The linear map of its positions, in the axes of the body.
     stretch: Stretch,
 }
 
@@ -206,7 +207,7 @@ impl Frame {
         stretch: Stretch::NONE,
     };
 
-    /// Where a point in the frame lies without scales.
+    /// Returns the position of a point of the frame without scales.
     fn unscaled(self, point: Vec3<f64>) -> Vec3<f64> {
         self.unscaled + self.stretch.undo(point - self.position)
     }
@@ -216,28 +217,28 @@ impl Frame {
 #[derive(Debug)]
 pub(super) struct Frames {
     list: Vec<Frame>,
-    /// With what becomes of positions in their axes.
+    /// The frames of bodies, with the maps of positions in their axes.
     bodies: BTreeMap<String, (FrameId, Stretch)>,
     joints: BTreeMap<String, PlacedJoint>,
     geoms: BTreeMap<String, FrameId>,
     sites: BTreeMap<String, FrameId>,
     cameras: BTreeMap<String, FrameId>,
     tendons: BTreeMap<String, (FrameId, Coordinate)>,
-    /// All joints, in the order in which they are read.
+    /// All joints, in the order of reading.
     all_joints: Vec<PlacedJoint>,
-    /// Of all tendons, in order.
+    /// The frames and coordinates of tendons, in order.
     all_tendons: Vec<(FrameId, Coordinate)>,
-    /// Of all mocap bodies.
+    /// The frames of mocap bodies.
     mocaps: Vec<FrameId>,
-    /// The shapes of a mesh or height field in the order of the elements that are it.
+    /// The shapes of a mesh or height field, in the order of the elements that use them.
     instances: BTreeMap<String, Vec<Stretch>>,
-    /// The shapes after the first ones, in the order in which they were asked for.
+    /// The shapes after the first ones, in the order of use.
     made: Vec<(String, usize)>,
-    /// Scaled geoms that are meshes and have the mass of a density: body, number in it, and scale of lengths.
+    /// Scaled mesh geoms whose mass derives from a density: body, index in it, and scale of lengths.
     meshes: Vec<(usize, usize, f64)>,
 }
 
-/// What a joint's numbers follow.
+/// The data for scaling a joint's numbers.
 #[derive(Clone, Copy, Debug)]
 struct PlacedJoint {
     body: usize,
@@ -245,11 +246,11 @@ struct PlacedJoint {
     kind: JointKind,
     /// The factor of lengths along its axis.
     length: f64,
-    /// Whether its spring yields.
+    /// True if its spring yields.
     yields: bool,
 }
 
-/// A kind of element that others name.
+/// The kinds of elements that are referenced by name.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Named {
     Geom,
@@ -278,7 +279,7 @@ impl Default for Frames {
 }
 
 impl Frames {
-    /// Reads what a frame in another says of its scale, and adds it to what its pose in the body makes of positions.
+    /// Reads the scale of a nested frame, and composes its map with that of its pose in the body.
     pub(super) fn enter(
         &mut self,
         element: &Element,
@@ -301,19 +302,19 @@ impl Frames {
         Ok(self.list.len() - 1)
     }
 
-    /// The scale of what is in a frame.
+    /// Returns the scale of a frame.
     pub(super) fn scale(&self, frame: FrameId) -> Scale {
         self.list[frame].scale
     }
 
-    /// Whether any frame scales.
+    /// Returns true if any frame scales.
     fn any(&self) -> bool {
         self.list.len() > 1
     }
 
-    /// The innermost frame around both of two.
+    /// Returns the innermost frame that encloses both.
     fn common(&self, mut a: FrameId, mut b: FrameId) -> FrameId {
-        // A frame has a larger number than those around it.
+        // A frame has a larger index than those that enclose it.
         while a != b {
             let (larger, smaller) = (a.max(b), a.min(b));
             (a, b) = (self.list[larger].outer, smaller);
@@ -321,7 +322,7 @@ impl Frames {
         a
     }
 
-    /// Remembers a body in a frame, with what becomes of positions in its axes.
+    /// Records a body in a frame, with the map of positions in its axes.
     pub(super) fn add_body(&mut self, body: &BodySpec, frame: FrameId, stretch: Stretch) {
         if frame != 0 && !body.name.is_empty() {
             self.bodies.insert(body.name.clone(), (frame, stretch));
@@ -331,7 +332,7 @@ impl Frames {
         }
     }
 
-    /// Remembers a joint in a frame, with what it says of lengths along its axis.
+    /// Records a joint in a frame, with the factor of lengths along its axis.
     pub(super) fn add_joint(
         &mut self,
         joint: &JointSpec,
@@ -364,10 +365,10 @@ impl Frames {
         names.insert(name.to_owned(), frame);
     }
 
-    /// Scales all that names what is in the frames.
+    /// Scales the elements that refer to the frames' contents.
     ///
     /// # Errors
-    /// Equalities, actuators and sensors that cannot be scaled, and what takes more memory than is left.
+    /// Returns an error if an equality, actuator or sensor cannot be scaled, or on excess memory.
     pub(super) fn scale_rest(
         mut self,
         shortcuts: &[Shortcut],
@@ -389,7 +390,7 @@ impl Frames {
     }
 }
 
-/// An error of an element that was read before.
+/// Creates an error about an element that was read before.
 fn located(
     origin: &Option<Origin>,
     kind: &str,

@@ -1,4 +1,4 @@
-//! Pairs, tendons, equalities and sensors.
+//! Scaling of pairs, tendons, equalities and sensors.
 
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::LoadError;
@@ -19,7 +19,7 @@ impl Frames {
         self.scale(self.bodies.get(name).map_or(0, |&(frame, _)| frame))
     }
 
-    /// What becomes of positions in the axes of a body.
+    /// Returns the map of positions in body axes.
     fn in_body(&self, name: &str) -> Stretch {
         let found = self.bodies.get(name);
         found.map_or(Stretch::NONE, |&(_, stretch)| stretch)
@@ -29,7 +29,7 @@ impl Frames {
         self.of(&self.sites, name)
     }
 
-    /// What a joint's coordinate is multiplied by, and forces along it.
+    /// Returns the factors of a joint's coordinate, and of forces along it.
     pub(super) fn of_joint(&self, name: &str) -> Along {
         let Some(joint) = self.joints.get(name) else {
             return Scale::ONE.along(Coordinate::Angle);
@@ -39,13 +39,13 @@ impl Frames {
         scale.along_direction(coordinate, joint.length)
     }
 
-    /// The scale of a free joint in a frame, if it is one.
+    /// Returns the scale of a joint's frame if it is a free joint.
     pub(super) fn of_free_joint(&self, name: &str) -> Option<Scale> {
         let joint = self.joints.get(name)?;
         (joint.kind == JointKind::Free).then(|| self.scale(joint.frame))
     }
 
-    /// What a tendon's length is multiplied by, and forces along it.
+    /// Returns the factors of a tendon's length, and of forces along it.
     pub(super) fn of_tendon(&self, name: &str) -> Along {
         let found = self.tendons.get(name).copied();
         let (frame, coordinate) = found.unwrap_or((0, Coordinate::Length));
@@ -71,7 +71,8 @@ impl Frames {
         }
     }
 
-    /// A tendon has the scale of the frames around all that it passes, and measures lengths if any of that does.
+    /// Scales tendons by the frames that enclose their entire path. A tendon measures lengths if any element of its
+    /// path does.
     pub(super) fn scale_tendons(&mut self, builder: &mut ModelBuilder) {
         for tendon in &mut builder.tendons {
             let frames = tendon.path.iter().filter_map(|wrap| match wrap {
@@ -108,10 +109,10 @@ impl Frames {
         }
     }
 
-    /// Scales what equalities hold, and how soft they are.
+    /// Scales the targets and the softness of equalities.
     ///
     /// # Errors
-    /// A kind of which it is not known what scales it.
+    /// Returns an error for a kind without a known scaling.
     pub(super) fn scale_equalities(&self, builder: &mut ModelBuilder) -> Result<(), LoadError> {
         let mut equalities = builder.equalities.iter_mut();
         equalities.try_for_each(|equality| self.scale_equality(equality))
@@ -184,7 +185,7 @@ impl Frames {
     /// Scales the cutoff and the noise of each sensor.
     ///
     /// # Errors
-    /// A sensor that feels with a mesh, whose points would have to be scaled.
+    /// Returns an error for a tactile sensor, whose mesh points would have to be scaled.
     pub(super) fn scale_sensors(&self, builder: &mut ModelBuilder) -> Result<(), LoadError> {
         for sensor in &mut builder.sensors {
             if let SensorSubject::Taxels { geom, .. } = &sensor.subject
@@ -202,7 +203,7 @@ impl Frames {
 }
 
 impl Along {
-    /// The factor of numbers of this dimension along the coordinate.
+    /// Returns the factor of a quantity of this dimension along the coordinate.
     pub(super) fn of_dimension(self, dimension: SensorDimension) -> f64 {
         match dimension {
             SensorDimension::Coordinate => self.coordinate,
@@ -213,7 +214,7 @@ impl Along {
 }
 
 impl Frames {
-    /// The factor of the numbers of a sensor; those of an actuator are scaled with the actuator.
+    /// Returns the factor of a sensor's values; those of actuator sensors are scaled with the actuator.
     fn of_sensor(&self, sensor: &SensorSpec) -> f64 {
         let dimension = sensor.kind.dimension();
         let scale = match &sensor.subject {
@@ -271,7 +272,7 @@ fn scale_tendon(tendon: &mut TendonSpec, along: Along) {
     along.polynomial(&mut tendon.damping);
 }
 
-/// Scales y = Σ coef_k xᵏ, and gives the scale of y.
+/// Scales y = Σ coef_k xᵏ, and returns the scale of y.
 fn scale_coupling(follower: Along, leader: Option<Along>, polycoef: &mut [f64; 5]) -> f64 {
     let leader = leader.map_or(1.0, |along| along.coordinate);
     let mut factor = follower.coordinate;

@@ -1,4 +1,4 @@
-//! Actuators, each as `<general>`.
+//! Actuators, each written as `<general>`.
 
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
@@ -85,7 +85,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         .number_unless("armature", p.actuator_armature[u], 0.0)
         .integer_unless("group", (*group).into(), 0);
     let usual = usize::from(*dynamics != DynamicsKind::None);
-    // Those of controllers, motors and orientation servos follow from their parameters.
+    // The counts of controllers, motors and orientation servos derive from their parameters.
     let follows = matches!(gain, GainKind::Pid | GainKind::DcMotor | GainKind::So3);
     if acts.len() != usual && !follows {
         tag = tag.integer("actdim", acts.len() as i64);
@@ -100,7 +100,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
     Ok(())
 }
 
-/// What the controls are, and their ranges.
+/// Writes the control inputs and their ranges.
 fn write_controls<'a>(
     inputs: &[ControlInput],
     limited: &[bool],
@@ -124,7 +124,7 @@ fn write_controls<'a>(
     if !names.is_empty() {
         tag = tag.words("input", names.iter().copied());
     }
-    // Velocity and feedforward of a PID controller have ranges of their own; all other controls share one.
+    // Velocity and feedforward of a PID controller have separate ranges; all other controls share one.
     let own = |input: &ControlInput| match input {
         ControlInput::Velocity => "velrange",
         ControlInput::Feedforward => "ffrange",
@@ -145,7 +145,7 @@ fn write_controls<'a>(
     tag
 }
 
-/// Which past values are kept, and how late they arrive.
+/// Writes the history settings and the delay.
 pub(super) fn write_history<'a>(history: &History, delay: f64, tag: Tag<'a>) -> Tag<'a> {
     let History {
         start: _,

@@ -1,4 +1,4 @@
-//! Meshes and height fields, as their author gave them: what follows from them is computed again when the file is loaded.
+//! Meshes and height fields as originally given; derived quantities are computed again when the file is loaded.
 
 use super::names::SaveError;
 use super::xml::Xml;
@@ -27,7 +27,7 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
         scale,
         inertia,
         max_hull_vertices,
-        // What is only seen is not in a saved model.
+        // Purely visual data are not saved.
         tangents,
         texcoords: _,
         face_texcoords: _,
@@ -52,7 +52,7 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
     }
     tag = tag.singles("vertex", vertices.as_flattened().iter().copied());
     if !tangents.is_empty() {
-        // Only the tangents are read back: any vector may stand for the normal.
+        // Only the tangents are read back; the normal may be any vector.
         let frames = tangents
             .iter()
             .flat_map(|[a, b]| [a.cross(*b), *a, *b].map(Vec3::to_array));
@@ -64,7 +64,7 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
     tag.end();
 }
 
-/// Rows from the positive end of y, as MJCF has them.
+/// Writes rows from the positive end of y, as MJCF requires.
 fn write_height_field(field: &HeightField, xml: &mut Xml) {
     let HeightField {
         name,

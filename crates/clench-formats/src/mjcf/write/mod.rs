@@ -1,9 +1,9 @@
-//! A model as MJCF: what was loaded or built, with every number resolved.
+//! A loaded or built model as MJCF, with every number resolved.
 //!
-//! The file says all that the model is and leaves nothing to a compiler: explicit inertials, limits and ranges, poses as quaternions,
-//! angles in radians, no default classes, meshes as vertices in the file. An attribute that has the value which MJCF means where nothing is
-//! said is left out. Each function takes a record of the model apart field by field, so that a new field is an error here until
-//! it has its place; what MJCF cannot say is an error that names it.
+//! The file leaves nothing to a compiler: explicit inertials, limits and ranges, poses as quaternions, angles in
+//! radians, no default classes, meshes as vertices in the file. Attributes with MJCF's default value are omitted. Each
+//! function destructures a record of the model field by field, so that a new field is a compile error until it is
+//! handled; content that MJCF cannot express is an error that names it.
 
 mod actuator;
 mod assets;
@@ -23,7 +23,7 @@ use clench_dynamics::model::{Custom, Keyframe, TupleEntry};
 pub use names::SaveError;
 use xml::Xml;
 
-/// Writing a model as MJCF.
+/// Serialization of a model to MJCF.
 ///
 /// ```
 /// use clench_formats::{SaveModel, load_str};
@@ -35,13 +35,14 @@ use xml::Xml;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait SaveModel {
-    /// The model as an MJCF file that stands alone: it loads to the same model, here and in MuJoCo.
+    /// Returns the model as a self-contained MJCF file: it loads to the same model, here and in MuJoCo.
     ///
-    /// Numbers are written to their last digit. What is computed from them while the file is loaded (unit quaternions, where meshes have their
-    /// centres of mass, inverse inertias) may differ in the last digits.
+    /// Numbers are written to their last digit. Values computed from them at loading (unit quaternions, centres of mass
+    /// of meshes, inverse inertias) may differ in the last digits.
     ///
     /// # Errors
-    /// What MJCF cannot say: a floor of time constants that acts, parts of a joint that differ, bodies nested more than 500 deep.
+    /// Returns an error if MJCF cannot express the model: an active floor of time constants, differing parts of a
+    /// joint, bodies nested more than 500 deep.
     fn to_mjcf(&self) -> Result<String, SaveError>;
 }
 
@@ -64,7 +65,7 @@ impl SaveModel for Model {
     }
 }
 
-/// How many numbers of the user's own elements have, where there are any.
+/// Writes the counts of user numbers of elements, if any.
 fn write_widths(model: &Model, xml: &mut Xml) {
     let widths = [
         ("nuser_body", model.bodies.first().map(|e| &e.user)),
@@ -86,7 +87,7 @@ fn write_widths(model: &Model, xml: &mut Xml) {
     }
 }
 
-/// What belongs to a user's program.
+/// Writes the user data.
 fn write_custom(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     let Custom {
         numerics,

@@ -1,15 +1,15 @@
-//! What elements are called in a file, and what of a model a file cannot say.
+//! The names of elements in a file, and the error of saving.
 
 use clench_dynamics::Model;
 use clench_dynamics::model::Body;
 
-/// What of a model MJCF cannot say.
+/// An error about content that MJCF cannot express.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{element} cannot be written as MJCF: {reason}")]
 pub struct SaveError {
     /// The element, such as `joint "knee"`.
     pub element: String,
-    /// Why it cannot be written.
+    /// The reason that it cannot be written.
     pub reason: String,
 }
 
@@ -22,7 +22,7 @@ impl SaveError {
     }
 }
 
-/// How errors call an element.
+/// Returns the label of an element in errors.
 pub(in crate::mjcf) fn label(kind: &str, name: &str, index: usize) -> String {
     match name {
         "" => format!("{kind} {index}"),
@@ -30,7 +30,7 @@ pub(in crate::mjcf) fn label(kind: &str, name: &str, index: usize) -> String {
     }
 }
 
-/// The name by which another element refers to one.
+/// Returns the name by which another element refers to one.
 pub(in crate::mjcf) fn named<'a>(
     kind: &str,
     name: &'a str,
@@ -45,7 +45,7 @@ pub(in crate::mjcf) fn named<'a>(
     }
 }
 
-/// The name of a body; the world has one whatever else it is called.
+/// Returns the name of a body; the world's is fixed.
 pub(in crate::mjcf) fn body_name(model: &Model, index: usize) -> Result<&str, SaveError> {
     let Body { name, .. } = &model.bodies[index];
     match index {

@@ -1,4 +1,4 @@
-//! `<compiler>` and `<option>`: nothing is left to derive, and the physics of the world.
+//! `<compiler>` and `<option>`: settings that leave nothing to derive, and the physics of the world.
 
 use super::names::SaveError;
 use super::xml::{Tag, Xml};
@@ -30,7 +30,7 @@ fn unwritable(option: &str, reason: &str) -> SaveError {
     SaveError::new(format!("the option {option}"), reason)
 }
 
-/// MJCF has no floor of time constants; where one acts, the file would mean another motion.
+/// Rejects an active floor of time constants: MJCF has none, so the file would mean another motion.
 fn check_time_constants(model: &Model) -> Result<(), SaveError> {
     let floor = model.options.constraint_timeconst.unwrap_or(0.01);
     let p = &model.params;
@@ -107,7 +107,7 @@ fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     Ok(())
 }
 
-/// The value of an option where a reader would take another if it were not written.
+/// Returns the value of an option if a reader would otherwise assume another.
 fn value_to_write(model: &Model, option: RigidOption) -> Option<OptionValue> {
     let differs = format_defaults().get(option).is_some();
     (model.options.get(option)).or_else(|| differs.then(|| option.default(false)))
@@ -128,7 +128,7 @@ fn write_attribute<'x>(
         (Mjcf::Attribute(name), value) => tag.text(name, word(option, value, value.words())?),
         (Mjcf::Words(name, words), value) => tag.text(name, word(option, value, words)?),
         (Mjcf::Flag(..), _) => tag,
-        // Whether it acts was checked before.
+        // Its effect was checked before.
         (Mjcf::Nowhere, _) if option == RigidOption::constraint_timeconst => tag,
         (Mjcf::Nowhere, value) if value == option.default(false) => tag,
         (Mjcf::Nowhere, _) => return Err(unwritable(option.name(), "MJCF has none")),
@@ -144,7 +144,7 @@ fn word(
     value.word(words).ok_or_else(missing)
 }
 
-/// Flags that are not as MJCF has them where nothing is said.
+/// Returns the flags that differ from MJCF's defaults.
 fn flags(model: &Model) -> Result<Vec<(&'static str, bool)>, SaveError> {
     let mut flags = Vec::new();
     for &option in RigidOption::ALL {

@@ -6,7 +6,7 @@ use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use clench_dynamics::Model;
 use clench_dynamics::model::{Pair, Tendon, Wrap};
 
-/// Pairs that collide whatever their masks say, and bodies that never collide.
+/// Writes pairs that collide regardless of their masks, and bodies that never collide.
 pub(super) fn write_contacts(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     let p = &model.params;
     for (k, pair) in model.pairs.iter().enumerate() {

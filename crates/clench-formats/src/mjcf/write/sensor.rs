@@ -1,4 +1,4 @@
-//! Sensors: each names what it is attached to.
+//! Sensors, each with its attachment.
 
 use super::actuator::write_history;
 use super::names::{SaveError, body_name, label, named};
@@ -120,7 +120,7 @@ fn data_type(data: SensorData) -> &'static str {
     }
 }
 
-/// The attribute that an attachment is written in, and the name of the element.
+/// Returns the attribute of an attachment, and the name of the element.
 fn element_name(model: &Model, attachment: Attachment, index: usize) -> Option<(&str, &str)> {
     let found = match attachment {
         Attachment::Site => ("site", &model.sites[index].name),
@@ -160,7 +160,7 @@ fn write_frame<'a>(
     Ok(tag.text(kind, of).text(name, found))
 }
 
-/// A geom with a name, or a body with just these geoms.
+/// Returns a geom with a name, or a body with exactly these geoms.
 fn geoms_name<'a>(model: &'a Model, geoms: &Range<usize>) -> Option<[&'a str; 2]> {
     if geoms.len() == 1 && !model.geoms[geoms.start].name.is_empty() {
         return Some(["geom", &model.geoms[geoms.start].name]);
@@ -169,7 +169,7 @@ fn geoms_name<'a>(model: &'a Model, geoms: &Range<usize>) -> Option<[&'a str; 2]
     Some(["body", body_name(model, body).ok()?])
 }
 
-/// Which contacts are looked for, and what is told of them.
+/// Writes the contacts that a sensor selects, and the fields of each.
 fn write_contacts<'a>(
     model: &Model,
     query: &ContactQuery,

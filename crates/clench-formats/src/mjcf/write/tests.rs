@@ -1,4 +1,4 @@
-//! What is written loads to the same model: every record, every number.
+//! A written model loads to the same model: every record, every number.
 
 use super::SaveModel;
 use crate::{Loader, load_str};
@@ -10,21 +10,21 @@ use clench_rigid::{Model, Sim};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Numbers that are written are read again as they are, but for unit quaternions, which are made so again: some roundings.
+/// The tolerance of written numbers: exact except for unit quaternions, which are normalized again.
 const ROUNDING: f64 = 1e-14;
-/// What is computed from them passes through more arithmetic, such as the principal axes of meshes.
+/// The tolerance of derived numbers, which take more arithmetic, such as the principal axes of meshes.
 const COMPUTED: f64 = 1e-9;
 
-/// What becomes of a field of a model's numbers.
+/// The treatment of a field of a model's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fate {
-    /// It is written, whatever it is.
+    /// It is always written.
     Written,
-    /// It is written where it is not zero.
+    /// It is written if nonzero.
     WrittenIfAny,
-    /// It is written as part of a pose, an axis or a shape, or for some kinds of element alone.
+    /// It is written as part of a pose, an axis or a shape, or only for some kinds of elements.
     InPart,
-    /// It follows from others.
+    /// It is computed from others.
     Computed,
 }
 
@@ -84,7 +84,7 @@ fn fate(field: ParamField) -> Fate {
     }
 }
 
-/// Our own models, wherever they are.
+/// The paths of this repository's models.
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = [
@@ -98,7 +98,7 @@ fn files() -> Vec<PathBuf> {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            // The seeds are read beside files that the fuzzer puts there.
+            // The seeds refer to files that the fuzzer provides.
             let own = name.ends_with(".xml") && !name.starts_with("bad-");
             if own && name != "assets.xml" && name != "part.xml" {
                 found.push(path);
@@ -109,14 +109,14 @@ fn files() -> Vec<PathBuf> {
     found
 }
 
-/// What they hold.
+/// The loaded models.
 fn models() -> impl Iterator<Item = (String, Model)> {
     files().into_iter().map(|path| {
         let model = Loader::new()
             .load(&path)
             .unwrap_or_else(|error| panic!("{error}"));
         let name = path.display().to_string();
-        // A file keeps 24 bits of a mesh that frames stretched: what was saved once comes back as it is.
+        // A file stores 24 bits of a mesh deformed by frames; a model saved once is unchanged by a second save.
         let whole = |mesh: &Mesh| mesh.spec.vertices.iter().all(in_single_precision);
         match model.meshes.iter().all(|mesh| whole(mesh)) {
             true => (name, model),
@@ -129,7 +129,7 @@ fn in_single_precision(point: &Vec3<f64>) -> bool {
     point.to_array().iter().all(|&x| f64::from(x as f32) == x)
 }
 
-/// All but the 24 bits that a file keeps of vertices stays.
+/// Only the vertices are rounded, to the 24 bits that a file stores.
 #[test]
 fn a_mesh_that_frames_stretch_comes_back_rounded() {
     let model = load_str(
@@ -172,7 +172,7 @@ fn assert_near(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// Every record of structure as text, without the place where it was written.
+/// Formats every record of structure as text, without its source location.
 fn records(model: &Model) -> Vec<String> {
     let mut found = vec![
         format!(
@@ -278,7 +278,7 @@ fn every_number_comes_back() {
     for (name, model) in models() {
         let again = saved(&name, &model);
         let shaped = !model.meshes.is_empty() || !model.height_fields.is_empty();
-        // A crank's length says nothing of an actuator without one.
+        // The crank length has no meaning for an actuator without a crank.
         let all = ParamField::ALL.iter().copied();
         for field in all.filter(|&field| field != ParamField::actuator_cranklength) {
             let tolerance = match fate(field) {
@@ -301,8 +301,8 @@ fn every_number_comes_back() {
 #[test]
 fn a_number_that_is_not_what_files_have_comes_back_too() {
     use ParamField as F;
-    // Signs and zeros mean something here: a positive velocity coefficient is a damping ratio, without gains there is no controller, an
-    // input of one has a range or none, and the range of a norm begins at 0.
+    // Signs and zeros have a meaning here: a positive velocity coefficient is a damping ratio, without gains there is
+    // no controller, an input of one has a range or none, and the range of a norm begins at 0.
     let signed = [
         F::actuator_gainprm,
         F::actuator_biasprm,

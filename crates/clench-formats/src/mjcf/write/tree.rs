@@ -1,4 +1,4 @@
-//! Bodies and what stands on them.
+//! Bodies and their elements.
 
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
@@ -15,7 +15,7 @@ const NO_TURN: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 /// Writes all bodies, each in its parent.
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
-    // The bodies that are open, the innermost last.
+    // The open bodies, innermost last.
     let mut open: Vec<usize> = Vec::new();
     for (b, body) in model.bodies.iter().enumerate() {
         while open
@@ -36,7 +36,7 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     Ok(())
 }
 
-/// Writes a body without those on it, and leaves it open.
+/// Writes a body without its children, and leaves it open.
 fn write_body(model: &Model, b: usize, xml: &mut Xml) -> Result<(), SaveError> {
     let Body {
         name,
@@ -108,7 +108,7 @@ fn sleep_policy(policy: SleepPolicy) -> &'static str {
     }
 }
 
-/// Where an element is in its body.
+/// Writes the pose of an element in its body.
 fn placed<'a>(tag: Tag<'a>, pos: Vec3<f64>, quat: Quat<f64>) -> Tag<'a> {
     tag.numbers_unless("pos", &pos.to_array(), &[0.0; 3])
         .numbers_unless("quat", &quat.to_array(), &NO_TURN)
@@ -231,7 +231,7 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
     let mut surfacevel = p.geom_surfacevel[g];
     let mut tag = xml.tag("geom").name(name).text("type", geom_type(*kind));
     if let Some(mesh) = mesh {
-        // A geom stands where its mesh has its centre of mass, and is written where the mesh's author put its origin.
+        // The model places a geom at its mesh's centre of mass, the file at the mesh's origin.
         let mesh = &model.meshes[*mesh];
         quat = (quat * mesh.quat.conjugate()).normalize();
         pos -= quat.rotate(mesh.pos);
@@ -276,7 +276,8 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
     Ok(())
 }
 
-/// The colour of an element, its own or that of its material; none where it has neither. Textures are not written.
+/// Returns the colour of an element, its own or that of its material; `None` if it has neither. Textures are not
+/// written.
 fn colour(visuals: &Visuals, appearance: Appearance) -> Option<[f32; 4]> {
     (appearance != Appearance::default()).then(|| visuals.rgba(appearance))
 }

@@ -1,15 +1,15 @@
-//! Elements as text, indented, each with its attributes on one line.
+//! Elements as indented text, each with its attributes on one line.
 
 use std::fmt::Write;
 
-/// The text so far, and how deep its end is.
+/// The text so far, and the open elements at its end.
 #[derive(Default)]
 pub(in crate::mjcf) struct Xml {
     text: String,
     open: Vec<&'static str>,
 }
 
-/// An element that is being written: its attributes come next.
+/// An element being written, before its attributes are complete.
 pub(in crate::mjcf) struct Tag<'a> {
     xml: &'a mut Xml,
     name: &'static str,
@@ -24,7 +24,7 @@ impl Xml {
         Tag { xml: self, name }
     }
 
-    /// Ends the innermost element that has children.
+    /// Ends the innermost open element.
     pub(in crate::mjcf) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
             self.indent();
@@ -34,12 +34,12 @@ impl Xml {
         }
     }
 
-    /// How many elements are open.
+    /// Returns the number of open elements.
     pub(in crate::mjcf) fn depth(&self) -> usize {
         self.open.len()
     }
 
-    /// The whole text, with every element ended.
+    /// Returns the whole text, with every element ended.
     pub(in crate::mjcf) fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();
@@ -47,7 +47,7 @@ impl Xml {
         self.text
     }
 
-    /// Writes a section with what `write` puts into it, or nothing where that is nothing.
+    /// Writes a section with the content from `write`; omits it if empty.
     pub(in crate::mjcf) fn section<E>(
         &mut self,
         name: &'static str,
@@ -84,7 +84,7 @@ impl Tag<'_> {
         self.xml.open.push(self.name);
     }
 
-    /// An attribute.
+    /// Writes an attribute.
     pub(in crate::mjcf) fn text(self, name: &str, value: &str) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
@@ -104,7 +104,7 @@ impl Tag<'_> {
         self
     }
 
-    /// A name, where there is one.
+    /// Writes a name unless it is empty.
     pub(in crate::mjcf) fn name(self, name: &str) -> Self {
         match name {
             "" => self,
@@ -112,18 +112,18 @@ impl Tag<'_> {
         }
     }
 
-    /// `true` or `false`.
+    /// Writes `true` or `false`.
     pub(in crate::mjcf) fn boolean(self, name: &str, value: bool) -> Self {
         self.text(name, if value { "true" } else { "false" })
     }
 
-    /// An integer.
+    /// Writes an integer.
     pub(in crate::mjcf) fn integer(self, name: &str, value: impl Into<i64>) -> Self {
         let value: i64 = value.into();
         self.text(name, &value.to_string())
     }
 
-    /// An integer, unless it is what the format means where nothing is said.
+    /// Writes an integer unless it is the default.
     pub(in crate::mjcf) fn integer_unless(self, name: &str, value: i64, default: i64) -> Self {
         match value == default {
             true => self,
@@ -131,7 +131,7 @@ impl Tag<'_> {
         }
     }
 
-    /// Numbers, each with as many digits as tell it from all others.
+    /// Writes numbers with as many digits as identify each.
     pub(in crate::mjcf) fn numbers(self, name: &str, values: &[f64]) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
@@ -148,7 +148,7 @@ impl Tag<'_> {
         self
     }
 
-    /// Numbers of single precision, likewise.
+    /// Writes numbers of single precision in the same way.
     pub(in crate::mjcf) fn singles(self, name: &str, values: impl Iterator<Item = f64>) -> Self {
         let text = &mut self.xml.text;
         let _ = write!(text, " {name}=\"");
@@ -165,7 +165,7 @@ impl Tag<'_> {
         self
     }
 
-    /// Numbers, unless they are what the format means where nothing is said.
+    /// Writes numbers unless they are the default.
     pub(in crate::mjcf) fn numbers_unless(
         self,
         name: &str,
@@ -178,18 +178,18 @@ impl Tag<'_> {
         }
     }
 
-    /// Coefficients of a polynomial, the linear one first, without those that are zero at the end.
+    /// Writes the coefficients of a polynomial, the linear one first, without trailing zeros.
     pub(in crate::mjcf) fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
         let used = coefficients.iter().rposition(|&c| c != 0.0);
         self.numbers_unless(name, &coefficients[..used.map_or(0, |last| last + 1)], &[])
     }
 
-    /// A number, likewise.
+    /// Writes a number unless it is the default.
     pub(in crate::mjcf) fn number_unless(self, name: &str, value: f64, default: f64) -> Self {
         self.numbers_unless(name, &[value], &[default])
     }
 
-    /// Words, if there are any.
+    /// Writes words, if any.
     pub(in crate::mjcf) fn words<'w>(
         self,
         name: &str,
@@ -202,7 +202,7 @@ impl Tag<'_> {
         }
     }
 
-    /// Integers, one after the other.
+    /// Writes a list of integers.
     pub(in crate::mjcf) fn integers(self, name: &str, values: impl Iterator<Item = i64>) -> Self {
         let words: Vec<String> = values.map(|value| value.to_string()).collect();
         self.text(name, &words.join(" "))

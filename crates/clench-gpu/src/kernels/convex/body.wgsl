@@ -1,14 +1,14 @@
-// Convex bodies by their support functions, as a core plus a radius. Sister of `clench-collide/src/shape/core.rs`, where they
-// are explained.
+// Convex bodies by their support functions, as a core plus a radius. CPU counterpart:
+// `clench-collide/src/shape/core.rs`, which explains them.
 
 struct Body {
     kind: u32,
     size: vec3f,
-    // Of the ball that is added to the core.
+    // The radius of the ball added to the core.
     radius: f32,
-    // Of a sphere about the origin that holds the body.
+    // The radius of a sphere about the origin that encloses the body.
     reach: f32,
-    // Of a mesh.
+    // The hull of a mesh.
     hull: u32,
 }
 
@@ -41,12 +41,12 @@ fn is_curved(body: Body) -> bool {
     return body.kind == ELLIPSOID || body.kind == CYLINDER;
 }
 
-// x with the sign of y.
+// Returns x with the sign of y.
 fn signed(x: f32, y: f32) -> f32 {
     return select(x, -x, y < 0.0);
 }
 
-// The unit direction of `d` projected across z; x where there is none.
+// Returns the unit direction of `d` projected across z; x if it vanishes.
 fn radial_direction(d: vec3f) -> vec2f {
     let level = length(d.xy);
     if (level > SMALLEST) {
@@ -55,7 +55,7 @@ fn radial_direction(d: vec3f) -> vec2f {
     return vec2f(1.0, 0.0);
 }
 
-// The point of the core that is furthest along `d`. Of several corners or ends that are, the one further along `side`.
+// Returns the point of the core furthest along `d`; among corners or ends that tie, the one further along `side`.
 fn support(body: Body, d: vec3f, side: vec3f) -> vec3f {
     if (ANY_MESH && body.kind == MESH) {
         return vertex_of_hull(body.hull, furthest_of_hull(body.hull, side));
@@ -66,7 +66,7 @@ fn support(body: Body, d: vec3f, side: vec3f) -> vec3f {
     return support_without_hull(body, d, side);
 }
 
-// The same for all but meshes and terrain.
+// Does the same for all but meshes and terrain.
 fn support_without_hull(body: Body, d: vec3f, side: vec3f) -> vec3f {
     let s = body.size;
     switch body.kind {
@@ -90,7 +90,7 @@ fn support_without_hull(body: Body, d: vec3f, side: vec3f) -> vec3f {
     }
 }
 
-// The point of the core that is nearest to a point, for the kinds whose size tells it; else the origin.
+// Returns the point of the core nearest to a point, for the kinds defined by their size; else the origin.
 fn nearest_of_body(body: Body, p: vec3f) -> vec3f {
     let s = body.size;
     switch body.kind {
@@ -109,7 +109,7 @@ fn nearest_of_body(body: Body, p: vec3f) -> vec3f {
     }
 }
 
-// How the supporting point of a core moves with the direction: share (Q − p pᵀ) − radius, Q being diagonal.
+// The derivative of a core's support point with respect to the direction: share (Q − p pᵀ) − radius, with Q diagonal.
 struct Curvature {
     share: f32,
     diagonal: vec3f,
@@ -131,12 +131,12 @@ fn curvature_of(body: Body, d: vec3f) -> Curvature {
     return Curvature(0.0, vec3f(), vec3f(), 0.0);
 }
 
-// The matrix between two vectors.
+// Returns the bilinear form of two vectors.
 fn between(c: Curvature, u: vec3f, v: vec3f) -> f32 {
     return c.share * (dot(u * c.diagonal, v) - dot(c.pull, u) * dot(c.pull, v)) - c.radius * dot(u, v);
 }
 
-// Of a point of the core, the part that jumps where the support function has a crease.
+// Returns the part of a core's point that jumps at a crease of the support function.
 fn corner_of(body: Body, point: vec3f) -> vec3f {
     if (body.kind == ELLIPSOID) {
         return vec3f();

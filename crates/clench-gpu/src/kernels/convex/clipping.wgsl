@@ -1,15 +1,15 @@
-// Features projected along the contact's normal, and clipping one against the other: x and y across the normal, z along it. Sisters
-// of `clench-collide/src/narrow/convex/clipping.rs` and `polygon.rs`.
+// Features projected along the contact's normal, and clipping one against the other: x and y across the normal, z along
+// it. CPU counterparts: `clench-collide/src/narrow/convex/clipping.rs` and `polygon.rs`.
 
-// Edges at less than this angle lie side by side; others cross.
+// Edges at less than this angle are parallel; others cross.
 const PARALLEL: f32 = 1e-3;
 
 // A polygon, or a segment (two corners).
 var<private> polygon: array<vec3f, POLYGON_CORNERS>;
 var<private> polygon_count: u32;
 
-// A projected edge or face: where its corners stand, how many there are, and the slope of its height. Of a round cap its radius (else
-// nothing), two axes in its plane, and a point that has its middle's coordinates along them.
+// A projected edge or face: the offset and number of its corners, and the slope of its height. For a round cap also its
+// radius (else zero), two axes in its plane, and a point with its centre's coordinates along them.
 struct Projected {
     place: u32,
     count: u32,
@@ -20,7 +20,8 @@ struct Projected {
     center: vec3f,
 }
 
-// The projection of a feature whose corners, from `place` on, are projected already; the columns of `axes` are its body's.
+// Returns the projection of a feature whose corners, from `place` on, are already projected; the columns of `axes` are
+// its body's.
 fn project_feature(place: u32, f: Feature, axes: mat3x3f, center: vec3f) -> Projected {
     let normal = axes * f.normal;
     var slope = -normal.xy / normal.z;
@@ -35,12 +36,12 @@ fn is_cap(f: Projected) -> bool {
     return ANY_CAP_PATCHES && f.radius > 0.0;
 }
 
-// A corner, those after the last being the first again.
+// Returns a corner; after the last comes the first.
 fn corner_of_feature(f: Projected, k: u32) -> vec3f {
     return feature_corners[f.place + select(k, 0u, k == f.count)];
 }
 
-// The height of a feature's plane at a point of the projection.
+// Returns the height of a feature's plane at a point of the projection.
 fn height_of(f: Projected, p: vec2f) -> f32 {
     let origin = feature_corners[f.place];
     return origin.z + dot(f.slope, p - origin.xy);
@@ -50,7 +51,7 @@ fn turn_of(u: vec2f, v: vec2f) -> f32 {
     return u.x * v.y - u.y * v.x;
 }
 
-// Only rounding could make more corners than there is room for, and then they coincide with others.
+// Adds a corner. Only rounding could exceed the capacity, and the excess corners coincide with others.
 fn push_corner(p: vec3f) {
     if (polygon_count < POLYGON_CORNERS) {
         polygon[polygon_count] = p;
@@ -58,7 +59,7 @@ fn push_corner(p: vec3f) {
     }
 }
 
-// Leaves the part of the polygon where `outward` · p is at most `limit` (Sutherland–Hodgman).
+// Keeps the part of the polygon where `outward` · p is at most `limit` (Sutherland–Hodgman).
 fn clip_polygon(outward: vec2f, limit: f32) {
     let count = polygon_count;
     var beyond = false;
@@ -69,7 +70,7 @@ fn clip_polygon(outward: vec2f, limit: f32) {
         return;
     }
     var whole = polygon;
-    // The way back along a segment would meet the line a second time.
+    // The second side of a segment would cross the line again.
     let sides = select(count, 1u, count == 2u);
     polygon_count = 0u;
     for (var k = 0u; k < count; k++) {
@@ -87,7 +88,7 @@ fn clip_polygon(outward: vec2f, limit: f32) {
     }
 }
 
-// Where two segments cross in the projection, or come nearest to that.
+// Returns the crossing of two segments in the projection, or the point nearest to it.
 fn crossing(a: Projected, b: Projected) -> vec3f {
     let p = feature_corners[a.place];
     let q = feature_corners[b.place];
@@ -106,13 +107,14 @@ fn is_parallel(a: Projected, b: Projected) -> bool {
     return turn * turn <= dot(u, u) * dot(v, v) * PARALLEL * PARALLEL;
 }
 
-// The coordinates, in the plane of a cap and from its middle, of the point above or below a point of the projection.
+// Returns the coordinates, in the plane of a cap and from its centre, of the point above or below a point of the
+// projection.
 fn in_cap_plane(cap: Projected, p: vec2f) -> vec2f {
     let arm = vec3f(p, height_of(cap, p)) - cap.center;
     return vec2f(dot(cap.x, arm), dot(cap.y, arm));
 }
 
-// Whether a point of the projection lies in a face.
+// Returns true if a point of the projection lies in a face.
 fn covers(f: Projected, p: vec2f, slack: f32) -> bool {
     if (is_cap(f)) {
         let at = in_cap_plane(f, p);
@@ -128,8 +130,8 @@ fn covers(f: Projected, p: vec2f, slack: f32) -> bool {
     return true;
 }
 
-// Where along a segment it enters and leaves a cap's circle, its ends being 0 and 1; both where it is nearest to the middle if it
-// misses the circle.
+// Returns the parameters, 0 to 1 between its ends, at which a segment enters and leaves a cap's circle; both are
+// nearest to the centre if it misses the circle.
 fn chord(cap: Projected, p: vec2f, q: vec2f) -> vec2f {
     let start = in_cap_plane(cap, p);
     let along = in_cap_plane(cap, q) - start;
@@ -173,7 +175,7 @@ fn clip_to_cap(cap: Projected, cut: Projected, slack: f32) {
     sort_around();
 }
 
-// Puts the corners of the polygon in order around their middle, beginning with the first. Their heights are lost.
+// Sorts the corners of the polygon around their centre, from the first. Overwrites their heights.
 fn sort_around() {
     var sum = vec3f();
     for (var k = 0u; k < polygon_count; k++) {
@@ -187,7 +189,7 @@ fn sort_around() {
         let aside = turn_of(start, arm);
         let size = max(abs(along) + abs(aside), SMALLEST);
         let turn = 1.0 - along / size;
-        // Grows with the angle from the first corner, 0 to 4. Corners next to the first come with it.
+        // The key grows with the angle from the first corner, 0 to 4. Corners next to the first tie with it.
         let corner = vec3f(polygon[k].xy, select(turn, 4.0 - turn, aside < -size * (EPSILON * 1e3)));
         var place = k;
         while (place > 0u && polygon[max(place, 1u) - 1u].z > corner.z) {
@@ -198,15 +200,15 @@ fn sort_around() {
     }
 }
 
-// Fills the polygon with where two features overlap in the projection, or are at most `slack` from it. The heights of its corners are
-// open.
+// Fills the polygon with the overlap of two features in the projection, widened by `slack`. The heights of its corners
+// are undefined.
 fn overlap(a: Projected, b: Projected, slack: f32) {
     polygon_count = 0u;
     if (a.count == 2u && b.count == 2u && !is_parallel(a, b)) {
         push_corner(crossing(a, b));
         return;
     }
-    // An edge is cut by a face, a polygon by a circle, many sides by few.
+    // A face cuts an edge, a circle cuts a polygon, and the one with fewer sides cuts the other.
     var cut = b;
     var by = a;
     if (a.count == 2u || (b.count != 2u && (is_cap(b) || (!is_cap(a) && a.count >= b.count)))) {

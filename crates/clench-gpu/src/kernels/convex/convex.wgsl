@@ -1,6 +1,7 @@
-// Any two bounded convex shapes, by their support functions. Sister of `clench-collide/src/narrow/convex/mod.rs`.
+// Any two bounded convex shapes, by their support functions. CPU counterpart:
+// `clench-collide/src/narrow/convex/mod.rs`.
 
-// The largest gap between two cores, in `best`; false if the bodies are more than `range` apart.
+// Finds the largest gap between two cores, in `best`; returns false if the bodies are more than `range` apart.
 fn find_largest_gap(range: f32) -> bool {
     let radii = body_a.radius + body_b.radius;
     let curved = CURVED_PAIRS && (is_curved(body_a) || is_curved(body_b));
@@ -17,7 +18,7 @@ fn find_largest_gap(range: f32) -> bool {
         }
         begin_expansion(start);
     }
-    // Newton's method has one place: after the search, and wherever the expansion asks for it.
+    // Newton's method has one call site: after the search, and whenever the expansion requests it.
     for (var round = 0u; round < bound(POLYTOPE_VERTICES); round++) {
         var done = true;
         if (overlapping) {
@@ -38,8 +39,8 @@ fn find_largest_gap(range: f32) -> bool {
     return best.gap - radii <= range;
 }
 
-// Finds the largest gap of the two bodies, unless it is in `best` already, and begins a simplex there. False if they are more than
-// `range` apart.
+// Finds the largest gap of the two bodies, unless it is already in `best`, and begins a simplex there. Returns false if
+// they are more than `range` apart.
 fn find_touching(given_gap: bool, range: f32) -> bool {
     var certain = given_gap;
     var direct = Gap(vec3f(), -UNMOVABLE, false);
@@ -52,7 +53,7 @@ fn find_touching(given_gap: bool, range: f32) -> bool {
         best = direct;
         return false;
     }
-    // For bodies that are apart it gives no distance.
+    // For separate bodies it gives no distance.
     if (direct.settled && direct.gap <= 0.0) {
         certain = true;
         best = direct;
@@ -73,8 +74,8 @@ fn find_touching(given_gap: bool, range: f32) -> bool {
     return true;
 }
 
-// The contacts of a pair; `given_gap` where the largest gap is in `best` already, its normal in the first shape's frame. A height field
-// is its triangles, one a round: what is called here has one place, for its text is long.
+// Adds the contacts of a pair; `given_gap` if the largest gap is already in `best`, its normal in the first shape's
+// frame. A height field is processed triangle by triangle: the long functions called here have only one call site.
 fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
     let geom = words[PAIR_GEOM + 2u * pair];
     let first = body_of(geom);

@@ -1,7 +1,8 @@
-// The largest gap of a cylinder and a polyhedron of few faces, which overlap or else are apart along the direction found. Sister of
-// `clench-collide/src/narrow/convex/cylinder_polyhedron.rs`, where the directions that can have it are derived, and of `ellipse.rs`.
+// The largest gap of a cylinder and a polyhedron with few faces, which overlap or are separated by the direction found.
+// CPU counterparts: `clench-collide/src/narrow/convex/cylinder_polyhedron.rs`, which derives the candidate directions,
+// and `ellipse.rs`.
 
-// Newton's method on an ellipse stops after so many steps, converged or not.
+// The maximum number of Newton steps on an ellipse, converged or not.
 const ELLIPSE_STEPS: u32 = 16u;
 
 // A cylinder in the frame of a polyhedron.
@@ -11,19 +12,20 @@ struct Cylinder {
     size: vec3f,
 }
 
-// How far a cylinder has to go to leave across a face, and the point of it that is furthest against the face's normal, as its cross
-// product with that.
+// The distance by which a cylinder must move to leave across a face, and its point furthest against the face's normal,
+// as the cross product of both.
 struct Crossed {
     depth: f32,
     moment: vec3f,
 }
 
-// The largest gap so far, from the cylinder to the polyhedron, and what the gap along another direction must exceed.
+// The largest gap so far, from the cylinder to the polyhedron, and the value that the gap along another direction must
+// exceed.
 var<private> largest_gap: Gap;
 var<private> bar: f32;
 
-// An edge between two faces: a point of it, its direction, their cross product, the faces, the cosine and the sine of the angle between
-// their normals.
+// An edge between two faces: a point of it, its direction, their cross product, the faces, the cosine and sine of the
+// angle between their normals.
 struct Crease {
     start: vec3f,
     edge: vec3f,
@@ -32,7 +34,7 @@ struct Crease {
     turn: vec2f,
 }
 
-// A polyhedron is a hull, or, in the place of none, the ground below a triangle of terrain, which comes first.
+// A polyhedron is a hull, or, if `hull` is NONE, the ground below a terrain triangle, which is the first body.
 fn is_ground(hull: u32) -> bool {
     return ANY_TERRAIN && hull == NONE;
 }
@@ -112,7 +114,7 @@ fn cross_face(c: Cylinder, plane: vec4f) -> Crossed {
     return Crossed(reach + plane.w - dot(plane.xyz, c.center), cross(c.center, plane.xyz) + sideways * arm);
 }
 
-// The caps, and the corner nearest to the axis against the side.
+// Tests the caps, and the side at the corner nearest to the axis.
 fn offer_corners(c: Cylinder, hull: u32) {
     let count = vertices_of(hull);
     var low = UNMOVABLE;
@@ -135,7 +137,7 @@ fn offer_corners(c: Cylinder, hull: u32) {
     let away = direction(cross(cross(c.axis, corner), c.axis));
     var normal = away.xyz;
     if (away.w <= TINY) {
-        // A corner on the axis is as far from all of the side.
+        // A corner on the axis is equally far from all of the side.
         normal = across(c.axis).e;
     }
     if (away.w - c.size.x > largest_gap.gap) {
@@ -147,8 +149,8 @@ fn offer_corners(c: Cylinder, hull: u32) {
     }
 }
 
-// The unit normal of an ellipse, in its first quarter, that goes through a point with x ≥ 0 and along which the gap is the largest
-// around; nothing where there is none. The ellipse is a circle of radius 1 seen aslant.
+// Returns the unit normal of an ellipse, in its first quadrant, through a point with x ≥ 0 and with a locally largest
+// gap; zero if there is none. The ellipse is a tilted circle of radius 1.
 fn ellipse_normal(cosine: f32, sine: f32, p: vec2f) -> vec2f {
     let square = sine * sine;
     let height = cosine * p.y;
@@ -172,8 +174,8 @@ fn ellipse_normal(cosine: f32, sine: f32, p: vec2f) -> vec2f {
     return normalize(vec2f(cosine * at.x, at.y));
 }
 
-// An edge against the side and the cap circles, along directions that do not point out of either of its faces, whose normals are m
-// and n.
+// Tests an edge against the side and the cap circles, along directions that do not point out of either of its faces,
+// whose normals are m and n.
 fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
     let crossed = cross(edge, c.axis);
     let cosine = abs(dot(edge, c.axis));
@@ -185,7 +187,7 @@ fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
     let within_m = cross(m, edge);
     let within_n = cross(edge, n);
     let arm = start - c.center;
-    // Seen along the edge, with x across the axis, the edge is where x is positive.
+    // In the view along the edge, with x across the axis, the edge has positive x.
     let side = signed(1.0, dot(sideways, arm));
     let x = abs(dot(sideways, arm));
     let out = vec2f(dot(sideways, within_m), dot(sideways, within_n)) * side;
@@ -213,13 +215,14 @@ fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
     }
 }
 
-// How far within an edge of the polyhedron a cylinder touches a face beside it must not be more than this for the gap through the
-// edge to be as large as it gets, and no deeper than `depth`, between its faces.
+// Returns false if the gap through an edge cannot be the largest between its faces with a depth of at most `depth`: the
+// cylinder's contact with an adjacent face is too far within the edge.
 fn may_touch_edge(within: f32, crossed: Crossed, turn: vec2f, depth: f32) -> bool {
     return within * turn.y <= depth - crossed.depth * turn.x;
 }
 
-// The largest gap of the pair's cylinder and polyhedron if it is not positive, else one that is; one beyond `limit` will do.
+// Returns the largest gap of the pair's cylinder and polyhedron if it is not positive, else a positive one; any above
+// `limit` suffices.
 fn polyhedron_gap(limit: f32) -> Gap {
     var hull = body_b.hull;
     let back = transpose(turn_b);
@@ -243,7 +246,7 @@ fn polyhedron_gap(limit: f32) -> Gap {
             let n = plane_of(hull, crease.faces.y);
             let across_m = cross_face(c, m);
             let across_n = cross_face(c, n);
-            // How far within the edge the cylinder touches each face.
+            // The distances within the edge at which the cylinder touches each face.
             let within_m = dot(crease.edge, across_m.moment) + dot(m.xyz, crease.moment);
             let within_n = -dot(crease.edge, across_n.moment) - dot(n.xyz, crease.moment);
             let depth = max(-bar, 0.0);

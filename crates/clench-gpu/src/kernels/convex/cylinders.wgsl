@@ -1,8 +1,8 @@
-// The largest gap of two cylinders that overlap, among the few directions that can have it. Sister of
-// `clench-collide/src/narrow/convex/cylinders.rs`, where these are derived.
+// The largest gap of two overlapping cylinders, among its few candidate directions. CPU counterpart:
+// `clench-collide/src/narrow/convex/cylinders.rs`, which derives them.
 
-// A cylinder, and where the other one is from its middle: across both axes, along `side`, and along its own axis. That is the unit
-// direction across its axis towards the axis of the other.
+// A cylinder, and the position of the other relative to its centre: across both axes, along `side`, and along its own
+// axis. `side` is the unit direction across its axis towards the other's axis.
 struct Facing {
     size: vec3f,
     side: vec3f,
@@ -13,8 +13,8 @@ fn facing(size: vec3f, side: vec3f, offset: vec3f, sideways: vec3f, axis: vec3f)
     return Facing(size, side, vec3f(dot(offset, sideways), dot(offset, side), dot(offset, axis)));
 }
 
-// Whether a cap circle of another cylinder passes within `depth` of this one's cap and side, inside, at one of its ends; `ends` select
-// that end and the circle. (Or it may pass.)
+// Returns true if a cap circle of another cylinder passes within `depth` of this one's cap and side, inside, at one of
+// its ends; `ends` select that end and the circle. The test is conservative.
 fn near_circle(own: Facing, other: Facing, ends: vec2f, cosine: f32, sine: f32, depth: f32) -> bool {
     let arm = other.size.y * ends.y;
     let x = own.offset.x;
@@ -44,12 +44,12 @@ fn near_circle(own: Facing, other: Facing, ends: vec2f, cosine: f32, sine: f32, 
     return false;
 }
 
-// How far the numbers of an interval are from 0, at least and at most.
+// Returns the least and largest distance of an interval's numbers from 0.
 fn span_distances(low: f32, high: f32) -> vec2f {
     return vec2f(max(max(low, -high), 0.0), max(high, -low));
 }
 
-// Whether a direction across two cap circles may have a smaller depth than `depth`.
+// Returns true if a direction across two cap circles may have a smaller depth than `depth`.
 fn circles_cross(a: Facing, b: Facing, cosine: f32, sine: f32, depth: f32) -> bool {
     for (var k = 0u; k < bound(4u); k++) {
         let ends = vec2f(select(f32(1.0), f32(-1.0), (k & 2u) != 0u), select(f32(1.0), f32(-1.0), (k & 1u) != 0u));
@@ -76,8 +76,8 @@ fn holds(size: vec3f, p: vec3f) -> bool {
     return abs(p.z) <= size.y && dot(p.xy, p.xy) <= size.x * size.x;
 }
 
-// The largest gap of two cylinders that overlap, or else one that is positive. Not settled where either may be across two cap circles,
-// or no common point is at hand; endless where the axes are parallel.
+// Returns the largest gap of two overlapping cylinders, or a positive one. It is not settled if either may be across
+// two cap circles, or no common point is known; it is −UNMOVABLE if the axes are parallel.
 fn cylinders_gap() -> Gap {
     let own_axis = vec3f(0.0, 0.0, 1.0);
     let axis = turn_b[2];
@@ -93,7 +93,7 @@ fn cylinders_gap() -> Gap {
     let a = facing(max(body_a.size, least), cross(sideways, own_axis), offset_b, sideways, own_axis);
     let b = facing(max(body_b.size, least), cross(axis, sideways), -offset_b, sideways, axis);
     var furthest = Vertex(vec3f(), vec3f(), vec3f());
-    // The axes, what is across both, and the normals of each circle, seen aslant, that go through the other's corner.
+    // The axes, the direction across both, and the normals of each tilted circle through the other's corner.
     for (var k = 0u; k < bound(5u); k++) {
         var n = own_axis;
         if (k == 1u) {

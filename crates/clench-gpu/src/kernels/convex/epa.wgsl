@@ -1,14 +1,14 @@
-// How deep two cores overlap: the expanding polytope algorithm (van den Bergen 2001). Sister of
+// The penetration depth of two cores: the expanding polytope algorithm (van den Bergen 2001). CPU counterpart:
 // `clench-collide/src/narrow/convex/epa.rs`.
 
-// By how much, as a share of the smaller body, the true depth of curved bodies may be smaller than the one found.
+// The tolerance of the depth of curved bodies, relative to the smaller body.
 const SLACK: f32 = 1e-4;
-// Newton's method is tried where a face can be moved by less than this share of the smaller body.
+// Newton's method is tried if a face can move by less than this share of the smaller body.
 const NEAR: f32 = 0.1;
-// A polytope begins with vertices that are further apart than this share of the smaller body, if it can.
+// The preferred minimum distance of a polytope's first vertices, relative to the smaller body.
 const FAR: f32 = 0.05;
 
-// How far `w` is from the first vertex, from the line of the first two, or from the plane of the first three.
+// Returns the distance of `w` from the first vertex, the line of the first two, or the plane of the first three.
 fn reach_from(stage: u32, w: vec3f, along: vec3f, normal: vec3f) -> f32 {
     let offset = w - polytope_w(0u);
     if (stage == 1u) {
@@ -20,7 +20,7 @@ fn reach_from(stage: u32, w: vec3f, along: vec3f, normal: vec3f) -> f32 {
     return abs(dot(offset, normal));
 }
 
-// The direction `k` in which to look for a vertex further away.
+// Returns direction `k` of the search for a vertex further away.
 fn direction_of_stage(stage: u32, k: u32, along: vec3f, normal: vec3f) -> vec3f {
     var found = normal;
     if (stage == 1u) {
@@ -33,8 +33,8 @@ fn direction_of_stage(stage: u32, k: u32, along: vec3f, normal: vec3f) -> vec3f 
     return select(found, -found, (k & 1u) == 1u);
 }
 
-// Four vertices with a volume, among them those of the simplex where these span something. False where the difference has no volume:
-// then `best` is the gap across it.
+// Finds four vertices with a volume, preferably from the simplex. Returns false if the difference has no volume: `best`
+// is then the gap across it.
 fn enclose() -> bool {
     vertex_count = 0u;
     push_vertex(simplex[0]);
@@ -48,7 +48,7 @@ fn enclose() -> bool {
         for (var k = 0u; k < simplex_count + directions; k++) {
             var vertex = simplex[min(k, 3u)];
             if (k >= simplex_count) {
-                // What the simplex has is far enough.
+                // The simplex has a vertex far enough away.
                 if (most > smallest * FAR) {
                     break;
                 }
@@ -79,7 +79,7 @@ fn enclose() -> bool {
     return true;
 }
 
-// Makes the simplex of the corners of a face.
+// Sets the simplex to the corners of a face.
 fn touch(corners: vec3u) {
     simplex[0] = polytope_vertex(corners.x);
     simplex[1] = polytope_vertex(corners.y);
@@ -91,13 +91,13 @@ fn corners_of(face: u32) -> vec3u {
     return vec3u(fetch3(face_at(face)));
 }
 
-// Where an expansion stands: the corners of the face that the best direction belongs to, whether Newton's method has refined that,
+// The state of an expansion: the corners of the face of the best direction, whether Newton's method has refined that,
 // and whether the depth is known.
 var<private> touching: vec3u;
 var<private> refined: bool;
 var<private> known: bool;
 
-// Begins with the depth along the direction in which the search began.
+// Begins with the depth along the start direction of the search.
 fn begin_expansion(start: vec3f) {
     begin_polytope();
     best = Gap(start, first_gap, false);
@@ -106,13 +106,13 @@ fn begin_expansion(start: vec3f) {
     known = false;
 }
 
-// Grows the polytope until the depth is known, in `best`, or, of curved bodies, until a better direction is worth refining: then the
-// answer is no, and the simplex has what touches there. In the end it is the face that the gap belongs to.
+// Grows the polytope until the depth is known, in `best`, or, for curved bodies, until a better direction is worth
+// refining. Then it returns false, with the touching simplex. At the end the simplex is the face of the gap.
 fn expand(curved: bool) -> bool {
     for (var round = 0u; round < bound(2u * POLYTOPE_VERTICES); round++) {
         let face = nearest_face_of_polytope();
         let distance = fetch(face_at(face) + 10u);
-        // By how much the depth through the nearest face may still be smaller.
+        // The amount by which the depth through the nearest face may still be smaller.
         let slack = select(exactness, max(smallest * SLACK, exactness), best.settled);
         let corners = corners_of(face);
         known = -best.gap - distance <= slack;
@@ -136,7 +136,7 @@ fn expand(curved: bool) -> bool {
             break;
         }
         if (!add_to_polytope(face, vertex)) {
-            // As far out as rounding lets it be.
+            // Rounding allows no further movement.
             put(face_at(face) + 10u, UNMOVABLE);
         }
         if (better && curved && movable < max(smallest, distance) * NEAR) {
@@ -148,8 +148,8 @@ fn expand(curved: bool) -> bool {
     return true;
 }
 
-// Directions across two creases of the gap: the normals of flat faces, and what is across an edge of each body. Where the polytope
-// has run out of room, the smallest of depths that are nearly equal lies there.
+// Tries directions across two creases of the gap: the normals of flat faces, and the directions across an edge of each
+// body. If the polytope is full, the smallest of nearly equal depths lies there.
 fn try_crossings() {
     let own = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     for (var k = 0u; k < bound(15u); k++) {

@@ -1,22 +1,23 @@
-// What of a body lies against a plane: a face, an edge or a corner. Sister of `feature` of the shapes in `clench-collide/src/shape`.
+// The part of a body that lies against a plane: a face, an edge or a corner. CPU counterpart: `feature` of the shapes
+// in `clench-collide/src/shape`.
 
 // Faces and edges count as lying against the plane up to a tilt of 5°.
 const FACE_COSINE: f32 = 0.996;
 const EDGE_SINE: f32 = 0.087;
-// A cap tilted by less is level to rounding: all its corners are equally deep.
+// A cap with a smaller tilt is level to rounding: all its corners are equally deep.
 const TILT: f32 = 5e-6;
-// The corners of a feature of the first body, then those of one of the second, each in its body's frame.
+// The corners of a feature of the first body, then those of the second, each in its body's frame.
 var<private> feature_corners: array<vec3f, 2 * FEATURE_CORNERS>;
 
-// How many corners a feature has, the outward normal of a face, and the radius of a round cap, for which its corners only stand (else
-// nothing).
+// The number of a feature's corners, the outward normal of a face, and the radius of a round cap, which its corners
+// approximate (else zero).
 struct Feature {
     count: u32,
     normal: vec3f,
     radius: f32,
 }
 
-// The edge along `axis` through a corner.
+// Stores the edge along `axis` through a corner.
 fn edge_feature(corner: vec3f, axis: u32, d: vec3f, place: u32) -> Feature {
     for (var k = 0u; k < bound(2u); k++) {
         var end = corner;
@@ -52,8 +53,8 @@ fn box_feature(size: vec3f, corner: vec3f, d: vec3f, place: u32) -> Feature {
     return Feature(1u, d, 0.0);
 }
 
-// The cap of a cylinder: corners at equal angles, the first at the deepest point of the circle. They do not turn with a tilt that
-// nobody can tell, so that a standing cylinder stands still.
+// Stores the cap of a cylinder: corners at equal angles, the first at the deepest point of the circle. They do not
+// follow a negligible tilt, so that a standing cylinder stays at rest.
 fn cap_feature(size: vec3f, d: vec3f, place: u32) -> Feature {
     let up = signed(1.0, d.z);
     var first = vec2f(size.x, 0.0);
@@ -68,7 +69,7 @@ fn cap_feature(size: vec3f, d: vec3f, place: u32) -> Feature {
     return Feature(CAP_CORNERS, vec3f(0.0, 0.0, up), size.x);
 }
 
-// The feature of a body that is furthest along the unit direction `d`; its corners are stored from `place` on.
+// Stores the feature of a body furthest along the unit direction `d`, its corners from `place` on.
 fn feature_of(body: Body, d: vec3f, place: u32) -> Feature {
     if (ANY_MESH && body.kind == MESH) {
         return feature_of_hull(body, d, place);
@@ -88,7 +89,7 @@ fn feature_of(body: Body, d: vec3f, place: u32) -> Feature {
         return edge_feature(corner, 2u, d, place);
     }
     feature_corners[place] = corner;
-    // Where no cap meets more than a corner, any other number will do.
+    // If no cap meets more than a corner, any count other than 1 suffices.
     let is_cap = body.kind == CYLINDER && abs(d.z) >= FACE_COSINE;
     return Feature(select(1u, CAP_CORNERS, is_cap), d, 0.0);
 }

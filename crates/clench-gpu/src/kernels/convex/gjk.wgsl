@@ -1,12 +1,13 @@
-// Distance of two cores that are apart (Gilbert, Johnson & Keerthi 1988). Sister of `clench-collide/src/narrow/convex/gjk.rs`, but that
-// Newton's method waits for the end of the search: its text is long.
+// The distance of two separate cores (Gilbert, Johnson & Keerthi 1988). CPU counterpart:
+// `clench-collide/src/narrow/convex/gjk.rs`, except that Newton's method runs after the search, because its text is
+// long.
 
 const GJK_ROUNDS: u32 = 64u;
-// Shares of the smaller body: below the first the direction between the cores is noise, the bounds may differ by the second.
+// Shares of the smaller body: the distance below which its direction is noise, and the tolerance of the bounds.
 const TOUCHING: f32 = 4.0 * ROOT_OF_EPSILON;
 const DOUBT: f32 = 1e-6;
 
-// How a search ends: a gap beyond the limit, the origin seems inside, nothing is nearer.
+// The outcomes of a search: a gap beyond the limit, the origin seems inside, nothing is nearer.
 const BEYOND: u32 = 0u;
 const INSIDE: u32 = 1u;
 const NEAREST: u32 = 2u;
@@ -16,10 +17,10 @@ struct End {
     length: f32,
 }
 
-// The gap along the direction in which the first search began.
+// The gap along the start direction of the first search.
 var<private> first_gap: f32;
 
-// Adds vertices until nothing is nearer, from the one along the best direction on.
+// Adds vertices until nothing is nearer, starting with the one along the best direction.
 fn search_nearest(limit: f32) -> End {
     var v = best.normal;
     var square = UNMOVABLE;
@@ -44,7 +45,7 @@ fn search_nearest(limit: f32) -> End {
                 return End(INSIDE, 0.0);
             }
             if (dot(nearest.xyz, nearest.xyz) >= square) {
-                // Rounding has the last word.
+                // Rounding prevents further progress.
                 return End(NEAREST, sqrt(square));
             }
             v = nearest.xyz;
@@ -63,8 +64,9 @@ fn search_nearest(limit: f32) -> End {
     return End(NEAREST, length(v));
 }
 
-// The distance of the cores if it is at most `limit`, in `best`: BEYOND, NEAREST, or INSIDE where they overlap or touch. Vertices that
-// nearly coincide make slivers, whose nearest point may be false: then another search begins with the best direction known.
+// Finds the distance of the cores if it is at most `limit`, in `best`: BEYOND, NEAREST, or INSIDE if they overlap or
+// touch. Nearly coincident vertices form slivers, whose nearest point may be wrong: then another search starts with the
+// best known direction.
 fn gjk(limit: f32) -> u32 {
     var end = End(NEAREST, 0.0);
     for (var attempt = 0u; attempt < bound(2u); attempt++) {

@@ -1,17 +1,18 @@
-// Hulls of meshes: the furthest vertex, and what of a hull lies against a plane. Sister of `clench-collide/src/hull/mod.rs` and of
-// `clench-collide/src/shape/mesh.rs`. A hull is a place in the words, where its parts are told.
+// Hulls of meshes: the furthest vertex, and the part that lies against a plane. CPU counterparts:
+// `clench-collide/src/hull/mod.rs` and `clench-collide/src/shape/mesh.rs`. A hull is the offset in the words of its
+// parts' offsets.
 
-// A hull's vertex.
+// Returns a hull's vertex.
 fn vertex_of_hull(hull: u32, vertex: u32) -> vec3f {
     return shape3(words[hull + HULL_VERTICES] + 3u * vertex);
 }
 
-// The outward normal of a face; in w where its plane is along it.
+// Returns the outward normal of a face and, in w, the offset of its plane along it.
 fn plane_of_hull(hull: u32, face: u32) -> vec4f {
     return shape4(words[hull + HULL_PLANES] + 4u * face);
 }
 
-// The number of the vertex that is furthest along `d`, climbing from one that the signs of `d` choose, from neighbour to neighbour.
+// Returns the index of the vertex furthest along `d`, by hill climbing from a vertex chosen by the signs of `d`.
 fn furthest_of_hull(hull: u32, d: vec3f) -> u32 {
     let neighbors = words[hull + HULL_NEIGHBORS];
     let octant = select(0u, 1u, d.x < 0.0) | select(0u, 2u, d.y < 0.0) | select(0u, 4u, d.z < 0.0);
@@ -32,7 +33,7 @@ fn furthest_of_hull(hull: u32, d: vec3f) -> u32 {
     return vertex;
 }
 
-// Of the faces at a vertex the one that lies most nearly across `d`; NONE if all are tilted by more than 5°.
+// Returns the face at a vertex most nearly perpendicular to `d`; NONE if all are tilted by more than 5°.
 fn face_across(hull: u32, vertex: u32, d: vec3f) -> u32 {
     let faces = words[hull + HULL_VERTEX_FACES];
     var cosine = FACE_COSINE;
@@ -47,13 +48,13 @@ fn face_across(hull: u32, vertex: u32, d: vec3f) -> u32 {
     return best_face;
 }
 
-// How much further than the others, as a share of its body, a corner must be to count, which would not be among those looked at.
+// The minimum lead of a corner over the sampled ones for it to count, relative to its body.
 const NOTICEABLE: f32 = 1e-7;
-// Faces tilted by less are level.
+// Faces with a smaller tilt are level.
 const LEVEL: f32 = 2e-3;
 
-// The corners of a face, of many every second, third and so on. Then the furthest vertex is kept too, but for a level face only if it
-// is noticeably further than the others.
+// Stores the corners of a face; of many, only every second, third and so on. Then the furthest vertex is kept too, but
+// for a level face only if it is noticeably further than the others.
 fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Feature {
     let corners = words[body.hull + HULL_FACE_CORNERS] + face;
     let begin = words[corners];
@@ -77,7 +78,7 @@ fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Fea
     return Feature(kept, normal, 0.0);
 }
 
-// Of the faces and edges at the furthest vertex the one that is most nearly level, if one is level enough.
+// Stores the most nearly level face or edge at the furthest vertex, if one is level enough.
 fn feature_of_hull(body: Body, d: vec3f, place: u32) -> Feature {
     let vertex = furthest_of_hull(body.hull, d);
     let face = face_across(body.hull, vertex, d);
@@ -86,7 +87,7 @@ fn feature_of_hull(body: Body, d: vec3f, place: u32) -> Feature {
     }
     let corner = vertex_of_hull(body.hull, vertex);
     let neighbors = words[body.hull + HULL_NEIGHBORS] + vertex;
-    // The rise and the length of the best edge, squared.
+    // The squared rise and length of the best edge.
     var best_edge = vec2f(EDGE_SINE * EDGE_SINE, 1.0);
     var neighbor = NONE;
     for (var k = words[neighbors]; k < words[neighbors + 1u]; k++) {

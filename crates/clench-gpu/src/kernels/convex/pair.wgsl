@@ -1,4 +1,4 @@
-// Two convex bodies in the frame of the first, and the gap between their cores along a direction. Sister of
+// Two convex bodies in the frame of the first, and the gap between their cores along a direction. CPU counterpart:
 // `clench-collide/src/narrow/convex/pair.rs`.
 
 var<private> body_a: Body;
@@ -6,20 +6,20 @@ var<private> body_b: Body;
 // The axes of the second as columns, and its origin.
 var<private> turn_b: mat3x3f;
 var<private> offset_b: vec3f;
-// The smaller of the bodies' sizes, a bound of all coordinates, and how exactly the gap is to be found.
+// The smaller of the bodies' sizes, a bound on all coordinates, and the tolerance of the gap.
 var<private> smallest: f32;
 var<private> largest: f32;
 var<private> exactness: f32;
 
-// A point of the difference of the cores, from the first to the second, and the points that it is the difference of: on the first
-// in its frame, on the second in its own.
+// A point of the difference of the cores, from the first to the second, and its two points: on the first in its frame,
+// on the second in its own.
 struct Vertex {
     w: vec3f,
     a: vec3f,
     b: vec3f,
 }
 
-// A direction, the gap along it, and whether it is the largest in its neighbourhood and the direction exact.
+// A direction, the gap along it, and whether it is a local maximum with an exact direction.
 struct Gap {
     normal: vec3f,
     gap: f32,
@@ -39,7 +39,7 @@ fn begin_pair(a: Body, b: Body, turn: mat3x3f, offset: vec3f) {
     exactness = max(largest * EPSILON * 64.0, smallest * 1e-9);
 }
 
-// The direction between points of the cores that are near to each other.
+// Returns the direction between nearby points of the cores.
 fn start_direction() -> vec3f {
     let p = nearest_of_body(body_a, offset_b);
     let q = offset_b + turn_b * nearest_of_body(body_b, transpose(turn_b) * (p - offset_b));
@@ -50,11 +50,11 @@ fn start_direction() -> vec3f {
     return direction(offset_b).xyz;
 }
 
-// The vertex along `n`, a direction of any length; where there are several, the one furthest against `side`.
+// Returns the vertex along `n`, a direction of any length; among ties, the one furthest against `side`.
 fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
     let back = transpose(turn_b);
     var points = array<vec3f, 2>();
-    // The text of a support function is long where there are hulls: it has one place.
+    // One call site, because the text of a support function is long with hulls.
     for (var k = 0u; k < bound(2u); k++) {
         var body = body_a;
         var along = n;
@@ -73,7 +73,7 @@ fn vertex_along(n: vec3f) -> Vertex {
     return vertex_beside(n, n);
 }
 
-// Takes the other gap if it is larger; between equals, to the tolerance, a settled one. Whether it did.
+// Takes the other gap if it is larger; among equals, to the tolerance, a settled one. Returns true if it did.
 fn improve(other: Gap) -> bool {
     var handicap: f32 = 0.0;
     if (best.settled != other.settled) {
@@ -86,7 +86,7 @@ fn improve(other: Gap) -> bool {
     return false;
 }
 
-// Two unit vectors across a unit vector (Duff et al. 2017).
+// Two unit vectors perpendicular to a unit vector (Duff et al. 2017).
 struct Across {
     e: vec3f,
     f: vec3f,

@@ -1,11 +1,12 @@
-// The points of a contact: where the features of two bodies overlap, seen along the normal. Sister of
+// The points of a contact: the overlap of two bodies' features, projected along the normal. CPU counterparts:
 // `clench-collide/src/narrow/convex/overlap.rs` and `patch.rs`.
 
-// Shares of the smaller body: points nearer to each other are one; a patch may miss the deepest point by so much.
+// Shares of the smaller body: the distance below which points are merged, and that by which a patch may miss the
+// deepest point.
 const SAME_SPOT: f32 = 1e-5;
 const MISSED: f32 = 1e-6;
 
-// Contacts in the projection: where each is across the normal, and the heights of both surfaces.
+// Contacts in the projection: the position across the normal, and the heights of both surfaces.
 var<private> spots: array<vec4f, POLYGON_CORNERS + 1>;
 var<private> spot_count: u32;
 
@@ -13,14 +14,14 @@ fn spot_distance(spot: vec4f) -> f32 {
     return spot.w - spot.z;
 }
 
-// The same with another distance.
+// Returns the spot with another distance.
 fn at_distance(spot: vec4f, distance: f32) -> vec4f {
     let level = (spot.z + spot.w) * 0.5;
     return vec4f(spot.xy, level - 0.5 * distance, level + 0.5 * distance);
 }
 
-// The nearest points of the cores: those that support the normal if they face each other, else as the simplex has them.
-// The vertex along the normal of the largest gap.
+// The vertex along the normal of the largest gap. The nearest points of the cores are its points if they face each
+// other, else those of the simplex.
 var<private> touching_vertex: Vertex;
 
 fn witness(view: mat3x3f, n: vec3f) -> vec4f {
@@ -45,10 +46,10 @@ fn witness(view: mat3x3f, n: vec3f) -> vec4f {
     return at_distance(vec4f(level.xy, level.z, level.z), best.gap);
 }
 
-// The contact at a point of the projection of two features.
+// Returns the contact at a point of the projection of two features.
 fn spot_at(a: Projected, b: Projected, p: vec2f) -> vec4f {
     let on_a = height_of(a, p);
-    // Just beyond a corner the features' planes go on, but the bodies do not.
+    // Just beyond a corner the features' planes continue, but the bodies do not.
     return vec4f(p, on_a, max(height_of(b, p), on_a + best.gap));
 }
 
@@ -60,7 +61,7 @@ fn least_distance() -> f32 {
     return least;
 }
 
-// Fills the spots with the corners of the overlap of two features, and gives the deepest distance among them.
+// Fills the spots with the corners of the overlap of two features, and returns the least distance.
 fn find_spots(a: Projected, b: Projected, beyond: f32) -> f32 {
     overlap(a, b, beyond);
     spot_count = polygon_count;
@@ -70,8 +71,9 @@ fn find_spots(a: Projected, b: Projected, beyond: f32) -> f32 {
     return least_distance();
 }
 
-// Puts points of the outline in the place of many spots, `first` being the direction of the first: all corners if they are no more
-// than a patch has points. If these miss the lowest spot by more than `slack` they are seen from its direction, and it is one of them.
+// Replaces many spots by points of the outline, with `first` the direction of the first: all corners if they fit a
+// patch. If these miss the lowest spot by more than `slack`, the outline is sampled from its direction, and it is one
+// of them.
 fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: f32) {
     let same = smallest * SAME_SPOT;
     make_convex(same);
@@ -102,7 +104,7 @@ fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: 
         }
         toward = lowest.xy - outline_middle;
     }
-    // What is left of the difference is too little to move a point, not to be told.
+    // The remaining difference is too small to move a point, but is still reported.
     let least = least_distance();
     for (var k = 0u; k < spot_count; k++) {
         if (spot_distance(spots[k]) <= least) {
@@ -112,7 +114,7 @@ fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: 
     }
 }
 
-// Leaves one of spots that coincide, the deepest, of those that are within reach.
+// Keeps the deepest of coincident spots, among those within reach.
 fn merge_spots(reach: f32) {
     let same = smallest * SAME_SPOT;
     var kept = 0u;
@@ -138,19 +140,20 @@ fn merge_spots(reach: f32) {
     spot_count = kept;
 }
 
-// Adds a contact of a pair whose middle is in the first body's frame.
+// Adds a contact of a pair; its middle is in the first body's frame.
 fn add_in_frame(pair: u32, a: Placed, middle_of_contact: vec3f, normal: vec3f, distance: f32, tangent: vec3f) {
     add_contact(pair, distance, a.center + a.axes * middle_of_contact, normal, tangent);
 }
 
-// The direction in which many spots begin, which turns with a body: to the first corner of a round cap, or along the first edge.
+// Returns the start direction of many spots, which rotates with a body: to the first corner of a round cap, or along
+// the first edge.
 fn first_direction(a: Projected, b: Projected) -> vec2f {
     var cap = a;
     if (is_cap(b) && !is_cap(a)) {
         cap = b;
     }
     if (is_cap(cap)) {
-        // From the corner across to the first; of the second body they come in reverse.
+        // From the opposite corner to the first; those of the second body are in reverse order.
         let start = cap.place + select(0u, CAP_CORNERS - 1u, cap.place > 0u);
         let opposite = cap.place + select(CAP_CORNERS / 2u, CAP_CORNERS / 2u - 1u, cap.place > 0u);
         return (feature_corners[start] - feature_corners[opposite]).xy;
@@ -158,14 +161,14 @@ fn first_direction(a: Projected, b: Projected) -> vec2f {
     return (feature_corners[a.place + 1u] - feature_corners[a.place]).xy;
 }
 
-// The contacts of two features that are both more than a corner.
+// Adds the contacts of two features that are both more than a corner.
 fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range: f32) {
     let frame = across(n);
     let view = transpose(mat3x3f(frame.e, frame.f, n));
     for (var k = 0u; k < of_a.count; k++) {
         feature_corners[k] = view * feature_corners[k];
     }
-    // The normal points out of the second body's feature, which turns the order of its corners round.
+    // The normal points out of the second body's feature, which reverses the order of its corners.
     let first_of_b = FEATURE_CORNERS;
     let last_of_b = FEATURE_CORNERS + of_b.count - 1u;
     for (var k = 0u; 2u * k < of_b.count; k++) {
@@ -179,7 +182,7 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
 
     let slack = max(smallest * MISSED, exactness);
     var least = UNMOVABLE;
-    // Bodies that touch with an edge touch at the border of a face, where rounding may miss it.
+    // Bodies that touch with an edge touch at the border of a face, which rounding may miss.
     for (var k = 0u; k < bound(3u); k++) {
         least = find_spots(first, second, select(select(slack, exactness, k == 1u), 0.0, k == 0u));
         if (least <= best.gap + slack) {
@@ -202,7 +205,7 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
     }
     let lowest = spots[deepest];
     if (spot_distance(lowest) > reach) {
-        // They touch by less than the features tell.
+        // They touch by less than the features show.
         spots[0] = at_distance(lowest, best.gap);
         spot_count = 1u;
     } else if (MANY_CORNERS && spot_count > PATCH_POINTS) {
@@ -219,14 +222,15 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
     }
 }
 
-// Adds the contacts of a pair whose largest gap is in `best`; the simplex tells the nearest points of the cores where no feature does.
+// Adds the contacts of a pair whose largest gap is in `best`; the simplex gives the nearest points of the cores if no
+// feature does.
 fn add_contacts(pair: u32, a: Placed, range: f32) {
     let n = direction(best.normal).xyz;
     let half = 0.5 * best.gap;
     let shift = 0.5 * (body_a.radius - body_b.radius);
     let distance = best.gap - body_a.radius - body_b.radius;
     if (body_a.kind == SPHERE) {
-        // Its frame is upright, however it is turned.
+        // A sphere's frame is upright regardless of its orientation.
         add_contact(pair, distance, a.center + n * (half + shift), n, tangent_from_normal(n));
         return;
     }
@@ -248,7 +252,7 @@ fn add_contacts(pair: u32, a: Placed, range: f32) {
     var level = q - n * half;
     if (of_a.count == 1u) {
         level = feature_corners[0] + n * half;
-        // A corner is where it is, however exact the normal.
+        // A corner's position is exact whatever the normal.
         if (of_b.count == 1u && is_curved(body_a)) {
             level = (feature_corners[0] + q) * 0.5;
         }

@@ -1,12 +1,12 @@
-// A convex polytope about the origin that grows vertex by vertex, in memory of the environment. Sister of
-// `clench-collide/src/narrow/convex/polytope.rs`, where it is explained.
+// A convex polytope about the origin that grows vertex by vertex, in the environment's memory. CPU counterpart:
+// `clench-collide/src/narrow/convex/polytope.rs`, which explains it.
 //
-// Of a vertex there are nine numbers, of a face twelve: its corners, the sides across (four times the face, and the side), its
-// normal, its distance, that again where it may still be moved, else UNMOVABLE, and whether it is removed. Of the horizon, the sides of
-// the faces that stay, in order: the side, and the corners that it goes from and to.
+// A vertex has nine numbers, a face twelve: its corners, the sides across (four times the face, plus the side), its
+// normal, its distance, the distance again if it may still move (else UNMOVABLE), and whether it is removed. The
+// horizon lists the sides of the remaining faces in order: the side, and its start and end corners.
 
 const UNMOVABLE: f32 = 3e38;
-// Vertices nearer than this share of the smaller body are one.
+// Vertices nearer than this share of the smaller body are merged.
 const SAME_VERTEX: f32 = 1e-6;
 const FACE_SIZE: u32 = 12u;
 
@@ -40,7 +40,7 @@ fn face_at(face: u32) -> u32 {
     return thread_field(POLYTOPE_FACE) + FACE_SIZE * face;
 }
 
-// How far beyond a face a vertex must be to count.
+// Returns the minimum distance of a vertex beyond a face to count.
 fn visibility() -> f32 {
     return largest * EPSILON * 4.0;
 }
@@ -50,7 +50,7 @@ fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
     let a = polytope_w(corners.x);
     let crossed = cross(polytope_w(corners.y) - a, polytope_w(corners.z) - a);
     let area = length(crossed);
-    // A face without area, to rounding, may even look inwards.
+    // A face without area, to rounding, may even point inwards.
     let is_flat = dot(crossed, a - middle) <= area * visibility();
     let normal = select(crossed / max(area, SMALLEST), vec3f(), is_flat);
     let distance = dot(normal, a);
@@ -63,12 +63,12 @@ fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
     face_count = max(face_count, face + 1u);
 }
 
-// Makes a tetrahedron of the first four vertices.
+// Builds a tetrahedron from the first four vertices.
 fn begin_polytope() {
     let a = polytope_w(0u);
     middle = (a + polytope_w(1u) + polytope_w(2u) + polytope_w(3u)) * 0.25;
     let volume = dot(cross(polytope_w(1u) - a, polytope_w(2u) - a), polytope_w(3u) - a);
-    // So that the first face turns counter-clockwise, seen from outside.
+    // This makes the first face counter-clockwise, seen from outside.
     let b = select(1u, 2u, volume > 0.0);
     let c = 3u - b;
     face_count = 0u;
@@ -89,7 +89,7 @@ fn begin_polytope() {
     }
 }
 
-// The face nearest to the origin of those that may still be moved; its distance is UNMOVABLE if there is none.
+// Returns the face nearest to the origin of those that may still move; its distance is UNMOVABLE if there is none.
 fn nearest_face_of_polytope() -> u32 {
     var nearest = 0u;
     var least = UNMOVABLE;
@@ -109,7 +109,8 @@ fn remove_face(face: u32) {
     visible_count++;
 }
 
-// Removes the faces that `w` sees, walking from one of them, and lists the sides where that ends, the horizon, in order.
+// Removes the faces visible from `w` by traversal from one of them, and lists the sides at its border, the horizon, in
+// order.
 fn find_horizon(first: u32, w: vec3f) {
     visible_count = 0u;
     horizon_count = 0u;
@@ -129,7 +130,7 @@ fn find_horizon(first: u32, w: vec3f) {
             continue;
         }
         let normal = fetch3(place + 6u);
-        // One without area has no normal and goes with its neighbours.
+        // A face without area has no normal and is removed with its neighbours.
         if (any(normal != vec3f()) && dot(normal, w) - fetch(place + 9u) <= visibility()) {
             if (horizon_count < POLYTOPE_FACES) {
                 put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count, f32(side));
@@ -146,7 +147,7 @@ fn find_horizon(first: u32, w: vec3f) {
     }
 }
 
-// Whether the faces that see the vertex are a patch with one border: then it has two sides more than they are.
+// Returns true if the visible faces are a patch with one border, which then has two sides more than there are faces.
 fn horizon_is_closed() -> bool {
     if (horizon_count != visible_count + 2u || horizon_count > POLYTOPE_FACES) {
         return false;
@@ -161,7 +162,7 @@ fn horizon_is_closed() -> bool {
     return true;
 }
 
-// The number of the new face at side `k` of the horizon: in the places of the visible faces, and two more.
+// Returns the index of the new face at side `k` of the horizon: those of the visible faces, and two more.
 fn new_face(k: u32, old: u32) -> u32 {
     if (k < visible_count) {
         return fetch_index(thread_field(POLYTOPE_VISIBLE) + k);
@@ -169,7 +170,7 @@ fn new_face(k: u32, old: u32) -> u32 {
     return old + k - visible_count;
 }
 
-// Stitches faces from the horizon to the vertex added last.
+// Adds faces from the horizon to the last vertex.
 fn stitch() {
     let tip = vertex_count - 1u;
     let old = face_count;
@@ -185,8 +186,8 @@ fn stitch() {
     }
 }
 
-// Replaces the faces that see a vertex by faces to it; `face` is one of them. Nothing happens, and the answer is no, if the vertex
-// is one of its corners or rounding has broken the horizon.
+// Replaces the faces visible from a vertex by faces to it; `face` is one of them. Does nothing and returns false if the
+// vertex is one of its corners or rounding has broken the horizon.
 fn add_to_polytope(face: u32, vertex: Vertex) -> bool {
     let same = max(smallest * SAME_VERTEX, exactness);
     for (var k = 0u; k < bound(3u); k++) {

@@ -1,15 +1,15 @@
-// Newton's method for the direction of the largest gap, near it. Sister of `clench-collide/src/narrow/convex/refine.rs`, where the
-// steps are derived.
+// Newton's method for the direction of the largest gap, near it. CPU counterpart:
+// `clench-collide/src/narrow/convex/refine.rs`, which derives the steps.
 
 const NEWTON_STEPS: u32 = 12u;
 const NEWTON_HALVINGS: u32 = 3u;
-// The largest turn of a step, and its cosine.
+// The maximum rotation of a step, and its cosine.
 const MAX_TURN: f32 = 0.3;
 const MAX_TURN_COSINE: f32 = 0.955336489125606;
-// The last step turns by less.
+// The rotation of a converged step.
 const CONVERGED_TURN: f32 = max(2e-6, 256.0 * EPSILON);
 
-// Directions of the edges that touch, orthonormal: none, an edge, or two that span a face (or cross).
+// Orthonormal directions of the touching edges: none, one, or two that span a face (or cross).
 var<private> edges: array<vec3f, 2>;
 var<private> edge_count: u32;
 
@@ -29,7 +29,7 @@ fn extend_edges(edge: vec3f) {
     }
 }
 
-// The span of the edges between the corners that the vertices of the simplex are made of.
+// Finds the span of the edges between the corners of the simplex's vertices.
 fn find_edges() {
     edge_count = 0u;
     let a = corner_of(body_a, simplex[0].a);
@@ -40,7 +40,7 @@ fn find_edges() {
     }
 }
 
-// The direction nearest to `n` across the edges; `n` if they leave none.
+// Returns the direction nearest to `n` across the edges; `n` if there is none.
 fn across_edges(n: vec3f) -> vec3f {
     var left = n;
     if (edge_count == 2u) {
@@ -56,7 +56,7 @@ fn across_edges(n: vec3f) -> vec3f {
     return n;
 }
 
-// Whether turning off the one edge, to either side, would make the gap smaller.
+// Returns true if rotating off the one edge, to either side, would make the gap smaller.
 fn edge_holds(n: vec3f) -> bool {
     if (edge_count != 1u) {
         return true;
@@ -70,7 +70,7 @@ fn edge_holds(n: vec3f) -> bool {
     return true;
 }
 
-// The step, and in w whether there is none (0), the gap curves up one way (1) or down both ways (2).
+// Returns the step, and in w 0 if there is none, 1 if the gap curves up in one direction, 2 if down in both.
 fn newton_step(at: Gap, w: vec3f) -> vec4f {
     let back = transpose(turn_b);
     let of_a = curvature_of(body_a, at.normal);
@@ -95,7 +95,7 @@ fn newton_step(at: Gap, w: vec3f) -> vec4f {
     if (most <= 0.0) {
         return vec4f();
     }
-    // Around an axis that both bodies share the gap does not change; on a saddle, away from it is up.
+    // Around an axis that both bodies share the gap is constant; on a saddle, away from it is up.
     let least = most * 1e-6;
     let shift = max(least - (mean - spread), 0.0);
     ee += at.gap + shift;
@@ -107,8 +107,8 @@ fn newton_step(at: Gap, w: vec3f) -> vec4f {
     return vec4f(turn, select(f32(1.0), f32(2.0), mean - spread > -least));
 }
 
-// The best cap of a cylinder that faces `n` more or less, if the gap across it is larger than `gap`: settled if the cap touches;
-// else, where the gap grows beside it, a direction to start from. Without a gap, there is none.
+// Returns the best cap of a cylinder that roughly faces `n`, if the gap across it is larger than `gap`. It is settled
+// if the cap touches; else, if the gap grows next to it, the normal is a start direction.
 fn refine_cap(n: vec3f, gap: f32) -> Gap {
     var found = Gap(n, gap, false);
     for (var side = 0u; side < bound(2u); side++) {
@@ -128,7 +128,7 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
         if (along <= found.gap) {
             continue;
         }
-        // From the middle of the cap to the other body's point: within the disc, or the gap grows towards it.
+        // From the centre of the cap to the other body's point: if it is outside the disc, the gap grows towards it.
         var to_middle = turn_b * (corner_of(body, vertex.b) - vertex.b);
         if (side == 0u) {
             to_middle = vertex.a - corner_of(body, vertex.a);
@@ -140,7 +140,7 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
             found = Gap(axis, along, true);
             continue;
         }
-        // Beside the axis, for on the axis itself no point of the circle is distinguished.
+        // Next to the axis, because on the axis itself no point of the circle is distinguished.
         let back = transpose(turn_b);
         let start = axis + toward.xyz * ROOT_OF_EPSILON;
         let bend = between(curvature_of(body_a, start), toward.xyz, toward.xyz)
@@ -151,11 +151,11 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
     return found;
 }
 
-// The largest gap in the neighbourhood of a direction, across the edges, by Newton's method; a step that loses is halved.
+// Returns the largest gap near a direction, across the edges, by Newton's method; a step that loses is halved.
 fn refine(n: vec3f) -> Gap {
     var tried = across_edges(n);
     var at = Gap(tried, -UNMOVABLE, false);
-    // The present step, what it has to beat, and how often it was halved.
+    // The current step, the gap that it must exceed, and the number of halvings.
     var step = vec4f();
     var size = UNMOVABLE;
     var before = -UNMOVABLE;
@@ -179,7 +179,7 @@ fn refine(n: vec3f) -> Gap {
             return at;
         }
         if (may_leave) {
-            // Once.
+            // Only once.
             may_leave = false;
             let from_cap = refine_cap(tried, gap);
             if (from_cap.settled) {

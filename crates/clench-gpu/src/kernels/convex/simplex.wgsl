@@ -1,10 +1,11 @@
-// The point nearest to the origin in the hull of up to four vertices. Sister of `clench-collide/src/narrow/convex/simplex.rs`.
+// The point nearest to the origin in the hull of up to four vertices. CPU counterpart:
+// `clench-collide/src/narrow/convex/simplex.rs`.
 
 var<private> simplex: array<Vertex, 4>;
 var<private> weights: array<f32, 4>;
 var<private> simplex_count: u32;
 
-// A point as the weighted sum of some vertices.
+// A point as a weighted sum of vertices.
 struct Nearest {
     point: vec3f,
     corners: vec3u,
@@ -21,7 +22,7 @@ fn nearest_vertex(i: u32) -> Nearest {
     return Nearest(simplex[i].w, vec3u(i), vec3f(1.0, 0.0, 0.0));
 }
 
-// The point that is the share `ahead` / `whole` of the way from one vertex to another.
+// Returns the point at the fraction `ahead` / `whole` from one vertex to another.
 fn nearest_on_edge(i: u32, j: u32, ahead: f32, whole: f32) -> Nearest {
     if (whole <= 0.0) {
         return nearest_vertex(i);
@@ -45,7 +46,8 @@ fn nearest_on_segment_of(i: u32, j: u32) -> Nearest {
     return nearest_on_edge(i, j, ahead, square);
 }
 
-// By the regions of space in which a corner, an edge or the inside is nearest (Ericson, Real-Time Collision Detection, 5.1.5).
+// Finds the nearest point by the Voronoi regions of corners, edges and inside (Ericson, Real-Time Collision Detection,
+// 5.1.5).
 fn nearest_on_triangle(i: u32, j: u32, k: u32) -> Nearest {
     let a = simplex[i].w;
     let b = simplex[j].w;
@@ -87,11 +89,11 @@ fn nearest_on_triangle(i: u32, j: u32, k: u32) -> Nearest {
     }
     let v = vb / sum;
     let w = vc / sum;
-    // Along the normal the point keeps its direction where the weighted sum would lose it.
+    // Along the normal the point keeps its direction, which the weighted sum would lose.
     return Nearest(normal * (dot(normal, a) / square), vec3u(i, j, k), vec3f(1.0 - v - w, v, w));
 }
 
-// Of a triangle without area.
+// Handles a triangle without area.
 fn nearest_on_sides(i: u32, j: u32, k: u32) -> Nearest {
     var nearest = nearest_vertex(i);
     for (var side = 0u; side < bound(3u); side++) {
@@ -105,7 +107,8 @@ fn nearest_on_sides(i: u32, j: u32, k: u32) -> Nearest {
     return nearest;
 }
 
-// Adds a vertex and drops those that the nearest point does without. Gives that point, and 1; or 0 where the origin is inside.
+// Adds a vertex and drops those not needed for the nearest point. Returns that point and 1; zero if the origin is
+// inside.
 fn add_vertex(vertex: Vertex) -> vec4f {
     let count = simplex_count;
     simplex[count] = vertex;
@@ -116,7 +119,7 @@ fn add_vertex(vertex: Vertex) -> vec4f {
         nearest = nearest_on_segment_of(1u, 0u);
         known = true;
     } else {
-        // Of a tetrahedron the faces with the new vertex that the origin is beyond.
+        // For a tetrahedron, the faces with the new vertex that the origin is beyond.
         for (var i = 0u; i < bound(select(1u, 3u, count == 3u)); i++) {
             let j = (i + 1u) % 3u;
             let normal = cross(simplex[i].w - vertex.w, simplex[j].w - vertex.w);

@@ -1,16 +1,16 @@
-// Where rays hit primitive shapes first, in the frame of the shape: sister of `clench-collide/src/shape/`. A ray that begins inside hits
-// where it leaves, and normals point out of the shape.
+// The first hits of rays on primitive shapes, in the frame of the shape. CPU counterpart: `clench-collide/src/shape/`.
+// A ray that begins inside hits where it leaves, and normals point out of the shape.
 
-// How far away a ray hits that hits nothing.
+// The distance of a ray that hits nothing.
 const NOWHERE: f32 = 1e30;
 
-// How far along a ray, and the unit vector out of the shape there.
+// The distance along a ray, and the outward unit normal there.
 struct Hit {
     distance: f32,
     normal: vec3f,
 }
 
-// The normal at a point of a surface, where a ray passes outwards along `outwards`.
+// Returns the normal at a point of a surface, where a ray passes outwards along `outwards`.
 fn normal_at(kind: u32, size: vec3f, p: vec3f, outwards: vec3f) -> vec3f {
     switch kind {
         case CAPSULE: {
@@ -19,14 +19,14 @@ fn normal_at(kind: u32, size: vec3f, p: vec3f, outwards: vec3f) -> vec3f {
         case ELLIPSOID: {
             return direction(p / size / size).xyz;
         }
-        // On the cap or the side that is nearer.
+        // On the nearer of cap and side.
         case CYLINDER: {
             if (size.y - abs(p.z) < size.x - length(p.xy)) {
                 return vec3f(0.0, 0.0, sign(outwards.z));
             }
             return direction(vec3f(p.xy, 0.0)).xyz;
         }
-        // On the face that is nearest.
+        // On the nearest face.
         case BOX: {
             let depth = size - abs(p);
             let nearest = min(depth.x, min(depth.y, depth.z));
@@ -44,7 +44,7 @@ fn normal_at(kind: u32, size: vec3f, p: vec3f, outwards: vec3f) -> vec3f {
     }
 }
 
-// From above, within the rectangle that positive sizes say.
+// Hits a plane from above, within the rectangle of positive sizes.
 fn hit_plane(size: vec3f, line: Line) -> Hit {
     let down = line.along.z < 0.0;
     let distance = -line.origin.z / select(f32(1.0), line.along.z, down);

@@ -1,17 +1,17 @@
-// What rays of sensors meet: one thread a ray, and only where somebody asks. Sister of `sensor/ray.rs` and of `first_hit` in `geometry.rs`. A
-// sensor is a row of RAY_SENSOR_SIZE words.
+// Rays of sensors: one thread per ray, on request. CPU counterparts: `sensor/ray.rs` and `first_hit` in `geometry.rs`.
+// A sensor is a row of RAY_SENSOR_SIZE words.
 
-// Whether a ray may meet a ball before it has gone so far: never false where it does, whatever the rounding.
+// Returns true if a ray may hit a ball within a distance: never false if it does, despite rounding.
 fn may_meet(line: Line, centre: vec3f, radius: f32, within: f32) -> bool {
     let apart = centre - line.origin;
     let ahead = dot(apart, line.along);
     let beside = apart - line.along * ahead;
-    // What is computed from far away is known to this rounding only.
+    // The rounding error of distant geometry.
     let reach = radius + dot(abs(apart), vec3f(1.0)) * (8.0 * EPSILON);
     return dot(beside, beside) <= reach * reach && ahead + reach >= 0.0 && ahead - reach <= within;
 }
 
-// Where a ray hits a geom, in the frame of that.
+// Returns the hit of a ray on a geom, in the geom's frame.
 fn hit_geom(k: u32, geom: u32, line: Line, within: f32) -> Hit {
     let kind = words[GEOM_KIND + geom];
     let size = parameter3(GEOM_SIZE + 3u * geom);
@@ -27,7 +27,7 @@ fn hit_geom(k: u32, geom: u32, line: Line, within: f32) -> Hit {
     return hit_solid(kind, size, line);
 }
 
-// The first hit on a geom that can be seen and is not of a body; the normal in world axes.
+// Returns the first hit on a visible geom that is not of a body; the normal in world axes.
 fn first_hit(line: Line, body: u32) -> Hit {
     var first = Hit(NOWHERE, vec3f());
     for (var k = 0u; k < bound(NRAY_GEOM); k++) {
@@ -47,7 +47,7 @@ fn first_hit(line: Line, body: u32) -> Hit {
     return first;
 }
 
-// Where a ray of a sensor goes out.
+// Returns a ray of a sensor.
 fn line_of(s: u32, ray: u32) -> Line {
     let element = words[s + RAY_ELEMENT];
     if (words[s + RAY_SOURCE] == FROM_SITE) {
@@ -56,7 +56,7 @@ fn line_of(s: u32, ray: u32) -> Line {
     return line_of_sight(element, ray - words[s + RAY_FIRST]);
 }
 
-// In which direction the sensor looks.
+// Returns the axis of the sensor.
 fn axis_of(s: u32) -> vec3f {
     let element = words[s + RAY_ELEMENT];
     if (words[s + RAY_SOURCE] == FROM_SITE) {
@@ -65,7 +65,7 @@ fn axis_of(s: u32) -> vec3f {
     return -fetch_matrix(CAM_XMAT + 9u * element)[2];
 }
 
-// Tells of a ray what the sensor tells of each.
+// Writes the sensor's fields for a ray.
 fn read_ray(s: u32, cutoff: f32, ray: u32) {
     let line = line_of(s, ray);
     let hit = first_hit(line, words[s + RAY_BODY]);
@@ -99,7 +99,7 @@ fn read_ray(s: u32, cutoff: f32, ray: u32) {
     }
 }
 
-// Threads side by side are of neighbouring environments, at the same ray.
+// Adjacent threads have neighbouring environments and the same ray.
 @compute @workgroup_size(GROUP)
 fn rays(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     if (!SENSING || !begin(id.x)) {

@@ -1,11 +1,12 @@
-// Rays against height fields, from cell to cell: sister of `clench-collide/src/ray/terrain.rs`. Within one triangle of a cell the height
-// of a ray over the surface changes linearly, and neighbours agree about their common edge.
+// Rays against height fields, from cell to cell. CPU counterpart: `clench-collide/src/ray/terrain.rs`. Within one
+// triangle of a cell the height of a ray over the surface is linear, and neighbours are consistent on their common
+// edge.
 
-// The field's highest point is this much lower than the box that a ray is followed in, over its height.
+// The margin of a ray's bounding box above the field's highest point, relative to its height.
 const HEADROOM = 1e-5;
 
-// The cell that the ray passes, by row and column, where its lowest corner is along x and y, and the heights of its corners: the lowest
-// along both, one column further, one row further, and both.
+// The current cell of the ray, by row and column, its lowest corner along x and y, and the heights of its corners: the
+// lowest along both, one column further, one row further, and both.
 var<private> passed_cell: vec2i;
 var<private> cell_corner: vec2f;
 var<private> cell_heights: vec4f;
@@ -16,18 +17,18 @@ fn begin_cell(cell: vec2i) {
     cell_heights = vec4f(height_at(cell), height_at(cell + vec2i(0, 1)), height_at(cell + vec2i(1, 0)), height_at(cell + 1));
 }
 
-// Place within the cell, each from 0 to 1.
+// Returns the position within the cell, each from 0 to 1.
 fn place_in_cell(p: vec3f) -> vec2f {
     return (p.xy - cell_corner) / grid.step;
 }
 
-// How much the triangle on the right of the cell's diagonal, or on its left, rises over the cell along x and y.
+// Returns the rise over the cell, along x and y, of the triangle on the right or left of its diagonal.
 fn rise_of_triangle(right: bool) -> vec2f {
     let h = cell_heights;
     return select(vec2f(h.w - h.z, h.z - h.x), vec2f(h.y - h.x, h.w - h.y), right);
 }
 
-// The height of a point over that triangle.
+// Returns the height of a point over that triangle.
 fn height_over(p: vec3f, right: bool) -> f32 {
     return p.z - (cell_heights.x + dot(rise_of_triangle(right), place_in_cell(p)));
 }
@@ -36,7 +37,7 @@ fn point_at(line: Line, distance: f32) -> vec3f {
     return line.origin + line.along * distance;
 }
 
-// Where the ray crosses the surface within the cell, between two distances.
+// Returns the hit of the ray on the surface within the cell, between two distances.
 fn cross_surface(line: Line, start: f32, end: f32, above: bool) -> Hit {
     let places = mat2x2f(place_in_cell(point_at(line, start)), place_in_cell(point_at(line, end)));
     let first = places[0].x - places[0].y;
@@ -62,7 +63,7 @@ fn cross_surface(line: Line, start: f32, end: f32, above: bool) -> Hit {
     return Hit(NOWHERE, vec3f());
 }
 
-// From one cell to the next, to where the ray leaves.
+// Follows the ray from cell to cell, to its exit.
 fn follow_surface(line: Line, start: f32, end: f32, above: bool) -> Hit {
     let forward = line.along.xy > vec2f();
     let is_level = line.along.xy == vec2f();
@@ -85,7 +86,8 @@ fn follow_surface(line: Line, start: f32, end: f32, above: bool) -> Hit {
     return Hit(NOWHERE, vec3f());
 }
 
-// The terrain stands on its base as one solid on another: a ray that starts within one of them also meets the plane between the two.
+// Hits the terrain and its base as two stacked solids: a ray that starts within one of them also hits the plane between
+// the two.
 fn hit_terrain(field: u32, line: Line) -> Hit {
     begin_grid(field);
     var low = -grid.base;

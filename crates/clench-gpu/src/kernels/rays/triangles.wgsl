@@ -1,17 +1,18 @@
-// Rays against the triangles of a mesh, found by a tree of boxes: sister of `clench-collide/src/ray/triangles.rs`.
+// Rays against the triangles of a mesh, by a tree of boxes. CPU counterpart: `clench-collide/src/ray/triangles.rs`.
 //
-// Nodes lie in the order in which they are visited: one that a ray enters is followed by its children, and each names the node that
-// follows all below it. A mesh is told by how many nodes it has, and where they, their boxes and the corners of its triangles are.
+// Nodes are stored in depth-first order: a node that a ray enters is followed by its children, and each names the node
+// after its subtree. A mesh has the number of nodes, and the offsets of these, their boxes and the corners of its
+// triangles.
 
-// A ray, and the shear that makes it the z axis: its axes in an order in which it is longest along the last, and how much x and y change
-// along z.
+// A ray, and the shear that makes it the z axis: the index of its longest axis, which comes last, and the slopes of x
+// and y along z.
 struct Shear {
     line: Line,
     longest: u32,
     slope: vec2f,
 }
 
-// A vector with its axes in that order.
+// Returns a vector with its axes in that order.
 fn in_order(v: vec3f, longest: u32) -> vec3f {
     return select(select(v, v.zxy, longest == 1u), v.yzx, longest == 0u);
 }
@@ -23,7 +24,7 @@ fn shear_of(line: Line) -> Shear {
     return Shear(line, longest, along.xy / along.z);
 }
 
-// Whether a ray enters the box at a place before a limit. A ray across an axis is taken for one that is almost so.
+// Returns true if a ray enters the box at `place` before a limit. A ray perpendicular to an axis is perturbed.
 fn enters(line: Line, place: u32, limit: f32) -> bool {
     let steep = select(max(line.along, vec3f(1e-20)), min(line.along, vec3f(-1e-20)), line.along < vec3f());
     let low = (shape3(place) - line.origin) / steep;
@@ -33,8 +34,8 @@ fn enters(line: Line, place: u32, limit: f32) -> bool {
     return max(max(near.x, near.y), max(near.z, 0.0)) <= min(min(far.x, far.y), min(far.z, limit));
 }
 
-// On which side of the edge from a to b the origin is, by the area between them; zero where rounding alone would say it, which may differ
-// between both triangles at the edge.
+// Returns the area that gives the side of the edge from a to b on which the origin is; zero if it is only rounding,
+// which may differ between the two triangles at the edge.
 fn side_of(a: vec3f, b: vec3f) -> f32 {
     let ahead = a.x * b.y;
     let back = a.y * b.x;
@@ -42,13 +43,13 @@ fn side_of(a: vec3f, b: vec3f) -> f32 {
     return select(area, 0.0, abs(area) <= EPSILON * (abs(ahead) + abs(back)));
 }
 
-// A corner in the ray's frame: its distance from the ray across, and how far along the ray it is.
+// Returns a corner in the ray's frame: its position across the ray, and along it.
 fn sheared(shear: Shear, place: u32) -> vec3f {
     let v = in_order(shape3(place) - shear.line.origin, shear.longest);
     return vec3f(v.xy - shear.slope * v.z, v.z);
 }
 
-// Where a ray hits the triangle at a place, NOWHERE if it does not.
+// Returns the hit distance of a ray on the triangle at `place`, NOWHERE if it misses.
 fn hit_triangle(shear: Shear, place: u32) -> f32 {
     let p = sheared(shear, place);
     let q = sheared(shear, place + 3u);
@@ -63,7 +64,8 @@ fn hit_triangle(shear: Shear, place: u32) -> f32 {
     return select(NOWHERE, at, at >= 0.0);
 }
 
-// The first hit before a limit, from either side. The normal is on the side from which the corners are counter-clockwise.
+// Returns the first hit before a limit, from either side. The normal is on the side from which the corners are
+// counter-clockwise.
 fn hit_mesh(mesh: u32, line: Line, limit: f32) -> Hit {
     let count = words[mesh];
     let corners = words[mesh + 3u];

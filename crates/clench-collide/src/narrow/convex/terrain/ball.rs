@@ -1,16 +1,16 @@
-//! A ball whose middle is above a triangle: what GJK would find, in closed form.
+//! A ball whose centre is above a triangle: the result of GJK in closed form.
 
 use super::{Search, grid::Triangle, keep_deeper};
 use crate::narrow::convex::{pair::Gap, simplex::on_triangle};
 use crate::narrow::per_lane::Point;
 use clench_math::{Scalar, Vec3};
 
-/// So many times the tolerance the middle must be off the triangle for the direction between them to be exact.
+/// The minimum distance of the centre from the triangle, in tolerances, for an exact direction.
 const CLEAR: f64 = 1e3;
 
 impl<S: Scalar> Search<S> {
-    /// Adds the contact of a triangle and a ball about `middle`. Whether it could tell: a middle that is lower than the nearest
-    /// point of the triangle may be nearer to the walls below.
+    /// Adds the contact of a triangle and a ball about `middle`. Returns false if it cannot decide: a centre below the
+    /// nearest point of the triangle may be nearer to the walls below.
     pub(super) fn ball(&mut self, triangle: &Triangle<S>, middle: Vec3<S>, radius: S) -> bool {
         let [p, q, r] = triangle.corners;
         let near = on_triangle([(0, p - middle), (1, q - middle), (2, r - middle)]);

@@ -1,25 +1,25 @@
-//! Bounds of a body along the axes and along slopes: which triangles it may touch.
+//! Bounds of a body along axes and slopes, to select the triangles that it may touch.
 
 use super::grid::{Node, TerrainGrid};
 use crate::narrow::convex::body::Body;
 use clench_math::{Mat3, Scalar, Vec3};
 use std::ops::RangeInclusive;
 
-/// How far a body with its margin reaches, in the field's frame.
+/// The bounds of a body with its margin, in the field's frame.
 pub(super) struct Bounds {
     pub low: Vec3<f64>,
     pub high: Vec3<f64>,
-    /// Between two lines along the diagonals of cells, and between two along their other diagonals: the least and most of
-    /// x·dy − y·dx and x·dy + y·dx, with the lengths dx, dy of a cell.
+    /// Bounds along the two diagonals of cells: the minimum and maximum of x·dy − y·dx and x·dy + y·dx, with the
+    /// lengths dx, dy of a cell.
     diagonals: [(f64, f64); 2],
-    /// The least z − x, z + x, z − y and z + y.
+    /// The minima of z − x, z + x, z − y and z + y.
     slopes: [f64; 4],
     /// The lowest point of the body.
     pub lowest: Vec3<f64>,
 }
 
 impl Bounds {
-    /// The bounds of a finite body; `around` are its radius and margin.
+    /// Computes the bounds of a finite body, enlarged by `around`, its radius and margin.
     pub(super) fn new<S: Scalar>(
         body: &Body<S>,
         rotation: &Mat3<S>,
@@ -56,7 +56,8 @@ impl Bounds {
         })
     }
 
-    /// The rows and columns of cells of a grid that they reach, no higher than the highest; nothing where they are off the field.
+    /// Returns the rows and columns of cells that the bounds overlap, up to the field's elevation; `None` if they are
+    /// off the field.
     pub(super) fn window(&self, grid: &TerrainGrid) -> Option<[RangeInclusive<i64>; 2]> {
         let (low, high) = self.below(grid.elevation);
         let over = |axis: usize| low[axis] <= grid.half[axis] && high[axis] >= -grid.half[axis];
@@ -65,7 +66,7 @@ impl Bounds {
         (over(0) && over(1) && level).then(|| [cells(1), cells(0)])
     }
 
-    /// Between which x and y the part is that is lower than some height.
+    /// Returns the bounds along x and y of the part below a height.
     pub(super) fn below(&self, height: f64) -> ([f64; 2], [f64; 2]) {
         let [minus_x, plus_x, minus_y, plus_y] = self.slopes;
         let (low, high) = (self.low, self.high);
@@ -75,7 +76,8 @@ impl Bounds {
         )
     }
 
-    /// Whether they reach the left and the right triangle of a cell. No branches: which it is cannot be predicted.
+    /// Returns true for each of a cell's left and right triangles that the bounds reach; without branches, which would
+    /// be unpredictable.
     #[inline]
     pub(super) fn reach(&self, cell: Node, grid: &TerrainGrid) -> [bool; 2] {
         let [x, y] = grid.corner(cell);

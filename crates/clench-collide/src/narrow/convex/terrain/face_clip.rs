@@ -1,4 +1,4 @@
-//! The feature of a body that faces a triangle, clipped to it.
+//! Clipping of a body's feature to the triangle that it faces.
 
 use super::grid::Triangle;
 use super::manifold::Manifold;
@@ -7,7 +7,7 @@ use crate::narrow::convex::pair::across;
 use crate::narrow::{per_lane::Point, polygon::Polygon};
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
-/// A corner this far outside a triangle, as a share of the body, still belongs to it, or as far as rounding may put it there.
+/// The tolerance, relative to the body, by which a corner outside a triangle still belongs to it; at least rounding.
 const BESIDE: f64 = 1e-9;
 
 /// A triangle, and the body in its frame.
@@ -20,7 +20,8 @@ pub(super) struct FaceClip<'a, S> {
     pub offset: Vec3<S>,
 }
 
-/// The line of a side of a triangle: out of it, and how far along that it is with some slack, itself slack times the size of `out`.
+/// The line of a side of a triangle: the outward vector, and its offset along it plus some slack, which scales with
+/// `out`.
 #[derive(Clone, Copy)]
 struct Side<S> {
     out: Vec3<S>,
@@ -29,14 +30,14 @@ struct Side<S> {
 }
 
 impl<S: Scalar> FaceClip<'_, S> {
-    /// Adds a contact for each corner of the body's feature, clipped to the triangle, that is near enough. Returns whether there
-    /// are any.
+    /// Adds a contact for each corner of the body's feature, clipped to the triangle, that is near enough. Returns true
+    /// if there are any.
     ///
-    /// Where the surface goes on in the same plane, the cut has no corner.
+    /// Clipping adds no corner where the surface continues in the same plane.
     pub(super) fn touch(&self, margin: S, found: &mut Manifold<S>) -> bool {
         let feature = self.body.feature(-self.rotation.transpose_mul(self.normal));
         let [p, q, r] = self.triangle.corners;
-        // Each opposite to the corner of its number.
+        // Each side is opposite to the corner of its index.
         let sides = [self.side(q, r), self.side(r, p), self.side(p, q)];
         let place = |corner: &Vec3<S>| self.offset + *self.rotation * *corner;
         let beyond = |side: &Side<S>| {
@@ -83,7 +84,7 @@ impl<S: Scalar> FaceClip<'_, S> {
         }
     }
 
-    /// Whether the plane of the triangle ends at one of the sides that a place is on.
+    /// Returns true if the plane of the triangle ends at one of the sides that a point is on.
     fn ends_at(&self, place: Vec3<S>, sides: &[Side<S>; 3]) -> bool {
         sides.iter().enumerate().any(|(k, side)| {
             let on_side = side.out.dot(place) > side.limit - side.slack * S::new(4.0);
@@ -101,7 +102,7 @@ impl<S: Scalar> FaceClip<'_, S> {
         near
     }
 
-    /// The contact below a point of the body's core.
+    /// Returns the contact below a point of the body's core.
     pub(super) fn contact(&self, point: Vec3<S>) -> Point<S> {
         let height = self.normal.dot(point);
         let distance = height - self.body.radius;

@@ -1,22 +1,22 @@
-//! The triangles of a height field, one at a time, and what lies across their edges.
+//! The triangles of a height field and their neighbours.
 
 use crate::HeightField;
 use crate::narrow::convex::prism::Prism;
 use clench_math::{Real, Scalar, Vec3};
 
-/// Row and column of a grid point; those beyond the border do not exist.
+/// The row and column of a grid point, which may be beyond the border.
 pub(super) type Node = [i64; 2];
 
-/// Directions count as one up to this angle, rad.
+/// Returns the angle up to which directions are equal, rad.
 pub(super) fn same_direction<S: Scalar>() -> S {
     Real::max(S::new(1e-6), S::EPSILON * S::new(100.0))
 }
 
-/// A height field with what follows from its size.
+/// A height field with data derived from its size.
 pub(super) struct TerrainGrid<'a> {
     field: &'a HeightField,
     pub half: [f64; 2],
-    /// Lengths of a cell along x and y, m.
+    /// The lengths of a cell along x and y, m.
     pub step: [f64; 2],
     pub elevation: f64,
     pub base: f64,
@@ -35,19 +35,19 @@ impl<'a> TerrainGrid<'a> {
         }
     }
 
-    /// The cell above or below a place along an axis, or the nearest one.
+    /// Returns the cell at a coordinate along an axis, or the nearest one.
     pub(super) fn cell(&self, axis: usize, place: f64) -> i64 {
         let count = [self.field.columns(), self.field.rows()][axis];
         let cell = ((place + self.half[axis]) / self.step[axis]).floor();
         cell.clamp(0.0, (count - 2) as f64) as i64
     }
 
-    /// The cell at a point, or the nearest one: row and column.
+    /// Returns the row and column of the cell at a point, or of the nearest one.
     pub(super) fn cell_at(&self, point: Vec3<f64>) -> Node {
         [self.cell(1, point.y), self.cell(0, point.x)]
     }
 
-    /// Where the lowest corner of a cell is along x and y, m.
+    /// Returns x and y of a cell's lowest corner, m.
     pub(super) fn corner(&self, [row, column]: Node) -> [f64; 2] {
         [
             column as f64 * self.step[0] - self.half[0],
@@ -55,7 +55,7 @@ impl<'a> TerrainGrid<'a> {
         ]
     }
 
-    /// How high the left and the right triangle of a cell reach, m.
+    /// Returns the maximum heights of the left and the right triangle of a cell, m.
     pub(super) fn tops(&self, [row, column]: Node) -> [f64; 2] {
         let height = |r, c| self.height([row + r, column + c]);
         let both = height(0, 0).max(height(1, 1));
@@ -67,18 +67,19 @@ impl<'a> TerrainGrid<'a> {
     }
 }
 
-/// A triangle of the surface, in a frame that begins at its first corner.
+/// A triangle of the surface, in a frame with its origin at the first corner.
 pub(super) struct Triangle<'a, S> {
     grid: &'a TerrainGrid<'a>,
     pub nodes: [Node; 3],
-    /// Where its frame begins, in the field's frame.
+    /// The origin of its frame, in the field's frame.
     pub origin: Vec3<S>,
-    /// Counter-clockwise seen from above.
+    /// The corners, counter-clockwise seen from above.
     pub corners: [Vec3<S>; 3],
 }
 
 impl<'a, S: Scalar> Triangle<'a, S> {
-    /// One of the triangles of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
+    /// Returns a triangle of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the
+    /// highest.
     pub(super) fn of_cell(grid: &'a TerrainGrid<'a>, first: Node, half: usize) -> Self {
         let [x, y] = grid.corner(first);
         let z = grid.height(first);
@@ -104,19 +105,20 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         }
     }
 
-    /// Its unit normal.
+    /// Returns the unit normal.
     pub(super) fn normal(&self) -> Vec3<S> {
         let [_, q, r] = self.corners;
         q.cross(r).normalize().0
     }
 
-    /// The mean of its corners.
+    /// Returns the mean of the corners.
     pub(super) fn middle(&self) -> Vec3<S> {
         let [p, q, r] = self.corners;
         (p + q + r) * S::new(1.0 / 3.0)
     }
 
-    /// Whether a point is within the ground below it, and at least `distance` from walls and bottom, m.
+    /// Returns true if a point is within the ground below the triangle, and at least `distance` from walls and bottom,
+    /// m.
     pub(super) fn surrounds(&self, point: Vec3<S>, distance: S) -> bool {
         let within = |k: usize| {
             let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
@@ -128,13 +130,13 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         (0..3).all(within) && point.z - bottom >= distance
     }
 
-    /// The ground below it.
+    /// Returns the ground below the triangle.
     pub(super) fn prism(&self) -> Prism<S> {
         let bottom = -self.origin.z - S::new(self.grid.base);
         Prism::new(self.corners, bottom)
     }
 
-    /// A grid point in its frame, if it exists.
+    /// Returns a grid point in the triangle's frame, if it exists.
     pub(super) fn node(&self, node: Node) -> Option<Vec3<S>> {
         let [row, column] = node;
         let field = self.grid.field;
@@ -151,7 +153,7 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         })
     }
 
-    /// The grid point across the edge that is opposite to corner `k`.
+    /// Returns the grid point across the edge that is opposite to corner `k`.
     pub(super) fn across(&self, k: usize) -> Option<Vec3<S>> {
         let [p, q, r] = [
             self.nodes[(k + 1) % 3],
@@ -161,19 +163,20 @@ impl<'a, S: Scalar> Triangle<'a, S> {
         self.node([p[0] + q[0] - r[0], p[1] + q[1] - r[1]])
     }
 
-    /// How far the surface rises beyond the edge opposite to corner `k`, as a share of the way; nothing where it ends.
+    /// Returns the slope of the surface beyond the edge opposite to corner `k`, relative to the triangle; `None` at the
+    /// border.
     fn rise_across(&self, k: usize, normal: Vec3<S>) -> Option<S> {
         let edge = self.across(k)? - self.corners[(k + 1) % 3];
         Some(normal.dot(edge) / edge.norm())
     }
 
-    /// Whether the surface is flat across the edge opposite to corner `k`.
+    /// Returns true if the surface continues flat across the edge opposite to corner `k`.
     pub(super) fn goes_on_across(&self, k: usize, normal: Vec3<S>) -> bool {
         let rise = self.rise_across(k, normal);
         rise.is_some_and(|rise| rise.abs() <= same_direction())
     }
 
-    /// Whether the surface bends away from the triangle nowhere, so that nothing but its face can be touched.
+    /// Returns true if the surface bends away from the triangle nowhere, so that only its face can be touched.
     pub(super) fn is_hollow(&self, normal: Vec3<S>) -> bool {
         let bends_up = |k| {
             self.rise_across(k, normal)

@@ -1,5 +1,5 @@
-//! The contact manifold on terrain: points on one plane are replaced by the corners of their convex hull, and of more than
-//! there is room for, those nearest to each other are dropped.
+//! The contact manifold on terrain: points on one plane are replaced by the corners of their convex hull, and excess
+//! points nearest to each other are dropped.
 
 use super::grid::same_direction;
 use crate::narrow::convex::pair::across;
@@ -9,24 +9,24 @@ use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::ops::Range;
 
-/// Points nearer to each other than this share of the body's size are one.
+/// The distance below which points are merged, relative to the body's size.
 const SAME: f64 = 1e-5;
 
-/// At most [`MAX_POINTS`] points, and the deepest is among them.
+/// At most [`MAX_POINTS`] points, including the deepest.
 pub(super) struct Manifold<S> {
     points: ArrayVec<Point<S>, { MAX_POINTS + 1 }>,
     /// The size of the body, m.
     size: S,
-    /// Points nearer to each other are one, m.
+    /// The distance below which points are merged, m.
     same: S,
-    /// How exact distances are, m.
+    /// The accuracy of distances, m.
     tolerance: S,
 }
 
 /// The points on one plane of the terrain and a new one, or both halves of their hull.
 type Facet<S> = ArrayVec<Point<S>, { 2 * (PATCH_POINTS + 1) + 1 }>;
 
-/// The point of a contact that lies on the terrain.
+/// Returns the point of a contact on the terrain.
 fn ground<S: Scalar>(point: &Point<S>) -> Vec3<S> {
     point.position - point.normal * (point.distance * S::new(0.5))
 }
@@ -45,7 +45,7 @@ impl<S: Scalar> Manifold<S> {
         &self.points
     }
 
-    /// The distance of the deepest point; infinite if there is none.
+    /// Returns the distance of the deepest point; infinite if there is none.
     pub(super) fn deepest(&self) -> S {
         let distances = self.points.iter().map(|p| p.distance);
         distances.fold(S::INFINITY, |least, d| least.min(d))
@@ -58,7 +58,7 @@ impl<S: Scalar> Manifold<S> {
             return;
         }
         let mut corners: Facet<S> = self.points.drain(facet).collect();
-        // A point in the same place is not as deep.
+        // A coincident point is not as deep.
         corners.retain(|p| !self.is_same(p, &point));
         corners.push(point);
         self.corners(&mut corners);
@@ -70,7 +70,7 @@ impl<S: Scalar> Manifold<S> {
         }
     }
 
-    /// Where the points on the plane of a point are: next to each other, around their area.
+    /// Returns the range of points on the plane of a point, which are adjacent and ordered around their area.
     fn facet(&self, point: &Point<S>) -> Range<usize> {
         let on_plane = |p: &Point<S>| {
             (p.normal - point.normal).norm_squared() <= same_direction::<S>().squared()
@@ -91,7 +91,7 @@ impl<S: Scalar> Manifold<S> {
         (p.position - q.position).norm_squared() <= self.same.squared()
     }
 
-    /// Whether a point lies within the area of a facet, or on one of its points, and no deeper.
+    /// Returns true if a point is no deeper than a facet and lies within its area or on one of its points.
     fn is_redundant(&self, facet: &[Point<S>], point: &Point<S>) -> bool {
         let deepest = facet
             .iter()
@@ -105,7 +105,7 @@ impl<S: Scalar> Manifold<S> {
         self.surrounds(facet, point.position)
     }
 
-    /// Whether a place is above or below the area of a facet.
+    /// Returns true if a point is above or below the area of a facet.
     fn surrounds(&self, facet: &[Point<S>], place: Vec3<S>) -> bool {
         let Some(last) = facet.last().filter(|_| facet.len() > 2) else {
             return false;
@@ -122,7 +122,7 @@ impl<S: Scalar> Manifold<S> {
         true
     }
 
-    /// Leaves the corners of the area that the points of a facet span, and the deepest of them.
+    /// Keeps the corners of the area that the points of a facet span, and the deepest point.
     fn corners(&self, facet: &mut Facet<S>) {
         let same = self.same;
         if facet.len() < 3 {
@@ -152,7 +152,8 @@ impl<S: Scalar> Manifold<S> {
         }
     }
 
-    /// Removes one of the two points that are nearest to each other: the shallower, between equals the one nearer to the middle.
+    /// Removes one of the two points that are nearest to each other: the shallower, or if equal the one nearer to the
+    /// middle.
     fn thin_out(&mut self) {
         let points = &self.points;
         let mut nearest = (S::INFINITY, 0, 1);
@@ -181,8 +182,8 @@ impl<S: Scalar> Manifold<S> {
     }
 }
 
-/// The chain of points to the right of which none lies, of points sorted along a line (Andrew 1979). Those less than `same` off the
-/// chain are left out.
+/// Returns the chain of sorted points that has no point to its right (Andrew 1979), without those less than `same` off
+/// the chain.
 fn half_hull<S: Scalar>(
     points: impl Iterator<Item = Point<S>>,
     at: impl Fn(&Point<S>) -> (S, S),
@@ -204,7 +205,7 @@ fn half_hull<S: Scalar>(
     chain
 }
 
-/// The first of the deepest points; what the tolerance cannot tell apart is as deep.
+/// Returns the first of the deepest points, up to the tolerance.
 fn deepest<S: Scalar>(points: &[Point<S>], tolerance: S) -> Point<S> {
     let mut best = points[0];
     for point in points {
@@ -215,7 +216,7 @@ fn deepest<S: Scalar>(points: &[Point<S>], tolerance: S) -> Point<S> {
     best
 }
 
-/// Removes the corner that spans the smallest triangle with its neighbours, but not the deepest.
+/// Removes the corner that spans the smallest triangle with its neighbours, except the deepest.
 fn remove_least<S: Scalar>(facet: &mut Facet<S>, at: impl Fn(&Point<S>) -> (S, S), tolerance: S) {
     let len = facet.len();
     let kept = deepest(facet, tolerance).position;

@@ -1,12 +1,12 @@
 //! Height fields against convex shapes.
 //!
-//! Under each triangle of the surface lies a prism down to the base, and together they are the field. The distance of a body
-//! that is outside is the least of its distances to the prisms. One that has sunk in may leave a single prism rejected, into the
-//! next one, which does not separate it from the field; so a direction counts only where it is a normal of the whole surface: of
-//! a face, of a convex edge or vertex (whose normals are its Voronoi region), or of the field's sides. Along the normal of a face
-//! the contact manifold is the body's feature clipped to the triangle. Where a prism's best direction does not count, its face
-//! does, unless its depth is much larger: at the foot of a cliff a body is not pushed out over the top. A convex edge or vertex
-//! belongs to several prisms, whose gaps along its normal are the same, so one of them is searched.
+//! Below each triangle of the surface is a prism down to the base, and together they are the field. The distance of a
+//! body outside is the minimum of its distances to the prisms. The shortest exit from one prism may lead into the next,
+//! inside the field. So a direction is valid only if it is a normal of the whole surface: of a face, of a convex edge
+//! or vertex (whose normals are its Voronoi region), or of the field's sides. Along the normal of a face the contact
+//! manifold is the body's feature clipped to the triangle. If a prism's best direction is invalid, its face is used,
+//! unless its depth is much larger: at the foot of a cliff a body is not pushed out over the top. A convex edge or
+//! vertex belongs to several prisms with equal gaps along its normal, so only one is searched.
 //!
 //! The work grows with the number of cells below the body's bounding box.
 
@@ -38,17 +38,17 @@ use grid::{TerrainGrid, Triangle, same_direction};
 use manifold::Manifold;
 use voronoi::VoronoiFeature;
 
-/// A face counts if its depth is at most this many times the smallest depth of any prism.
+/// The maximum depth of a face, relative to the smallest depth of any prism.
 const FACE_DEPTH_RATIO: f64 = 2.0;
 
-/// A direction counts as the face's normal within this many times the tolerance for equal directions: rounding of a triangle's
-/// corners turns its normal by no more.
+/// The angle, in tolerances for equal directions, up to which a direction is the face's normal: rounding of a
+/// triangle's corners turns its normal by no more.
 const FACE_NORMAL_RATIO: f64 = 8.0;
 
-/// How many convex edges and vertices are remembered; others may be searched more than once.
+/// The maximum number of cached convex edges and vertices; others may be searched repeatedly.
 const MAX_FEATURES: usize = 4;
 
-/// The contacts of a height field and a shape that is bounded and convex.
+/// Computes the contacts of a height field and a bounded convex shape.
 pub(in crate::narrow) fn terrain<T: Real>(
     a: Placed<Terrain<T>, T>,
     b: AnyPlaced<T>,
@@ -79,7 +79,7 @@ fn points<S: Scalar>(a: Placed<Terrain<S>, S>, b: AnyPlaced<S>, margin: S, point
             search.add_triangle(&Triangle::of_cell(&grid, cell, half), &body);
         }
     };
-    // What is deepest saves much of the work on the rest.
+    // Finding the deepest contact first saves much of the remaining work.
     let first = grid.cell_at(bounds.lowest);
     if rows.contains(&first[0]) && columns.contains(&first[1]) {
         add_triangle(first, bounds.reach(first, &grid));
@@ -103,30 +103,30 @@ fn points<S: Scalar>(a: Placed<Terrain<S>, S>, b: AnyPlaced<S>, margin: S, point
     }
 }
 
-/// The search over triangles: the contacts found so far, and what spares later searches.
+/// The search over triangles: the contacts found, and data that avoids later searches.
 struct Search<S> {
     /// The body in the field's frame.
     rotation: Mat3<S>,
     offset: Vec3<S>,
     margin: S,
-    /// How exact distances are, m.
+    /// The accuracy of distances, m.
     tolerance: S,
     found: Manifold<S>,
     /// Contacts with faces whose depth may not be the smallest.
     provisional: Manifold<S>,
-    /// The least distance along directions that count, and a contact that has it.
+    /// The contact of least distance along valid directions.
     deepest: Option<Point<S>>,
-    /// Convex edges and vertices that touch. The triangles around one all touch there.
+    /// The convex edges and vertices that touch. All triangles around one touch there.
     features: ArrayVec<VoronoiFeature<S>, MAX_FEATURES>,
     /// The largest distance along normals of faces with provisional contacts.
     shallowest: S,
-    /// The least distance along directions that do not count, and its contact.
+    /// The contact of least distance along invalid directions.
     rejected: Option<Point<S>>,
-    /// The direction along which the last triangle's ground was apart from the body: the next one's may be so, too.
+    /// The direction that separated the last triangle's ground from the body; it may separate the next one's.
     apart: Vec3<S>,
 }
 
-/// Takes the deeper of two points.
+/// Keeps the deeper of two points.
 fn keep_deeper<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
     if deepest.is_none_or(|old| point.distance < old.distance) {
         *deepest = Some(point);
@@ -171,7 +171,7 @@ impl<S: Scalar> Search<S> {
         if distance > self.margin {
             return;
         }
-        // No deeper than the deepest distance so far: then only the face itself or a convex feature can add contacts.
+        // Not deeper than the deepest contact: only the face itself or a convex feature can add contacts.
         let rotation = self.rotation;
         let clip = FaceClip {
             triangle,
@@ -188,7 +188,7 @@ impl<S: Scalar> Search<S> {
         if self.is_separating(triangle, body, offset, self.apart) {
             return;
         }
-        // Deep within its walls: then no depth of the prism is smaller than through its face.
+        // Deep within its walls, the smallest depth of the prism is through its face.
         let foot = lowest - normal * height.max(S::ZERO);
         if triangle.surrounds(foot, (-height).max(S::ZERO)) {
             keep_deeper(&mut self.deepest, clip.contact(lowest));
@@ -197,7 +197,7 @@ impl<S: Scalar> Search<S> {
         }
         let prism = triangle.prism();
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), rotation, offset);
-        // A convex edge or vertex touches along one normal with all of the prisms around it.
+        // A convex edge or vertex touches all of the prisms around it along one normal.
         if let Some(feature) = self.features.iter().find(|feature| triangle.has(feature)) {
             let simplex = Simplex::new(pair.vertex(feature.gap.normal));
             let touching = self.patch(&clip, &pair, feature.gap, &simplex);
@@ -210,7 +210,8 @@ impl<S: Scalar> Search<S> {
         }
     }
 
-    /// The largest gap of the ground below a triangle and a body, or, if they are more than the margin apart, one that shows it.
+    /// Returns the largest gap of a body and the ground below a triangle, or as an error a separating one beyond the
+    /// margin.
     fn largest_gap(
         &self,
         pair: &Pair<S>,
@@ -221,7 +222,7 @@ impl<S: Scalar> Search<S> {
             if known.gap > self.margin {
                 return Err(known);
             }
-            // Of bodies that are apart the gap found so is not always the distance.
+            // If the bodies are apart, this gap is not always the distance.
             if known.gap <= S::ZERO && Real::is_finite(known.gap) {
                 return Ok((known, Simplex::new(pair.vertex(known.normal))));
             }
@@ -230,7 +231,7 @@ impl<S: Scalar> Search<S> {
         nearest(pair, start, self.margin, &mut simplex).map(|best| (best, simplex))
     }
 
-    /// Whether a direction shows that a body and the ground below a triangle are apart.
+    /// Returns true if a direction separates a body from the ground below a triangle.
     fn is_separating(
         &self,
         triangle: &Triangle<S>,
@@ -250,7 +251,7 @@ impl<S: Scalar> Search<S> {
         gap > S::ZERO && gap.squared() > reach.squared() * n.norm_squared()
     }
 
-    /// The least distance along directions that count, so far.
+    /// Returns the least distance found along valid directions.
     fn deepest_distance(&self) -> S {
         self.deepest.map_or(S::INFINITY, |p| p.distance)
     }
@@ -275,7 +276,7 @@ impl<S: Scalar> Search<S> {
                 .for_each(|p| keep_deeper(&mut self.deepest, *p));
             if !level || !clip.touch(self.margin, &mut self.found) {
                 touching.iter().for_each(|p| self.found.add(*p));
-                // A feature that there is no room for is found again with the next triangle around it.
+                // If the capacity is exceeded, the feature is found again with the next triangle around it.
                 let _ = self.features.try_push(feature);
             }
         } else {
@@ -291,7 +292,7 @@ impl<S: Scalar> Search<S> {
         }
     }
 
-    /// The contacts of the ground below a triangle.
+    /// Returns the contacts of the ground below a triangle.
     fn patch(
         &self,
         clip: &FaceClip<S>,
@@ -310,7 +311,7 @@ impl<S: Scalar> Search<S> {
         touching
     }
 
-    /// Leaves all contacts in what is found. The body is in the field at least as deep as in any prism.
+    /// Completes the contacts found. The body's depth in the field is at least its depth in any prism.
     fn finish(&mut self) {
         let depth = |p: Option<Point<S>>| p.map_or(S::INFINITY, |p| p.distance);
         let (counted, other) = (depth(self.deepest), depth(self.rejected));

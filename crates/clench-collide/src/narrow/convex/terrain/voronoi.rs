@@ -1,5 +1,5 @@
-//! Convex vertices and edges of terrain that touch a body, and whether a direction lies in their Voronoi region: whether it is a
-//! normal of the field there.
+//! Convex vertices and edges of terrain that touch a body, and the test that a direction is in their Voronoi region,
+//! that is, a normal of the field there.
 
 use super::grid::{Node, Triangle, same_direction};
 use crate::narrow::convex::pair::Gap;
@@ -9,15 +9,15 @@ use clench_math::{Scalar, Vec3};
 pub(super) struct VoronoiFeature<S> {
     pub gap: Gap<S>,
     nodes: [Node; 3],
-    /// Which of the nodes belong to it.
+    /// True for each node that belongs to the feature.
     touches: [bool; 3],
 }
 
-/// From a grid point to those that share an edge with it.
+/// The offsets from a grid point to those that share an edge with it.
 const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
 
 impl<S: Scalar> Triangle<'_, S> {
-    /// The feature that reaches furthest along the normal of a gap.
+    /// Returns the feature that is furthest along the normal of a gap.
     pub(super) fn feature(&self, gap: Gap<S>) -> VoronoiFeature<S> {
         let n = gap.normal;
         let flat = n.z < -same_direction::<S>();
@@ -32,8 +32,8 @@ impl<S: Scalar> Triangle<'_, S> {
         }
     }
 
-    /// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or
-    /// rises beyond its edge.
+    /// Returns true if a feature's direction is a normal of the whole field there. It is not if the field continues
+    /// beyond the prism's wall or rises beyond its edge.
     pub(super) fn admits_normal(&self, feature: &VoronoiFeature<S>) -> bool {
         let (n, touches) = (feature.gap.normal, feature.touches);
         let flat = n.z < -same_direction::<S>();
@@ -55,15 +55,15 @@ impl<S: Scalar> Triangle<'_, S> {
         }
     }
 
-    /// Whether it has all corners of a feature.
+    /// Returns true if the triangle has all corners of a feature.
     pub(super) fn has(&self, feature: &VoronoiFeature<S>) -> bool {
         let mut corners = feature.nodes.iter().zip(feature.touches);
         corners.all(|(node, touches)| !touches || self.nodes.contains(node))
     }
 }
 
-/// A point; or, where the normal points downwards, its projection onto the horizontal plane: of a prism, which goes on downwards, heights
-/// do not count then.
+/// Returns the point, or its projection onto the horizontal plane if the normal points downwards: the prism continues
+/// downwards, so heights are irrelevant.
 fn level<S: Scalar>(v: Vec3<S>, flat: bool) -> Vec3<S> {
     if flat {
         Vec3::new(v.x, v.y, S::ZERO)

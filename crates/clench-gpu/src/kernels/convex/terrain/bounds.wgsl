@@ -1,16 +1,16 @@
-// Bounds of a body along the axes and along slopes, with its radius, its margin and the tolerance: which triangles it may touch. Sister
-// of `clench-collide/src/narrow/convex/terrain/bounds.rs`.
+// Bounds of a body along the axes and along slopes, with its radius, its margin and the tolerance, to select the
+// triangles it may touch. CPU counterpart: `clench-collide/src/narrow/convex/terrain/bounds.rs`.
 
 const BOUND_DIRECTIONS: u32 = 14u;
 
-// How far the body reaches along each direction, and its lowest point.
+// The reach of the body along each direction, and its lowest point.
 var<private> bounds: array<f32, BOUND_DIRECTIONS>;
 var<private> lowest_point: vec3f;
-// The first cell of the window, and how many rows and columns of cells it has.
+// The first cell of the window, and its numbers of rows and columns.
 var<private> window_first: vec2i;
 var<private> window_size: vec2i;
 
-// Up and down, along the axes, across the diagonals of cells either way, and down slopes along the axes.
+// Returns a direction: up and down, along the axes, across both diagonals of cells, and down slopes along the axes.
 fn direction_of_bound(k: u32) -> vec3f {
     let sign = select(f32(1.0), f32(-1.0), (k & 1u) == 1u);
     switch k >> 1u {
@@ -38,8 +38,8 @@ fn direction_of_bound(k: u32) -> vec3f {
     }
 }
 
-// Finds the bounds of the second body, whose middle is at `offset`, and the window of cells that they reach. False where they are off
-// the field.
+// Finds the bounds of the second body, centred at `offset`, and the window of cells that they reach. Returns false if
+// they are off the field.
 fn begin_bounds(body: Body, turn: mat3x3f, offset: vec3f, around: f32) -> bool {
     for (var k = 0u; k < bound(BOUND_DIRECTIONS); k++) {
         let d = direction(direction_of_bound(k));
@@ -66,7 +66,7 @@ fn is_in_window(cell: vec2i) -> bool {
     return all(cell >= window_first) && all(cell < window_first + window_size);
 }
 
-// Whether the bounds reach the left (0) or the right triangle of a cell.
+// Returns true if the bounds reach the left (0) or the right triangle of a cell.
 fn bounds_reach(cell: vec2i, half: u32) -> bool {
     let at = corner_of_cell(cell);
     let x = at.x;

@@ -1,14 +1,15 @@
-// The feature of a body that faces a triangle, clipped to it. Sister of `clench-collide/src/narrow/convex/terrain/face_clip.rs`.
+// The feature of a body that faces a triangle, clipped to it. CPU counterpart:
+// `clench-collide/src/narrow/convex/terrain/face_clip.rs`.
 
-// A corner this far outside a triangle, as a share of the body, still belongs to it: more than rounding.
+// The tolerance, relative to the body, with which a corner outside a triangle still belongs to it: more than rounding.
 const BESIDE: f32 = max(1e-9, 8.0 * EPSILON);
 
-// The contacts of the face with the body's feature, in memory; and whether there are any, were it but on the border between faces of one
-// plane, where the cut has no corner.
+// The number of listed contacts of the face with the body's feature; and whether there are any, even only on the border
+// of coplanar faces, where the clipped polygon has no own corner.
 var<private> face_list_count: u32;
 var<private> face_touches: bool;
 
-// The contact below a point of the body's core, in the triangle's frame.
+// Returns the contact below a point of the body's core, in the triangle's frame.
 fn contact_below(point: vec3f) -> TerrainPoint {
     let height = dot(triangle_normal, point);
     let distance = height - body_b.radius;
@@ -25,7 +26,7 @@ fn add_to_face(point: vec3f, range: f32) {
     }
 }
 
-// The line of the side opposite to corner `k`: out of it, and in w how far along that it is with some slack.
+// Returns the line of the side opposite to corner `k`: its outward normal and, in w, its offset with some slack.
 fn side_of_triangle(k: u32) -> vec4f {
     let start = triangle[(k + 1u) % 3u];
     let out = cross(triangle[(k + 2u) % 3u] - start, triangle_normal);
@@ -36,7 +37,7 @@ fn slack_of_side(out: vec3f) -> f32 {
     return body_b.reach * BESIDE * max(abs(out.x), max(abs(out.y), abs(out.z)));
 }
 
-// Whether the plane of the triangle ends at one of the sides that a place is on.
+// Returns true if the plane of the triangle ends at a side that contains the point.
 fn face_ends_at(place: vec3f) -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         let side = side_of_triangle(k);
@@ -48,13 +49,13 @@ fn face_ends_at(place: vec3f) -> bool {
     return false;
 }
 
-// Lists a contact for each corner of the body's feature, clipped to the triangle, that is near enough.
+// Lists a contact for each corner of the body's feature, clipped to the triangle, that is within range.
 fn find_face_contacts(range: f32) {
     face_list_count = 0u;
     face_touches = false;
     let first = FEATURE_CORNERS;
     let feature = feature_of(body_b, -(triangle_normal * turn_b), first);
-    // How far all corners are beyond each side at least.
+    // The minimum distance of all corners beyond each side.
     var beyond = vec3f(UNMOVABLE);
     for (var k = 0u; k < feature.count; k++) {
         let place = offset_b + turn_b * feature_corners[first + k];

@@ -1,23 +1,23 @@
-// The triangles of a height field, one at a time, what lies across their edges, and whether a direction lies in the Voronoi region of an
-// edge or a corner: whether it is a normal of the field there. Sister of `clench-collide/src/narrow/convex/terrain/grid.rs` and
-// `voronoi.rs`.
+// The triangles of a height field, one at a time, their neighbours, and a test whether a direction lies in the Voronoi
+// region of an edge or a corner, and so is a normal of the field there. CPU counterparts:
+// `clench-collide/src/narrow/convex/terrain/grid.rs` and `voronoi.rs`.
 
 // A corner, an edge or the face of a triangle, and the gap along a normal there.
 struct TerrainFeature {
     gap: Gap,
     nodes: array<vec2i, 3>,
-    // Which of the nodes belong to it.
+    // The nodes that belong to it.
     touches: vec3<bool>,
 }
 
-// Of the present triangle its nodes, its corners, counter-clockwise seen from above, in a frame that begins at the first; where that is in
-// the field's frame, and the unit normal.
+// The current triangle: its nodes; its corners, counter-clockwise seen from above, in a frame with origin at the first;
+// that origin in the field's frame; and the unit normal.
 var<private> triangle_nodes: array<vec2i, 3>;
 var<private> triangle: array<vec3f, 3>;
 var<private> triangle_origin: vec3f;
 var<private> triangle_normal: vec3f;
 
-// One of the triangles of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
+// Begins a triangle of a cell: 0 on the left, 1 on the right of its diagonal from the lowest x and y to the highest.
 fn begin_triangle(cell: vec2i, half: u32) {
     triangle_nodes[0] = cell;
     triangle_nodes[1] = cell + select(vec2i(0, 1), vec2i(1, 1), half == 0u);
@@ -38,13 +38,13 @@ fn is_node(node: vec2i) -> bool {
     return all(node >= vec2i()) && node.x < grid.rows && node.y < grid.columns;
 }
 
-// A grid point in the triangle's frame.
+// Returns a grid point in the triangle's frame.
 fn place_of_node(node: vec2i) -> vec3f {
     let apart = node - triangle_nodes[0];
     return vec3f(vec2f(f32(apart.y), f32(apart.x)) * grid.step, height_at(node) - triangle_origin.z);
 }
 
-// Whether a point is within the ground below the triangle, and at least `distance` from walls and bottom, m.
+// Returns true if a point is within the ground below the triangle, and at least `distance` from walls and bottom, m.
 fn triangle_surrounds(point: vec3f, distance: f32) -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         let side = (triangle[(k + 1u) % 3u] - triangle[k]).xy;
@@ -55,12 +55,13 @@ fn triangle_surrounds(point: vec3f, distance: f32) -> bool {
     return point.z - prism[3].z >= distance;
 }
 
-// The grid point across the edge that is opposite to corner `k`.
+// Returns the grid point across the edge opposite to corner `k`.
 fn node_across(k: u32) -> vec2i {
     return triangle_nodes[(k + 1u) % 3u] + triangle_nodes[(k + 2u) % 3u] - triangle_nodes[k];
 }
 
-// How far the surface rises beyond the edge opposite to corner `k`, as a share of the way; without end where the surface ends.
+// Returns the slope of the surface beyond the edge opposite to corner `k`, relative to the triangle; −UNMOVABLE where
+// the surface ends.
 fn rise_across(k: u32) -> f32 {
     let node = node_across(k);
     if (!is_node(node)) {
@@ -70,7 +71,7 @@ fn rise_across(k: u32) -> f32 {
     return dot(triangle_normal, edge) / length(edge);
 }
 
-// Whether the surface bends away from the triangle nowhere, so that nothing but its face can be touched.
+// Returns true if the surface bends away from the triangle nowhere, so that only its face can be touched.
 fn is_hollow() -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         if (rise_across(k) < -SAME_DIRECTION) {
@@ -80,12 +81,12 @@ fn is_hollow() -> bool {
     return true;
 }
 
-// A point, or, of a direction that leads downwards, what is below and above it.
+// Returns a point; for a downward direction, only its horizontal part.
 fn level_with(n: vec3f, v: vec3f) -> vec3f {
     return vec3f(v.xy, select(v.z, 0.0, n.z < -SAME_DIRECTION));
 }
 
-// The feature that reaches furthest along the normal of a gap.
+// Returns the feature that reaches furthest along the normal of a gap.
 fn feature_of_triangle(gap: Gap) -> TerrainFeature {
     var reach = vec3f();
     for (var k = 0u; k < bound(3u); k++) {
@@ -97,7 +98,7 @@ fn feature_of_triangle(gap: Gap) -> TerrainFeature {
     return TerrainFeature(gap, triangle_nodes, reach >= vec3f(least));
 }
 
-// Whether a grid point is no higher than a corner along a normal; one that does not exist is not.
+// Returns true if a grid point is no higher than a corner along a normal, or does not exist.
 fn falls_to(n: vec3f, corner: vec3f, node: vec2i) -> bool {
     if (!is_node(node)) {
         return true;
@@ -106,8 +107,8 @@ fn falls_to(n: vec3f, corner: vec3f, node: vec2i) -> bool {
     return dot(edge, n) <= length(edge) * SAME_DIRECTION;
 }
 
-// Whether a feature's direction is a normal of the whole field there: not where the field goes on beyond the prism's wall, or rises
-// beyond its edge.
+// Returns true if a feature's direction is a normal of the whole field there: the field does not continue beyond the
+// prism's wall, or rise beyond its edge.
 fn admits_normal(feature: TerrainFeature) -> bool {
     let n = feature.gap.normal;
     let touching_corners = dot(select(vec3f(), vec3f(1.0), feature.touches), vec3f(1.0));
@@ -124,7 +125,7 @@ fn admits_normal(feature: TerrainFeature) -> bool {
         if (!feature.touches[k]) {
             continue;
         }
-        // To the six that share an edge with it.
+        // The six nodes that share an edge with it.
         for (var around = 0u; around < bound(6u); around++) {
             let turned = around % 3u;
             var way = vec2i(select(1, 0, turned == 0u), select(1, 0, turned == 2u));
@@ -137,7 +138,7 @@ fn admits_normal(feature: TerrainFeature) -> bool {
     return true;
 }
 
-// Whether the triangle has all corners of a feature.
+// Returns true if the triangle has all corners of a feature.
 fn has_feature(feature: TerrainFeature) -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         var is_corner = !feature.touches[k];

@@ -1,15 +1,17 @@
-// The contact manifold on terrain: points on one plane are replaced by the corners of their convex hull, and of more than there is
-// room for, those nearest to each other are dropped. Sister of `clench-collide/src/narrow/convex/terrain/manifold.rs`.
+// The contact manifold on terrain: coplanar points are replaced by the corners of their convex hull, and those nearest
+// to each other are dropped beyond the capacity. CPU counterpart:
+// `clench-collide/src/narrow/convex/terrain/manifold.rs`.
 //
-// Two manifolds are in memory of the environment: of contacts that count, and of those whose depth may not be the smallest.
+// The environment's memory holds two manifolds: of contacts that count, and of those whose depth may not be the
+// smallest.
 
 const COUNTED: u32 = 0u;
 const PROVISIONAL: u32 = 1u;
-// Points nearer to each other than this share of the body's size are one.
+// Points nearer to each other than this share of the body's size are merged.
 const SAME_POINT: f32 = 1e-5;
-// Directions count as one up to this angle, rad.
+// Directions within this angle are equal, rad.
 const SAME_DIRECTION: f32 = max(1e-6, 100.0 * EPSILON);
-// Points of a facet, a new one among them.
+// The points of a facet, including a new one.
 const FACET_POINTS: u32 = PATCH_POINTS + 1u;
 
 // A contact in the field's frame.
@@ -20,11 +22,11 @@ struct TerrainPoint {
 }
 
 var<private> manifold_counts: array<u32, 2>;
-// The size of the body, and how exact distances are, m.
+// The size of the body, and the tolerance of distances, m.
 var<private> terrain_size: f32;
 var<private> terrain_tolerance: f32;
 
-// The points on one plane of the terrain and a new one; where they are across the normal; their hull, by number.
+// The coplanar points of the terrain and a new one; their positions across the normal; the indices of their hull.
 var<private> facet: array<TerrainPoint, FACET_POINTS>;
 var<private> facet_count: u32;
 var<private> facet_at: array<vec2f, FACET_POINTS>;
@@ -41,12 +43,12 @@ fn put_terrain_point(place: u32, point: TerrainPoint) {
     put(place + 6u, point.distance);
 }
 
-// Where a point of a manifold is in memory.
+// Returns the offset of a point of a manifold.
 fn manifold_point(manifold: u32, k: u32) -> u32 {
     return thread_field(TERRAIN) + TERRAIN_POINT_SIZE * (manifold * (MAX_TERRAIN_POINTS + 1u) + k);
 }
 
-// The distance of the deepest point that counts.
+// Returns the distance of the deepest point that counts.
 fn deepest_of_manifold() -> f32 {
     var least = UNMOVABLE;
     for (var k = 0u; k < manifold_counts[COUNTED]; k++) {
@@ -55,7 +57,7 @@ fn deepest_of_manifold() -> f32 {
     return least;
 }
 
-// The point of a contact that lies on the terrain.
+// Returns the point of a contact on the terrain.
 fn ground_of(point: TerrainPoint) -> vec3f {
     return point.position - point.normal * (point.distance * 0.5);
 }
@@ -72,7 +74,7 @@ fn is_same_point(p: TerrainPoint, q: TerrainPoint) -> bool {
     return dot(apart, apart) <= same * same;
 }
 
-// Whether a point lies within the area of the facet, or on one of its points, and no deeper.
+// Returns true if a point is within the area of the facet, or on one of its points, and no deeper.
 fn is_redundant(point: TerrainPoint) -> bool {
     var least = UNMOVABLE;
     var twin = NONE;
@@ -101,7 +103,7 @@ fn is_redundant(point: TerrainPoint) -> bool {
 
 // Adds a point to a manifold, unless it is redundant.
 fn add_to_manifold(manifold: u32, point: TerrainPoint) {
-    // The points on its plane are next to each other, around their area.
+    // The points on its plane are adjacent, in order around their area.
     let count = manifold_counts[manifold];
     var start = 0u;
     while (start < count && !is_on_plane(terrain_point(manifold_point(manifold, start)), point)) {
@@ -119,13 +121,13 @@ fn add_to_manifold(manifold: u32, point: TerrainPoint) {
     if (is_redundant(point)) {
         return;
     }
-    // The facet leaves the manifold and comes back behind all others.
+    // The facet is removed from the manifold and appended at its end.
     var left = start;
     for (var k = start + facet_count; k < count; k++) {
         put_terrain_point(manifold_point(manifold, left), terrain_point(manifold_point(manifold, k)));
         left++;
     }
-    // A point in the same place is not as deep.
+    // A coincident point is less deep.
     var kept = 0u;
     for (var k = 0u; k < facet_count; k++) {
         if (!is_same_point(facet[k], point)) {
@@ -147,7 +149,7 @@ fn add_to_manifold(manifold: u32, point: TerrainPoint) {
     manifold_counts[manifold] = left;
 }
 
-// Leaves the corners of the area that the points of the facet span, and the deepest of them, in the hull.
+// Finds the hull of the facet: the corners of the area of its points, and the deepest of them.
 fn find_corners_of_facet() {
     facet_hull_count = 0u;
     if (facet_count < 3u) {
@@ -163,7 +165,7 @@ fn find_corners_of_facet() {
         for (var k = 0u; k < facet_count; k++) {
             extend_hull(begin, select(k, facet_count - 1u - k, way == 1u));
         }
-        // The last begins the way back, and its last began this.
+        // The last point begins the second chain, whose last began the first.
         facet_hull_count = max(facet_hull_count - 1u, begin + way);
     }
     var has_deepest = false;
@@ -187,7 +189,7 @@ fn push_to_hull(k: u32) {
     facet_hull_count++;
 }
 
-// Puts the points of the facet in order along the first direction across the normal, then along the second.
+// Sorts the points of the facet along the first direction across the normal, then along the second.
 fn sort_facet() {
     let frame = across(facet[0].normal);
     for (var k = 0u; k < facet_count; k++) {
@@ -208,8 +210,8 @@ fn sort_facet() {
     }
 }
 
-// Adds a point to the chain from `begin` on, to the right of which no point lies (Andrew 1979). Those less off it than what counts
-// as one are left out.
+// Adds a point to the convex chain from `begin` on (Andrew 1979): no point lies to its right. Nearly collinear points
+// are dropped.
 fn extend_hull(begin: u32, k: u32) {
     let at = facet_at[k];
     while (facet_hull_count >= begin + 2u) {
@@ -223,7 +225,7 @@ fn extend_hull(begin: u32, k: u32) {
     push_to_hull(k);
 }
 
-// The first of the deepest points of the facet; what the tolerance cannot tell apart is as deep.
+// Returns the first of the deepest points of the facet, to the tolerance.
 fn deepest_of_facet() -> u32 {
     var lowest = 0u;
     for (var k = 1u; k < facet_count; k++) {
@@ -234,7 +236,7 @@ fn deepest_of_facet() -> u32 {
     return lowest;
 }
 
-// Removes the corner of the hull that spans the smallest triangle with its neighbours, but not the deepest.
+// Removes the corner of the hull that spans the smallest triangle with its neighbours, except the deepest.
 fn remove_least_corner() {
     var lowest = 0u;
     for (var k = 1u; k < facet_hull_count; k++) {
@@ -260,8 +262,8 @@ fn remove_least_corner() {
     }
 }
 
-// Of one point more than there is room for, removes one of the two that are nearest to each other: the shallower, between equals the
-// one nearer to the middle.
+// Removes one of the two nearest points if there is one more than the maximum: the shallower, among equals the one
+// nearer to the centre.
 fn thin_out(manifold: u32) {
     let count = MAX_TERRAIN_POINTS + 1u;
     var nearest = UNMOVABLE;

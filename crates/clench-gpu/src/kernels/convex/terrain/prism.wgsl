@@ -1,8 +1,9 @@
-// The ground below a triangle of terrain: a convex body of six corners. Sister of `clench-collide/src/narrow/convex/prism.rs`.
+// The ground below a triangle of terrain: a convex body of six corners. CPU counterpart:
+// `clench-collide/src/narrow/convex/prism.rs`.
 
-// Beside the kinds of shapes, none of which it is.
+// A kind outside those of shapes.
 const PRISM: u32 = 100u;
-// A unit direction that rises by more is no normal of a wall.
+// The rise of a unit direction above which it is no normal of a wall.
 const WALL_RISE: f32 = 0.1;
 const PRISM_FACES: u32 = 5u;
 const PRISM_EDGES: u32 = 9u;
@@ -10,7 +11,7 @@ const PRISM_EDGES: u32 = 9u;
 // Three corners on top, counter-clockwise seen from above, and the three below them.
 var<private> prism: array<vec3f, 6>;
 
-// The number of the corner that is furthest along `d`.
+// Returns the index of the corner furthest along `d`.
 fn furthest_of_prism(d: vec3f) -> u32 {
     let first = select(0u, 3u, d.z < 0.0);
     var furthest = first;
@@ -22,7 +23,7 @@ fn furthest_of_prism(d: vec3f) -> u32 {
     return furthest;
 }
 
-// The corners of the top, the bottom and the walls, counter-clockwise seen from outside; those of the first two repeat one.
+// Returns the corners of the top, the bottom or a wall, counter-clockwise seen from outside; the first two repeat one.
 fn corners_of_prism(face: u32) -> vec4u {
     if (face == 0u) {
         return vec4u(0u, 1u, 2u, 2u);
@@ -35,7 +36,7 @@ fn corners_of_prism(face: u32) -> vec4u {
     return vec4u(start, start + 3u, end + 3u, end);
 }
 
-// The outward unit normal of a face, and in w where its plane is along it.
+// Returns the outward unit normal of a face and, in w, the offset of its plane along it.
 fn plane_of_prism(face: u32) -> vec4f {
     let corners = corners_of_prism(face);
     let p = prism[corners.x];
@@ -49,7 +50,8 @@ fn plane_of_prism(face: u32) -> vec4f {
     return vec4f(normal, dot(normal, p));
 }
 
-// The ends of an edge on top, at the bottom or between, the face that goes along it from the first to the second, and the other.
+// Returns the ends of an edge at the top, the bottom or between, the face that traverses it from the first to the
+// second, and the other.
 fn edge_of_prism(k: u32) -> vec4u {
     let side = k % 3u;
     let next = (side + 1u) % 3u;
@@ -66,7 +68,7 @@ fn edge_of_prism(k: u32) -> vec4u {
     }
 }
 
-// The corner `k` of the three that share an edge with one: the next and the last on its level, and the one below or above it.
+// Returns neighbour `k` of a corner: the next and the previous on its level, and the one below or above it.
 fn neighbor_in_prism(corner: u32, k: u32) -> u32 {
     if (k == 2u) {
         return (corner + 3u) % 6u;
@@ -74,7 +76,7 @@ fn neighbor_in_prism(corner: u32, k: u32) -> u32 {
     return corner - corner % 3u + (corner + 1u + k) % 3u;
 }
 
-// A sphere about the first corner that holds it has this radius.
+// Returns the radius of a sphere about the first corner that encloses the prism.
 fn reach_of_prism() -> f32 {
     var most = vec3f();
     for (var k = 0u; k < bound(6u); k++) {
@@ -83,13 +85,13 @@ fn reach_of_prism() -> f32 {
     return length(most);
 }
 
-// Its face that lies against the plane across the unit direction `d`, else its edge, else its corner.
+// Stores the face that lies against the plane across the unit direction `d`, else the edge, else the corner.
 fn feature_of_prism(d: vec3f, place: u32) -> Feature {
-    // A cosine as the squares of two lengths that it is the quotient of.
+    // A cosine, as the squares of the two lengths of which it is the quotient.
     var steepest = vec2f(FACE_COSINE * FACE_COSINE, 1.0);
     var face = NONE;
     var normal = vec3f();
-    // A direction that rises this steeply can be the normal of the top alone.
+    // A direction that rises this steeply can only be the normal of the top.
     let faces = select(PRISM_FACES, 1u, d.z > WALL_RISE);
     for (var k = 0u; k < faces; k++) {
         let corners = corners_of_prism(k);
@@ -112,7 +114,7 @@ fn feature_of_prism(d: vec3f, place: u32) -> Feature {
     }
     let corner = furthest_of_prism(d);
     feature_corners[place] = prism[corner];
-    // The rise and the length of the best edge, squared.
+    // The squared rise and length of the best edge.
     var best_edge = vec2f(EDGE_SINE * EDGE_SINE, 1.0);
     var count = 1u;
     for (var k = 0u; k < bound(3u); k++) {

@@ -1,58 +1,60 @@
-// Height fields against bounded convex shapes. Sister of `clench-collide/src/narrow/convex/terrain/mod.rs`, where it is explained.
+// Height fields against bounded convex shapes. CPU counterpart: `clench-collide/src/narrow/convex/terrain/mod.rs`,
+// which explains it.
 //
-// Each triangle is a round of `convex`: the first body is the ground below it. What a round finds goes into lists in memory, and from
-// there into a manifold at its end. After the triangles come rounds that merge what is left.
+// Each triangle is a round of `convex`: the first body is the ground below it. The contacts of a round are listed in
+// memory and added to a manifold at its end. Closing rounds after the triangles merge the remaining contacts.
 
-// A face counts if its depth is at most this many times the smallest depth of any prism.
+// The maximum depth of a face that counts, relative to the smallest depth of any prism.
 const FACE_DEPTH_RATIO: f32 = 2.0;
-// A direction counts as the face's normal within this many times the tolerance for equal directions.
+// The tolerance for a direction to count as the face's normal, relative to that for equal directions.
 const FACE_NORMAL_RATIO: f32 = 8.0;
-// So many times the tolerance the middle of a ball must be off a triangle for the direction between them to be exact.
+// The minimum distance of a ball's centre from a triangle for an exact direction, relative to the tolerance.
 const CLEAR: f32 = 1e3;
-// How many convex edges and vertices are remembered; others may be searched more than once.
+// The maximum number of stored convex edges and vertices; others may be searched repeatedly.
 const MAX_FEATURES: u32 = 4u;
 // Rounds after the triangles: provisional contacts, then the deepest of those that count and of those that do not.
 const CLOSING_ROUNDS: u32 = 3u;
 
-// What is to be done with a triangle: nothing, find its gap, or take the gap of a feature that it shares.
+// The work for a triangle: none, find its gap, or take the gap of a feature that it shares.
 const NOTHING: u32 = 0u;
 const SEARCH: u32 = 1u;
 const SHARED: u32 = 2u;
 
-// What a triangle's patch is: of a direction that counts, along its normal or not; of one that does not; of a feature known before.
+// The kind of a triangle's patch: of a direction that counts, along its normal or not; of one that does not; of a known
+// feature.
 const ALONG_NORMAL: u32 = 0u;
 const ADMITTED: u32 = 1u;
 const REJECTED: u32 = 2u;
 const KNOWN: u32 = 3u;
 
-// Whether contacts are those of a triangle, to be listed.
+// True if contacts are those of a triangle, to be listed.
 var<private> on_terrain: bool;
 var<private> terrain_offset: vec3f;
 var<private> terrain_range: f32;
-// The least distances along directions that count and that do not, with contacts that have them.
+// Contacts with the least distance along directions that count and that do not.
 var<private> deepest: TerrainPoint;
 var<private> rejected: TerrainPoint;
 // The largest distance along normals of faces with provisional contacts.
 var<private> shallowest: f32;
-// Which half of which cell of the window comes next, how many there are, and whether any is near the body; then, which closing round.
+// The next half of a cell of the window, their number, and whether any is near the body; afterwards, the closing round.
 var<private> next_half: u32;
 var<private> half_count: u32;
 var<private> any_is_near: bool;
-// The direction along which the last triangle's ground was apart from the body.
+// The direction that separated the last triangle's ground from the body.
 var<private> apart_along: vec3f;
 var<private> features: array<TerrainFeature, MAX_FEATURES>;
 var<private> feature_count: u32;
 var<private> patch_count: u32;
 var<private> patch_is: u32;
-// The present triangle's distance along its normal.
+// The current triangle's distance along its normal.
 var<private> face_distance: f32;
-// What the round adds to a manifold: points of a list that are not deeper than this.
+// The list of points that the round adds to a manifold, if they are not deeper than a limit.
 var<private> added_from: u32;
 var<private> added_count: u32;
 var<private> added_to: u32;
 var<private> added_least: f32;
 
-// Begins with a body about `offset` in the field's frame.
+// Begins with a body at `offset` in the field's frame.
 fn begin_terrain(geom: u32, body: Body, turn: mat3x3f, offset: vec3f, range: f32) {
     begin_grid(words[GEOM_HULL + geom]);
     terrain_size = body.reach;
@@ -70,12 +72,12 @@ fn begin_terrain(geom: u32, body: Body, turn: mat3x3f, offset: vec3f, range: f32
     next_half = 0u;
     half_count = 0u;
     if (begin_bounds(body, turn, offset, body.radius + range + terrain_tolerance)) {
-        // The cell below the lowest point comes first: what is deepest saves much of the work on the rest.
+        // The cell below the lowest point comes first: the deepest contact saves much of the remaining work.
         half_count = 2u * (1u + u32(window_size.x * window_size.y));
     }
 }
 
-// Goes on to the next triangle that is near the body, or closing round. Whether there is one.
+// Advances to the next triangle near the body, or closing round. Returns true if there is one.
 fn find_round() -> bool {
     let first = cell_at(lowest_point.x, lowest_point.y);
     while (next_half < half_count) {
@@ -110,9 +112,9 @@ fn add_list(list: u32, count: u32, manifold: u32, least: f32) {
     added_least = least;
 }
 
-// Whether a direction shows that the body, whose point nearest to the ground along it is given, and the ground are apart.
+// Returns true if a direction separates the ground from the body, whose point nearest to the ground along it is given.
 fn separates(n: vec3f, nearest: vec3f) -> bool {
-    // Downwards the prism's bottom would have to be considered too.
+    // Downwards, the prism's bottom would need to be considered too.
     if (n.z <= 0.0) {
         return false;
     }
@@ -121,8 +123,8 @@ fn separates(n: vec3f, nearest: vec3f) -> bool {
     return gap > 0.0 && gap * gap > reach * reach * dot(n, n);
 }
 
-// The contact of a triangle and a ball whose middle is above it. Whether it could tell: a middle that is lower than the nearest point
-// of the triangle may be nearer to the walls below.
+// Finds the contact of a triangle and a ball with its centre above it. Returns false if it could not: a centre below
+// the nearest point of the triangle may be nearer to the walls.
 fn ball_on_triangle() -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         simplex[k].w = triangle[k] - offset_b;
@@ -149,7 +151,8 @@ fn ball_on_triangle() -> bool {
     return true;
 }
 
-// Makes the triangle of a round the first body, and does what can be done without the gap between the two. What is left to do.
+// Makes the triangle of a round the first body, and does the work that does not need the gap between the two. Returns
+// the remaining work.
 fn begin_round(second: Body, turn: mat3x3f) -> u32 {
     added_count = 0u;
     patch_count = 0u;
@@ -162,7 +165,7 @@ fn begin_round(second: Body, turn: mat3x3f) -> u32 {
     if (second.kind == SPHERE && ball_on_triangle()) {
         return NOTHING;
     }
-    // Directions that may separate, the normal between them, and the points of the body that are furthest against them.
+    // Candidate separating directions, with the normal second, and the points of the body furthest against them.
     var ways = array<vec3f, 3>(offset_b - (triangle[0] + triangle[1] + triangle[2]) / 3.0, triangle_normal, apart_along);
     var nearest = array<vec3f, 3>();
     for (var k = 0u; k < bound(3u); k++) {
@@ -179,7 +182,7 @@ fn begin_round(second: Body, turn: mat3x3f) -> u32 {
         return NOTHING;
     }
     find_face_contacts(terrain_range);
-    // No deeper than the deepest distance so far: then only the face itself or a convex feature can add contacts.
+    // No deeper than the deepest contact so far: only the face itself or a convex feature can add contacts.
     if (face_distance >= deepest.distance - terrain_tolerance && (face_touches || is_hollow())) {
         add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
         return NOTHING;
@@ -187,13 +190,13 @@ fn begin_round(second: Body, turn: mat3x3f) -> u32 {
     if (separates(ways[2], nearest[2])) {
         return NOTHING;
     }
-    // Deep within its walls: then no depth of the prism is smaller than through its face.
+    // Deep within its walls: no depth of the prism is smaller than through its face.
     if (triangle_surrounds(lowest - triangle_normal * max(height, 0.0), max(-height, 0.0))) {
         deepest = deeper(deepest, contact_below(lowest));
         add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
         return NOTHING;
     }
-    // A convex edge or vertex touches along one normal with all of the prisms around it.
+    // A convex edge or vertex touches along the same normal in all adjacent prisms.
     for (var k = 0u; k < feature_count; k++) {
         if (has_feature(features[k])) {
             best = features[k].gap;
@@ -204,7 +207,7 @@ fn begin_round(second: Body, turn: mat3x3f) -> u32 {
     return SEARCH;
 }
 
-// Decides what the largest gap of a triangle, in `best`, means. Whether its patch is needed.
+// Classifies the largest gap of a triangle, in `best`. Returns true if its patch is needed.
 fn classify() -> bool {
     if (patch_is == KNOWN) {
         return true;
@@ -225,7 +228,7 @@ fn classify() -> bool {
     return best.gap - body_b.radius < rejected.distance;
 }
 
-// Lists a contact of the present triangle's patch; a patch has fewer than there is room for.
+// Lists a contact of the current triangle's patch, which has fewer than the capacity.
 fn add_to_patch(point: TerrainPoint) {
     if (patch_count < PATCH_LIST_POINTS) {
         put_terrain_point(thread_field(TERRAIN_PATCH) + TERRAIN_POINT_SIZE * patch_count, point);
@@ -233,7 +236,7 @@ fn add_to_patch(point: TerrainPoint) {
     }
 }
 
-// Takes the patch of a triangle, if it has one, and adds what the round has listed to a manifold.
+// Processes the patch of a triangle, if any, and adds the round's list to a manifold.
 fn end_round() {
     for (var k = 0u; k < patch_count; k++) {
         let point = terrain_point(thread_field(TERRAIN_PATCH) + TERRAIN_POINT_SIZE * k);
@@ -247,7 +250,7 @@ fn end_round() {
         add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
     } else if (patch_count > 0u && patch_is != REJECTED) {
         add_list(thread_field(TERRAIN_PATCH), patch_count, COUNTED, -UNMOVABLE);
-        // Where there is no more room it is found again.
+        // Without capacity it is found again.
         if (patch_is != KNOWN && feature_count < MAX_FEATURES) {
             features[feature_count] = feature_of_triangle(best);
             feature_count++;
@@ -261,8 +264,8 @@ fn end_round() {
     }
 }
 
-// The rounds after the triangles leave all contacts in the manifold of those that count. The body is in the field at least as deep as
-// in any prism.
+// Runs a closing round; they leave all contacts in the manifold of those that count. The body is at least as deep in
+// the field as in any prism.
 fn close(round: u32) {
     if (round == 1u) {
         var least = deepest.distance;
@@ -286,7 +289,7 @@ fn close(round: u32) {
     }
 }
 
-// Gives the contacts that count to the pool; `a` is the field.
+// Adds the contacts that count to the pool; `a` is the field.
 fn end_terrain(pair: u32, a: Placed) {
     for (var k = 0u; k < manifold_counts[COUNTED]; k++) {
         let point = terrain_point(manifold_point(COUNTED, k));

@@ -1,0 +1,93 @@
+//! Doc comments keep to `docs/words.md`, as far as a program can tell.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Folders whose sources are checked.
+const FOLDERS: [&str; 4] = ["crates", "python/src", "xtask/src", "fuzz"];
+/// Words that no doc comment begins with: what follows them is a noun clause.
+const OPENINGS: [&str; 7] = ["What", "Where", "How", "Whether", "Who", "Which", "When"];
+/// Words of the glossary's left column that have no other sense here.
+const AVOIDED: [&str; 3] = ["sister", "so many", "somebody"];
+const MAX_COLUMNS: usize = 120;
+
+#[test]
+fn doc_comments_are_sentences_in_the_usual_terms() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for folder in FOLDERS {
+        collect(&root.join(folder), &mut files);
+    }
+    assert!(files.len() > 500, "only {} files", files.len());
+    let mut wrong = Vec::new();
+    for file in &files {
+        let text = fs::read_to_string(file).expect("a source file");
+        for (line, reason) in faults(&text) {
+            wrong.push(format!("{}:{line}: {reason}", file.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "see docs/words.md:\n{}", wrong.join("\n"));
+}
+
+/// Collects the Rust and WGSL files of a folder, except tests, examples and build products.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    let entries = fs::read_dir(folder).expect("a folder of the repository");
+    for path in entries.map(|entry| entry.expect("an entry").path()) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let is_source = path.extension().is_some_and(|e| e == "rs" || e == "wgsl");
+        if path.is_dir() && !["tests", "examples", "target"].contains(&&*name) {
+            collect(&path, files);
+        } else if is_source {
+            files.push(path);
+        }
+    }
+}
+
+/// Returns the lines of doc comments that break a rule, with the rule.
+fn faults(text: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    let (mut is_inside, mut is_code) = (false, false);
+    for (number, line) in (1..).zip(text.lines()) {
+        let trimmed = line.trim_start();
+        let comment = (trimmed.strip_prefix("///")).or_else(|| trimmed.strip_prefix("//!"));
+        let Some(comment) = comment.map(str::trim) else {
+            (is_inside, is_code) = (false, false);
+            continue;
+        };
+        is_code ^= comment.starts_with("```");
+        if !is_code {
+            let first = comment.split([' ', ',']).next().unwrap_or_default();
+            if !is_inside && OPENINGS.contains(&first) {
+                found.push((number, format!("begins with {first:?}")));
+            }
+            // Addresses, and the types of arguments in Python's docstrings, stay in one line.
+            let is_whole = ["http", " : {"].iter().any(|part| comment.contains(part));
+            if line.chars().count() > MAX_COLUMNS && !is_whole {
+                found.push((number, format!("is longer than {MAX_COLUMNS} columns")));
+            }
+            let lower = format!(" {} ", comment.to_lowercase());
+            let used = AVOIDED
+                .iter()
+                .find(|word| lower.contains(&format!(" {word} ")));
+            found.extend(used.map(|word| (number, format!("contains {word:?}"))));
+        }
+        is_inside = !comment.is_empty();
+    }
+    found
+}
+
+#[test]
+fn each_rule_finds_what_breaks_it() {
+    let lines = |text: &str| Vec::from_iter(faults(text).into_iter().map(|(line, _)| line));
+    assert_eq!(lines("/// What it is.\nfn a() {}\n/// Returns it.\n"), [1]);
+    assert_eq!(
+        lines("/// Returns it\n/// Where it is.\n\n//! How it is.\n"),
+        [4]
+    );
+    assert_eq!(lines(&format!("/// {}\n", "a".repeat(117))), [1]);
+    assert_eq!(
+        lines("/// Its sister on the GPU.\n/// A sisterhood.\n"),
+        [1]
+    );
+    assert_eq!(lines("/// ```\n/// What\n/// ```\n"), Vec::<usize>::new());
+}
