@@ -122,15 +122,16 @@ fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3
     return vec3(1.0);
 }
 
-// The color of grid lines, and their opacity.
+// The color and opacity of grid lines below a model without a ground, and the share of light that lines on a floor take.
 const GRID = vec4(0.596, 0.635, 0.682, 0.42);
+const LINE_SHADE = 0.3;
 
 // The share of a pixel that grid lines cover: they are one pixel wide, and vanish where they are close to each other.
 fn grid_cover(place: vec2<f32>, cell: f32) -> f32 {
     let at = place / max(cell, 1e-6);
     let wide = fwidth(at);
     let lines = saturate(1.0 - abs(fract(at - 0.5) - 0.5) / max(wide, vec2(1e-6))) * saturate(1.0 - 2.0 * wide);
-    return select(0.0, GRID.a * max(lines.x, lines.y), cell > 0.0);
+    return select(0.0, max(lines.x, lines.y), cell > 0.0);
 }
 
 // The unshadowed share of the light that casts the shadow, from nine adjacent samples.
@@ -232,9 +233,9 @@ fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
     }
     let fog = smoothstep(view.fog.x, view.fog.y, distance);
     if (item.texture.z > 0.0) {
-        return vec4(linear(GRID.rgb), lines * (1.0 - fog));
+        return vec4(linear(GRID.rgb), GRID.a * lines * (1.0 - fog));
     }
-    light = mix(light, linear(GRID.rgb), lines);
+    light *= 1.0 - LINE_SHADE * lines;
     return vec4(mix(light, linear(view.sky.rgb), fog), item.color.a);
 }
 

@@ -159,10 +159,11 @@ fn each_side_of_a_cube_has_its_picture() {
     }
 }
 
+/// A white surface at z = 0 under lights: that of a box, on which there are no lines.
 fn lit(visual: &str, lights: &str) -> String {
     format!(
         "<mujoco><visual>{visual}</visual><worldbody>{lights}
-         <geom type='plane' size='2 2 1' rgba='1 1 1 1'/></worldbody></mujoco>"
+         <geom type='box' size='2 2 .1' pos='0 0 -.1' rgba='1 1 1 1'/></worldbody></mujoco>"
     )
 }
 
@@ -248,5 +249,29 @@ fn sites_are_seen_in_their_groups() {
     if let (Some(seen), Some(hidden)) = (middle(0), middle(4)) {
         assert_eq!(seen, hue(G));
         assert_ne!(hidden, hue(G));
+    }
+}
+
+#[test]
+fn a_ground_without_a_picture_has_lines_as_on_the_page() {
+    let balls = "<body pos='-1.3 0 1'><geom size='0.2'/></body><body pos='1.3 0 1'><geom size='0.2'/></body>";
+    // Lines are 0.5 m apart, and a pixel is 33 mm wide: one line crosses these pixels of a row.
+    for floor in ["<geom type='plane' size='0 0 1'/>", ""] {
+        let text = format!("<mujoco><worldbody>{floor}{balls}</worldbody></mujoco>");
+        let Some(image) = drawn(&text, None) else {
+            return;
+        };
+        let row = Vec::from_iter((56..72).map(|x| at(&image, x, 42)[1]));
+        let (least, most) = (row.iter().min().unwrap(), row.iter().max().unwrap());
+        assert!(most - least > 4, "{row:?}");
+    }
+    let picture = "<mujoco>
+          <asset><texture name='t' type='2d' builtin='flat' rgb1='1 1 1' width='8' height='8'/><material name='m' texture='t'/></asset>
+          <worldbody><geom type='plane' size='0 0 1' material='m'/>BALLS</worldbody>
+        </mujoco>";
+    if let Some(image) = drawn(&picture.replace("BALLS", balls), None) {
+        let row = Vec::from_iter((56..72).map(|x| at(&image, x, 42)[1]));
+        let (least, most) = (row.iter().min().unwrap(), row.iter().max().unwrap());
+        assert!(most - least <= 4, "{row:?}");
     }
 }
