@@ -1,4 +1,4 @@
-"""One environment, one thread: Clench and MuJoCo's rollout from the model's initial state, or a given one."""
+"""Times one environment on one thread: Clench and MuJoCo's rollout, from the model's initial state or a given one."""
 
 import time
 
@@ -43,11 +43,11 @@ class Rollout:
         self.states = np.empty((1, len(controls), size))
         self.sensors = np.empty((1, len(controls), self.model.nsensordata))
         self.pool = rollout.Rollout(nthread=0)
-        self.gradients = []  # where each step's solve ended: the scaled norm, the largest of the islands
+        self.gradients = []  # the scaled gradient norm at the end of each step's solve, the maximum over islands
         self.contacts, self.iterations = self.statistics(controls)
 
     def statistics(self, controls):
-        """Mean contacts and iterations a step (a Runge–Kutta step reports its last stage), and a sanity check."""
+        """Returns the mean contacts and iterations of a step (of RK4 the last stage); checks that MuJoCo is stable."""
         data, contacts, iterations = mujoco.MjData(self.model), 0, 0
         mujoco.mj_setState(self.model, data, self.start[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
         for control in controls:
@@ -63,7 +63,7 @@ class Rollout:
 
     @staticmethod
     def last_gradient(data, counts):
-        """The largest of what the islands' solves ended with; of some islands MuJoCo keeps no record."""
+        """Returns the largest final gradient norm of the islands. MuJoCo does not record all islands."""
         history = data.solver.gradient.reshape(len(data.solver_niter), -1)
         ends = [row[min(count, len(row)) - 1] for row, count in zip(history, counts, strict=False) if count]
         return max(ends, default=0.0)

@@ -1,10 +1,9 @@
-"""Many environments, one thread: Clench's batch in both precisions and MuJoCo's own, from the same states, with the same controls.
+"""Times batches of environments from equal states with equal controls: Clench's in both precisions, and MuJoCo's.
 
-MuJoCo's batch has one MjData a thread (one an environment, `persistent`, was measured to be slower) and binds and records
-nothing. It is timed in the faster of two ways, found by trying both: a `step` call a step, whose controls are written before
-it, or one `rollout` call for the whole run, which is given the controls of every step. Clench takes 50 steps a call.
-Contacts and iterations of MuJoCo come from a run of their own that records them for every environment and step, and is not
-timed.
+MuJoCo's batch has one MjData per thread (one per environment, `persistent`, was slower) and binds and records nothing.
+It is timed with the faster of two methods, found by trying both: one `step` call per step, after writing the controls,
+or one `rollout` call for the whole run with the controls of every step. Clench takes 50 steps per call. MuJoCo's
+contacts and iterations come from a separate run that records every environment and step and is not timed.
 """
 
 import os
@@ -19,7 +18,7 @@ from scene import Unmeasured, describe, load, perturbed_states, smooth_controls
 from timing import alternate, ratio, table
 
 BASELINE = "mujoco batch"
-TRIALS = 3  # of each way to use it
+TRIALS = 3  # of each method of using MuJoCo's batch
 
 
 def compare(path, args):
@@ -51,7 +50,7 @@ def compare(path, args):
 
 
 def print_lanes(bits, summary):
-    """What lanes lose to environments that differ."""
+    """Prints the work that SIMD lanes lose because environments differ."""
     divergence = summary["divergence"]
     print(
         f"  f{bits}: {summary['lanes']} side by side ({summary['instructions']}) need "
@@ -64,7 +63,8 @@ class Batch:
     """MuJoCo's batch on the calling thread."""
 
     def __init__(self, model, ctrl, states):
-        asleep = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP  # a state of its own an environment, which MuJoCo keeps in an MjData each
+        # Sleep needs a separate state per environment, which MuJoCo stores in one MjData each.
+        asleep = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP
         self.batch = mujoco_batch.Batch(model, nsim=len(states), nthread=1, persistent=bool(asleep))
         self.batch.qpos = states[:, : model.nq]
         self.batch.qvel = states[:, model.nq :]
@@ -75,7 +75,7 @@ class Batch:
         self.way = min(("rollout", "step"), key=lambda way: min(self.run(way) for _ in range(TRIALS)))
 
     def statistics(self):
-        """Mean contacts and iterations a step (a Runge–Kutta step reports its last stage), and a sanity check."""
+        """Returns the mean contacts and iterations of a step (of RK4 the last stage); checks that MuJoCo is stable."""
         records = self.batch.rollout(self.steps, self.ctrl, record=("ncon", "solver_niter", "nisland"))
         if self.batch.warning.any():
             raise Unmeasured("MuJoCo warns of an unstable motion: these controls measure nothing")
@@ -84,7 +84,7 @@ class Batch:
         return records["ncon"].mean(), (records["solver_niter"] * solved).sum(axis=-1).mean()
 
     def run(self, way=None):
-        """Seconds of stepping, controls included."""
+        """Returns the seconds of stepping, including writing the controls."""
         self.batch.state[:] = self.start
         ctrl = self.batch.bind("ctrl")
         begin = time.perf_counter()
@@ -98,5 +98,5 @@ class Batch:
 
 
 def processors():
-    """How many this process may use."""
+    """Returns the number of processors available to this process."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

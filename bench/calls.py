@@ -1,5 +1,7 @@
-"""What a step of a batch costs when Python asks for it: the same calls, one step each, from Python and from Rust, whose states in
-the end must be the same to the bit."""
+"""Measures the overhead of stepping a batch from Python: the same calls, one step each, from Python and from Rust.
+
+The final states must be bitwise equal.
+"""
 
 import os
 import subprocess
@@ -17,7 +19,7 @@ WARM = 100  # steps before the clock starts
 
 
 def compare(path, args):
-    """Times both on one model with one thread and more, prints the ratios and returns them as rows."""
+    """Times both on one model, on one thread and on several; prints the ratios and returns them as rows."""
     rows = []
     for threads in sorted({1, args.threads}):
         engines = {
@@ -39,7 +41,7 @@ def compare(path, args):
 
 
 def wave(values, size):
-    """The numbers of the Rust program."""
+    """Fills an array with the numbers that the Rust program uses."""
     flat = values.reshape(-1)
     flat[:] = size * ((7 * np.arange(flat.size)) % 101 / 50.0 - 1.0)
 
@@ -52,7 +54,7 @@ class Python:
         self.bits = 0
 
     def run(self):
-        """Seconds of stepping alone."""
+        """Returns the seconds of stepping alone."""
         batch = clench.Batch(self.model, self.envs, threads=self.threads)
         wave(batch.qvel, 0.1)
         wave(batch.ctrl, 0.5)
@@ -74,7 +76,7 @@ class Rust:
         self.bits = 0
 
     def run(self):
-        """Seconds of stepping alone, timed by the program."""
+        """Returns the seconds of stepping alone, timed by the program."""
         done = subprocess.run(self.command, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"{' '.join(self.command)}\n{done.stderr}")

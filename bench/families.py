@@ -1,9 +1,9 @@
-"""Scenes of manipulation and of many bodies: one environment, then 64 and 256, in both precisions, beside MuJoCo in turns.
+"""Times scenes of manipulation and of many bodies: one environment, then 64 and 256, alternating with MuJoCo.
 
-Heaps are timed once they lie (or, where they collapse, when half of the way is done): Clench steps them there, and both engines
-start from that state. Beside the times stand contacts, iterations, and the scaled norm of the gradient that each engine's solves ended
-with, as each tells it: the median of the steps. All figures go to target/bench/families.json; with `--docs` docs/families.md and its
-plots are written anew. `--filter NAME` measures some scenes and keeps what that file has of the others.
+Batches run in both precisions. Heaps are timed once they are at rest (or, if they collapse, half-way): Clench steps
+them there, and both engines start from that state. The table also has contacts, iterations, and the median over steps
+of the final scaled gradient norm that each engine reports. All figures go to target/bench/families.json; `--docs` also
+rewrites docs/families.md and its plots. `--filter NAME` measures some scenes and keeps that file's figures of the rest.
 """
 
 import json
@@ -32,10 +32,11 @@ sys.path.insert(0, str(ROOT / "parity"))
 import public
 
 OUT = ROOT / "target/bench/families.json"
-SECONDS = 0.3  # of MuJoCo's time, a run
-LONGEST = {1: 20.0, 64: 3.0, 256: 3.0}  # seconds that five steps of MuJoCo may take, by environments; what takes longer is left out
+SECONDS = 0.3  # MuJoCo's time in a run
+# The maximum seconds of five steps of MuJoCo, by number of environments; slower scenes are omitted.
+LONGEST = {1: 20.0, 64: 3.0, 256: 3.0}
 BATCHES = [64, 256]
-GROWTH = [100, 200, 500, 1000]  # bodies of a pile
+GROWTH = [100, 200, 500, 1000]  # numbers of bodies of a pile
 ENVS = [1, 8, 64, 256, 1024]
 THREADED = plots.THREADED
 
@@ -58,7 +59,7 @@ SCENES = {
 
 
 def compare(_, args):
-    """Prints a table, writes the figures and returns a row a scene, number of environments and engine."""
+    """Prints a table, writes the figures and returns a row for each scene, number of environments and engine."""
     print(f"\n{'scene':<22}{'envs':>6} {'engine':<10}{'µs/step':>11}{'ratio':>7}{'contacts':>10}{'iterations':>12}{'gradient':>10}")
     rows, stages, left_out = [], {}, []
     with tempfile.TemporaryDirectory() as folder:
@@ -91,7 +92,7 @@ def compare(_, args):
 
 
 def with_others(record, earlier):
-    """Adds what an earlier run found of scenes that were not measured now."""
+    """Adds an earlier run's figures of the scenes that this run did not measure."""
     measured = list(record["stages"])
     names = list(SCENES)
     kept = [row for row in earlier["rows"] if row["scene"] in names and (row["family"] == "environments" or row["scene"] not in measured)]
@@ -103,7 +104,7 @@ def with_others(record, earlier):
 
 
 class Scene:
-    """One file and the state that it is timed from."""
+    """A model file and the state from which it is timed."""
 
     def __init__(self, name, family, path, before, args):
         self.common = {"scene": name, "family": family}
@@ -113,7 +114,10 @@ class Scene:
         self.common["nv"] = int(self.model.nv)
 
     def alone(self, left_out):
-        """One environment by both, or by Clench where MuJoCo takes too long, which is noted in `left_out`; large scenes on all threads too."""
+        """Times one environment in both engines; large scenes on all threads too.
+
+        If MuJoCo takes too long, only Clench runs, and `left_out` records it.
+        """
         engines = ["mujoco", "clench", *[THREADED][: self.common["family"] == "large" and processors() > 1]]
         try:
             steps = self.affordable(1, 2000)
@@ -133,7 +137,7 @@ class Scene:
         return [self.row(1, name, engine, seconds, steps, gradients[name](engine)) for name, engine in engines.items()]
 
     def batch(self, envs, threads=1):
-        """So many environments by both, Clench in both precisions."""
+        """Times `envs` environments in both engines, Clench in both precisions."""
         steps = self.affordable(envs, 200)
         controls = smooth_controls(self.model, steps)
         states = perturbed_states(self.model, envs, self.args.noise if self.state is None else 0.0)
@@ -147,12 +151,12 @@ class Scene:
         return [self.row(envs, name, engine, seconds, steps) | {"threads": threads} for name, engine in engines.items()]
 
     def arrays(self, controls, states):
-        """What `clench` is given as files."""
+        """Returns the arrays that `clench` reads from files."""
         arrays = {"ctrl": controls, "states": states}
         return {flag: array for flag, array in arrays.items() if array is not None and array.size}
 
     def row(self, envs, name, engine, seconds, steps, gradients=None):
-        """Prints and returns what one engine took."""
+        """Prints and returns the row of one engine."""
         micro = 1e6 * float(np.median(seconds[name])) / steps / envs
         gradient = None if gradients is None else float(np.median(gradients))
         faster = ratio(seconds["mujoco"], seconds[name]) if "mujoco" in seconds else None
@@ -166,7 +170,7 @@ class Scene:
         return self.common | {"envs": envs, "engine": name} | numbers | counts
 
     def stages(self):
-        """Microseconds of each stage of a step of one environment."""
+        """Returns the microseconds of each stage of a step of one environment."""
         steps = 20 if self.model.nv > 2000 else 300
         arrays = self.arrays(smooth_controls(self.model, steps), self.state[None] if self.state is not None else None)
         run = Clench(self.path, arrays, ["--steps", steps, "--profile"])
@@ -174,7 +178,7 @@ class Scene:
         return {stage["stage"]: stage["microseconds"] for stage in run.summary["profile"]}
 
     def affordable(self, envs, most):
-        """How many steps of so many environments MuJoCo does in SECONDS, at least five."""
+        """Returns the number of steps that MuJoCo takes with `envs` environments in SECONDS: 5 to `most`."""
         data = mujoco.MjData(self.model)
         if self.state is not None:
             data.qpos[:], data.qvel[:] = np.split(self.state, [self.model.nq])
@@ -187,7 +191,7 @@ class Scene:
 
 
 def settled(path, steps):
-    """Positions and velocities after so many steps of Clench."""
+    """Returns positions and velocities after `steps` steps of Clench."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out.npz"
         command = [CLENCH, "simulate", str(path), "--steps", str(steps), "--record", str(out), "--every", str(steps)]
@@ -199,7 +203,7 @@ def settled(path, steps):
 
 
 def recorded(engine, name):
-    """A row of the record of one more run."""
+    """Runs the engine once more and returns an array of its record."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out.npz"
         subprocess.run([*engine.command, "--record", str(out)], check=True, capture_output=True)
@@ -208,12 +212,12 @@ def recorded(engine, name):
 
 
 def grow_environments(args):
-    """A scene of manipulation in ever more environments, on one thread and on all."""
+    """Times a scene of manipulation with growing numbers of environments, on one thread and on all."""
     scene = Scene("arm and box", "environments", ROOT / "models/arm_and_box.xml", 0, args)
     counts = sorted({1, processors()})
     return [row for envs in ENVS for threads in counts for row in scene.batch(envs, threads)]
 
 
 def machine():
-    """What the figures belong to."""
+    """Returns the machine and the version of MuJoCo that the figures are from."""
     return {"machine": platform.machine(), "processors": processors(), "load": os.getloadavg()[0], "mujoco": mujoco.__version__}

@@ -1,4 +1,4 @@
-"""Scenes of many bodies or geoms as MJCF text: what grows with a number is written for that number."""
+"""Scenes of many bodies or geoms, generated as MJCF text for a given number of them."""
 
 import math
 
@@ -19,7 +19,7 @@ HEAD = """<mujoco model="{name}">
 """
 TAIL = "  </worldbody>\n</mujoco>\n"
 
-# Small bodies of every shape, all within 0.09 m of their middle.
+# Small bodies of every shape, all within 0.09 m of their centre.
 SHAPES = [
     'type="box" size="0.06 0.05 0.04"',
     'type="cylinder" size="0.05 0.05"',
@@ -31,18 +31,18 @@ SHAPES = [
 
 
 def document(name, bodies, flag="", assets=""):
-    """A file of these lines in the world, above a floor."""
+    """Returns a model file with these lines in the world body, above a floor."""
     return HEAD.format(name=name, flag=flag, assets=assets) + "\n".join(bodies) + "\n" + TAIL
 
 
 def free(shape, position, turn=(0, 0, 0), more=""):
-    """A free body of one geom."""
+    """Returns a free body of one geom."""
     numbers = lambda values: " ".join(f"{value:.6g}" for value in values)
     return f'<body pos="{numbers(position)}" euler="{numbers(turn)}" {more}><freejoint/><geom {shape}/></body>'
 
 
 def pile(count):
-    """So many bodies of six shapes above a bin, six to ten high whatever their number."""
+    """Returns `count` bodies of six shapes above a bin, six to ten layers high for any number."""
     rng = np.random.default_rng(count)
     wide = max(3, round(math.sqrt(count / 8)))
     half = 0.1 * wide + 0.05
@@ -61,7 +61,7 @@ def pile(count):
 
 
 def rings(courses, stones=19):
-    """Rings of stones laid upon each other, each course turned by half a stone: a round tower without mortar."""
+    """Returns a round tower without mortar: rings of stones, each course turned by half a stone."""
     radius, height = 0.16 * stones / (2 * math.pi), 0.06
     shape = f'type="box" size="0.05 0.074 {height / 2}"'
     bodies = []
@@ -74,7 +74,7 @@ def rings(courses, stones=19):
 
 
 def wall(count, wide=25):
-    """So many boxes in courses, each upon two of the one below."""
+    """Returns a wall of `count` boxes in courses, each box on two of the course below."""
     bodies = []
     for k in range(count):
         course, place = divmod(k, wide)
@@ -83,7 +83,7 @@ def wall(count, wide=25):
 
 
 def asleep(count):
-    """So many boxes that rest apart from each other and sleep from the start."""
+    """Returns `count` boxes that rest apart from each other and sleep from the start."""
     wide = math.ceil(math.sqrt(count))
     places = (divmod(k, wide) for k in range(count))
     bodies = [free('type="box" size="0.05 0.05 0.05"', (0.2 * x, 0.2 * y, 0.05), more='sleep="init"') for x, y in places]
@@ -91,7 +91,7 @@ def asleep(count):
 
 
 def chain(count):
-    """So many links that hang from one end, stretched out at the start; they do not touch each other."""
+    """Returns a chain of `count` links, fixed at one end and initially straight. The links do not collide."""
     link = 'type="capsule" fromto="0 0 0 0.05 0 0" size="0.01" contype="0" conaffinity="0"'
     axes = ("0 1 0", "0 0 1")
     opening = [
@@ -102,7 +102,7 @@ def chain(count):
 
 
 def humanoids(count):
-    """So many of our humanoid, apart from each other, who fall."""
+    """Returns `count` of our humanoids, apart from each other, which fall."""
     wide = math.ceil(math.sqrt(count))
     bodies = []
     for k in range(count):
@@ -113,13 +113,13 @@ def humanoids(count):
 
 
 def room(count):
-    """A base on wheels with an arm between so many things that stand still."""
+    """Returns a base on wheels with an arm among `count` static geoms."""
     rng = np.random.default_rng(0)
     wide = math.ceil(math.sqrt(count))
     things = []
     for k in range(count):
         x, y = (0.5 * (index - (wide - 1) / 2) for index in divmod(k, wide))
-        if math.hypot(x, y) < 0.7:  # the base stands here: what would be in its place hangs above
+        if math.hypot(x, y) < 0.7:  # where the base stands, geoms hang above it
             z = 3.0
         else:
             z = rng.uniform(0.05, 0.8)

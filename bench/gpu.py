@@ -1,8 +1,8 @@
-"""Steps of environments a second on a graphics device, by their number, beside Clench's lanes on the processor (single precision, all
-threads) in the same run, with the device's time by stage and its bytes an environment.
+"""Measures environment steps per second on a GPU by number of environments, with its time by stage and its memory.
 
-The example `speed` of clench-gpu measures. Where MuJoCo Warp is installed (`pip install mujoco-warp`) and has a card, it steps as many
-worlds of the same file beside them, by a captured graph. On a software device the figures say nothing of any card.
+The example `speed` of clench-gpu measures the GPU and, in the same run, Clench's lanes on the CPU (single precision,
+all threads). If MuJoCo Warp is installed (`pip install mujoco-warp`) and has a GPU, it steps as many worlds of the same
+file by a captured graph. Figures of a software device say nothing about a GPU.
 """
 
 import json
@@ -14,14 +14,14 @@ import numpy as np
 from scene import ROOT
 
 SPEED = os.environ.get("SPEED", str(ROOT / "target/dist/examples/speed"))
-# As in `speed`: steps that are timed, before, and between new controls.
+# As in `speed`: timed steps, steps before them, and steps between new controls.
 STEPS = 1000
 WARM_UP = 24
 HOLD = 8
 
 
 def compare(model, args):
-    """Prints a table, and returns no rows: MuJoCo's own batch is not in it."""
+    """Prints a table; returns no rows, since MuJoCo's own batch is not in it."""
     command = [SPEED, str(model), str(args.gpu_envs)]
     lines = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
     rows = [json.loads(line) for line in lines]
@@ -41,8 +41,10 @@ def compare(model, args):
 
 
 def warp_speed(model, worlds):
-    """Steps a second of MuJoCo Warp, where it and a card are there, under what `speed` does: from the first keyframe, with controls of their own
-    for all worlds every eight steps."""
+    """Returns the steps per second of MuJoCo Warp, or None if it or a GPU is missing.
+
+    As in `speed`, worlds start from the first keyframe, and each gets its own new controls every eight steps.
+    """
     try:
         import mujoco
         import mujoco_warp

@@ -1,4 +1,4 @@
-"""Scenes of many bodies that lie on each other: how long a step takes, and how deep they are in each other at the end."""
+"""Times heaps of many bodies and measures their penetration at the end."""
 
 import json
 import pathlib
@@ -31,7 +31,7 @@ def compare(path, args):
 
 
 class Steps:
-    """MuJoCo's `mj_step` so many times."""
+    """A run of MuJoCo's `mj_step`."""
 
     def __init__(self, path, steps):
         self.model, self.steps = load(path), steps
@@ -52,20 +52,20 @@ class Steps:
         return seconds
 
     def end(self):
-        """Depths of the contacts that penetrate, m, and the largest linear speed, m/s."""
+        """Returns the depths of penetrating contacts, m, and the largest linear speed, m/s."""
         mujoco.mj_forward(self.model, self.data)
         return depths(self.data.contact.dist), fastest(self.data.qvel)
 
 
 class Steppers(Clench):
-    """`clench simulate` so many steps."""
+    """A run of `clench simulate`."""
 
     def __init__(self, path, steps):
         super().__init__(path, {}, ["--steps", steps])
         self.path, self.steps = path, steps
 
     def end(self):
-        """As for MuJoCo; one more run tells the state at the end."""
+        """Returns the same as `Steps.end`, from the final state of one more run."""
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out.npz"
             subprocess.run([*self.command, "--record", str(out), "--every", str(self.steps)], check=True, capture_output=True)
@@ -82,5 +82,5 @@ def depths(distances):
 
 
 def fastest(qvel):
-    """Of bodies with free joints."""
+    """Returns the largest linear speed of bodies with free joints."""
     return float(np.linalg.norm(qvel.reshape(-1, 6)[:, :3], axis=1).max())

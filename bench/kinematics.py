@@ -16,10 +16,10 @@ import numpy as np
 
 MODELS = pathlib.Path(__file__).resolve().parent.parent / ".venv/models"
 TOLERANCE, ITERATIONS, POSTURE = 1e-4, 100, 1e-3
-# Other starts that Clench tries where it did not reach a goal, in a line of its own.
+# Restarts for goals that Clench did not reach; they have their own line in the table.
 RESTARTS = 8
 
-# Bodies that are brought to poses, and whether the centre of mass is brought to its place too.
+# Bodies with target poses, and True if the centre of mass has a target too.
 ROBOTS = {
     "arm (Panda, 9 dofs)": ("genesis/assets/xml/franka_emika_panda/panda.xml", ["hand"], False),
     "humanoid (27 dofs)": ("dm_control/suite/humanoid.xml", ["left_foot", "right_foot", "left_hand", "right_hand"], True),
@@ -27,7 +27,7 @@ ROBOTS = {
 
 
 class Robot:
-    """A model in both engines, and goals."""
+    """A model in both engines, and its goals."""
 
     def __init__(self, path, bodies, com, count, seed=3):
         self.own = clench.Model.from_file(path)
@@ -38,7 +38,7 @@ class Robot:
         self.start = data.qpos.copy()
         limited = self.model.jnt_limited.astype(bool)
         adr, (low, high) = self.model.jnt_qposadr[limited], self.model.jnt_range[limited].T
-        # The start keeps off the limits, as a home pose does.
+        # Like a home pose, the start is away from the limits.
         self.start[adr] = np.clip(self.start[adr], 0.95 * low + 0.05 * high, 0.05 * low + 0.95 * high)
         self.position, self.quat, self.centre = [], [], []
         for _ in range(count):
@@ -53,7 +53,7 @@ class Robot:
         self.centre = np.array(self.centre)
 
     def targets(self, k):
-        """Those of goal `k`, or of all with a slice."""
+        """Returns the targets of goal `k`, or of several goals if `k` is a slice."""
         frames = [
             clench.FrameTarget(body=b, position=self.position[k, i], quat=self.quat[k, i]) for i, b in enumerate(self.bodies)
         ]

@@ -1,9 +1,9 @@
-"""Collision of one pair of shapes after another: Clench's narrow phase and MuJoCo's on the same poses.
+"""Times the collision of each pair of shapes: Clench's narrow phase and MuJoCo's on the same poses.
 
-The example `pairs` of clench-collide makes a thousand poses of each pair of shapes and times itself on them. Here MuJoCo gets
-the same poses, all in one scene with the pairs far from each other, and tells what its own timer of the narrow phase says, at
-its defaults. That timer includes the mixing of contact parameters, which in Clench is another stage. Both take turns; figures
-are the best of all runs, as both work on the same numbers again and again.
+The example `pairs` of clench-collide generates a thousand poses of each pair of shapes and times itself on them. MuJoCo
+gets the same poses in one scene, with the pairs far from each other, and reports its own timer of the narrow phase, at
+its defaults. That timer includes the mixing of contact parameters, which is a separate stage in Clench. The engines
+alternate; figures are the best of all runs, since every run repeats the same work.
 """
 
 import json
@@ -20,7 +20,7 @@ PAIRS = os.environ.get("PAIRS", str(ROOT / "target/dist/examples/pairs"))
 TIMER = int(mujoco.mjtTimer.mjTIMER_COL_NARROW)
 TURNS = 3
 RUNS = 7
-# How far pairs are apart, m, and how many stand in a row.
+# The distance between pairs, m, and the number of pairs in a row.
 SPACING, ROW = 4.0, 32
 
 
@@ -36,7 +36,7 @@ def compare(_, args):
 
 
 def measure(name):
-    """Both engines in turn on one pair; prints and returns its row."""
+    """Times both engines alternately on one pair; prints and returns its row."""
     scene = None
     clench, other, contacts = np.inf, np.inf, 0
     for _ in range(TURNS):
@@ -54,12 +54,12 @@ def measure(name):
 
 
 def example(*arguments):
-    """What the example prints."""
+    """Returns the output of the example."""
     return subprocess.run([PAIRS, *arguments], capture_output=True, text=True, check=True).stdout
 
 
 class MuJoCo:
-    """One scene of all poses."""
+    """A scene with all poses of a pair."""
 
     def __init__(self, row):
         self.poses = len(row["bodies"])
@@ -71,7 +71,7 @@ class MuJoCo:
         mujoco.mj_comPos(self.model, self.data)
 
     def run(self):
-        """Nanoseconds and contacts of a pose."""
+        """Returns the nanoseconds and contacts per pose."""
         timer, best = self.data.timer[TIMER], np.inf
         for _ in range(RUNS):
             timer.duration, timer.number = 0, 0
@@ -81,9 +81,10 @@ class MuJoCo:
 
 
 def xml(row):
-    """All pairs as free bodies on a grid; of a plane and of terrain there is but one, and poses are as seen from it.
+    """Returns a model with all pairs as free bodies on a grid.
 
-    On terrain the bodies stand among each other, so they collide with the terrain alone.
+    A plane or terrain occurs once, and poses are relative to it. Bodies on terrain overlap, so they collide only with
+    the terrain.
     """
     kinds = row["pair"]
     terrain = kinds[0] == "terrain"
@@ -118,7 +119,7 @@ def geom(kind, side, body):
 
 
 def seen_from(frame, body):
-    """Position and quaternion of a body in the frame of another."""
+    """Returns the position and quaternion of a body in the frame of another."""
     back, position, quat = np.zeros(4), np.zeros(3), np.zeros(4)
     mujoco.mju_negQuat(back, np.array(frame["quat"]))
     mujoco.mju_rotVecQuat(position, np.array(body["pos"]) - np.array(frame["pos"]), back)

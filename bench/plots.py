@@ -1,4 +1,4 @@
-"""docs/families.md and its plots, from the figures of families.py."""
+"""Writes docs/families.md and its plots from the figures of families.py."""
 
 import matplotlib
 
@@ -7,8 +7,8 @@ import matplotlib.pyplot as plt
 
 COLORS = {"mujoco": "#888888", "clench": "#c04020", "clench f64": "#c04020", "clench f32": "#e0a030"}
 FIELDS = [("contacts_mean", ".0f"), ("iterations_mean", ".1f"), ("gradient_median", ".0e")]
-THREADED = "clench, all threads"  # one environment, whose steps they share
-SMALL = 0.03  # of a step: stages that never take more are drawn as one
+THREADED = "clench, all threads"  # one environment whose steps use all threads
+SMALL = 0.03  # fraction of a step: stages that never take more are drawn as one
 
 
 PAGE = """# Scenes of manipulation and of many bodies
@@ -47,7 +47,7 @@ def draw(record, folder):
 
 
 def alone(rows, scenes):
-    """A line a scene, of one environment."""
+    """Returns the table of one environment, a line per scene."""
     lines = ["| scene | dofs | MuJoCo µs | Clench µs | ratio | threads | contacts | iterations | gradient |", "| --- " * 9 + "|"]
     for scene in scenes:
         found = {row["engine"]: row for row in rows if row["scene"] == scene and row["envs"] == 1 and row["family"] != "environments"}
@@ -63,7 +63,7 @@ def alone(rows, scenes):
 
 
 def many(rows, scenes):
-    """A line a scene, of batches."""
+    """Returns the table of batches, a line per scene."""
     columns = [(envs, engine) for envs in (64, 256) for engine in ("clench f64", "clench f32")]
     heads = [f"{envs}, {engine.removeprefix('clench ')}" for envs, engine in columns]
     lines = ["| scene | " + " | ".join(heads) + " |", "| --- " * (1 + len(heads)) + "|"]
@@ -76,7 +76,7 @@ def many(rows, scenes):
 
 
 def stages(profiles, path):
-    """Where a step of one environment spends its time, a bar a scene."""
+    """Draws the share of each stage in a step of one environment, a bar per scene."""
     share = {scene: {stage: time / sum(profile.values()) for stage, time in profile.items()} for scene, profile in profiles.items()}
     names = list(dict.fromkeys(stage for profile in share.values() for stage in profile))
     drawn = [name for name in names if max(profile.get(name, 0) for profile in share.values()) >= SMALL]
@@ -96,7 +96,7 @@ def stages(profiles, path):
 
 
 def growth(rows, path):
-    """Time a step by bodies, by contacts, by environments and by threads."""
+    """Draws the time of a step by bodies, by contacts, by environments and by threads."""
     figure, axes = plt.subplots(2, 2, figsize=(8, 6))
     single = [row for row in rows if row["envs"] == 1 and row["family"] == "large"]
     piles = [row for row in single if row["scene"].startswith("pile")]

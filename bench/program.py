@@ -1,4 +1,4 @@
-"""`clench simulate`, a process a run, timed by itself."""
+"""Runs `clench simulate`, one process per run, which times itself."""
 
 import json
 import os
@@ -14,7 +14,7 @@ CLENCH = os.environ.get("CLENCH", str(ROOT / "target/dist/clench"))
 
 
 class Clench:
-    """Runs of one command; `summary` is what the last one said."""
+    """Runs of one command; `summary` is the summary of the last run."""
 
     def __init__(self, path, arrays, flags):
         self.folder = tempfile.TemporaryDirectory()
@@ -26,7 +26,7 @@ class Clench:
         self.summary = {}
 
     def run(self):
-        """Seconds of stepping alone."""
+        """Returns the seconds of stepping alone."""
         done = subprocess.run(self.command, capture_output=True, text=True)
         if done.returncode != 0:
             raise Unmeasured(f"{' '.join(self.command)}\n{done.stderr}")

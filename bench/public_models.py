@@ -1,8 +1,8 @@
-"""All rigid models of the public packages that move (nv of 3 or more): one environment, then a batch of 64, on one thread.
+"""Times all rigid models of the public packages with nv ≥ 3: one environment, then a batch of 64, on one thread.
 
-A line a model gives MuJoCo's time over ours; the end tells geometric means, the tenth from below and the slowest. Runs are as long as
-MuJoCo needs for a fixed time, so that small models are timed over more steps. Models whose motion diverges under these controls,
-in either engine, measure nothing and are listed.
+Each model has a line with MuJoCo's time over ours; the last lines give the geometric mean, the lowest decile and the
+minimum. A run takes MuJoCo a fixed time, so that small models are timed over more steps. Models whose motion diverges
+under these controls in either engine are not measured but listed.
 """
 
 import math
@@ -23,12 +23,12 @@ import public
 
 MIN_NV = 3
 ENVS = 64
-SECONDS = 0.15  # of MuJoCo's time, a run
+SECONDS = 0.15  # MuJoCo's time in a run
 COLUMNS = ["alone", "f64", "f32"]
 
 
 def compare(_, args):
-    """Prints the table and returns a row a model and engine."""
+    """Prints the table and returns a row per model."""
     print(f"\npublic models with nv of {MIN_NV} or more: MuJoCo's time over Clench's; alone, and {ENVS} environments in either precision")
     print(f"  {'model':<52}{'nv':>5}{'contacts':>9}{'µs alone':>10}{'µs f64':>9}" + "".join(f"{name:>8}" for name in COLUMNS))
     chosen = [name for name in public.compared() if args.filter in name]
@@ -56,7 +56,7 @@ def compare(_, args):
 
 
 def measure(name, path, model, args):
-    """One model's ratios."""
+    """Returns the ratios of one model."""
     steps = affordable(model, 1, 1000)
     controls = smooth_controls(model, steps)
     alone = {"mujoco": Rollout(path, NEWTON, controls), "clench": Clench(path, {"ctrl": controls}, ["--steps", steps])}
@@ -75,7 +75,7 @@ def measure(name, path, model, args):
 
 
 def affordable(model, envs, most):
-    """How many steps of so many environments MuJoCo does in SECONDS."""
+    """Returns the number of steps that MuJoCo takes with `envs` environments in SECONDS: 5 to `most`."""
     data = mujoco.MjData(model)
     trial = 20
     begin = time.perf_counter()
@@ -85,7 +85,7 @@ def affordable(model, envs, most):
 
 
 def summarize(column, ratios):
-    """Geometric mean, the tenth from below and the slowest."""
+    """Prints the geometric mean, the lowest decile and the minimum."""
     if not ratios:
         return
     mean = math.exp(sum(math.log(value) for value, _ in ratios) / len(ratios))

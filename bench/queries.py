@@ -16,7 +16,7 @@ CALLS = 300
 
 
 def microseconds(function, calls=CALLS):
-    """Of one call: the median over repetitions."""
+    """Returns the time of one call: the median over repetitions."""
     seconds = []
     for _ in range(REPEAT + 1):
         begin = time.perf_counter()
@@ -27,7 +27,7 @@ def microseconds(function, calls=CALLS):
 
 
 def questions(sim, model, data, rng):
-    """Name, Clench, MuJoCo."""
+    """Returns each query as its name, Clench's call and MuJoCo's call."""
     nv, body = model.nv, model.nbody - 1
     room, x = np.zeros((2, 3, nv)), rng.normal(size=nv)
     jacp, jacr, six = np.zeros((3, nv)), np.zeros((3, nv)), np.zeros(6)
@@ -73,7 +73,7 @@ def questions(sim, model, data, rng):
 
 
 def batched(batch, rng):
-    """Name, all environments at once."""
+    """Returns each query of a batch as its name and its call."""
     n, nv = batch.n_envs, batch.model.nv
     qacc, directions = rng.normal(size=(n, nv)), rng.normal(size=(100, 3))
     body = batch.model.nbody - 1

@@ -1,4 +1,4 @@
-"""What every engine is given: a model, controls for each step, states to start from."""
+"""The inputs of every engine: a model, controls for each step, and initial states."""
 
 import pathlib
 import sys
@@ -13,11 +13,11 @@ NEWTON, PGS = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtSolver.mjSOL_PGS
 
 
 class Unmeasured(Exception):
-    """An engine does not get through a scene, and says why: it measures nothing."""
+    """An engine cannot complete a scene, so it is not measured; the message says why."""
 
 
 def find(name):
-    """The file of one of gymnasium's models, or the file of that name."""
+    """Returns the path of one of gymnasium's models, or of the file with that name."""
     path = pathlib.Path(name) if name.endswith(".xml") else GYMNASIUM / f"{name}.xml"
     if not path.is_file():
         sys.exit(f"there is no {path}")
@@ -25,14 +25,14 @@ def find(name):
 
 
 def load(path, solver=NEWTON):
-    """MuJoCo's model of a file, with the solver that Clench uses or another."""
+    """Loads a file as a MuJoCo model, with the solver that Clench uses or another."""
     model = mujoco.MjModel.from_xml_path(str(path))
     model.opt.solver = solver
     return model
 
 
 def smooth_controls(model, steps):
-    """Filtered noise within half of each control's range (steps, nu): motion that is lively and stays sane."""
+    """Returns filtered noise within half of each control's range (steps, nu), for lively but stable motion."""
     rng = np.random.default_rng(0)
     limited = model.actuator_ctrllimited.astype(bool)
     low = np.where(limited, model.actuator_ctrlrange[:, 0], -1.0)
@@ -47,7 +47,7 @@ def smooth_controls(model, steps):
 
 
 def perturbed_states(model, count, scale):
-    """Positions and velocities (count, nq + nv): the model's initial ones, each dof moved by up to `scale` (rad, m, per s)."""
+    """Returns the initial state (count, nq + nv) with each dof moved by up to `scale` (rad, m, per s)."""
     rng = np.random.default_rng(1)
     start = mujoco.MjData(model)
     states = np.tile(np.concatenate([start.qpos, start.qvel]), (count, 1))
@@ -60,6 +60,6 @@ def perturbed_states(model, count, scale):
 
 
 def describe(model, path):
-    """A model in a line."""
+    """Returns a one-line description of a model."""
     integrator = mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_")
     return f"{path.stem}: nv {model.nv}, {integrator}, time step {model.opt.timestep:g} s"

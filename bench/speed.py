@@ -1,14 +1,14 @@
 """Clench's and MuJoCo's speed side by side, alternating in one run: the same controls, one thread.
 
-First one environment: each repetition steps every engine from the model's default state, Clench through `clench simulate`
-(which reports the time of stepping alone) and MuJoCo through its own rollout in C. Then many environments at once; the top
-of batch.py says how. Times are medians over repetitions; a ratio is the median of what each repetition gave. Both engines
-read the same file with its integrator, tolerance and iterations; where the file asks for PGS, MuJoCo is timed with Newton,
-which is what Clench uses, and in one environment with PGS as well. Then come what Python's calls cost beyond Rust's (calls.py),
-vector environments beside gymnasium's (vector.py), heaps of bodies (heaps.py), collision pair by pair (pairs.py), and what the
-viewer's frames cost (view.py).
-`--only public` goes through all models of the public packages (public_models.py), `--only families` through scenes of manipulation and of
-many bodies (families.py), and `--only gpu` measures a graphics device (gpu.py): these take a while, or a card, so the whole run leaves them out.
+The first comparison is of one environment: each repetition steps every engine from the model's default state, Clench
+through `clench simulate` (which reports the time of stepping alone) and MuJoCo through its own rollout in C. The next
+is of batches (batch.py). Times are medians over repetitions; a ratio is the median of the ratios of repetitions. Both
+engines read the same file with its integrator, tolerance and iterations. If the file selects PGS, MuJoCo is timed with
+Newton, which Clench uses, and with one environment also with PGS. Further comparisons are the overhead of Python's
+calls (calls.py), vector environments and gymnasium's (vector.py), heaps of bodies (heaps.py), collision of pairs of
+shapes (pairs.py), and the frames of the viewer (view.py).
+`--only public` times all models of the public packages (public_models.py), `--only families` scenes of manipulation and
+of many bodies (families.py), and `--only gpu` a GPU (gpu.py). The whole run omits these: they take long or need a GPU.
 """
 
 import argparse
@@ -30,7 +30,7 @@ import view
 from scene import Unmeasured, find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
-# Comparisons that are run only if they are asked for.
+# Comparisons that run only on request.
 ALONE = ["families", "gpu", "public"]
 DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
 

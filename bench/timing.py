@@ -1,13 +1,13 @@
-"""Running engines in turn, and what is told of their times."""
+"""Runs engines alternately and reports their times."""
 
 import statistics
 
 
 def alternate(engines, repeat):
-    """Seconds of `repeat` runs of each engine, all engines once and then again, so that all see the same machine."""
+    """Returns the seconds of `repeat` runs of each engine; engines alternate, so that all see the same machine."""
     seconds = {name: [] for name in engines}
     for engine in engines.values():
-        engine.run()  # warm caches and clocks; not counted
+        engine.run()  # warm-up, not counted
     for _ in range(repeat):
         for name, engine in engines.items():
             seconds[name].append(engine.run())
@@ -15,7 +15,7 @@ def alternate(engines, repeat):
 
 
 def ratio(slow, fast):
-    """How many times faster the second is: the median over repetitions, whose runs are neighbours in time."""
+    """Returns the speedup of the second over the first: the median over repetitions, paired by time."""
     return statistics.median(s / f for s, f in zip(slow, fast, strict=True))
 
 
@@ -23,7 +23,7 @@ HEADING = f"  {'engine':<23}{'µs/step':>9}{'best':>9}{'ratio':>8}{'contacts':>1
 
 
 def table(engines, seconds, baseline, steps):
-    """Prints a line an engine and returns it as a row; `steps` are those of all environments."""
+    """Prints a line per engine and returns them as rows; `steps` counts those of all environments."""
     print(HEADING)
     rows = []
     for name, engine in engines.items():

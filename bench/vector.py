@@ -1,8 +1,7 @@
-"""Vector environments: `clench.gymnasium` beside gymnasium's own, which run MuJoCo one environment after the other or one a
-process; and how much a step of ours takes beyond that of the bare batch.
+"""Times vector environments: `clench.gymnasium` and gymnasium's own, which run MuJoCo in sequence or in processes.
 
-Every engine resets with the same seed and takes the same actions. All use Newton's method but gymnasium's, which use what the file
-asks for (PGS for the humanoids).
+The overhead of our vector environment over the bare batch is measured too. Every engine resets with the same seed and
+takes the same actions. Ours use Newton's method, gymnasium's the solver of the file (PGS for the humanoids).
 """
 
 import contextlib
@@ -48,7 +47,7 @@ def compare(task, args):
 
 @contextlib.contextmanager
 def quiet():
-    """Keeps MuJoCo from saying once an environment what is deprecated in gymnasium's files."""
+    """Suppresses MuJoCo's deprecation warnings about gymnasium's files, one per environment."""
     kept = os.dup(2)
     try:
         with open(os.devnull, "w") as nowhere:
@@ -69,7 +68,7 @@ class Vector:
         self.actions = [self.env.action_space.sample() for _ in range(args.vector_steps)]
 
     def run(self):
-        """Seconds of stepping alone."""
+        """Returns the seconds of stepping alone."""
         self.env.reset(seed=0)
         begin = time.perf_counter()
         for action in self.actions:
@@ -77,7 +76,7 @@ class Vector:
         return time.perf_counter() - begin
 
     def close(self):
-        """Ends the processes, if there are any."""
+        """Ends the worker processes, if any."""
         self.env.close()
 
 
@@ -90,7 +89,7 @@ class Bare:
         self.actions = [env.action_space.sample() for _ in range(args.vector_steps)]
 
     def run(self):
-        """Seconds of stepping alone."""
+        """Returns the seconds of stepping alone."""
         self.env.reset(seed=0)
         batch, skip = self.env.batch, self.env.frame_skip
         begin = time.perf_counter()
@@ -100,4 +99,4 @@ class Bare:
         return time.perf_counter() - begin
 
     def close(self):
-        """Nothing runs on."""
+        """Does nothing: there is nothing to end."""

@@ -1,6 +1,6 @@
-"""What a frame of the viewer costs its server: bytes, and time beside that of the steps between two frames.
+"""Measures the server's cost of a viewer frame: bytes, and time compared with the steps between two frames.
 
-The example `frames` of clench-view measures; MuJoCo has nothing to compare with, so there is no ratio.
+The example `frames` of clench-view measures. MuJoCo has no counterpart, so there is no ratio.
 """
 
 import json
@@ -13,7 +13,7 @@ FRAMES = os.environ.get("FRAMES", str(ROOT / "target/dist/examples/frames"))
 
 
 def compare(_, args):
-    """Runs the example, prints a table and returns no rows: nothing is compared."""
+    """Runs the example and prints a table; returns no rows, since nothing is compared."""
     print("\na frame of the viewer, sixty of which are made in a second, every eighth step")
     print(f"  {'scene':<24}{'bodies':>8}{'contacts':>10}{'bytes':>9}{'changed':>9}{'µs':>8}{'µs of the steps':>17}")
     lines = subprocess.run([FRAMES], capture_output=True, text=True, check=True).stdout.splitlines()

@@ -1,7 +1,7 @@
-"""What must agree where both engines have the same contacts, on one state: dynamics, constraint rows, accelerations, forces.
+"""Compares the dynamics of both engines on one state with the same contacts.
 
-What precedes the solver differs by rounding alone (1e-10); accelerations agree to 1e-8 of the accelerations involved. `what` is how
-messages begin.
+Dynamics, constraint rows, accelerations and forces must agree. Quantities that precede the solver differ by rounding
+only (1e-10); accelerations agree to 1e-8 of the accelerations involved. `what` is the prefix of messages.
 """
 
 import mujoco
@@ -13,7 +13,7 @@ from compare import assert_close, largest
 
 ROUNDING = 1e-10
 SOLVED = 1e-8
-SEARCH = 1e-5  # metres: how exactly MuJoCo searches for distances of convex shapes
+SEARCH = 1e-5  # metres: the precision of MuJoCo's search for distances of convex shapes
 SMALL_VIOLATION = 1e-4  # metres: a violation is a difference of positions of some metres, known to 1e-14
 SMALL_ROW = 1e-5  # metres: a lever is a difference of positions of about a metre, known to 1e-15
 KIND = dict(enumerate(("equality", "friction_dof", "friction_tendon", "limit_joint", "limit_tendon", *3 * ["contact"])))
@@ -26,7 +26,7 @@ def mass_matrix(what, ours, theirs):
 
 
 def smooth_forces(what, ours, theirs, floor=1e-9):
-    """Bias, passive and actuator forces share one scale, at least `floor`: they come from sums that may cancel."""
+    """Compares bias, passive and actuator forces with one scale, at least `floor`, since their sums may cancel."""
     scale = largest(theirs.qfrc_bias, theirs.qfrc_passive, theirs.qfrc_actuator, floor=floor)
     for name in ("qfrc_bias", "qfrc_passive", "qfrc_actuator"):
         assert_close(what + name, ours[name], getattr(theirs, name), ROUNDING, scale)
@@ -35,14 +35,14 @@ def smooth_forces(what, ours, theirs, floor=1e-9):
 
 
 def constraint_rows(what, ours, theirs):
-    """Violation, Jacobian, velocity, reference acceleration and D, row by row in MuJoCo's order."""
+    """Compares violation, Jacobian, velocity, reference acceleration and D, row by row in MuJoCo's order."""
     count = len(theirs.efc_pos)
     assert len(ours["constraints"]) == count, f"{what}{len(ours['constraints'])} rows, MuJoCo has {count}"
     assert [row["kind"] for row in ours["constraints"]] == [KIND[t] for t in theirs.efc_type], what
     if count == 0:
         return
     row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
-    speed = row_size * largest(theirs.qvel) + np.abs(theirs.efc_vel)  # with what surfaces move by themselves
+    speed = row_size * largest(theirs.qvel) + np.abs(theirs.efc_vel)  # includes surface velocities
     assert_close(what + "pos", program.rows(ours, "pos"), theirs.efc_pos, ROUNDING, 1.0)
     assert_close(what + "jacobian", ours["jacobian"], theirs.jacobian, ROUNDING, row_size[:, None])
     assert_close(what + "vel", program.rows(ours, "vel"), theirs.efc_vel, ROUNDING, speed)
@@ -51,7 +51,7 @@ def constraint_rows(what, ours, theirs):
 
 
 def asked(theirs):
-    """The scale of each row's reference acceleration, which is a sum: damping times a velocity, stiffness times a violation."""
+    """Returns each row's scale of the reference acceleration, a sum of damping and stiffness terms."""
     row_size = np.abs(theirs.jacobian).max(axis=1, initial=SMALL_ROW)
     stiffness, damping, impedance = np.abs(theirs.efc_KBIP[:, :3].T)
     violation = np.abs(theirs.efc_pos - theirs.efc_margin) + SMALL_VIOLATION
@@ -64,7 +64,7 @@ def acceleration(what, ours, theirs, tolerance=SOLVED):
 
 
 def constraint_forces(what, ours, theirs):
-    """Row forces and what they do together; each contact's force in its frame."""
+    """Compares row forces, their generalized force, and each contact's force in its frame."""
     slow = oracle.SLOW * np.diag(theirs.mass)
     scale = largest(theirs.qfrc_constraint, theirs.qfrc_smooth, slow)
     assert_close(what + "qfrc_constraint", ours["qfrc_constraint"], theirs.qfrc_constraint, SOLVED, scale)
@@ -78,7 +78,10 @@ def constraint_forces(what, ours, theirs):
 
 
 def sensors(model, what, ours, theirs, solved=10 * SOLVED, is_undecided=lambda sensor: False):
-    """Every sensor that rounding does not decide: to rounding before the solver, to `solved` after it, and distances as exactly as MuJoCo searches for them."""
+    """Compares every sensor whose value does not depend on rounding.
+
+    The tolerance is rounding before the solver, `solved` after it, and the precision of MuJoCo's search for distances.
+    """
     for k in range(model.nsensor):
         kind = mujoco.mjtSensor(model.sensor_type[k])
         numbers = slice(model.sensor_adr[k], model.sensor_adr[k] + model.sensor_dim[k])
@@ -100,7 +103,10 @@ def sensors(model, what, ours, theirs, solved=10 * SOLVED, is_undecided=lambda s
 
 
 def on_the_border(model, sensor, theirs):
-    """Whether rounding decides if a contact counts: MuJoCo's own sum is another one where the site's volume is a millionth larger."""
+    """Returns True if rounding decides whether a contact counts.
+
+    MuJoCo's own sum then changes if the site is larger by a millionth.
+    """
     site = model.sensor_objid[sensor]
     size = model.site_size[site].copy()
     model.site_size[site] = size * (1 + 1e-6)

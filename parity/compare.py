@@ -1,4 +1,4 @@
-"""Comparing arrays so that a failure names the place and both numbers."""
+"""Compares arrays; a failure reports the index and both numbers."""
 
 import contextlib
 
@@ -9,7 +9,7 @@ slack = 1.0
 
 @contextlib.contextmanager
 def looser(factor):
-    """Multiplies every tolerance for a while."""
+    """Multiplies every tolerance inside a `with` block."""
     global slack
     slack = factor
     try:
@@ -35,5 +35,5 @@ def assert_close(what, actual, expected, tolerance, scale):
 
 
 def largest(*arrays, floor=1e-9):
-    """The largest magnitude in the arrays, at least `floor`: the scale of quantities that are sums of theirs."""
+    """Returns the largest magnitude in the arrays, at least `floor`: the scale of sums of their elements."""
     return max([floor] + [np.abs(a).max() for a in map(np.asarray, arrays) if a.size])

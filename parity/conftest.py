@@ -1,4 +1,4 @@
-"""What the tests run on: the models, the cones, the solvers; and the check that the program is built."""
+"""The models, cones and solvers of the tests, and the check that the program is built."""
 
 import pathlib
 
@@ -11,12 +11,12 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 GYMNASIUM = pathlib.Path(gymnasium.__file__).parent / "envs/mujoco/assets"
 
 
-# Heaps whose contacts are patches: the one is in `test_shapes.py`, the other too large to compare.
+# Heaps whose contacts are patches: one is in `test_shapes.py`, the other is too large to compare.
 HEAPS = ("towers", "pile")
 
 
 def models():
-    """Every model compared: gymnasium's, the examples, and the ones that exist to cover a feature."""
+    """Returns every model that is compared: gymnasium's, the examples, and those that cover a feature."""
     return [
         pytest.param(path, id=f"{group}-{path.stem}")
         for group, folder in (("gym", GYMNASIUM), ("example", ROOT / "models"), ("feature", ROOT / "parity/models"))
@@ -37,7 +37,7 @@ def pytest_sessionstart(session):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """The table of URDF files, where they were compared: how each fared."""
+    """Prints the results of the URDF files, if they were compared."""
     passed = terminalreporter.stats.get("passed", [])
     rows = sorted(value for report in passed for name, value in report.user_properties if name == "urdf")
     if rows:

@@ -1,13 +1,13 @@
-"""The metric of MuJoCo's integrator `discrete`, put together from the parts that it keeps in its data."""
+"""The metric of MuJoCo's integrator `discrete`, assembled from the parts in its data."""
 
 import mujoco
 import numpy as np
 
-NEAR = 1e-4  # MuJoCo finds the acceleration without constraints by iterations that end long before rounding
+NEAR = 1e-4  # MuJoCo iterates for the acceleration without constraints and stops far above rounding
 
 
 def terms(model, data):
-    """What tendons and actuators add to the metric: pairs of scale and row."""
+    """Yields the terms of tendons and actuators in the metric as pairs of scale and row."""
     tendons = np.zeros((model.ntendon, model.nv))
     if model.ntendon:
         mujoco.mju_sparse2dense(tendons, data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind)
@@ -23,7 +23,7 @@ def terms(model, data):
 
 
 def metric(model, data, mass):
-    """The metric as a dense matrix, and what is added to the smooth forces."""
+    """Returns the metric as a dense matrix, and the vector that is added to the smooth forces."""
     found, shift = mass.copy(), np.zeros(model.nv)
     for name in ("efm_c", "efm_ca"):
         part = getattr(data, name)
@@ -44,7 +44,10 @@ def metric(model, data, mass):
 
 
 def untouched(model, data, jacobian):
-    """Which dofs are of trees that neither constraints nor terms act on: free bodies among them are solved for once more."""
+    """Returns a mask of the dofs of trees on which neither constraints nor terms act.
+
+    MuJoCo solves for the free bodies among them once more.
+    """
     acting = np.any(jacobian != 0, axis=0)
     for scale, row in terms(model, data):
         if scale != 0:
@@ -54,7 +57,7 @@ def untouched(model, data, jacobian):
 
 
 def smooth_acceleration(data, metric, shift):
-    """The acceleration without constraints, exactly."""
+    """Returns the exact acceleration without constraints."""
     found = np.linalg.solve(metric, data.qfrc_smooth + shift)
     error = np.abs(found - data.qacc_smooth).max(initial=0)
     assert error <= NEAR * np.abs(found).max(initial=1), f"the parts of the metric do not fit: {error}"

@@ -1,4 +1,4 @@
-"""MuJoCo 4.0 as the oracle: the same state through mj_forward, its results as plain arrays."""
+"""MuJoCo 4.0 as the oracle: the results of mj_forward on a state as plain arrays."""
 
 import functools
 import types
@@ -11,12 +11,12 @@ import states
 from compare import largest
 
 CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
-SLOW = 1e-3  # m/s² or rad/s²: what violations of 1e-14 m do to constraints is far below 1e-8 of it
+SLOW = 1e-3  # m/s² or rad/s²: the effect of violations of 1e-14 m on constraints is far below 1e-8 of it
 CONTACT_FIELDS = ("dist", "pos", "frame", "includemargin", "friction", "solref", "solreffriction", "solimp", "adhesion", "surfacevel", "dim")
 
 
 def load(path, cone=None):
-    """The model with Newton run until no progress is possible, from a cold start; `cone` None keeps the file's."""
+    """Loads a model that solves as exactly as possible, see `exact`; if `cone` is None, the file's cone stays."""
     model = mujoco.MjModel.from_xml_path(str(path))
     if cone is not None:
         model.opt.cone = CONES[cone]
@@ -24,7 +24,7 @@ def load(path, cone=None):
 
 
 def exact(model):
-    """The model, changed so that Newton runs until no progress is possible, from a cold start."""
+    """Changes the model so that Newton runs from a cold start until no progress is possible, and returns it."""
     model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
     model.opt.iterations, model.opt.tolerance = 300, 0.0
     model.opt.ls_iterations, model.opt.ls_tolerance = 200, 1e-10
@@ -35,20 +35,20 @@ def exact(model):
 
 @functools.lru_cache(maxsize=None)
 def references(path, cone):
-    """MuJoCo's results on every sampled state of a model."""
+    """Returns MuJoCo's results on every sampled state of a model."""
     model = load(path, cone)
     return [reference(model, state) for state in states.sample(path)]
 
 
 def reference(model, state):
-    """MuJoCo's results on one state."""
+    """Returns MuJoCo's results on one state."""
     data = assigned(model, state)
     mujoco.mj_forward(model, data)
     return results(model, data, state)
 
 
 def results(model, data, state):
-    """What MuJoCo's forward dynamics of a state left in its data, which a step may have changed since."""
+    """Returns the results of MuJoCo's forward dynamics from its data, whose state a step may have changed since."""
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     forces = [f"qfrc_{name}" for name in ("constraint", "bias", "passive", "actuator", "smooth")]
@@ -76,7 +76,7 @@ def results(model, data, state):
 
 
 def assigned(model, state):
-    """MuJoCo's data in a state."""
+    """Returns MuJoCo's data in a state."""
     data = mujoco.MjData(model)
     for name, value in state.items():
         if name == "time":
@@ -88,7 +88,7 @@ def assigned(model, state):
 
 
 def jacobian(model, data):
-    """The constraint Jacobian as a dense (nefc, nv) array, whichever way MuJoCo stores it."""
+    """Returns the constraint Jacobian as a dense (nefc, nv) array, from MuJoCo's sparse or dense storage."""
     dense = np.zeros((data.nefc, model.nv))
     if data.nefc and mujoco.mj_isSparse(model):
         mujoco.mju_sparse2dense(dense, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
@@ -98,7 +98,7 @@ def jacobian(model, data):
 
 
 def contact(model, data, index):
-    """One contact as a dictionary that `clench forward` accepts, and the force MuJoCo puts there."""
+    """Returns a contact as a dictionary that `clench forward` accepts, with MuJoCo's contact force."""
     this = data.contact[index]
     force = np.zeros(6)
     mujoco.mj_contactForce(model, data, index, force)
@@ -107,16 +107,16 @@ def contact(model, data, index):
 
 
 def fed(state, result):
-    """The state with MuJoCo's contacts in it, which replace collision detection."""
+    """Returns the state with MuJoCo's contacts, which replace collision detection."""
     contacts = [{name: value for name, value in c.items() if name != "force"} for c in result.contacts]
     return {**state, "contacts": contacts}
 
 
 def distance_to_optimum(result):
-    """A bound on how far MuJoCo's own qacc is from the minimiser, relative to the accelerations involved.
+    """Returns a bound on the distance of MuJoCo's qacc from the minimiser, relative to the accelerations involved.
 
-    The gradient g of the convex cost at qacc gives it: the error e = H⁻¹g has ‖e‖ ≤ ‖M⁻¹g‖ in the norm of M, since
-    H = M + JᵀWJ is never less than M.
+    It follows from the gradient g of the convex cost at qacc: the error e = H⁻¹g has ‖e‖ ≤ ‖M⁻¹g‖ in the norm of M,
+    since H = M + JᵀWJ ≥ M.
     """
     gradient = result.metric @ result.qacc - result.qfrc_smooth - result.shift - result.qfrc_constraint
     gradient[result.still] = 0.0
@@ -125,5 +125,5 @@ def distance_to_optimum(result):
 
 
 def acceleration_scale(result):
-    """The accelerations that cancel in qacc: a body at rest on the floor has qacc near zero but gravity acts on it."""
+    """Returns the scale of the accelerations that cancel in qacc, such as gravity of a body at rest on the floor."""
     return largest(result.qacc, result.qacc_smooth, floor=SLOW)

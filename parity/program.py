@@ -1,4 +1,4 @@
-"""Running the `clench` program: one `forward` process kept open for many states, and single runs of any command."""
+"""Runs the `clench` program: one `forward` process for many states, and single runs of any command."""
 
 import contextlib
 import json
@@ -17,7 +17,7 @@ EXACT = ("--tolerance", "0", "--ls-tolerance", "1e-10", "--ls-iterations", "200"
 
 
 class Failure(Exception):
-    """The program ended where it should have answered; the message is its standard error."""
+    """The program ended instead of answering; the message is its standard error."""
 
 
 def run(*args, stdin="", **options):
@@ -51,7 +51,7 @@ class Forward:
         return self
 
     def __exit__(self, *_):
-        with contextlib.suppress(BrokenPipeError):  # the program has ended, and said why
+        with contextlib.suppress(BrokenPipeError):  # the program has ended and reported why
             self.process.stdin.close()
         self.process.wait(timeout=60)
         self.process.stdout.close()
@@ -72,5 +72,5 @@ class Forward:
 
 
 def rows(result, field):
-    """One number a constraint row, as an array."""
+    """Returns a field of all constraint rows as an array."""
     return np.array([row[field] for row in result["constraints"]], dtype=float)

@@ -1,6 +1,6 @@
-"""Models of other people's packages, genesis-world, dm-control and gym-aloha, which `cargo xtask test python` puts into .venv/models.
+"""Models of genesis-world, dm-control and gym-aloha, which `cargo xtask test python` puts into .venv/models.
 
-`public.txt` lists all that MuJoCo loads, each with what Clench refuses it for, if it does.
+`public.txt` lists all models that MuJoCo loads, with the reason if Clench refuses one.
 """
 
 import pathlib
@@ -10,7 +10,7 @@ FOLDER = HERE.parent / ".venv/models"
 
 
 def listed():
-    """Pairs of a file below FOLDER and the reason why it is refused, or None."""
+    """Returns pairs of a file below FOLDER and the reason why Clench refuses it, or None."""
     lines = (HERE / "public.txt").read_text().splitlines()
     rows = (line.partition(": ") for line in lines if not line.startswith("#"))
     return [(name, reason or None) for name, _, reason in rows]
@@ -25,5 +25,5 @@ def compared():
 
 
 def path(name):
-    """Where a listed file is."""
+    """Returns the path of a listed file."""
     return FOLDER / name

@@ -1,6 +1,6 @@
-"""Compares random models for as long as it is let: `python parity/soak_models.py [SEED] [COUNT]`.
+"""Compares many random models: `python parity/soak_models.py [SEED] [COUNT]`.
 
-Seeds from SEED · 1,000,000 on; each model that differs is cut down, printed, and kept in parity/differences.
+Seeds start at SEED · 1,000,000. Each model that differs is reduced, printed, and stored in parity/differences.
 """
 
 import sys

@@ -1,7 +1,7 @@
-"""States to compare on: seeded rollouts in MuJoCo under random controls, sampled every half second.
+"""States for comparisons: seeded rollouts in MuJoCo under random controls, sampled every half second.
 
-Half of the states carry applied forces, every third has an equality switched over, and mocap bodies are moved. A state
-is a dictionary in the form that `clench forward` reads.
+Half of the states have applied forces, every third toggles an equality, and mocap bodies are displaced. A state is a
+dictionary in the format that `clench forward` reads.
 """
 
 import functools
@@ -15,7 +15,7 @@ SPACING, CONTROL_HOLD = 0.5, 0.05  # seconds
 
 @functools.lru_cache(maxsize=None)
 def sample(path, rollouts=ROLLOUTS, samples=SAMPLES, may_be_unstable=False):
-    """rollouts × samples states of the model at `path`, always the same ones."""
+    """Returns rollouts × samples states of the model at `path`; they are reproducible."""
     model = mujoco.MjModel.from_xml_path(str(path))
     rng = np.random.default_rng(2024)
     found = [state for k in range(rollouts) for state in rollout(model, k, samples, rng)]
@@ -25,13 +25,13 @@ def sample(path, rollouts=ROLLOUTS, samples=SAMPLES, may_be_unstable=False):
 
 
 def rollout(model, index, samples, rng):
-    """States along one rollout, from the model's default state or one of its keyframes, for as long as MuJoCo is stable."""
+    """Yields states of a rollout from the default state or a keyframe, as long as MuJoCo is stable."""
     data = mujoco.MjData(model)
     start = index % (model.nkey + 1) - 1
     if start >= 0:
         mujoco.mj_resetDataKeyframe(model, data, start)
     data.qvel += 0.1 * rng.standard_normal(model.nv)
-    strength = (1.0, 0.1)[index % 2]  # thrash about, or settle where gravity puts them
+    strength = (1.0, 0.1)[index % 2]  # strong controls, or weak ones under which gravity dominates
     per_control = max(1, round(CONTROL_HOLD / model.opt.timestep))
     per_sample = max(1, round(SPACING / model.opt.timestep))
     for sample_index in range(samples):
@@ -45,7 +45,7 @@ def rollout(model, index, samples, rng):
 
 
 def controls(model, rng):
-    """Uniform over each control's range, or over [-1, 1] where it has none."""
+    """Returns controls, uniform over each control's range, or over [-1, 1] if it has none."""
     limited = model.actuator_ctrllimited.astype(bool)
     low = np.where(limited, model.actuator_ctrlrange[:, 0], -1.0)
     high = np.where(limited, model.actuator_ctrlrange[:, 1], 1.0)
@@ -53,14 +53,14 @@ def controls(model, rng):
 
 
 def disturbed(model, data, rng, number):
-    """The present state in protocol form, with what a rollout alone does not reach added to some."""
+    """Returns the current state as a dictionary, with applied forces, toggled equalities and displaced mocap bodies."""
     qfrc_applied, xfrc_applied = np.zeros(model.nv), np.zeros((model.nbody, 6))
     if number % 2 == 1:
         inertia = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, inertia)
         qfrc_applied = np.diag(inertia) * rng.standard_normal(model.nv)
         xfrc_applied[1:] = model.body_mass[1:, None] * rng.standard_normal((model.nbody - 1, 6))
-        xfrc_applied[1:, 3:] *= 0.1  # metres: torques of a force at some lever
+        xfrc_applied[1:, 3:] *= 0.1  # metres: the lever of the force
     eq_active = data.eq_active.astype(bool)
     if number % 3 == 2 and model.neq > 0:
         eq_active[rng.integers(model.neq)] ^= True

@@ -1,4 +1,4 @@
-"""Bad input ends in a message that says where and why, with exit code 2, and never in a panic."""
+"""Bad input causes a message with location and reason and exit code 2, never a panic."""
 
 import json
 import math
@@ -22,7 +22,7 @@ GOOD = """<mujoco>
 </mujoco>
 """
 
-# Name, what to replace in GOOD, by what, the line to be named, words to be named (case aside).
+# Name, text to replace in GOOD, its replacement, and the line and words (ignoring case) that the message contains.
 BAD_FILES = [
     ("broken xml", "    </body>\n", "", 6, ["body", "worldbody"]),
     ("unknown element", "<joint ", "<joynt ", 4, ["joynt"]),
@@ -53,7 +53,7 @@ BAD_FILES = [
 
 
 def refused(done, *words):
-    """The run ended with exit code 2 and a message with all the words, and nothing of a panic."""
+    """Checks that the run ended with exit code 2 and a message with all the words, without a panic."""
     assert done.returncode == 2, f"exit code {done.returncode}\n{done.stderr}"
     assert "panicked" not in done.stderr and "RUST_BACKTRACE" not in done.stderr, done.stderr
     for word in words:
@@ -119,7 +119,7 @@ BAD_STATES = [
 
 @pytest.mark.parametrize(("state", "words"), [c[1:] for c in BAD_STATES], ids=[c[0] for c in BAD_STATES])
 def test_state(tmp_path, state, words):
-    """The second line of input is bad: the first is answered, and the message counts to it."""
+    """If the second line of input is bad, the first is answered, and the message gives the line number."""
     (tmp_path / "good.xml").write_text(GOOD)
     line = state if isinstance(state, str) else json.dumps(state)
     done = program.run("forward", tmp_path / "good.xml", stdin=f"{{}}\n{line}\n")
@@ -129,7 +129,7 @@ def test_state(tmp_path, state, words):
 
 @pytest.mark.parametrize("change", [{"dist": -1e308}, {"pos": [1e308] * 3}, {"solref": [-1e308] * 2}], ids=str)
 def test_a_contact_beyond_all_numbers(change):
-    """Finite input whose forces are not: an error, where a result would hold nulls."""
+    """Finite input with infinite forces is an error; otherwise the result would contain nulls."""
     line = json.dumps({"contacts": [{**CONTACT, "geom": [0, 1], **change}]})
     refused(program.run("forward", program.ROOT / "models/rolling_sphere.xml", stdin=line), "line 1", "diverged")
 

@@ -1,4 +1,4 @@
-"""What the program promises of many environments: the same bits as one alone, honest reports of those that fail."""
+"""Batches of environments in the program: bitwise equal to single environments, with reports of failures."""
 
 import json
 import resource
@@ -15,7 +15,7 @@ SAME = ["iterations_mean", "contacts_mean", "contacts_max", "gap_max", "penetrat
 
 
 def controls(model, steps, folder):
-    """Random controls, as a file."""
+    """Writes random controls to a file and returns its path."""
     path = folder / "ctrl.npy"
     np.save(path, np.random.default_rng(3).uniform(-0.3, 0.3, (steps, model.nu)))
     return path
@@ -27,7 +27,7 @@ def summary(done):
 
 @pytest.mark.parametrize("precision", [64, 32])
 def test_every_environment_is_as_if_alone(precision, tmp_path):
-    """Noise, controls, a batch that fills no register, on two threads: each environment equals a run of its own."""
+    """Each environment equals a separate run, with noise, controls, partly filled SIMD lanes and two threads."""
     path, envs = MODELS / "quadruped.xml", 11
     model = mujoco.MjModel.from_xml_path(str(path))
     flags = ("--steps", STEPS, "--ctrl", controls(model, STEPS, tmp_path), "--precision", precision)
@@ -74,7 +74,7 @@ def test_energy_drift_of_a_batch_is_the_largest(tmp_path):
 
 
 def test_noise():
-    """Within its bounds in the tangent space, the same for the same seed, whatever the number of environments."""
+    """Noise is within its bounds in the tangent space and depends on the seed, not on the number of environments."""
     path, scale = MODELS / "quadruped.xml", 0.2
     model = mujoco.MjModel.from_xml_path(str(path))
     frozen = ("--steps", 1, "--timestep", 1e-300, "--noise", scale)
@@ -137,7 +137,7 @@ def test_an_environment_with_too_many_contacts_fails():
 
 @pytest.mark.parametrize("flags", [(), ("--envs", 40, "--threads", 1), ("--envs", 40, "--threads", 2)], ids=str)
 def test_profile(flags):
-    """Stages sum up to the time of stepping; none is missing."""
+    """The stages sum to the time of stepping; none is missing."""
     done = program.run("simulate", MODELS / "humanoid.xml", "--steps", 200, "--profile", "--json", *flags)
     figures = summary(done)
     stages = {stage["stage"]: stage for stage in figures["profile"]}
@@ -146,7 +146,7 @@ def test_profile(flags):
     assert np.isclose(sum(stage["percent"] for stage in stages.values()), 100)
     total = sum(stage["microseconds"] for stage in stages.values())
     assert np.isclose(total, 1e6 * figures["seconds"] * figures["threads"] / (figures["envs"] * 200), rtol=1e-3)
-    if figures["threads"] == 1:  # several may wait for each other
+    if figures["threads"] == 1:  # several threads may wait for each other
         assert 0 < stages["elsewhere"]["percent"] < 20, "what no stage counts should be little, but not nothing"
     assert "kinematics" in program.run("simulate", MODELS / "humanoid.xml", "--steps", 5, "--profile", *flags).stdout
 
@@ -190,7 +190,7 @@ def test_states_that_do_not_fit(tmp_path):
 
 
 def test_more_environments_than_memory_holds():
-    """With a gigabyte of addresses to itself, the program says what it lacks."""
+    """With an address space of a gigabyte, the program reports that memory is insufficient."""
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
     done = program.run("simulate", MODELS / "humanoid.xml", "--envs", 4 * 10**9, "--threads", 1, preexec_fn=limit)
     assert done.returncode == 2 and "memory" in done.stderr, done.stderr

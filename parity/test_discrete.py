@@ -1,5 +1,7 @@
-"""The integrator `discrete` beside MuJoCo, on every model of the other tests: it solves in a metric of its own, and takes rows of
-constraints at the end of the step. MuJoCo's contacts are fed in."""
+"""The integrator `discrete` compared with MuJoCo, on every model of the other tests.
+
+It solves in its own metric and evaluates constraint rows at the end of the step. MuJoCo's contacts are fed in.
+"""
 
 import pathlib
 import re
@@ -19,15 +21,16 @@ UNDECIDED = ("orientations",)
 FLAGS = (*program.EXACT, "--mass", "--jacobian", "--step")
 SOLVERS = {"newton": 300, "cg": 3000}
 STEPS = 200
-NEAR = 1e-10  # of what is compared after that many steps: rounding, and what motion makes of it
+NEAR = 1e-10  # tolerance after STEPS steps: rounding, amplified by motion
 
 
 def discrete(path, folder, options=""):
-    """A copy of a model that steps with the integrator, beside links to what lies beside the model."""
+    """Copies a model, sets the integrator and links the neighbouring files; returns the copy's path."""
     path = pathlib.Path(path).resolve()
     for beside in path.parent.iterdir():
         (folder / beside.name).symlink_to(beside)
-    text = re.sub(r'\b(integrator="\w+"|solver="PGS")', "", path.read_text())  # PGS steps in another metric, and is refused
+    # PGS steps in another metric and is refused.
+    text = re.sub(r'\b(integrator="\w+"|solver="PGS")', "", path.read_text())
     root = re.search(r"<mujoco[^>]*>", text).end()
     copy = folder / f"discrete {path.name}"
     copy.write_text(f'{text[:root]}<option integrator="discrete">{options}</option>{text[root:]}')
@@ -36,7 +39,7 @@ def discrete(path, folder, options=""):
 
 
 def compare(path, cone, rollouts=3, samples=2, solver="newton"):
-    """Everything that both say of sampled states, and of the step from them."""
+    """Compares all results of both engines on sampled states, and the step from each state."""
     model, found = oracle.load(path, cone), 0
     flags = ("--cone", cone, "--solver", solver, "--iterations", SOLVERS[solver], *FLAGS)
     with program.Forward(path, *flags) as forward:
@@ -48,7 +51,7 @@ def compare(path, cone, rollouts=3, samples=2, solver="newton"):
             agreement.mass_matrix(what, ours, theirs)
             agreement.smooth_forces(what, ours, theirs)
             agreement.constraint_rows(what, ours, theirs)
-            # Without constraints MuJoCo's acceleration is what its iterations have found, some of which end early.
+            # Without constraints MuJoCo iterates for the acceleration, and sometimes terminates early.
             solved = agreement.SOLVED + 2 * oracle.distance_to_optimum(theirs)
             agreement.acceleration(what, ours, theirs, solved)
             scale = largest(theirs.qfrc_constraint, theirs.qfrc_smooth)
@@ -95,7 +98,7 @@ def test_without_slip(name, cone, tmp_path):
 
 @pytest.mark.parametrize("name", ["joints", "spatial_tendons", "controllers", "muscles", "equalities", "contacts", "medium", "transmissions"])
 def test_trajectory(name, tmp_path):
-    """Step by step from the initial state with own contacts: one environment, and environments in lanes."""
+    """Compares each step from the initial state with own contacts: one environment, and environments in lanes."""
     path = discrete(program.ROOT / f"parity/models/{name}.xml", tmp_path)
     model = oracle.load(path)
     data, expected = mujoco.MjData(model), []
@@ -133,14 +136,14 @@ def test_sleep(name, tmp_path):
     ],
 )
 def test_what_is_refused(name, options, words, tmp_path):
-    """Nothing sleeps without islands, which MuJoCo refuses too; what couples trees that never sleep is let be."""
+    """Sleep without islands is refused, as in MuJoCo; couplings of trees that never sleep are accepted."""
     path = discrete(program.ROOT / f"parity/{name}.xml", tmp_path, options)
     done = program.run("simulate", path, "--steps", 1)
     assert (done.returncode == 0) == (words == "") and words in done.stderr, done.stderr
 
 
 def test_an_actuator_over_a_tree_that_sleeps_is_refused(tmp_path):
-    """MuJoCo takes it, and a limit that pulls with nothing changes the acceleration of the tree that is awake."""
+    """MuJoCo accepts it, and a limit with zero force changes the acceleration of the tree that is awake."""
     path = tmp_path / "winch.xml"
     path.write_text("""
         <mujoco>

@@ -1,4 +1,4 @@
-"""How far objects jut out of the volumes of sites: every kind of shape in every kind of volume, in random poses, beside MuJoCo."""
+"""The protrusion of objects from volumes of sites compared with MuJoCo: all pairs of shapes, in random poses."""
 
 import itertools
 
@@ -12,24 +12,24 @@ from compare import assert_close
 
 STATES = 60
 NEAR = 1e-12  # m; the searches take the same steps
-OF_MESHES = 1e-6  # m; MuJoCo keeps vertices in single precision
-AT_THE_TOP = 1e-4  # m; where slopes are below MuJoCo's tolerance, rounding decides which step is the last
-# Shares of all: rounding decides on which side of a ridge a step ends that ends on it, more often where vertices are rounded.
+OF_MESHES = 1e-6  # m; MuJoCo stores vertices in single precision
+AT_THE_TOP = 1e-4  # m; if slopes are below MuJoCo's tolerance, rounding decides which step is the last
+# Fractions: rounding decides on which side of a ridge a step ends, more often if vertices are rounded.
 SAME_STEPS = 0.998
 SAME_STEPS_OF_MESHES = 0.95
-# In sites that are turned rounding decides in MuJoCo from which of several corners, all equally far out, a climb begins, and so its path. Where both go
-# on to the last digit they arrive at the same summit, but for a few that have another near by.
+# In rotated sites rounding decides in MuJoCo which of several equally distant corners a climb starts from, and so its
+# path. Iterating to the last digit leads to the same summit, except for a few cases with another one nearby.
 SAME_SUMMIT = 0.97
 SHAPES = ("sphere", "capsule", "ellipsoid", "cylinder", "box", "rock", "round")
 SIZES = {"sphere": "0.2", "capsule": "0.12 0.2", "ellipsoid": "0.1 0.2 0.35", "cylinder": "0.15 0.25", "box": "0.1 0.2 0.3"}
 LARGER = {"sphere": "0.6", "capsule": "0.5 0.4", "ellipsoid": "0.5 0.6 0.8", "cylinder": "0.6 0.5", "box": "0.4 0.5 0.6"}
 ROCK = (0, 0, 0, 0.4, 0.1, 0, 0, 0.3, 0.1, 0.1, 0, 0.5, 0.3, 0.3, 0.4)
-# Bounds of the search: MuJoCo's own, a file's, and none.
+# Limits of the search: MuJoCo's default, those of a file, and none.
 BOUNDS = {"default": "", "few": 'ccd_iterations="4"', "one": 'ccd_iterations="1"', "fine": 'ccd_iterations="300" ccd_tolerance="0"'}
 
 
 def round_vertices():
-    """More vertices than MuJoCo looks through one by one."""
+    """Returns more vertices than MuJoCo searches exhaustively."""
     rng = np.random.default_rng(3)
     points = rng.normal(size=(60, 3))
     return 0.25 * points / np.linalg.norm(points, axis=1)[:, None] * [1, 0.8, 0.6]
@@ -64,7 +64,7 @@ def scene(bounds, turned=""):
 
 
 def states(model):
-    """From all objects near the middle of the sites to far away."""
+    """Yields states with the objects near the centre of the sites to far away."""
     rng = np.random.default_rng(0)
     for k in range(STATES):
         data = mujoco.MjData(model)
@@ -73,7 +73,7 @@ def states(model):
 
 
 def answers(path, model):
-    """MuJoCo's numbers and ours in all states."""
+    """Returns our numbers and MuJoCo's in all states."""
     path = str(path)
     with program.Forward(path) as forward:
         pairs = [(oracle.reference(model, state).sensordata, forward(state)["sensordata"]) for state in states(model)]
@@ -83,7 +83,7 @@ def answers(path, model):
 
 
 def of_meshes(model):
-    """Which sensors measure a mesh, or out of one: in single precision in MuJoCo."""
+    """Returns a mask of the sensors with a mesh as object or site, which have single precision in MuJoCo."""
     meshed = lambda kind, k: int(mujoco.mjtGeom.mjGEOM_MESH) == {mujoco.mjtObj.mjOBJ_GEOM: model.geom_type, mujoco.mjtObj.mjOBJ_SITE: model.site_type}[kind][k]
     found = []
     for k in range(model.nsensor):

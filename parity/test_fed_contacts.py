@@ -1,4 +1,4 @@
-"""`clench forward` against MuJoCo with MuJoCo's own contacts fed in: dynamics, constraint rows, accelerations, forces."""
+"""Compares `clench forward` with MuJoCo, whose contacts are fed in: dynamics, constraint rows and forces."""
 
 import functools
 
@@ -12,7 +12,7 @@ ITERATIONS = {"newton": 300, "cg": 3000}
 
 @functools.lru_cache(maxsize=None)
 def answers(model, cone, solver):
-    """Pairs of clench's and MuJoCo's results on every sampled state."""
+    """Returns pairs of Clench's and MuJoCo's results on every sampled state."""
     flags = ("--cone", cone, "--solver", solver, "--iterations", ITERATIONS[solver], *program.EXACT)
     with program.Forward(model, *flags, "--mass", "--jacobian") as forward:
         pairs = zip(states.sample(model), oracle.references(model, cone), strict=True)

@@ -1,5 +1,6 @@
-"""What Clench accepts and ignores does not act on MuJoCo's motion either: each such attribute is given a value in a scene, and the scene
-must move as it did without."""
+"""Attributes that Clench accepts and ignores do not affect MuJoCo's motion either.
+
+Each such attribute is set in a scene, whose motion must not change."""
 
 import copy
 import functools
@@ -15,8 +16,8 @@ from random_models.preamble import ASSETS
 STEPS = 100
 SAME = 1e-9  # metres or radians: the order of a sum may change
 
-# This chooses how MuJoCo looks for the contacts of convex shapes. Ours are found by one method, which needs no such choice: its contacts are
-# the exact ones that MuJoCo comes near to.
+# This selects MuJoCo's algorithm for contacts of convex shapes. Clench has one algorithm, which finds the exact
+# contacts that MuJoCo approximates.
 OF_THE_NARROW_PHASE = {("flag", "nativeccd")}
 
 
@@ -27,7 +28,7 @@ def scene():
 
 
 def motion(root):
-    """Every position of the model as it moves from its initial state under constant controls."""
+    """Returns every position of the model's motion from its initial state under constant controls."""
     model = mujoco.MjModel.from_xml_string(ET.tostring(root, encoding="unicode"))
     data = mujoco.MjData(model)
     data.ctrl = np.linspace(0.2, 1, model.nu)
@@ -45,13 +46,13 @@ def undisturbed():
 
 
 def ignored():
-    """Pairs of an element and an attribute that Clench accepts and ignores."""
+    """Returns pairs of an element and an attribute that Clench accepts and ignores."""
     pairs = [(element, name) for element, rule in rules.rules().items() for name in rule["ignored"]]
     return [pair for pair in pairs if pair not in harmless.UNTRIED]
 
 
 def placed(root, key):
-    """The elements of a kind. The last stands in the model rather than in a default class, where it can be in both."""
+    """Returns the elements of a kind. The last one is in the model, even if others are in a default class."""
     found = [root] if key == root.tag else []
     found += [element for parent in root.iter() for element in parent if rules.key(parent, element) == key]
     assert found, f"there is no {key} in {harmless.SCENE.name}: add one"
@@ -66,7 +67,7 @@ def changed(key, name, everywhere):
 
 
 def changed_motion(key, name):
-    """With the attribute on all elements of the kind, or, where only one may have it (a name), on the last."""
+    """Returns the motion with the attribute on all elements of the kind, or on the last if only one may have it."""
     try:
         return motion(changed(key, name, everywhere=True))
     except ValueError:
@@ -93,7 +94,7 @@ def test_an_ignored_attribute_moves_nothing(key, name):
 
 
 def test_an_element_that_is_ignored_moves_nothing():
-    """Elements of which nothing is read: the scene moves in the same way without any of them."""
+    """The motion is the same without all elements of which Clench reads nothing."""
     root = copy.deepcopy(scene())
     silent = [key for key, rule in rules.rules().items() if rule["ignored"] and not rule["read"]]
     for parent in list(root.iter()):

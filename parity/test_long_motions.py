@@ -1,6 +1,6 @@
-"""Two thousand steps of public models under random controls, with our own contacts: motion stays finite wherever MuJoCo's does.
+"""Public models stay finite over 2000 steps under random controls with own contacts, if they do in MuJoCo.
 
-Beyond the first moments motion is not compared: it amplifies rounding.
+The motions are not compared, since they amplify rounding.
 """
 
 import mujoco
@@ -11,13 +11,13 @@ import conftest
 import program
 import public
 
-STEPS, HELD = 2000, 20  # steps that a control is held
+STEPS, HELD = 2000, 20  # HELD steps have the same control
 MODELS = [public.path(name) for name in public.compared()] + sorted(conftest.GYMNASIUM.glob("*.xml"))
 BAD = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
 
 
 def diverges(model, controls):
-    """Whether MuJoCo finds its own motion unstable."""
+    """Returns True if MuJoCo warns of an unstable motion."""
     data = mujoco.MjData(model)
     for control in controls:
         data.ctrl[:] = control

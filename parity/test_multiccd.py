@@ -1,4 +1,4 @@
-"""The flag `multiccd`: without it the pairs that MuJoCo's general algorithm solves touch in their deepest point alone."""
+"""The flag `multiccd`: without it, pairs that MuJoCo solves with its general algorithm have one contact."""
 
 import mujoco
 import numpy as np
@@ -15,7 +15,7 @@ SHAPES = {
     "mesh": 'type="mesh" mesh="cube"',
 }
 PAIRS = [(a, b) for k, a in enumerate(SHAPES) for b in list(SHAPES)[k:]]
-# What MuJoCo solves in other ways: there the flag changes nothing.
+# Pairs that MuJoCo solves with other algorithms, which ignore the flag.
 OTHERS = {("capsule", "capsule"), ("capsule", "box"), ("box", "box")}
 STATES = 60
 
@@ -31,7 +31,7 @@ def scene(below, above):
 
 
 def poses(rng):
-    """Above the other, upright or lying, turned at random and tilted by up to a tenth, so that few are symmetrical."""
+    """Returns a random pose above the other shape, upright or lying, tilted by up to 0.1 rad to avoid symmetry."""
     quat = np.empty(4)
     turns = [([0, 0, 1], rng.uniform(0, 2 * np.pi)), ([0, 1, 0], rng.choice([0, np.pi / 2])), (rng.standard_normal(3), rng.uniform(0.01, 0.1))]
     total = np.array([1.0, 0, 0, 0])
@@ -61,7 +61,7 @@ def test_without_multiccd_the_contacts_are_mujocos(tmp_path, below, above):
             if (below, above) in OTHERS:
                 continue
             assert len(own) == data.ncon == 1
-            # Ours is the true depth (`test_shapes.py`); MuJoCo's direction may be another of nearly equal depth.
+            # Our depth is exact (`test_shapes.py`); MuJoCo may find another direction of nearly equal depth.
             same += np.linalg.norm(np.subtract(own[0]["pos"], data.contact.pos[0])) < 1e-5
     assert touching >= STATES // 4
     if (below, above) in OTHERS:

@@ -1,4 +1,4 @@
-"""noslip: a firmly pinched block creeps down through soft friction, and ten sweeps all but stop it."""
+"""noslip: a firmly pinched block creeps down through soft friction, and ten sweeps nearly stop it."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ BLOCK_Z = 4  # qpos: two fingers, then the block's x, y, z
 
 
 def creep(noslip_iterations):
-    """Metres a second at which the block sinks, once the grip has settled."""
+    """Returns the speed, m/s, at which the block sinks once the grip is steady."""
     record, _ = program.simulate(PINCH, "--steps", 2000, "--noslip-iterations", noslip_iterations)
     time, height = record["time"], record["qpos"][:, BLOCK_Z]
     settled = len(time) // 2
@@ -23,5 +23,5 @@ def test_noslip_stops_creep():
 
 
 def test_creep_without_noslip_is_mujocos():
-    """Soft friction is part of the model, so the creep itself agrees: 135.25 µm/s in MuJoCo 4.0."""
+    """Soft friction is part of the model, so the creep agrees with MuJoCo 4.0: 135.25 µm/s."""
     assert np.isclose(creep(0), 135.25e-6, rtol=1e-2)

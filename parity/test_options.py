@@ -1,7 +1,7 @@
-"""Options and flags of a file: each changes what MuJoCo computes, and ours in the same way.
+"""Options and flags of a file: each changes MuJoCo's results, and ours in the same way.
 
-Each case is a model, options, and a flag. Accelerations are compared with own contacts, and the flag, or where there is
-none the options, must move MuJoCo's on some state: otherwise the case would show nothing.
+Each case is a model, options, and a flag. Accelerations are compared with own contacts. The flag, or the options if
+there is none, must change MuJoCo's accelerations in some state, or the case would test nothing.
 """
 
 import re
@@ -63,7 +63,7 @@ def test_option(tmp_path, base, options, flags, cone):
 
 
 def test_eulerdamp(tmp_path):
-    """A flag that shows in steps alone: the positions after a hundred are MuJoCo's."""
+    """Positions after 100 steps are MuJoCo's; the flag affects only steps."""
     base = "parity/models/joints"
     changed = with_options(tmp_path / "changed.xml", base, "", "eulerdamp=disable")
     plain = with_options(tmp_path / "plain.xml", base, "", "")

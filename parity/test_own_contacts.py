@@ -1,12 +1,12 @@
-"""`clench forward` against MuJoCo, each finding its own contacts.
+"""Compares `clench forward` with MuJoCo, each with its own contacts.
 
-Held to it are the pairs of shapes that MuJoCo solves in closed form. For the rest (a cylinder on a capsule, box or
-cylinder) MuJoCo iterates to a tolerance of its own and chooses points by another rule, so states in which such a pair
-touches are left out, and a model must keep some states.
+The comparison covers pairs of shapes that MuJoCo solves in closed form. For other pairs (a cylinder on a capsule, box
+or cylinder) MuJoCo iterates to a tolerance and selects points by another rule, so states with such contacts are
+omitted. Some states of each model must remain.
 
-Where shapes touch at exactly the distance at which contact begins, as gymnasium's point does on its floor all the time,
-the last bit decides whether there is a contact, and MuJoCo's own bit is as good as ours. In such states the
-acceleration must be MuJoCo's either with all such contacts or with none of them.
+If shapes are exactly at the distance where contact begins, as gymnasium's point on its floor always is, the last bit
+decides whether there is a contact, and either result is valid. In such states the acceleration must be MuJoCo's either
+with all such contacts or with none of them.
 """
 
 import functools
@@ -32,7 +32,7 @@ CLOSED_FORM |= {(PLANE, CYLINDER), (SPHERE, CYLINDER)}
 
 @functools.lru_cache(maxsize=None)
 def comparable(model, cone):
-    """(state number, state, clench's result, MuJoCo's result) where every touching pair has a closed form."""
+    """Returns (index, state, Clench's result, MuJoCo's result) of states whose contacts all have a closed form."""
     geom_type = oracle.load(model, cone).geom_type
     closed = lambda c: tuple(sorted(int(geom_type[g]) for g in c["geom"])) in CLOSED_FORM
     with program.Forward(model, "--cone", cone, "--iterations", 300, *program.EXACT) as forward:
@@ -42,7 +42,7 @@ def comparable(model, cone):
 
 
 def certain(contacts):
-    """The contacts whose existence more than the last bit decides."""
+    """Returns the contacts whose existence does not depend on the last bit."""
     return [c for c in contacts if abs(c["dist"] - c["includemargin"]) > LAST_BIT]
 
 
@@ -51,7 +51,7 @@ def test_some_states_are_comparable(model):
 
 
 def test_contact_sets(model):
-    """The same pairs, points, depths, frames, dimensions and friction, whatever their order."""
+    """Pairs, points, depths, frames, dimensions and friction are equal, in any order."""
     for k, _, ours, theirs in comparable(model, "pyramidal"):
         left = certain(ours["contacts"])
         for contact in certain(theirs.contacts):
@@ -75,7 +75,7 @@ def test_acceleration(model, cone):
 
 
 def widened(model, cone, margin):
-    """MuJoCo's model with all contact margins changed by far less than matters, and more than rounding."""
+    """Returns MuJoCo's model with all contact margins changed by more than rounding, but insignificantly."""
     mjmodel = oracle.load(model, cone)
     mjmodel.geom_margin += margin
     return mjmodel

@@ -1,4 +1,4 @@
-"""Faces that lie on each other: how much of them the contacts span, beside MuJoCo's default and of all that there is."""
+"""Contact patches of faces on each other: their area compared with MuJoCo's default and with the whole overlap."""
 
 import itertools
 
@@ -8,7 +8,7 @@ import pytest
 
 import program
 
-# Half a decimetre high; flat below and above.
+# Shapes 0.1 m high, flat at the bottom and top.
 FACES = {
     "box": 'type="box" size="0.06 0.04 0.05"',
     "cylinder": 'type="cylinder" size="0.05 0.05"',
@@ -38,7 +38,7 @@ def scene(below, above):
 
 
 def poses(rng, below):
-    """One body on the other, pressed by up to a millimetre, moved and turned about the vertical, tilted a little."""
+    """Returns a pose of one body on the other: up to 1 mm deep, displaced, turned about z, slightly tilted."""
     quat, tilt = np.empty(4), np.empty(4)
     axis = rng.standard_normal(3) * 10 ** rng.uniform(-7, -3)
     mujoco.mju_axisAngle2Quat(quat, [0, 0, 1], rng.uniform(0, 2 * np.pi))
@@ -50,7 +50,7 @@ def poses(rng, below):
 
 
 def face(shape):
-    """The corners of a face, counter-clockwise."""
+    """Returns the corners of a face, counter-clockwise."""
     if shape in ("box", "block"):
         x, y = (0.06, 0.04) if shape == "box" else (0.05, 0.04)
         return np.array([(x, y), (-x, y), (-x, -y), (x, -y)])
@@ -60,7 +60,7 @@ def face(shape):
 
 
 def overlap(below, above, pose):
-    """The corners of where the upper face is over the lower one (Sutherland & Hodgman 1974); tilts are too small to matter."""
+    """Returns the corners of the overlap of both faces (Sutherland & Hodgman 1974); tilts are negligible."""
     axes = np.empty(9)
     mujoco.mju_quat2Mat(axes, np.array(pose[3:7]))
     corners = face(above) @ axes.reshape(3, 3)[:2, :2].T + pose[:2]
@@ -78,7 +78,7 @@ def overlap(below, above, pose):
 
 
 def area(points):
-    """Of the convex hull of points, seen from above (Andrew 1979)."""
+    """Returns the area of the convex hull of points, seen from above (Andrew 1979)."""
     points = sorted({tuple(p) for p in np.round(np.asarray(points).reshape(-1, 3)[:, :2], 9)})
     if len(points) < 3:
         return 0.0
@@ -112,11 +112,11 @@ def test_patches_are_as_large_as_mujocos_and_nearly_as_the_overlap(tmp_path, bel
             own = forward({"qpos": data.qpos.tolist()})["contacts"]
             assert own and all(contact["dist"] < 0 for contact in own), "it lies on the other"
             spanned, expected = area([contact["pos"] for contact in own]), area(data.contact.pos)
-            # Where MuJoCo's points span next to no area, only the share of the true overlap, below, can judge.
+            # If MuJoCo's points span almost no area, only the fraction of the true overlap, below, is checked.
             if expected > 1e-6:
                 shares.append(spanned / expected)
             whole.append(spanned / area(overlap(below, above, data.qpos)))
     assert min(shares) >= 0.9, f"{np.sum(np.array(shares) < 0.9)} of {STATES} below 0.9, the least {min(shares):.3f}"
-    # An octagon in a circle has 0.9003 of it; MuJoCo's three points of a cylinder on a plane, which are ours too, have 0.4135.
+    # An octagon has 0.9003 of its circle; the three points of a cylinder on a plane, ours and MuJoCo's, have 0.4135.
     least = 0.41 if (below, above) == ("plane", "cylinder") else 0.85
     assert min(whole) >= least, f"{min(whole):.3f} of the faces' overlap"

@@ -1,6 +1,6 @@
-"""The same problem by another road: sparse or dense, islands or not, CG or Newton, warm or cold.
+"""Equal solutions of a problem by different algorithms: sparse or dense, islands or not, CG or Newton, warm or cold.
 
-These compare Clench with itself, with its own contacts, at tolerance 0.
+These tests compare Clench with itself, with its own contacts, at tolerance 0.
 """
 
 import functools

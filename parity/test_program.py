@@ -1,4 +1,4 @@
-"""What the program promises on its own: summaries, records, help, toggled equalities."""
+"""The program's summaries, records, help and toggled equalities."""
 
 import json
 import re
@@ -43,7 +43,7 @@ def test_a_model_is_described_as_json(path):
 
 
 def test_contacts_are_listed():
-    """The same contacts with the same numbers as `forward` gives for that state."""
+    """The listed contacts are those that `forward` returns for that state."""
     path = program.ROOT / "models/box_stack.xml"
     listed = program.run("inspect", path, "--steps", 500, "--contacts").stdout.partition("\ncontacts at ")[2]
     heading, columns, *lines = listed.splitlines()
@@ -73,7 +73,7 @@ def test_what_is_supported_is_listed():
 
 
 def test_forward_tells_the_next_state():
-    """The state that `simulate` is in after one step."""
+    """The next state is that of `simulate` after one step."""
     path = program.ROOT / "models/quadruped.xml"
     record, _ = program.simulate(path, "--steps", 1)
     with program.Forward(path, "--step") as forward:
@@ -103,7 +103,7 @@ def test_the_same_run_twice_is_the_same_to_the_bit():
 
 
 def test_a_toggled_weld_holds_its_crate():
-    """In the lifted pose the crate's weight is carried by the weld when it is on, and by nothing when it is off."""
+    """In the lifted pose the weld carries the crate's weight if it is on, and nothing carries it if it is off."""
     with program.Forward(program.ROOT / "models/toggled_weld.xml") as forward:
         lifted = {"qpos": [0, -0.2, 0, 0, 0.479, 1, 0, 0, 0]}
         free, held = forward({**lifted, "eq_active": [False]}), forward({**lifted, "eq_active": [True]})
@@ -124,7 +124,7 @@ def test_contacts_that_are_left_out_are_told_of():
 
 
 def test_a_whole_mjcontact_is_understood():
-    """Every field that MuJoCo has on a contact can be passed; what it derives changes nothing."""
+    """Every field of MuJoCo's contacts is accepted; derived fields have no effect."""
     model = mujoco.MjModel.from_xml_path(str(program.ROOT / "models/box_stack.xml"))
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, 20)
@@ -167,7 +167,7 @@ def test_what_was_left_out_of_the_program_says_how_to_get_it(command, feature):
 
 
 def test_a_line_search_cut_short_is_no_success():
-    """One evaluation a search cannot solve this scene; a summary that says ok would hide it."""
+    """One evaluation per line search cannot solve this scene; a summary with status ok would hide it."""
     done = program.run("simulate", program.ROOT / "models/pinch.xml", "--json", "--ls-iterations", 1)
     summary = json.loads(done.stdout.splitlines()[-1])
     assert summary["status"] == "iteration_limit" and summary["unconverged_steps"] > 0

@@ -1,4 +1,4 @@
-"""Public models beside MuJoCo with its own contacts fed in: accelerations and every sensor, on a few states each."""
+"""Compares accelerations and sensors of public models with MuJoCo, whose contacts are fed in, on a few states each."""
 
 import functools
 
@@ -12,12 +12,13 @@ import states
 from compare import assert_close
 
 ROLLOUTS, SAMPLES = 2, 2
-PRECISION = 1e-6  # of the accelerations involved: masses and stiffnesses of public models span many orders of magnitude
+# Relative to the accelerations involved: masses and stiffnesses of public models span many orders of magnitude.
+PRECISION = 1e-6
 
 
 @functools.lru_cache(maxsize=None)
 def answers(name):
-    """The oracle's model, and pairs of clench's and MuJoCo's results."""
+    """Returns the oracle's model, and pairs of Clench's and MuJoCo's results."""
     path = public.path(name)
     model = oracle.load(path)
     found = states.sample(path, ROLLOUTS, SAMPLES, may_be_unstable=True)

@@ -1,4 +1,4 @@
-"""Models that `clench convert` wrote, in MuJoCo beside the files that they came from: sizes, parameters, and one state's dynamics."""
+"""Compares files that `clench convert` writes with their sources in MuJoCo: sizes, parameters and dynamics."""
 
 import mujoco
 import numpy as np
@@ -13,9 +13,9 @@ import states
 import urdf
 from compare import assert_close, largest
 
-PRECISION = 1e-6  # what follows from meshes, whose vertices have 24 bits
+PRECISION = 1e-6  # of values derived from meshes, whose vertices have 24 bits
 SIZES = ("nq", "nv", "nu", "na", "nbody", "njnt", "ngeom", "nsite", "ntendon", "neq", "npair", "nexclude", "nsensor", "nkey", "nplastic")
-# Fields of a model that act on motion and that MuJoCo does not compute by the way.
+# Fields of a model that affect motion and that MuJoCo does not compute on the way.
 FIELDS = (
     "qpos0 qpos_spring body_parentid body_mocapid body_mass body_subtreemass body_ipos body_gravcomp body_invweight0 jnt_type "
     "jnt_limited jnt_actfrclimited jnt_actgravcomp jnt_solref jnt_solimp jnt_pos jnt_axis jnt_stiffness jnt_range jnt_actfrcrange "
@@ -32,12 +32,12 @@ FIELDS = (
     "body_user jnt_user geom_user site_user cam_user tendon_user actuator_user sensor_user"
 ).split()
 OPTIONS = ("timestep", "gravity", "wind", "magnetic", "density", "viscosity", "integrator", "cone", "impratio")
-# They choose between algorithms that look for the same contacts, and are not in a model of ours.
+# Flags that select between algorithms for the same contacts. Our models do not store them.
 ALGORITHMS = int(mujoco.mjtDisableBit.mjDSBL_NATIVECCD | mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
 
 
 def sources():
-    """Every model of ours and gymnasium's, and for the sake of time every fifth of those of other packages."""
+    """Returns all of our models and gymnasium's and, to save time, every fifth of other packages."""
     ours = [(param.id, param.values[0], param.values[0]) for param in conftest.models()]
     theirs = [(name, public.path(name), public.path(name)) for name in public.compared()[::5]]
     robots = [e.name for e in urdf.compared() if e.how == "as written"][::5]
@@ -58,10 +58,10 @@ def test_mujoco_reads_what_was_saved(name, source, readable, tmp_path):
     assert [getattr(saved, size) for size in SIZES] == [getattr(model, size) for size in SIZES]
     for field in FIELDS:
         actual, expected = getattr(saved, field), getattr(model, field)
-        if field == "eq_data":  # the last number says how MuJoCo came by the others
+        if field == "eq_data":  # the last number records the source of the others
             actual, expected = actual[:, :-1], expected[:, :-1]
         if field in ("sensor_objid", "sensor_objtype", "sensor_refid", "sensor_reftype"):
-            # A body with one geom and that geom are the same to a distance.
+            # For a distance, a body with one geom is equivalent to that geom.
             searched = np.isin(model.sensor_type, agreement.SEARCHED)
             actual, expected = actual[~searched], expected[~searched]
         compare(field, actual, expected)

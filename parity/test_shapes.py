@@ -1,10 +1,11 @@
-"""Models with every shape, own small ones and the robots of other packages: that they load, that dynamics are MuJoCo's with its
-contacts, and how near own contacts are.
+"""Models with every shape, our small ones and robots of other packages.
 
-Where surfaces meet in more than a point, which points stand for the patch is a matter of choice, so of own contacts only what is
-unique is compared: which geoms touch, how deep at the deepest point, and along which normal. MuJoCo gives the true answer without
-`multiccd`, which moves it, and with a tolerance that makes it exact. On height fields either of its algorithms serves: the native one
-leaves corners of boxes and meshes under ground by millimetres, the older one has normals of curved shapes to a degree.
+The tests check that they load, that dynamics agree with MuJoCo's contacts, and that own contacts are close to MuJoCo's.
+If surfaces touch in more than a point, the choice of contact points is arbitrary, so only unique properties of own
+contacts are compared: the pairs of geoms, the maximum depth and its normal. MuJoCo's result is exact without
+`multiccd`, which moves points, and with a small tolerance. On height fields either of its algorithms may agree: the
+native one leaves corners of boxes and meshes under ground by millimetres, and the older one has normals of curved
+shapes that are wrong by a degree.
 """
 
 import functools
@@ -22,7 +23,7 @@ import states
 
 DISABLE = mujoco.mjtDisableBit
 ROLLOUTS, SAMPLES = 3, 2
-SAME_PAIRS, SAME_POINT = 0.995, 0.99  # parts of all
+SAME_PAIRS, SAME_POINT = 0.995, 0.99  # fractions
 DEPTH = 1e-6  # metres
 LAST_BIT = 1e-12  # metres
 NORMAL = np.cos(np.radians(0.1))
@@ -37,7 +38,7 @@ def test_refusals_say_why(name, reason):
 
 
 def test_every_model_is_listed():
-    """What is not listed is no model: MuJoCo refuses it too."""
+    """MuJoCo refuses all files that are not listed."""
     known = {name for name, _ in public.listed()}
     files = [path.relative_to(public.FOLDER).as_posix() for path in public.FOLDER.glob("*/**/*.xml")]
     assert known <= set(files)
@@ -72,7 +73,7 @@ def test_dynamics_with_contacts_of_mujoco(name):
 
 
 def test_own_contacts():
-    """The deepest contact of each pair of geoms that touch in some state of some model."""
+    """The deepest contact of each pair of touching geoms agrees, over all states and models."""
     either, differing = 0, []
     both, astray = 0, []
     for name in COMPARED:
@@ -94,7 +95,10 @@ def test_own_contacts():
 
 @functools.lru_cache(maxsize=None)
 def deepest_contacts(name):
-    """Of each state, our contacts, MuJoCo's, and those of its older algorithm on height fields: by pair of geoms, the deepest."""
+    """Returns the deepest contact by pair of geoms for each state.
+
+    They are ours, MuJoCo's, and those of its older algorithm on height fields.
+    """
     path = public.path(name)
     native, older = (exact(path, flags) for flags in (DISABLE.mjDSBL_MULTICCD, DISABLE.mjDSBL_NATIVECCD))
     on_terrain = lambda pair: mujoco.mjtGeom.mjGEOM_HFIELD in native.geom_type[list(pair)]
@@ -108,7 +112,7 @@ def deepest_contacts(name):
 
 
 def exact(path, flags):
-    """MuJoCo's model with collisions to the last digit, and something disabled."""
+    """Returns MuJoCo's model with exact collisions and the given flags disabled."""
     model = oracle.load(path)
     model.opt.disableflags |= flags
     model.opt.ccd_tolerance, model.opt.ccd_iterations = 1e-12, 500
@@ -116,7 +120,7 @@ def exact(path, flags):
 
 
 def deepest(contacts):
-    """By pair of geoms; contacts whose existence the last bit decides are left out."""
+    """Returns the deepest contact by pair of geoms, without those whose existence depends on the last bit."""
     sure = [c for c in contacts if abs(c["dist"] - c["includemargin"]) > LAST_BIT]
     return {tuple(c["geom"]): c for c in sorted(sure, key=lambda c: -c["dist"])}
 

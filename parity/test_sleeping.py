@@ -1,7 +1,7 @@
-"""Which trees sleep after which step, and where they are, beside MuJoCo: one environment, and environments in lanes.
+"""Compares sleeping trees and states after each step with MuJoCo: one environment, and environments in lanes.
 
-Both find their contacts by themselves. What is compared is made of few bodies that meet in points which are unique, so that
-rounding alone differs, and motion amplifies it by less than `NEAR`.
+Both engines find their own contacts. The scenes have few bodies and unique contact points, so that only rounding
+differs, and motion amplifies it by less than `NEAR`.
 """
 
 import mujoco
@@ -19,7 +19,7 @@ AWAKE = -11
 
 @pytest.fixture(scope="module", params=SCENES, ids=lambda path: path.stem)
 def scene(request):
-    """The scene, and MuJoCo's positions, velocities and numbers of trees after each step."""
+    """Returns the scene, and MuJoCo's positions, velocities and `tree_asleep` after each step."""
     model = oracle.load(request.param)
     data = mujoco.MjData(model)
     rows = []
@@ -57,7 +57,7 @@ def test_the_same_trees_sleep_in_lanes(scene):
 
 
 def test_lengths_and_beginnings(scene):
-    """The speeds that count, and what begins asleep."""
+    """The trees that sleep after the first step are MuJoCo's."""
     path, *_ = scene
     model = oracle.load(path)
     data = mujoco.MjData(model)
@@ -67,7 +67,7 @@ def test_lengths_and_beginnings(scene):
 
 
 def touches():
-    """What a user writes before some steps, by the field: (step, field, index, value)."""
+    """Returns a user's writes before some steps: (step, field, index, value)."""
     return [
         (150, "qvel", 2, -0.0),
         (200, "qfrc_applied", 2, -0.0),
@@ -98,7 +98,7 @@ TOUCHED = """
 
 
 def test_what_users_touch_wakes(tmp_path):
-    """Step by step from the states that the program gives back, which hold what sleeps."""
+    """Each step starts from the state that the program returned, which includes the sleeping trees."""
     path = tmp_path / "touched.xml"
     named = TOUCHED.replace("<body pos=\"0 0 0.1\">", "<body name=\"1\" pos=\"0 0 0.1\">")
     path.write_text(named.replace("<body pos=\"0 1 0.1\">", "<body name=\"2\" pos=\"0 1 0.1\">"))

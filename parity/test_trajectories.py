@@ -1,9 +1,9 @@
-"""Two hundred steps beside MuJoCo, with own contacts, the file's integrator and cone, and the same random controls.
+"""Compares 200 steps with MuJoCo, with own contacts, the file's integrator and cone, and the same random controls.
 
-Rounding differs between the engines, and motion in contact amplifies it: by how much, MuJoCo itself says, when it
-repeats the run from starts that differ by 1e-11. Clench must stay within that spread, for as long as the spread is
-small enough to mean anything. The start is moved off the model's by a thousandth in every coordinate, because many
-models begin with a contact at distance exactly zero, where the last bit decides whether it exists.
+Rounding differs between the engines, and motion in contact amplifies it. MuJoCo's own runs from starts that differ by
+1e-11 measure the amplification, and Clench must stay within their spread while it is small. The start differs from
+the model's by a thousandth in every coordinate, because many models start with a contact at distance exactly zero,
+whose existence depends on the last bit.
 """
 
 import shutil
@@ -19,7 +19,7 @@ import states
 STEPS, CONTROL_HOLD = 200, 10
 NUDGE = 1e-11
 NEIGHBOURS = 4
-MEANINGFUL = 1e-5  # past this spread a comparison says nothing
+MEANINGFUL = 1e-5  # above this spread a comparison is meaningless
 REQUIRED_STEPS = 100
 ROUNDING = 1e-10
 
@@ -51,14 +51,14 @@ def test_trajectory(model, tmp_path):
 
 
 def prepare(model, folder):
-    """A file that includes the model and adds the keyframe `start`, and the controls of each step."""
+    """Writes a file that includes the model and adds the keyframe `start`; returns it and the controls of each step."""
     mjmodel = mujoco.MjModel.from_xml_path(str(model))
     rng = np.random.default_rng(7)
     controls = np.array([states.controls(mjmodel, rng) for _ in range(STEPS // CONTROL_HOLD)])
     qpos, qvel = mjmodel.qpos0.copy(), 0.1 * rng.standard_normal(mjmodel.nv)
     mujoco.mj_integratePos(mjmodel, qpos, rng.standard_normal(mjmodel.nv), 1e-3)
     numbers = lambda array: " ".join(f"{x:.17g}" for x in array)
-    shutil.copytree(model.parent, folder, dirs_exist_ok=True)  # files are found from the file that includes
+    shutil.copytree(model.parent, folder, dirs_exist_ok=True)  # paths are relative to the including file
     path = folder / "start.xml"
     path.write_text(
         f'<mujoco>\n  <include file="{model.name}"/>\n  <keyframe>\n'
@@ -68,7 +68,7 @@ def prepare(model, folder):
 
 
 def rollout(model, controls, nudge, seed):
-    """MuJoCo's (STEPS, nq + nv) states after each step, its start moved by about `nudge`."""
+    """Returns MuJoCo's states (STEPS, nq + nv) after each step, from a start moved by about `nudge`."""
     model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_WARMSTART)
     data, rng = mujoco.MjData(model), np.random.default_rng(seed)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
@@ -84,7 +84,7 @@ def rollout(model, controls, nudge, seed):
 
 
 def states_after_steps(record, model):
-    """The record's states after steps 1 to STEPS, found by their time."""
+    """Returns the record's states after steps 1 to STEPS, found by their time."""
     step = np.rint(record["time"] / model.opt.timestep).astype(int)
     rows = np.hstack([record["qpos"], record["qvel"]])[step > 0]
     assert step[step > 0].tolist() == list(range(1, STEPS + 1))

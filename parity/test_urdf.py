@@ -1,4 +1,4 @@
-"""Public URDF files beside MuJoCo: mass matrix, bias, passive and constrained accelerations, on eight states each."""
+"""Compares public URDF files with MuJoCo: mass matrix, bias and accelerations, on eight states each."""
 
 import functools
 
@@ -14,8 +14,8 @@ import urdf
 from compare import assert_close, largest
 
 ROLLOUTS, SAMPLES = 4, 2
-PRECISION = 1e-6  # of numbers that span many orders of magnitude, of meshes that have 24 bits
-FILES = 103  # in both packages, of which MuJoCo reads
+PRECISION = 1e-6  # values span many orders of magnitude, and meshes have 24 bits
+FILES = 103  # in both packages; MuJoCo reads AS_WRITTEN of them, and REPAIRED more after repair
 AS_WRITTEN, REPAIRED = 60, 17
 
 
@@ -25,7 +25,7 @@ def identity(entry):
 
 @functools.lru_cache(maxsize=None)
 def answers(name, how):
-    """The oracle's model, and pairs of clench's and MuJoCo's results."""
+    """Returns the oracle's model, and pairs of Clench's and MuJoCo's results."""
     path = urdf.copy(name, how == "repaired")
     model = oracle.load(path)
     found = states.sample(path, ROLLOUTS, SAMPLES, may_be_unstable=True) or [{}]
@@ -66,7 +66,7 @@ def test_dynamics(entry, record_property):
 
 @pytest.mark.parametrize("entry", urdf.refused(), ids=identity)
 def test_what_mujoco_refuses(entry, record_property):
-    """MuJoCo gives this reason still; Clench, if it refuses the file too, says where."""
+    """MuJoCo still gives this reason; if Clench refuses the file too, it reports the location."""
     for repair in (False, True):
         with pytest.raises(ValueError, match=entry.reason):
             mujoco.MjModel.from_xml_path(str(urdf.copy(entry.name, repair)))

@@ -1,4 +1,4 @@
-"""Where springs that yield rest, step by step beside MuJoCo, with every integrator: one environment, and environments in lanes."""
+"""Compares the rest lengths of yielding springs with MuJoCo, step by step, with every integrator and in lanes."""
 
 import mujoco
 import numpy as np
@@ -10,7 +10,7 @@ from compare import assert_close
 
 PATH = program.ROOT / "parity/models/yielding.xml"
 STEPS = 300
-NEAR = 1e-7  # of what is compared, after motion has amplified rounding
+NEAR = 1e-7  # tolerance after motion has amplified rounding
 INTEGRATORS = {
     "Euler": mujoco.mjtIntegrator.mjINT_EULER,
     "RK4": mujoco.mjtIntegrator.mjINT_RK4,
@@ -22,7 +22,7 @@ INTEGRATORS = {
 
 @pytest.fixture(params=INTEGRATORS)
 def written(request, tmp_path):
-    """The model with an integrator, and MuJoCo's states after each step from its first keyframe."""
+    """Returns the model with an integrator, and MuJoCo's states after each step from its first keyframe."""
     path = tmp_path / "yielding.xml"
     path.write_text(PATH.read_text().replace('integrator="implicitfast"', f'integrator="{request.param}"'))
     model = oracle.load(path)

@@ -1,8 +1,8 @@
-"""URDF files of other people's packages, example-robot-data and genesis-world, which `cargo xtask test python` puts into .venv/models.
+"""URDF files of example-robot-data and genesis-world, which `cargo xtask test python` puts into .venv/models.
 
-`urdf.txt` lists all of them. MuJoCo knows no packages: it gets copies whose meshes are named by their whole paths, while Clench reads
-the files themselves. Where MuJoCo refuses a file for masses and inertias that no body has, both read a copy in which MuJoCo's own
-extension of URDF repairs them.
+`urdf.txt` lists all of them. MuJoCo does not resolve packages, so it gets copies with full paths of meshes, while
+Clench reads the files themselves. If MuJoCo refuses a file for unphysical masses and inertias, both read a copy in
+which MuJoCo's own extension of URDF repairs them.
 """
 
 import functools
@@ -14,19 +14,19 @@ import xml.etree.ElementTree as ElementTree
 import public
 
 HERE = pathlib.Path(__file__).resolve().parent
-SHARE = public.FOLDER / "cmeel.prefix/share"  # where example-robot-data puts its package
+SHARE = public.FOLDER / "cmeel.prefix/share"  # contains the package of example-robot-data
 FOLDERS = (SHARE / "example-robot-data/robots", public.FOLDER / "genesis/assets")
 REPAIR = {"balanceinertia": "true", "boundmass": "1e-6", "boundinertia": "1e-9"}
 FLAGS = ("--package-path", SHARE)
 
 
 def found():
-    """All files, as `urdf.txt` names them."""
+    """Returns all files by their names in `urdf.txt`."""
     return sorted(str(path.relative_to(public.FOLDER)) for folder in FOLDERS for path in folder.rglob("*.urdf"))
 
 
 def listed():
-    """Each listed file: its name, `how` it is compared (as written, repaired, refused), and what MuJoCo says where it refuses it."""
+    """Yields each listed file: its name, `how` it is compared (as written, repaired, refused), and MuJoCo's error."""
     for line in (HERE / "urdf.txt").read_text().splitlines():
         if not line.startswith("#"):
             name, _, rest = line.partition(": ")
@@ -48,7 +48,7 @@ def folder():
 
 
 def copy(name, repair):
-    """A copy that MuJoCo can read."""
+    """Writes a copy that MuJoCo can read and returns its path."""
     source = public.path(name)
     tree = ElementTree.parse(source)
     for mesh in tree.iter("mesh"):
@@ -65,7 +65,7 @@ def copy(name, repair):
 
 
 def whole(written, source):
-    """The file that a mesh is in: a package is in SHARE, or around the file that names it."""
+    """Returns the file of a mesh. A package is in SHARE or encloses the file that names it."""
     inside = written.removeprefix("package:").lstrip("/") if written.startswith("package:") else written
     parents = [source.parent] if inside == written else [SHARE, *source.parents]
     places = [parent / inside for parent in parents]

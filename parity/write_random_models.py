@@ -1,6 +1,6 @@
-"""Writes random models into a folder, a file a seed: `python parity/write_random_models.py FOLDER FIRST COUNT`.
+"""Writes random models into a folder, a file per seed: `python parity/write_random_models.py FOLDER FIRST COUNT`.
 
-Those that MuJoCo refuses are among them. A device is compared with the processor on them (`clench-gpu/tests/device/random.rs`).
+They include models that MuJoCo refuses. `clench-gpu/tests/device/random.rs` compares the GPU with the CPU on them.
 """
 
 import pathlib

@@ -8,7 +8,7 @@ release = clench.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "docs/site/index"
-# Pages are where they are read in the repository too, so that links between them hold in both places.
+# Pages stay at their paths in the repository, so that links between them work there and on the site.
 include_patterns = [
     "README.md",
     "docs/*.md",
@@ -30,5 +30,5 @@ nb_execution_raise_on_error = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 napoleon_google_docstring = False
-# Links to code and folders lead to files that are no pages, and Rust's examples have words that no highlighter knows.
+# Links to code and folders lead to files that are not pages, and the highlighter does not know all syntax of Rust.
 suppress_warnings = ["myst.xref_missing", "misc.highlighting_failure"]

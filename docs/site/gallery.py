@@ -1,5 +1,6 @@
-"""Draws the gallery of the site: every example model after a while, and the page that shows them. Without a graphics driver the page says
-so and has no pictures.
+"""Draws the gallery of the site: a picture of every example model after half a second, and the page of all pictures.
+
+Without a graphics driver the page says so and has no pictures.
 
     python docs/site/gallery.py
 """
@@ -26,13 +27,13 @@ def picture(path: Path, to: Path) -> None:
 
 
 def about(path: Path) -> str:
-    """What the comment at the top of a model's file says."""
+    """Returns the text of the comment at the top of a model's file."""
     comment = re.match(r"\s*<!--(.*?)-->", path.read_text(encoding="utf-8"), re.S)
     return " ".join(comment[1].split()) if comment else ""
 
 
 def main() -> None:
-    """Draws all of them."""
+    """Draws all models and writes the page."""
     FOLDER.mkdir(exist_ok=True)
     page = ["# Gallery", f"The example models of the repository after {SECONDS} s, as `sim.render()` draws them.", ""]
     models = sorted((ROOT / "models").glob("*.xml"))

@@ -1,9 +1,9 @@
-//! Checksums of PNG files, made right, so that changed bytes get past them.
+//! Correction of the checksums of PNG files, so that mutated bytes pass them.
 
-/// Eight bytes that every PNG file begins with.
+/// The length of the signature of PNG files.
 const SIGNATURE: usize = 8;
 
-/// The file with the checksum of each chunk as it should be. What the deflated data says of itself stays as it is.
+/// Returns the file with correct checksums of all chunks. Checksums inside the deflated data stay as they are.
 pub fn mend(data: &[u8]) -> Vec<u8> {
     let mut bytes = data.to_vec();
     let mut at = SIGNATURE;
@@ -23,7 +23,7 @@ pub fn mend(data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The cyclic redundancy check of the PNG specification.
+/// Computes the cyclic redundancy check of the PNG specification.
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg());
     let crc = bytes.iter().fold(u32::MAX, |crc, &byte| {

@@ -1,4 +1,4 @@
-//! Contacts that a user hands in instead of those that collision finds.
+//! Contacts from a user instead of collision detection.
 
 use crate::trial::{check_result, machine};
 use clench::math::{Mat3, Vec3};
@@ -6,11 +6,11 @@ use clench::rigid::contact::Contact;
 use clench::{Model, Sim};
 use std::sync::{Arc, LazyLock};
 
-/// Bytes of a contact: two geoms, a dimension, and its numbers in single precision.
+/// The bytes of a contact: two geoms, a dimension, and its numbers in single precision.
 const CONTACT: usize = 3 + 4 * NUMBERS;
 const NUMBERS: usize = 32;
 
-/// Makes contacts of the bytes, and computes with them.
+/// Reads contacts from the bytes, and computes with them.
 pub fn contacts(data: &[u8]) -> bool {
     static MACHINE: LazyLock<Arc<Model>> = LazyLock::new(machine);
     let (whole, _) = data.as_chunks::<CONTACT>();

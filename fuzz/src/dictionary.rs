@@ -1,8 +1,8 @@
-//! The words of MJCF for the fuzzer.
+//! The dictionary of MJCF for the fuzzer.
 
 use clench::formats::supported;
 
-/// The elements and attributes of MJCF as libFuzzer reads words, a line each: in the text that they have in a file.
+/// Returns the elements and attributes of MJCF as they appear in a file, one per line, in libFuzzer's format.
 pub fn dictionary() -> String {
     let mut words: Vec<String> = Vec::new();
     for support in supported() {

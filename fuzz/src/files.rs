@@ -1,4 +1,4 @@
-//! A folder for the files that readers open by name. Each thread has its own, so that tests can run side by side.
+//! A folder for files that readers open by name. Each thread has its own, so that tests can run in parallel.
 
 use std::fs;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ thread_local! {
     static FOLDER: TempDir = tempfile::tempdir().expect("a temporary folder");
 }
 
-/// Writes a file into the folder, and says where it is.
+/// Writes a file into the folder, and returns its path.
 pub fn write(name: &str, bytes: &[u8]) -> PathBuf {
     let path = FOLDER.with(|folder| folder.path().join(name));
     fs::write(&path, bytes).expect("a temporary file");

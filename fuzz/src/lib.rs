@@ -1,8 +1,8 @@
-//! Fuzz targets: each is a function that reads any bytes with one of our readers, and returns true if they were
+//! Fuzz targets: each is a function that reads arbitrary bytes with one of our readers, and returns true if they were
 //! accepted.
 //!
-//! None may panic, hang or fill the memory, and accepted input must be usable. `cargo xtask fuzz` searches for bytes
-//! that break this, guided by coverage; the tests of this crate replay `seeds` and `regressions`.
+//! None may panic, hang or exhaust the memory, and accepted input must be usable. `cargo xtask fuzz` searches for
+//! failing inputs, guided by coverage; the tests of this crate replay `seeds` and `regressions`.
 
 mod checksums;
 mod contacts;
@@ -21,7 +21,7 @@ pub use npy::npy;
 pub use shapes::{dae, gltf, grid, msh, obj, png, stl};
 pub use states::states;
 
-/// A target by name, which is also that of its folders.
+/// The name of a target, which is also that of its folders, and its function.
 pub type Target = (&'static str, fn(&[u8]) -> bool);
 
 /// All targets.

@@ -1,9 +1,9 @@
-//! Model files, with other files beside them that they can name.
+//! Model files, with other files that they can refer to.
 
 use crate::{files, trial};
 use std::cell::Cell;
 
-/// The files beside a model, by name.
+/// The files next to a model, by name.
 const BESIDE: [(&str, &[u8]); 6] = [
     ("cube.stl", include_bytes!("../seeds/stl/cube.stl")),
     ("cube.obj", include_bytes!("../seeds/obj/cube.obj")),
@@ -12,15 +12,15 @@ const BESIDE: [(&str, &[u8]); 6] = [
     ("hills.bin", include_bytes!("../seeds/grid/hills.bin")),
     ("part.xml", include_bytes!("../seeds/mjcf/part.xml")),
 ];
-/// An error is read by people: long values in it are cut. Paths, which users choose, come on top.
+/// The maximum length of an error, excluding paths. People read errors, so long values in them are truncated.
 const MAX_ERROR_LENGTH: usize = 4000;
 
-/// Reads a model, and tries it where it is one.
+/// Reads a model, and tries it if it is valid.
 pub fn mjcf(data: &[u8]) -> bool {
     model("model.xml", data)
 }
 
-/// Reads a robot in URDF likewise.
+/// Reads a URDF robot in the same way.
 pub fn urdf(data: &[u8]) -> bool {
     model("model.urdf", data)
 }

@@ -1,4 +1,4 @@
-//! NumPy's files.
+//! NumPy files.
 
 use crate::files;
 use clench_cli::limits::MemoryLimit;

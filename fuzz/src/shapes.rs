@@ -1,28 +1,28 @@
-//! Files of meshes and height fields: what is read is put into a scene, where something lies on it.
+//! Files of meshes and height fields: each result is put into a scene with an object on it.
 
 use crate::{checksums, files, trial};
 
-/// A mesh in binary or text STL.
+/// Reads a mesh in binary or text STL.
 pub fn stl(data: &[u8]) -> bool {
     mesh("stl", data)
 }
 
-/// A mesh in OBJ.
+/// Reads a mesh in OBJ.
 pub fn obj(data: &[u8]) -> bool {
     mesh("obj", data)
 }
 
-/// A mesh in MuJoCo's MSH.
+/// Reads a mesh in MuJoCo's MSH.
 pub fn msh(data: &[u8]) -> bool {
     mesh("msh", data)
 }
 
-/// A mesh in Collada.
+/// Reads a mesh in Collada.
 pub fn dae(data: &[u8]) -> bool {
     mesh("dae", data)
 }
 
-/// A mesh in glTF, as a binary file or as text.
+/// Reads a mesh in glTF, as a binary file or as text.
 pub fn gltf(data: &[u8]) -> bool {
     mesh("gltf", data)
 }
@@ -32,7 +32,7 @@ pub fn png(data: &[u8]) -> bool {
     height_field("png", &checksums::mend(data))
 }
 
-/// A height field in MuJoCo's binary format.
+/// Reads a height field in MuJoCo's binary format.
 pub fn grid(data: &[u8]) -> bool {
     height_field("bin", data)
 }

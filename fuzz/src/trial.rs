@@ -1,4 +1,4 @@
-//! The trial of a model that was read: nothing may panic, and every result must be finite.
+//! The trial of a loaded model: nothing may panic, and every result must be finite.
 
 use clench::math::Vec3;
 use clench::{Budget, Model, RayFilter, SaveModel, Sim};
@@ -12,19 +12,19 @@ pub fn budget() -> Budget {
 /// The error of a model whose mass matrix is singular up to rounding.
 const SINGULAR: &str = "the mass matrix is not positive definite";
 
-/// Steps of a trial.
+/// The number of steps of a trial.
 const STEPS: usize = 3;
 
 /// Saves a model, steps it, and queries it.
 pub fn run(model: Model) {
-    // What cannot be said in MJCF is an error; what is said can be read, within what a file may ask for.
+    // A model that MJCF cannot express is an error; a saved model is readable within the default budget.
     if let Ok(text) = model.to_mjcf() {
         match clench::load_str_within(&text, Budget::default()) {
             Ok(again) => assert_eq!(
                 (again.nq, again.nv, again.nu()),
                 (model.nq, model.nv, model.nu())
             ),
-            // Where inertias are further apart than numbers have digits, rounding decides it, and saved orientations are rounded.
+            // If inertias differ by more than the precision, rounding decides it, and saved orientations are rounded.
             Err(error) => assert!(
                 error.message.contains(SINGULAR),
                 "a saved model is refused: {error}"

@@ -1,12 +1,12 @@
-//! Every target over its committed inputs: seeds, which it accepts unless they are called `bad-...`, and regressions, which broke
-//! it once.
+//! Replays the committed inputs of every target: seeds, which it accepts unless they are called `bad-...`, and
+//! regressions, which once failed.
 
 use clench_fuzz::TARGETS;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The longest that an input may take, on a slow and busy machine and without optimisation: as long as in `cargo xtask fuzz`.
+/// The time limit of an input, for a slow and busy machine without optimisation: the same as in `cargo xtask fuzz`.
 const LONGEST: Duration = Duration::from_secs(10);
 
 fn here() -> &'static Path {
@@ -70,7 +70,7 @@ fn the_models_of_the_repository_are_seeds_too() {
         for path in files(&here().join("..").join(folder)) {
             if path.extension().is_some_and(|extension| extension == "xml") {
                 let read = run("mjcf", &path);
-                // The target has no files that they could name.
+                // The target lacks the files that these models refer to.
                 let text = std::fs::read_to_string(&path).expect("a model of ours is text");
                 assert!(read || text.contains(" file=\""), "{}", path.display());
             }

@@ -5,7 +5,7 @@ from random_models.values import VALUES, interval, text
 
 
 class Actuation(Maker):
-    """What acts on joints, tendons, sites and bodies."""
+    """The section of actuators on joints, tendons, sites and bodies."""
 
     def actuators(self):
         draw = self.draw
@@ -25,7 +25,7 @@ class Actuation(Maker):
             self.orientation(section)
 
     def orientation(self, section):
-        """A servo that turns a ball joint, or a site in the frame of another, if there is any."""
+        """Adds an orientation servo of a ball joint, or of a site in the frame of another, if there is any."""
         draw = self.later
         balls = [name for name, kind in self.joints if kind == "ball"]
         if not balls and len(self.sites) < 2:
@@ -39,7 +39,8 @@ class Actuation(Maker):
         for name, value in VALUES["orientation"].items():
             if draw.chance(0.5) and not (name == "dampratio" and "kv" in servo.attrib):
                 servo.set(name, value(draw))
-        if draw.chance(0.4) and not self.implicit():  # with which rounding decides in MuJoCo whether a torque at its limit is damped
+        # With implicit integrators rounding decides in MuJoCo whether a torque at its limit is damped.
+        if draw.chance(0.4) and not self.implicit():
             servo.set("forcerange", text(0, draw.scale(0.1, 3)))
             servo.set("forcelimited", draw.choice(("true", "true", "false")))
         if self.draw.autolimits and draw.chance(0.4):
@@ -52,7 +53,7 @@ class Actuation(Maker):
             servo.set("name", f"orientation{draw.randint(1, 9)}x")
 
     def target(self, actuator):
-        """What an actuator pulls on."""
+        """Sets the transmission target of an actuator."""
         draw = self.draw
         if actuator.tag == "adhesion" or actuator.tag == "general" and draw.chance(0.1):
             actuator.set("body", draw.choice(self.bodies))
@@ -60,7 +61,7 @@ class Actuation(Maker):
             actuator.set("tendon", draw.choice(self.tendons))
         elif len(self.sites) > 1 and draw.chance(0.3):
             first, second = (name for name, _ in draw.sample(self.sites, 2))
-            if actuator.tag == "muscle" or draw.chance(0.4):  # muscles do not pull on sites
+            if actuator.tag == "muscle" or draw.chance(0.4):  # muscles do not act on sites
                 actuator.attrib.update(cranksite=first, slidersite=second, cranklength=text(draw.scale(0.1, 2)))
             else:
                 actuator.set("site", first)
@@ -70,9 +71,10 @@ class Actuation(Maker):
             actuator.set(draw.choice(("joint", "joint", "jointinparent")), draw.choice(self.joints)[0])
 
     def law(self, actuator):
-        """What depends on other attributes of an actuator, or on its target."""
+        """Sets attributes that depend on other attributes of an actuator or on its target."""
         draw, kind = self.draw, actuator.tag
-        if kind != "adhesion" and not {"joint", "jointinparent", "tendon"} & actuator.attrib.keys():  # nothing else is damped by actuators
+        # Actuators damp only joints and tendons.
+        if kind != "adhesion" and not {"joint", "jointinparent", "tendon"} & actuator.attrib.keys():
             actuator.attrib.update(damping="0 0 0", armature="0")
         if "nsample" in actuator.attrib and draw.chance(0.7):
             actuator.set("delay", text(draw.scale(0.001, 0.03)))

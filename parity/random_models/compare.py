@@ -1,8 +1,8 @@
-"""Both engines on one model: what they say of a few states, and where each state goes in a step.
+"""Compares both engines on one model: their results on a few states, and the next state of each.
 
-MuJoCo's contacts are fed in, since points of contact may differ and both be right; every step starts from MuJoCo's state, so that a
-difference is seen where it arises. Where both find the same contacts by themselves, everything must agree too; where they find others,
-at least what follows from the pair of geoms.
+MuJoCo's contacts are fed in, since different contact points may both be right. Every step starts from MuJoCo's state,
+so that a difference shows where it arises. If both engines' own contacts are equal, everything else must agree too; if
+not, only the parameters that follow from the pair of geoms must.
 """
 
 import dataclasses
@@ -23,32 +23,32 @@ from random_models.values import Draw
 from test_own_contacts import CLOSED_FORM, SAME_POINT
 
 STEPS = 3
-ITERATIONS = 60  # of MuJoCo's solver, which goes on after it has converged
+ITERATIONS = 60  # of MuJoCo's solver, which continues after it has converged
 PRECISE = 1e-15  # tolerance of a solver
-SEARCHES = 35  # iterations of its search for distances of convex shapes, to SEARCHED metres, as where the model says nothing
+SEARCHES = 35  # MuJoCo's default iterations of the search for distances of convex shapes, to SEARCHED metres
 SEARCHED = 1e-6
-FASTEST = 1.0  # radians or metres a step
-OF_MESHES = 1e4  # times what is allowed elsewhere
-STIFFEST = 1e12  # D of bodies that have no inverse inertia in some direction: their centre of mass is on the axis
-STILL = 1e-11  # m/s² or rad/s² for a newton
-NEXT = 1e-8  # of what a step changes
-FOUND = 1e-6  # of the accelerations, where contacts are found and differ by SAME_POINT
-SINGULAR = 1e14  # condition of a mass matrix
-PARALLEL = 1e-6  # cosine: what is less is a right angle
-CLEARLY = 1e-6  # metres: whether a contact exists is certain
-# What only MuJoCo takes: a `general` of a motor's class that changes the kind of gain, and keeps the motor's bias, or that changes the
-# kind of dynamics.
+FASTEST = 1.0  # radians or metres per step
+OF_MESHES = 1e4  # factor of the tolerance of other models
+STIFFEST = 1e12  # D of bodies without inverse inertia in some direction: their centre of mass is on the axis
+STILL = 1e-11  # m/s² or rad/s² per newton
+NEXT = 1e-8  # relative to the change in a step
+FOUND = 1e-6  # relative to the accelerations, for own contacts, which differ by up to SAME_POINT
+SINGULAR = 1e14  # condition number of a mass matrix
+PARALLEL = 1e-6  # cosine: smaller ones are right angles
+CLEARLY = 1e-6  # metres: beyond this the existence of a contact is certain
+# Models that only MuJoCo accepts: a `general` of a motor's class that changes the kind of gain but keeps the motor's
+# bias, or that changes the kind of dynamics.
 REFUSED_HERE = ("a bias of the kind dcmotor needs a gain of that kind", "but its parameters are those of a dcmotor")
 FLAGS = ("--solver", "newton", "--iterations", 1000, "--noslip-iterations", 0, *program.EXACT, "--mass", "--jacobian", "--step")
 
 
 class Refused(Exception):
-    """MuJoCo does not take the model, or cannot step it; or Clench refuses it as it is meant to."""
+    """MuJoCo refuses the model or cannot step it, or Clench refuses it as intended."""
 
 
 @dataclasses.dataclass
 class Difference:
-    """Where the engines differ: a word for the kind, and the numbers."""
+    """A difference between the engines: its kind, and a message with the numbers."""
 
     kind: str
     message: str
@@ -60,25 +60,25 @@ class Difference:
 
 @dataclasses.dataclass
 class Question:
-    """A state for Clench, and what its answer must agree with."""
+    """A state for Clench, and MuJoCo's results on it."""
 
     what: str
     state: dict
     theirs: object
     after: dict | None = None  # the state one step later
-    own: bool = False  # contacts are found, not fed
+    own: bool = False  # contacts are found by Clench, not fed in
 
     def later(self, model):
-        """MuJoCo's results on the state one step later."""
+        """Returns MuJoCo's results on the state one step later."""
         state = {name: value for name, value in self.state.items() if name != "contacts"}
         return oracle.reference(model, {**state, **self.after})
 
 
 def compiled(text):
-    """MuJoCo's model of a text, made to solve as exactly as it can, and to search no less than is usual."""
+    """Compiles a text with MuJoCo; it solves as exactly as possible and searches at least as long as by default."""
     try:
         model = oracle.exact(mujoco.MjModel.from_xml_string(text))
-    except (ValueError, RuntimeError) as error:  # Its compiler may fail without saying why.
+    except (ValueError, RuntimeError) as error:  # The compiler may fail without a message.
         raise Refused(str(error)) from None
     model.opt.iterations = ITERATIONS
     model.opt.ccd_iterations = max(model.opt.ccd_iterations, SEARCHES)
@@ -91,7 +91,7 @@ def compiled(text):
 
 
 def slides_twice(model):
-    """Whether a body that MuJoCo takes for simple, one with a diagonal mass matrix, has two sliders along one axis."""
+    """Returns True if a body that MuJoCo considers simple (diagonal mass matrix) has two sliders along one axis."""
     for body in np.flatnonzero(model.body_simple):
         joints = slice(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body])
         axes = model.jnt_axis[joints][model.jnt_type[joints] == mujoco.mjtJoint.mjJNT_SLIDE]
@@ -101,19 +101,19 @@ def slides_twice(model):
 
 
 def precise(text):
-    """A model whose solver is precise: where both engines simulate to find length ranges, these are known no better than it solves."""
+    """Sets a precise solver tolerance, which limits the precision of length ranges that engines find by simulation."""
     return f'<option tolerance="{PRECISE}"/></mujoco>'.join(text.rsplit("</mujoco>", 1))
 
 
 def strong_by_rounding(model):
-    """Whether a muscle that accelerates the model by rounding alone has a peak force that follows from it (scale / acc0)."""
+    """Returns True if a muscle's peak force (scale / acc0) follows from an acceleration that is only rounding."""
     by_scale = (model.actuator_gaintype == mujoco.mjtGain.mjGAIN_MUSCLE) & (model.actuator_gainprm[:, 2] < 0)
     by_scale |= (model.actuator_biastype == mujoco.mjtBias.mjBIAS_MUSCLE) & (model.actuator_biasprm[:, 2] < 0)
     return bool((by_scale & (model.actuator_acc0[model.actuator_outadr] < STILL)).any())
 
 
 def examine(text, seed):
-    """The first difference between the engines on a model, on states that the seed decides; None if there is none."""
+    """Returns the first difference between the engines on states that depend on the seed, or None."""
     text = precise(text)
     model = compiled(text)
     questions = list(ask(model, Draw(seed)))
@@ -146,14 +146,14 @@ def examine(text, seed):
 
 
 def explodes(model, state):
-    """Whether MuJoCo diverges too within a few steps."""
+    """Returns True if MuJoCo diverges too within a few steps."""
     data = oracle.assigned(model, state)
     mujoco.mj_step(model, data, STEPS)
     return any(w.number for w in data.warning)
 
 
 def agrees(model, question, ours):
-    """Whether an answer is right as far as one can know: numbers of meshes have 24 bits, and an ill-conditioned mass matrix loses some."""
+    """Returns True if an answer is right within the precision of mesh data (24 bits) and of the mass matrix."""
     try:
         with looser(max(OF_MESHES if model.nmesh else 1.0, lost(model))):
             judge(model, question, ours)
@@ -163,7 +163,7 @@ def agrees(model, question, ours):
 
 
 def condition(model):
-    """Of the mass matrix of the initial state, whatever the units of its dofs."""
+    """Returns the condition number of the mass matrix in the initial state, independent of the units of dofs."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     inertia = np.zeros((model.nv, model.nv))
@@ -173,12 +173,12 @@ def condition(model):
 
 
 def lost(model):
-    """What the mass matrix of the initial state makes of rounding, in units of what rows are compared to."""
+    """Returns the rounding error that the initial mass matrix amplifies, in units of `agreement.ROUNDING`."""
     return condition(model) * np.finfo(float).eps / agreement.ROUNDING
 
 
 def kind_of(message, prefix=""):
-    """The words of a message up to its first number, as what a difference is known by while its model is cut down."""
+    """Returns the words of a message up to its first number, which identify a difference while its model is reduced."""
     words, message = [], re.sub(r"\{.*?\}|\"[^\"]*\"|error: model.xml:\d*:?", "", message)
     for word in message.replace("[", " [").split():
         if any(c.isdigit() for c in word) or len(words) == 6:
@@ -188,7 +188,7 @@ def kind_of(message, prefix=""):
 
 
 def ask(model, draw):
-    """The states: the initial one, and some in a row from a random one. Where contacts are found by ourselves too, only if there are any."""
+    """Yields the initial state and consecutive states from a random one; states with contacts also with own ones."""
     rng = np.random.default_rng(draw.getrandbits(32))
     free = without_contacts(model)
     initial = mujoco.MjData(free)
@@ -206,7 +206,7 @@ def ask(model, draw):
             return
         if not stages:
             yield Question(what, oracle.fed(state, theirs), theirs, after)
-        else:  # the later stages of RK4 find contacts of their own
+        else:  # the later stages of RK4 find their own contacts
             theirs = oracle.reference(model, state)
             yield Question(what, oracle.fed(state, theirs), theirs)
             free_after = stepped(free, state)[1]
@@ -224,8 +224,11 @@ def without_contacts(model):
 
 
 def stepped(model, state):
-    """MuJoCo's results on a state and the state one step later, None where it complains, something becomes no number (of which it says
-    nothing if it is an activation, or in a stage of RK4) or turns too fast to be integrated."""
+    """Returns MuJoCo's results on a state and the state one step later.
+
+    Both are None if MuJoCo warns, a number is not finite (MuJoCo does not warn about activations and stages of RK4), or
+    the motion is too fast to be integrated.
+    """
     data = oracle.assigned(model, state)
     mujoco.mj_step(model, data)
     complains = any(w.number for w in data.warning) or not all(np.isfinite(x).all() for x in (data.qpos, data.qvel, data.act))
@@ -236,7 +239,7 @@ def stepped(model, state):
 
 
 def orthonormal(contact):
-    """Whether a contact has a frame: MuJoCo's can be none where two centres coincide, and Clench refuses it."""
+    """Returns True if the frame of a contact is orthonormal. MuJoCo's may not be if two centres coincide."""
     frame = np.reshape(contact["frame"], (3, 3))
     return np.abs(frame @ frame.T - np.eye(3)).max() < 1e-6
 
@@ -246,7 +249,7 @@ def controls(model, draw, rng):
 
 
 def random_state(model, draw, rng):
-    """A state about the initial one or a keyframe, near or far, slow or fast, pulled or not."""
+    """Returns a state around the initial one or a keyframe, with random distance, speed and applied forces."""
     data = mujoco.MjData(model)
     if model.nkey and draw.chance(0.5):
         mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -275,7 +278,7 @@ def random_state(model, draw, rng):
 
 
 def judge(model, question, ours):
-    """Raises an AssertionError where an answer is not what it should be."""
+    """Raises an AssertionError if an answer is wrong."""
     what, theirs = question.what, question.theirs
     if model.nv == 0:
         return
@@ -294,9 +297,9 @@ def judge(model, question, ours):
         clear_rounding(ours, theirs)
         agreement.constraint_rows(what, ours, theirs)
     if oracle.distance_to_optimum(theirs) > agreement.SOLVED / 10 or largest(theirs.efc_D) > STIFFEST:
-        return  # MuJoCo has not converged, or rounding decides the forces of rows that are as good as rigid
+        return  # MuJoCo has not converged, or rounding decides the forces of nearly rigid rows
     if largest(theirs.qacc_smooth, theirs.efc_aref, floor=0) < STILL:
-        return  # nothing but rounding asks for an acceleration, and what is light takes it up
+        return  # only rounding causes an acceleration, which light bodies amplify
     agreement.acceleration(what, ours, theirs, FOUND if question.own else agreement.SOLVED)
     if not question.own:
         forces(what, ours, theirs)
@@ -306,8 +309,10 @@ def judge(model, question, ours):
 
 
 def at_rest_by_rounding(model, state):
-    """Whether the integrator discrete steps from the very rest of a tendon's spring that yields: where it is at rest it has no slope, and
-    rounding decides whether it is."""
+    """Returns True if a yielding tendon spring is exactly at rest, with the integrator `discrete`.
+
+    A spring at rest has no slope, and rounding decides whether it is at rest.
+    """
     if model.opt.integrator != mujoco.mjtIntegrator.mjINT_DISCRETE or not model.ntendon or not state.get("plastic"):
         return False
     data = oracle.assigned(model, {name: value for name, value in state.items() if name != "contacts"})
@@ -316,7 +321,7 @@ def at_rest_by_rounding(model, state):
 
 
 def forces(what, ours, theirs):
-    """As `agreement.constraint_forces`, but a row's force is only known as well as its reference acceleration is, times D."""
+    """Compares forces like `agreement.constraint_forces`, but a row's tolerance also grows with D · aref."""
     slow = oracle.SLOW * np.diag(theirs.mass)
     scale = largest(theirs.qfrc_constraint, theirs.qfrc_smooth, slow)
     assert_close(what + "qfrc_constraint", ours["qfrc_constraint"], theirs.qfrc_constraint, agreement.SOLVED, scale)
@@ -325,14 +330,15 @@ def forces(what, ours, theirs):
 
 
 def pushed_by_rounding(theirs):
-    """Whether something pushes whose levers are nothing but rounding: its stiffness is the reciprocal of another rounding."""
+    """Returns True if rows push whose levers are only rounding; their stiffness is the reciprocal of rounding."""
     idle = np.abs(theirs.jacobian).max(axis=1, initial=0) <= IDLE
     return largest(theirs.jacobian[idle].T @ theirs.efc_force[idle]) > NEXT
 
 
 def drop_idle_rows(ours, theirs):
-    """Takes out what nothing can act on, such as a weld of a body to itself or a tendon of one body: it moves nothing, and rounding, or
-    how MuJoCo stores the Jacobian, decides whether it has rows.
+    """Removes rows without effect, such as those of a weld of a body to itself or of a tendon of one body.
+
+    Rounding, or MuJoCo's storage of the Jacobian, decides whether such rows exist.
     """
     sources = [(row["kind"], row["source"]) for row in ours["constraints"]]
     kept = acted_on(sources, ours["jacobian"], [kind == "contact" for kind, _ in sources])
@@ -345,8 +351,10 @@ def drop_idle_rows(ours, theirs):
 
 
 def clear_rounding(ours, theirs):
-    """Makes zero what has no digits in either engine: rows of contacts between bodies that cannot move along them, and the velocities
-    that they give."""
+    """Sets values to zero that are only rounding in both engines.
+
+    These are contact rows between bodies that cannot move along them, and the velocities of such rows.
+    """
     if len(ours["jacobian"]) != len(theirs.jacobian):
         return
     still = IDLE * (1 + np.abs(theirs.qvel).sum())
@@ -358,13 +366,13 @@ def clear_rounding(ours, theirs):
 
 
 def acted_on(sources, jacobian, contact):
-    """The rows that are of a contact, or belong to something that has a lever."""
+    """Returns the rows of contacts and of sources with a nonzero lever."""
     moving = {source for source, row in zip(sources, jacobian) if np.abs(row).max() > IDLE}
     return [k for k, source in enumerate(sources) if contact[k] or source in moving]
 
 
 def next_state(model, what, question, ours):
-    """Velocities to a share of what the accelerations involved change them by, positions of what they change in a step."""
+    """Compares the next state: velocities relative to their change by accelerations, positions to their change."""
     step, theirs = model.opt.timestep, question.theirs
     changed = largest(np.subtract(question.after["qvel"], theirs.qvel))
     stages = (theirs, question.later(model)) if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4 else (theirs,)
@@ -379,7 +387,7 @@ def next_state(model, what, question, ours):
 
 
 def same_contacts(model, what, ours, theirs):
-    """Whether both found the same points; what they make of the same pair of geoms must agree in any case."""
+    """Returns True if both found the same points; the parameters of a pair of geoms must agree in any case."""
     left = {}
     for contact in ours["contacts"]:
         left.setdefault(tuple(contact["geom"]), []).append(contact)
@@ -390,11 +398,11 @@ def same_contacts(model, what, ours, theirs):
         closed = tuple(sorted(int(model.geom_type[g]) for g in pair)) in CLOSED_FORM
         if not found:
             same = False
-            # How far apart shapes are within a margin MuJoCo does not always measure the shortest way.
+            # Within a margin, MuJoCo does not always find the shortest distance between shapes.
             bound = min(0, contact["includemargin"]) - CLEARLY
             assert not closed or contact["dist"] > bound, f"{what}no contact of {names(model, pair)}"
             continue
-        # Of several pairs of the same two geoms, any. Whether one that adheres has friction follows from its distance, see above.
+        # Any of several contacts of the same two geoms may match. With adhesion, the distance decides about friction.
         within = lambda c: c["dist"] < c["includemargin"]
         known = any(within(c) == within(contact) for c in found)
         fields = ("dim", "includemargin", "friction") if known else ("includemargin", "friction")
@@ -412,7 +420,7 @@ def names(model, pair):
 
 
 def keep(folder, name, text, difference):
-    """Writes a model with its difference, and the state that shows it, into a folder."""
+    """Writes a model with its difference, and the state with the difference, into a folder."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     comment = difference.message.replace("--", "- -")

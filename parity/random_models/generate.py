@@ -1,8 +1,8 @@
-"""A random model from a seed: a tree of bodies, what they carry, and what acts between them.
+"""Generates a random model from a seed: a tree of bodies with their elements, and relations between them.
 
-Most of what is generated can be compiled; what MuJoCo refuses (a default class that gives a ball joint a negative limit, say) is left
-to be thrown away. Names are given only to what can be referred to. In replicas a name means several elements, and so does what refers
-to it.
+Most models compile; callers discard those that MuJoCo refuses (for example, if a default class gives a ball joint a
+negative limit). Only elements that can be referenced have names. In replicas, a name and its references mean several
+elements.
 """
 
 
@@ -19,14 +19,14 @@ from random_models.values import VALUES, Draw, text
 
 
 def generate(seed):
-    """The root element of the model of a seed."""
+    """Returns the root element of the model of a seed."""
     root = Generator(Draw(seed), Draw(f"{seed} later"), Draw(f"{seed} last")).model()
     stretch_frames(root, seed)
     return root
 
 
 class Generator(Preamble, Tree, Relations, Actuation, Sensing):
-    """All sections, in the order of a file."""
+    """Generates all sections, in the order of a file."""
 
     def model(self):
         draw = self.draw
@@ -50,12 +50,12 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
         return self.root
 
     def scale_frames(self):
-        """Some frames scale what is in them."""
+        """Gives some frames a scale."""
         draw = self.last
         if draw.chance(0.7):
             return
         for frame in self.root.iter("frame"):
-            # Lengths of what is given in pixels MuJoCo rounds to single precision on the way.
+            # MuJoCo rounds lengths given in pixels to single precision.
             pixels = any({"focalpixel", "principalpixel"}.intersection(camera.keys()) for camera in frame.iter("camera"))
             for name, value in VALUES["scaled frame"].items():
                 if draw.chance(0.5):
@@ -64,7 +64,7 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
                         frame.set(name, drawn)
 
     def number_elements(self):
-        """Sensors, and tendons of some classes, have numbers of the user's."""
+        """Gives sensors, and tendons of some classes, user data."""
         draw = self.last
         sections = [*self.root.iter("sensor"), *self.root.iter("default")]
         for element in (element for section in sections for element in section if section.tag == "sensor" or element.tag == "tendon"):
@@ -75,7 +75,7 @@ class Generator(Preamble, Tree, Relations, Actuation, Sensing):
 
 
 def with_keyframe(root, model, draw):
-    """Adds a keyframe to the file of a compiled model, which knows how many numbers it needs."""
+    """Adds a keyframe to the file of a compiled model, which gives the numbers of values."""
     section = ET.SubElement(root, "keyframe")
     key = ET.SubElement(section, "key", name="key")
     lengths = {"qpos": model.nq, "qvel": model.nv, "act": model.na, "ctrl": model.nu, "mpos": 3 * model.nmocap, "mquat": 4 * model.nmocap, "plastic": model.nplastic}
@@ -88,6 +88,6 @@ def with_keyframe(root, model, draw):
 
 
 def written(root):
-    """The model as text, an element a line."""
+    """Returns the model as text, an element per line."""
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")

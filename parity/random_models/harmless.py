@@ -1,7 +1,7 @@
-"""What Clench accepts and ignores, with values that MuJoCo accepts and that are not the default.
+"""Attributes that Clench accepts and ignores, with values that MuJoCo accepts and that are not the default.
 
-The test of ignored attributes holds MuJoCo's motion to stay the same under each of them; random models are sprinkled with them.
-`SCENE` has every element that such an attribute can stand on.
+The test of ignored attributes checks that none of them affects MuJoCo's motion; random models contain some of them.
+`SCENE` has every element that such an attribute can be on.
 """
 
 import pathlib
@@ -188,13 +188,13 @@ VALUES = {
     "sensor/user": {**USER, "objtype": "body", "objname": "ball", "needstage": "vel"},
 }
 
-# What some of them ask for beside them.
+# Attributes that some of them require.
 COMPANIONS = {("sensor/user", "objtype"): {"objname": "ball"}, ("sensor/user", "objname"): {"objtype": "body"}}
 
-# What is not tried: a skin from a file says nothing that one in the model does not.
+# Attributes that are not tested: a skin from a file is equivalent to one in the model.
 UNTRIED = {("skin", "file")}
 
-# Attributes that name something, or exclude others: only the test, which knows its scene, gives them.
+# Attributes that are references or exclude others: only the test sets them, as it depends on the scene.
 NAMED = {"class", "target", "texture", "material", "file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback", "normal", "texcoord"}
 NAMED |= {"sensorsize", "focal", "focalpixel", "principal", "principalpixel", "fovy", "directional", "smoothnormal", "mode", "memory", "njmax", "nstack", "objname", "objtype", "nkey", "name", "content_type", "gridlayout", *POSE}
 WHOLE = ("visual", "statistic", "custom", "size", "compiler", "option")
@@ -202,7 +202,7 @@ VISUAL = ("global", "quality", "headlight", "map", "scale", "rgba")
 
 
 def decorate(root, draw):
-    """Sprinkles a model with what does not act on its motion."""
+    """Adds elements and attributes to a model that do not affect its motion."""
     for body in [*root.iter("worldbody"), *root.iter("body")]:
         for tag in ("camera", "light"):
             if draw.chance(0.1):

@@ -1,4 +1,4 @@
-"""What every part of a random model is made with: names, classes and attributes with random values."""
+"""The common base of all sections of a random model: names, classes and attributes with random values."""
 
 import xml.etree.ElementTree as ET
 
@@ -11,11 +11,11 @@ SCALAR = ("hinge", "slide")
 
 
 class Maker:
-    """A model in the making, and what of it can be referred to."""
+    """A model under construction, and its elements that can be referenced."""
 
     def __init__(self, draw, later, last):
         self.draw = draw
-        # For what came after most models had been compared, in two waves, so that the rest of each stays as it was.
+        # Separate random numbers for features added later, in two stages, so that the rest of each model is unchanged.
         self.later = later
         self.last = last
         self.density = draw.choice((0.05, 0.15, 0.3, 0.5))
@@ -24,12 +24,12 @@ class Maker:
         self.naming = draw.chance(0.5)
         self.root = ET.Element("mujoco", model="random")
         self.classes, self.meshes, self.hfields, self.materials, self.parts = [], [], [], [], []
-        self.frames, self.inner = [], []  # what the model can attach to itself
+        self.frames, self.inner = [], []  # frames and bodies that the model can attach to itself
         self.bodies, self.geoms, self.sites, self.joints, self.tendons = ["world"], [], [], [], []
         self.cameras, self.actuator_names = [], []
-        self.round = []  # spheres and cylinders, which tendons can go around
-        self.limited = set()  # joints and tendons whose range an actuator can take over
-        self.replicated, self.groups = 0, 0  # how deep in replicas, and how many outermost groups of them so far
+        self.round = []  # spheres and cylinders, around which tendons can wrap
+        self.limited = set()  # joints and tendons whose range an actuator can inherit
+        self.replicated, self.groups = 0, 0  # the depth in replicas, and the number of outermost groups so far
         self.count = 0
 
     def add(self, parent, tag, **attributes):
@@ -40,27 +40,30 @@ class Maker:
         return element
 
     def always(self, kind):
-        """A new name. It ends in a letter, since MuJoCo takes one that ends in the number of a replica for that replica's."""
+        """Returns a new name. It ends in a letter, since MuJoCo takes a final number for that of a replica."""
         self.count += 1
         return f"{kind}{self.count}x"
 
     def name(self, kind):
-        """A new name, and now and then none."""
+        """Returns a new name, or sometimes None."""
         return self.always(kind) if self.draw.chance(0.95) else None
 
     def named(self, kind, name, body):
-        """Registers an element of a body under a name, where it can be referred to."""
+        """Registers an element of a body under a name, if it can be referenced."""
         if self.unnamed():
             return None
         {"geom": self.geoms, "site": self.sites}[kind].append((name, body))
         return name
 
     def unnamed(self):
-        """Whether nothing gets a name here. What refers to two groups of replicas follows neither, so at most the first group has names."""
+        """Returns True if elements get no names here: at most the first group of replicas has names.
+
+        A reference to two groups of replicas would be replicated with neither.
+        """
         return self.replicated and (self.groups > 1 or not self.naming)
 
     def fill(self, element, key=None, without=()):
-        """Gives the element some of the attributes that its key can have and that it does not have yet."""
+        """Gives the element some of the attributes that its key allows and that it does not have yet."""
         key = key or element.tag
         for name, value in VALUES[key].items():
             if value and name not in without and name not in element.attrib and self.draw.chance(self.density):
@@ -76,7 +79,7 @@ class Maker:
         return element
 
     def limit(self, element, name, switch, value):
-        """A range and whether it counts, as this file has to write it."""
+        """Sets a range and the switch that enables it, as this file's autolimits requires."""
         element.set(name, value)
         modes = ("", "", "auto", "true", "false") if self.draw.autolimits else ("true", "true", "false")
         mode = self.draw.choice(modes)
@@ -95,7 +98,7 @@ class Maker:
         return [name for name, kind in self.joints if kind in SCALAR]
 
     def constants(self, motor):
-        """Gives a motor the constants that it cannot be without."""
+        """Gives a motor the constants that it requires."""
         for name in ("resistance", "motorconst"):
             if name not in motor.attrib and "nominal" not in motor.attrib:
                 motor.set(name, VALUES["dcmotor"][name](self.draw))

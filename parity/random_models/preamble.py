@@ -1,4 +1,4 @@
-"""What stands before the tree of a random model: settings, classes and assets."""
+"""The sections before the tree of a random model: settings, classes and assets."""
 
 import pathlib
 
@@ -7,8 +7,8 @@ from random_models.values import VALUES, text, vector
 
 ASSETS = pathlib.Path(__file__).resolve().parent.parent / "shapes/assets"
 MESH_FILES = (("rock.obj", "model/obj"), ("wedge.stl", "model/stl"), ("bracket.obj", "model/obj"))
-# What would keep many of the elements of a class from being compiled: a joint's range fits one type of joint, a place contradicts `fromto`,
-# dampers take no negative controls, and only what has activations can limit them.
+# Attributes with which many elements of a class would not compile: a joint's range fits one type of joint, a position
+# contradicts `fromto`, dampers accept no negative controls, and only actuators with activations can limit them.
 INITIAL = {"geom": ("pos", "mass"), "site": ("pos",)}
 NOT_IN_CLASSES = ("fromto", "ctrlrange", "actrange", "tausmooth", "controller", "ki", "slewmax")
 
@@ -39,20 +39,20 @@ class Preamble(Maker):
                         flags.attrib.pop(name, None)
         if any(option.get("integrator") == "RK4" for option in self.root.iter("option")):
             for flags in self.root.iter("flag"):
-                flags.attrib.pop("sleep", None)  # is refused beside it
+                flags.attrib.pop("sleep", None)  # refused with RK4
         if any(option.get("integrator") == "discrete" for option in self.root.iter("option")):
             for option in self.root.iter("option"):
                 if option.get("solver") == "PGS":
-                    del option.attrib["solver"]  # steps in another metric, and is refused beside it
+                    del option.attrib["solver"]  # PGS steps in another metric and is refused with discrete
                 for flags in option.iter("flag"):
-                    flags.attrib.pop("sleep", None)  # is refused where the metric couples trees
+                    flags.attrib.pop("sleep", None)  # refused if the metric couples trees
 
     def implicit(self):
-        """Whether the integrator knows how forces change with velocities."""
+        """Returns True if the integrator uses derivatives of forces with respect to velocities."""
         return any(option.get("integrator") in ("implicit", "implicitfast", "discrete") for option in self.root.iter("option"))
 
     def sleeps(self):
-        """Whether islands at rest sleep."""
+        """Returns True if islands at rest sleep."""
         return any(flags.get("sleep") == "enable" for flags in self.root.iter("flag"))
 
     def defaults(self):
@@ -108,7 +108,7 @@ class Preamble(Maker):
             self.part(asset)
 
     def part(self, asset):
-        """A model that can be attached."""
+        """Adds a model that can be attached."""
         part = self.add(asset, "model", file=ASSETS / "part.xml")
         name = self.draw.choice((None, self.always("model")))
         if name:

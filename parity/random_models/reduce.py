@@ -1,4 +1,4 @@
-"""Cuts a model down to what a difference needs: elements go, what holds others is unwrapped, attributes go, until nothing more can."""
+"""Reduces a model to the parts that a difference needs: removes elements, unwraps containers, removes attributes."""
 
 import copy
 import time
@@ -11,7 +11,7 @@ UNWRAPPED = ("frame", "replicate", "body", "default")
 
 
 def reduced(root, seed, difference, seconds):
-    """A smaller model that differs in the same way, and how; after so many seconds, the smallest one found."""
+    """Returns the smallest model found within `seconds` that has the same kind of difference, and its difference."""
     root, trials = copy.deepcopy(root), 0
     deadline = time.monotonic() + seconds
 
@@ -45,7 +45,7 @@ def reduced(root, seed, difference, seconds):
 
 
 def changes(root):
-    """What can be tried, large cuts first; each change gives what undoes it, or None where it no longer applies."""
+    """Yields the possible changes, large ones first. A change returns its undo function, or None if not applicable."""
     pairs = [(parent, child) for parent in root.iter() for child in parent]
     for parent, child in pairs:
         yield lambda parent=parent, child=child: remove(parent, child)

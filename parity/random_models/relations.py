@@ -1,4 +1,4 @@
-"""What ties the bodies of a random model together: contact pairs, tendons, equalities."""
+"""The relations between bodies of a random model: contact pairs, tendons, equalities."""
 
 import xml.etree.ElementTree as ET
 
@@ -49,7 +49,7 @@ class Relations(Maker):
                 self.limited.add(tendon.get("name"))
 
     def string(self, tendon):
-        """One branch or two, each through some sites, around geoms between them; a string without geoms can have inertia."""
+        """Adds one or two branches of sites and wrapped geoms to a tendon. Without geoms it can have inertia."""
         draw = self.draw
         for branch in range(draw.choice((1, 1, 2))):
             if branch > 0 or draw.chance(0.2):
@@ -70,7 +70,7 @@ class Relations(Maker):
             return
         section = self.add(self.root, "equality")
         for _ in range(draw.randint(1, 3)):
-            # MuJoCo's sleep knows no tendon equalities yet.
+            # MuJoCo does not support tendon equalities with sleep yet.
             kind = draw.choice(("connect", "weld", "joint", *(() if self.sleeps() else ("tendon",))))
             element = ET.Element(kind)
             if draw.chance(0.3):
@@ -88,7 +88,7 @@ class Relations(Maker):
                 section.append(element)
 
     def link(self, element, kind):
-        """What a connect or weld ties together: two sites, two bodies, or a body and the world."""
+        """Sets the ends of a connect or weld: two sites, two bodies, or a body and the world."""
         draw = self.draw
         two = self.two(self.sites)
         if two and draw.chance(0.4):

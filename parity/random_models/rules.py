@@ -1,4 +1,4 @@
-"""What Clench says that it reads of MJCF (`clench mjcf`), and what a model uses of it."""
+"""The MJCF that Clench reads according to `clench mjcf`, and the part of it that a model uses."""
 
 import functools
 
@@ -7,7 +7,7 @@ import program
 
 @functools.lru_cache(maxsize=None)
 def rules():
-    """For each element, the lists of attributes `read`, `ignored` and `refused`, and its `children`."""
+    """Returns for each element the lists of attributes `read`, `ignored` and `refused`, and its `children`."""
     found = {}
     for line in program.run("mjcf").stdout.splitlines():
         words = line.split()
@@ -19,13 +19,13 @@ def rules():
 
 
 def key(parent, element):
-    """The name that the rules know an element below a parent by."""
+    """Returns the name of an element below a parent in the rules."""
     special = f"{parent.tag}/{element.tag}"
     return special if special in rules() else element.tag
 
 
 def used(root):
-    """Pairs of element and attribute that a model has, and each element below the root alone."""
+    """Yields the pairs of element and attribute of a model, and a pair with None for each element below the root."""
     yield from ((root.tag, attribute) for attribute in root.attrib)
     for parent in root.iter():
         for element in parent:

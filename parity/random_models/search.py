@@ -1,4 +1,4 @@
-"""Many random models: how many were compared, what of MJCF they used, and where the engines differ, cut down and kept."""
+"""Compares many random models: counts them, records the MJCF that they use, and stores reduced models that differ."""
 
 import collections
 import concurrent.futures
@@ -16,15 +16,15 @@ from random_models.values import Draw
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "differences"
 
 
-# Seconds. MuJoCo's compiler can look for the length range of a muscle for minutes where the muscle's model diverges, and cannot be
-# interrupted: a process that takes longer is ended.
+# Seconds. MuJoCo's compiler may search for the length range of a muscle for minutes if the model diverges, and cannot
+# be interrupted, so a process that takes longer is ended.
 COMPARISON_TIME = 60
 REDUCTION_TIME = 300
 
 
 @dataclasses.dataclass
 class Look:
-    """What came of one seed: MuJoCo refused the model, or what it used of MJCF, and a difference, if there is one, with its model."""
+    """The result of one seed: True if MuJoCo refused it, the MJCF in use, and a difference, if any, with its model."""
 
     seed: int
     refused: bool = False
@@ -35,7 +35,7 @@ class Look:
 
 @dataclasses.dataclass
 class Findings:
-    """What a search has found so far."""
+    """The findings of a search so far."""
 
     compared: int = 0
     refused: int = 0
@@ -58,7 +58,7 @@ class Findings:
 
 
 def model(seed):
-    """The model of a seed, with a keyframe now and then; raises `compare.Refused` where MuJoCo does not compile it."""
+    """Returns the model of a seed, sometimes with a keyframe; raises `compare.Refused` if MuJoCo refuses it."""
     root = generate(seed)
     draw = Draw(-seed - 1)
     model = compare.compiled(written(root))
@@ -76,13 +76,13 @@ def look(seed):
 
 
 def cut_down(look):
-    """The same difference in a smaller model."""
+    """Returns the same difference in a smaller model."""
     root, difference = reduced(model(look.seed), look.seed, look.difference, REDUCTION_TIME / 2)
     return dataclasses.replace(look, difference=difference, text=written(root))
 
 
 def search(seeds, folder=FOLDER, report=lambda look: None):
-    """Looks at the models of many seeds, on all processors; `report` hears of each that differs."""
+    """Compares the models of many seeds, on all processors; calls `report` with each that differs."""
     findings = Findings()
     with pebble.ProcessPool(os.cpu_count()) as pool:
         looks = {pool.schedule(look, (seed,), timeout=COMPARISON_TIME): seed for seed in seeds}

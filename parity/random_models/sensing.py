@@ -4,12 +4,12 @@ from random_models import harmless
 from random_models.maker import PRIMITIVES, Maker
 from random_models.values import VALUES, text
 
-# Few models have a tendon whose range counts, which these measure.
+# These measure active tendon ranges, which few models have.
 RARE = ("tendonlimitpos", "tendonlimitvel", "tendonlimitfrc") * 3
 
 
 class Sensing(Maker):
-    """What measures."""
+    """The section of sensors."""
 
     def sensors(self):
         draw = self.draw
@@ -22,7 +22,7 @@ class Sensing(Maker):
             attached = self.attached(kind)
             if attached is None:
                 continue
-            if copies and not attached.keys() - {"dim"}:  # each replica would double the sensors that refer to nothing
+            if copies and not attached.keys() - {"dim"}:  # each replica would duplicate sensors without references
                 continue
             sensor = self.add(section, kind, **attached)
             if draw.chance(0.3):
@@ -40,7 +40,7 @@ class Sensing(Maker):
         self.skins(section)
 
     def enclose(self):
-        """Sensors of how far a geom or a site juts out of a round site, where no rounding decides which way the search takes."""
+        """Adds sensors of the protrusion from round sites, whose search does not depend on rounding."""
         draw = self.last
         sections = list(self.root.iter("sensor"))
         classed = any(element.get("type") for default in self.root.iter("default") for element in default if element.tag in ("geom", "site"))
@@ -55,10 +55,11 @@ class Sensing(Maker):
             self.add(sections[-1], "insidesite", site=draw.choice(round_), objtype=of, objname=name, enclosed="true")
 
     def skins(self, section):
-        """Sensors that feel with a mesh in the frame of a geom."""
+        """Adds tactile sensors with a mesh in the frame of a geom."""
         draw = self.last
         geoms = [name for name, _ in self.geoms]
-        terrain = any(geom.get("type") == "hfield" for geom in self.root.iter("geom"))  # MuJoCo ends the process where it is touched
+        # MuJoCo aborts the process if a tactile sensor touches a height field.
+        terrain = any(geom.get("type") == "hfield" for geom in self.root.iter("geom"))
         if not self.meshes or not geoms or terrain or draw.chance(0.7):
             return
         for _ in range(draw.randint(1, 3)):
@@ -74,7 +75,7 @@ class Sensing(Maker):
                 skin.set("interval", text(draw.scale(0.001, 0.03)))
 
     def attached(self, kind):
-        """What a sensor of this kind measures, None where there is nothing of the sort."""
+        """Returns the object that a sensor of this kind measures, or None if the model has no such object."""
         draw = self.draw
         sites, geoms = ([name for name, _ in found] for found in (self.sites, self.geoms))
         joints = [name for name, of in self.joints if of == "ball" or not kind.startswith("ball")]
@@ -124,7 +125,7 @@ class Sensing(Maker):
         return one("site", sites)
 
     def frame(self, word, sites, geoms):
-        """The object of a frame."""
+        """Returns a random object with a frame."""
         kinds = {"body": self.bodies, "xbody": self.bodies, "site": sites, "geom": geoms, "camera": self.cameras}
         kind = self.draw.choice([kind for kind in sorted(kinds) if kinds[kind]])
         return {f"{word}type": kind, f"{word}name": self.draw.choice(kinds[kind])}

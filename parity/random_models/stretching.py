@@ -1,17 +1,18 @@
-"""Frames of random models whose scales differ between axes.
+"""Gives frames of random models scales that differ between axes.
 
-What such scales would deform MuJoCo refuses: spheres, and shapes and joints that are not aligned. So these become others, which are.
+MuJoCo refuses elements that such scales would deform: spheres, and unaligned shapes and joints. These are replaced by
+aligned ones.
 """
 
 from random_models.values import ORIENTATIONS, Draw, text
 
 AXES = ("1 0 0", "0 1 0", "0 0 1")
-# Multiples of a right angle, and half of them about each axis.
+# Rotations that map coordinate axes to coordinate axes.
 TURNS = ("1 0 0 0", "1 0 0 1", "1 1 0 0", "0 1 0 0", "0.5 -0.5 0.5 0.5", "0 0 0.7 0.7")
 
 
 def stretch_frames(root, seed):
-    """Some frames of some models get a scale for each axis."""
+    """Gives some frames of some models a scale for each axis."""
     draw = Draw(f"{seed} axes")
     if draw.chance(0.85):
         return
@@ -30,7 +31,7 @@ def stretch_frames(root, seed):
 
 
 def align(element, draw, round_about_z):
-    """Gives an element in such a frame a shape and an orientation that it can keep."""
+    """Gives an element in such a frame a shape and an orientation that the scale preserves."""
     if element.tag == "geom" and "mesh" not in element.attrib:
         kinds = ("cylinder", "capsule", "box") if round_about_z else ("box", "ellipsoid")
         if element.get("type") not in ("plane", "hfield", *kinds):

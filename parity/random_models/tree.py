@@ -1,4 +1,4 @@
-"""The tree of bodies of a random model, and what they carry."""
+"""The tree of bodies of a random model, with their joints, geoms, sites and cameras."""
 
 import xml.etree.ElementTree as ET
 
@@ -36,7 +36,7 @@ class Tree(Maker):
             self.body(self.add(self.root, "worldbody"), 0, 0)
 
     def wrapped(self, parent):
-        """The parent, or a frame or replicas in it."""
+        """Returns the parent, or a new frame or replicate element in it."""
         draw = self.draw
         if draw.chance(0.15):
             frame = self.fill(self.classed(self.add(parent, "frame")))
@@ -70,7 +70,7 @@ class Tree(Maker):
         else:
             self.body_joints(body, depth)
         if depth == 0 and body.find("joint") is not None and draw.chance(self.density):
-            # In a state that is given, MuJoCo has no smooth forces of what begins asleep.
+            # In a given state, MuJoCo does not compute the smooth forces of bodies that start asleep.
             body.set("sleep", draw.choice(("auto", "never", "allowed", *(() if self.sleeps() else ("init",)))))
         self.solids(body, index)
         for _ in range(draw.choice((0, 0, 1, 2))):
@@ -88,7 +88,7 @@ class Tree(Maker):
                 self.replicated = was
 
     def attach(self, parent, top=False):
-        """A part of another model, or of this one."""
+        """Attaches a part of another model or of this one."""
         draw, prefix = self.draw, self.always("at")
         attach = ET.Element("attach", prefix=prefix)
         if self.parts:
@@ -99,7 +99,7 @@ class Tree(Maker):
             if whole != ("body", "hand") and whole != ("frame", "wrist") and not self.unnamed():
                 self.joints.append((f"{prefix}turn", "hinge"))
         elif self.replicated:
-            return  # what is being replicated cannot be attached
+            return  # an element under replication cannot be attached
         elif self.frames and draw.chance(0.5):
             attach.set("frame", draw.choice(self.frames))
         elif self.inner:
@@ -135,20 +135,20 @@ class Tree(Maker):
                     joint.set(name, number(-0.2, 0.2)(draw))
             if self.last.chance(0.15):
                 self.yielding(joint, kind)
-            if len(kinds) > 1:  # two axes in one direction would move no mass against each other
+            if len(kinds) > 1:  # parallel axes would make the mass matrix singular
                 joint.set("axis", axes.pop())
             if draw.chance(0.35):
                 self.joint_range(joint, kind)
 
     def yielding(self, joint, kind):
-        """Lets the spring of a joint yield, and sees to it that there is one."""
+        """Makes the spring of a joint yield, and adds a spring if there is none."""
         strain = self.last.number(0.01, 0.3)
         joint.set("springyield", text(strain if kind == "slide" else self.draw.angle(strain)))
         if "stiffness" not in joint.attrib:
             joint.set("stiffness", text(self.last.scale(0.1, 100)))
 
     def independent_axes(self):
-        """Three directions, each nearest to another axis."""
+        """Returns three directions, each nearest to a different axis."""
         directions = [[self.draw.number(-0.3, 0.3) for _ in range(3)] for _ in range(3)]
         for k, direction in enumerate(directions):
             direction[k] = self.draw.choice((-1.0, 1.0))
@@ -191,7 +191,7 @@ class Tree(Maker):
         return body
 
     def inertial(self, body):
-        """Moments are those of three random point masses on the axes, or a bit less than such moments can be."""
+        """Adds an inertia with the moments of random point masses on the axes, sometimes with small products."""
         draw = self.draw
         mass = draw.scale(0.1, 5)
         squares = [draw.scale(1e-4, 0.02) for _ in range(3)]
@@ -219,7 +219,7 @@ class Tree(Maker):
                     geom.set("fitscale", text(draw.number(0.5, 1.5)))
             else:
                 geom.set("type", "mesh")
-                geom.attrib.pop("shellinertia", None)  # is said of the mesh
+                geom.attrib.pop("shellinertia", None)  # an attribute of the mesh
         else:
             geom.set("type", kind)
             sizes = [draw.scale(0.03, 0.2) for _ in range(3)]
@@ -253,7 +253,7 @@ class Tree(Maker):
             self.cameras.append(camera.get("name"))
         if "mode" in camera.attrib and not self.replicated and draw.chance(0.5):
             camera.set("target", draw.choice(self.bodies))
-        if draw.chance(0.3):  # numbers of few binary digits: MuJoCo keeps 24
+        if draw.chance(0.3):  # numbers with few binary digits, since MuJoCo stores 24
             camera.attrib.pop("fovy", None)
             camera.set("sensorsize", draw.choice(("0.03125 0.0625", "0.5 0.25")))
             camera.set("resolution", draw.choice(("2 2", "4 2")))

@@ -1,16 +1,16 @@
-"""Sensors of which MuJoCo's numbers need not be ours, since rounding decides them or MuJoCo does not find what it looks for."""
+"""Sensors whose values may differ from MuJoCo's, since they depend on rounding or MuJoCo's search is incomplete."""
 
 import mujoco
 import numpy as np
 
 import oracle
 
-IDLE = 1e-14  # metres: a lever that is nothing but rounding
+IDLE = 1e-14  # metres: a lever that is only rounding
 HELD = 1e-9  # newtons
 NEARER = 1e-3  # metres
 NEXT_TO = 1e-10  # metres
 JUMP = 1e-6  # metres
-LENS = 1e-6  # of lengths and angles that a camera sees
+LENS = 1e-6  # relative, of lengths and angles in the view of a camera
 LIMITS_OF_TENDONS = (
     mujoco.mjtSensor.mjSENS_TENDONLIMITPOS,
     mujoco.mjtSensor.mjSENS_TENDONLIMITVEL,
@@ -21,11 +21,16 @@ OF_TENDONS = (mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON, mujoco.mjtConstraint
 
 
 def is_undecided(model, sensor, ours, theirs, held):
-    """Whether MuJoCo's numbers need not be ours: many points of parallel faces are nearest, equal moments have no principal axes, the
-    limit of a tendon that moves nothing is felt where rounding gives it a Jacobian, and so are forces between bodies where rounding
-    `held` such a tendon, or tied a body to itself; how deep curved shapes are in each other MuJoCo finds to some thousandths (`test_shapes.py` judges depths), that
-    a capsule goes through a box not at all, and of a height field what is near among the first of its cells alone; and a ray that starts on
-    a surface, or passes an edge, meets it or not; and a camera of the world stands still where bodies may sleep."""
+    """Returns True if a sensor's value may differ from MuJoCo's, for one of these reasons.
+
+    - Parallel faces have many nearest points, and equal moments of inertia have no unique principal axes.
+    - Rounding gives a tendon that moves nothing a Jacobian, so that the sensor of its limit is not zero.
+    - `held`: rounding holds such a tendon or ties a body to itself, which changes the forces between bodies.
+    - MuJoCo finds the depth of curved shapes to some thousandths (`test_shapes.py` compares depths), misses a capsule
+      that pierces a box, and inspects only the first cells of a height field.
+    - A ray that starts on a surface or passes an edge hits it or not.
+    - MuJoCo does not move cameras of the world if bodies may sleep.
+    """
     kind = mujoco.mjtSensor(model.sensor_type[sensor])
     if kind in (mujoco.mjtSensor.mjSENS_GEOMNORMAL, mujoco.mjtSensor.mjSENS_GEOMFROMTO):
         return True
@@ -50,8 +55,11 @@ def is_undecided(model, sensor, ours, theirs, held):
 
 
 def held_by_rounding(theirs):
-    """Whether friction or a limit holds a tendon that moves nothing, or an equality ties a body to itself: that it is a constraint at all,
-    rounding decides, and what it asks for is a quotient of roundings. It moves nothing, and yet is a force between the bodies of its ends."""
+    """Returns True if friction or a limit holds a tendon that moves nothing, or an equality ties a body to itself.
+
+    Rounding decides whether it is a constraint, and its reference acceleration is a quotient of rounding errors. It
+    moves nothing, but exerts a force between the bodies at its ends.
+    """
     tendons = np.isin(theirs.efc_type, [int(kind) for kind in OF_TENDONS])
     idle = np.abs(theirs.jacobian).max(axis=1, initial=0) <= IDLE
     equality = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
@@ -60,8 +68,11 @@ def held_by_rounding(theirs):
 
 
 def pierces(model, sensor, theirs):
-    """Whether a sensor of distances looks at a box and a capsule whose axis goes through the box: MuJoCo compares the axis with the box's
-    edges and the axis's ends with its faces, and so says that they are apart, or less deep in each other than they are."""
+    """Returns True if a sensor measures the distance of a box and a capsule whose axis pierces the box.
+
+    MuJoCo compares the axis with the box's edges and the ends of the axis with its faces, so it finds too small a depth
+    or a positive distance.
+    """
     data = oracle.assigned(model, theirs.state)
     mujoco.mj_kinematics(model, data)
     first, second = both(model, sensor)
@@ -70,8 +81,10 @@ def pierces(model, sensor, theirs):
 
 
 def cut_short(model, sensor, theirs):
-    """Whether a sensor of distances looks at a height field that MuJoCo does not look at all of: it stops at fifty cells within the
-    cutoff, near or far, so that with a cutoff just above what it found it finds another distance."""
+    """Returns True if a sensor measures the distance of a height field that MuJoCo does not inspect completely.
+
+    It stops at fifty cells within the cutoff, near or far, so a cutoff just above the distance changes the result.
+    """
     if not any((model.geom_type[list(side)] == mujoco.mjtGeom.mjGEOM_HFIELD).any() for side in both(model, sensor)):
         return False
     found = theirs.sensordata[model.sensor_adr[sensor]]
@@ -83,8 +96,10 @@ def cut_short(model, sensor, theirs):
 
 
 def jumps(model, sensor, ours, theirs):
-    """Whether rays meet something else than MuJoCo's, and MuJoCo's do too from a place next to the sensor's, less apart than lengths are
-    known; or rays of a camera meet the same within what MuJoCo knows of its lens."""
+    """Returns True if MuJoCo's ray jumps when the sensor moves by less than the precision of lengths.
+
+    If rays hit the same, it returns True for a camera whose rays agree within the precision of MuJoCo's lens data.
+    """
     numbers = slice(model.sensor_adr[sensor], model.sensor_adr[sensor] + model.sensor_dim[sensor])
     expected = theirs.sensordata[numbers]
     if np.allclose(ours["sensordata"][numbers], expected, rtol=0, atol=JUMP):
@@ -93,7 +108,8 @@ def jumps(model, sensor, ours, theirs):
     index = model.sensor_objid[sensor]
     place = places[index].copy()
     frames = model.site_sameframe.copy()
-    model.site_sameframe[:] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # or a site that stands where its body does would not move
+    # Without this, a site in the frame of its body would not move.
+    model.site_sameframe[:] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
     found = []
     for step in [*np.eye(3), *-np.eye(3)]:
         places[index] = place + NEXT_TO * step
@@ -104,20 +120,23 @@ def jumps(model, sensor, ours, theirs):
 
 
 def seen_alike(model, sensor, ours, theirs):
-    """Whether a camera sees the same as far as its lens is known, which MuJoCo stores in single precision."""
+    """Returns True if values of a camera agree within the precision of its lens, which MuJoCo stores in 24 bits."""
     numbers = slice(model.sensor_adr[sensor], model.sensor_adr[sensor] + model.sensor_dim[sensor])
     return np.allclose(ours["sensordata"][numbers], theirs.sensordata[numbers], rtol=LENS, atol=LENS)
 
 
 def stands_still(model, camera):
-    """Whether a camera that follows bodies is fixed to the world of a model that may sleep: MuJoCo places it when it resets, and then no more."""
+    """Returns True if a tracking camera is fixed to the world of a model that may sleep.
+
+    MuJoCo places such a camera only on reset.
+    """
     fixed = model.body_weldid[model.cam_bodyid[camera]] == 0
     sleeps = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP
     return bool(sleeps and fixed and model.cam_mode[camera] != mujoco.mjtCamLight.mjCAMLIGHT_FIXED)
 
 
 def both(model, sensor):
-    """The geoms on both sides of a sensor of distances."""
+    """Returns the geoms on both sides of a distance sensor."""
     return (
         geoms(model, model.sensor_objtype[sensor], model.sensor_objid[sensor]),
         geoms(model, model.sensor_reftype[sensor], model.sensor_refid[sensor]),
@@ -125,14 +144,14 @@ def both(model, sensor):
 
 
 def geoms(model, kind, index):
-    """The geoms of what a sensor looks at, a geom or a body."""
+    """Returns the geoms of a sensor's object, a geom or a body."""
     if kind == mujoco.mjtObj.mjOBJ_GEOM:
         return [index]
     return range(model.body_geomadr[index], model.body_geomadr[index] + model.body_geomnum[index])
 
 
 def goes_through(model, data, capsule, box):
-    """Whether the axis of a capsule meets a box."""
+    """Returns True if the axis of a capsule intersects a box."""
     kinds = (model.geom_type[capsule], model.geom_type[box])
     if kinds != (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_BOX):
         return False

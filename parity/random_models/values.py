@@ -1,7 +1,7 @@
-"""Values of attributes: for each element of MJCF, each attribute that can be given without looking at other elements.
+"""Values of attributes: for each element of MJCF, each attribute that does not depend on other elements.
 
-A value is a function of a `Draw`, which holds the random numbers and the notation of the file. Values are mostly ordinary and
-sometimes at the edge of what MuJoCo accepts.
+A value is a function of a `Draw`, which holds the random numbers and the notation of the file. Values are mostly
+ordinary and sometimes at the edge of the range that MuJoCo accepts.
 """
 
 import math
@@ -11,7 +11,7 @@ from random_models.harmless import SENSORS
 
 
 class Draw(random.Random):
-    """Random numbers, words of MJCF made of them, and how the file writes angles and limits."""
+    """Random numbers, MJCF values made of them, and the file's notation of angles and limits."""
 
     degrees = True
     autolimits = True
@@ -23,7 +23,7 @@ class Draw(random.Random):
         return self.uniform(low, high)
 
     def scale(self, low, high):
-        """A number between two positive ones, as likely near one as near the other on a logarithmic scale."""
+        """Returns a number between two positive ones, uniform on a logarithmic scale."""
         return math.exp(self.uniform(math.log(low), math.log(high)))
 
     def angle(self, radians):
@@ -51,12 +51,12 @@ def one_of(*words):
 
 
 def usually(value, *rare):
-    """The value in most cases, or one of the rare words."""
+    """Returns the value in most cases, otherwise one of the rare ones."""
     return lambda draw: draw.choice(rare) if draw.chance(0.1) else value(draw)
 
 
 def up_to(most, low, high):
-    """One to `most` numbers."""
+    """Returns one to `most` numbers."""
     return lambda draw: text(*(draw.number(low, high) for _ in range(draw.randint(1, most))))
 
 
@@ -80,7 +80,7 @@ def solimp(draw):
 
 
 def polynomial(low, high):
-    """The coefficients of a spring or damper: the linear one, and now and then some of the others."""
+    """Returns the coefficients of a spring or damper: the linear one, and sometimes others."""
 
     def value(draw):
         linear = draw.choice((1, 1, 1, 0)) * draw.scale(low, high)
@@ -116,7 +116,7 @@ def pair_friction(draw):
 
 
 def interval(low, high):
-    """Two ends in order, with zero most often between them."""
+    """Returns two ends in order, with zero between them in most cases."""
 
     def value(draw):
         ends = sorted((draw.number(low, 0), draw.number(0, high)))
@@ -155,17 +155,17 @@ POLYCOEF = lambda draw: text(*(draw.number(-0.5, 0.5) for _ in range(draw.randin
 ACTUATOR = {
     "group": one_of(0, 0, 1, 2, 3, 30),
     "gear": lambda draw: text(*gear(draw)),
-    "cranklength": None,  # goes with a target
+    "cranklength": None,  # set with a target
     "damping": lambda draw: text(*(draw.choice((0, draw.scale(0.003, 1))) for _ in range(draw.randint(1, 3)))),
     "armature": usually(scale(0.001, 0.3), "0"),
-    "nsample": one_of(20, 50),  # before `delay`, which needs it
+    "nsample": one_of(20, 50),  # required by `delay`
     "interp": one_of("zoh", "linear", "cubic"),
 }
 SERVO_GAIN = {"kp": usually(scale(0.1, 100), "0"), "kv": usually(scale(0.01, 5), "0"), "dampratio": usually(scale(0.1, 2), "0")}
 
 
 def gear(draw):
-    """One number for what has one axis; ball and free joints read three and six."""
+    """Returns one, three or six numbers: ball joints read three, free joints six, other targets one."""
     numbers = [draw.choice((-1, 1)) * draw.scale(0.1, 10) for _ in range(draw.choice((1, 1, 3, 6)))]
     return [0.0 if k > 0 and draw.chance(0.3) else x for k, x in enumerate(numbers)]
 
@@ -175,19 +175,19 @@ def euler_sequence(draw):
 
 
 def words(known):
-    """Some of the words, in their order."""
+    """Returns some of the words, in their order."""
     return lambda draw: " ".join(word for word in known if draw.chance(0.4)) or known[0]
 
 
 PAST = {"nsample": one_of(20, 50), "interp": one_of("zoh", "linear", "cubic")}
 SENSOR = {"noise": scale(0.01, 1), "cutoff": scale(0.02, 5), **PAST}
-TURNS = ("framequat", "framexaxis", "frameyaxis", "framezaxis", "ballquat")  # which no cutoff holds
+TURNS = ("framequat", "framexaxis", "frameyaxis", "framezaxis", "ballquat")  # sensors without cutoff
 RAY_DATA = ("dist", "dir", "origin", "point", "normal", "depth")
 CONTACT_DATA = ("found", "force", "torque", "dist", "pos", "normal", "tangent", "linvel", "angvel")
 
 VALUES = {
     "compiler": {
-        "angle": None,  # decided before anything is drawn, as is autolimits
+        "angle": None,  # drawn first, like autolimits
         "autolimits": None,
         "eulerseq": euler_sequence,
         "coordinate": one_of("local"),
@@ -390,7 +390,8 @@ VALUES = {
     },
     "lengthrange": {
         "mode": one_of("none", "muscle"),
-        "useexisting": one_of("true"),  # what both engines would find by simulation differs too much where lengths have no limits
+        # Without it engines simulate, and their results differ too much if lengths have no limits.
+        "useexisting": one_of("true"),
         "uselimit": BOOLEAN,
         "accel": scale(5, 50),
         "maxforce": usually(scale(1, 100), "0"),
@@ -407,7 +408,7 @@ VALUES = {
         "refpos": vector(-0.1, 0.1),
         "refquat": quaternion,
         "inertia": one_of("convex", "exact", "legacy", "shell"),
-        "maxhullvert": one_of(-1, 500),  # which vertices a smaller bound leaves is each engine's own choice
+        "maxhullvert": one_of(-1, 500),  # with a smaller limit, engines choose different vertices
     },
     "default/mesh": {
         "inertia": one_of("convex", "exact", "legacy", "shell"),
@@ -423,7 +424,7 @@ VALUES = {
     **{f"sensor/{kind}": {"noise": scale(0.01, 1), "cutoff": one_of(0), **PAST} for kind in TURNS},
 }
 
-# Ranges with the attribute that says whether they count.
+# Ranges with the attribute that enables them.
 RANGES = {
     "joint": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
     "fixed": {"range": "limited", "actuatorfrcrange": "actuatorfrclimited"},
@@ -438,7 +439,7 @@ RANGES = {
     "dcmotor": {"ctrlrange": "ctrllimited"},
 }
 
-# Attributes of which an element may have only one.
+# Mutually exclusive attributes.
 ONE_OF = {
     "position": [("kv", "dampratio")],
     "intvelocity": [("kv", "dampratio")],

@@ -1,6 +1,7 @@
 """A hand is attached to an arm, given sensors, saved, and moved in MuJoCo.
 
-The arm is MJCF, the hand URDF. What is attached is edited under its prefixed names, and one document that stands alone is written::
+The arm is MJCF, the hand URDF. Attached elements are edited by their prefixed names, and one self-contained document is
+written::
 
     python python/examples/arm_and_hand.py
     python python/examples/arm_and_hand.py --save arm_and_hand.xml --plot arm_and_hand.png

@@ -1,7 +1,7 @@
 """Batch rollout: try many gaits of a quadruped at once, and keep the one that goes furthest.
 
-Each environment has its own sequence of controls, a row of random sine waves. One call steps them all over all processors, and
-gives back what was recorded::
+Each environment has its own sequence of controls, made of random sine waves. One call steps all environments on all
+processors and returns the records::
 
     python python/examples/batch_rollout.py
     python python/examples/batch_rollout.py --plot batch_rollout.png
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def random_gaits(rng: np.random.Generator, n: int, steps: int, model: clench.Model) -> NDArray[np.float64]:
-    """Controls (n, steps, nu): sine waves of one frequency a gait, with an amplitude, phase and centre an actuator."""
+    """Return controls (n, steps, nu): sine waves with one frequency per gait, and other parameters per actuator."""
     frequency = rng.uniform(1.0, 4.0, (n, 1, 1))
     amplitude, centre = rng.uniform(0.0, 0.5, (n, 1, model.nu)), rng.uniform(-0.2, 0.2, (n, 1, model.nu))
     phase = rng.uniform(0.0, 2.0 * np.pi, (n, 1, model.nu))
@@ -33,7 +33,7 @@ def random_gaits(rng: np.random.Generator, n: int, steps: int, model: clench.Mod
 
 
 def alone(model: clench.Model, gait: NDArray[np.float64]) -> NDArray[Any]:
-    """Where one gait leads a simulation of its own."""
+    """Return the final positions of one gait in a single simulation."""
     sim = clench.Sim(model)
     for controls in gait:
         sim.ctrl = controls

@@ -1,7 +1,8 @@
 """Planning on a cluster: the cross-entropy method finds a gait of a quadruped, its tries spread over Ray's workers.
 
-A gait is a sine wave an actuator. Each round tries many gaits at once, on all workers, and draws the next from a normal distribution
-around the best of them. With ``--kill`` a worker is killed half-way, and the same gait is found, to the bit. Needs Ray::
+A gait is a sine wave per actuator. Each round tries many gaits at once, on all workers, and draws the next ones from a
+normal distribution around the best. With ``--kill`` a worker is killed half-way, and the result is bitwise the same.
+Needs Ray::
 
     pip install 'clench[ray]'
     python python/examples/cluster_plan.py --workers 2
@@ -28,7 +29,10 @@ Floats = NDArray[np.float64]
 
 
 def controls(gaits: Floats, steps: int, model: clench.Model) -> Floats:
-    """Controls (n, steps, nu) of gaits (n, 3 nu + 1): centres, amplitudes and phases of waves, and their frequency, Hz."""
+    """Return the controls (n, steps, nu) of gaits (n, 3 nu + 1).
+
+    A gait has centres, amplitudes and phases of waves, and their frequency, Hz.
+    """
     centre, amplitude, phase = np.split(gaits[:, np.newaxis, : 3 * model.nu], 3, axis=2)
     times = model.timestep * np.arange(steps)[:, np.newaxis]
     waves: Floats = centre + amplitude * np.sin(2.0 * np.pi * np.abs(gaits[:, np.newaxis, -1:]) * times + phase)
@@ -43,7 +47,7 @@ def main() -> None:
     options = parser.parse_args()
     n, steps, rounds = (64, 100, 4) if options.quick else (1024, 500, 15)
 
-    # The workers need not have the file.
+    # The workers do not need the file.
     model = clench.ModelSpec.from_file(plots.MODELS / "quadruped.xml").build()
     start = np.concatenate([[0.0], model.qpos0, np.zeros(model.nv)])
     rng = np.random.default_rng(0)

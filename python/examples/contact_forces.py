@@ -1,6 +1,6 @@
 """Contact forces: how hard the feet of a quadruped press on the floor when it lands.
 
-Read from a simulation contact by contact, and from a batch as the sum on each body::
+A simulation gives the force of each contact, a batch the sum on each body::
 
     python python/examples/contact_forces.py
     python python/examples/contact_forces.py --plot contact_forces.png
@@ -44,19 +44,19 @@ def main() -> None:
     print(f"the hardest blow: {pressing.max():.0f} N on {feet[int(peak[1])]} at {times[peak[0]]:.2f} s")
     print(f"after {sim.time:.0f} s the feet carry {pressing[-1].sum():.1f} N; the weight is {weight:.1f} N")
 
-    # Constraint rows say the same in the solver's own terms: each with its force, impedance and Jacobian.
+    # Constraint rows contain the same in terms of the solver: each with its force, impedance and Jacobian.
     rows = sim.constraints
     generalized = rows.J.T @ rows.force
     print(f"{len(sim.contacts)} contacts are {len(rows)} rows, with forces along dofs up to {np.abs(generalized).max():.1f}")
 
-    # In a batch: forces on every body, in every environment, as of the last step.
+    # In a batch: forces on every body, in every environment, of the last step.
     batch = clench.Batch(model, 16, record=["contact_force"])
     batch.reset(keyframe="dropped")
     batch.qpos[:, 2] += np.linspace(0.0, 0.5, 16)
     worst = np.zeros(16)
     for _ in range(400):
         batch.step()
-        worst = np.maximum(worst, -batch.contact_force[:, 0, 2])  # What the world, body 0, bears.
+        worst = np.maximum(worst, -batch.contact_force[:, 0, 2])  # The load on the world, body 0.
     print(f"dropped from 0 to 0.5 m higher, it strikes the floor with {worst[0]:.0f} to {worst[-1]:.0f} N")
 
     def draw(axes: Axes) -> None:

@@ -1,7 +1,7 @@
 """Custom task: a model of your own as a vector environment of gymnasium.
 
-:class:`Balance` is all there is to it: what is observed, what it is worth, when it is over, over all environments at once. Two
-controllers then try to hold the pole up::
+:class:`Balance` is the whole task: observations, rewards and terminations of all environments at once. Two controllers
+then try to hold the pole up::
 
     python python/examples/custom_task.py
     python python/examples/custom_task.py --plot custom_task.png
@@ -89,7 +89,7 @@ def main() -> None:
 
 
 def run(envs: Balance, controller: Callable[[Array], Array], steps: int) -> Array:
-    """The pole's angles (steps, n) under a controller; prints how often it fell."""
+    """Return the pole's angles (steps, n) under a controller, and print the number of falls."""
     envs.action_space.seed(0)
     observation, _ = envs.reset(seed=0)
     angles, falls, rewards = np.empty((steps, envs.num_envs)), 0, np.zeros(envs.num_envs)

@@ -1,7 +1,7 @@
 """A URDF quadruped with a floating base falls on its feet in 512 environments of different masses.
 
-A URDF file says nothing of a free base: ``floating=True`` gives it one. ``--robot`` takes a robot of the package robot_descriptions,
-such as go2_description, instead of the one here::
+A URDF file does not describe a free base: ``floating=True`` adds one. ``--robot`` takes a robot of the package
+robot_descriptions, such as go2_description, instead of the one here::
 
     python python/examples/floating_robot.py
     python python/examples/floating_robot.py --robot go2_description --plot floating_robot.png
@@ -52,7 +52,7 @@ def main() -> None:
     spec.world.add_geom(name="floor", type="plane", size=[5, 5, 0.1])
     model = spec.build()
 
-    # Contacts are as stiff for what they carry as those of the original: the constants that scale them follow the masses.
+    # Contact stiffness relative to the load stays that of the original: its scales follow the masses.
     batch = clench.Batch(model, n)
     scale = np.random.default_rng(0).uniform(0.5, 2.0, (n, 1))
     batch.randomize("body_mass", batch.param("body_mass") * scale)

@@ -1,7 +1,7 @@
 """Model predictive path integral control: a pole on a cart is swung up by sampling.
 
-At every step a batch starts from the state of the one simulation, tries controls around the last plan, and the plan becomes their
-mean, weighted by what they cost::
+At every step a batch starts from the state of the simulation and tries controls around the last plan. Their mean,
+weighted by cost, is the next plan::
 
     python python/examples/mppi.py
     python python/examples/mppi.py --plot mppi.png
@@ -39,7 +39,7 @@ CART = """
 
 
 def cost(rows: dict[str, NDArray[Any]]) -> NDArray[Any]:
-    """What each sample costs (n): the pole is to stand, the cart in the middle, both still."""
+    """Return the cost of each sample (n), which is low for an upright pole and a centred cart, both at rest."""
     (x, angle), velocity = np.moveaxis(rows["qpos"], 2, 0), rows["qvel"]
     return (4 * (1 + np.cos(angle)) + 0.5 * x**2 + 0.02 * (velocity**2).sum(axis=2)).sum(axis=1)
 

@@ -1,6 +1,6 @@
 """A block is pinched between two fingers, and looked at in the browser.
 
-The viewer shows the forces of contacts; the loop draws what it knows besides, and may go on by itself::
+The viewer shows contact forces. The loop draws its own objects, and may continue without the viewer::
 
     python python/examples/pinch_viewer.py
     python python/examples/pinch_viewer.py --quick --plot pinch.png
@@ -30,7 +30,7 @@ def main() -> None:
         print(f"look at {viewer.url}; close the page to end")
         begin = time.monotonic()
         while sim.time < (0.2 if options.quick else 60) and not viewer.closed:
-            # Fingers press harder and harder, and let go a little.
+            # The fingers press harder and harder, then relax a little.
             sim.joint("left").qfrc_applied = 10 * (1 - np.cos(sim.time))
             sim.joint("right").qfrc_applied = -10 * (1 - np.cos(sim.time))
             sim.step()

@@ -1,4 +1,4 @@
-"""What the examples share: their command line, and plots."""
+"""The command line and plots of all examples."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MODELS = Path(__file__).resolve().parents[2] / "models"
 
 
 def parser(doc: str | None) -> argparse.ArgumentParser:
-    """A command line with what every example takes; the first line of ``doc`` describes it."""
+    """Return a parser with the options of every example; the first line of ``doc`` describes it."""
     options = argparse.ArgumentParser(description=(doc or "").partition("\n")[0])
     options.add_argument("--quick", action="store_true", help="a short form, as the tests run it")
     options.add_argument("--plot", metavar="FILE", help="write a plot to FILE (.png, .svg or .pdf)")
@@ -23,7 +23,7 @@ def parser(doc: str | None) -> argparse.ArgumentParser:
 
 
 def finish(options: argparse.Namespace, draw: Callable[[Axes], None]) -> None:
-    """Draw what was computed, if a file or a window was asked for."""
+    """Draw the plot, if a file or a window was requested."""
     if options.plot is None and not options.show:
         return
     try:

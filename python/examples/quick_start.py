@@ -1,7 +1,7 @@
 """Quick start: load a model, step it, read and write its state.
 
-A humanoid falls while its servos hold it stiff. Shown are a model with its named elements, a simulation whose arrays are
-live, contacts with their forces, and a state that is kept and brought back::
+A humanoid falls while its servos hold it stiff. The example shows a model with named elements, a simulation with live
+arrays, contacts with their forces, and a state that is saved and restored::
 
     python python/examples/quick_start.py
     python python/examples/quick_start.py --plot quick_start.png
@@ -29,13 +29,13 @@ def main() -> None:
     print(f"{model.name}: {model.nq} position coordinates, {model.nv} degrees of freedom, {model.nu} actuators")
     print(f"the torso weighs {torso.mass:.1f} kg; the knee bends from {knee.range[0]:.2f} to {knee.range[1]:.2f} rad")
 
-    # State arrays are the simulation's own memory: what is written there is what the next step starts from.
+    # State arrays are the simulation's own memory: the next step starts from the values written there.
     sim = clench.Sim(model)
     sim.reset("standing")
     sim.qvel[0] = 1.5  # A push forward, m/s.
     start = sim.state
 
-    # Everything else is read by MuJoCo's names.
+    # All other data have MuJoCo's names.
     steps = 200 if options.quick else 1000
     times, heights = np.empty(steps), np.empty(steps)
     for k in range(steps):
@@ -46,7 +46,7 @@ def main() -> None:
         print(f"  {first} and {second}: {force[0]:.0f} N")
     print(f"the last solve: {sim.solver_stats.status} after {sim.solver_stats.iterations} iterations")
 
-    # A state goes into bytes and out again, and the same steps follow from it, to the bit.
+    # A state is converted to bytes and back, and the steps from it are bitwise the same.
     end = sim.qpos.copy()
     sim.state = clench.State.from_bytes(start.to_bytes())
     sim.step(steps)

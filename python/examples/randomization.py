@@ -1,7 +1,7 @@
 """Randomization: boxes of different friction and mass slide over a floor.
 
-Each environment of a batch can have parameters of its own. Here a box is pushed off at 3 m/s in each; how far it slides says
-Coulomb's law, v²/(2 μ g), whatever its mass::
+Each environment of a batch can have its own parameters. Here a box starts at 3 m/s in each. The distance that it slides
+follows from Coulomb's law, v²/(2 μ g), for any mass::
 
     python python/examples/randomization.py
     python python/examples/randomization.py --plot randomization.png
@@ -43,7 +43,7 @@ def main() -> None:
     rng = np.random.default_rng(0)
     box = model.body("box").id
 
-    # A parameter's values are its whole field for each environment: geom_friction is (ngeom, 3) in the model, so (n, ngeom, 3).
+    # A parameter has the whole field for each environment: geom_friction is (ngeom, 3) in a model, so (n, ngeom, 3).
     friction = batch.param("geom_friction")
     friction[:, model.geom("box").id, 0] = rng.uniform(0.2, 1.0, n)
     batch.randomize("geom_friction", friction)

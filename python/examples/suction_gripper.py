@@ -1,7 +1,7 @@
 """A suction gripper picks a box up, carries it, and lets it go.
 
-What it grips is decided while it runs: a weld is added between the cup and the body that the cup touches, and removed again. Here one
-simulation; `Batch.add_weld` does the same in chosen environments.
+The object is selected at run time: a weld is added between the cup and the body that the cup touches, and later
+removed. This is one simulation; `Batch.add_weld` does the same in chosen environments.
 
     python python/examples/suction_gripper.py
     python python/examples/suction_gripper.py --plot suction_gripper.png
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 def go(sim: clench.Sim, x: float, z: float, seconds: float) -> list[tuple[float, float]]:
-    """Drive the gantry to a place and give it time; where the box was meanwhile."""
+    """Drive the gantry to a position and wait; return the positions of the box."""
     sim.actuator("x").ctrl = x
     sim.actuator("z").ctrl = z
     return rest(sim, seconds)
 
 
 def rest(sim: clench.Sim, seconds: float) -> list[tuple[float, float]]:
-    """Let time pass; where the box was meanwhile."""
+    """Simulate some time; return the positions of the box."""
     path = []
     for _ in range(round(seconds / (10 * sim.model.timestep))):
         sim.step(10)
@@ -36,7 +36,7 @@ def rest(sim: clench.Sim, seconds: float) -> list[tuple[float, float]]:
 
 
 def touched(sim: clench.Sim) -> int | None:
-    """The body that the cup touches."""
+    """Return the body that the cup touches."""
     for contact in sim.contacts.of_geom("cup"):
         (other,) = set(contact.body) - {sim.body("cup").id}
         return other

@@ -1,7 +1,7 @@
 """Train a policy with NumPy alone: a half-cheetah learns to run.
 
-Augmented random search (Mania, Guy and Recht, 2018): the policy is linear in normalized observations; each generation tries
-random changes of it and their opposites, one pair of environments a change, and goes where the better of each pair points::
+Augmented random search (Mania, Guy and Recht, 2018): the policy is linear in normalized observations. Each generation
+tries random changes of it and their opposites, a pair of environments per change, and moves towards the better ones::
 
     python python/examples/train_policy.py
     python python/examples/train_policy.py --plot train_policy.png --generations 200
@@ -27,13 +27,13 @@ Array = NDArray[np.float64]
 
 
 class Normalizer:
-    """Mean and spread of all observations so far."""
+    """The mean and standard deviation of all observations so far."""
 
     def __init__(self, size: int) -> None:
         self.count, self.mean, self.squares = 1e-4, np.zeros(size), np.zeros(size)
 
     def add(self, rows: Array) -> None:
-        """Takes rows of observations in."""
+        """Add rows of observations."""
         count, mean = len(rows), rows.mean(axis=0)
         total, apart = self.count + count, mean - self.mean
         self.squares += np.square(rows - mean).sum(axis=0) + np.square(apart) * self.count * count / total
@@ -42,12 +42,12 @@ class Normalizer:
 
     @property
     def spread(self) -> Array:
-        """Standard deviations, none of them zero."""
+        """Return the standard deviations, none of them zero."""
         return np.sqrt(self.squares / self.count) + 1e-6
 
 
 def returns_of(envs: gymnasium.vector.VectorEnv[Any, Any, Any], policies: Array, seen: Normalizer, steps: int) -> Array:
-    """What each environment's policy, a matrix of (n, actions, observations), earns in an episode of at most ``steps``."""
+    """Return the returns of policies (n, actions, observations), one per environment, in up to ``steps`` steps."""
     space = envs.single_action_space
     assert isinstance(space, gymnasium.spaces.Box)
     mean, spread = seen.mean.copy(), seen.spread
@@ -65,7 +65,7 @@ def returns_of(envs: gymnasium.vector.VectorEnv[Any, Any, Any], policies: Array,
 
 
 def train(task: str, generations: int, steps: int, pairs: int, seed: int = 0) -> list[float]:
-    """The mean return of the policy itself at the start of each generation."""
+    """Return the mean return of the unchanged policy at the start of each generation."""
     step_size, noise, best, watchers = 0.1, 0.1, pairs // 2, 16
     envs = gymnasium.make_vec(task, num_envs=2 * pairs + watchers)
     envs.reset(seed=seed)
@@ -77,7 +77,7 @@ def train(task: str, generations: int, steps: int, pairs: int, seed: int = 0) ->
     curve = []
     for generation in range(generations):
         begin = time.perf_counter()
-        # One environment a change, one its opposite, and some that watch how the policy itself does.
+        # One environment per change, one for its opposite, and some for the unchanged policy.
         changes = rng.standard_normal((pairs, *policy.shape))
         tried = policy + noise * np.concatenate([changes, -changes, np.zeros((watchers, *policy.shape))])
         returns = returns_of(envs, tried, seen, steps)

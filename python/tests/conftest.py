@@ -1,4 +1,4 @@
-"""A test that hangs shows where, and ends the run."""
+"""Settings of all tests: a test that hangs prints its traceback and ends the run."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ STDERR = pytest.StashKey[TextIO]()
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "long: takes long; `cargo xtask test --quick` leaves it out")
-    # Not what a test's own output goes to: that would be lost at the end of the run.
+    # A copy of stderr, since the captured output of a test would be lost at the end of the run.
     config.stash[STDERR] = open(os.dup(2), "w", encoding="utf-8")
-    # A shell's background jobs ignore Ctrl-C, and so would the tests of it.
+    # Background jobs of a shell ignore Ctrl-C, which would break the tests of it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 

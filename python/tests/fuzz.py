@@ -1,7 +1,7 @@
-"""Calls everything that the package offers with random arguments: `python fuzz.py SEED CALLS`.
+"""Calls the whole API of the package with random arguments: `python fuzz.py SEED CALLS`.
 
-Nothing but exceptions of the classes that the documentation names may come back, in time, and what was not misused must still
-work. A crash ends the process, a hang is ended by the fault handler: run it in a process of its own, as `test_fuzz.py` does.
+Calls may raise only documented exception classes and must end in time. Objects that were not misused must still work.
+A crash ends the process, and the fault handler ends a hang, so run it in a separate process, as `test_fuzz.py` does.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from junk import TEXTS, Junk, Odd
 from scenes import BALL, FIELDS, PUPPET, ROOT, ball, example, puppet, same_bits
 
 ALLOWED = (
-    KeyError,  # of numbers, texts and tuples that a file does not have
+    KeyError,  # of custom numbers, texts and tuples that a file does not have
     *(ValueError, TypeError, IndexError, AttributeError, OverflowError, MemoryError, clench.ClenchError, Odd),
     pickle.PicklingError,
 )
-# Of one call, on a slow and busy machine. Most take less than a millisecond.
+# The maximum seconds of one call on a slow and busy machine. Most take less than a millisecond.
 LONGEST = 10.0
 
-# Of iterations so few that a line search which may be as coarse as one likes cannot keep a solve going for long.
+# Few iterations, so that a solve with an arbitrarily coarse line search ends soon.
 OPTIONS = {
     "constraint_solver": ("Newton", "CG"),
     "iterations": (0, 1, 5, 50, 1000),
@@ -63,7 +63,7 @@ PATHS = (ROOT / "models/pendulum.xml", str(ROOT / "models/pinch.xml"), ROOT, ROO
 
 
 class Fuzz:
-    """Models, simulations and batches, and calls to them."""
+    """Models, simulations and batches, and random calls to them."""
 
     def __init__(self, seed: int) -> None:
         self.rng = np.random.default_rng(seed)
@@ -78,7 +78,7 @@ class Fuzz:
         self.outcomes: Counter[str] = Counter()
         self.slowest = (0.0, "nothing")
 
-    # Arguments: mostly what is asked for, sometimes anything.
+    # Arguments: mostly valid, sometimes arbitrary.
 
     def maybe(self, make: Callable[[], Any]) -> Any:
         return self.junk.any() if self.junk.chance(0.25) else make()
@@ -102,7 +102,7 @@ class Fuzz:
         return self.maybe(lambda: self.choose(KEYS))
 
     def text(self) -> str:
-        """XML of a model, damaged or not."""
+        """Returns the XML of a model, possibly damaged."""
         text = self.choose((BALL, PUPPET, (ROOT / "models/box_stack.xml").read_text()))
         words = text.split('"')
         for _ in range(self.rng.integers(0, 4)):
@@ -116,7 +116,7 @@ class Fuzz:
         near = np.asarray(getattr(model, field)) * self.rng.uniform(0.5, 1.5, (*more, *shape))
         return self.maybe(lambda: field), near if self.junk.chance(0.4) else self.numbers(*more, *shape)
 
-    # Calls, by what they are of.
+    # Calls, by object.
 
     def call_model(self) -> Any:
         model = self.choose(self.models)
@@ -168,7 +168,7 @@ class Fuzz:
         return self.touch(solution)
 
     def call_new(self) -> Any:
-        """A simulation or batch in place of another."""
+        """Replaces a simulation or batch by a new one."""
         model, options = self.maybe(lambda: self.choose(self.models)), self.maybe(lambda: self.choose([None, *self.options]))
         precision = self.maybe(lambda: self.choose(("64", "32")))
         if self.junk.chance(0.4):
@@ -219,7 +219,7 @@ class Fuzz:
         return self.touch(state)
 
     def call_owner(self) -> Any:
-        """What simulations and batches have in common."""
+        """Calls methods that simulations and batches have in common."""
         owner = self.choose(self.owners)
         what = self.choose(("step", "step", "forward", "output", "param", "attribute", "touch"))
         if what == "step":
@@ -295,7 +295,7 @@ class Fuzz:
         return batch.status, batch.running, batch.outputs, batch.bytes_per_env
 
     def call_question(self) -> Any:
-        """What simulations and batches can be asked of their state, and bodies that are tied together."""
+        """Calls queries of simulations and batches, and constraints at run time."""
         owner = self.choose(self.owners)
         model, lead = owner.model, np.shape(owner.time)
         name = self.maybe(lambda: self.choose((0, 1, "ball", "torso", -1)))
@@ -331,8 +331,8 @@ class Fuzz:
         return self.touch(self.choose(list(asked.values()))())
 
     def call_class(self) -> Any:
-        """Classes by hand: without arguments, with those of others, methods of others."""
-        offered = [getattr(clench, name) for name in clench.__all__ if name != "EnvStatus"]  # an enumeration of Python's
+        """Calls classes, `__new__` and unbound methods with arbitrary arguments, and subclasses them."""
+        offered = [getattr(clench, name) for name in clench.__all__ if name != "EnvStatus"]  # a Python enumeration
         keeper = type(self.owners[0].qpos.base)
         cls = self.choose([thing for thing in (*offered, keeper) if isinstance(thing, type)])
         what = self.rng.integers(4)
@@ -346,7 +346,7 @@ class Fuzz:
         return type("Own", (cls,), {})(*arguments)
 
     def touch(self, thing: Any) -> Any:
-        """Whatever Python does to objects."""
+        """Applies a random operation of Python to an object."""
         does: list[Callable[[], Any]] = [
             *(lambda: repr(thing), lambda: str(thing), lambda: dir(thing), lambda: hash(thing), lambda: len(thing)),
             *(lambda: copy.copy(thing), lambda: pickle.dumps(thing), lambda: thing == self.junk.any(), lambda: bool(thing)),
@@ -357,7 +357,7 @@ class Fuzz:
         return self.choose(does)()
 
     def one(self) -> None:
-        """A call, and how it ended."""
+        """Makes a random call and records its outcome."""
         calls = [
             *(self.call_model, self.call_options, self.call_solve, self.call_new, self.call_views, self.call_state),
             *(self.call_owner, self.call_owner, self.call_sim, self.call_batch, self.call_batch, self.call_class),
@@ -376,7 +376,7 @@ class Fuzz:
             raise TimeoutError(f"{call.__name__} took {took:.1f} s")
 
     def check(self) -> None:
-        """Everything still works: what was misused can be reset and called, and new batches do what simulations do."""
+        """Checks that objects can be reset and stepped, and that new batches agree with new simulations."""
         for owner in self.owners:
             owner.reset()
             with contextlib.suppress(clench.SimulationError):  # parameters may forbid it

@@ -1,4 +1,4 @@
-"""Values that make no sense, and some that nearly do: what `fuzz.py` passes where it should not."""
+"""Invalid and nearly valid values, which `fuzz.py` passes as arguments."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-320, 1e-9, 1e30, -1e308, 1.8e308, np.nan, np.inf, -np.inf)
-# Counts between these would be obeyed for ever.
+# Counts between these would run forever.
 INTEGERS = (0, 1, 2, 3, 7, 30, -1, -2, -(2**31), -(2**63), -(2**64), 2**64, 2**65, 10**40)
 TEXTS = ("", " ", "qpos", "auto", "64", "é", "\0", "\ud800", "a" * 5000, "body_mass", "__class__", "ball", "-1", "nan")
 DTYPES = (
@@ -24,11 +24,11 @@ DTYPES = (
 
 
 class Odd(Exception):
-    """What objects of ours raise: it may come back."""
+    """An exception that objects of the fuzzer raise; calls may propagate it."""
 
 
 class Rude:
-    """An object that answers whatever is asked with an exception, or with something else."""
+    """An object whose special methods raise an exception or return an arbitrary value."""
 
     def __init__(self, answer: Callable[[], Any]) -> None:
         self._answer = answer
@@ -41,11 +41,11 @@ class Rude:
 
 
 class Subclass(np.ndarray):
-    """An array of another class."""
+    """A subclass of arrays."""
 
 
 class Junk:
-    """Random values. `owners` are what a rude object may call back into."""
+    """Random values. Rude objects may call methods of `owners`."""
 
     def __init__(self, rng: np.random.Generator, owners: list[Any]) -> None:
         self.rng = rng
@@ -75,7 +75,7 @@ class Junk:
         return tuple(int(self.choose((0, 1, 2, 3, 6, 7, 12))) for _ in range(self.rng.integers(0, 4)))
 
     def array(self, shape: tuple[int, ...] | None = None) -> Any:
-        """An array of any dtype and layout."""
+        """Returns an array of any dtype and layout."""
         shape = self.shape() if shape is None else shape
         dtype = np.dtype(self.choose(DTYPES) if self.chance(0.5) else "f8")
         values = self.rng.normal(size=shape) * self.choose((0, 0.1, 1, 1e6))
@@ -86,12 +86,12 @@ class Junk:
                 made = values.astype(dtype)
             except (TypeError, ValueError):
                 made = np.zeros(shape, dtype)
-        if not shape and dtype.kind in "iu":  # It would do for a count.
+        if not shape and dtype.kind in "iu":  # It would be valid as a count.
             made = np.array(self.rng.integers(0, 4), dtype)
         return self.layout(made)
 
     def layout(self, values: Any) -> Any:
-        """The same numbers, differently in memory."""
+        """Returns the same numbers with another memory layout or type."""
         kind = self.rng.integers(10)
         if kind == 0:
             return np.asfortranarray(values)
@@ -131,7 +131,7 @@ class Junk:
         return Rude(self.choose((fail, call_back, lambda: self.number(), lambda: None, lambda: 1)))
 
     def any(self, depth: int = 0) -> Any:
-        """Anything at all."""
+        """Returns an arbitrary object."""
         kind = int(self.rng.integers(14))
         if kind < 3:
             return self.number()

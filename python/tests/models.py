@@ -1,4 +1,4 @@
-"""The models that the tests load: our examples, and those of the comparison with MuJoCo that cover a feature each, or shapes."""
+"""The models that the tests load: our examples, and those of the comparison with MuJoCo for features and shapes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "models").glob("*.xml"))
 FEATURES = sorted((ROOT / "parity/models").glob("*.xml"))
 SHAPES = sorted((ROOT / "parity/shapes").glob("*.xml"))
-# Those of other packages, in .venv/models, that are not refused: `parity/public.txt` says what the others are refused for.
+# Models of other packages in .venv/models that Clench does not refuse; `parity/public.txt` gives the reasons of others.
 PUBLIC = [
     line for line in (ROOT / "parity/public.txt").read_text().splitlines() if not line.startswith("#") and ": " not in line
 ]

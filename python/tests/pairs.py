@@ -1,4 +1,4 @@
-"""Pages with pairs of scripts, first for another package, then for Clench, which leave the same numbers in `result`."""
+"""Runs pairs of scripts in pages, for another package and for Clench, which must have the same numbers in `result`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scenes import ROOT
 
 
 def sections(page: str) -> list[str]:
-    """The sections of a page of `docs/`."""
+    """Returns the sections of a page of `docs/`."""
     return (ROOT / "docs" / page).read_text(encoding="utf-8").split("\n## ")[1:]
 
 
@@ -19,7 +19,7 @@ def title(section: str) -> str:
 
 
 def assert_both_give_the_same(section: str, other: str) -> None:
-    """Runs both scripts of a section; `other` is what the first is for."""
+    """Runs both scripts of a section; `other` is the package of the first."""
     first, second = re.findall(r"```python\n(.*?)```", section, re.S)
     assert first.startswith(f"# {other}\n") and second.startswith("# Clench\n")
     expected, found = _result(first), _result(second)

@@ -1,4 +1,4 @@
-"""What the tests move: the example models, a few small ones of their own, and states in the middle of things."""
+"""Models and states for the tests: the example models, a few small ones, and states during motion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from models import ROOT as ROOT
 from numpy.typing import NDArray
 
-# A ball of 2 kg above a floor, where it comes to rest.
+# A ball of 2 kg that rests on a floor.
 BALL = """
 <mujoco model="ball">
   <worldbody>
@@ -23,7 +23,7 @@ BALL = """
   </worldbody>
 </mujoco>"""
 
-# Activations, a mocap body held by a weld, an equality that is off, a tendon: what the examples do not have.
+# Features that the examples lack: activations, a welded mocap body, an inactive equality, a tendon.
 PUPPET = """
 <mujoco model="puppet">
   <option timestep="0.002"/>
@@ -64,7 +64,7 @@ PUPPET = """
 
 @functools.cache
 def example(name: str) -> clench.Model:
-    """A model of the folder `models`."""
+    """Returns a model of the folder `models`."""
     return clench.Model.from_file(ROOT / "models" / f"{name}.xml")
 
 
@@ -95,7 +95,7 @@ FIELDS = tuple(field.name for field in dataclasses.fields(clench.State))
 
 
 def same_bits(a: NDArray[Any], b: NDArray[Any]) -> bool:
-    """Whether two arrays are the same to the bit, the signs of zeros and NaN included."""
+    """Returns True if two arrays are bitwise equal, including the signs of zeros and NaN."""
     a, b = np.ascontiguousarray(a), np.ascontiguousarray(b)
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
@@ -109,7 +109,7 @@ def address(array: NDArray[Any]) -> int:
 
 
 def moving(kind: str, precision: Any = "64", model: Any = None) -> Any:
-    """In the middle of things: every field has something of its own."""
+    """Returns a simulation or batch during motion, with non-default values in every field."""
     model = model or puppet()
     own = clench.Sim(model, precision=precision) if kind == "sim" else clench.Batch(model, 3, precision)
     own.reset(keyframe="bent")
@@ -124,7 +124,7 @@ def moving(kind: str, precision: Any = "64", model: Any = None) -> Any:
 
 
 def poisoned(n: int = 5, failing: tuple[int, ...] = (1, 3)) -> clench.Batch:
-    """A batch of which some environments have failed."""
+    """Returns a batch with some failed environments."""
     batch = clench.Batch(example("quadruped"), n, record=["xpos"])
     batch.step(3)
     batch.qvel[list(failing), 2] = np.nan

@@ -1,6 +1,6 @@
 """The sections of the stub `_core.pyi` that follow from tables in Rust.
 
-Run as a program, this writes them as the installed module has the tables: `cargo xtask stubs` installs it and does so.
+As a program, this writes them from the tables of the installed module. `cargo xtask stubs` installs it and runs this.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 from clench import RigidOptions
 from clench._core import _STATE_FIELDS
 
-# What the documentation calls the type of an option, with its types in the stub: when it is given, and when it is asked for.
+# The type of an option in the documentation, with its types in the stub as an argument and as an attribute.
 OPTION_TYPES = {
     "int": ("SupportsIndex", "int"),
     "float": ("SupportsFloat", "float"),
@@ -60,7 +60,7 @@ SECTIONS: dict[str, Callable[[], list[str]]] = {
 
 
 def rewrite(stub: str) -> str:
-    """A stub with every section as its table is now."""
+    """Returns a stub with every section regenerated from its table."""
     for name, lines in SECTIONS.items():
         section = re.compile(rf"^( *)# <{name}>.*\n(?:.*\n)*?\1# </{name}>$", re.MULTILINE)
 

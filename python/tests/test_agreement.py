@@ -1,4 +1,4 @@
-"""`Batch` against `Sim`: each environment is what it would be alone, to the bit."""
+"""Compares `Batch` with `Sim`: each environment is bitwise equal to a single simulation."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def scene(name: str) -> clench.Model:
 
 
 def scatter(batch: clench.Batch, seed: int) -> None:
-    """Environments in unlike states, with unlike parameters."""
+    """Gives environments different states and parameters."""
     rng = np.random.default_rng(seed)
     model, n = batch.model, batch.n_envs
     keyframes = rng.integers(model.nkey + 1, size=n) - 1
@@ -40,14 +40,14 @@ def scatter(batch: clench.Batch, seed: int) -> None:
 
 
 def push(batch: clench.Batch, rng: np.random.Generator) -> None:
-    """New controls and forces, for every environment its own."""
+    """Gives every environment new controls and forces of its own."""
     batch.ctrl[:] = rng.uniform(-0.5, 0.5, batch.ctrl.shape)
     batch.qfrc_applied[:] = rng.normal(0, 0.2, batch.qfrc_applied.shape)
     batch.xfrc_applied[:, -1] = rng.normal(0, 2, (batch.n_envs, 6)) * (rng.random((batch.n_envs, 1)) < 0.3)
 
 
 def differences(batch: clench.Batch, sims: list[clench.Sim], outputs: list[str]) -> list[tuple[str, int]]:
-    """What is not the same in environments and their simulations."""
+    """Returns the fields that differ between environments and their simulations."""
     found = []
     for env, sim in enumerate(sims):
         for name in FIELDS:
@@ -64,7 +64,7 @@ def differences(batch: clench.Batch, sims: list[clench.Sim], outputs: list[str])
 @pytest.mark.parametrize("precision", ["64", "32"])
 @pytest.mark.parametrize(("name", "steps"), SCENES)
 def test_environments_move_as_if_alone(name: str, steps: int, precision: Any) -> None:
-    # Positions that `energy` reads are those of the state, so that what is read after it is not of the step.
+    # Reading `energy` recomputes positions from the state, so that later outputs would not be those of the step.
     outputs = [name for name in clench.OUTPUTS if name != "energy"]
     batch = clench.Batch(scene(name), ENVS, precision, threads=2, record=outputs)
     scatter(batch, 1)

@@ -1,4 +1,4 @@
-"""What simulations answer about motion, forces and joints: against MuJoCo, and a batch against simulations alone."""
+"""Compares queries of motion, forces and joints with MuJoCo, and those of a batch with single simulations."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def mujocos(model: clench.Model) -> Any:
 
 @pytest.fixture(params=["arm", "humanoid", "quadruped"])
 def pair(request: pytest.FixtureRequest) -> Iterator[tuple[clench.Sim, Any, Any]]:
-    """A simulation in a random state, and MuJoCo in the same."""
+    """Yields a simulation in a random state, and MuJoCo's model and data in the same state."""
     model = clench.Model.from_xml(ARM) if request.param == "arm" else example(request.param)
     reference = mujocos(model)
     reference.opt.tolerance, reference.opt.iterations, reference.opt.ls_tolerance = 0, 200, 1e-10

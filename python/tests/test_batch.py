@@ -165,7 +165,7 @@ def test_parameters_of_environments(field: str, precision: Any) -> None:
         assert "follows" in str(error) or "derived" in str(error)
         np.testing.assert_array_equal(batch.param(field), values)
         return
-    # Unit vectors are made unit again.
+    # Unit vectors are normalized again.
     np.testing.assert_allclose(batch.param(field), values, rtol=4 * np.finfo(number).eps, atol=1e-30)
     assert batch.step(2) == 0
 
@@ -281,7 +281,7 @@ def test_outputs_that_are_not_recorded() -> None:
 def test_forward_of_some() -> None:
     batch = clench.Batch(example("quadruped"), 4, record=["xpos", "qacc", "cfrc_ext"])
     batch.step(20)
-    # Held: whoever asks again gets what was written into account.
+    # Views are held, since another request would update the outputs after writes.
     views = {name: batch.output(name) for name in batch.outputs}
     before, state = {name: view.copy() for name, view in views.items()}, batch.state
     batch.qpos[:, 2] += 0.5
@@ -329,7 +329,7 @@ def test_sizes() -> None:
     # Time, 7 positions, 6 velocities, applied forces and accelerations, 6 forces of both bodies.
     numbers = 1 + 7 + 6 + 6 + 6 + 12
     assert plain.bytes_per_env >= 8 * numbers
-    # What is recorded, and the positions and velocities for which it holds.
+    # The recorded outputs, and the positions and velocities to which they belong.
     assert recording.bytes_per_env == plain.bytes_per_env + 8 * (2 * 6 + 2 + 7 + 6)
     assert single.bytes_per_env < plain.bytes_per_env
     before = plain.bytes_per_env

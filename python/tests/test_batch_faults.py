@@ -1,4 +1,4 @@
-"""`clench.Batch` where environments fail: they stand still, say why, and no other one notices."""
+"""`clench.Batch` with failing environments: they stop and report the reason, without effect on others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A model file may ask for so much and no more; who means it says so."""
+"""The budget that limits the size of a model file, and larger budgets on request."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Constants that follow from parameters are those of MuJoCo's `mj_setConst`."""
+"""Compares constants derived from parameters with MuJoCo's `mj_setConst`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from models import FEATURES, PUBLIC, ROOT
 from scenes import example, puppet
 
 FOLDER = ROOT / ".venv/models"
-# Of the largest number of a field.
+# Relative to the largest number of a field.
 TOLERANCE = 1e-9
 FIELDS = (
     "body_subtreemass body_invweight0 dof_invweight0 dof_length tendon_length0 tendon_invweight0 actuator_acc0 cam_pos0 "
@@ -22,7 +22,7 @@ FIELDS = (
 
 
 def changed(model: Any, rng: np.random.Generator) -> dict[str, Any]:
-    """Other masses, inertias, places and armatures than a model's. MuJoCo refuses to move the centre of mass of a simple body."""
+    """Returns changed values of parameters. MuJoCo refuses to move the centre of mass of a simple body."""
     scale = rng.uniform(0.7, 1.4, model.nbody)
     shifted = (model.body_simple == 0)[:, None] * rng.normal(0, 0.02, (model.nbody, 3))
     shifted[0] = 0
@@ -38,7 +38,7 @@ def changed(model: Any, rng: np.random.Generator) -> dict[str, Any]:
 
 
 def scalar(model: Any) -> Any:
-    """Which coordinates are those of hinges and slides."""
+    """Returns a mask of the coordinates of hinges and slides."""
     found = np.zeros(model.nq)
     one = np.isin(model.jnt_type, (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE))
     found[model.jnt_qposadr[one]] = 1
@@ -46,7 +46,7 @@ def scalar(model: Any) -> Any:
 
 
 def expected(path: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """MuJoCo's, by field."""
+    """Returns MuJoCo's constants by field."""
     model = mujoco.MjModel.from_xml_path(str(path))
     for name, value in values.items():
         getattr(model, name)[:] = value
@@ -65,7 +65,7 @@ def compare(owner: Any, env: int | None, values: dict[str, Any]) -> None:
     connects = values["connects"]
     for name in [*FIELDS, "eq_anchor2"]:
         found, wanted = owner.param(name) if env is None else owner.param(name)[env], values[name]
-        # What is of no use to its element is not compared.
+        # Values that an element does not use are not compared.
         if name == "eq_anchor2":
             found, wanted = found[connects], wanted[connects]
         if name == "cam_poscom0":
@@ -108,7 +108,7 @@ def test_randomizing_consistently_computes_the_constants_of_what_it_changed() ->
     same = [0, 1, 4, 5]
     for name in clench.PARAMETERS:
         np.testing.assert_array_equal(batch.param(name)[same], other.param(name)[same], err_msg=name)
-    # The masses of the other two are the model's, rounded.
+    # The other two have the model's masses, rounded.
     np.testing.assert_allclose(other.param("body_invweight0")[2], weights[2], rtol=1e-6)
     batch.step(200)
     other.step(200)

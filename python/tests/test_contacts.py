@@ -1,4 +1,4 @@
-"""`Sim.contacts` and `Sim.constraints`: forces in the frames that they say."""
+"""`Sim.contacts` and `Sim.constraints`: forces are in the documented frames."""
 
 from __future__ import annotations
 
@@ -50,11 +50,11 @@ def test_frames_turn_forces_into_wrenches(name: str) -> None:
     frame = contacts.frame
     np.testing.assert_allclose(frame @ frame.transpose(0, 2, 1), np.broadcast_to(np.eye(3), frame.shape), atol=1e-12)
     np.testing.assert_allclose(np.linalg.det(frame), 1, atol=1e-12)
-    # Rows of the frame are its axes: a force along them is their sum.
+    # The rows of the frame are its axes: a force is the sum of components along them.
     for part in (slice(0, 3), slice(3, 6)):
         world = np.einsum("cij,ci->cj", frame, contacts.force[:, part])
         np.testing.assert_allclose(contacts.wrench[:, part], world, atol=1e-9 * np.abs(world).max())
-    # Friction stays in its cone, and nothing pulls.
+    # Friction is in its cone, and normal forces do not pull.
     normal, sliding = contacts.force[:, 0], contacts.force[:, 1:3] / contacts.friction[:, :2]
     assert (normal >= 0).all() and normal.max() > 0
     assert (np.abs(sliding).max(axis=1) <= normal * (1 + 1e-6) + 1e-9).all()

@@ -1,4 +1,4 @@
-"""Robots of the package `robot_descriptions`: a package that stands in for it, since the real one fetches files from elsewhere."""
+"""Robots of `robot_descriptions`, with a substitute of the package, since the real one downloads files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CUBE = "".join(f"v {x} {y} {z}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1
 
 @pytest.fixture
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A package of three robots: of MJCF, of URDF with a mesh in its package, and one of xacro; and one that cannot be fetched."""
+    """Yields a package of robots: in MJCF, in URDF with a mesh, in xacro, and one that cannot be fetched."""
     folder = tmp_path / "modules/robot_descriptions"
     robot = tmp_path / "repository/dog_description"
     for path in (folder, robot):

@@ -1,4 +1,4 @@
-"""Batches that a graphics device steps. Without a device there is nothing to test."""
+"""Batches on a GPU. Skipped without one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if os.environ.get("CLENCH_GPU") == "skip" or not clench.devices():
 
 
 def pair(n: int = 12, **how: Any) -> tuple[clench.Batch, clench.Batch]:
-    """The humanoid on a device and on the processor, in the same random states."""
+    """Returns batches of the humanoid on a GPU and on the CPU, in the same random states."""
     model = example("humanoid")
     batches = clench.Batch(model, n, device="gpu", **how), clench.Batch(model, n, "32", **how)
     rng = np.random.default_rng(4)
@@ -50,7 +50,7 @@ def test_what_is_written_counts_and_what_is_reset_begins_anew() -> None:
         batch.qpos[1, 2] += 0.3
         batch.step(2)
     np.testing.assert_allclose(device.qpos, processor.qpos, atol=1e-4)
-    # Outputs are those of what was written, before the next step.
+    # Outputs take writes into account before the next step.
     device.qpos[2, 2] = 5
     np.testing.assert_allclose(device.xpos[2, 1, 2], 5)
 

@@ -1,5 +1,7 @@
-"""Arrays go to other libraries through DLPack without a copy. Those libraries are not needed by the package: each test runs
-where its library is installed."""
+"""Arrays are shared with other libraries through DLPack, without a copy.
+
+The package does not need these libraries; each test runs if its library is installed.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,7 @@ def test_jax_sees_the_same_memory(precision: Any) -> None:
     jax = pytest.importorskip("jax", reason="JAX is not installed")
     jax.config.update("jax_enable_x64", True)
     batch = batch_of(precision)
-    # Not the outputs: JAX takes no arrays that cannot be written.
+    # JAX does not accept outputs, as they are read-only arrays.
     for name in ("qpos", "qvel", "ctrl", "time", "xfrc_applied"):
         array = getattr(batch, name)
         taken = jax.dlpack.from_dlpack(array, copy=False)

@@ -11,7 +11,7 @@ from scenes import ROOT, example
 
 
 def gripping() -> tuple[clench.Sim, int]:
-    """The cup on the box, which it holds."""
+    """Returns a simulation in which the cup holds the box."""
     sim = clench.Sim(example("suction_gripper"))
     sim.ctrl = [0.3, -0.475]
     sim.step(750)

@@ -1,4 +1,4 @@
-"""Every example runs, in its short form and without a display, and the one that learns learns."""
+"""Every example runs in its short form without a display, and the training example learns."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem != "plo
 
 
 def run(name: str, *arguments: str) -> str:
-    """What an example prints, run as its users run it; warnings of NumPy are errors."""
+    """Runs an example as users do and returns its output; warnings of NumPy are errors."""
     environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
     command = [sys.executable, "-W", "error::RuntimeWarning", str(FOLDER / f"{name}.py"), "--quick", *arguments]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
@@ -37,7 +37,7 @@ def test_policy_learns(tmp_path: Path) -> None:
     plot = tmp_path / "curve.svg"
     printed = run("train_policy", "--plot", str(plot))
     curve = [float(value) for value in re.findall(r"return +(-?[\d.]+) ", printed)]
-    # A cheetah that stands earns 0. In these short episodes three seeds reached 480 to 550.
+    # The return of a standing cheetah is 0. In these short episodes three seeds reached 480 to 550.
     assert len(curve) == 20
     assert abs(curve[0]) < 10.0
     assert min(curve[-3:]) > 200.0

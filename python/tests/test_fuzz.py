@@ -1,4 +1,4 @@
-"""Random calls of everything: see `fuzz.py`. In a process of its own, so that a crash or a hang is a failure like any other."""
+"""Runs `fuzz.py` in a separate process, so that a crash or a hang is an ordinary test failure."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CALLS = 10_000
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_nothing_but_exceptions_comes_back(seed: int) -> None:
     program = pathlib.Path(fuzz.__file__)
-    # Where there is no display, a part of Mesa that would choose the device complains on stderr.
+    # Without a display, Mesa's layer for selecting the device writes warnings to stderr.
     quiet = {**os.environ, "NODEVICE_SELECT": "1"}
     done = subprocess.run([sys.executable, program, str(seed), str(CALLS)], capture_output=True, text=True, timeout=280, env=quiet)
     assert (done.returncode, done.stderr) == (0, ""), f"{done.stderr}\nexit code {done.returncode}"

@@ -1,4 +1,4 @@
-"""A long loop of anything takes no more memory than a short one."""
+"""Long loops of any call need no more memory than short ones."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ PAGE = 4096
 
 pytestmark = [pytest.mark.long, pytest.mark.skipif(not STATM.exists(), reason="resident memory is read from /proc")]
 
-# What an allocator may take besides, however long a loop is, and how many objects the interpreter keeps for itself.
+# The memory that the allocator may retain in a loop of any length, and the number of objects that the interpreter may.
 SLACK, OBJECTS = 512 * 1024, 400
 
 
 def resident() -> int:
-    """Bytes in memory."""
+    """Returns the resident memory, bytes."""
     gc.collect()
     return int(STATM.read_text().split()[1]) * PAGE
 
 
 class Loops:
-    """What is done over and over; each leaves things as they were."""
+    """The bodies of the loops; each leaves the state unchanged."""
 
     def __init__(self) -> None:
         self.model = puppet()
@@ -153,7 +153,7 @@ def test_loops_take_no_memory(name: str, times: int) -> None:
     memory, blocks = resident(), sys.getallocatedblocks()
     for _ in range(times):
         loop()
-    # One object of Python's a turn would show, or a hundred bytes of other memory in most.
+    # This detects a leak of one Python object per iteration, or in most loops of 100 bytes of other memory.
     assert resident() - memory < SLACK
     assert sys.getallocatedblocks() - blocks < OBJECTS
 
@@ -194,7 +194,7 @@ assert resident() - before < size / 20, (before, resident(), size)
 
 
 def test_large_arrays_live_as_long_as_their_views() -> None:
-    # So that the allocator of the C library keeps none of them for itself.
+    # With this threshold the C allocator returns freed arrays to the system.
     environment = os.environ | {"MALLOC_MMAP_THRESHOLD_": "65536"}
     tests = str(pathlib.Path(__file__).parent)
     command = [sys.executable, "-c", LARGE, tests]

@@ -1,4 +1,4 @@
-"""Models: their fields are MuJoCo's, their elements are found by name, and mistakes are said where they are."""
+"""Models: their fields are MuJoCo's, elements are found by name, and errors report their location."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ KINDS = {
 SIZES = ["nq", "nv", "nu", "na", "nactuator", "nbody", "njnt", "ngeom", "nsite", "ncam", "ntendon", "neq", "nkey", "nmocap", "npair"]
 SIZES += ["nmesh", "nhfield", "nsensor", "nsensordata"]
 
-# What MuJoCo keeps in its options, by its name there.
+# Fields in MuJoCo's options, with their names there.
 OPTIONS = {
     "timestep": "timestep",
     "gravity": "gravity",
@@ -52,20 +52,20 @@ OPTIONS = {
     "override_solimp": "o_solimp",
     "override_friction": "o_friction",
 }
-# What it keeps in one field, by our name: the field and the column.
+# Fields that MuJoCo combines, by our name: its field and the column.
 COLUMNS = {"sensor_interval": ("sensor_interval", 0), "sensor_phase": ("sensor_interval", 1)}
-# What it keeps in another form: these have a test of their own.
+# Fields with another format in MuJoCo, which have a separate test.
 OURS = {"wrap_coef", "wrap_sideid", "eq_anchor1", "eq_anchor2", "eq_quat1", "eq_quat2", "eq_torquescale", "eq_polycoef"}
-# What it keeps with fewer digits, or may cut into other triangles.
+# Fields that MuJoCo stores with fewer digits or triangulates differently.
 OURS |= {"mesh_vert", "mesh_face", "hfield_data", "cam_sensorsize", "cam_intrinsic", "cam_fovy"}
-# In one field, `geom_fluid`; and what is of use to cameras that track alone.
+# Fields that MuJoCo combines in `geom_fluid`, and one that only tracking cameras use.
 OURS |= {"geom_fluidcoef", "geom_virtualmass", "geom_virtualinertia", "cam_poscom0"}
-# Many rows for an element.
+# Fields with many rows per element.
 LISTS = {"mesh_vert", "mesh_face", "hfield_data"}
 
 
 def field_names() -> list[str]:
-    """The fields that every model has."""
+    """Returns the fields that every model has."""
     return [name for name in dir(clench.Model.from_xml("<mujoco/>")) if not hasattr(clench.Model, name)]
 
 
@@ -76,12 +76,12 @@ def humanoid() -> clench.Model:
 
 @pytest.fixture(params=EXAMPLES + FEATURES + SHAPES, ids=lambda path: path.stem)
 def both(request: pytest.FixtureRequest) -> tuple[clench.Model, mujoco.MjModel]:
-    """The same file, loaded here and by MuJoCo."""
+    """Returns a file's model in Clench and in MuJoCo."""
     return clench.Model.from_file(request.param), mujoco.MjModel.from_xml_path(str(request.param))
 
 
 def expected_field(theirs: mujoco.MjModel, name: str) -> np.ndarray:
-    """A field as MuJoCo has it, in our shape."""
+    """Returns MuJoCo's values of a field in our shape."""
     if name in COLUMNS:
         field, column = COLUMNS[name]
         return np.asarray(getattr(theirs, field))[:, column]
@@ -89,9 +89,10 @@ def expected_field(theirs: mujoco.MjModel, name: str) -> np.ndarray:
     if name in ("key_mpos", "key_mquat"):
         return value.reshape(theirs.nkey, theirs.nmocap, 3 if name == "key_mpos" else 4)
     if name.startswith("actuator_") and len(value) == theirs.nout != theirs.nactuator:
-        value = value[theirs.actuator_outadr]  # The outputs of an orientation servo have equal ones, or the first one's are meant.
+        # Outputs of an orientation servo have equal values, or the first one counts.
+        value = value[theirs.actuator_outadr]
     if name in ("eq_obj1id", "eq_obj2id"):
-        # MuJoCo names the sites that an equality holds together, we the bodies that carry them.
+        # MuJoCo stores the sites of an equality, Clench their bodies.
         sites = theirs.eq_objtype == int(mujoco.mjtObj.mjOBJ_SITE)
         value = value.copy()
         value[sites] = theirs.site_bodyid[value[sites]]
@@ -113,7 +114,7 @@ def test_fields_are_those_of_mujoco(both: tuple[clench.Model, mujoco.MjModel]) -
 
 @pytest.mark.parametrize("name", PUBLIC)
 def test_robots_of_other_packages_are_those_of_mujoco(name: str) -> None:
-    """Masses, frames and sizes, most of which follow from meshes."""
+    """Compares masses, frames and sizes, most of which follow from meshes."""
     path = ROOT / ".venv/models" / name
     ours, theirs = clench.Model.from_file(path), mujoco.MjModel.from_xml_path(str(path))
     for field in ["body_mass", "body_inertia"]:
@@ -121,7 +122,7 @@ def test_robots_of_other_packages_are_those_of_mujoco(name: str) -> None:
     for field in ["body_ipos", "geom_pos", "geom_size", "geom_rbound", "mesh_pos"]:
         np.testing.assert_allclose(getattr(ours, field), getattr(theirs, field), rtol=0, atol=1e-9, err_msg=field)
     for field in ["body_iquat", "geom_quat", "mesh_quat"]:
-        # Near equal moments leave the axes to rounding.
+        # If moments are nearly equal, rounding decides the axes.
         cosine = np.abs((getattr(ours, field) * getattr(theirs, field)).sum(axis=1))
         np.testing.assert_allclose(cosine, 1.0, rtol=0, atol=1e-14, err_msg=field)
 
@@ -258,7 +259,7 @@ def test_stubs_list_what_there_is(humanoid: clench.Model) -> None:
            </mujoco>"""
     )
     assert declared("Element") == set().union(*(found(getattr(everything, kind)("a")) for kind in KINDS))
-    # What is in the stub of a class without fields of its own.
+    # Classes without their own fields: the stub declares all of their members.
     for name in ["RigidOptions", "SolverStats", "Block", "Solution"]:
         assert declared(name) == found(getattr(clench, name)), name
 
@@ -326,7 +327,7 @@ def test_load_errors_know_their_place(tmp_path: Path) -> None:
     assert str(error) == f'{path}:4: joint "knee": {error.message}'
     again = pickle.loads(pickle.dumps(error))
     assert (str(again), again.line) == (str(error), 4)
-    # Without a file there is no name of one, and without an element none.
+    # An error of a text has no file name, and one outside an element has no element.
     with pytest.raises(clench.LoadError) as raised:
         clench.Model.from_xml("<mujoco>\n<mujoco>")
     assert raised.value.file == "" and raised.value.element is None
@@ -369,10 +370,10 @@ def test_the_base_of_a_robot_in_urdf_can_float() -> None:
 def test_a_saved_model_is_the_model(path: Path) -> None:
     model = clench.Model.from_file(path)
     again = clench.Model.from_xml(model.to_xml())
-    # Vertices of meshes that frames shear are numbers of double precision, of which files keep single precision (docs/saving.md).
+    # Vertices of sheared meshes have double precision, but files store single precision (docs/saving.md).
     rtol, atol = (1e-6, 1e-7) if path.stem == "stretched_frames" else (1e-9, 1e-12)
     for field in clench.PARAMETERS:
-        if field == "actuator_cranklength":  # A class may give one to what is no slider-crank, where it means nothing.
+        if field == "actuator_cranklength":  # A class may set it on other transmissions, which ignore it.
             continue
         before, after = getattr(model, field), getattr(again, field)
         np.testing.assert_allclose(after, before, rtol=rtol, atol=atol, err_msg=field)

@@ -1,4 +1,4 @@
-"""Elements of simulations and batches by name: `Sim.body` and its like, and contacts one by one."""
+"""Elements of simulations and batches by name, such as `Sim.body`, and single contacts."""
 
 from __future__ import annotations
 

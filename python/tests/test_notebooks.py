@@ -1,4 +1,4 @@
-"""The notebooks of the documentation run from top to bottom; no Jupyter is needed for that."""
+"""The notebooks of the documentation run from top to bottom, without Jupyter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Options: what is set, what may be set, and what is said of the rest."""
+"""Options: their values, valid ranges, and error messages."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_numbers_out_of_range() -> None:
     for number in [0.0, -1.0, float("nan"), float("inf")]:
         assert refused("impratio", number).endswith("finite and positive")
     refused("tolerance", 10**400)
-    # The limits themselves are good.
+    # The limits themselves are valid.
     assert RigidOptions(iterations=0, tolerance=0.0, max_contacts=2**31 - 1).max_contacts == 2**31 - 1
 
 

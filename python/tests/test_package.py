@@ -1,4 +1,4 @@
-"""The package as a whole: what it needs, what it offers, and that it says so."""
+"""The package as a whole: its dependencies, contents and documentation."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def test_what_only_simulations_make(cls: Any) -> None:
 
 
 def test_arrays_of_one_kind_have_one_dtype() -> None:
-    """Every array is of the precision that was asked for, in C order and native form."""
+    """Every array has the requested precision, in C order and native byte order."""
     double, single = clench.Sim(puppet()), clench.Sim(puppet(), precision="32")
     for sim, number in ((double, np.float64), (single, np.float32)):
         sim.step()

@@ -1,4 +1,4 @@
-"""Parameters that a simulation has for itself."""
+"""Parameters of a single simulation."""
 
 from __future__ import annotations
 

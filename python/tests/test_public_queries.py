@@ -1,4 +1,4 @@
-"""Models of other people's packages: inverse dynamics undo forward dynamics, and Jacobians are MuJoCo's."""
+"""Models of other packages: inverse dynamics undo forward dynamics, and Jacobians are MuJoCo's."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import pytest
 from models import PUBLIC, ROOT
 
 FOLDER = ROOT / ".venv/models"
-# Of the forces involved: the solver's own rounding is what is left.
+# Relative to the forces involved; the remainder is rounding in the solver.
 PRECISION = 1e-9
 
 
 def moving(path: Path) -> clench.Sim:
-    """Driven, pushed and on its way, solved as exactly as numbers allow."""
+    """Returns a moving simulation with controls and applied forces, which solves as exactly as possible."""
     model = clench.Model.from_file(path)
     options = clench.RigidOptions(tolerance=0.0, iterations=300, noslip_iterations=0)
     sim = clench.Sim(model, options)
@@ -61,6 +61,6 @@ def test_jacobians_are_mujocos(name: str) -> None:
         mujoco.mj_jacDot(model, data, expected[0], expected[1], point, body)
         np.testing.assert_allclose(sim.jacobian_rate(body=body, point=point), expected, atol=1e-9 * largest(expected, sim.qvel))
         mujoco.mj_jacSubtreeCom(model, data, expected[0], body)
-        # Of a subtree without mass MuJoCo's are none.
+        # MuJoCo's Jacobian of a subtree without mass is invalid.
         if model.body_subtreemass[body] > 0:
             np.testing.assert_allclose(sim.subtree_jacobian(body), expected[0], atol=1e-10 * largest(expected[0]))

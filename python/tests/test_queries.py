@@ -1,4 +1,4 @@
-"""`Sim.ray` and `Sim.distance`: against plain answers, and against MuJoCo where it is exact."""
+"""Compares `Sim.ray` and `Sim.distance` with known answers, and with MuJoCo if it is exact."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_rays_hit_what_mujocos_hit() -> None:
     seen = set()
     for k in range(2000):
         geom = rng.integers(model.ngeom)
-        # Not within the terrain, where MuJoCo's rays end at the base that it stands on, too.
+        # Not inside the terrain, where MuJoCo's rays also hit its base.
         origin = rng.uniform([-3, -2, 0.01], [3, 2, 3])
         if np.all(np.abs(origin - [-2, 0, 0.5]) < [1.2, 1.7, 0.6]):
             continue
@@ -70,7 +70,7 @@ def test_rays_hit_what_mujocos_hit() -> None:
             continue
         seen.add(hit.geom_name)
         assert hit.geom == found[0] and model.geom(hit.geom).name == hit.geom_name
-        # MuJoCo's heights and vertices have 24 bits.
+        # MuJoCo stores heights and vertices with 24 bits.
         assert hit.distance == pytest.approx(distance, abs=1e-5)
         np.testing.assert_allclose(hit.position, origin + direction * hit.distance, atol=1e-12)
         np.testing.assert_allclose(hit.normal, normal, atol=1e-4)
@@ -88,11 +88,11 @@ def test_distances_are_mujocos() -> None:
             distance = mujoco.mj_geomDistance(model, data, first, second, 10, fromto)
             found = sim.distance(first, second, 10)
             assert found is not None
-            # Of what overlaps MuJoCo knows the depth by its solver's tolerance.
+            # MuJoCo computes depths of overlaps only to the tolerance of its solver.
             if distance > 0:
                 compared += 1
                 assert found.distance == pytest.approx(distance, abs=1e-5)
-                # Elsewhere there may be many pairs of nearest points.
+                # Other shapes may have many pairs of nearest points.
                 if "ball" in (model.geom(first).name, model.geom(second).name):
                     np.testing.assert_allclose(found.points, fromto.reshape(2, 3), atol=1e-3)
             np.testing.assert_allclose(found.points[1] - found.points[0], found.normal * found.distance, atol=1e-9)
@@ -113,7 +113,7 @@ def test_distances_have_limits_and_names() -> None:
     np.testing.assert_allclose(back.normal, [0, 0, -1])
     np.testing.assert_array_equal(back.points, near.points[::-1])
     assert sim.distance("ball", "floor", 0.7) is None
-    # Terrain: its ball above it is nearer than the floor below.
+    # The ball above the terrain is nearer than the floor below.
     hills = sim.distance("hills", "ball")
     assert hills is not None and 0 < hills.distance < 2
 

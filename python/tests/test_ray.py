@@ -1,4 +1,4 @@
-"""A batch on a Ray cluster ends with the bits of a batch alone, also where a worker is killed."""
+"""A batch on a Ray cluster is bitwise equal to a local batch, even if a worker is killed."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ N = 7
 
 @pytest.fixture(scope="module", autouse=True)
 def cluster() -> Iterator[None]:
-    """Two workers' worth of processors on this machine."""
+    """Starts Ray with processors for two workers on this machine."""
     ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
     yield
     ray.shutdown()
 
 
 def pair(name: str = "quadruped", **how: Any) -> tuple[clench.Batch, clench.ray.Batch]:
-    """The same environments alone and on two workers."""
+    """Returns the same environments in a local batch and on two workers."""
     model = example(name)
     alone = clench.Batch(model, N, record=("xpos", "qacc"), **{key: how[key] for key in how if key == "precision"})
     spread = clench.ray.Batch(model, N, record=("xpos", "qacc"), workers=2, threads=1, **how)
@@ -39,7 +39,7 @@ def pair(name: str = "quadruped", **how: Any) -> tuple[clench.Batch, clench.ray.
 
 
 def drive(batch: Any, steps: int, rng: np.random.Generator) -> None:
-    """What a program might do with a batch."""
+    """Uses a batch as a program would: controls, steps, resets, parameters and writes."""
     for step in range(steps):
         batch.ctrl[:] = rng.uniform(-1, 1, batch.ctrl.shape)
         batch.step(3)

@@ -1,4 +1,4 @@
-"""What the READMEs show runs, from top to bottom, in the folder where a new user stands."""
+"""The code of the READMEs runs from top to bottom, in the folder of a new user."""
 
 from __future__ import annotations
 

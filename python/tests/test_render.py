@@ -10,7 +10,7 @@ from scenes import ball, example
 
 @pytest.fixture(autouse=True)
 def device() -> None:
-    """Skips where nothing draws."""
+    """Skips the tests if no device can draw."""
     try:
         clench.Sim(ball()).render(8, 8)
     except clench.ClenchError as error:
@@ -27,7 +27,7 @@ def test_picture_shows_where_geoms_are() -> None:
     assert geoms.shape == depth.shape == (120, 160)
     assert geoms.dtype == np.int32 and depth.dtype == np.float32
     np.testing.assert_array_equal(np.isinf(depth), geoms == -1)
-    # The robot, which stands in the middle, has another colour than what is around it.
+    # The robot, in the centre, has another colour than its background.
     robot = sim.model.geom_bodyid[np.maximum(geoms, 0)] > 0
     assert robot[30:90, 60:100].mean() > 0.2 and robot[:, :20].mean() < 0.1
     assert np.abs(picture[robot].mean(0) - picture[~robot].mean(0)).max() > 10

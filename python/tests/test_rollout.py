@@ -16,7 +16,7 @@ STEPS = 40
 
 
 def start(batch: clench.Batch) -> NDArray[Any]:
-    """A state for each environment (n, 1 + nq + nv + na)."""
+    """Returns a state for each environment (n, 1 + nq + nv + na)."""
     rng = np.random.default_rng(5)
     n = batch.n_envs
     qvel = batch.qvel + rng.normal(0, 0.5, batch.qvel.shape)
@@ -24,9 +24,9 @@ def start(batch: clench.Batch) -> NDArray[Any]:
 
 
 def begin(batch: clench.Batch, initial: NDArray[Any]) -> None:
-    """Puts environments there by hand."""
+    """Sets the state of environments through their fields."""
     nq, nv = batch.model.nq, batch.model.nv
-    batch.time = initial[:, 0].astype(batch.qpos.dtype)  # As a rollout takes it over.
+    batch.time = initial[:, 0].astype(batch.qpos.dtype)  # A rollout rounds it too.
     batch.qpos = initial[:, 1 : 1 + nq]
     batch.qvel = initial[:, 1 + nq : 1 + nq + nv]
     batch.act = initial[:, 1 + nq + nv :]
@@ -179,7 +179,7 @@ def test_controls_may_come_in_any_form() -> None:
 
 
 def test_controls_are_those_of_the_call() -> None:
-    """Other threads run meanwhile, and may reuse the arrays that were given."""
+    """Other threads run meanwhile, and may reuse the input arrays."""
     steps, n = 20_000, 4
 
     def make() -> clench.Batch:

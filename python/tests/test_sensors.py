@@ -1,4 +1,4 @@
-"""Sensors by name, alone and in batches."""
+"""Sensors by name, in single simulations and in batches."""
 
 from __future__ import annotations
 

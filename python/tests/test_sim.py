@@ -365,7 +365,7 @@ def test_queries_see_the_present_where_nothing_is_known() -> None:
         new = clench.Sim(example("quadruped"))
         assert same_bits(new.output(name), forwarded.output(name)), name
     assert len(clench.Sim(example("box_stack")).contacts) > 0
-    # After a step, of its start; after a write, of what was written.
+    # After a step outputs are those of its start; after a write they take it into account.
     new.step(2)
     before = new.qpos.copy()
     new.step()

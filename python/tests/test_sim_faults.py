@@ -1,4 +1,4 @@
-"""`clench.Sim` where its state is no number or its motion diverges."""
+"""`clench.Sim` with a state that is not finite or a motion that diverges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies that have come to rest sleep: what Python sees of it."""
+"""Sleep of bodies at rest in Python's API."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The bare convex problem: its solutions are optimal, by costs written again here from their definitions."""
+"""The convex problem: its solutions are optimal for costs that these tests implement from their definitions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COSTS = ["quadratic", "one_sided", "huber", "pyramid", "elliptic"]
 
 
 def cost(block: Block, qacc: Array) -> float:
-    """What a block costs, from the definitions that `Block` gives."""
+    """Returns the cost of a block by the definitions in `Block`."""
     y = block.jacobian @ qacc - block.aref
     d, shape = 1.0 / block.R, block.shape
     if block.cost == "quadratic":
@@ -70,13 +70,13 @@ def random_problem(seed: int, nv: int, kinds: Sequence[str]) -> tuple[Array, Arr
 
 
 def gradient(function: Callable[[Array], float], at: Array) -> Array:
-    """By central differences."""
+    """Returns the gradient by central differences."""
     step = 1e-6
     return np.array([(function(at + step * e) - function(at - step * e)) / (2 * step) for e in np.eye(len(at))])
 
 
 def lowest(function: Callable[[Array], float], around: Array) -> float:
-    """The minimum of a convex function of two numbers, by ever finer grids."""
+    """Returns the minimum of a convex function of two numbers, by successively finer grids."""
     best, width = around, 20.0
     while width > 1e-7:
         offsets = np.linspace(-width, width, 13)
@@ -96,7 +96,7 @@ def test_solutions_are_optimal(kind: str, seed: int, algorithm: Any) -> None:
     assert solution.status in ("no_progress", "converged") and solution.stats.status == solution.status
     assert solution.certificate == solution.stats.gap
 
-    # Forces are negative gradients of costs, and balance what the mass resists.
+    # Forces are negative gradients of costs and balance the inertial forces.
     for block, force in zip(blocks, solution.forces, strict=True):
         rows = Block(block.cost, np.eye(block.dim), 0.0, block.R, block.shape)
         y = block.jacobian @ solution.qacc - block.aref
@@ -106,7 +106,7 @@ def test_solutions_are_optimal(kind: str, seed: int, algorithm: Any) -> None:
     np.testing.assert_allclose(mass @ (solution.qacc - a_unc), total_force, atol=1e-9)
     assert 0.0 <= solution.certificate < 1e-18
 
-    # From there every way leads up.
+    # The cost increases in every direction.
     least = total(mass, a_unc, blocks, solution.qacc)
     for direction in np.random.default_rng(seed).normal(size=(20, 7)):
         assert total(mass, a_unc, blocks, solution.qacc + 1e-3 * direction) > least
@@ -120,7 +120,7 @@ def test_the_certificate_bounds_what_is_missing(kind: str, iterations: int) -> N
         solution = solve(mass, a_unc, blocks, RigidOptions(iterations=iterations))
         least = lowest(lambda qacc: total(mass, a_unc, blocks, qacc), solution.qacc)
         assert total(mass, a_unc, blocks, solution.qacc) - least <= solution.certificate + 1e-12
-        # The search without derivatives ends where the solver does.
+        # The search without derivatives and the solver find the same minimum.
         assert least == pytest.approx(total(mass, a_unc, blocks, solve(mass, a_unc, blocks).qacc), rel=1e-9)
         if iterations == 50:
             assert solution.certificate < 1e-12
@@ -135,12 +135,12 @@ def test_without_constraints_nothing_changes() -> None:
     solution = solve(mass, a_unc, [])
     np.testing.assert_array_equal(solution.qacc, a_unc)
     assert (solution.status, solution.certificate, solution.forces) == ("unconstrained", 0.0, [])
-    # A limit that is not reached acts no more than none.
+    # An inactive limit has no effect.
     limit = Block("one_sided", np.ones(5), aref=a_unc.sum() - 1.0, R=0.1)
     solution = solve(mass, a_unc, [limit])
     np.testing.assert_array_equal(solution.qacc, a_unc)
     np.testing.assert_array_equal(solution.forces[0], [0.0])
-    # Nor is there anything to solve where nothing can move.
+    # Without degrees of freedom there is nothing to solve.
     empty = solve(np.zeros((0, 0)), [], [])
     assert empty.qacc.shape == (0,) and empty.status == "unconstrained"
 
@@ -209,7 +209,7 @@ def test_blocks_keep_what_they_were_given() -> None:
 
 
 EYE = np.eye(2)
-# What a type checker would refuse, Python must.
+# Without types, since type checkers would refuse these arguments too.
 any_block: Any = Block
 any_solve: Any = solve
 

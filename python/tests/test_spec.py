@@ -131,7 +131,7 @@ def test_a_model_is_attached_with_a_prefix_as_often_as_wanted() -> None:
 
 
 def armed() -> clench.ModelSpec:
-    """An arm in degrees with a hand in radians, which is read with classes and units of its own."""
+    """Returns an arm in degrees with a hand in radians, which has its own classes and units."""
     arm = clench.ModelSpec("arm")
     arm.section("default").add("geom", friction=[0.5, 0.01, 0.001])
     arm.world.add_geom(name="floor", type="plane", size=[1, 1, 0.1])
@@ -242,7 +242,7 @@ def test_the_source_goes_its_own_way() -> None:
     model = two.build()
     assert model.names("body") == ["world", "left", "l_palm", "l_finger", "right", "r_finger"]
     assert model.names("actuator") == ["l_bend", "r_bend"]
-    # What was attached is attached with what it was attached to, and a copy is another.
+    # An attached model includes the models attached to it, and a copy is independent.
     room = clench.ModelSpec("room")
     room.world.attach(two, prefix="a_")
     room.world.add_frame(pos=[2, 0, 0]).attach(two, prefix="b_", body="right")
@@ -352,7 +352,7 @@ def test_wrong_values_are_refused() -> None:
         clench.ModelSpec.from_xml("<mujoco>\n<a b=></mujoco>")
 
 
-# What is added to the finger, and what is said of it at the call.
+# Erroneous edits of the finger, and the messages that the calls raise.
 MISTAKES: list[tuple[Callable[[clench.ModelSpec], object], str]] = [
     (lambda spec: spec.body("tip").add_geom(type="bx"), 'body "tip" / geom 1: type is "bx", not one of .*box'),
     (lambda spec: spec.body("tip").add_geom(size=0.1, frction=1), 'unknown attribute "frction"; did you mean "friction"'),
@@ -384,7 +384,7 @@ def test_mistakes_are_told_where_they_are_written(mistake: Callable[[clench.Mode
     with pytest.raises(clench.LoadError, match=message) as raised:
         mistake(spec)
     assert raised.value.line is None
-    # Nothing of it stays.
+    # The model is unchanged.
     assert before == {tag: spec.to_xml().count(f"<{tag}") for tag in before}
     assert spec.geom("tip")["type"] == "capsule"
 

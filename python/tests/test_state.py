@@ -1,4 +1,4 @@
-"""`clench.State`: states that are kept, in memory and as bytes."""
+"""`clench.State`: stored states, in memory and as bytes."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def test_precision_follows_the_simulation() -> None:
 
 
 def repacked(data: bytes, **changes: Any) -> bytes:
-    """The same archive with some arrays changed, or left out where None."""
+    """Returns the archive with some arrays changed, or removed if None."""
     arrays = dict(np.load(io.BytesIO(data), allow_pickle=False)) | changes
     buffer = io.BytesIO()
     np.savez(buffer, **{name: array for name, array in arrays.items() if array is not None})
@@ -157,7 +157,7 @@ def repacked(data: bytes, **changes: Any) -> bytes:
 
 
 def foreign() -> dict[str, bytes]:
-    """Bytes that hold no state."""
+    """Returns bytes that contain no state."""
     data = moving("sim").state.to_bytes()
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as file:
@@ -294,7 +294,7 @@ def test_states_have_no_hash() -> None:
 
 @pytest.mark.long
 def test_bytes_take_no_more_memory_than_they_are() -> None:
-    """Few bytes that unpack to many, of whatever version."""
+    """Compressed archives that expand to much memory are refused, in any version."""
     zeros = np.zeros(10**8)
     for version in (1, 2, 3, 4):
         bomb = io.BytesIO()
@@ -305,7 +305,7 @@ def test_bytes_take_no_more_memory_than_they_are() -> None:
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert most < 20 * len(bomb.getvalue()) < zeros.nbytes
-    # One header that claims more than is there.
+    # A header that claims more than the data.
     data = moving("sim").state.to_bytes()
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as file, zipfile.ZipFile(io.BytesIO(data)) as old:
@@ -317,7 +317,7 @@ def test_bytes_take_no_more_memory_than_they_are() -> None:
 
 
 def test_damaged_bytes() -> None:
-    """Flipped bits and cuts end in an error, or leave a state that is whole."""
+    """Flipped bits and truncation cause an error or do not change the state."""
     state = moving("sim", model=puppet()).state
     data, rng = state.to_bytes(), random.Random(1)
     sim, taken = clench.Sim(puppet()), 0
@@ -333,7 +333,7 @@ def test_damaged_bytes() -> None:
             continue
         taken += 1
         assert all(isinstance(getattr(read, name), np.ndarray) for name in FIELDS)
-        # Each array has a checksum: what is read is what was written, in some places under another name or not at all.
+        # Each array has a checksum, so arrays are read as written, except for damaged names.
         assert same_state(read, state)
         sim.state = read
         sim.step()

@@ -1,4 +1,4 @@
-"""What stubtest cannot see of the stubs: sections that are written from tables, and attributes that are looked up by name."""
+"""Parts of the stubs that stubtest cannot check: generated sections, and attributes that are looked up by name."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STATE = {"time", "qpos", "qvel", "act"}
 
 
 def attributes(name: str) -> dict[str, str]:
-    """The annotated names of a class, with what their comments begin with: a shape, or nothing."""
+    """Returns the annotated names of a class with the shapes in their comments, if any."""
     (found,) = (node for node in ast.parse(STUB).body if isinstance(node, ast.ClassDef) and node.name == name)
     lines = STUB.splitlines()
     result = {}

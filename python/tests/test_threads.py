@@ -1,4 +1,4 @@
-"""Several threads, signals, processes: one at a time in a batch, and nobody waits or is lost."""
+"""Threads, signals and processes: one call at a time in a batch, without deadlocks or lost errors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def humanoid() -> clench.Sim:
 
 
 class Meanwhile:
-    """A call in a thread of its own, beside what the block does."""
+    """A call in a separate thread, concurrent with the `with` block."""
 
     def __init__(self, call: Callable[..., Any], *args: Any) -> None:
         self.failure: Exception | None = None
@@ -62,7 +62,7 @@ class Meanwhile:
 
 
 def steps_of(seconds: float, make: Callable[[], Any]) -> int:
-    """About how many steps take so long."""
+    """Returns the approximate number of steps that take `seconds`."""
     own, steps, start = make(), 0, time.perf_counter()
     while time.perf_counter() - start < 0.05:
         own.step(10)
@@ -81,7 +81,7 @@ def refused(call: Callable[[], Any]) -> bool:
     return False
 
 
-# Each changes nothing where it is let through.
+# Calls without effect if they are not refused.
 OF_BOTH = {
     "step": lambda own: own.step(0),
     "param": lambda own: own.param("body_mass"),
@@ -146,7 +146,7 @@ def test_one_of_two_steps_is_done() -> None:
 
 
 def turns_during(call: Callable[[], Any]) -> float:
-    """How many turns of a loop a second this thread does during a call in another."""
+    """Returns the loop iterations per second of this thread during a call in another."""
     turns, start = 0, time.perf_counter()
     with Meanwhile(call) as other:
         while other.running:
@@ -166,7 +166,7 @@ def test_python_goes_on_meanwhile(call: str) -> None:
         "forward": many.forward,
     }
     undisturbed = turns_during(lambda: time.sleep(0.1))
-    # Where the interpreter were held, this thread would hardly run before the end.
+    # If the call held the interpreter lock, this thread would hardly run before its end.
     assert turns_during(calls[call]) > 0.1 * undisturbed
 
 
@@ -204,7 +204,7 @@ def test_many_threads_with_batches_of_their_own() -> None:
 
 
 def test_writers_from_other_threads_cannot_break_a_step() -> None:
-    """What they write meets a step half-way: numbers may be odd, environments may fail, and nothing else happens."""
+    """Concurrent writes may change results or make environments fail, but have no other effect."""
     batch, fresh = humanoids(2), humanoids()
     batch.record("cfrc_ext", "contact_force")
     stop, rng = threading.Event(), np.random.default_rng(7)
@@ -246,7 +246,7 @@ def test_control_c_ends_a_long_step(make: Callable[[], Any]) -> None:
     with pytest.raises(KeyboardInterrupt):
         own.step(10**12)
     assert time.perf_counter() - start < 20
-    # As if as many steps had been asked for as were done.
+    # The state is that of a call for the completed number of steps.
     done = round(np.max(own.time) / own.model.timestep)
     assert done > 0
     alone = make()
@@ -278,7 +278,7 @@ def test_control_c_ends_a_rollout() -> None:
 @pytest.mark.parametrize("ctrl", [None, lambda _: None], ids=["held", "function"])
 def test_what_was_recorded_until_control_c_is_returned(ctrl: Any) -> None:
     batch, other = humanoids(), humanoids()
-    # The memory of what is recorded is made before the first step.
+    # The memory of the record is allocated before the first step.
     steps = steps_of(1, humanoids)
     interrupt_soon()
     with pytest.warns(RuntimeWarning, match="interrupted after") as warned:
@@ -287,7 +287,7 @@ def test_what_was_recorded_until_control_c_is_returned(ctrl: Any) -> None:
     assert found is not None
     done, whole = map(int, found.groups())
     assert 0 < done < steps == whole
-    # With a function Ctrl-C may come after a step and before it is recorded.
+    # With a function, Ctrl-C may occur after a step and before it is recorded.
     assert round(float(batch.time[0]) / batch.model.timestep) - done in ([0] if ctrl is None else [0, 1])
     expected = other.rollout(steps=done)
     for name, array in rows.items():
@@ -345,8 +345,10 @@ def test_threads_of_a_simulation_change_no_bit() -> None:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_processes_that_fork() -> None:
-    """A child of a fork has no threads but the one that forked. Batches that it makes itself have theirs, and simulations whose threads it
-    sets."""
+    """A child process has only the thread that forked.
+
+    Batches that it creates, and simulations whose threads it sets, have their own.
+    """
     program = """
 import os, sys
 import numpy as np

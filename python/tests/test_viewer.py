@@ -1,4 +1,4 @@
-"""The viewer as browsers meet it: asked over HTTP, and over a WebSocket that is spoken here by hand."""
+"""The viewer from the side of browsers: over HTTP, and over a WebSocket that is implemented here."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PATIENCE = 60  # seconds
 
 @pytest.fixture(autouse=True)
 def page() -> None:
-    """Skips where the package was built without a page, and none can be built."""
+    """Skips the tests if the package was built without a page, and none can be built."""
     try:
         clench.Viewer(clench.Sim(ball())).close()
     except clench.ClenchError as error:
@@ -36,7 +36,7 @@ def page() -> None:
 
 
 class Page:
-    """What a page in a browser does, but for drawing."""
+    """A page in a browser, without drawing."""
 
     def __init__(self, url: str) -> None:
         place = urlsplit(url)
@@ -64,12 +64,12 @@ class Page:
 
     def say(self, **what: Any) -> None:
         text = json.dumps(what).encode()
-        # Browsers mask what they send; with zeros it stays as it is.
+        # Browsers mask what they send; a mask of zeros does not change it.
         head = bytes([0x81, 0x80 | len(text)]) if len(text) < 126 else struct.pack(">BBH", 0x81, 0x80 | 126, len(text))
         self.socket.sendall(head + bytes(4) + text)
 
     def frame(self) -> dict[str, Any]:
-        """The next frame: its sections by name, and its time and flags."""
+        """Returns the next frame: its sections by name, and its time and flags."""
         self.say(do="next")
         data = self.receive()
         while not data.startswith(b"CLNF"):
@@ -113,7 +113,7 @@ def until(
     holds: Callable[[dict[str, Any]], bool],
     loop: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Turns a loop until a page sees something."""
+    """Repeats a loop until a frame satisfies a condition, and returns the frame."""
     for _ in range(2000):
         loop()
         viewer.sync(block=False)

@@ -1,4 +1,4 @@
-"""The arrays of `Sim` and `Batch`: where they lie, how long they live, what they are the memory of."""
+"""The arrays of `Sim` and `Batch`: their memory, lifetime and sharing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ QUADRUPED = ROOT / "models/quadruped.xml"
 
 
 def live_arrays(owner: clench.Sim | clench.Batch) -> dict[str, NDArray[Any]]:
-    """All arrays that are views, by name."""
+    """Returns all arrays that are views, by name."""
     names = [name for name in FIELDS if isinstance(getattr(owner, name), np.ndarray)]
     arrays = {name: getattr(owner, name) for name in names}
     if isinstance(owner, clench.Batch):
@@ -106,7 +106,7 @@ def test_arrays_outlive_their_owner(kind: str) -> None:
         expected |= {name: array.copy() for name, array in arrays.items()}
     del owner, model
     gc.collect()
-    others = [make(kind) for _ in range(5)]  # which would take over memory that is free
+    others = [make(kind) for _ in range(5)]  # these would reuse freed memory
     for other in others:
         other.step(5)
     for name, array in arrays.items():
@@ -126,7 +126,7 @@ def test_arrays_outlive_their_owner(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["sim", "batch"])
 def test_the_last_view_frees_the_memory(kind: str) -> None:
-    """What keeps the memory is an object of Python's: it must go with the last array."""
+    """A Python object owns the memory and must be freed with the last array."""
     owner = make(kind)
     views = [owner.qpos, owner.qvel[..., 1:]]
     keeper = owner.qpos.base
@@ -221,7 +221,7 @@ def test_models_are_shared_and_freed() -> None:
 
 
 def test_weak_references_and_attributes_of_ones_own() -> None:
-    """Neither is offered: both would need room in every object."""
+    """Neither is supported: both would need memory in every object."""
     sim = clench.Sim(ball())
     with pytest.raises(TypeError):
         weakref.ref(sim)

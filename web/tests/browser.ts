@@ -1,4 +1,4 @@
-// Starts the program and the browser that tests look through.
+// Starts the program and the browser for the tests.
 
 import { spawn, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync } from "node:fs";
@@ -11,13 +11,13 @@ import { chromium, type Browser, type Page } from "playwright-core";
 export const ROOT = join(process.cwd(), "..");
 export const PROGRAM = process.env.CLENCH ?? join(ROOT, "target/release/clench");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
-/** Where pictures go that a person may want to look at. */
+/** The folder of pictures for manual inspection. */
 export const PICTURES = process.env.PICTURES ?? mkdtempSync(join(tmpdir(), "clench-view-"));
 
 const missing = [CHROMIUM, PROGRAM].find((path) => !existsSync(path));
-/** Why tests cannot run here, or false. */
+/** The reason why tests cannot run here, or false. */
 export const skip = missing ? `${missing} is not here` : false;
-/** The browser that all tests of a file look through. */
+/** The browser of all tests of a file. */
 export let browser: Browser;
 
 before(async () => {
@@ -43,12 +43,12 @@ function launch(): Promise<Browser> {
   });
 }
 
-/** Starts `clench view`; its address, and how to end it. */
+/** Starts `clench view`; returns its address and a function that ends it. */
 export function view(...words: string[]): Promise<{ url: string; end(): Promise<void> }> {
   return started(PROGRAM, ["view", "--no-open", ...words]);
 }
 
-/** Starts a program that prints the address of a viewer; the address, and how to end it. */
+/** Starts a program that prints the address of a viewer; returns the address and a function that ends it. */
 export async function started(
   name: string,
   words: string[],
@@ -84,7 +84,7 @@ export async function open(browser: Browser, url: string): Promise<Page> {
   page.on("pageerror", (error) => {
     throw error;
   });
-  // Drawing in software takes its time.
+  // Software rendering is slow.
   page.setDefaultTimeout(PATIENCE);
   await page.goto(url, { waitUntil: "commit" });
   await until(page, () => "clench" in window);
@@ -93,7 +93,7 @@ export async function open(browser: Browser, url: string): Promise<Page> {
 
 const PATIENCE = 120_000;
 
-/** Waits until something holds in the page. Playwright's own wait evaluates text, which the page does not let happen. */
+/** Waits until a condition holds in the page. Playwright's own wait evaluates text, which the page forbids. */
 export async function until<T>(page: Page, condition: (about: T) => boolean, about?: T): Promise<void> {
   const deadline = Date.now() + PATIENCE;
   while (!(await page.evaluate(condition as (about: unknown) => boolean, about))) {

@@ -1,4 +1,4 @@
-// The page of a viewer that a loop in Python feeds.
+// The page of a viewer that a Python loop feeds.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

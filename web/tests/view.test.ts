@@ -1,4 +1,4 @@
-// The page, driven as a user drives it.
+// The page, operated as by a user.
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -11,7 +11,7 @@ import { brief, shortened } from "../src/elements.ts";
 import { tickTexts } from "../src/ticks.ts";
 import { PICTURES, PROGRAM, ROOT, browser, open, skip, started, until, view } from "./browser.ts";
 
-/** What the page last drew, as its console sees it. */
+/** The state of the page, as visible in its console. */
 interface Seen {
   frame: { time: number; paused: boolean; rows: Record<string, { count: number; data: Float32Array }> };
   stage: {
@@ -34,7 +34,7 @@ const time = (page: Page) => page.evaluate(() => window.clench.frame.time);
 const height = (page: Page, body: number) =>
   page.evaluate((body) => window.clench.frame.rows.bodies.data[7 * body + 2], body);
 
-/** The shares of pixels of a part of the picture (0 to 1 along both sides) that differ from their neighbours on the left. */
+/** Returns the share of brown pixels in a part of the picture (0 to 1 along both sides). */
 async function detail(page: Page, [left, top, right, bottom]: number[]): Promise<number> {
   return page.evaluate(
     ([left, top, right, bottom]) => {
@@ -58,7 +58,7 @@ async function detail(page: Page, [left, top, right, bottom]: number[]): Promise
   );
 }
 
-/** The highest body, and where it is on the screen. */
+/** Returns the highest body and its position on the screen. */
 function topBody(page: Page): Promise<{ body: number; x: number; y: number }> {
   return page.evaluate(() => {
     const { stage, frame } = window.clench as unknown as {
@@ -99,7 +99,7 @@ test("the humanoid is seen where it stands", { skip }, async () => {
     const page = await open(browser, program.url);
     await page.waitForTimeout(500);
     assert.match(await page.title(), /humanoid/);
-    // In the middle of what the panel and the plots leave of the picture.
+    // The middle of the part of the picture that the panel and the plots leave free.
     const middle = await detail(page, [0.25, 0.2, 0.45, 0.7]);
     const corner = await detail(page, [0.02, 0.15, 0.15, 0.5]);
     assert.ok(middle > 0.06, `the robot fills ${middle} of the middle`);
@@ -128,7 +128,7 @@ test("pause, step, reset and keys do what they say", { skip }, async () => {
     await page.locator("body").press("Backspace");
     await until(page, () => window.clench.frame.time === 0);
     assert.ok((await page.evaluate(() => window.clench.plots.counts()))[0] > 0);
-    // Any moment of the past, and the present again.
+    // Seek to any moment of the past, and back to the present.
     await page.click("#pause");
     await until(page, () => window.clench.frame.time > 0.4);
     const past = page.locator("#past");
@@ -187,7 +187,7 @@ test("a body follows the pointer that drags it, and only with the key", { skip }
     await page.mouse.up();
     await page.keyboard.up("Control");
     await until(page, () => window.clench.frame.rows.drag.count === 0);
-    // With the right button it is turned instead.
+    // The right button rotates it instead.
     const now = await topBody(page);
     await page.keyboard.down("Control");
     await page.mouse.move(now.x, now.y);
@@ -242,7 +242,7 @@ test("what two fingers pinch has the arrows of each on its own side", { skip }, 
     const arrows = await page.evaluate(() => window.clench.stage.overlays.arrows());
     const pressing = arrows.map(([from, to]) => [from[0], to[0]]).filter(([from, to]) => Math.abs(to - from) > 0.02);
     assert.ok(pressing.length >= 2);
-    // They begin at the faces of the block, and go away from it.
+    // They start at the faces of the block and point away from it.
     for (const [from, to] of pressing) assert.ok(Math.abs(from) > 0.045 && Math.abs(to) > Math.abs(from), `${pressing}`);
     assert.ok(pressing.some(([from]) => from < 0) && pressing.some(([from]) => from > 0));
     await page.screenshot({ path: join(PICTURES, "pinch.png") });
@@ -394,7 +394,7 @@ test("limits and equalities push with arrows, and islands have colours", { skip 
 /** Two by two pixels: red, green, blue, white. */
 const FOUR = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEklEQVR4nGP4z8DAAMIM/4EAAB/uBfsL2WiLAAAAAElFTkSuQmCC";
 
-/** A model with a picture on a box and on a sphere, under a light of its own, seen from above. */
+/** Returns a model with a picture on a box and on a sphere, under its own light, seen from above. */
 function pictured(): string {
   const folder = mkdtempSync(join(tmpdir(), "clench-pictured-"));
   writeFileSync(join(folder, "four.png"), Buffer.from(FOUR, "base64"));
@@ -410,7 +410,7 @@ function pictured(): string {
   return path;
 }
 
-/** The colours around the middle of the picture: upper left, upper right, lower left, lower right. */
+/** Returns the colours around the middle: upper left, upper right, lower left, lower right. */
 function quarters(page: Page): Promise<number[][]> {
   return page.evaluate(() => {
     const canvas = document.querySelector("#view canvas") as HTMLCanvasElement;
@@ -424,14 +424,14 @@ function quarters(page: Page): Promise<number[][]> {
 
 async function seesPicture(page: Page, name: string): Promise<void> {
   await page.locator("#bar select").filter({ hasText: "above" }).selectOption({ label: "above" });
-  // Highlights add white to all of them.
+  // Highlights add white to all colours.
   const parts = (colours: number[][]) => colours.map((rgb) => rgb.map((part) => part > 0.85 * Math.max(...rgb)));
   const expected = [[true, false, false], [false, true, false], [false, false, true], [true, true, true]];
   for (let k = 0; JSON.stringify(parts(await quarters(page))) !== JSON.stringify(expected); k++) {
     assert.ok(k < 40, `${await quarters(page)}`);
     await page.waitForTimeout(250);
   }
-  // Its light comes from straight above: white is as bright as it is.
+  // The light comes from straight above, so white has its full brightness.
   assert.ok(Math.min(...(await quarters(page))[3]) > 200, `${await quarters(page)}`);
   await page.screenshot({ path: join(PICTURES, name) });
 }
@@ -446,7 +446,7 @@ test("pictures of files lie on things, under the light of the file", { skip }, a
   } finally {
     await program.end();
   }
-  // A recording has them in it, once.
+  // A recording contains each picture once.
   const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "pictured.html");
   const done = spawnSync(PROGRAM, ["simulate", model, "--steps", "3", "--record", file], { cwd: ROOT, encoding: "utf8" });
   assert.equal(done.status, 0, done.stderr);
@@ -526,11 +526,11 @@ test("a recording opens from a disk and replays", { skip }, async () => {
   const page = await open(browser, `file://${file}`);
   await until(page, () => window.clench.frame.time > 0.1);
   await page.locator("#time").fill("3");
-  // What was last drawn may be of any time, as the recording repeats; a moment that was asked for comes and stays.
+  // The drawn frame may be of any time, as the recording repeats; a requested moment appears and stays.
   await until(page, () => Math.abs(window.clench.frame.time - 0.064) < 1e-9);
   await page.waitForTimeout(300);
   assert.ok(Math.abs((await time(page)) - 0.064) < 1e-9);
-  // All plots end where the clock is, wherever that goes.
+  // All plots end at the current time, also after a jump.
   for (const moment of ["3", "25", "9"]) {
     await page.locator("#time").fill(moment);
     await until(page, (moment) => {

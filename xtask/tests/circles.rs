@@ -1,5 +1,5 @@
-//! No file of a crate uses, by way of others, a file that uses it: each can be understood with those that it stands on. Only the dispatch
-//! of lanes may, which gives out the number types that it is itself written for.
+//! No file of a crate uses, directly or indirectly, a file that uses it, so each can be read with its dependencies
+//! only. The exception is the dispatch of lanes, which returns number types that it is implemented for.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -13,13 +13,13 @@ type Module = Vec<String>;
 struct Import {
     name: String,
     path: Module,
-    /// Whether it is exported again, which is no use of it.
+    /// True if it is re-exported, which does not count as a use.
     exported: bool,
 }
 
-/// The file that may be part of circles.
+/// The file that may be part of a cycle.
 const EXEMPT: &str = "lanes::dispatch";
-/// The most times that a name is exported again.
+/// The maximum length of a chain of re-exports.
 const MAX_EXPORTS: usize = 8;
 
 #[test]
@@ -52,7 +52,7 @@ fn a_circle_is_found_through_what_is_exported_again() {
     assert!(circle(&uses(&modules)).is_empty());
 }
 
-/// The text of each module below a folder of sources, without comments and tests.
+/// Returns the text of each module below a source folder, without comments and tests.
 fn modules(src: &Path) -> BTreeMap<Module, String> {
     let (mut found, mut open) = (BTreeMap::new(), vec![src.to_owned()]);
     while let Some(folder) = open.pop() {
@@ -88,7 +88,7 @@ fn module_of(src: &Path, path: &Path) -> Module {
     module
 }
 
-/// Which modules each module uses.
+/// Returns the modules that each module uses.
 fn uses(modules: &BTreeMap<Module, String>) -> BTreeMap<Module, BTreeSet<Module>> {
     let code = modules.iter().map(|(module, text)| (module, plain(text)));
     let code: BTreeMap<&Module, String> = code.collect();
@@ -110,7 +110,7 @@ fn uses(modules: &BTreeMap<Module, String>) -> BTreeMap<Module, BTreeSet<Module>
         .collect()
 }
 
-/// The text without comments.
+/// Returns the text without comments.
 fn plain(text: &str) -> String {
     let code = text
         .lines()
@@ -118,7 +118,7 @@ fn plain(text: &str) -> String {
     code.collect::<Vec<_>>().join("\n")
 }
 
-/// What a text imports.
+/// Returns the imports of a text.
 fn imports(text: &str) -> Vec<Import> {
     let mut found = Vec::new();
     for statement in text.split(';') {
@@ -139,7 +139,7 @@ fn imports(text: &str) -> Vec<Import> {
     found
 }
 
-/// The names in an imported tree, each with its path.
+/// Returns the names in an imported tree, each with its path.
 fn expand(prefix: &str, tree: &str) -> Vec<(String, Module)> {
     let Some((path, branches)) = tree.split_once('{') else {
         let path = format!("{prefix}{tree}");
@@ -172,20 +172,20 @@ fn expand(prefix: &str, tree: &str) -> Vec<(String, Module)> {
     found
 }
 
-/// The paths that a text names from the root of the crate or from a module around.
+/// Returns the paths in a text that start at the root of the crate or at an enclosing module.
 fn paths(text: &str) -> Vec<Module> {
     let named = |c: char| c.is_alphanumeric() || "_:$".contains(c);
     let words = text
         .split(|c: char| !named(c))
         .map(|word| word.trim_end_matches(':'));
     let rooted = words.filter(|word| word.starts_with("crate::") || word.starts_with("super::"));
-    // `pub(in crate::a)` says who may see something, and uses nothing.
+    // `pub(in crate::a)` is a visibility and uses nothing.
     let used = rooted.filter(|word| !text.contains(&format!("(in {word})")));
     used.map(|word| word.split("::").map(str::to_owned).collect())
         .collect()
 }
 
-/// The module in which what a path names is defined, if it is one of the crate.
+/// Returns the module that defines the target of a path, if it is in the crate.
 fn resolve(
     imports: &BTreeMap<&Module, Vec<Import>>,
     module: &Module,
@@ -222,7 +222,7 @@ fn resolve(
     }
 }
 
-/// The uses that are left when what uses nothing, and what nothing uses, is taken away again and again.
+/// Returns the uses that remain after repeatedly removing modules that use nothing or are not used.
 fn circle(uses: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<String> {
     let mut left: BTreeSet<(String, String)> = BTreeSet::new();
     for (user, used) in uses {

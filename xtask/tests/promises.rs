@@ -17,7 +17,7 @@ fn every_promise_names_a_test_that_exists() {
     for row in rows {
         let held_by = row.split('|').nth(2).expect("a second column");
         for place in held_by.split(';') {
-            // Every other piece is between backticks.
+            // Every second piece is between backticks.
             let mut words = place.split('`').skip(1).step_by(2);
             let file = words.next().unwrap_or_else(|| panic!("no file: {row}"));
             let code = fs::read_to_string(root.join(file))

@@ -1,5 +1,5 @@
-//! All packages are built of the same `clench-dynamics`, which takes most of the time of a build: with other features of anything below it,
-//! it would be compiled once for each.
+//! All packages are built with the same `clench-dynamics`, which takes most of the build time. With different features
+//! of any dependency it would be compiled once for each.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -13,7 +13,8 @@ fn what_the_kernels_are_built_of_has_the_same_features_in_all_packages() {
     }
 }
 
-/// The same of `wgpu` and the readers, which take a minute: the Python package is built alone, and the tests with all packages at once.
+/// Checks the same for `wgpu` and the readers, which take a minute: the Python package is built separately, and the
+/// tests with all packages at once.
 #[test]
 fn what_draws_has_the_features_in_the_python_package_that_it_has_in_tests() {
     let package = below("clench-render ", "clench-python");
@@ -37,7 +38,7 @@ fn what_draws_has_the_features_in_the_python_package_that_it_has_in_tests() {
     );
 }
 
-/// The packages that the package `top` is built of in the build of `package`, each with its features.
+/// Returns the dependencies of the package `top` in the build of `package`, each with its features.
 fn below(top: &str, package: &str) -> BTreeSet<String> {
     let mut tree = tree(&[
         "--no-dedupe",
@@ -48,7 +49,7 @@ fn below(top: &str, package: &str) -> BTreeSet<String> {
     ]);
     tree.args(["--format", " {p} {f}", "--package", package]);
     if package == "clench-python" {
-        // As its tests have it.
+        // With the features of its tests.
         tree.args(["--features", "gpu,render"]);
     }
     let mut inside = None;

@@ -1,4 +1,4 @@
-//! Doc comments keep to `docs/words.md`, as far as a program can tell.
+//! Doc comments follow `docs/words.md`, as far as a program can check.
 
 use std::fs;
 use std::path::{Path, PathBuf};

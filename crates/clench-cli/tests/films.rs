@@ -1,4 +1,5 @@
-//! Pictures and films of a program that can draw. Without a device that draws, these tests say so and check nothing else.
+//! Pictures and films from a program that can draw. Without a device that draws, these tests print that and check
+//! nothing else.
 #![cfg(all(feature = "render", unix))]
 
 #[path = "suite/program/mod.rs"]
@@ -10,7 +11,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A red ball that falls through the picture before a camera that stands still.
+/// A red ball that falls through the picture of a static camera.
 const BALL: &str =
     "<mujoco><worldbody><camera name='front' pos='0 -3 0' xyaxes='1 0 0 0 0 1' fovy='40'/>
     <body pos='0 0 .8'><freejoint/><geom size='.2' rgba='1 0 0 1'/></body></worldbody>
@@ -26,7 +27,7 @@ fn draw(folder: &Path, words: &str) -> Command {
     command
 }
 
-/// What comes of it; none where nothing draws here.
+/// Returns the output, or `None` if nothing can draw here.
 fn output(mut command: Command) -> Option<Output> {
     let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
     if wish == "skip" {
@@ -40,7 +41,7 @@ fn output(mut command: Command) -> Option<Output> {
     Some(done)
 }
 
-/// The mean row of what is red in a picture of 60 pixels a row.
+/// Returns the mean row of the red pixels in a picture of 60 pixels per row.
 fn height(rgb: &[u8]) -> f64 {
     let pixels = rgb.as_chunks::<3>().0.iter().enumerate();
     let red = pixels.filter(|(_, pixel)| pixel[0] > 90 && pixel[1] < 60);
@@ -48,13 +49,13 @@ fn height(rgb: &[u8]) -> f64 {
     rows.iter().sum::<f64>() / rows.len() as f64
 }
 
-/// In a second half the ball falls 4.905 t² metres; where that is in the picture.
+/// Returns the row of the ball, which has fallen 4.905 t² metres at time t.
 fn expected(time: f64) -> f64 {
     let z = 0.8 - 4.905 * time * time;
     24.0 - 24.0 * z / (3.0 * 20f64.to_radians().tan())
 }
 
-/// The picture in a file, and where it is red.
+/// Returns the mean row of the red pixels of a picture in a file.
 fn height_in(path: &Path) -> f64 {
     let decoder = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();
@@ -64,7 +65,7 @@ fn height_in(path: &Path) -> f64 {
     height(&pixels)
 }
 
-/// Also where the simulation's own time begins later.
+/// Also holds if the simulation time starts later.
 #[test]
 fn a_picture_is_taken_after_the_time_that_is_asked_for() {
     let folder = folder();
@@ -113,7 +114,7 @@ fn a_gif_shows_the_motion_in_real_time() {
     assert_eq!(frames, 11);
 }
 
-/// A program that stands for ffmpeg: it keeps its arguments, and what it gets instead of a film.
+/// Writes a substitute for ffmpeg that stores its arguments and its input instead of making a film.
 fn stand_in(folder: &Path, script: &str) -> String {
     let path = folder.join("ffmpeg");
     fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
@@ -159,7 +160,7 @@ fn what_an_encoder_complains_of_is_said_and_leaves_the_old_film() {
         "{said}"
     );
     assert_eq!(fs::read(folder.path().join("ball.mp4")).unwrap(), b"old");
-    // Without ffmpeg the message says what to install.
+    // Without ffmpeg the message names the package to install.
     let mut film = draw(folder.path(), "--time 0.2 --out ball.mp4");
     film.env("PATH", "/nowhere");
     let done = output(film).unwrap();
@@ -170,7 +171,7 @@ fn what_an_encoder_complains_of_is_said_and_leaves_the_old_film() {
     );
 }
 
-/// Its time begins anew whenever it diverges, after a second.
+/// The simulation resets whenever it diverges, after a second.
 #[test]
 fn a_film_of_what_starts_over_ends() {
     let folder = folder();

@@ -1,4 +1,4 @@
-//! Runs on a graphics device, of programs that were built for them.
+//! Runs on a GPU, for programs built with the `gpu` feature.
 #![cfg(feature = "gpu")]
 
 use std::path::Path;
@@ -54,7 +54,7 @@ fn a_run_on_a_device_is_recorded() {
     assert!(path.metadata().expect("a record").len() > 0);
 }
 
-/// Both list the same devices, or say in the same words that there are none.
+/// Both list the same devices, or report in the same words that there are none.
 #[test]
 fn devices_are_listed_by_command_and_by_flag() {
     let list = |argument: &str| {

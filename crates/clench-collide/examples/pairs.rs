@@ -1,9 +1,10 @@
-//! How long each pair of shapes takes: `cargo run --release -p clench-collide --example pairs`.
+//! Times each pair of shapes: `cargo run --release -p clench-collide --example pairs`.
 //!
-//! A thousand poses a pair, of shapes about 10 cm large, on terrain of cells of 5 cm: of every four, two overlap by 0 to 1 cm at random, one rests face to
-//! face, tilted by up to 1e-3 rad, and one misses by up to 1 cm. One line a pair: the time of a call in nanoseconds, the best of
-//! some runs, and how many points it yields. With `--json` the poses come along, so that another engine can be timed on them.
-//! `--list` names all pairs; names such as `box-hull` choose some.
+//! Each pair has a thousand poses of shapes about 10 cm large, on terrain with cells of 5 cm. Of every four, two
+//! overlap by 0 to 1 cm at random, one rests face to face, tilted by up to 1e-3 rad, and one misses by up to 1 cm. The
+//! output has one line per pair: the time of a call in nanoseconds, the best of several runs, and the number of points.
+//! With `--json` the poses are included, so that another engine can be timed on them. `--list` prints the names of all
+//! pairs; names such as `box-hull` select some.
 
 use clench_collide::{
     Contacts, HeightField, Hull, Pose, Shape, ShapeKind, collide, convex_hull, supported,
@@ -14,7 +15,7 @@ use std::time::Instant;
 const POSES: usize = 1000;
 const RUNS: usize = 20;
 
-/// What collides, and how many vertices it has if it is a hull.
+/// The name and kind of each shape, and the number of vertices of a hull.
 const SUBJECTS: [(&str, ShapeKind, usize); 9] = [
     ("plane", ShapeKind::Plane, 0),
     ("terrain", ShapeKind::HeightField, 0),
@@ -27,11 +28,11 @@ const SUBJECTS: [(&str, ShapeKind, usize); 9] = [
     ("hull of 1000", ShapeKind::Mesh, 1000),
 ];
 
-/// Of terrain: points along a side, and size in metres. Cells are about half as large as a body.
+/// The terrain: points along a side, and size in metres. Cells are about half as large as a body.
 const GRID: usize = 41;
 const TERRAIN: [f64; 4] = [1.0, 1.0, 0.04, 0.1];
 
-/// What shapes are made of.
+/// The hulls and the terrain that shapes refer to.
 struct Assets {
     hulls: Vec<Hull>,
     terrain: Option<HeightField>,
@@ -58,10 +59,10 @@ impl Assets {
     }
 }
 
-/// A shape that knows where its numbers are.
+/// A shape with its pose.
 struct Body<'a> {
     shape: Shape<'a, f64>,
-    /// Which of the hulls it is.
+    /// The index of its hull.
     hull: usize,
     position: Vec3<f64>,
     rotation: Quat<f64>,
@@ -102,7 +103,7 @@ impl Random {
     fn rotation(&mut self) -> Quat<f64> {
         Quat::from_rotation_vector(self.vector() * 3.0)
     }
-    /// Points on an ellipsoid of 8 cm, all of them on their hull.
+    /// Returns the hull of points on an ellipsoid of about 8 cm, all of which are vertices.
     fn hull(&mut self, vertices: usize) -> Hull {
         let semi_axes = self.vector() * 0.04 + Vec3::new(0.08, 0.08, 0.08);
         let point = |_| self.vector().normalize().0.scale_by(semi_axes);
@@ -110,7 +111,7 @@ impl Random {
         let surface = convex_hull(&points, None).expect("points on an ellipsoid have a hull");
         Hull::new(&surface, &points)
     }
-    /// Random heights, each the mean of four.
+    /// Returns random heights, each the mean of four.
     fn terrain(&mut self) -> HeightField {
         let heights =
             (0..GRID * GRID).map(|_| self.unit() + self.unit() + self.unit() + self.unit());
@@ -130,7 +131,7 @@ impl Random {
             rotation: self.rotation(),
         }
     }
-    /// A quarter turn or two, tilted a little.
+    /// Returns a rotation by quarter turns and a random yaw, tilted slightly.
     fn upright(&mut self, tilt: f64) -> Quat<f64> {
         let quarter = Vec3::new(self.unit(), self.unit(), self.unit()) * 3.0;
         let turns = [quarter.x, quarter.y].map(|x| x.floor() * std::f64::consts::FRAC_PI_2);
@@ -141,7 +142,7 @@ impl Random {
             * about(Vec3::new(1.0, 0.0, 0.0), turns[0])
             * about(Vec3::new(0.0, 1.0, 0.0), turns[1])
     }
-    /// Two bodies, moved together until they overlap as wanted.
+    /// Moves two bodies together until they overlap by the intended depth.
     fn scene<'a>(&mut self, mut a: Body<'a>, mut b: Body<'a>, k: usize) -> (Body<'a>, Body<'a>) {
         let mut direction = self.vector().normalize().0;
         let depth = 0.01 * self.unit() * if k % 4 == 3 { -1.0 } else { 1.0 };

@@ -1,4 +1,5 @@
-//! How far the device is from the processor on random states of a model, field by field: `compare MODEL [STATES] [SPREAD]`.
+//! Prints the distance of the device from the processor on random states of a model, field by field:
+//! `compare MODEL [STATES] [SPREAD]`.
 
 #[path = "../tests/device/common/mod.rs"]
 mod common;

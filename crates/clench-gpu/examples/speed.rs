@@ -1,9 +1,9 @@
-//! Steps a second by number of environments, on the device and in the processor's lanes (single precision, all threads) in the
-//! same run, and the time of each stage in µs an environment, as lines of JSON:
+//! Measures steps per second by number of environments, on the device and in the processor's lanes (single precision,
+//! all threads) in the same run, and the time of each stage in µs per environment. Prints lines of JSON:
 //! `speed MODEL [MOST ENVIRONMENTS] [STEPS] [DEVICE]`.
 //!
-//! All environments begin in the model's first keyframe, where it has one. Every eight steps each gets controls of its own, a hundredth
-//! of their range about those of the keyframe, as by a policy on this side of the bus: that is counted.
+//! All environments start in the model's first keyframe, if any. Every eight steps each gets its own controls, within a
+//! hundredth of their range of those of the keyframe, as from a policy on the host; this is included in the time.
 
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 use clench_rigid::{Batch, Model};
@@ -11,13 +11,13 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Steps before the clock starts: what is compiled and loaded by then is not counted.
+/// Steps before the clock starts, in which everything is compiled and loaded.
 const WARM_UP: usize = 24;
-/// Steps for which controls stay.
+/// The number of steps with the same controls.
 const HOLD: usize = 8;
-/// Steps of which each kernel is timed.
+/// The number of steps in which each kernel is timed.
 const TIMED: usize = 8;
-/// How long a measurement lasts at most, s, however few steps have been made by then.
+/// The longest duration of a measurement, s, even if few steps are done.
 const LONGEST: f64 = 5.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for count in counts {
         let mut gpu = match batches(&model, count, device.as_deref()) {
             Ok(gpu) => gpu,
-            // More than the device holds.
+            // More than fits on the device.
             Err(e @ GpuError::OutOfMemory { .. }) => {
                 eprintln!("{e}");
                 break;
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             Ok(())
         })?;
-        // At once: a card that has nothing to do slows its clock.
+        // Immediately: an idle GPU lowers its clock rate.
         let mut failed = 0;
         let (mut rows, mut iterations) = (0, 0);
         let mut times: Vec<(&str, f64)> = Vec::new();
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             for _ in 0..TIMED {
                 let stages = match batch.time_stages() {
                     Ok(stages) => stages,
-                    // It has no clock.
+                    // The device has no clock.
                     Err(e @ GpuError::Unusable { .. }) => {
                         eprintln!("{e}");
                         break;
@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// So many environments: one batch, or several of the same size where the device's largest buffer does not hold them all.
+/// Creates `count` environments: one batch, or several of the same size if the device's largest buffer is too small.
 fn batches(
     model: &Arc<Model>,
     count: usize,
@@ -145,14 +145,14 @@ fn write(batches: &mut [GpuBatch], name: &str, values: &[f32]) -> Result<(), Gpu
     })
 }
 
-/// Controls of all environments, the same in every run: made beforehand, a few times, and then in turn.
+/// Reproducible controls of all environments: a few sets are created beforehand and used in turn.
 struct Controls {
     made: Vec<Vec<f32>>,
     turn: usize,
 }
 
 impl Controls {
-    /// How many there are.
+    /// The number of sets.
     const COUNT: usize = 8;
 
     fn new(model: &Model, center: &[f32], count: usize) -> Self {
@@ -188,7 +188,7 @@ impl Controls {
     }
 }
 
-/// Steps of environments in a second. The last call is told so: it returns when all steps are done.
+/// Returns the environment steps per second. In the last call the flag is true: it returns when all steps are done.
 fn speed(
     count: usize,
     steps: usize,

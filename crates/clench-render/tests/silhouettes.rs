@@ -1,4 +1,4 @@
-//! What is drawn is what rays hit. Without a device that draws these tests say so and check nothing else.
+//! Drawn images agree with ray casts. Without a device that draws these tests print that and check nothing else.
 
 use clench::math::Vec3;
 use clench::{RayFilter, Sim, load_str};
@@ -28,8 +28,8 @@ fn sim() -> Sim<f64> {
     Sim::new(Arc::new(load_str(SCENE).unwrap())).unwrap()
 }
 
-/// A renderer of the scene; none where the machine has no device, or the environment variable `CLENCH_GPU` says to skip. Where that
-/// says to require one, none is a failure.
+/// Returns a renderer of the scene; `None` if there is no device or the environment variable `CLENCH_GPU` is `skip`. If
+/// it is `require`, a missing device is a failure.
 fn renderer(sim: &Sim<f64>) -> Option<Renderer> {
     let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
     if wish == "skip" {
@@ -48,7 +48,8 @@ fn renderer(sim: &Sim<f64>) -> Option<Renderer> {
 const WIDTH: usize = 240;
 const HEIGHT: usize = 180;
 
-/// The shares of pixels whose geom, and whose distance to a millimetre and a thousandth, are those of the ray through their middle.
+/// Returns the shares of pixels whose geom, and whose distance to a millimetre and a thousandth, are those of the ray
+/// through their middle.
 fn agreement(
     sim: &mut Sim<f64>,
     view: View,
@@ -67,7 +68,7 @@ fn agreement(
         for column in 0..WIDTH {
             let x = (2.0 * column as f64 + 1.0 - WIDTH as f64) / HEIGHT as f64;
             let y = (HEIGHT as f64 - 2.0 * row as f64 - 1.0) / HEIGHT as f64;
-            // Directions have the length 1 along the way the camera looks.
+            // Directions have length 1 along the viewing direction.
             let (origin, direction) = rays(x, y);
             let hit = sim.ray(origin, direction, &RayFilter::default()).unwrap();
             let pixel = row * WIDTH + column;
@@ -142,7 +143,7 @@ fn a_free_camera_looks_at_its_point() {
         image.depth[middle]
     );
     assert_eq!(image.rgb.len(), 3 * 101 * 101);
-    // The same picture again, to the byte; and one of all, without a camera of its own.
+    // The same picture again is identical to the byte. Then the whole scene, without a view.
     assert!(renderer.draw(&mut sim, &picture).unwrap() == image);
     let all = renderer
         .draw(

@@ -1,4 +1,5 @@
-//! Pictures lie on surfaces, and lights shine, as a file says. Without a device that draws these tests say so and check nothing else.
+//! Pictures on surfaces and lights of a file. Without a device that draws these tests print that and check nothing
+//! else.
 
 #[path = "../../clench-formats/tests/suite/pictures/mod.rs"]
 mod pictures;
@@ -13,13 +14,13 @@ const G: [u8; 3] = [0, 255, 0];
 const B: [u8; 3] = [0, 0, 255];
 const W: [u8; 3] = [255; 3];
 
-/// The picture of a scene from straight above, or from a camera of its own; none where nothing draws.
+/// Draws a scene from straight above, or from the given view; returns `None` if nothing can draw here.
 fn drawn(text: &str, view: Option<View>) -> Option<Image> {
     let wish = std::env::var("CLENCH_GPU").unwrap_or_default();
     if wish == "skip" {
         return None;
     }
-    // A quarter each, so large that neighbours do not blur it.
+    // A quarter each, large enough that blurring does not mix neighbours.
     let upper = [[R; 4], [G; 4]].concat().repeat(4);
     let four = [upper, [[B; 4], [W; 4]].concat().repeat(4)].concat();
     let sides = [R, G, B, W, [255, 255, 0], [0, 255, 255]];
@@ -56,13 +57,13 @@ fn at(image: &Image, x: usize, y: usize) -> [u8; 3] {
     [0, 1, 2].map(|k| image.rgb[start + k])
 }
 
-/// Which of three parts of a colour are there.
+/// Returns which of the three parts of a colour are present.
 fn hue(color: [u8; 3]) -> [bool; 3] {
     let most = color.into_iter().max().unwrap_or_default();
     color.map(|part| 2 * u32::from(part) > u32::from(most))
 }
 
-/// Whether the quarters of a picture, from the upper left in rows, have these colours.
+/// Asserts that the quarters of a picture, from the upper left in rows, have these colours.
 fn quarters(image: &Image, expected: [[u8; 3]; 4]) {
     let found = [(35, 35), (65, 35), (35, 65), (65, 65)].map(|(x, y)| hue(at(image, x, y)));
     assert_eq!(found, expected.map(hue));
@@ -95,7 +96,7 @@ fn a_picture_stands_upright_on_a_plane_a_box_and_a_mesh() {
 
 #[test]
 fn a_picture_repeats_as_often_as_the_material_says() {
-    // Twice on each side: what was a quarter is a picture.
+    // Twice along each side: each quarter contains a whole picture.
     let twice = textured(
         "texture='four' texrepeat='2 2'",
         "type='plane' size='1 1 1'",
@@ -108,7 +109,7 @@ fn a_picture_repeats_as_often_as_the_material_says() {
         let row = [27, 42, 58, 73].map(|x| hue(at(&image, x, 27)));
         assert_eq!(row, [W, B, W, B].map(hue));
     }
-    // Once on two metres, from the middle of the plane.
+    // Once per two metres, from the middle of the plane.
     if let Some(image) = drawn(&uniform, None) {
         quarters(&image, [R, G, B, W]);
         assert_eq!(hue(at(&image, 5, 35)), hue(G));
@@ -117,7 +118,8 @@ fn a_picture_repeats_as_often_as_the_material_says() {
 
 #[test]
 fn a_picture_seen_from_the_side_is_blurred_along_the_line_of_sight_alone() {
-    // Each repetition lacks green on its left. On the plane a pixel is twelve times as long as it is wide, and about as long as the picture.
+    // Each repetition lacks green on its left. On the plane the footprint of a pixel is twelve times as long as it is
+    // wide, and about as long as the picture.
     let scene = textured(
         "texture='four' texrepeat='24 24'",
         "type='plane' size='2 2 1'/><camera pos='0 -2.5 .2' xyaxes='1 0 0 0 .08 1' fovy='30'",
@@ -131,7 +133,7 @@ fn a_picture_seen_from_the_side_is_blurred_along_the_line_of_sight_alone() {
 
 #[test]
 fn each_side_of_a_cube_has_its_picture() {
-    // What looks at each side of a box, with the side that it sees: right, left, up, down, front, back are x, −x, y, −y, z, −z.
+    // The views of the sides of a box: right, left, up, down, front, back are x, −x, y, −y, z, −z.
     let sides = [
         (180.0, 0.0, R),
         (0.0, 0.0, G),
@@ -159,7 +161,7 @@ fn each_side_of_a_cube_has_its_picture() {
     }
 }
 
-/// A white surface at z = 0 under lights: that of a box, on which there are no lines.
+/// Returns a white surface at z = 0 under lights: that of a box, which has no grid lines.
 fn lit(visual: &str, lights: &str) -> String {
     format!(
         "<mujoco><visual>{visual}</visual><worldbody>{lights}
@@ -167,7 +169,7 @@ fn lit(visual: &str, lights: &str) -> String {
     )
 }
 
-/// How bright the middle and a place beside it are.
+/// Returns the brightness of the middle and of a point next to it.
 fn brightness(text: &str) -> Option<[i32; 2]> {
     let image = drawn(text, None)?;
     Some([(50, 50), (20, 50)].map(|(x, y)| i32::from(at(&image, x, y)[1])))
@@ -179,7 +181,7 @@ fn lights_of_a_file_shine_as_strong_as_it_says() {
     let sun = |rest: &str| {
         format!("<light type='directional' diffuse='.5 .5 .5' specular='0 0 0' {rest}/>")
     };
-    // In the numbers of a screen: a half of white, and half of that at an angle of 60 degrees.
+    // Values of a screen: half of white, and half of that at an angle of 60 degrees.
     for (lights, expected) in [
         (sun(""), 127),
         (sun("dir='0 1.7320508 -1'"), 64),

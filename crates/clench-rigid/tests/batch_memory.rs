@@ -1,6 +1,6 @@
-//! Steps of a batch allocate nothing once warm, and an environment takes the memory that the batch says.
+//! Allocations and memory of batches: a warm step allocates nothing, and an environment takes the reported memory.
 
-// This program uses only some of what the suite shares.
+// This program uses only some of the shared modules.
 #[allow(dead_code)]
 #[path = "suite/batches/mod.rs"]
 mod batches;
@@ -22,14 +22,14 @@ use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering::SeqCst};
 use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
-/// Counts the allocations of all threads, and the bytes that they hold, and refuses those above a limit.
+/// Counts the allocations and allocated bytes of all threads, and refuses allocations above a limit.
 struct Counting;
 
 static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 static BYTES: AtomicIsize = AtomicIsize::new(0);
 
-// SAFETY: every call goes on to the system's allocator unchanged, or fails.
+// SAFETY: every call is forwarded unchanged to the system's allocator, or fails.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if layout.size() > LIMIT.load(SeqCst) {
@@ -37,7 +37,7 @@ unsafe impl GlobalAlloc for Counting {
         }
         COUNT.fetch_add(1, SeqCst);
         BYTES.fetch_add(layout.size() as isize, SeqCst);
-        // SAFETY: the caller keeps the contract of `alloc`.
+        // SAFETY: the caller upholds the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
@@ -56,13 +56,13 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// One test at a time, so that it counts its own.
+/// Runs one test at a time, because the counters are global.
 fn alone() -> MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
     TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// The bytes that are held, once threads that were told to end have given back theirs.
+/// Returns the allocated bytes, once terminated threads have released theirs.
 fn bytes() -> isize {
     let mut before = isize::MIN;
     loop {
@@ -75,7 +75,7 @@ fn bytes() -> isize {
     }
 }
 
-/// What a task gives where no allocation may have more than `limit` bytes.
+/// Runs a task in which no allocation may exceed `limit` bytes.
 fn limited<R>(limit: usize, task: impl FnOnce() -> R) -> R {
     LIMIT.store(limit, SeqCst);
     let result = task();
@@ -83,8 +83,8 @@ fn limited<R>(limit: usize, task: impl FnOnce() -> R) -> R {
     result
 }
 
-/// Steps several times through the same motion, with faults and resets on the way, and counts the allocations of the best
-/// time: which thread gets which group varies, and each thread's buffers must have grown first.
+/// Repeats one motion with faults and resets, and returns the fewest allocations of a repetition. The assignment of
+/// groups to threads varies, and the buffers of each thread must have grown first.
 fn allocations_of_a_replay(builder: &ModelBuilder, options: BatchOptions, steps: usize) -> usize {
     let envs: Vec<usize> = (0..40).collect();
     let threads = options.threads.unwrap_or(1);
@@ -122,7 +122,7 @@ fn a_replay_allocates_nothing() {
     let options = with(Instructions::widest(), 1, RigidOptions::new());
     assert_eq!(allocations_of_a_replay(&walker(), options, 600), 0);
     assert_eq!(allocations_of_a_replay(&arm_and_box(), options, 600), 0);
-    // Grouped, a replay would begin with other neighbours: what a step had in common is what the next one groups by.
+    // Grouping depends on the previous step, so a grouped replay would begin with other neighbours.
     let ungrouped = BatchOptions {
         grouping: false,
         ..options
@@ -133,7 +133,7 @@ fn a_replay_allocates_nothing() {
 #[test]
 fn threads_allocate_nothing_but_the_pools_queue() {
     let _turn = alone();
-    // The queue that wakes the pool takes a new block every 63 calls and gives the old one back.
+    // The queue that wakes the pool allocates a block every 63 calls and frees the old one.
     let options = with(Instructions::widest(), 3, RigidOptions::new());
     let count = allocations_of_a_replay(&walker(), options, 600);
     assert!(count <= 600 / 63 + 3, "{count}");
@@ -153,7 +153,7 @@ fn an_environment_takes_the_bytes_that_the_batch_says() {
         batch.step_n(3).expect("valid");
         (bytes() - before, batch.bytes_per_env())
     };
-    // Scratch of threads grows with what they meet, whichever groups they get: a trifle beside many environments.
+    // The scratch memory of a thread depends on its groups, and is small compared with many environments.
     for (threads, count, share) in [(1, 3_000, 0.001), (3, 20_000, 0.01)] {
         let ((few, each), (many, _)) = (held(1000, threads), held(count, threads));
         let expected = ((count - 1000) * each) as f64;
@@ -183,7 +183,7 @@ fn tables_are_refused_if_memory_does_not_hold_all_of_them() {
     let error = limited(1 << 40, || make(most).err());
     assert_eq!(error, Some(refused(most, each)));
     let mut batch = limited(count * each, || make(count)).expect("just enough");
-    // What it keeps, and what a rollout records.
+    // The recorded outputs of a batch and of a rollout.
     let names = ["xpos", "qpos", "xpos", "cinert"];
     let widths = ["xpos", "qpos", "cinert"].map(|name| {
         let output = Output::find(name).expect("known");
@@ -216,8 +216,7 @@ fn environments_come_and_go_without_leaks() {
         batch.sim(3).expect("it exists");
     };
     round();
-    // What threads leave to be freed later comes and goes, and is usually less than a tenth of any of these batches; what leaks is
-    // there whenever one looks.
+    // Memory that threads free later varies, usually by less than a tenth of any of these batches. Leaks do not vary.
     let growth = |_| {
         let before = bytes();
         (0..10).for_each(|_| round());

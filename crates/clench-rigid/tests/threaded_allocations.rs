@@ -1,7 +1,7 @@
-//! A step that several threads share allocates nothing once its buffers have grown, on any of them. One test, so that nobody else
-//! allocates meanwhile.
+//! A step that several threads share allocates nothing on any thread once its buffers have grown. The program has one
+//! test, so that no other allocates meanwhile.
 
-// Of what the suite shares this program uses some.
+// This program uses only some of the shared modules.
 #[allow(dead_code)]
 #[path = "suite/common/mod.rs"]
 mod common;
@@ -20,11 +20,11 @@ struct Counting;
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: every call goes on to the system's allocator unchanged.
+// SAFETY: every call is forwarded unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: the caller keeps the contract of `alloc`.
+        // SAFETY: the caller upholds the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
@@ -56,6 +56,6 @@ fn a_replayed_heap_allocates_nothing_on_any_thread() {
         counted = COUNT.load(Ordering::Relaxed) - before;
     }
     assert!(sim.contacts().len() > 300);
-    // The queue in which a step is handed to the threads grows by a block for each 63 of them.
+    // The queue that hands steps to the threads grows by a block every 63 steps.
     assert!(counted <= 1, "{counted} allocations in {steps} steps");
 }

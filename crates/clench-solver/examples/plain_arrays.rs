@@ -1,7 +1,7 @@
-//! Solves a problem given as plain arrays, with no body in sight: `cargo run -p clench-solver --example plain_arrays`.
+//! Solves a problem given as plain arrays, without bodies: `cargo run -p clench-solver --example plain_arrays`.
 //!
-//! Two coupled coordinates are pushed down by gravity. The first may not accelerate below −2, softly; along the second
-//! acts dry friction of at most 3; and their difference is asked to stay zero.
+//! Gravity pushes two coupled coordinates down. A soft limit keeps the acceleration of the first above −2, dry friction
+//! of at most 3 acts along the second, and a soft equality pulls their difference towards zero.
 
 use clench_solver::{Cost, PlainBlock, Problem, Solver, SolverOptions};
 

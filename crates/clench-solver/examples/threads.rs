@@ -1,7 +1,9 @@
-//! Times the solve of a heap by one thread and by several: `cargo run --release -p clench-solver --example threads -- 8 8 8 2`.
+//! Times the solve of a heap on one and on several threads:
+//! `cargo run --release -p clench-solver --example threads -- 8 8 8 2`.
 //!
-//! The heap is a lattice of free bodies (so many along x, y and z), each of which touches its neighbours and, in the lowest layer, the world at two
-//! points. The last number is that of the threads.
+//! The heap is a lattice of free bodies. The first three arguments are the numbers of bodies along x, y and z. Each
+//! body touches its neighbours and, in the lowest layer, the world at two points. The last argument is the number of
+//! threads.
 
 #[allow(dead_code)] // This program uses only some of what the suite shares.
 #[path = "../tests/suite/common/mod.rs"]
@@ -52,7 +54,7 @@ fn heap([nx, ny, nz]: [usize; 3]) -> Result<Problem<f64>, Box<dyn Error>> {
     Ok(problem)
 }
 
-/// Adds contacts of a body with a later one, or with the world.
+/// Adds contacts of a body with a later one or with the world.
 fn touch(problem: &mut Problem<f64>, random: &mut Rng, one: usize, other: Option<usize>) {
     let bodies = [Some(one), other].into_iter().flatten();
     let dofs = Vec::from_iter(bodies.flat_map(|body| 6 * body as u32..6 * body as u32 + 6));
@@ -69,7 +71,7 @@ fn touch(problem: &mut Problem<f64>, random: &mut Rng, one: usize, other: Option
     }
 }
 
-/// The median time of a solve, ms.
+/// Returns the median time of a solve, ms.
 fn time(problem: &Problem<f64>, threads: &Threads) -> Result<f64, Box<dyn Error>> {
     let settings = SolverOptions::new().resolve::<f64>();
     let mut solver = Solver::new(problem.tree());
@@ -80,7 +82,7 @@ fn time(problem: &Problem<f64>, threads: &Threads) -> Result<f64, Box<dyn Error>
         threads.enter_awake(|| solver.solve(problem, &settings, None).map(|_| ()))?;
         times.push(1e3 * start.elapsed().as_secs_f64());
     }
-    // The first one allocates.
+    // The first solve allocates.
     times.remove(0);
     times.sort_by(f64::total_cmp);
     Ok(times[ROUNDS / 2])

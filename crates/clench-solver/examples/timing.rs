@@ -29,7 +29,7 @@ fn problems(cost: Cost, dim: usize, contacts: usize, cross: f64) -> Vec<Problem<
         .collect()
 }
 
-/// Microseconds a solve, the fastest of some rounds, and iterations a solve.
+/// Returns the microseconds per solve in the fastest round, and the iterations per solve.
 fn time<T: Real>(problems: &[Problem<T>], settings: &Settings) -> (f64, f64) {
     let mut solver = Solver::new(problems[0].tree());
     let mut best = f64::INFINITY;
@@ -53,7 +53,7 @@ fn time<T: Real>(problems: &[Problem<T>], settings: &Settings) -> (f64, f64) {
     )
 }
 
-/// The same problem in every lane.
+/// Returns a problem with the same numbers in every lane.
 fn widen(problem: &Problem<f64>) -> Problem<Lanes<f64, 8>> {
     let mut wide: Problem<Lanes<f64, 8>> = Problem::new(problem.tree().clone());
     let splat = |to: &mut [Lanes<f64, 8>], from: &[f64]| {

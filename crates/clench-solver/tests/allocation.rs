@@ -1,6 +1,6 @@
-//! A solver that has seen its problems once allocates nothing when it sees them again.
+//! A solver allocates nothing when it solves the same problems a second time.
 
-// This program uses only some of what the suite shares.
+// This program uses only part of the suite's shared code.
 #[allow(dead_code)]
 #[path = "suite/common/mod.rs"]
 mod common;
@@ -16,7 +16,7 @@ thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: every call is passed on to the system allocator unchanged.
+// SAFETY: every call is forwarded to the system allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));

@@ -1,8 +1,8 @@
-//! What a frame of the viewer costs its server: `cargo run --release -p clench-view --example frames [MODEL...]`.
+//! Measures the server's cost of a frame: `cargo run --release -p clench-view --example frames [MODEL...]`.
 //!
-//! Each model, or the humanoid and a heap of a thousand bodies, is stepped; after every eighth step a frame is made, as `clench view`
-//! does sixty times a second. One JSON line a model: bodies, mean contacts, mean bytes of a frame and of what of it has changed since the
-//! last one, and the median time in µs that it takes to make one, and to find what has changed, beside that of the eight steps.
+//! Steps each model (by default the humanoid and a heap of a thousand bodies) and makes a frame every eighth step, as
+//! `clench view` does sixty times a second. Prints one JSON line per model: bodies, mean contacts, mean bytes of a
+//! frame and of its delta to the previous one, and the median times in µs of a frame, a delta, and the eight steps.
 
 use clench::{Model, Sim, load, load_str};
 use clench_view::delta::delta;

@@ -1,4 +1,4 @@
-//! Steps a batch one step a call and prints how long that took: what `bench/calls.py` holds the same calls from Python against.
+//! Steps a batch one step a call and prints the time. `bench/calls.py` compares it with the same calls from Python.
 //!
 //! `cargo run --release -p clench --example batch_step -- MODEL ENVIRONMENTS THREADS STEPS`
 
@@ -6,7 +6,7 @@ use clench::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Steps before the clock starts.
+/// The number of steps before the clock starts.
 const WARM: usize = 100;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Numbers between −`size` and `size` that are the same wherever they are made.
+/// Fills a slice with reproducible numbers between −`size` and `size`.
 fn wave(values: &mut [f64], size: f64) {
     for (i, value) in values.iter_mut().enumerate() {
         *value = size * ((7 * i % 101) as f64 / 50.0 - 1.0);

@@ -1,4 +1,4 @@
-//! What lies on each other comes to rest: towers as deep in each other as the softness formula says, a pile within its bin.
+//! Heaps come to rest: towers sink as deep as the softness formula predicts, a pile stays in its bin.
 
 use clench::prelude::*;
 use clench::rigid::readout::{ContactRow, contact_rows};
@@ -22,10 +22,10 @@ fn run(sim: &mut Sim, seconds: f64) {
     sim.forward().expect("finite");
 }
 
-/// The depth at which `points` contacts with default parameters carry a weight, whose inverse inertia is `a0`.
+/// Returns the depth at which `points` contacts with default parameters carry a weight of inverse inertia `a0`.
 ///
-/// At rest each of a contact's four edges asks for k r and gets it by a force k |r| / R, so the weight is
-/// points · 4 k(r) |r| / R(r) with k = d / (0.95² 0.02²), R = 2 μ² (1 + μ²) A₀ (1 − d) / d and the impedance d between 0.9 and
+/// At rest, each of a contact's four edges requests k r and gets it by a force k |r| / R, so the weight is points · 4
+/// k(r) |r| / R(r) with k = d / (0.95² 0.02²), R = 2 μ² (1 + μ²) A₀ (1 − d) / d and the impedance d between 0.9 and
 /// 0.95 over a millimetre.
 fn predicted_depth(weight: f64, points: f64, a0: f64, mu: f64) -> f64 {
     let carried = |depth: f64| {
@@ -115,7 +115,7 @@ fn a_pile_of_all_shapes_settles_in_its_bin() {
             "body {body} is at {x}, {y}, {z}"
         );
     }
-    // They fell with 150 J. Round ones may roll on for long, and make others slip.
+    // They fell with 150 J. Round bodies may roll for long and make others slip.
     let energy: f64 = (0..count)
         .map(|body| {
             let speed: f64 = sim.state.qvel[6 * body..][..3].iter().map(|v| v * v).sum();

@@ -1,4 +1,4 @@
-"""Gymnasium's own tasks, made comparable: MuJoCo's Newton solver, and rows of several environments side by side."""
+"""Gymnasium's own tasks, made comparable: MuJoCo's Newton solver, and rows of several environments."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TASKS = (
     "Walker2d",
 )
 
-# Keyword arguments other than gymnasium's defaults, each task with every one that it takes.
+# Keyword arguments that differ from gymnasium's defaults; each task has all that it accepts.
 OTHER_ARGUMENTS: dict[str, dict[str, Any]] = {
     "Ant": {
         "frame_skip": 3,
@@ -107,10 +107,10 @@ OTHER_ARGUMENTS: dict[str, dict[str, Any]] = {
 
 
 def gymnasium_env(task: str, **kwargs: Any) -> Any:
-    """Gymnasium's own environment. Where its file asks for PGS it gets Newton, whose minimum is the same, and reached.
+    """Returns gymnasium's own environment. If its file selects PGS, it uses Newton, whose minimum is the same.
 
-    There it also solves to the end: at its default tolerance MuJoCo's contact forces on the humanoids differ from its
-    own converged ones by up to 6e-6 of their size, ours by 5e-12.
+    Newton then has a tiny tolerance: at the default tolerance MuJoCo's contact forces on the humanoids have a relative
+    error of up to 6e-6, ours of 5e-12.
     """
     env: Any = gymnasium.make(f"{task}-v5", **kwargs)
     options = env.unwrapped.model.opt
@@ -121,18 +121,18 @@ def gymnasium_env(task: str, **kwargs: Any) -> Any:
 
 
 def copy_state(env: Any, batch: Any, row: int) -> None:
-    """Puts what MuJoCo steps from next into a row of a batch."""
+    """Copies MuJoCo's current state into a row of a batch."""
     data = env.unwrapped.data
     batch.qpos[row], batch.qvel[row], batch.qacc_warmstart[row] = data.qpos, data.qvel, data.qacc_warmstart
 
 
 def assert_close(ours: Any, theirs: Any, what: str) -> None:
-    """To 1e-6: absolute, and relative where numbers are large."""
+    """Checks agreement to 1e-6, absolute, and relative for large numbers."""
     np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-6, err_msg=what)
 
 
 def assert_same_infos(ours: dict[str, Any], theirs: dict[str, Any], what: str = "info") -> None:
-    """The same keys, shapes, masks and, to 1e-6, the same numbers."""
+    """Checks for equal keys, shapes and masks, and numbers that agree to 1e-6."""
     assert ours.keys() == theirs.keys(), what
     for key, value in theirs.items():
         mine, name = ours[key], f"{what}[{key!r}]"
@@ -152,5 +152,5 @@ def assert_same_infos(ours: dict[str, Any], theirs: dict[str, Any], what: str = 
 
 
 def row_of_infos(infos: dict[str, Any], row: int) -> dict[str, Any]:
-    """The info of one environment of a vector environment."""
+    """Returns the info of one environment of a vector environment."""
     return {key: value[row] for key, value in infos.items() if f"_{key}" in infos and infos[f"_{key}"][row]}

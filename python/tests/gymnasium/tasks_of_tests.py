@@ -1,4 +1,4 @@
-"""Small tasks of the tests' own."""
+"""Small tasks for the tests."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ CART = """
 
 
 class Cart(BatchEnv):
-    """A cart with a pole that leans; the second motor has no limit, so that a control can break everything."""
+    """A cart with a leaning pole. The second motor has no limit, so that a control can make the simulation fail."""
 
     model = CART
     frame_skip = 2
@@ -57,6 +57,6 @@ class Cart(BatchEnv):
 
 
 class CartEnv(SingleEnv):
-    """One of them."""
+    """A single `Cart`."""
 
     task = Cart

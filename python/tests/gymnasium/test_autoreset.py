@@ -1,4 +1,4 @@
-"""When episodes end: against gymnasium's SyncVectorEnv over its own environments, in all three autoreset modes."""
+"""Compares ends of episodes with gymnasium's SyncVectorEnv over its own environments, in all three autoreset modes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 ENVS = 5
 STEPS = 90
 
-# Tasks and lengths of episodes: some fall before that, some never do; infos with arrays, and without reset infos.
+# Tasks and lengths of episodes. Some fall earlier, some never; some infos have arrays, some resets have no infos.
 CASES = (("Hopper", 25), ("InvertedPendulum", 12), ("Humanoid", 30), ("Reacher", 7), ("Ant", 1))
 
 
@@ -30,7 +30,7 @@ def pair(task: str, length: int, mode: AutoresetMode) -> tuple[Any, Any]:
 
 
 def assert_same_step(ours: tuple[Any, ...], theirs: tuple[Any, ...]) -> None:
-    """Observations, rewards, terminations, truncations, infos; of a reset, observations and infos."""
+    """Compares observations, rewards, terminations, truncations and infos; of a reset, observations and infos."""
     names = ("observation", "reward", "terminated", "truncated")
     for mine, yours, what in zip(ours[:-1], theirs[:-1], names, strict=False):
         assert (mine.dtype, mine.shape) == (yours.dtype, yours.shape)
@@ -54,7 +54,7 @@ def test_autoreset(task: str, length: int, mode: AutoresetMode) -> None:
 
 @pytest.mark.parametrize(("task", "length"), CASES)
 def test_disabled(task: str, length: int) -> None:
-    """Whose episode is over is reset by hand, and now and then somebody else."""
+    """Ended episodes are reset by hand, and sometimes others."""
     theirs, ours = pair(task, length, AutoresetMode.DISABLED)
     assert_same_step(ours.reset(seed=3), theirs.reset(seed=3))
     rng = np.random.default_rng(0)
@@ -79,7 +79,7 @@ def test_disabled_refuses_to_go_on() -> None:
 
 
 def test_modes_by_name() -> None:
-    """The mode may be what gymnasium calls it in text; another word is an error."""
+    """The mode may be gymnasium's name; any other name is an error."""
     assert gymnasium.make_vec("clench/Reacher-v5", 2, autoreset_mode="SameStep").metadata["autoreset_mode"] is (
         AutoresetMode.SAME_STEP
     )
@@ -104,7 +104,7 @@ def test_bad_masks(mask: Any, error: type[Exception]) -> None:
 
 
 def test_reset_options() -> None:
-    """An option that nothing reads is an error; the caller's dictionary is left alone."""
+    """An unknown option is an error; the caller's dictionary is not changed."""
     envs = gymnasium.make_vec("clench/Reacher-v5", 2)
     with pytest.raises(ResetNeeded, match="first reset must be of all"):
         envs.reset(options={"reset_mask": np.array([True, False])})

@@ -1,4 +1,4 @@
-"""A task of one's own."""
+"""Custom tasks."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_ways_to_say_the_model(tmp_path: Path) -> None:
 
 
 def test_action_space() -> None:
-    """The ranges of the controls, and no bound where there is none."""
+    """The action space has the ranges of the controls, and no bounds for controls without range."""
     space = Cart(2).single_action_space
     assert isinstance(space, Box)
     np.testing.assert_array_equal(space.low, np.array([-3.0, -np.inf], dtype=np.float32))
@@ -65,7 +65,7 @@ def test_action_space() -> None:
 
 
 def test_nothing_is_shared() -> None:
-    """What steps return stays as it is, though observe() and info() return views."""
+    """Results of a step do not change later, even if observe() and info() return views."""
 
     class Views(Short):
         def info(self) -> Any:
@@ -82,7 +82,7 @@ def test_nothing_is_shared() -> None:
 
 
 def test_attributes_and_arguments() -> None:
-    """What is given to one environment wins over the class, and stays its own."""
+    """Arguments of an environment override class attributes and do not change the class."""
     assert Cart(1).frame_skip == 2
     assert Cart(1, frame_skip=5).frame_skip == 5
     assert Cart.frame_skip == 2
@@ -123,7 +123,7 @@ def test_truncation() -> None:
 
 
 def test_setting_up_in_any_order() -> None:
-    """observe() may use what the constructor sets after the base class's own."""
+    """observe() may use attributes that the constructor sets after that of the base class."""
 
     class Scaled(Short):
         def __init__(self, num_envs: int, scale: float) -> None:
@@ -181,7 +181,7 @@ def test_what_is_missing() -> None:
 
 
 class Carrier(BatchEnv):
-    """A grid of two numbers drives the gantry; each episode has a goal, a mass and a weld of its own."""
+    """An action of shape (2, 1) drives the gantry; each episode has its own goal and weld."""
 
     model = Path(__file__).resolve().parents[3] / "models/suction_gripper.xml"
     frame_skip = 5
@@ -230,7 +230,7 @@ def test_resets_can_set_goals_and_welds_and_actions_have_any_shape() -> None:
 
 
 def test_episodes_start_in_a_state() -> None:
-    """All of it, of one environment or of many."""
+    """Episodes start in a whole state, given for one environment or for many."""
     sim = Sim(Model.from_xml(CART))
     sim.ctrl[0] = 1.0
     sim.step(20)

@@ -1,4 +1,4 @@
-"""Gymnasium's own checks, registration, and its wrappers over our environments."""
+"""Gymnasium's own checks, registration, and wrappers with our environments."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers import vector as wrappers
 from tasks_of_tests import CartEnv
 
-# What check_env says of every environment whose observations have no bounds or whose controls reach past one;
-# gymnasium's own tasks get the same.
+# Warnings of check_env about unbounded observations and controls beyond one; gymnasium's own tasks get them too.
 EXPECTED = ("A Box observation space m", "For Box action spaces, we recommend", "A Box action space m")
 
 
 @pytest.mark.parametrize("task", [*reference.TASKS, "Cart"])
 def test_check_env(task: str) -> None:
-    """Seeds, determinism, spaces, data that is never used twice."""
+    """check_env finds no fault in seeds, determinism, spaces and aliasing."""
     env = CartEnv() if task == "Cart" else gymnasium.make(f"clench/{task}-v5").unwrapped
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -36,7 +35,7 @@ def test_check_env(task: str) -> None:
 
 @pytest.mark.parametrize("task", reference.TASKS)
 def test_passive_checker(task: str) -> None:
-    """The wrappers that gymnasium.make adds find nothing."""
+    """The checkers that gymnasium.make adds do not warn."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         env = gymnasium.make(f"clench/{task}-v5", max_episode_steps=20)
@@ -51,7 +50,7 @@ def test_passive_checker(task: str) -> None:
 @pytest.mark.parametrize("task", reference.TASKS)
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
 def test_vector_protocol(task: str, mode: str) -> None:
-    """Spaces hold what steps return; nothing is returned twice."""
+    """Spaces contain the results of steps, and results never share memory."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         envs = gymnasium.make_vec(f"clench/{task}-v5", num_envs=3, autoreset_mode=mode, max_episode_steps=5)
@@ -91,7 +90,7 @@ def test_vector_wrappers() -> None:
 
 
 def test_sync_over_singles() -> None:
-    """Gymnasium may also spread our single environments, in its own process or in others."""
+    """Gymnasium can vectorize our single environments, in its own process or in others."""
     envs = gymnasium.make_vec("clench/Reacher-v5", num_envs=2)
     for mode in ("sync", "async"):
         theirs = gymnasium.make_vec("clench/Reacher-v5", num_envs=2, vectorization_mode=mode)
@@ -108,7 +107,7 @@ def test_names() -> None:
 
 
 def test_import_is_light() -> None:
-    """Importing registers names alone: no MuJoCo, no task, and no gymnasium unless asked for."""
+    """Importing only registers names: it imports no MuJoCo, no task, and no gymnasium unless requested."""
     program = (
         "import sys, clench; assert 'gymnasium' not in sys.modules\n"
         "import clench.gymnasium; assert not [m for m in sys.modules if m.startswith('clench.gymnasium.tasks')]\n"
@@ -119,7 +118,7 @@ def test_import_is_light() -> None:
 
 
 def test_without_import() -> None:
-    """Gymnasium imports the module itself where the name says so."""
+    """Gymnasium imports the module itself if the name contains it."""
     program = "import gymnasium; gymnasium.make_vec('clench.gymnasium:clench/Humanoid-v5', num_envs=2).reset(seed=0)"
     subprocess.run([sys.executable, "-c", program], check=True)
 
@@ -134,5 +133,5 @@ def test_model_files() -> None:
 
 
 def test_drawing_arguments() -> None:
-    """They are taken as gymnasium takes them."""
+    """Arguments for drawing are accepted as in gymnasium."""
     gymnasium.make("clench/Ant-v5", default_camera_config={"distance": 2.0}, width=100, camera_id=0)

@@ -1,4 +1,4 @@
-"""What goes wrong while stepping: simulations that fail, actions that make no sense, calls out of turn."""
+"""Failures while stepping: failed simulations, invalid actions, calls in the wrong order."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BROKEN = 3
 
 
 def absurd() -> Any:
-    """Controls that one environment does not survive."""
+    """Returns controls with which one environment fails."""
     actions = np.zeros((ENVS, 2))
     actions[BROKEN, 1] = 1e307
     return actions
@@ -27,7 +27,7 @@ def absurd() -> Any:
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))
 def test_failed(mode: AutoresetMode) -> None:
-    """It ends the episode with its own reward and a reason, leaves the others alone, and is reset like any other."""
+    """A failure ends the episode with its own reward and a reason, without effect on others, and can be reset."""
     envs, calm = Cart(ENVS, autoreset_mode=mode), Cart(ENVS, autoreset_mode=mode)
     envs.reset(seed=1), calm.reset(seed=1)
     before = envs.batch.qpos[BROKEN].copy()
@@ -105,7 +105,7 @@ def test_initial_state_that_cannot_be() -> None:
     ],
 )
 def test_bad_actions(actions: Any, message: str) -> None:
-    """They name the environment and change nothing."""
+    """Errors about actions name the task and change nothing."""
     envs, calm = Cart(ENVS), Cart(ENVS)
     envs.reset(seed=1), calm.reset(seed=1)
     with pytest.raises(ValueError, match=f"Cart: .*{message}"):
@@ -122,7 +122,7 @@ def test_bad_single_actions(action: Any) -> None:
 
 
 def test_action_dtypes() -> None:
-    """Integers, float32 and lists are actions too."""
+    """Actions may be integers, float32 and lists."""
     envs = Cart(2)
     rows = []
     for actions in ([[1, 0], [0, 1]], np.eye(2, dtype=np.float32), np.eye(2, dtype=np.int8), np.eye(2, order="F")):
@@ -133,7 +133,7 @@ def test_action_dtypes() -> None:
 
 
 def test_actions_are_not_clipped() -> None:
-    """Beyond a control's range the simulator clamps; the reward sees what was given."""
+    """The simulator clamps controls; the reward sees the original action."""
     seen = []
 
     class Curious(Cart):

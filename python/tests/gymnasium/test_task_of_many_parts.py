@@ -1,4 +1,4 @@
-"""What a task can say besides arrays and boxes: observations by name, actions that are chosen among some, truncation of its own."""
+"""Tasks with named observations, discrete actions and their own truncation."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = NDArray[Any]
 
 
 class Pushed(BatchEnv):
-    """A cart that is pushed left, right or not at all, seen by name; its episode is cut short where it leaves a range."""
+    """A cart that is pushed left, right or not at all, with named observations. Leaving a range truncates episodes."""
 
     model = CART
     frame_skip = 2

@@ -1,4 +1,4 @@
-"""TorchRL's wrapper of Gymnasium's environments takes ours, single and vector ones. Skipped without it."""
+"""TorchRL's wrapper of Gymnasium's environments accepts ours, single and vector ones. Skipped without it."""
 
 from __future__ import annotations
 

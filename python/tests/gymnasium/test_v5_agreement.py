@@ -1,4 +1,4 @@
-"""The eleven tasks against gymnasium's own, step by step from the same states and actions."""
+"""Compares the eleven tasks with gymnasium's own, step by step from the same states and actions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CASES = [pytest.param(task, {}, id=task) for task in reference.TASKS] + [
 
 
 def pair(task: str, kwargs: dict[str, Any], count: int) -> tuple[list[Any], Any]:
-    """Gymnasium's environments and ours, reset to the same seeds and compared."""
+    """Returns gymnasium's environments and ours, reset with the same seeds and compared."""
     theirs = [reference.gymnasium_env(task, max_episode_steps=EPISODE, **kwargs) for _ in range(count)]
     ours = gymnasium.make_vec(
         f"clench/{task}-v5", count, max_episode_steps=EPISODE, autoreset_mode="Disabled", **kwargs
@@ -41,7 +41,7 @@ def compare(ours: Any, row: int, observations: Any, infos: Any, observation: Any
 
 
 def actions_of(ours: Any, step: int) -> Any:
-    """Random actions, every third time outside of the ranges: what the simulator clamps must cost the same."""
+    """Returns random actions, every third time outside the ranges: clamped actions must have the same cost."""
     actions = ours.action_space.sample()
     return actions * np.float32(1.7) if step % 3 == 0 else actions
 
@@ -74,7 +74,7 @@ def test_steps(task: str, kwargs: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("task", reference.TASKS)
 def test_free_running(task: str) -> None:
-    """From the same reset on, without help, for as long as no chaos sets in."""
+    """Without copying states, steps after the same reset agree for as long as the motion is not chaotic."""
     theirs, ours = pair(task, {}, 1)
     ours.action_space.seed(6)
     for step in range(30):
@@ -101,7 +101,7 @@ def test_spaces(task: str) -> None:
 
 @pytest.mark.parametrize("task", reference.TASKS)
 def test_every_argument(task: str) -> None:
-    """The arguments that gymnasium's class takes, and their defaults."""
+    """The arguments and defaults are those of gymnasium's class."""
     names = gymnasium.spec(f"{task}-v5").entry_point, gymnasium.spec(f"clench/{task}-v5").vector_entry_point
     theirs, ours = (inspect.signature(load_env_creator(str(name))).parameters for name in names)
     for name, parameter in theirs.items():

@@ -1,4 +1,4 @@
-"""A vector environment of n is n single environments, to the bit; seeds say everything."""
+"""A vector environment of n is bitwise equal to n single environments; seeds determine everything."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def assert_same_info(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
 
 
 def episode(envs: Any, seed: Any) -> Any:
-    """Observations of a reset and ten steps."""
+    """Returns the observations of a reset and ten steps."""
     envs.action_space.seed(9)
     return [envs.reset(seed=seed)[0], *(envs.step(envs.action_space.sample())[0] for _ in range(10))]
 
@@ -73,7 +73,7 @@ def test_seeds() -> None:
 
 
 def test_seeds_of_some() -> None:
-    """None among seeds lets a generator go on; a mask leaves those of the others alone."""
+    """A seed of None continues a generator; environments outside the mask keep theirs."""
     envs: Any = gymnasium.make_vec("clench/Hopper-v5", 3)
     start = envs.reset(seed=5)[0]
     later = envs.reset(seed=[None, 6, None])[0]
@@ -85,7 +85,7 @@ def test_seeds_of_some() -> None:
 
 
 def test_unseeded() -> None:
-    """Without a seed the system gives one, which can be read and used again."""
+    """Without a seed the system provides one, which can be read and reused."""
     envs: Any = gymnasium.make_vec("clench/Hopper-v5", 3)
     first = envs.reset()[0]
     assert_same(envs.reset(seed=envs.np_random_seed)[0], first)

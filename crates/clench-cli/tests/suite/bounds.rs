@@ -1,4 +1,4 @@
-//! Small files and few words that ask for much: a message says what exceeds what.
+//! Small files and short arguments that request too much: a message names the limit and the excess.
 
 use crate::program::{code, driven, errors, folder, header, model, npy, refused, simulate};
 use std::fs::File;

@@ -1,4 +1,5 @@
-//! `clench simulate --record` ended by `kill -9` at any moment: the record that was there before is there whole, or the new one is.
+//! `clench simulate --record` killed by `kill -9` at any moment: either the previous recording or the new one is
+//! complete.
 //!
 //! The short form is an ordinary test; `cargo xtask soak --only recordings` runs the long one.
 
@@ -10,7 +11,7 @@ use std::process::{Child, Stdio};
 use std::thread;
 use std::time::Instant;
 
-/// Rows of the record that is there before.
+/// The number of rows of the previous recording.
 const OLD: u64 = 10;
 
 fn record(path: &Path, steps: u64) -> Child {
@@ -28,7 +29,7 @@ fn record_all(path: &Path, steps: u64) {
     assert_eq!(rows(path), steps);
 }
 
-/// The rows of a record, all of whose arrays can be read.
+/// Returns the rows of a recording; all arrays must be readable.
 fn rows(path: &Path) -> u64 {
     let file = File::open(path).expect("the record is there");
     let mut archive = zip::ZipArchive::new(file).expect("a whole archive");
@@ -47,7 +48,7 @@ fn rows(path: &Path) -> u64 {
     first
 }
 
-/// Ends so many runs of so many steps, at moments spread over the time that a whole one takes.
+/// Kills `times` runs of `steps` steps, at moments spread over the duration of a complete one.
 fn kill(times: u32, steps: u64) {
     let folder = folder();
     let path = folder.path().join("run.npz");

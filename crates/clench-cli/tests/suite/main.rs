@@ -1,4 +1,4 @@
-//! Tests that run the program: one program of their own. Those beside this folder need a graphics device.
+//! Tests that run the program, in one program. Those outside this folder need a GPU.
 
 mod bounds;
 mod killed;

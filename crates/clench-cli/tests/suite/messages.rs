@@ -1,4 +1,4 @@
-//! Records as MCAP: what is in them, and what is left of one whose program was killed.
+//! MCAP recordings: their contents, and the readable part of one whose program was killed.
 
 use crate::program::{code, errors, folder, model, refused, simulate, simulation, start, summary};
 use mcap::read::Options;
@@ -9,7 +9,7 @@ use std::fs;
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The messages of a file under their topics, each with its time, s.
+/// Returns the messages of a file by topic, each with its time, s.
 fn messages(bytes: &[u8], whole: bool) -> BTreeMap<String, Vec<(f64, Value)>> {
     let options = match whole {
         true => Options::ValidateChunkCrcs.into(),
@@ -17,7 +17,7 @@ fn messages(bytes: &[u8], whole: bool) -> BTreeMap<String, Vec<(f64, Value)>> {
     };
     let mut found: BTreeMap<String, Vec<(f64, Value)>> = BTreeMap::new();
     for message in MessageStream::new_with_options(bytes, options).expect("it is MCAP") {
-        // What was being written when the program was killed ends the stream.
+        // A message that was truncated when the program was killed ends the stream.
         let Ok(message) = message else {
             assert!(!whole, "{message:?}");
             break;
@@ -72,7 +72,7 @@ fn a_record_of_messages_tells_poses_shapes_forces_and_plots() {
         lists.sum()
     };
     assert!(count("cylinders") >= 10 && count("spheres") > 20);
-    // Each shape is in the frame of a body whose pose is told.
+    // Each shape is in the frame of a body whose pose is published.
     let (_, poses) = &all["/tf"][0];
     let poses = poses["transforms"].as_array().unwrap();
     let mut frames = Vec::from_iter(poses.iter().map(|t| t["child_frame_id"].as_str().unwrap()));

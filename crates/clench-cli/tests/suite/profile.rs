@@ -1,9 +1,9 @@
-//! The profile of a run adds up, and tells the pairs of the narrow phase apart by kind.
+//! The profile of a run adds up, and distinguishes the pairs of the narrow phase by kind.
 
 use crate::program::{model, simulate, summary};
 use serde_json::Value;
 
-/// What half a second of an arm beside a box says.
+/// Returns the summary of half a second of an arm next to a box.
 fn profile(words: &str) -> Value {
     summary(&simulate(
         &model("arm_and_box"),
@@ -37,7 +37,7 @@ fn pairs_take_part_of_the_narrow_phase_and_make_the_contacts() {
             touching > 0.0 && touching <= near,
             "{words}: {touching} of {near}"
         );
-        // A pair that touches makes at least one contact.
+        // A touching pair makes at least one contact.
         let contacts = figures["contacts_mean"].as_f64().unwrap();
         assert!(touching <= contacts, "{words}: {touching} of {contacts}");
         let boxes = serde_json::json!(["box", "box"]);

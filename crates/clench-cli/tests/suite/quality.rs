@@ -1,10 +1,10 @@
-//! What a run is worth, in a word: nonsense is said to be so, and sound runs are good.
+//! The one-word quality of a run: unphysical runs are reported as such, and sound runs are good.
 
 use crate::program::{code, errors, folder, model, simulate, summary};
 use std::fs;
 use std::path::Path;
 
-/// The quality of a run, which must have said so on standard error too if it is not good.
+/// Returns the quality of a run, and checks that standard error has a warning unless it is good.
 fn quality(model: &Path, words: &str) -> String {
     let done = simulate(model, &format!("--json {words}"), &[]);
     let word = summary(&done)["quality"].as_str().unwrap().to_owned();
@@ -101,7 +101,7 @@ fn an_equality_that_starts_torn_is_a_violation() {
 #[test]
 fn energy_from_nowhere_is_energy_growth() {
     let folder = folder();
-    // An explicit spring whose period is shorter than a step can follow.
+    // An explicit spring with a period too short for the time step.
     let stiff = scene(
         folder.path(),
         r#"<option timestep=".01" gravity="0 0 0"/>
@@ -111,7 +111,7 @@ fn energy_from_nowhere_is_energy_growth() {
     for words in ["--steps 15", "--steps 15 --envs 3"] {
         assert_eq!(quality(&stiff, words), "energy_growth", "{words}");
     }
-    // An arm that a servo lifts has its energy from the servo.
+    // An arm that a servo lifts gets its energy from the servo.
     let lifted = scene(
         folder.path(),
         r#"<worldbody><body pos="0 0 1"><joint name="hinge" axis="0 1 0" damping="1"/><geom type="capsule" size=".03" fromto="0 0 0 0 0 -1"/>
@@ -140,7 +140,7 @@ fn a_batch_that_failed_says_when() {
     assert!(time < 10.0, "{batch}");
     assert_eq!(batch["steps"], alone["steps"]);
     assert!((time - alone["simulated_time"].as_f64().unwrap()).abs() < 1e-9);
-    // Text says the same.
+    // The text output is the same.
     let text = simulate(&path, "--time 50 --envs 3", &[]);
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     assert!(
@@ -161,7 +161,7 @@ fn the_report_has_the_same_lines_whatever_the_model() {
         assert!(names.len() >= 12, "{text}");
         names
     };
-    // Energy of the pendulum is conserved but for damping; actuators of the humanoid add to it.
+    // The pendulum conserves its energy except for damping; the humanoid's actuators add energy.
     let record = folder.path().join("run.npz");
     let recorded = names("pendulum", "", &[("--record", &record)]);
     assert_eq!(names("pendulum", "", &[]), recorded);

@@ -1,4 +1,4 @@
-//! Records: what was there before stays until the new one is whole, and an interrupt loses nothing.
+//! Recordings: the previous file stays until the new one is complete, and an interrupt loses nothing.
 
 use crate::program::{
     array, code, driven, errors, folder, header, model, npy, refused, simulate, simulation, start,
@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// A run that lasts until it is ended, with a row for every thousandth step.
+/// A run that lasts until it is stopped, with a row for every thousandth step.
 const ENDLESS: &str = "--steps 2000000000 --every 1000 --json";
 
 fn names(folder: &Path) -> Vec<String> {
@@ -21,7 +21,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Lets an endless run begin, sends it a signal, and waits for its end.
+/// Starts an endless run, sends it a signal, and waits for its end.
 fn end_by(signal: &str, words: &str, record: &Path) -> Output {
     let run = start(simulation(
         &model("pendulum"),
@@ -204,7 +204,7 @@ fn output_that_cannot_be_written_is_no_panic() {
     let run = || simulation(&model("pendulum"), "--steps 2", &[]);
     let done = run().stdout(full()).output().unwrap();
     refused(&done, &["standard output", "No space left"]);
-    // Notes, warnings and errors that nobody can read change nothing.
+    // Notes, warnings and errors that cannot be written change nothing.
     let bad = crate::program::command("simulate nowhere.xml")
         .stderr(full())
         .status()

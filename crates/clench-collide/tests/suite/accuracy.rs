@@ -1,5 +1,5 @@
-//! Pairs as a simulation meets them: pressed a little or apart a little, on round coordinates, resting face to face. Depths and
-//! normals against the truth by brute force.
+//! Pairs that are typical of a simulation: pressed or apart a little, on round coordinates, resting face to face.
+//! Compares depths and normals with the truth by brute force.
 
 use crate::common::placement::{PLACEMENTS, placed};
 use crate::common::{PAIRS, Random, Scene, V, by_support, off_surface};
@@ -10,8 +10,8 @@ fn angle(u: V, v: V) -> f64 {
     u.cross(v).norm().atan2(u.dot(v)).to_degrees()
 }
 
-/// Where the truth is unique, depths are within 1e-6 m of it and normals within 0.1°: in 99 of 100, and never is a depth off by
-/// more than 1e-4 m.
+/// Checks that 99 of 100 depths are within 1e-6 m of the truth, and 99 of 100 normals within 0.1° if the true one is
+/// unique. No depth is off by more than 1e-4 m.
 #[test]
 fn depths_and_normals_are_true() {
     let mut random = Random(21);
@@ -37,7 +37,7 @@ fn depths_and_normals_are_true() {
                 "{placement:?}: {} for {truth} in {scene:?}",
                 c.distance
             );
-            // Where another direction is as good, or a flat one nearly, the normal is open.
+            // The normal is not unique if another direction has nearly the same gap.
             let rival = |(gap, n): &(f64, V)| truth - gap < 1e-8 && angle(*n, normal) > 0.05;
             if optima.iter().any(rival) {
                 continue;
@@ -57,7 +57,7 @@ fn depths_and_normals_are_true() {
     }
 }
 
-/// (Of a tilted capsule, what is beside the deepest point lies on a ball about its middle line, a little inside.)
+/// Excludes capsules: the points of a tilted capsule next to the deepest lie on a ball about its axis, slightly inside.
 #[test]
 fn every_point_lies_midway_between_the_surfaces() {
     let mut random = Random(22);
@@ -85,7 +85,7 @@ fn every_point_lies_midway_between_the_surfaces() {
     }
 }
 
-/// Vertices of these that nearly coincide once made a sliver, on which the search seemed to be at its end 6 mm too early.
+/// Nearly coincident vertices of these cylinders once made a sliver, on which the search terminated 6 mm too early.
 #[test]
 fn a_sliver_does_not_deceive() {
     let pose = |position: [f64; 3], rows: [[f64; 3]; 3]| Pose {

@@ -19,7 +19,7 @@ struct World<T: Real> {
 }
 
 impl<T: Real> World<T> {
-    /// Shapes of all kinds in a slab; in each lane elsewhere.
+    /// Returns shapes of all kinds in a slab, at different poses in each lane.
     fn random(random: &mut Random, count: usize) -> Self {
         let mut world = World {
             shapes: Vec::new(),
@@ -50,13 +50,13 @@ impl<T: Real> World<T> {
         world
     }
 
-    /// Whether two shapes are near in any lane.
+    /// Returns true if two shapes are near in any lane.
     fn near(&self, i: usize, j: usize) -> bool {
         let margin = self.margins[i] + self.margins[j];
         near(&self.bounds[i], &self.bounds[j], margin).any()
     }
 
-    /// Whether the narrow phase finds anything between two shapes.
+    /// Returns true if the narrow phase finds a contact between two shapes.
     fn touch(&self, i: usize, j: usize) -> bool {
         let (i, j) = if self.shapes[i].kind() <= self.shapes[j].kind() {
             (i, j)
@@ -77,7 +77,7 @@ fn allowed(i: u32, j: u32) -> bool {
     !(i + j).is_multiple_of(7)
 }
 
-/// A broad phase of shapes that all move.
+/// Returns a broad phase of shapes that all move.
 fn all_moving(count: usize) -> BroadPhase {
     BroadPhase::new(&vec![Mobility::Moving; count], |shape| shape)
 }
@@ -179,7 +179,7 @@ fn a_bound_holds_its_shape() {
     }
 }
 
-/// Balls of 1 dm in a heap without gaps.
+/// Returns balls of 1 dm in a heap without gaps.
 fn heap(count: usize) -> Vec<Bound<f64>> {
     let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.05, 0.0, 0.0));
     let edge = (count as f64).cbrt().ceil() as usize;
@@ -201,7 +201,7 @@ fn heap(count: usize) -> Vec<Bound<f64>> {
         .collect()
 }
 
-/// How many pairs are asked about, and how many are near.
+/// Returns the number of pairs queried and the number of pairs that are near.
 fn asked(bounds: &[Bound<f64>]) -> (usize, usize) {
     let (mut asked, mut pairs) = (0, Vec::new());
     let mut count = |_, _| {
@@ -244,12 +244,12 @@ fn what_is_large_or_far_or_no_number_does_not_disturb_the_rest() {
         bounds.push(Bound { center, ..ball });
     }
     let (asked, with_floor) = asked(&bounds);
-    // The lowest layer lies on the floor; of those far away, each is near its twin where there is a distance.
+    // The lowest layer lies on the floor. Each distant ball is near its twin if their distance is a number.
     assert_eq!(with_floor, near + 100 + 3);
     assert!(asked <= 15 * bounds.len(), "{asked}");
 }
 
-/// So many shapes in turn stand, are placed, are left out and move.
+/// Returns static, placed, excluded and moving shapes in turn, `turn` of each.
 fn mixed(count: usize, turn: usize) -> Vec<Mobility> {
     use Mobility::{Excluded, Moving, Placed, Static};
     let kinds = [Static, Placed, Excluded, Moving];

@@ -1,5 +1,5 @@
-//! Cylinders that overlap boxes, cylinders and hulls of few faces, whose depth is found in closed form: no direction has a larger
-//! gap than the one found, and every kind of direction is the one to find in some poses.
+//! Cylinders that overlap boxes, cylinders and hulls of few faces, with depths in closed form: no direction has a
+//! larger gap than the one found, and every kind of direction is found in some poses.
 
 use crate::common::{
     Random, Scene, V,
@@ -10,8 +10,8 @@ use clench_collide::{Pose, Shape, ShapeKind};
 use clench_math::{Mat3, Quat};
 use std::collections::BTreeMap;
 
-/// What touches what, told from a normal that is found exactly: which of a cylinder's axis and the three of a box, or the axes
-/// of two cylinders, it is along or across, or how many vertices of a hull are furthest along it.
+/// The kind of a contact, determined from an exact normal: which axes of a cylinder and a box, or of two cylinders, it
+/// is parallel or perpendicular to, or the number of hull vertices furthest along it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Touch {
     Face,
@@ -62,28 +62,28 @@ fn touch(scene: &Scene, n: V) -> Option<Touch> {
     }
 }
 
-/// How the sizes of a scene are drawn.
+/// The distribution of a scene's sizes.
 #[derive(Clone, Copy, Debug)]
 enum Sizes {
     /// 5 to 50 cm.
     Usual,
-    /// 1 mm to 1 m, each on its own.
+    /// 1 mm to 1 m, each independent.
     Uneven,
-    /// The same, and some are zero.
+    /// As `Uneven`, but some are zero.
     Flat,
 }
 
-/// How the bodies are turned.
+/// The rotations of the bodies.
 #[derive(Clone, Copy, Debug)]
 enum Turns {
     Any,
     /// By right angles.
     Right,
-    /// By right angles, but for 1e-12 to 0.1 rad.
+    /// By right angles, up to an error of 1e-12 to 0.1 rad.
     NearlyRight,
 }
 
-/// A ball of few faces, or the ground below a triangle, as flat and as acute as chance has it.
+/// Returns a ball of few faces or the ground below a triangle, arbitrarily flat and acute.
 fn solid(random: &mut Random, size: V) -> Shape<'static, f64> {
     let mut points = match (random.unit() * 3.0) as usize {
         0 => round(random, 4, size),
@@ -106,7 +106,7 @@ fn scene(random: &mut Random, kind: ShapeKind, sizes: Sizes, turns: Turns) -> Sc
     let mut shape = |kind| {
         let mut length = || match sizes {
             Sizes::Usual => random.range(0.05, 0.5),
-            // A flat hull is none.
+            // Flat points have no hull.
             Sizes::Flat if kind != ShapeKind::Mesh && random.unit() < 0.2 => 0.0,
             _ => 10f64.powf(random.range(-3.0, 0.0)),
         };
@@ -134,7 +134,7 @@ fn scene(random: &mut Random, kind: ShapeKind, sizes: Sizes, turns: Turns) -> Sc
         pose_b: pose(rotation_b, V::ZERO),
         margin: 0.0,
     };
-    // Concentric, deep or shallow: a share of the way out along some direction.
+    // Concentric, deep or shallow: a fraction of the separating distance along some direction.
     let any = random.direction();
     let direction = match (random.unit() * 6.0) as usize {
         0 => rotation_a.column(2),
@@ -155,7 +155,7 @@ fn scene(random: &mut Random, kind: ShapeKind, sizes: Sizes, turns: Turns) -> Sc
     scene
 }
 
-/// Tries poses of a cylinder and another shape; gives how often what touched what.
+/// Tries poses of a cylinder and another shape. Returns the number of contacts of each kind.
 fn no_direction_has_a_larger_gap(kind: ShapeKind, seed: u64) -> BTreeMap<Touch, usize> {
     let mut random = Random(seed);
     let mut touches = BTreeMap::new();
@@ -211,8 +211,8 @@ fn a_cylinder_in_a_hull() {
     assert!(touches.len() == 5 && often, "{touches:?}");
 }
 
-/// Along all directions but those across two cap circles these overlap by less than a micrometre, and the search for a common point
-/// believes so too.
+/// Except in directions across two cap circles, these overlap by less than a micrometre in all directions, and the
+/// search for a common point also finds an overlap.
 #[test]
 fn cylinders_apart_by_a_micrometre_do_not_touch() {
     let pose = |position, rows: [[f64; 3]; 3]| Pose {
@@ -254,7 +254,7 @@ fn cylinders_apart_by_a_micrometre_do_not_touch() {
     assert!(scene.deepest().is_none(), "{:?}", scene.deepest());
 }
 
-/// Two cylinders about one axis, but for rounding, are as far apart along every direction across it.
+/// Coaxial cylinders have, up to rounding, the same gap in every direction across their axis.
 #[test]
 fn the_normal_of_coaxial_cylinders_does_not_turn_with_rounding() {
     let cylinder = |radius, half| Shape::new(ShapeKind::Cylinder, V::new(radius, half, 0.0));

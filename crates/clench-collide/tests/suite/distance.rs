@@ -1,10 +1,10 @@
-//! Distances against a search over directions, in both orders, near and far.
+//! Distances compared with a search over directions, in both orders, near and far.
 
 use crate::common::{BOUNDED, PAIRS, Random, V, off_surface};
 use clench_collide::{HeightField, Hull, Pose, Shape, ShapeKind, convex_hull, distance, supported};
 use clench_math::{Mat3, Vec3};
 
-/// How exact the search for the true distance is, m.
+/// The accuracy of the search for the true distance, m.
 const SEARCH: f64 = 1e-6;
 
 #[test]
@@ -112,7 +112,7 @@ fn height_fields_have_distances_from_afar() {
             };
             let found = distance(&ball, &pose, &ground, &Pose::IDENTITY, f64::INFINITY)
                 .expect("a distance");
-            // The highest points of a field bound it from above, its triangles from below.
+            // The grid points of the field bound the distance from above, its highest level from below.
             let nearest_corner = (0..2500)
                 .map(|k| (field.point(k / 50, k % 50) - center).norm() - 0.01)
                 .fold(f64::INFINITY, f64::min);
@@ -150,7 +150,7 @@ fn some_pairs_and_some_numbers_have_no_distance() {
         of(Plane, HeightField, V::ZERO).is_none()
             && of(HeightField, HeightField, V::ZERO).is_none()
     );
-    // Without their assets.
+    // Without their assets, height fields have no distance.
     assert!(of(HeightField, Sphere, V::ZERO).is_none());
     for x in [f64::NAN, f64::INFINITY] {
         for b in [Sphere, Capsule, Ellipsoid, Cylinder, Box] {

@@ -1,4 +1,4 @@
-//! Hulls are closed, convex, hold every point, and keep the shape of thin, fine and degenerate clouds.
+//! Hulls are closed, convex, contain every point, and preserve the shape of thin, fine and degenerate clouds.
 
 use clench_collide::{Hull, HullError, convex_hull};
 use clench_math::{Quat, Vec3};
@@ -32,12 +32,12 @@ fn corners_of_box(half: [f64; 3]) -> Vec<Vec3<f64>> {
         .collect()
 }
 
-/// As files keep coordinates.
+/// Rounds a point to single precision, as files store coordinates.
 fn in_f32(point: Vec3<f64>) -> Vec3<f64> {
     Vec3::from_array(point.to_array().map(|x| f64::from(x as f32)))
 }
 
-/// Clouds of all sorts, with names.
+/// Returns named clouds of all kinds.
 fn clouds() -> Vec<(String, Vec<Vec3<f64>>)> {
     let mut noise = Noise(88_172_645_463_325_252);
     let mut clouds = Vec::new();
@@ -140,7 +140,7 @@ fn a_hull_has_flat_faces_and_finds_the_farthest_vertex() {
     }
 }
 
-/// Few vertices, many, and so many in a small range of normals that they have to be climbed.
+/// Tests few vertices, many, and so many in a small range of normals that the search must climb.
 #[test]
 fn the_farthest_vertex_is_found_along_any_direction() {
     let mut noise = Noise(104_729);

@@ -1,4 +1,5 @@
-//! What must not matter: where the scene is, which of two like shapes is first, how many environments share a call.
+//! Contacts do not depend on the pose of the scene, the order of two shapes of one kind, or the number of environments
+//! in a call.
 
 use crate::common::{BOUNDED, PAIRS, Random, Scene, convert_pose, convert_shape};
 use clench_collide::{ContactPoint, Contacts, Pose, Shape, ShapeKind, collide, supported};
@@ -11,7 +12,7 @@ fn moved(pose: &Pose<f64>, by: &Pose<f64>) -> Pose<f64> {
     }
 }
 
-/// Whether rounding cannot change what a scene yields: no decision of the kernels hangs on a tie.
+/// Returns a scene whose result rounding cannot change: no decision of the kernels depends on a tie.
 fn generic(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     loop {
         let scene = random.scene(kinds);
@@ -122,7 +123,7 @@ fn lanes<T: Real>(scenes: &[Scene]) -> (Shape<'static, T>, Pose<T>, Shape<'stati
     (a, pose(&|s| s.pose_a), b, pose(&|s| s.pose_b), margin)
 }
 
-/// The numbers of a point in one lane, as f64, which holds either precision.
+/// Returns the numbers of a point in one lane, as bits of f64, which holds either precision.
 fn numbers<T: Real>(c: &ContactPoint<T>, lane: usize) -> Vec<u64> {
     use clench_math::Scalar;
     let [n, t, b] = c.frame.rows;
@@ -141,7 +142,7 @@ fn all_finite<T: Real>(c: &ContactPoint<T>) -> bool {
     values.into_iter().all(|x| x.is_finite().all())
 }
 
-/// Replaces a size or a coordinate by what a builder would refuse, or by the largest or least there is.
+/// Replaces a size or a coordinate by one that a builder rejects, or by a huge or tiny one.
 fn spoil_number(random: &mut Random, scene: &mut Scene) {
     let bad = [f64::NAN, f64::INFINITY, -1.0, 1e300, 1e-300];
     let bad = bad[(random.unit() * 5.0) as usize];
@@ -160,8 +161,8 @@ fn spoil_size(shape: &mut Shape<'static, f64>, axis: usize, bad: f64) {
     *shape = shape.resized(size);
 }
 
-/// Each lane finds what it finds alone. With `spoil`, one lane of each call has a number that no model has, and the others do not
-/// notice.
+/// Checks that each lane finds the same as a single environment. With `spoil`, one lane of each call has a number
+/// outside the range of any model, which must not affect the others.
 fn lanes_equal_scalars<S, T>(seed: u64, spoil: bool)
 where
     S: Real<Scalar = S, Mask = bool>,

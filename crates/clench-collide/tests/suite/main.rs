@@ -1,4 +1,4 @@
-//! Tests of collision through the crate's public face: one program, so that its generic code is compiled once for all of them.
+//! Tests of collision through the crate's public API, in one program so that its generic code is compiled once.
 
 mod accuracy;
 mod broad_phase;

@@ -1,4 +1,4 @@
-//! How many points a pair yields, and where: what makes things lie still.
+//! The number and positions of a pair's contact points, which keep bodies at rest.
 
 use crate::common::Scene;
 use clench_collide::{ContactPoint, Pose, Shape, ShapeKind};
@@ -44,7 +44,7 @@ fn on_floor(b: Shape<'static, f64>, pose: Pose<f64>) -> Vec<ContactPoint<f64>> {
     points(shape(ShapeKind::Plane, [0.0; 3]), Pose::IDENTITY, b, pose)
 }
 
-/// Asserts the points' positions, in any order, and that all are `depth` deep with the normal upward.
+/// Asserts the points' positions, in any order, and that all are `depth` deep with an upward normal.
 fn assert_patch(points: &[ContactPoint<f64>], depth: f64, expected: &[[f64; 3]]) {
     assert_eq!(points.len(), expected.len(), "{points:?}");
     for p in expected {
@@ -105,7 +105,7 @@ fn a_lying_capsule_touches_with_both_ends_and_friction_along_it() {
 
 #[test]
 fn a_standing_capsule_has_a_proper_frame() {
-    // The axis gives no tangent here.
+    // The axis of a standing capsule gives no tangent.
     for tilt in [0.0, 0.3, FRAC_PI_2] {
         let rotation = turned([0.0, 1.0, 0.0], tilt);
         let pose = |height: f64| Pose {
@@ -163,7 +163,8 @@ fn crossing_capsules_touch_once() {
     assert_patch(&found, 0.001, &[[0.1, 0.0, 0.0995]]);
 }
 
-/// The scene upside down: the box or cylinder is the second shape but the lower one.
+/// Returns the contacts of a capsule on a box or cylinder, which is the second shape but the lower one. Flips the
+/// normals.
 fn lying_on(b: Shape<'static, f64>, top: f64) -> Vec<ContactPoint<f64>> {
     let capsule = shape(ShapeKind::Capsule, [0.1, 0.3, 0.0]);
     let mut found = points(

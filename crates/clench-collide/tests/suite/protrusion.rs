@@ -1,9 +1,9 @@
-//! How far shapes jut out of each other; `parity/test_enclosed.py` holds the numbers beside MuJoCo's.
+//! The protrusion of a shape from another; `parity/test_enclosed.py` compares the numbers with MuJoCo's.
 
 use clench_collide::{Ascent, Pose, Shape, ShapeKind, protrusion};
 use clench_math::{Quat, Vec3};
 
-/// How far a turned ellipsoid juts out of a box.
+/// Returns the protrusion of a rotated ellipsoid from a box.
 fn out(search: Ascent) -> f64 {
     let egg = Shape::new(ShapeKind::Ellipsoid, Vec3::new(0.1, 0.2, 0.3));
     let pose = Pose {

@@ -1,4 +1,4 @@
-//! Rays against everything that is made of triangles: meshes, hulls and height fields are hit like their triangles one by one.
+//! Rays against shapes made of triangles: meshes, hulls and height fields are hit like their individual triangles.
 
 use crate::common::hulls::bumpy;
 use crate::common::{Random, V};
@@ -7,7 +7,7 @@ use clench_collide::{
 };
 use clench_math::Vec3;
 
-/// The textbook's way (Möller & Trumbore 1997), over all triangles.
+/// Intersects a ray with all triangles by the textbook method (Möller & Trumbore 1997).
 fn by_force(vertices: &[V], faces: &[[u32; 3]], origin: V, direction: V) -> f64 {
     let hit = |face: &[u32; 3]| {
         let [p, q, r] = face.map(|v| vertices[v as usize]);
@@ -72,7 +72,7 @@ fn no_ray_slips_out_of_a_closed_mesh() {
     let (vertices, faces) = bumpy(&mut random);
     let mesh = TriangleMesh::new(vertices.clone(), faces).unwrap();
     for k in 0..20_000 {
-        // At vertices and at the middles of edges, too.
+        // Also at vertices and at the middles of edges.
         let direction = match k % 3 {
             0 => random.direction(),
             1 => vertices[k % vertices.len()],
@@ -104,7 +104,7 @@ fn a_mesh_of_nothing_is_never_hit_and_a_broken_one_is_refused() {
     assert_eq!(corner, Err(TriangleMeshError::Corner(1, 3)));
     let nan = TriangleMesh::new(vec![V::ZERO, Vec3::new(0.0, f64::NAN, 0.0)], Vec::new());
     assert_eq!(nan, Err(TriangleMeshError::NotFinite(1)));
-    // All in one place: halves of it are as large.
+    // All triangles coincide: splitting them does not shrink their bounds.
     let same = TriangleMesh::new(vec![V::ZERO; 3], vec![[0, 1, 2]; 1000]).unwrap();
     assert_eq!(same.ray(&Pose::IDENTITY, &down).distance, f64::INFINITY);
 }
@@ -149,14 +149,14 @@ fn hulls_are_hit_like_their_triangles() {
     assert!(hits > 300 && hits < 1000);
 }
 
-/// Whether a point is within a height field and its base.
+/// Returns true if a point is between the surface of a height field and its base.
 fn is_inside(field: &HeightField, p: V) -> bool {
     let [x, y, _, base] = field.size();
     let over = p.x.abs() < x && p.y.abs() < y;
     over && p.z > -base && p.z < field.height_at(p.x, p.y)
 }
 
-/// Adds the plane between a height field and its base, which rays from within meet.
+/// Adds the plane between a height field and its base, which rays from inside hit.
 fn add_floor(field: &HeightField, vertices: &mut Vec<V>, faces: &mut Vec<[u32; 3]>) {
     let [x, y, ..] = field.size();
     let first = vertices.len() as u32;
@@ -165,7 +165,7 @@ fn add_floor(field: &HeightField, vertices: &mut Vec<V>, faces: &mut Vec<[u32; 3
     faces.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
 }
 
-/// The height field as a closed mesh.
+/// Returns the height field as a closed mesh.
 fn skin(field: &HeightField) -> (Vec<V>, Vec<[u32; 3]>) {
     let (rows, columns) = (field.rows(), field.columns());
     let [.., base] = field.size();
@@ -255,7 +255,7 @@ fn height_fields_are_hit_like_their_triangles() {
                     on,
                     -pose.rotation.transpose_mul(hit.normal),
                 );
-                // Just outside or just inside, and the surface is close on the side of the normal or against it.
+                // The point is just outside or just inside, so the surface is close along the normal or against it.
                 assert!(ahead < 1e-5 || behind < 1e-5, "{hit:?} {ahead} {behind}");
             }
         }
@@ -281,7 +281,7 @@ fn a_ray_crosses_a_large_field_from_end_to_end() {
             direction: Vec3::new(1.0, 1e-3, -1e-3),
         };
         let hit = ray(&shape, &Pose::IDENTITY, &graze);
-        // It comes down to a metre after 100 m, at the end of the field or behind it.
+        // The first ray descends to 1 m after 100 m, at the end of the field or beyond it.
         let to = Ray {
             direction: Vec3::new(1.0, 1e-3, -3e-3),
             ..graze

@@ -1,5 +1,5 @@
-//! Rays against what is true of a first hit: it lies on the surface, the normal points out there, and nothing of the shape is in
-//! the way.
+//! Properties of a ray's first hit: it lies on the surface, the normal points outward there, and no part of the shape
+//! is in front of it.
 
 use crate::common::{Random, V, convert_pose, off_surface};
 use clench_collide::{
@@ -72,7 +72,7 @@ fn the_first_hit_lies_on_the_surface_and_nothing_is_before_it() {
             assert!(off_surface(&shape, &pose, at) < 1e-12, "{kind:?} {hit:?}");
             assert!((hit.normal.norm() - 1.0).abs() < 1e-12);
             assert_eq!(hit.normal.dot(direction) > 0.0, begins_inside);
-            // The normal: outside is that way.
+            // The normal points outward.
             assert!(
                 !inside(&shape, &pose, at + hit.normal * 1e-6)
                     && inside(&shape, &pose, at - hit.normal * 1e-6)
@@ -184,7 +184,7 @@ fn a_ray_meets_the_bounding_sphere_of_what_it_hits_before_the_hit() {
     let mut random = Random(53);
     let (mut hits, mut proofs) = (0, 0);
     for k in 0..20_000 {
-        // Tiny and huge, near and far, and directions of any length.
+        // Balls are tiny and huge, near and far, and directions have any length.
         let scale = 10_f64.powi(k % 9 - 4);
         let radius = scale * random.range(0.1, 1.0);
         let ball = Shape::new(ShapeKind::Sphere, Vec3::new(radius, 0.0, 0.0));
@@ -194,7 +194,7 @@ fn a_ray_meets_the_bounding_sphere_of_what_it_hits_before_the_hit() {
             rotation: Mat3::IDENTITY,
         };
         let origin = random.vector() * 10_f64.powi(k % 5);
-        // Most graze the ball.
+        // Most rays graze the ball.
         let across = random.direction().cross(center - origin).normalize().0;
         let beside = across * (radius * random.range(0.99, 1.01));
         let direction = (center + beside - origin) * 10_f64.powi(k % 11 - 5);
@@ -209,7 +209,7 @@ fn a_ray_meets_the_bounding_sphere_of_what_it_hits_before_the_hit() {
             proofs += usize::from(!unit.may_meet(center, radius, f64::INFINITY));
         }
         let nearest = (center - origin).norm() - radius;
-        // From afar the proof is sharp.
+        // The test is sharp for distant balls.
         if nearest > 100.0 * radius {
             let within = 0.99 * nearest / direction.norm();
             assert!(!unit.may_meet(center, radius, within), "{line:?}");
@@ -292,7 +292,7 @@ fn nothing_breaks_a_ray() {
         let leads = largest >= f64::MIN_POSITIVE && d.to_array().iter().all(|x| x.is_finite());
         assert!(leads || hits.iter().all(|hit| hit.distance == f64::INFINITY));
     }
-    // Lengths of the direction do not matter but as a unit.
+    // The length of the direction only sets the unit of distance.
     let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.5, 0.0, 0.0));
     for length in [1e-300, 1e-9, 1e9, 1e300] {
         let cast = Ray {

@@ -8,7 +8,7 @@ fn shape(kind: ShapeKind, size: [f64; 3]) -> Shape<'static, f64> {
     Shape::new(kind, Vec3::from_f64(size))
 }
 
-/// A shape on another, upright, moved by `offset` and turned.
+/// Returns a shape on another, upright, moved by `offset` and rotated.
 fn on_top(
     a: Shape<'static, f64>,
     b: Shape<'static, f64>,
@@ -27,7 +27,7 @@ fn on_top(
     }
 }
 
-/// The area that points in a horizontal plane span.
+/// Returns the area spanned by the points in a horizontal plane.
 fn area(scene: &Scene) -> f64 {
     let contacts = scene.contacts();
     let points: Vec<V> = contacts.as_slice().iter().map(|c| c.position).collect();
@@ -45,7 +45,7 @@ fn area(scene: &Scene) -> f64 {
 fn a_standing_cylinder_covers_its_cap() {
     let cylinder = shape(ShapeKind::Cylinder, [0.1, 0.2, 0.0]);
     let cap = std::f64::consts::PI * 0.01;
-    // An octagon in a circle has 0.9003 of its area; one that has to hold the deepest point of the circle a little less.
+    // An octagon in a circle has 0.9003 of its area; one that contains the deepest point of the circle, slightly less.
     for (tilt, share) in [(0.0, 0.9), (1e-7, 0.9), (1e-4, 0.87), (1e-3, 0.87)] {
         let turn = Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), tilt).to_matrix();
         let wide = shape(ShapeKind::Box, [0.3, 0.4, 0.1]);
@@ -123,7 +123,7 @@ fn a_lying_cylinder_touches_a_box_with_both_ends() {
     }
 }
 
-/// The hull of some points.
+/// Returns the hull of some points.
 fn hull(points: &[V]) -> Shape<'static, f64> {
     Shape::mesh(hulls::hull_of(points))
 }
@@ -136,7 +136,7 @@ fn a_hull_of_a_box_lies_as_the_box_does() {
     let boxes = [low, high].map(|size| Shape::new(ShapeKind::Box, size));
     let meshes = [low, high].map(|size| hull(&hulls::corners(size)));
     for tilt in TILTS {
-        // Turned by 0.5 rad and moved over an edge: a pentagon.
+        // The box is rotated by 0.5 rad and moved over an edge, so the contact is a pentagon.
         let yaw = Quat::from_axis_angle(Vec3::new(0.0, 0.0, 1.0), 0.5);
         let turn = Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), tilt) * yaw;
         let scene = |a, b| on_top(a, b, [0.15, 0.1, 0.2499 - 0.3 * tilt], turn.to_matrix());
@@ -191,7 +191,7 @@ fn a_hull_rests_on_a_plane_with_all_of_a_face() {
         assert!((c.distance + 1e-4).abs() < 1e-12 && (c.position.z + 5e-5).abs() < 1e-12);
     }
     assert!((area(&scene) - 0.08).abs() < 1e-12);
-    // Many corners: a regular octagon of them has 0.9003 of the circle.
+    // Many corners: a regular octagon of them has 0.9003 of the circle's area.
     let round = hull(&hulls::cap_circles(0.1, 0.2, 64));
     for tilt in TILTS {
         let turn = Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), tilt).to_matrix();

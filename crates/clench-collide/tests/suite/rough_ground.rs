@@ -1,5 +1,5 @@
-//! Shapes on rough ground, by brute force: spheres and the nearest of all triangles, every shape and the nearest of the hulls
-//! below them.
+//! Shapes on rough ground, compared with brute force: spheres with the nearest of all triangles, every shape with the
+//! nearest of the hulls below them.
 
 use crate::common::{
     Random, V,
@@ -9,7 +9,7 @@ use crate::common::{
 use clench_collide::{Contacts, HeightField, Hull, Pose, Shape, ShapeKind, collide};
 use clench_math::Vec3;
 
-/// The corners of all triangles of the surface.
+/// Returns the corners of all triangles of the surface.
 fn triangles(field: &HeightField) -> Vec<[V; 3]> {
     let mut found = Vec::new();
     for row in 0..field.rows() - 1 {
@@ -22,7 +22,7 @@ fn triangles(field: &HeightField) -> Vec<[V; 3]> {
     found
 }
 
-/// The point of a triangle nearest to a point: over the plane, or on a side.
+/// Returns the point of a triangle nearest to a point: in its interior or on a side.
 fn nearest([a, b, c]: [V; 3], p: V) -> V {
     let n = (b - a).cross(c - a).normalize().0;
     let foot = p - n * n.dot(p - a);
@@ -101,7 +101,7 @@ fn spheres_are_as_far_as_the_nearest_triangle() {
                 "{:?} for {normal:?}",
                 first.frame.rows[0]
             );
-            // Every other point is where the sphere touches some triangle, too.
+            // At every other point the sphere touches some triangle, too.
             for c in found.as_slice() {
                 let on = c.position - c.frame.rows[0] * (0.5 * c.distance);
                 let off = surface.iter().map(|t| (nearest(*t, on) - on).norm());
@@ -112,7 +112,7 @@ fn spheres_are_as_far_as_the_nearest_triangle() {
     assert!(touching > 300 && apart > 100, "{touching}, {apart}");
 }
 
-/// The ground below each triangle as a hull.
+/// Returns the ground below each triangle as a hull.
 fn prisms(field: &HeightField) -> Vec<&'static Hull> {
     let bottom = -field.size()[3];
     let below = |p: V| Vec3::new(p.x, p.y, bottom);
@@ -123,7 +123,7 @@ fn prisms(field: &HeightField) -> Vec<&'static Hull> {
     triangles(field).into_iter().map(prism).collect()
 }
 
-/// Every shape, near the surface: no cell that counts is passed over.
+/// Tests every shape near the surface: no relevant cell is skipped.
 #[test]
 fn bodies_are_as_far_as_the_nearest_part_of_the_ground() {
     let mut random = Random(11);
@@ -155,7 +155,7 @@ fn bodies_are_as_far_as_the_nearest_part_of_the_ground() {
                 }
                 least
             };
-            // Down to a distance at which it may or may not be found, or a little into the ground.
+            // Lowers the shape to about the margin, so that it may or may not be found, or slightly into the ground.
             let wanted = random.range(-0.004, 0.03);
             for _ in 0..30 {
                 let left = to_part(&pose, 1.0) - wanted;
@@ -176,7 +176,7 @@ fn bodies_are_as_far_as_the_nearest_part_of_the_ground() {
                     "{kind:?}: {found} for {truth}"
                 );
             } else {
-                // Out of the field it is at least as far as out of any part.
+                // The field pushes it out at least as far as any part does.
                 sunk += 1;
                 assert!(found < truth + 1e-6, "{kind:?}: {found} for {truth}");
             }

@@ -1,10 +1,11 @@
-//! A direction in which shapes were apart before changes no contact, however near to the margin they come.
+//! A cached separating direction changes no contact, even if the shapes are very near the margin.
 
 use crate::common::{PAIRS, Random, Scene, by_support, convert_pose, convert_shape};
 use clench_collide::{Contacts, SeparatingAxis, ShapeKind, collide, collide_again, distance};
 use clench_math::{Lanes, Real, Vec3};
 
-/// Lets the second shape of a scene tremble about the margin and looks at the pair again and again. Counts how often there was no contact.
+/// Collides a pair repeatedly while the second shape moves about the margin. Returns the number of times without
+/// contact.
 fn tremble<T: Real + PartialEq>(
     random: &mut Random,
     scene: &Scene,
@@ -13,7 +14,7 @@ fn tremble<T: Real + PartialEq>(
     let (a, b) = (convert_shape::<T>(&scene.a), convert_shape::<T>(&scene.b));
     let pose_a = convert_pose::<T>(&scene.pose_a);
     let margin = T::new(scene.margin);
-    // How far the second shape must move, and where, until the two are exactly the margin apart.
+    // The distance and normal give the motion that puts the shapes exactly the margin apart.
     let (distance, normal) = separation(scene).unwrap_or((scene.margin, Vec3::ZERO));
     let mut apart = 0;
     for _ in 0..24 {
@@ -35,7 +36,7 @@ fn tremble<T: Real + PartialEq>(
     apart
 }
 
-/// The distance of the shapes, and its normal.
+/// Returns the distance of the shapes and its normal.
 fn separation(scene: &Scene) -> Option<(f64, Vec3<f64>)> {
     let Scene {
         a,
@@ -47,7 +48,7 @@ fn separation(scene: &Scene) -> Option<(f64, Vec3<f64>)> {
     distance(a, pose_a, b, pose_b, f64::INFINITY).map(|found| (found.distance, found.normal))
 }
 
-/// Whether a pair looks along an old direction.
+/// Returns true if a pair uses a cached direction.
 fn remembers(kinds: (ShapeKind, ShapeKind)) -> bool {
     by_support(kinds) || kinds == (ShapeKind::Box, ShapeKind::Box)
 }
@@ -58,7 +59,7 @@ fn no_contact_changes<T: Real + PartialEq>(seed: u64) {
     for kinds in PAIRS.into_iter().filter(|&kinds| remembers(kinds)) {
         let mut axis = SeparatingAxis::default();
         for _ in 0..40 {
-            // Of each scene the direction goes on to the next.
+            // Each scene passes its direction on to the next.
             let scene = random.scene(kinds);
             apart += tremble::<T>(&mut random, &scene, &mut axis);
             all += 24;

@@ -1,10 +1,10 @@
-//! Contact points of faces that lie on each other move little when a body does.
+//! Contact points of resting faces move little when a body does.
 
 use crate::common::{Random, Scene, V, hulls};
 use clench_collide::{PATCH_POINTS, Pose, Shape, ShapeKind};
 use clench_math::{Quat, Vec3};
 
-/// Of a face's radius of 0.1 m.
+/// The radius of a face, m.
 const RADIUS: f64 = 0.1;
 const HALF: f64 = 0.05;
 
@@ -20,7 +20,7 @@ fn slab() -> Shape<'static, f64> {
     Shape::new(ShapeKind::Box, Vec3::new(0.3, 0.4, HALF))
 }
 
-/// A shape on another, pressed by 0.2 mm less `up`, moved and turned.
+/// Returns a shape on another, pressed by 0.2 mm less `up`, moved and rotated.
 fn scene(
     below: Shape<'static, f64>,
     above: Shape<'static, f64>,
@@ -58,7 +58,7 @@ fn points(scene: &Scene) -> Vec<V> {
     contacts.as_slice().iter().map(|c| c.position).collect()
 }
 
-/// How far points are from the nearest of others, at most, either way.
+/// Returns the Hausdorff distance of two sets of points.
 fn apart(these: &[V], those: &[V]) -> f64 {
     let one_way = |these: &[V], those: &[V]| {
         let nearest = |p: &V| {
@@ -72,7 +72,7 @@ fn apart(these: &[V], those: &[V]) -> f64 {
     one_way(these, those).max(one_way(those, these))
 }
 
-/// Ratios of how far points jump to how far the body moves, in many small random motions, the smallest first.
+/// Returns the ratios of point motion to body motion in many small random motions, in ascending order.
 fn jumps(below: Shape<'static, f64>, above: Shape<'static, f64>, tilt: f64) -> Vec<f64> {
     const MOTION: f64 = 1e-9;
     let mut random = Random(11);
@@ -124,7 +124,8 @@ fn points_of_level_faces_move_little_with_the_body() {
 
 #[test]
 fn points_of_tilted_faces_turn_with_the_deepest() {
-    // The deepest point of a circle turns by how much the tilt's direction turns, that of a polygon goes from corner to corner.
+    // The deepest point of a circle turns with the direction of the tilt; that of a polygon jumps from corner to
+    // corner.
     let tilt = 1e-3;
     for (name, below, above) in scenes() {
         let ratios = jumps(below, above, tilt);

@@ -1,4 +1,5 @@
-//! Shapes on height fields: as on a plane where the field is flat, on ridges, in grooves, at cliffs and borders, and in trouble.
+//! Shapes on height fields: equal to a plane on a flat field; on ridges, in grooves, at cliffs and borders, and with
+//! degenerate input.
 
 use crate::common::{
     Random, V, convert_pose,
@@ -144,7 +145,7 @@ fn a_box_that_lies_flat_stands_on_its_corners() {
 
 #[test]
 fn a_ridge_carries_a_sphere_between_its_slopes() {
-    // One metre high over half a metre: slopes of 63°.
+    // 1 m high over 0.5 m: slopes of 63°.
     let ridge = field(3, 3, [0.5, 0.5, 1.0, 0.1], |_, column| {
         f64::from(column == 1)
     });
@@ -187,7 +188,7 @@ fn the_field_ends_at_its_sides_and_its_base() {
         };
         (c.distance, c.frame.rows[0])
     };
-    // Beside it, below it, and off its upper edge.
+    // Next to the field, below it, and off its upper edge.
     let (distance, normal) = one(at(0.59, 0.1, -0.1));
     assert!((distance + 0.01).abs() < 1e-12 && (normal.x - 1.0).abs() < 1e-12);
     let (distance, normal) = one(at(0.1, 0.1, -0.29));
@@ -204,7 +205,7 @@ fn the_field_ends_at_its_sides_and_its_base() {
     ] {
         assert!(touch(&ground, &ball, &away, 0.0).as_slice().is_empty());
     }
-    // The margin reaches all around.
+    // The margin applies on all sides.
     for near in [
         at(0.605, 0.0, -0.05),
         at(0.0, 0.0, 0.105),
@@ -221,7 +222,7 @@ fn a_cliff_is_left_at_its_foot() {
     let cliff = field(2, 21, [1.0, 0.5, 5.0, 0.1], |_, column| {
         f64::from(column > 10)
     });
-    // The wall leads from x = 0 to x = 0.1.
+    // The wall extends from x = 0 to x = 0.1.
     let cube = Shape::new(ShapeKind::Box, Vec3::new(0.2, 0.2, 0.2));
     let found = touch(&cliff, &cube, &at(-0.17, 0.05, 1.0), 0.0);
     assert!(!found.as_slice().is_empty());
@@ -242,7 +243,7 @@ fn a_body_sunk_into_fine_cells_is_lifted_out() {
     assert!((c.distance + 0.08).abs() < 1e-12 && (c.frame.rows[0].z - 1.0).abs() < 1e-12);
 }
 
-/// Where an edge of the body crosses from one triangle to the next, rounding must not lose the point.
+/// Rounding must not lose the point at which an edge of the body crosses from one triangle to the next.
 #[test]
 fn single_precision_finds_the_points_of_a_box_that_double_precision_finds() {
     let mut random = Random(5);
@@ -268,7 +269,7 @@ fn single_precision_finds_the_points_of_a_box_that_double_precision_finds() {
     }
 }
 
-/// Hulls, and everything in three number types, moved about.
+/// Tests all shapes and hulls, moved, in several number types.
 #[test]
 fn contacts_move_with_both_and_are_the_same_in_lanes() {
     let mut random = Random(7);
@@ -317,7 +318,7 @@ fn contacts_move_with_both_and_are_the_same_in_lanes() {
         let mut lanes = Contacts::<L>::new();
         let wide = shape.resized(Vec3::from_f64(shape.size().to_array()));
         let mut pose_l = convert_pose::<L>(&pose);
-        // Elsewhere in one lane.
+        // One lane has another pose.
         pose_l.position.z.set_lane(3, 9.0);
         collide(
             &Shape::height_field(&ground),
@@ -424,6 +425,6 @@ fn a_shape_as_large_as_a_large_field_is_done_in_time() {
             assert!((deepest(&found) + depth).abs() < 1e-9, "{found:?}");
         }
     }
-    // A million cells take a few seconds without optimisation; what grows faster than they do takes hours.
+    // A million cells take a few seconds without optimisation; superlinear growth takes hours.
     assert!(start.elapsed().as_secs() < 120, "{:?}", start.elapsed());
 }

@@ -1,4 +1,4 @@
-//! Shapes and poses of every kind of trouble: nothing breaks, and what is found is hardly ever off.
+//! Degenerate shapes and poses of every kind: nothing breaks, and results are hardly ever off.
 
 use crate::common::placement::{size_count, trouble};
 use crate::common::{BOUNDED, PAIRS, Random, Scene, V, convert_pose, convert_shape};
@@ -19,7 +19,7 @@ fn in_type<S: Scalar>(scene: &Scene) -> Contacts<S> {
     out
 }
 
-/// Nothing but proper points, whatever the shapes.
+/// Asserts that all points are valid, for any shapes.
 fn assert_proper<S: Scalar>(contacts: &Contacts<S>, scene: &Scene) {
     let coordinates = scene.pose_a.position.norm() + scene.pose_b.position.norm();
     let rounding = S::EPSILON * S::new(1024.0 * (coordinates + 1e3));
@@ -37,7 +37,7 @@ fn assert_proper<S: Scalar>(contacts: &Contacts<S>, scene: &Scene) {
     }
 }
 
-/// All pairs of shapes that can collide.
+/// Returns all pairs of shapes that can collide.
 fn pairs() -> impl Iterator<Item = (ShapeKind, ShapeKind)> {
     PAIRS
         .into_iter()
@@ -51,7 +51,7 @@ fn no_pose_and_no_shape_breaks_it() {
     }
 }
 
-/// `cargo xtask soak --only collide`.
+/// Run by `cargo xtask soak --only collide`.
 #[test]
 #[ignore = "takes minutes"]
 fn a_million_poses_break_nothing() {
@@ -64,7 +64,7 @@ fn a_million_poses_break_nothing() {
     }
 }
 
-/// Tries so many troublesome poses; gives the number of contact points found.
+/// Tries the given number of degenerate poses. Returns the number of contact points found.
 fn assert_unbroken(kinds: (ShapeKind, ShapeKind), poses: usize, seed: u64) -> usize {
     let mut random = Random(seed);
     let mut points = 0;
@@ -78,7 +78,7 @@ fn assert_unbroken(kinds: (ShapeKind, ShapeKind), poses: usize, seed: u64) -> us
     points
 }
 
-/// How far the gap along a direction of some hundred exceeds the distance found.
+/// Returns the largest excess of the gap over the distance found, along about a hundred directions.
 fn excess(scene: &Scene, distance: f64, random: &mut Random) -> f64 {
     let axes = [scene.pose_a, scene.pose_b].map(|p| [0, 1, 2].map(|i| p.rotation.column(i)));
     let axes = axes.as_flattened();
@@ -92,8 +92,8 @@ fn excess(scene: &Scene, distance: f64, random: &mut Random) -> f64 {
     tried.iter().map(gap).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// In deep and concentric poses of thin bodies many ways out are nearly as short, and the polytope may run out of room before it
-/// has told them apart: once in some ten thousand such poses, and then it is off by little.
+/// In deep and concentric poses of thin bodies many directions have nearly the same gap, and the polytope may run out
+/// of capacity before it distinguishes them: in about one of ten thousand such poses, and then the error is small.
 #[test]
 fn hardly_any_direction_has_a_larger_gap() {
     let mut random = Random(24);

@@ -1,9 +1,9 @@
-//! Contact points against the truth about the shapes, found without the library: depths, normals and positions.
+//! Contact points compared with the truth, found without the library: depths, normals and positions.
 
 use crate::common::{PAIRS, Random, by_support, off_surface};
 use clench_collide::ShapeKind;
 
-/// How exact the search for the true distance is, m.
+/// The accuracy of the search for the true distance, m.
 const SEARCH: f64 = 1e-6;
 
 #[test]
@@ -48,8 +48,8 @@ fn positions_lie_midway_between_the_surfaces() {
         for _ in 0..400 {
             let scene = random.scene(kinds);
             let Some(c) = scene.deepest() else { continue };
-            // Where something curved meets something flat, a distance within 1e-9 m is found some way off the nearest points.
-            // Faces of hulls are flat up to a part 1e-6.
+            // Between curved and flat surfaces, a distance within 1e-9 m is found some way off the nearest points.
+            // Faces of hulls are flat to a relative 1e-6.
             let exact = match kinds {
                 _ if !by_support(kinds) => 1e-9,
                 (Sphere | Capsule | Box | Mesh, Mesh) => 1e-6,
@@ -82,7 +82,7 @@ fn frames_are_rotations_and_normals_point_to_the_second_shape() {
                     assert!((u.dot(v) - dot).abs() < 1e-9, "{kinds:?}: {scene:?}");
                 }
                 assert!((n.cross(t) - b).norm() < 1e-9, "{kinds:?}: {scene:?}");
-                // Moving the second shape along the normal by the depth just frees that point.
+                // A motion of the second shape along the normal increases the gap by its length.
                 let mut moved = scene;
                 moved.pose_b.position += n * 1e-3;
                 let gain = moved.gap_along(n) - scene.gap_along(n);

@@ -1,4 +1,4 @@
-//! Models that are attached to models. The names and numbers are those of MuJoCo 4.0.0.
+//! Models attached to models. The names and numbers are those of MuJoCo 4.0.0.
 
 use crate::files::Files;
 use clench_formats::read_str;
@@ -240,7 +240,8 @@ fn what_cannot_be_attached_says_why() {
     assert!(error.message.contains("cannot read"), "{error}");
 }
 
-/// The time step, iterations and gravity of a model with these options, and what it notes, where it attaches parts with those.
+/// Returns time step, iterations, gravity and warnings of a model with options `own` that attaches parts with the
+/// options `parts`.
 fn merged(conflict: &str, own: &str, parts: &[&str]) -> Result<(f64, usize, f64, String), String> {
     let part = |options: &&str| {
         format!(

@@ -1,9 +1,9 @@
-//! Keyframes of models that are attached to models: what they say of what is attached. The numbers are those of MuJoCo 4.0.0.
+//! Keyframes of attached models. The expected numbers are those of MuJoCo 4.0.0.
 
 use crate::files::Files;
 use clench_rigid::builder::{KeyframeElement, KeyframePart};
 
-/// The keyframes of a model after its own one, as (name, time, what they say of elements).
+/// Returns the keyframes of a model except its own one, as (name, time, values of elements).
 fn keyframes(attach: &str) -> Vec<(String, f64, Vec<KeyframePart>)> {
     let part = "<mujoco>
       <default><default class='slides'><joint type='slide'/></default></default>
@@ -77,7 +77,7 @@ fn a_model_that_is_attached_twice_has_its_keyframes_twice_and_replicas_have_them
     assert_eq!(replicas[0].2[0], part(Joint(1), &[1.0], &[5.0]));
 }
 
-/// What becomes of the numbers in a model with springs of its own is MuJoCo's.
+/// The values for a model that has its own yielding springs are MuJoCo's.
 #[test]
 fn keyframes_of_attached_models_say_where_springs_rest() {
     let part = "<mujoco><worldbody><body name='x'>
@@ -103,7 +103,7 @@ fn keyframes_of_attached_models_say_where_springs_rest() {
     assert_eq!(found, expected);
 }
 
-/// Numbers are scaled where the elements end up, those that the keyframe leaves out are not.
+/// Values are scaled by the frame that the elements are attached to; omitted values are not scaled.
 #[test]
 fn keyframes_of_attached_models_are_scaled_with_what_they_place() {
     let part = "<mujoco>

@@ -1,4 +1,4 @@
-//! Mesh files that are broken, bytes that mean nothing, numbers of any size: an error that says where, and never a panic.
+//! Broken mesh files, meaningless bytes and numbers of any size: an error with a location, and never a panic.
 
 use crate::assets::*;
 
@@ -131,7 +131,7 @@ fn broken_files_are_refused_with_their_names() {
     }
 }
 
-/// Reproducible noise.
+/// Returns a noise generator.
 fn random() -> impl FnMut() -> u64 {
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     move || {
@@ -164,7 +164,7 @@ fn random_bytes_never_panic() {
         }
         folder.write(&format!("parts/{name}"), &bytes);
         let inertia = ["legacy", "exact", "convex", "shell"][random() as usize % 4];
-        // Whatever comes of it, it comes back.
+        // Any result is fine if the call returns.
         let _ = folder.load_mesh(&format!("file='{name}' inertia='{inertia}'"));
     }
 }
@@ -180,7 +180,7 @@ fn numbers_of_any_size_never_panic() {
     for _ in 0..800 {
         let mut pick = |count: usize| random() as usize % count;
         let mut numbers = |count: usize| {
-            // Most are tame, so that some models come about.
+            // Most numbers are moderate, so that some models can be built.
             let number = |_| NUMBERS[if pick(8) > 0 { 3 + pick(3) } else { pick(12) }];
             (0..count).map(number).collect::<Vec<_>>().join(" ")
         };
@@ -202,7 +202,7 @@ fn numbers_of_any_size_never_panic() {
                <worldbody>{terrain}<body><freejoint/><geom type='{kind}' mesh='m' {size}/></body></worldbody>
              </mujoco>"
         ));
-        // What is built is finite; whatever else comes of it, it comes back.
+        // A model that can be built is finite; any other result is fine if the call returns.
         if let Ok(model) = model {
             let p = &model.params;
             let finite = [p.geom_rbound[0], p.body_mass[1], p.body_inertia[1].x];

@@ -1,15 +1,15 @@
-//! Collada meshes: units, nodes of the scene, kinds of faces, and what is wrong with a file.
+//! Collada meshes: units, nodes of the scene, kinds of faces, and invalid files.
 
 use crate::assets::Folder;
 use clench_formats::load;
 use clench_rigid::Model;
 
-/// The corners of a tetrahedron with edges of 3 along the axes, each beside a normal that no reader of shapes wants.
+/// The corners of a tetrahedron with edges of 3 along the axes, each with a normal, which the reader of shapes ignores.
 const TRIANGLES: &str = "<triangles count='4'><input semantic='VERTEX' source='#points' offset='0'/>\
      <input semantic='NORMAL' source='#normals' offset='1'/>\
      <p>0 0 2 0 1 0 0 0 1 0 3 0 0 0 3 0 2 0 1 0 2 0 3 0</p></triangles>";
 
-/// A file with these faces of the tetrahedron in a node of the scene.
+/// Returns a file with these faces of the tetrahedron in a node of the scene.
 fn file(asset: &str, faces: &str, node: &str) -> String {
     format!(
         "<?xml version='1.0'?>
@@ -31,7 +31,7 @@ fn file(asset: &str, faces: &str, node: &str) -> String {
     )
 }
 
-/// The model of a link on a hinge with this mesh.
+/// Loads a model of a link on a hinge with this mesh.
 fn robot(name: &str, mesh: &str) -> Result<Model, String> {
     let folder = Folder::new(&format!("collada-{name}"));
     folder.write("part.dae", mesh);
@@ -49,7 +49,7 @@ fn read(name: &str, mesh: &str) -> Model {
     robot(name, mesh).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Mass and centre of mass of the link, whose density is 1000 kg/m³.
+/// Returns the mass and centre of mass of the link, whose density is 1000 kg/m³.
 fn mass(model: &Model) -> (f64, [f64; 3]) {
     let body = model.params.body_mass.len() - 1;
     let params = &model.params;
@@ -75,7 +75,7 @@ fn the_unit_scales_a_mesh_and_the_axis_that_points_up_does_not_turn_it() {
         1000.0 * 0.3_f64.powi(3) / 6.0,
         [0.075, 0.075, 0.275],
     );
-    // The vertex that no face has is not part of the mesh.
+    // The unused vertex is not part of the mesh.
     assert_eq!(model.meshes[0].vertices.len(), 4);
 }
 

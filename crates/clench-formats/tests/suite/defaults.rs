@@ -125,7 +125,7 @@ fn every_kind_of_element_has_defaults() {
     );
 }
 
-/// A class may say what no element of the model could be, as long as none is.
+/// An unused class may contain values that no element supports.
 #[test]
 fn what_is_not_supported_refuses_nothing_in_a_class_that_serves_none() {
     let geom = "<worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>";

@@ -1,4 +1,4 @@
-//! Bad files: every error says where and why, and nothing panics.
+//! Invalid files: every error has a location and a reason, and nothing panics.
 
 use clench_formats::{LoadError, load, load_str, read_str};
 
@@ -9,7 +9,7 @@ fn rejected(text: &str) -> LoadError {
     }
 }
 
-/// Line, element and message of the error in a model whose third line is `line`.
+/// Checks line, element and message of the error in a model whose third line is `line`.
 #[track_caller]
 fn expect(line: &str, element: &str, message: &str) {
     let error = rejected(&format!(
@@ -167,7 +167,7 @@ fn numbers_that_are_none_are_refused() {
     expect_section("<compiler eulerseq='xyq'/>", "compiler", "eulerseq");
 }
 
-/// As infinities they would be saved as what is not read.
+/// As infinities they would be saved as text that cannot be read again.
 #[test]
 fn numbers_that_are_too_large_for_single_precision_are_refused() {
     let too_large = |name: &str| format!("in {name} is too large for single precision");

@@ -1,10 +1,11 @@
-//! glTF meshes: where their bytes are, nodes of the scene, kinds of faces, and what is wrong with a file.
+//! glTF meshes: locations of bytes, nodes of the scene, kinds of faces, and invalid files.
 
 use crate::assets::Folder;
 use clench_formats::load;
 use clench_rigid::Model;
 
-/// The corners of a tetrahedron with edges of 3 along the axes, and one that no face has, as singles; then 12 indices of 16 bits.
+/// Returns the corners of a tetrahedron with edges of 3 along the axes and an unused corner, in singles, then 12
+/// indices of 16 bits.
 fn numbers() -> Vec<u8> {
     let corners: [f32; 15] = [
         0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 3.0, 9.0, 9.0, 9.0,
@@ -15,7 +16,7 @@ fn numbers() -> Vec<u8> {
     [corners.as_flattened(), indices.as_flattened()].concat()
 }
 
-/// What a file says of them, with its buffers and what nodes have.
+/// Returns the JSON text for these numbers, with the given buffers and node attributes.
 fn text(buffers: &str, node: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
@@ -29,7 +30,7 @@ fn text(buffers: &str, node: &str) -> String {
     )
 }
 
-/// The numbers in the text, in base 64.
+/// Returns the text with the numbers embedded in base 64.
 fn embedded(node: &str) -> String {
     let encoded = clench_formats::base64::encode(&numbers());
     let uri =
@@ -37,7 +38,7 @@ fn embedded(node: &str) -> String {
     text(&uri, node)
 }
 
-/// A binary file.
+/// Returns a binary file.
 fn binary(text: &str, bytes: &[u8]) -> Vec<u8> {
     let padded = format!("{text:<width$}", width = text.len().next_multiple_of(4));
     let chunk = |kind: &[u8; 4], content: &[u8]| {
@@ -48,7 +49,7 @@ fn binary(text: &str, bytes: &[u8]) -> Vec<u8> {
     [&b"glTF\x02\0\0\0"[..], &length, &chunks].concat()
 }
 
-/// The model of a link on a hinge with this mesh, which may name the file `numbers of it.bin`.
+/// Loads a model of a link on a hinge with this mesh, which may name the file `numbers of it.bin`.
 fn robot(name: &str, extension: &str, mesh: impl AsRef<[u8]>) -> Result<Model, String> {
     let folder = Folder::new(&format!("gltf-{name}"));
     folder.write(&format!("part.{extension}"), mesh);
@@ -89,7 +90,7 @@ fn bytes_may_be_in_the_text_in_the_file_and_beside_it() {
         read("inside", "glb", binary(&inside, &numbers())),
     ] {
         assert_mass(&model, 4500.0, [0.75; 3]);
-        // The vertex that no face has is not part of the mesh.
+        // The unused vertex is not part of the mesh.
         assert_eq!(model.meshes[0].vertices.len(), 4);
     }
 }

@@ -1,4 +1,4 @@
-//! Height fields: from numbers and files, and what is wrong with those.
+//! Height fields: from numbers and files, and invalid ones.
 
 use crate::assets::*;
 use clench_collide::ShapeKind;
@@ -59,7 +59,7 @@ fn height_fields_come_from_numbers_and_files() {
         let model = field(attributes).unwrap_or_else(|error| panic!("{attributes}: {error}"));
         let shape = &model.height_fields[0].shape;
         assert_eq!((shape.rows(), shape.columns()), (2, 3));
-        // They are computed in single precision, as by MuJoCo's compiler.
+        // Elevations are computed in single precision, as in MuJoCo's compiler.
         let expected = expected.map(|part: f32| f64::from(part));
         assert_eq!(shape.heights(), expected, "{attributes}");
         assert_eq!(model.geoms[0].kind, ShapeKind::HeightField);

@@ -1,12 +1,12 @@
-//! Files that mean harm: deep, wide, with names that pretend to be others, or with a few letters that ask for gigabytes. Each is
-//! an error that says where and why, on a small stack and in little time.
+//! Malicious files: deep, wide, with misleading names, or short ones that request gigabytes. Each is an error with
+//! location and reason, on a small stack and in little time.
 
 use crate::assets::Folder;
 use clench_formats::{LoadError, load_str, load_str_within, load_within};
 use clench_rigid::{Budget, Model};
 use std::time::{Duration, Instant};
 
-/// Loads in a thread with a stack of 256 kB, as some programs give to threads.
+/// Loads in a thread with a stack of 256 kB, as in some programs.
 fn on_a_small_stack(text: String) -> Result<Model, LoadError> {
     std::thread::Builder::new()
         .stack_size(256 << 10)
@@ -32,7 +32,7 @@ fn refused(result: Result<Model, LoadError>, words: &[&str]) -> LoadError {
     error
 }
 
-/// A budget of so many megabytes.
+/// Returns a budget of `count` megabytes.
 fn megabytes(count: u64) -> Budget {
     Budget {
         bytes: count << 20,
@@ -48,7 +48,7 @@ fn all_legal_levels_fit_into_a_small_stack() {
         ("<replicate count='1'>", "</replicate>"),
         ("<body><!--></body>-->", "</body>"),
     ] {
-        // 500 levels, of which <mujoco>, <worldbody> and the geom are three.
+        // 500 levels, three of which are <mujoco>, <worldbody> and the geom.
         on_a_small_stack(nested(open, close, 497)).unwrap();
         refused(on_a_small_stack(nested(open, close, 498)), &["500 deep"]);
     }
@@ -62,7 +62,7 @@ fn all_legal_levels_fit_into_a_small_stack() {
 
 #[test]
 fn an_open_comment_hides_no_depth() {
-    // `<!-->` opens a comment: what looks like an end tag is inside of it.
+    // `<!-->` opens a comment; the apparent end tag is inside of it.
     let text = nested("<body><!--></body>-->", "</body>", 20_000);
     refused(on_a_small_stack(text), &["500 deep"]);
     let text = "<body><!--></body>-->".repeat(20_000);
@@ -103,14 +103,14 @@ fn names_in_a_namespace_are_other_names() {
         load_str("<mujoco><option xml:space='preserve'/></mujoco>"),
         &["unknown attribute \"xml:space\""],
     );
-    // Of the root's own attributes MuJoCo passes over those with a prefix.
+    // MuJoCo ignores attributes of the root that have a prefix.
     load_str("<mujoco xml:space='preserve'/>").expect("MuJoCo takes it");
-    // A prefix that nothing declares is an error of XML itself.
+    // An undeclared prefix is an error of XML itself.
     refused(
         load_str("<mujoco>\n<x:option/></mujoco>"),
         &["2: not well-formed"],
     );
-    // A declaration that nothing uses says nothing, and neither does one for names without a prefix.
+    // An unused declaration has no effect, and neither has one for names without a prefix.
     load_str("<mujoco xmlns='urn:x'><worldbody><geom size='1'/></worldbody></mujoco>").unwrap();
     load_str("<mujoco xmlns:x='urn:x'><worldbody><geom size='1'/></worldbody></mujoco>").unwrap();
 }
@@ -132,7 +132,7 @@ fn what_grows_with_the_square_of_a_file_is_bounded() {
         .map(|i| format!("<default class='some_class_{i}'/>"))
         .collect();
     load_str(&format!("<mujoco><default>{classes}</default></mujoco>")).unwrap();
-    // Signs that are no attributes do not count.
+    // Equals signs outside of attributes do not count.
     let line = "=".repeat(500);
     load_str(&format!("<mujoco><!-- {line} --><worldbody/></mujoco>")).unwrap();
     assert!(start.elapsed() < Duration::from_secs(20));
@@ -158,7 +158,7 @@ fn messages_cut_long_values() {
     ] {
         refused(load_str(&text), &["2: ", "[... "]);
     }
-    // Both names are long, and there are many of those that are known.
+    // Both names are long, and many names are known.
     let materials: String = (0..50)
         .map(|i| format!("<material name='{i}{long}'/>"))
         .collect();
@@ -179,7 +179,7 @@ fn height_fields_share_one_budget() {
     let text = format!("<mujoco><asset>\n{fields}</asset></mujoco>");
     let error = refused(load_str(&text), &["hfield \"h5\"", "bytes", "--budget"]);
     assert_eq!(error.line, Some(7));
-    // One field is within a budget of its own; the same one is not within less.
+    // One field is within a budget of its own, but not within a smaller one.
     let one =
         "<mujoco><asset><hfield name='h' nrow='1024' ncol='1024' size='1 1 1 1'/></asset></mujoco>";
     load_str_within(one, megabytes(40)).unwrap();
@@ -221,7 +221,7 @@ fn pictures_are_counted_before_they_are_unpacked() {
     refused(loaded, &["model.xml:2: hfield", "flat.png", "bytes"]);
 }
 
-/// They are refused before they are made: what these files ask for would neither fit into memory nor ever end.
+/// Replicas are refused before they are created: these files would fill the memory and never finish.
 #[test]
 fn replicas_are_counted() {
     let geoms = "<geom size='1'/>".repeat(60);
@@ -232,7 +232,7 @@ fn replicas_are_counted() {
         ))),
         &["2: replicate", "500000 elements", "--budget"],
     );
-    // In each other they multiply, also where nothing is in them.
+    // Counts of nested replicas multiply, even if the replicas are empty.
     let inside = |what: &str| {
         format!("<replicate count='2000'><replicate count='2000'>{what}</replicate></replicate>")
     };
@@ -242,7 +242,7 @@ fn replicas_are_counted() {
         load_str(&world("<replicate count='2147483647'/>")),
         &["elements"],
     );
-    // Names grow with what replicas append to them.
+    // Replicas append a suffix to names, which counts too.
     let long = "s".repeat(1_000_000);
     refused(
         load_str(&world(&format!(
@@ -256,7 +256,7 @@ fn replicas_are_counted() {
         ))),
         &["2: replicate", "bytes"],
     );
-    // What is meant can be had.
+    // A reasonable count is accepted.
     let ten = world("<replicate count='10'><geom size='1'/></replicate>");
     let few = Budget {
         elements: 15,
@@ -279,13 +279,13 @@ fn elements_and_classes_are_counted() {
     let text = format!("<mujoco><worldbody>\n{geoms}</worldbody></mujoco>");
     let error = refused(load_str_within(&text, few), &["1000 elements"]);
     assert_eq!(error.line, Some(1000));
-    // Each class holds what every kind of element starts as.
+    // Each class stores the defaults of every kind of element.
     let classes: String = (0..1000)
         .map(|i| format!("<default class='c{i}'/>\n"))
         .collect();
     let text = format!("<mujoco><default>\n{classes}</default></mujoco>");
     refused(load_str_within(&text, megabytes(1)), &["default", "bytes"]);
-    // Each class would hold the long name of its parent.
+    // Each class would store the long name of its parent.
     let long = "m".repeat(100_000);
     let text = format!("<mujoco><default><geom mesh='{long}'/>{classes}</default></mujoco>");
     refused(load_str_within(&text, megabytes(64)), &["default", "bytes"]);
@@ -344,7 +344,7 @@ fn files_are_counted_as_they_are_read() {
 
 #[test]
 fn a_singular_mass_matrix_is_found_at_its_joint() {
-    // The second of two slides along one axis moves what the first moves already, and nothing else.
+    // The second of two slides along one axis moves only the body that the first one moves already.
     let text = "<mujoco><worldbody><body name='cart'>
         <joint name='first' type='slide' axis='1 0 0'/>
         <joint name='second' type='slide' axis='1 0 0'/>
@@ -358,7 +358,7 @@ fn a_singular_mass_matrix_is_found_at_its_joint() {
     refused(load_str(text), words);
 }
 
-/// What starts over whenever it diverges would never come to the end of the search.
+/// A model that resets whenever it diverges would never finish the search.
 #[test]
 fn a_length_range_that_diverges_is_an_error_with_autoreset_too() {
     let file = "<mujoco>

@@ -1,4 +1,4 @@
-//! What is left out where a user asks for it, what is not, and files in memory.
+//! Unsupported elements that the loader omits on request, those that it does not omit, and files in memory.
 
 use clench_formats::{LoadError, Loader};
 use clench_rigid::builder::ModelBuilder;

@@ -1,4 +1,4 @@
-//! Lights: what a file says of them, and where they are.
+//! Lights: their attributes in a file, and their poses.
 
 use clench_formats::load_str;
 use clench_rigid::Sim;
@@ -79,7 +79,7 @@ fn lights_are_where_mujoco_has_them() {
     let mut sim = Sim::<f64>::new(Arc::new(load_str(SCENE).unwrap())).unwrap();
     sim.state.qpos[..8].copy_from_slice(&[0.1, 0.2, 0.9, 0.5, 0.5, 0.5, 0.5, 0.7]);
     sim.refresh().unwrap();
-    // `light_xpos` and `light_xdir` of MuJoCo 4.0.0.
+    // `light_xpos` and `light_xdir` in MuJoCo 4.0.0.
     let expected = [
         [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
         [[1.0, 2.0, 3.0], [0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2]],

@@ -1,4 +1,4 @@
-//! Tests of readers through the crate's public face: one program, for linking takes longer than most of them run.
+//! Tests of the readers through the crate's public API, in one program because linking takes longer than most of them.
 
 mod actuators;
 mod assets;

@@ -1,4 +1,4 @@
-//! Meshes: from files of every format and from the model itself, and what MuJoCo makes of them.
+//! Meshes: from files of every format and from the model itself, processed as by MuJoCo.
 
 use crate::assets::*;
 use std::f64::consts::{PI, TAU};
@@ -99,7 +99,7 @@ fn scales_references_and_classes_apply() {
     };
     near(p.geom_pos[0].to_array(), [-0.05, 0.1, -0.15]);
     assert!((p.body_mass[1] - 0.006).abs() < 1e-15);
-    // Moments fall, so the longest edge comes first.
+    // Moments descend, so the longest edge comes first.
     near(p.geom_size[0].to_array(), [0.05, 0.1, 0.15]);
     // (x, y) becomes (y, -x), then x doubles.
     near(p.geom_pos[1].to_array(), [1.0, -0.5, 0.5]);
@@ -109,7 +109,7 @@ fn scales_references_and_classes_apply() {
 #[test]
 fn builtin_meshes_have_the_shapes_that_they_are_named_after() {
     let folder = Folder::new("builtin");
-    // Vertices, faces and volume; of smooth shapes a fine mesh lacks little.
+    // Vertices, faces and volume. A fine mesh of a smooth shape has nearly the volume of the shape.
     let (disc, prism) = (PI * PI, 5.0 * (TAU / 5.0).sin());
     for (attributes, vertices, faces, volume) in [
         ("builtin='sphere' params='4'", 2562, 5120, 4.0 * PI / 3.0),
@@ -242,7 +242,7 @@ fn a_shell_spreads_its_mass_over_the_surface() {
     let model = folder
         .load_mesh(&format!("{} inertia='shell'", written()))
         .unwrap();
-    // Six faces of 1000 kg; a hollow cube has m a² 5/18.
+    // Six faces of 1000 kg; the inertia of a hollow cube is m a² 5/18.
     assert!((model.params.body_mass[1] - 6000.0).abs() < 1e-9);
     assert!((model.params.body_inertia[1].x - 6000.0 * 5.0 / 18.0).abs() < 1e-9);
 }

@@ -1,4 +1,4 @@
-//! What is only seen: which of it is kept for viewers, and when it is left out.
+//! Visual elements: those that are stored for viewers, and those that are omitted.
 
 use clench_formats::load_str;
 

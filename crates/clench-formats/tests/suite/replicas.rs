@@ -1,9 +1,9 @@
-//! What follows a part of the tree that is replicated, and what MuJoCo leaves out. The names are those of MuJoCo 4.0.0.
+//! References to a replicated part of the tree, and those that MuJoCo omits. The names are those of MuJoCo 4.0.0.
 
 use clench_formats::read_str;
 use clench_rigid::builder::{ModelBuilder, WrapSpec};
 
-/// A fixed body `f` and two replicas of a body `b`, with sections outside the tree.
+/// Reads a fixed body `f` and two replicas of a body `b`, with sections outside the tree.
 fn replicated(sections: &str) -> ModelBuilder {
     read_str(&format!(
         "<mujoco><worldbody>

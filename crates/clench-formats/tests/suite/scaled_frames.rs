@@ -1,4 +1,5 @@
-//! Frames that scale what is in them. Every field is compared with MuJoCo's in the Python tests, over `parity/models/scaled_frames.xml`.
+//! Frames that scale their contents. The Python tests compare every field with MuJoCo's, over
+//! `parity/models/scaled_frames.xml`.
 
 use clench_formats::load_str;
 use clench_math::Vec3;
@@ -19,7 +20,7 @@ fn refused(sections: &str) -> String {
     }
 }
 
-/// A pendulum on a slider, under gravity, in a frame.
+/// Loads a pendulum on a slider, under gravity, in a frame.
 fn pendulum(frame: &str, gravity: f64) -> Model {
     load(&format!(
         "<option gravity='0 0 {gravity}' integrator='RK4'/>
@@ -36,7 +37,8 @@ fn pendulum(frame: &str, gravity: f64) -> Model {
     ))
 }
 
-/// A similar model moves as the original would in weaker gravity: lengths are as much larger at every moment, and angles equal.
+/// A scaled model moves as the original would in proportionally weaker gravity: lengths are scaled, and angles are
+/// equal.
 #[test]
 fn a_similar_copy_moves_alike_in_proportional_gravity() {
     let (small, large) = (
@@ -73,7 +75,7 @@ fn frames_multiply_and_each_keeps_its_policy() {
     let pos = model.params.body_pos[1] - Vec3::new(3.0, 6.0, 0.0);
     assert!(pos.dot(pos) < 1e-20);
     assert_eq!(model.params.body_mass[1], 216.0);
-    // Torques follow the inner frame alone, whose mass grows with its volume.
+    // Torques scale only with the inner frame, whose mass grows with its volume.
     assert_eq!(model.params.jnt_stiffness[0], 243.0);
     assert_eq!(model.params.geom_size[0].x, 6.0);
 }
@@ -232,7 +234,7 @@ fn what_cannot_be_scaled_is_refused() {
     load(&with("scale='2' scaling='geometry'"));
 }
 
-/// The numbers are MuJoCo's.
+/// The expected numbers are MuJoCo's.
 #[test]
 fn yields_and_where_springs_rest_are_scaled_along_what_they_measure() {
     let model = load(
@@ -261,7 +263,7 @@ fn yields_and_where_springs_rest_are_scaled_along_what_they_measure() {
     assert!(found.iter().zip(&expected).all(near), "{found:?}");
 }
 
-/// The numbers are MuJoCo's.
+/// The expected numbers are MuJoCo's.
 #[test]
 fn scales_that_differ_between_axes_act_by_axis() {
     let model = load(
@@ -279,13 +281,13 @@ fn scales_that_differ_between_axes_act_by_axis() {
     };
     let (params, cube_root) = (&model.params, 6.0_f64.cbrt());
     assert!(near(params.body_pos[1], [1.0, 2.0, 3.0]));
-    // In the axes of the body, which is turned, the scale is 2 1 3.
+    // In the axes of the rotated body the scale is 2 1 3.
     assert!(near(params.geom_size[0], [0.2, 0.2, 0.9]));
     assert!(near(params.geom_pos[0], [2.0, 2.0, 0.0]));
     assert!((params.jnt_range[0][1] - 2.0).abs() < 1e-12);
     assert!((params.jnt_range[1][1] - 3.0).abs() < 1e-12);
     assert!((params.body_mass[1] - 6.0).abs() < 1e-12);
-    // What has no direction follows the cube root of the product.
+    // Quantities without a direction scale with the cube root of the product.
     assert!((params.geom_friction[0][1] - cube_root).abs() < 1e-12);
     assert!((params.site_size[0].x - 0.1 * cube_root).abs() < 1e-12);
 }
@@ -327,7 +329,7 @@ fn what_scales_by_axis_would_deform_is_refused() {
         ));
         assert!(text.contains(words), "{part}: {text}");
     }
-    // An angle of less than 0.0349, and scales that differ by less than that share of the larger one, are as good as none.
+    // Angles below 0.0349 and scales with a smaller relative difference than that are treated as zero.
     load(
         "<worldbody><frame scale='1 1.036 3' scaling='geometry'>
            <geom type='cylinder' size='1 1' quat='1 0.002 0 0'/><geom type='box' size='1 1 1' euler='0 0 1'/>

@@ -94,7 +94,7 @@ fn flags_switch_features_and_solver_options() {
     assert_eq!(model.options.disable_constraint, Some(true));
 }
 
-/// MuJoCo begins anew where a motion diverges unless a file forbids it; here a file must ask for it.
+/// MuJoCo resets a simulation that diverges unless a file disables it; here a file must enable it.
 #[test]
 fn a_file_says_whether_a_motion_that_diverges_begins_anew() {
     let flag = |value: &str| read(&format!("<option><flag autoreset='{value}'/></option>"));

@@ -1,4 +1,4 @@
-//! What files say of sensors, and what is refused.
+//! Sensors in files, and those that are refused.
 
 use clench_formats::load_str;
 use clench_math::Vec3;

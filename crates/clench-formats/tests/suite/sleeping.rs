@@ -1,4 +1,4 @@
-//! What files say of sleep, and what they cannot say.
+//! Sleep settings in files, and settings that files cannot express.
 
 use clench_formats::{LoadError, load_str};
 use clench_rigid::model::{Model, SleepPolicy};

@@ -1,8 +1,9 @@
-//! Inverse inertias of bodies that only slide.
+//! Inverse inertias of bodies with only slide joints.
 
 use clench_formats::load_str;
 
-/// MuJoCo's shortcut for bodies that only slide: their mass in every direction, where others take the mean over directions.
+/// For simple bodies with only slide joints MuJoCo uses the mass in every direction; for others it takes the mean over
+/// directions.
 #[test]
 fn a_slider_weighs_in_every_direction_unless_it_is_not_simple() {
     let weight = |simple: &str| {
@@ -17,7 +18,8 @@ fn a_slider_weighs_in_every_direction_unless_it_is_not_simple() {
     assert!((weight("false") - 0.5 / 3.0).abs() < 1e-15);
 }
 
-/// Numbers of MuJoCo 4.0: 1/(mass + armature · coef²) of the dof, of the body the mean over three directions, of which it moves in one.
+/// MuJoCo 4.0's values: 1/(mass + armature · coef²) for the dof; for the body the mean over three directions, of which
+/// it moves in one.
 #[test]
 fn a_slider_with_the_inertia_of_a_tendon_is_not_simple() {
     let weights = |armature: f64| {

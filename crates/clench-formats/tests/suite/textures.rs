@@ -1,4 +1,4 @@
-//! Textures: the pixels are those of MuJoCo, and what is wrong with a file is said.
+//! Textures: the pixels are those of MuJoCo, and invalid files are reported.
 
 use crate::pictures::png;
 use clench_formats::Loader;
@@ -29,7 +29,7 @@ fn pixels(texture: &str) -> Arc<Pixels> {
     load(texture).unwrap().visuals.textures[0].pixels()
 }
 
-/// The hash of Fowler, Noll and Vo.
+/// Computes the FNV-1a hash (Fowler, Noll and Vo).
 fn hash(bytes: &[u8]) -> u64 {
     let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, step)
@@ -160,7 +160,7 @@ fn what_is_wrong_is_said() {
         assert!(error.contains(words), "{texture}: {error}");
     }
     load("<texture type='skybox' builtin='gradient' width='4'/>").unwrap();
-    // What is discarded is not read.
+    // Discarded files are not read.
     let unread = "<mujoco><compiler discardvisual='true'/><asset><texture type='2d' name='t' file='no.png'/></asset></mujoco>";
     assert!(
         Loader::new()
@@ -172,7 +172,7 @@ fn what_is_wrong_is_said() {
     );
 }
 
-/// A pyramid whose corners have places in a picture; a corner of the last face has what is given.
+/// Returns a pyramid with texture coordinates; the last corner of the last face has those in `last`.
 fn pyramid(last: &str) -> String {
     format!(
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt .1 .2\nvt .3 .4\nvt .5 .9\n\
@@ -190,7 +190,7 @@ fn corners_of_meshes_have_their_places_in_a_picture() {
     };
     let model = load("/1");
     let mesh = &model.meshes[0];
-    // OBJ counts upwards, pictures downwards: MuJoCo's `mesh_texcoord` and `mesh_facetexcoord`.
+    // In OBJ the vertical coordinate points up, in pictures down: MuJoCo's `mesh_texcoord` and `mesh_facetexcoord`.
     assert_eq!(mesh.texcoords, [[0.1, 0.8], [0.3, 0.6], [0.5, 1.0 - 0.9]]);
     assert_eq!(
         mesh.face_texcoords,

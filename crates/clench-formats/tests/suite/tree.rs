@@ -59,7 +59,7 @@ fn bodies_stand_in_the_order_of_the_file_parents_first() {
     assert_eq!(parents, [0, 0, 1, 0, 3]);
 }
 
-/// As MuJoCo has it: an inertial frame of which nothing is known stands off from the body as the body from its `<frame>`.
+/// As in MuJoCo: an undefined inertial frame has the same offset from the body as the body from its `<frame>`.
 #[test]
 fn a_body_without_mass_in_a_frame_is_bounded_where_it_is_written() {
     let text = "<mujoco><compiler boundmass='1' boundinertia='1'/><worldbody>
@@ -109,9 +109,10 @@ fn eulerseq_orders_rotations_about_moving_or_fixed_axes() {
         );
         read(&text).bodies[1].quat.rotate(Vec3::new(0.0, 0.0, 1.0))
     };
-    // Moving: the second turn is about the new y, which is the old z; z is tipped by the first alone, then turned.
+    // Moving axes: the second rotation is about the new y, which is the old z; z is tipped by the first only, then
+    // rotated.
     assert!(near(turned("xyz"), [1.0, 0.0, 0.0]));
-    // Fixed: the first turn tips z to −y, the second, about y, leaves it there.
+    // Fixed axes: the first rotation tips z to −y; the second, about y, leaves it there.
     assert!(near(turned("XYZ"), [0.0, -1.0, 0.0]));
 }
 
@@ -249,7 +250,7 @@ fn replicas_are_displaced_again_and_again_and_numbered() {
            <replicate count='2' sep='-' offset='1 0 0' euler='0 90 0'><geom name='Alice' size='0.1'/></replicate>
          </replicate>",
     );
-    // MuJoCo's own example, from its XML reference.
+    // The example in MuJoCo's XML reference.
     let expected = [
         ("Alice-00", [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]),
         (
@@ -343,7 +344,7 @@ fn fused_bodies_are_those_that_nothing_needs() {
     assert!(!fused(
         "<custom><tuple name='t'><element objtype='body' objname='f'/></tuple></custom>"
     ));
-    // What stands on it goes along.
+    // Elements on the body are moved to its parent.
     assert!(fused(
         "<sensor><framepos objtype='site' objname='site'/></sensor>"
     ));

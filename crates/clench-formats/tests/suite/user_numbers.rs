@@ -1,4 +1,4 @@
-//! The user's own numbers of elements: kept, of one width for all elements of a kind.
+//! User data of elements: stored, with the same width for all elements of a kind.
 
 use clench_formats::{Loader, SaveModel, load_str};
 use clench_rigid::{Budget, Model};
@@ -115,7 +115,7 @@ fn they_are_held_against_the_budget_before_they_are_made() {
     assert_eq!(load(&modest).geoms[0].user.len(), 2_000_000);
 }
 
-/// The width of geoms of a model that says `own`, and has another attached to it that says five.
+/// Returns the width of the user data of geoms in a model with the size `own` and an attached model with size 5.
 fn attached(conflict: &str, own: &str) -> Result<usize, String> {
     let part = "<mujoco><size nuser_geom='5'/><worldbody><body name='b'><geom size='1' user='1 2'/></body></worldbody></mujoco>";
     let main = format!(

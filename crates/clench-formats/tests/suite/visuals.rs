@@ -1,4 +1,4 @@
-//! What a file says of how things look.
+//! The appearance of elements in a file.
 
 use clench_formats::{SaveModel, load_str};
 

@@ -1,4 +1,4 @@
-//! XML as TinyXML reads it, which MuJoCo uses: each of these loads in MuJoCo 4.0.0.
+//! XML as TinyXML, MuJoCo's parser, reads it. Each of these files loads in MuJoCo 4.0.0.
 
 use clench_formats::read_str;
 

@@ -1,4 +1,5 @@
-//! A batch that a device steps: rows go up and come down, outputs are the device's, faults are told as on the processor.
+//! A batch on a device: rows are uploaded and downloaded, outputs are the device's, and faults are reported as on the
+//! processor.
 
 use crate::common::{self, Random, own, random_state, text};
 use clench_gpu::GpuBatch;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 
 const COUNT: usize = 40;
 
-/// A batch on the device in random states, and the same on the device alone; none where there is no device.
+/// Returns a batch on the device in random states, and a `GpuBatch` in the same states; `None` if there is no device.
 fn both(model: &Arc<Model>) -> Option<(Batch<f32>, GpuBatch)> {
     let mut alone = common::batch(model, COUNT)?;
     let mut batch =
@@ -24,7 +25,7 @@ fn both(model: &Arc<Model>) -> Option<(Batch<f32>, GpuBatch)> {
     Some((batch, alone))
 }
 
-/// Asserts that numbers are equal to the bit.
+/// Asserts bitwise equality.
 fn assert_bits(found: &[f32], expected: &[f32], what: &str) {
     let same = |(a, b): (&f32, &f32)| a.to_bits() == b.to_bits();
     assert_eq!(found.len(), expected.len(), "{what}");
@@ -211,7 +212,7 @@ fn the_pool_is_told() {
         batch.statuses(),
         [EnvStatus::Running, EnvStatus::Failed(full)]
     );
-    // Questions are answered from the rows.
+    // Queries are computed from the rows.
     let jacobian = batch.subtree_jacobian(1).expect("a body");
     assert!(jacobian.row(0).iter().all(|x| x.is_finite()));
 }
@@ -267,13 +268,14 @@ fn environments_have_parameters_of_their_own() {
         let (here, there) = (gap(processor.state.qvel.row(env)), gap(without));
         assert!(here < 0.02 * there, "environment {env}: {here} and {there}");
     }
-    // They stay when an environment begins anew.
+    // A reset of an environment does not change them.
     let masses = device.param("body_mass", 8).expect("masses");
     device.reset(8).expect("an environment");
     assert_eq!(device.param("body_mass", 8).expect("masses"), masses);
 }
 
-/// What springs rest at and past controls are a part of the state: they come down, and go up with a snapshot.
+/// Rest positions of yielding springs and past controls are part of the state: they are downloaded, and uploaded with a
+/// snapshot.
 #[test]
 fn histories_and_springs_that_yield_are_those_of_the_processor() {
     let rk4 = own("pliant").replace("<option ", "<option integrator=\"RK4\" ");
@@ -326,12 +328,12 @@ fn histories_and_springs_that_yield_are_those_of_the_processor() {
         let moved = gap(found.row(0), &fresh);
         assert!(moved > least, "{name} moves by {moved} alone");
     }
-    // From the same state the same follows.
+    // The same state leads to the same results.
     let before = device.state.history.as_slice().to_vec();
     device.restore(&start).expect("the same model");
     run(&mut device);
     assert_bits(device.state.history.as_slice(), &before, "history");
-    // Sensors with delays, by steps that are told the time and by many at once.
+    // Sensors with delays, in steps with a given time and in many steps at once.
     for steps in [0, 20] {
         device.step_n(steps).expect("good states");
         processor.step_n(steps).expect("good states");

@@ -1,8 +1,8 @@
-//! The models of dm-control's suite, where the environment variable `CLENCH_DM_CONTROL` names the folder of their files.
+//! The models of dm-control's suite, in the folder named by the environment variable `CLENCH_DM_CONTROL`.
 
 use crate::common::folders;
 
-/// Each, on how many states, and how far from its initial one.
+/// Each model with the number of states and their spread around the initial one.
 const MODELS: &[(&str, usize, f64)] = &[
     ("acrobot", 100, 1.0),
     ("ball_in_cup", 100, 0.5),
@@ -22,7 +22,7 @@ const MODELS: &[(&str, usize, f64)] = &[
     ("walker", 100, 0.5),
 ];
 
-/// What cannot be done yet. `lqr` is a world without joints, to which its task adds bodies.
+/// Unsupported models. `lqr` is a world without joints, to which its task adds bodies.
 const REFUSED: &[&str] = &["lqr"];
 
 #[test]

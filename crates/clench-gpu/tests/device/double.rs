@@ -1,4 +1,4 @@
-//! Double precision: each stage equals its sister on the processor to rounding, which tells more than single precision can.
+//! Double precision: each stage equals its processor counterpart to rounding, a stricter test than single precision.
 
 use crate::common::{self, Random, general_batch, own, random_state, text};
 use clench_rigid::Sim;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Every field of so many random states is within `tolerance` of the processor's in double precision.
+/// Asserts that every field of `count` random states is within `tolerance` of the processor's in double precision.
 fn agree(model: &Arc<Model>, count: usize, spread: f64, tolerance: f64) {
     let Some(mut batch) = general_batch::<f64>(model, count) else {
         return;
@@ -40,7 +40,7 @@ fn agree(model: &Arc<Model>, count: usize, spread: f64, tolerance: f64) {
     }
 }
 
-/// Sums are taken in another order than on the processor: so much is left of rounding, over the largest number of a field.
+/// The rounding error relative to the largest number of a field: sums have another order than on the processor.
 const TOLERANCE: f64 = 1e-9;
 
 #[test]
@@ -50,7 +50,7 @@ fn joints_tendons_actuators_and_constraints_agree() {
     }
 }
 
-/// A current whose time constant is hardly longer than a step.
+/// Tests a current with a time constant slightly longer than a step.
 #[test]
 fn currents_of_motors_agree() {
     let file = "<mujoco>
@@ -61,13 +61,13 @@ fn currents_of_motors_agree() {
     agree(&text(file), 20, 0.5, TOLERANCE);
 }
 
-/// What single precision leaves undecided in such a heap, double precision does not.
+/// Double precision resolves the cases in such a heap that single precision leaves undecided.
 #[test]
 fn shapes_that_overlap_agree() {
     agree(&text(&own("hulls")), 20, 1.0, 1e-6);
 }
 
-/// Light fingers on heavy arms, of which single precision knows too little to compare them.
+/// Compares light fingers on heavy arms, for which single precision is not accurate enough.
 #[test]
 fn manipulators_agree() {
     let Some(folder) = std::env::var_os("CLENCH_DM_CONTROL").map(PathBuf::from) else {
@@ -84,7 +84,7 @@ fn manipulators_agree() {
     }
 }
 
-/// So many steps lead where the processor's double precision leads.
+/// Asserts that `steps` steps reach the state of the processor's double precision.
 fn arrive(name: &str, integrator: &str, steps: usize) {
     let option = format!("<option integrator=\"{integrator}\" ");
     let model = text(&own(name).replace("<option ", &option));

@@ -1,8 +1,8 @@
-//! The robots of Gymnasium's MuJoCo tasks, where the environment variable `CLENCH_GYMNASIUM` names the folder of their files.
+//! The robots of Gymnasium's MuJoCo tasks, in the folder named by the environment variable `CLENCH_GYMNASIUM`.
 
 use crate::common::folders;
 
-/// Each, on how many states, and how far from its initial one.
+/// Each robot with the number of states and their spread around the initial one.
 const ROBOTS: &[(&str, usize, f64)] = &[
     ("half_cheetah", 100, 0.3),
     ("hopper", 100, 0.5),

@@ -1,11 +1,11 @@
-//! Models of more dofs than the memory of a workgroup has room for.
+//! Models with more dofs than fit into the memory of a workgroup.
 
 use crate::common::{self, text};
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 use clench_rigid::model::Model;
 use std::sync::Arc;
 
-/// Balls side by side that touch the floor and each other, and a chain of links between two of them.
+/// Returns balls next to each other that touch the floor and each other, and a chain of links between two of them.
 fn crowd(balls: usize, links: usize) -> String {
     let mut bodies = String::new();
     for k in 0..balls {
@@ -50,7 +50,7 @@ fn a_crowd_whose_hessian_lies_outside_the_workgroup() {
     assert!(solves.iter().all(|s| s.contacts > 10 && s.iterations > 1));
 }
 
-/// So many balls, of which three begin on the floor and two are held together.
+/// Returns a model of `balls` balls: three start on the floor, and two are connected.
 fn flock(balls: usize, option: &str) -> Arc<Model> {
     let ball = |k: usize| {
         let height = if k < 3 { 0.1 } else { 1.0 };
@@ -68,7 +68,7 @@ fn flock(balls: usize, option: &str) -> Arc<Model> {
     ))
 }
 
-/// So many that the memory of a workgroup of Mesa's software device does not hold the vectors either.
+/// The model is so large that even the vectors do not fit into the memory of a workgroup of Mesa's software device.
 #[test]
 fn conjugate_gradients_go_where_newton_does_not() {
     let model = flock(136, "solver='CG' tolerance='1e-10'");

@@ -1,5 +1,5 @@
-//! Tests of the device through the crate's public face: one program, so that its generic code is compiled once for all of them, and
-//! kernels of several models are compiled side by side.
+//! Tests of the device through the crate's public API, in one program so that its generic code is compiled once, and
+//! kernels of several models are compiled in parallel.
 
 mod batch;
 mod common;

@@ -1,4 +1,4 @@
-//! Every output that a device computes is what the processor computes, after a forward pass and after a step.
+//! Tests that every output of a device equals the processor's, after a forward pass and after a step.
 
 use crate::common::{self, Random, difference, own, random_state, text};
 use clench_rigid::model::{Model, Sensor};
@@ -7,10 +7,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 const COUNT: usize = 60;
-/// What rounding leaves of forces that nearly cancel, over their largest.
+/// The rounding error of forces that nearly cancel, relative to the largest.
 const TOLERANCE: f64 = 1e-3;
 
-/// Both batches in the same random states, recording all that the device computes; none where there is no device.
+/// Returns both batches in the same random states, recording all outputs of the device; `None` if there is no device.
 fn both(model: &Arc<Model>) -> Option<[Batch<f32>; 2]> {
     common::batch(model, 1)?;
     let options = BatchOptions::default();
@@ -27,7 +27,7 @@ fn both(model: &Arc<Model>) -> Option<[Batch<f32>; 2]> {
     Some(batches)
 }
 
-/// Records the same outputs in both, those that the device computes.
+/// Records all outputs that the device supports in both batches.
 fn record(batches: &mut [Batch<f32>; 2]) -> Vec<&'static str> {
     let mut names = Vec::new();
     for output in Output::ALL {
@@ -44,14 +44,14 @@ fn record(batches: &mut [Batch<f32>; 2]) -> Vec<&'static str> {
     names
 }
 
-/// Of a part of an output: the share of environments in which the device's is not the processor's.
+/// Returns the share of environments in which a part of an output differs between device and processor.
 fn share_that_differs(batches: &[Batch<f32>; 2], name: &str, part: Range<usize>) -> f64 {
     let row = |k: usize, env: usize| -> Vec<f64> {
         let rows = batches[k].output(name).expect("it is kept");
         let numbers = rows.row(env)[part.clone()].iter();
         numbers.map(|&x| f64::from(x)).collect()
     };
-    // Against more than what rounding leaves of nothing.
+    // Values below 1e-5 are rounding errors of zero.
     let differs = |&env: &usize| {
         let (found, expected) = (row(0, env), row(1, env));
         let tiny = |x: &Vec<f64>| x.iter().all(|x| x.abs() < 1e-5);
@@ -60,7 +60,7 @@ fn share_that_differs(batches: &[Batch<f32>; 2], name: &str, part: Range<usize>)
     (0..COUNT).filter(differs).count() as f64 / COUNT as f64
 }
 
-/// The parts of an output that are compared by themselves: sensors one by one.
+/// Returns the parts of an output that are compared separately: single sensors.
 fn parts(model: &Model, name: &str) -> Vec<(String, Range<usize>)> {
     let whole = Output::find(name).expect("an output").width(model);
     if name != "sensordata" {
@@ -74,7 +74,7 @@ fn agree(file: &str) {
     agree_after(file, |_| ());
 }
 
-/// The same after both batches were changed in the same way.
+/// Asserts the same after the same change of both batches.
 fn agree_after(file: &str, change: impl Fn(&mut Batch<f32>)) {
     let model = text(file);
     let Some(mut batches) = both(&model) else {
@@ -95,10 +95,10 @@ fn agree_after(file: &str, change: impl Fn(&mut Batch<f32>)) {
             assert_eq!(summary.expect("good states").running, COUNT);
         }
         let mut wrong = Vec::new();
-        // How soon a solve ends is decided by rounding.
+        // The number of iterations depends on rounding.
         for name in names.iter().filter(|name| **name != "solver_iterations") {
             for (what, part) in parts(&model, name) {
-                // A contact that is there for one and not for the other is no error of either.
+                // A contact that only one of the two finds is not an error.
                 let share = share_that_differs(&batches, name, part);
                 if share > 0.05 {
                     wrong.push(format!("{what} in {share:.2} of the states"));
@@ -149,7 +149,7 @@ fn those_of_rays_and_cameras() {
     agree(&own("rays"));
 }
 
-/// Each environment has cameras, sites and geoms of its own.
+/// Tests environments with different cameras, sites and geoms.
 #[test]
 fn those_of_rays_and_cameras_that_differ() {
     agree_after(&own("rays"), |batch| {
@@ -173,7 +173,7 @@ fn those_of_rays_and_cameras_that_differ() {
             }
             batch.randomize(field, &envs, &values).expect("good values");
         }
-        // Those of another camera.
+        // The axes of another camera.
         let mut axes = batch.param("cam_mat0", 0).expect("a field");
         axes.rotate_left(9);
         batch
@@ -187,7 +187,7 @@ fn those_of_a_runner() {
     agree(&own("runner"));
 }
 
-/// What is said of the sensor `eye`, which is not read yet.
+/// Checks the error for the sensor `eye`, which is not supported yet.
 fn refused(sensor: &str, kind: &str) {
     let model = text(&own("sensors").replace("<user dim=\"2\"/>", sensor));
     if common::batch(&model, 1).is_none() {

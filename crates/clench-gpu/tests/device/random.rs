@@ -1,5 +1,5 @@
-//! Random models of all that MJCF can say, beside the processor in double precision, where the environment variable `CLENCH_RANDOM_MODELS` names a
-//! folder of their files (`parity/write_random_models.py` fills it).
+//! Random models with all features of MJCF, compared with the processor in double precision. The environment variable
+//! `CLENCH_RANDOM_MODELS` names their folder (`parity/write_random_models.py` fills it).
 
 use crate::common::{self, Random, computed, difference, random_state, try_general_batch, used};
 use clench_gpu::{GpuBatch, GpuError, GpuSolve};
@@ -8,25 +8,26 @@ use clench_rigid::model::{Model, SensorKind};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// States of each model.
+/// The number of states of each model.
 const COUNT: usize = 4;
-/// Of the largest number of a field.
+/// The tolerance relative to a field's largest number.
 const TOLERANCE: f64 = 1e-6;
-/// An actuator with more force than this moves by rounding, N or N m.
+/// The largest force of an actuator, N or N m: above it rounding errors cause motion.
 const STRONGEST: f64 = 1e10;
-/// Rows that differ by more are those of two problems, whose solutions may differ by any factor of it.
+/// The tolerance of rows. If rows differ by more, the problems differ, and their solutions may differ by any factor of
+/// it.
 const SAME_ROWS: f64 = 1e-10;
-/// Rows with less regularization have next to no inverse inertia: roundings of J move the solution.
+/// The least regularization of rows: below it inverse inertias are nearly zero, and rounding of J changes the solution.
 const LEAST_R: f64 = 1e-12;
-/// What the convex problem has of each row.
+/// The fields of each row of the convex problem.
 const ROWS: [&str; 3] = ["jacobian", "aref", "r"];
-/// Of the diagonal, what is left of it in the factor of M.
+/// The least pivot in the factor of M, relative to the diagonal.
 const LEAST_PIVOT: f64 = 1e-9;
-/// Where gaps allow more than this share of the accelerations, little is known of these.
+/// The relative uncertainty of accelerations above which a solution is loose.
 const LOOSE: f64 = 1e-3;
-/// What follows from the solution of the convex problem, which is known to its duality gap.
+/// Fields that depend on the solution of the convex problem, which is accurate to its duality gap.
 const SOLVED: [&str; 2] = ["qacc", "qfrc_constraint"];
-/// Sensors that read it.
+/// Sensors that read the solution.
 const SOLVED_SENSORS: [SensorKind; 9] = [
     SensorKind::Touch,
     SensorKind::Accelerometer,
@@ -39,23 +40,25 @@ const SOLVED_SENSORS: [SensorKind; 9] = [
     SensorKind::Contact,
 ];
 
-/// What else the inverse of the mass matrix decides.
+/// Other fields that depend on the inverse of the mass matrix.
 const OF_INVERSE_MASS: [&str; 3] = ["qacc_smooth", "aref", "r"];
 
-/// What was compared, and what could not be.
+/// Counts of compared and excluded cases.
 #[derive(Debug, Default)]
 struct Tally {
     models: usize,
     refused: usize,
     states: usize,
-    /// More contacts than the pool holds, more turns of loops than the device grants, or an error of the processor's.
+    /// More contacts than the pool holds, more loop iterations than the device allows, or an error of the processor.
     ended: usize,
-    /// What rounding decides: contacts of shapes that overlap by as much in two directions, or in another order, and actuators so strong that they move
-    /// what their moment arm, a rounding, says.
+    /// Cases that depend on rounding: contacts of shapes with equal overlap in two directions, or in another order, and
+    /// actuators so strong that rounding errors of moment arms cause motion.
     undecided: usize,
-    /// Where something differs that rounding decides: a mass matrix is nearly singular, rows have next to no inverse inertia or differ by roundings.
+    /// Differences that depend on rounding: a mass matrix is nearly singular, or rows have nearly zero inverse inertia
+    /// or differ by rounding.
     excused: usize,
-    /// Solves of whose accelerations gaps say little: mostly those that end at a limit of few iterations, or go on with `noslip`.
+    /// Solves whose gaps allow large errors of the accelerations: mostly those that end at a limit of few iterations,
+    /// or continue with `noslip`.
     loose: usize,
     sensors: usize,
 }
@@ -72,7 +75,7 @@ fn random_models_agree() {
     files.sort();
     let (mut tally, mut wrong) = (Tally::default(), Vec::new());
     for path in &files {
-        // The reader refuses some, which the comparison with MuJoCo counts.
+        // The reader refuses some; the comparison with MuJoCo counts them.
         let Some(model) = clench_formats::load(path).ok().filter(|m| m.nv > 0) else {
             continue;
         };
@@ -137,7 +140,7 @@ fn compare(model: &Arc<Model>, tally: &mut Tally) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether rounding decides what a mass matrix of `n` dofs is where a dof moves and all later ones stand still.
+/// Returns true if rounding dominates a pivot of a mass matrix of `n` dofs.
 fn is_nearly_singular(mut mass: Vec<f64>, n: usize) -> bool {
     let diagonal = Vec::from_iter((0..n).map(|i| mass[n * i + i]));
     for k in 0..n {
@@ -161,7 +164,7 @@ struct Environment<'a> {
 }
 
 impl Environment<'_> {
-    /// Its row of a field, as far as it is used.
+    /// Returns the used part of its row of a field.
     fn row(&self, name: &str) -> Vec<f64> {
         let width = self.batch.width(name).expect("a field");
         let values = self.batch.read(name).expect("a device");
@@ -173,7 +176,7 @@ impl Environment<'_> {
         difference(&self.row(name), expected) <= tolerance
     }
 
-    /// Names what differs from the processor's, or tells whether something does that rounding decides.
+    /// Returns an error with the difference from the processor, or true if there is one that rounding excuses.
     fn compare(
         &self,
         sim: &mut Sim<f64>,
@@ -255,7 +258,8 @@ impl Environment<'_> {
         Ok(())
     }
 
-    /// Since the cost grows at least as fast as the square of M's norm, each solution is at most √(2 gap) from the true one.
+    /// Compares the accelerations. The cost grows at least as fast as the square of M's norm, so each solution is at
+    /// most √(2 gap) from the true one.
     fn solutions(&self, sim: &mut Sim<f64>) -> Solutions {
         let mass = sim.mass_matrix().expect("positions are known");
         let (found, expected) = (self.row("qacc"), sim.workspace().qacc.clone());
@@ -263,7 +267,7 @@ impl Environment<'_> {
             let rows = mass.chunks(x.len()).zip(x);
             let product = |row: &[f64]| row.iter().zip(x).map(|(m, x)| m * x).sum::<f64>();
             let square: f64 = rows.map(|(row, x)| x * product(row)).sum();
-            // Rounding may leave a little less than nothing.
+            // Rounding may make it slightly negative.
             if square < 0.0 { 0.0 } else { square.sqrt() }
         };
         let apart = Vec::from_iter(found.iter().zip(&expected).map(|(a, b)| a - b));
@@ -276,12 +280,12 @@ impl Environment<'_> {
     }
 }
 
-/// The accelerations of both, by the norm of M.
+/// A comparison of accelerations in the norm of M.
 struct Solutions {
-    /// How far they are from each other.
+    /// The distance between device and processor.
     apart: f64,
-    /// How far their duality gaps allow.
+    /// The distance that their duality gaps allow.
     allowed: f64,
-    /// The size of the processor's.
+    /// The norm of the processor's accelerations.
     size: f64,
 }

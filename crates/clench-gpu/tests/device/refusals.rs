@@ -1,9 +1,9 @@
-//! What the device cannot do yet is refused by name, before the first step and without a device.
+//! Unsupported features are refused by name, before the first step and without a device.
 
 use crate::common::text;
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
 
-/// A model of a pendulum with an option.
+/// Returns a model of a pendulum with an option.
 fn model(option: &str) -> String {
     format!(
         "<mujoco>

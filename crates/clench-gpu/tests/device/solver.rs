@@ -1,4 +1,4 @@
-//! Solvers and what they report: conjugate gradients, the duality gap, and starting points that are proven good.
+//! Solvers and their statistics: conjugate gradients, the duality gap, and starting points that are proven to be good.
 
 use crate::common::{self, Random, convert, general_batch, own, random_state, text, upload};
 use clench_rigid::Sim;
@@ -6,14 +6,15 @@ use clench_rigid::model::Model;
 use clench_solver::Status;
 use std::sync::Arc;
 
-/// A model of the tests with an `<option>` of its own.
+/// Loads a test model with an additional attribute of `<option>`.
 fn with_option(name: &str, option: &str) -> Arc<Model> {
     let text_of_model = own(name).replace("<option ", &format!("<option {option} "));
     assert!(text_of_model.contains(option), "{name} has no option");
     text(&text_of_model)
 }
 
-/// Tolerance 0: both go on until rounding stops them, since where a tolerance does the answers differ by as much.
+/// With tolerance 0 both iterate until rounding stops them; with a larger tolerance the results differ by as much as
+/// that.
 #[test]
 fn conjugate_gradients_agree_with_the_processor() {
     for (name, spread) in [("runner", 1.0), ("medley", 0.4)] {
@@ -33,7 +34,7 @@ fn conjugate_gradients_agree_on_elliptic_cones() {
     common::agree_within(1e-3, 0, &with_option("medley", option), 20, 0.4);
 }
 
-/// By either solver after few iterations, when the gap is far from rounding.
+/// Runs either solver for few iterations, when the gap is far above rounding.
 #[test]
 fn the_duality_gap_is_the_processors() {
     for solver in ["Newton", "CG"] {
@@ -61,7 +62,7 @@ fn the_duality_gap_is_the_processors() {
             large += usize::from(gap > 1e-3);
         }
         assert!(large > 3, "{solver}: {large} gaps are large");
-        // An integrator leaves a factor of its own in the place of M's.
+        // An integrator overwrites the factor of M with its own.
         batch.step(1).expect("a device");
         assert_eq!(solves, batch.solves().expect("a device"), "{solver}");
     }

@@ -1,11 +1,11 @@
-//! Each stage on the device equals its sister on the processor, on random states.
+//! Tests that each stage on the device equals its processor counterpart on random states.
 
 use crate::common::{self, batch, own, text};
 use clench_rigid::Batch;
 use clench_rigid::model::Model;
 use std::sync::Arc;
 
-/// Agrees, and has seen something.
+/// Asserts agreement, contacts and hard solves.
 fn agree(model: &Arc<Model>, count: usize, spread: f64) {
     let Some(batch) = common::agree(model, count, spread) else {
         return;
@@ -48,9 +48,9 @@ fn one_of_each_tendon_equality_transmission_and_activation() {
     agree(&text(&own("linkage")), 100, 0.5);
 }
 
-/// A heap agrees but for so many of 100 states, and has many contacts. Where curved shapes overlap the depth hardly changes with the
-/// direction, which rounding decides: the processor's precisions differ by as much. In a stray a point of bodies that are apart is listed twice, or
-/// so deep a heap is not solved.
+/// Asserts that a heap agrees except for `strays` of 100 states, and has many contacts. Where curved shapes overlap,
+/// the depth hardly changes with the direction, so rounding decides it: the processor's precisions differ by as much.
+/// In a stray, a point of separate bodies is listed twice, or so deep a heap is not solved.
 fn heap(model: &str, strays: usize) {
     if let Some(batch) = common::agree_within(1e-3, strays, &text(model), 100, 1.0) {
         let solves = batch.solves().expect("a device");
@@ -58,7 +58,7 @@ fn heap(model: &str, strays: usize) {
     }
 }
 
-/// Kernels that are made for a model, as they are by default, leave out what it has not.
+/// Kernels specialized for a model, the default, omit unused features.
 #[test]
 fn kernels_of_a_models_own_agree_as_those_for_any_do() {
     for (name, spread) in [("medley", 0.7), ("cans", 1.0), ("terrain", 1.0)] {
@@ -84,14 +84,16 @@ fn a_heap_of_hulls_and_all_that_they_meet() {
     heap(&own("hulls"), 2);
 }
 
-/// The strays are all the cylinder's. In the one that was traced the ways out across a triangle and across the cap differ by 2 µm, less
-/// than the device's tolerance; the processor's single precision chooses as its double precision does.
+/// All strays are due to the cylinder. In the one that was traced the depths across a triangle and across the cap
+/// differ by 2 µm, less than the device's tolerance; the processor's single precision chooses as its double precision
+/// does.
 #[test]
 fn all_shapes_on_terrain() {
     heap(&own("terrain"), 3);
 }
 
-/// One shape at a time, with the others high above: where all sink into the ground, Mesa's software device ends its loops early.
+/// Tests one shape at a time, with the others high above: if all sink into the ground, Mesa's software device
+/// terminates its loops early.
 #[test]
 fn each_shape_on_terrain_with_cliffs() {
     let cliffs = own("terrain").replace("1.1 1.1 0.25 0.2", "0.8 0.8 0.7 0.2");
@@ -120,7 +122,7 @@ fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
     heap(&one, 2);
 }
 
-/// Both cones; friction of elliptic ones with a damping of its own.
+/// Tests both cones; elliptic friction has a damping of its own.
 #[test]
 fn surfaces_that_move_and_contacts_that_adhere() {
     let surfaces = own("surfaces");
@@ -173,7 +175,7 @@ fn elliptic_cones() {
     agree(&text(&elliptic), 100, 0.7);
 }
 
-/// Three sweeps, which still gain more than rounding.
+/// Runs three sweeps, which still improve by more than rounding.
 #[test]
 fn friction_that_does_not_slip() {
     for cone in ["pyramidal", "elliptic"] {

@@ -1,4 +1,4 @@
-//! Steps: trajectories, and what one environment may know of another.
+//! Steps: trajectories, and the independence of environments.
 
 use crate::common::{
     self, assert_all_run, batch, convert, difference, own, some_states, text, upload,
@@ -13,7 +13,7 @@ fn runner() -> Arc<Model> {
     text(&own("runner"))
 }
 
-/// After so many steps from 24 states the device has drifted as the processor's single precision has.
+/// Asserts that after `steps` steps from 24 states the device has drifted as the processor's single precision has.
 fn drift_alike(model: &Arc<Model>, steps: usize) {
     common::drift_alike(model, 24, steps);
 }
@@ -72,7 +72,8 @@ fn so_do_controllers_and_motors() {
     }
 }
 
-/// By Runge–Kutta, which takes the stiff friction of these motors explicitly, longer steps diverge from random deflections.
+/// Runge–Kutta integrates the stiff friction of these motors explicitly, so longer steps diverge from random
+/// deflections.
 #[test]
 fn so_do_controllers_and_motors_by_runge_kutta() {
     let rk4 = "<option integrator=\"RK4\" timestep=\"0.00002\"";
@@ -80,7 +81,7 @@ fn so_do_controllers_and_motors_by_runge_kutta() {
     drift_alike(&text(&controllers), 100);
 }
 
-/// Within 100 steps springs yield, and controls arrive.
+/// Within 100 steps springs yield, and delayed controls arrive.
 #[test]
 fn so_do_springs_that_yield_and_late_controls_by_each_integrator() {
     let pliant = own("pliant");
@@ -106,8 +107,8 @@ fn so_do_orientation_servos() {
     }
 }
 
-/// A device may end long loops early, as Mesa's software device does where many links of a chain lie deep in a floor. What it says it
-/// has done, it has done.
+/// A device may terminate long loops early, as Mesa's software device does if many links of a chain lie deep in a
+/// floor. The results that it reports as complete are complete.
 #[test]
 fn a_step_that_is_cut_short_is_a_fault_and_no_wrong_numbers() {
     let lying = (own("serpent").replace(" contype=\"0\" conaffinity=\"0\"", ""))
@@ -144,7 +145,7 @@ fn a_step_that_is_cut_short_is_a_fault_and_no_wrong_numbers() {
     assert!(finished > 0);
 }
 
-/// The positions after some steps.
+/// Returns the positions after `steps` steps.
 fn after(batch: &mut GpuBatch, states: &[State<f32>], steps: usize) -> Vec<u32> {
     batch.reset().expect("a device");
     upload(batch, states);

@@ -1,15 +1,15 @@
-//! A kernel of the kind that the dynamics are made of, run for N environments at once: each environment's result is
-//! to the bit that of running it alone.
+//! A kernel like those of the dynamics, run for N environments at once: each result equals, to the bit, that of a
+//! single environment.
 //!
-//! A chain of hinges: forward kinematics, link velocities, bias accelerations and kinetic energy, with what
-//! differs between environments (a joint that is locked, a limit that is reached) as masks.
+//! A chain of hinges: forward kinematics, link velocities, bias accelerations and kinetic energy. Masks express what
+//! differs between environments (a locked joint, a reached limit).
 
 use crate::support::{EqualsAlone, Formula, Random, TestScalar, in_instruction_sets};
 use clench_math::{Inertia, Mask, Motion, Quat, Real, Vec3, kernel};
 
 const LINKS: usize = 6;
 
-/// What an environment starts from, and what it ends with: rows of numbers as users keep them.
+/// The initial state of an environment.
 #[derive(Clone, Copy)]
 struct State<T> {
     angle: [T; LINKS],
@@ -42,7 +42,7 @@ fn run_chain<T: Real>(state: &State<T>) -> Outcome<T> {
         limit_force: T::ZERO,
     };
     for link in 0..LINKS {
-        // A joint beyond a full turn is locked: its velocity does not count.
+        // A joint beyond a full turn is locked: its velocity is ignored.
         let locked = state.angle[link].abs().gt(T::new(std::f64::consts::TAU));
         let rate = T::select(locked, T::ZERO, state.velocity[link]);
         let world_axis = out.orientation.rotate(axis(link));
@@ -66,7 +66,7 @@ fn run_chain<T: Real>(state: &State<T>) -> Outcome<T> {
     out
 }
 
-/// A soft limit with a real power in its impedance, skipped where no environment is near it.
+/// Computes a soft limit force with a real power in its impedance, skipped if no environment is near the limit.
 #[inline(always)]
 fn limit_force<T: Real>(angle: T, rate: T) -> T {
     let violation = angle.abs() - T::new(1.0);
@@ -108,11 +108,11 @@ fn lanes_equal_environments_alone<S: TestScalar>() {
             draw,
         });
     };
-    // Within the limits, and past them in most environments.
+    // Within the limits, and beyond them in most environments.
     for size in [0.9, 8.0] {
         check(&|random| S::new(random.between(-size, size)));
     }
-    // An environment that has gone wrong must not touch its neighbours.
+    // An environment with non-finite numbers must not affect its neighbours.
     check(&|random| {
         let number = random.between(-5.0, 5.0);
         match random.bits() % 50 {
@@ -128,7 +128,7 @@ fn a_chain_moves_in_lanes_as_alone() {
     lanes_equal_environments_alone::<f32>();
 }
 
-/// The kernel itself is right: the velocity of the tip is the derivative of its position.
+/// Checks the kernel itself: the velocity of the tip is the derivative of its position.
 #[test]
 fn the_tip_moves_at_its_velocity() {
     let mut random = Random::new(11);

@@ -1,4 +1,4 @@
-//! Vectors, rotations and spatial vectors in lanes give each environment what it would get alone, to the bit.
+//! Vectors, rotations and spatial vectors in lanes equal, to the bit, those of each environment alone.
 
 use crate::support::{EqualsAlone, Formula, Random, TestScalar, in_instruction_sets};
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
@@ -116,12 +116,12 @@ fn lanes_equal_scalars<S: TestScalar>(formula: impl Formula) {
         });
     };
     check(&|random| S::new(random.between(-2.0, 2.0)));
-    // Zeros, equal coordinates, lengths too short to have a direction: where the lanes of one vector part ways.
+    // Zeros, equal coordinates and vectors too short to have a direction, for which lanes take different branches.
     check(&|random| {
         let size = [1.0, 1.0, 0.0, 1e-16][(random.bits() % 4) as usize];
         S::new(random.between(-2.0, 2.0).floor() * size)
     });
-    // Some environments hold anything at all.
+    // Some environments hold arbitrary numbers.
     check(&|random| match random.bits() % 16 {
         0 => random.any(),
         _ => S::new(random.between(-2.0, 2.0)),

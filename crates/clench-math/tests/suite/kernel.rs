@@ -1,11 +1,11 @@
-//! `#[kernel]` leaves a function what it was: arguments, early returns, errors, borrows.
+//! `#[kernel]` preserves a function's arguments, early returns, errors and borrows.
 
 use clench_math::{Lanes, Mask, Real, kernel};
 
 #[derive(Debug, PartialEq)]
 struct Negative;
 
-/// Changes an argument that is its own, returns early, and passes an error on.
+/// Modifies an argument that it owns, returns early and propagates an error.
 #[kernel]
 fn roots<T: Real, const N: usize>(mut numbers: [T; N]) -> Result<[T; N], Negative> {
     if N == 0 {
@@ -25,7 +25,7 @@ fn root<T: Real>(x: T) -> Result<T, Negative> {
     Ok(x.sqrt())
 }
 
-/// Borrows what it returns, from several arguments that it writes.
+/// Writes to one of several arguments and returns a borrow of it.
 #[kernel]
 #[inline(never)]
 pub(crate) fn add<'a, T>(sum: &'a mut [T], terms: &[T], after: impl Fn(T) -> T) -> &'a mut T

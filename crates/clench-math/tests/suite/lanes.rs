@@ -18,7 +18,7 @@ impl Formula for Arithmetic {
         assigned[1] -= y;
         assigned[2] *= y;
         assigned[3] /= y;
-        // Of a NaN any bits may come out.
+        // For a NaN, `exp2_integer` may return any bits.
         let whole = T::select(x.eq(x), x.floor(), T::ZERO);
         vec![
             ("x + y", x + y),
@@ -30,7 +30,7 @@ impl Formula for Arithmetic {
             ("x −= y", assigned[1]),
             ("x *= y", assigned[2]),
             ("x /= y", assigned[3]),
-            // Not to be contracted into one rounding.
+            // Must not be contracted into one rounding.
             ("x y + z", x * y + z),
             ("x y − z", x * y - z),
             ("z − x y", z - x * y),
@@ -133,7 +133,7 @@ fn operations_equal_scalars<S: TestScalar>() {
     check(Called(Arithmetic), &Random::any::<S>);
     check(Called(Comparisons), &Random::any::<S>);
     check(Functions, &Random::any::<S>);
-    // Where the functions are used, and where they reach the ends of their ranges.
+    // Usual arguments, and arguments at the ends of the functions' ranges.
     for size in [1e-9, 1.0, 30.0, 800.0, 1e6] {
         check(Functions, &|random| S::new(random.between(-size, size)));
     }
@@ -147,7 +147,7 @@ fn operations_in_lanes_equal_scalars_in_single_precision() {
     operations_equal_scalars::<f32>();
 }
 
-/// What `Real` promises of scalars beyond the language's own operations.
+/// Checks the guarantees of `Real` for scalars beyond the language's own operations.
 #[test]
 fn scalars_have_the_operations_of_the_language() {
     fn check<S: TestScalar>() {
@@ -167,7 +167,7 @@ fn scalars_have_the_operations_of_the_language() {
     check::<f32>();
 }
 
-/// Masks against arrays of truth values.
+/// A task that compares masks with arrays of Booleans.
 #[derive(Clone, Copy)]
 struct Masks;
 impl<S: TestScalar> LaneTask<S> for Masks {
@@ -175,7 +175,7 @@ impl<S: TestScalar> LaneTask<S> for Masks {
     fn run<T: Real<Scalar = S>>(self) {
         let mut random = Random::new(1000 + T::LANES as u64);
         for round in 0..ROUNDS {
-            // Mostly true, mostly false or mixed, so that `any` and `all` meet both answers at every width.
+            // Mostly true, mostly false, all true or all false, so that `any` and `all` return both results.
             let mut flags = || {
                 let (a, b) = (random.bits(), random.bits());
                 let bits = [a & b, a | b, 0, u64::MAX][(random.bits() % 4) as usize];
@@ -219,7 +219,7 @@ fn masks_are_arrays_of_truth_values() {
     in_arrays::<f32>(Masks);
 }
 
-/// What goes into lane `i` comes out of lane `i`.
+/// A task that checks that the values written to lane `i` are read from lane `i`.
 #[derive(Clone, Copy)]
 struct Places;
 impl<S: TestScalar> LaneTask<S> for Places {
@@ -289,7 +289,7 @@ fn arrays_become_lanes_and_back() {
     assert_eq!(format!("{mask:?}"), "[true, false, true]");
 }
 
-/// Tells how many lanes it was given.
+/// A task that returns its number of lanes.
 struct Width;
 impl<S: Scalar> LaneTask<S> for Width {
     type Output = usize;
@@ -321,6 +321,6 @@ fn tasks_run_in_the_lanes_asked_for() {
     assert!(
         Instructions::all_available::<f64>().all(|i| i.lanes::<f64>() <= widest.lanes::<f64>())
     );
-    // No processor has both.
+    // No processor supports both.
     assert!(!(Instructions::Neon.available() && Instructions::Avx2.available()));
 }

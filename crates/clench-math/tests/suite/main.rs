@@ -1,4 +1,4 @@
-//! Tests of numbers through the crate's public face: one program, so that their generic code is compiled once for all of them.
+//! Tests of numbers through the crate's public API, in one program so that their generic code is compiled once.
 
 mod chain;
 mod elementary;

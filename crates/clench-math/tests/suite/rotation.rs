@@ -1,4 +1,4 @@
-//! Vectors, quaternions, matrices and principal axes: identities, and numbers from MuJoCo 4.0's own functions.
+//! Vectors, quaternions, matrices and principal axes: identities, and numbers from MuJoCo 4.0's functions.
 
 use crate::support::{Random, assert_close};
 use clench_math::{Lanes, Mat3, Quat, Real, Vec3, principal_axes, rough_principal_axes};
@@ -14,7 +14,7 @@ fn close_matrix(a: Mat3<f64>, b: Mat3<f64>, tolerance: f64, what: &str) {
         close_vector(a, b, tolerance, what);
     }
 }
-/// The same rotation: q and −q count as equal.
+/// Asserts that two rotations are equal: q and −q are the same.
 fn close_rotation(a: Quat<f64>, b: Quat<f64>, tolerance: f64, what: &str) {
     let dot: f64 = a
         .to_array()
@@ -91,7 +91,7 @@ fn quaternions_come_back_from_their_matrices() {
     let mut random = Random::new(4);
     for round in 0..ROUNDS {
         let mut q = random.rotation();
-        // Half and near-half turns about every axis, where the real part is of no use.
+        // Half and near-half turns about every axis, for which the real part is nearly zero.
         if round % 2 == 0 {
             let axis = random.unit_vector();
             q = Quat::from_axis_angle(axis, PI - random.between(-1e-9, 1e-9));
@@ -111,7 +111,7 @@ fn quaternions_come_back_from_their_matrices() {
     }
 }
 
-/// Signs as `mju_mat2Quat` gives them (MuJoCo 4.0.0): by the branch that the matrix falls in.
+/// Checks that signs equal those of `mju_mat2Quat` (MuJoCo 4.0.0), which depend on the branch of the matrix.
 #[test]
 fn quaternion_signs_are_mujocos() {
     let cases: [[f64; 4]; 6] = [
@@ -140,7 +140,7 @@ fn the_shortest_rotation_between_two_vectors() {
             _ => random.unit_vector(),
         };
         let q = Quat::from_two_vectors(from, to);
-        // Nearly opposite vectors leave the axis to the last digits of their cross product.
+        // The axis of nearly opposite vectors depends on the last digits of their cross product.
         let tolerance = if round % 4 == 2 { 1e-8 } else { 1e-14 };
         close_vector(q.rotate(from), to, tolerance, "from turned to to");
         let angle = q.to_rotation_vector().norm();
@@ -184,7 +184,7 @@ fn rotation_vectors_round_trip() {
         let v = random.unit_vector() * random.between(0.0, size);
         let back = Quat::from_rotation_vector(v).to_rotation_vector();
         close_vector(back, v, 4e-15 * size.max(1e-3), "rotation vector");
-        // The other quaternion of the same rotation has the same rotation vector.
+        // The quaternion −q, of the same rotation, has the same rotation vector.
         let q = Quat::from_rotation_vector(v);
         let opposite = Quat::new(-q.w, -q.x, -q.y, -q.z);
         close_vector(opposite.to_rotation_vector(), v, 1e-14, "−q");
@@ -264,7 +264,7 @@ fn vectors_too_short_to_have_a_direction_get_a_default() {
         Quat::new(0.0, 0.0, 0.0, 0.0).normalize(),
         Quat::<f64>::IDENTITY
     );
-    // In lanes, only the lane concerned.
+    // In lanes, only the affected lane gets the default.
     let mixed = Vec3::new(Lanes::ZERO, Lanes::<f64, 2>::from([0.0, 2.0]), Lanes::ZERO);
     let (unit, norm) = mixed.normalize();
     assert_eq!(norm.to_array(), [0.0, 2.0]);
@@ -342,7 +342,7 @@ fn principal_axes_of_simple_matrices() {
         1e-15,
         "mju_eig3's frame",
     );
-    // Not finite in, not finite out, and no endless loop.
+    // Non-finite input gives non-finite output, without an endless loop.
     let broken = Mat3::diagonal(Vec3::new(1.0, f64::NAN, 3.0));
     assert!(
         !principal_axes(&broken)

@@ -11,7 +11,8 @@ fn motion(random: &mut Random) -> Motion<f64> {
 fn force(random: &mut Random) -> Force<f64> {
     Force::new(random.vector(1.0), random.vector(1.0))
 }
-/// A body's inertia about points at `offset` (from the point to its centre of mass).
+/// Returns a body's inertia about points at `offset` (from the point to its centre of mass), its principal moments and
+/// axes.
 fn inertia(random: &mut Random, offset: Vec3<f64>) -> (Inertia<f64>, Vec3<f64>, Mat3<f64>) {
     let diagonal = random.vector(0.4) + Vec3::new(1.0, 1.0, 1.0);
     let axes = random.rotation().to_matrix();
@@ -52,7 +53,7 @@ fn crossing_is_antisymmetric_and_satisfies_jacobi() {
     }
 }
 
-/// A motion field seen from another point, and a force moved there, do the same work.
+/// A motion field at another point and a force moved there do the same work.
 #[test]
 fn power_does_not_depend_on_the_reference_point() {
     let mut random = Random::new(3);
@@ -76,7 +77,7 @@ fn inertia_is_symmetric_and_positive() {
     }
 }
 
-/// Kinetic energy and momentum are those of the body, whatever point they are reckoned about.
+/// Kinetic energy and momentum are those of the body, for any reference point.
 #[test]
 fn inertia_moves_with_its_reference_point() {
     let mut random = Random::new(5);
@@ -98,7 +99,7 @@ fn inertia_moves_with_its_reference_point() {
             "momentum",
         );
 
-        // By hand: mass at the centre of mass, and rotation about it.
+        // Computed directly: mass at the centre of mass, and rotation about it.
         let centre_velocity = v.velocity_at(offset);
         let local = axes.transpose_mul(v.angular);
         let energy = 0.5 * here.mass * centre_velocity.norm_squared()

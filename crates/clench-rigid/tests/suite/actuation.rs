@@ -10,7 +10,7 @@ use clench_rigid::builder::{
 use clench_rigid::model::{DynamicsKind, Integrator};
 use std::f64::consts::TAU;
 
-/// Two sliders, held by nothing.
+/// Builds two free sliders.
 fn sliders() -> ModelBuilder {
     let mut builder = world("sliders");
     for (name, axis) in [("x", [1.0, 0.0, 0.0]), ("z", [0.0, 0.0, 1.0])] {
@@ -80,11 +80,11 @@ fn an_actuator_cut_by_its_own_range_leaves_the_others_of_its_tendon_their_dampin
         sim.step().expect("finite");
         Vec::from_iter(sim.state.qvel.iter().map(|v| v / 0.01))
     };
-    // From MuJoCo 4.0. Both are held by the tendon's range, which rounding leaves by a little.
+    // From MuJoCo 4.0. The tendon's range limits both; rounding exceeds it slightly.
     for ctrl in [[0.5, 0.2], [0.1, 3.0], [3.0, 0.1]] {
         assert!(distance(&accelerations(&builder, &ctrl), &[3.0, 1.5]) < 1e-12);
     }
-    // The first is cut further, and what is left is within the tendon's range.
+    // The first is clamped further, and the sum is within the tendon's range.
     builder.actuators[0].forcerange = [-2.0, 2.0];
     let found = accelerations(&builder, &[0.5, 0.2]);
     assert!(distance(&found, &[2.505_480_739_1, 1.280_717_201_6]) < 1e-9);
@@ -128,7 +128,7 @@ fn a_switched_off_group_does_nothing() {
     assert_eq!(sim.workspace().force.actuator_force, [0.0, 2.0]);
 }
 
-/// A box on a ball joint.
+/// Builds a box on a ball joint.
 fn ball() -> ModelBuilder {
     let mut builder = world("ball");
     builder.add_body(
@@ -159,7 +159,7 @@ fn a_servo_on_a_ball_takes_the_short_way_round() {
     }
 }
 
-/// A servo of gain 3 along z behind a filter of 0.1 s.
+/// Builds a servo of gain 3 along z with a filter of 0.1 s.
 fn filtered(dynamics: DynamicsKind) -> ModelBuilder {
     let mut builder = ball();
     let target = TransmissionSpec::Joint("ball".into());
@@ -173,7 +173,7 @@ fn filtered(dynamics: DynamicsKind) -> ModelBuilder {
 
 #[test]
 fn a_filtered_servo_on_a_ball_takes_the_short_way_round() {
-    // Angle, activation, control; then, from MuJoCo 4.0: rate, what the gain multiplies, and the activation after 2 ms with a
+    // Angle, activation, control; then, from MuJoCo 4.0: rate, input of the gain, and the activation after 2 ms with a
     // filter and with an exact one.
     let cases = [
         ([0.0, 0.0, 3.0], [30.0, 0.0, 0.06, 0.059_403_980]),

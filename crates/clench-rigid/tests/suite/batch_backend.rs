@@ -1,5 +1,5 @@
-//! A batch on a device is a batch: what it shows is what the device computed, and all that is asked of it holds. The device here is
-//! played by simulations, one an environment, so that equal means equal to the bit.
+//! A batch on a device behaves like any batch and shows the device's results. One simulation per environment emulates
+//! the device, so that results are equal to the bit.
 
 use crate::batches::*;
 use clench_math::{Force, Vec3};
@@ -13,14 +13,14 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 const COUNT: usize = 11;
 
-/// Simulations that play a device.
+/// A device emulated by simulations.
 struct Played {
     sims: Vec<Sim<f64>>,
-    /// How often a field went up.
+    /// The number of uploads of a field.
     uploads: Arc<AtomicUsize>,
 }
 
-/// The numbers of a field of a state that the device holds.
+/// Returns the numbers of a field of a state that the device holds.
 fn numbers(state: &State<f64>, field: &str) -> Option<Vec<f64>> {
     Some(match field {
         "qpos" => state.qpos.clone(),
@@ -156,7 +156,7 @@ impl Backend<f64> for Played {
     }
 }
 
-/// The same environments on a played device and on the processor, and how often a field goes up to the first.
+/// Returns the same environments on an emulated device and on the CPU, and the device's upload counter.
 fn both(scene: ModelBuilder, autoreset: bool) -> ([Batch<f64>; 2], Arc<AtomicUsize>) {
     let model = Arc::new(scene.build().expect("a good model"));
     let options = BatchOptions {
@@ -192,7 +192,7 @@ fn assert_same(batches: &[Batch<f64>; 2]) {
     }
 }
 
-/// Does the same with both.
+/// Does the same with both and compares the results.
 fn each<R: PartialEq + std::fmt::Debug>(
     batches: &mut [Batch<f64>; 2],
     mut act: impl FnMut(&mut Batch<f64>) -> R,
@@ -259,7 +259,7 @@ fn rollouts_are_what_they_are_on_the_processor() {
     });
     assert_eq!(recorded[0], recorded[1]);
     assert_same(&batches);
-    // The controls of users go up again.
+    // The user's controls are uploaded again.
     each(&mut batches, |batch| batch.step()).expect("good states");
     assert_same(&batches);
 }

@@ -1,4 +1,4 @@
-//! An environment that cannot go on stands still at its last good state and says why; its neighbours do not notice.
+//! An environment that fails keeps its last good state and reports why; others are unaffected.
 
 use crate::batches::*;
 use clench_math::Instructions;
@@ -7,7 +7,7 @@ use clench_rigid::model::{Integrator, JointKind};
 use clench_rigid::options::{MaxContacts, RigidOptions};
 use clench_rigid::{Batch, EnvStatus, Fault, Precision, Sim, SimError, State};
 
-/// Where poison goes.
+/// The fields that are poisoned.
 const FIELDS: [&str; 7] = [
     "qpos",
     "qvel",
@@ -18,12 +18,12 @@ const FIELDS: [&str; 7] = [
     "time",
 ];
 
-/// Draws a whole number below `n`.
+/// Draws an integer below `n`.
 fn draw(numbers: &mut Numbers, n: usize) -> usize {
     ((numbers.next() + 1.0) * 0.5 * n as f64) as usize % n
 }
 
-/// The numbers of a field of an environment, but for its time.
+/// Returns the numbers of a field of an environment, except for its time.
 fn row<'a, S: Precision>(batch: &'a mut Batch<S>, field: &str, env: usize) -> &'a mut [S] {
     let rows = &mut batch.state;
     match field {
@@ -37,7 +37,7 @@ fn row<'a, S: Precision>(batch: &'a mut Batch<S>, field: &str, env: usize) -> &'
     }
 }
 
-/// Puts a number into a field of an environment, in a place that `choose` picks.
+/// Writes a number into a field of an environment, at an index that `choose` picks.
 fn put<S: Precision>(
     batch: &mut Batch<S>,
     field: &str,
@@ -51,8 +51,8 @@ fn put<S: Precision>(
     }
 }
 
-/// What a simulation alone says of a step, compared with what the batch says of a row. Of a motion that diverges, which
-/// number is met first depends on the slots that lanes share, and is left open.
+/// Compares the result of a step of a single simulation with the status of a row. The first number found to diverge
+/// depends on the slots that lanes share and is not compared.
 fn assert_verdict(alone: Result<(), SimError>, together: EnvStatus) {
     match (alone, together) {
         (Ok(()), EnvStatus::Running) => {}
@@ -67,8 +67,8 @@ fn assert_verdict(alone: Result<(), SimError>, together: EnvStatus) {
     }
 }
 
-/// Steps a batch in which random environments are poisoned, mended and reset at random, and beside it a simulation for each:
-/// what happens to one must not show in another.
+/// Steps a batch and a simulation for each environment, poisons, repairs and resets environments at random, and checks
+/// that they do not affect each other.
 fn soak<S: Precision>(
     builder: &ModelBuilder,
     instructions: Instructions,
@@ -85,7 +85,7 @@ fn soak<S: Precision>(
         drive(&mut batch, &envs, step);
         let env = draw(&mut numbers, envs.len());
         let field = FIELDS[draw(&mut numbers, FIELDS.len())];
-        // Infinite and missing numbers are refused; huge ones may make the step diverge.
+        // Non-finite numbers are refused; huge ones may make the step diverge.
         let poison = [f64::NAN, f64::INFINITY, 0.1 * S::MAX.to_f64()][draw(&mut numbers, 3)];
         put(&mut batch, field, env, poison, |n| draw(&mut numbers, n));
         let mut poisoned = batch.sim(env).expect("it exists");
@@ -107,7 +107,7 @@ fn soak<S: Precision>(
             batch.reset(env).expect("it exists");
             alone[env].reset();
         } else {
-            // Mended by hand: the last good state.
+            // Repaired by hand, from the last good state.
             mend(&mut batch, env, &alone[env].state);
             batch.revive(env).expect("it exists");
         }
@@ -172,7 +172,7 @@ fn a_fault_is_that_of_a_simulation_alone() {
 
 #[test]
 fn a_failure_on_the_way_keeps_the_last_good_state() {
-    // A spring too stiff for the time step: it diverges some steps into the call, each environment in its own.
+    // A spring too stiff for the time step: each environment diverges at another step of the call.
     let mut b = world();
     let mut spring = joint(JointKind::Slide, "spring", [1.0, 0.0, 0.0]);
     spring.stiffness[0] = 1.7e6;
@@ -259,7 +259,7 @@ fn a_massless_dof_is_a_fault() {
     assert_eq!(batch.status(2), EnvStatus::Running);
 }
 
-/// Contacts that a stage of Runge–Kutta leaves out are missing from the step, though the last stage leaves out none.
+/// Contacts that a Runge–Kutta stage omits are missing from the step, even if the last stage omits none.
 #[test]
 fn too_many_contacts_in_any_stage_are_a_fault() {
     let mut b = world();
@@ -311,7 +311,7 @@ fn what_failed_does_not_count_as_quality() {
     assert_eq!(diverged, refused);
 }
 
-/// Who writes rows by their address can leave bytes in switches that are neither those of false nor of true.
+/// Writes through a pointer can leave bytes other than 0 and 1 in switches.
 #[test]
 fn a_switch_is_on_whatever_byte_says_so() {
     let model = model(&everything());

@@ -1,4 +1,4 @@
-//! Each environment of a batch moves as a simulation alone, to the bit, however the batch is stepped.
+//! Each environment of a batch equals a single simulation to the bit, for every way of stepping.
 
 use crate::batches::*;
 use clench_math::Instructions;
@@ -10,10 +10,10 @@ use clench_rigid::{EnvStatus, Precision};
 use clench_solver::ConstraintSolver;
 use std::collections::BTreeSet;
 
-/// Environments: no multiple of any width, and more than one group of the widest.
+/// The number of environments: no multiple of any width, and more than one of the widest groups.
 const ENVS: usize = 19;
 
-/// Steps `ENVS` environments alone, then together in every way, and compares the ends. How many contacts each had per step.
+/// Steps `ENVS` environments singly and in batches, and compares the ends. Returns the mean number of contacts.
 fn compare<S: Precision>(builder: &ModelBuilder, options: RigidOptions, steps: usize) -> f64 {
     let model = model(builder);
     let envs: Vec<usize> = (0..ENVS).collect();
@@ -31,7 +31,7 @@ fn compare<S: Precision>(builder: &ModelBuilder, options: RigidOptions, steps: u
         .collect();
     for (i, instructions) in Instructions::all_available::<S>().enumerate() {
         let threads = 1 + i % 3;
-        // The neighbours change too: half the environments, in another order.
+        // Half the environments in another order have other neighbours.
         for some in [&envs[..], &[17, 3, 8, 1, 0, 12, 5, 9, 4]] {
             let mut batch = batch::<S>(&model, some, with(instructions, threads, options));
             for step in 0..steps {
@@ -90,7 +90,7 @@ fn a_humanoid_with_elliptic_cones_moves_as_alone() {
     assert!(compare::<f64>(&walker(), options, 1000) > 1.0);
 }
 
-/// So many geoms that pairs are swept for, over the lanes together.
+/// The geoms are enough for a broad-phase sweep, which covers all lanes together.
 #[test]
 fn parts_on_a_field_of_bumps_move_as_alone() {
     let mut bumpy = loose_parts();
@@ -112,7 +112,7 @@ fn environments_in_single_precision_move_as_alone() {
     assert!(compare::<f32>(&loose_parts(), cg, 300) > 3.0);
 }
 
-/// Two trees that are two islands at some times and in some environments, and one in others.
+/// Two trees that form two islands at some times and in some environments, and one in others.
 #[test]
 fn an_arm_and_a_box_move_as_alone_by_newton() {
     let pyramids = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
@@ -131,7 +131,7 @@ fn an_arm_and_a_box_move_as_alone_by_conjugate_gradients() {
     assert!(compare::<f32>(&arm_and_box(), cones, 200) > 3.0);
 }
 
-/// Islands of any of many trees, of more than eight in the end, other ones in each environment.
+/// Islands of any of many trees, finally of more than eight, which differ between environments.
 #[test]
 fn many_islands_in_each_environment_move_as_alone() {
     let pyramids = options(ConstraintSolver::Newton, FrictionCone::Pyramidal);
@@ -142,7 +142,7 @@ fn many_islands_in_each_environment_move_as_alone() {
     assert!(compare::<f64>(&many_islands(), cg, 80) > 5.0);
 }
 
-/// The kinds of constraints whose forces act on an environment alone.
+/// Returns the kinds of constraints with nonzero forces in single simulations.
 fn acting(builder: &ModelBuilder, steps: usize) -> BTreeSet<&'static str> {
     let model = model(builder);
     let mut kinds = BTreeSet::new();
@@ -205,7 +205,7 @@ fn many_steps_in_a_call_are_single_steps() {
     }
 }
 
-/// Slots that a neighbour fills hold for a far-away environment numbers as large as they get.
+/// In slots that a neighbour uses, a far-away environment holds very large numbers.
 #[test]
 fn what_is_far_away_moves_as_alone() {
     let model = model(&loose_parts());

@@ -1,4 +1,4 @@
-//! What a batch keeps of its environments is what simulations alone show; rollouts are steps.
+//! Outputs of a batch equal those of single simulations; rollouts equal steps.
 
 use crate::batches::*;
 use clench_math::{Instructions, Vec3};
@@ -12,7 +12,7 @@ fn names() -> Vec<&'static str> {
     Output::ALL.iter().map(|output| output.name()).collect()
 }
 
-/// Steps together and alone and compares every output after each step and a forward.
+/// Compares every output of a batch with single simulations, after each step and a forward.
 fn compare<S: Precision>(builder: &ModelBuilder, instructions: Instructions, steps: usize) {
     let (model, options) = (model(builder), RigidOptions::new());
     let envs: Vec<usize> = (0..11).collect();
@@ -131,7 +131,7 @@ fn a_masked_forward_leaves_the_others_alone() {
         let expected = whole.sim(env).expect("it exists").state;
         assert_state(&masked, env, &expected, &|| "states stay".into());
     }
-    // Who fails is who was asked for.
+    // Only a requested environment can fail.
     masked.state.qvel.row_mut(3)[0] = f64::NAN;
     masked.state.qvel.row_mut(4)[0] = f64::NAN;
     let summary = masked.forward_mask(&mask).expect("as long");
@@ -187,7 +187,7 @@ fn contact_forces_carry_what_rests() {
 
 #[test]
 fn applied_forces_and_loops_count_as_external() {
-    // A weld holds a box against a push: together with the push it leaves what gravity needs.
+    // A weld holds a box against a push. Both together balance gravity.
     let mut builder = loose_parts();
     builder.equalities[0].active = true;
     let model = model(&builder);
@@ -219,7 +219,7 @@ fn forces_on_bodies_come_and_go() {
         let mut batch = batch::<f64>(&model, &envs, with(instructions, 1, options));
         let mut alone: Vec<Sim> = envs.iter().map(|&e| alone(&model, options, e)).collect();
         batch.record(&["cfrc_ext"]).expect("known");
-        // None, some, a zero with a sign, none again.
+        // No push, a push, a negative zero, no push.
         for (step, push) in [0.0, 3.0, -0.0, 0.0].into_iter().enumerate() {
             for (env, sim) in alone.iter_mut().enumerate() {
                 let push = if env % 2 == 0 { push } else { 0.0 };
@@ -324,7 +324,7 @@ fn what_is_recorded_anew_is_of_the_present_state_at_once() {
             }
         }
     }
-    // What was kept before stays that of the last step.
+    // Outputs recorded before keep the values of the last step.
     batch.step().expect("valid");
     let before = batch.output("xpos").expect("kept").as_slice().to_vec();
     let figures = (batch.divergence(), batch.quality());
@@ -352,7 +352,7 @@ fn outputs_follow_what_was_written_when_they_are_refreshed() {
     let before = names.map(|name| table(&batch, name));
     batch.refresh().expect("valid");
     assert_eq!(names.map(|name| table(&batch, name)), before, "of the step");
-    // Written by hand, reset, given parameters of its own, and brought where no step can start from.
+    // A written state, a reset, own parameters, and an invalid state.
     batch.state.qpos.row_mut(3)[2] += 1.0;
     batch.state.qvel.row_mut(4)[5] = 2.0;
     batch.reset(5).expect("it exists");

@@ -1,4 +1,4 @@
-//! Environments with numbers of their own move as simulations alone with the same numbers.
+//! Environments with their own parameters equal single simulations with the same parameters.
 
 use crate::batches::*;
 use clench_math::Instructions;
@@ -9,11 +9,11 @@ use clench_rigid::{Batch, BatchOptions, EnvStatus, Model, Precision, Sim, SimErr
 use std::sync::Arc;
 
 const ENVS: usize = 11;
-/// These follow from others.
+/// Fields that are derived from others.
 const FOLLOWERS: [&str; 2] = ["body_subtreemass", "geom_rbound"];
 
-/// A batch with all numbers of `fields` unlike in each environment (the last keeps the model's), and simulations alone with
-/// the same numbers. `change(field, env, i, x)` makes a number of the model's.
+/// Returns a batch with different values of `fields` in each environment (the last uses the model's), and single
+/// simulations with equal values. `change(field, env, i, x)` changes a value of the model.
 fn randomized<S: Precision>(
     model: &Arc<Model>,
     options: BatchOptions,
@@ -56,7 +56,7 @@ fn compare<S: Precision>(batch: &mut Batch<S>, alone: &mut [Sim<S>], steps: usiz
     }
 }
 
-/// All fields at once in a model, scaled by a few percent.
+/// Scales all fields of a model by a few percent and compares.
 fn scale_all<S: Precision>(builder: &ModelBuilder, instructions: Instructions, steps: usize) {
     let model = model(builder);
     let fields: Vec<&str> = (ParamField::ALL.iter())
@@ -69,7 +69,7 @@ fn scale_all<S: Precision>(builder: &ModelBuilder, instructions: Instructions, s
         x * (1.0 + 0.03 * numbers.next())
     });
     compare(&mut batch, &mut alone, steps, "all fields");
-    // The simulation that the batch makes of an environment has its numbers.
+    // The batch's simulation of an environment has its parameters.
     for (env, sim) in alone.iter_mut().enumerate() {
         let mut copy = batch.sim(env).expect("it exists");
         for field in ParamField::ALL {
@@ -122,7 +122,7 @@ fn shapes_are_those_of_the_model() {
 
 #[test]
 fn each_number_matters() {
-    // One field at a time, where the model has nothing there: what the environment alone does, and not what the model does.
+    // Change one field at a time, also from zero: each environment follows its own value, not the model's.
     let nudge = |field: &str, env: usize, i: usize, x: f64| match field {
         "body_mass" | "body_inertia" | "geom_size" => x * (1.1 + 0.05 * env as f64),
         _ => x + 0.01 * (1.0 + (env + i) as f64),
@@ -239,7 +239,7 @@ fn a_reset_keeps_the_numbers() {
     assert_eq!(batch.param("gravity", 1), Ok(vec![0.0, 0.0, -9.81]));
 }
 
-/// What is said of parameters that cannot be.
+/// Invalid parameters return errors.
 #[test]
 fn bad_parameters_are_errors_and_change_nothing() {
     let model = model(&walker());

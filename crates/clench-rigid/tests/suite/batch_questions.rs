@@ -1,4 +1,4 @@
-//! A batch answers for each environment what a simulation alone would, to the bit, whatever lanes and threads there are.
+//! Queries of a batch equal those of a single simulation to the bit, for all lane and thread counts.
 
 use crate::batches::*;
 use clench_math::{Instructions, Vec3};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 const ENVS: usize = 19;
 
-/// The arm over its box, on uneven ground.
+/// Builds the arm over its box, on uneven ground.
 fn scene() -> ModelBuilder {
     let mut b = arm_and_box();
     b.height_fields.push(HeightFieldSpec {
@@ -28,7 +28,7 @@ fn scene() -> ModelBuilder {
     b
 }
 
-/// A batch that has moved on, and simulations of each environment in the same states.
+/// Returns a batch after some steps, and simulations of its environments in the same states.
 fn pair<S: Precision>(instructions: Instructions, threads: usize) -> (Batch<S>, Vec<Sim<S>>) {
     let model = Arc::new(scene().build().unwrap_or_else(|error| panic!("{error}")));
     let envs = Vec::from_iter(0..ENVS);
@@ -60,7 +60,7 @@ fn hand(sim: &Sim<impl Precision>) -> FrameObject {
     FrameObject::Body(sim.model().nbody() - 2)
 }
 
-/// The geom that is a height field.
+/// Returns the geom that is a height field.
 fn ground(sim: &Sim) -> usize {
     let mut geoms = sim.model().geoms.iter();
     (geoms.position(|geom| geom.height_field.is_some())).expect("the scene has one")
@@ -183,7 +183,7 @@ fn heights_are_where_rays_from_above_end() {
             0.1 + 1.4 * (f64::from(k) * 0.9).cos(),
         ];
         let height = sim.heights(geom, &place, None).unwrap()[0];
-        // From just above it, so that nothing else is hit first.
+        // The ray starts just above it, so that it hits nothing else first.
         let above = Vec3::new(place[0], place[1], height + 1e-3);
         let hit = sim.ray(above, Vec3::new(0.0, 0.0, -1.0), &filter).unwrap();
         if let Some(hit) = hit.filter(|hit| hit.geom == geom) {

@@ -1,4 +1,4 @@
-//! Rollouts of a batch are the steps that a loop would make.
+//! Rollouts of a batch equal a loop of steps.
 
 use crate::batches::*;
 use clench_math::Instructions;
@@ -70,7 +70,7 @@ fn rollouts_start_where_they_are_told() {
     let model = model(&everything());
     let (n, steps, nq) = (5, 12, model.nq);
     let mut batch = Batch::<f64>::new(model.clone(), n).expect("valid");
-    // What went before must not show: the solver's start, a failure.
+    // The state before must have no effect: the solver's start, a failure.
     batch.state.qvel.row_mut(3).fill(f64::NAN);
     batch.step_n(4).expect("valid");
     let mut initial = Vec::new();
@@ -119,7 +119,7 @@ fn rollouts_start_where_they_are_told() {
         }
         assert_state(&batch, env, &sim.state, &|| "end".into());
     }
-    // An initial number that is none fails its environment alone.
+    // A NaN in an initial state fails only its environment.
     let width = initial.len() / n;
     initial[2 * width + 1] = f64::NAN;
     let end = batch.state.qpos.row(1).to_vec();

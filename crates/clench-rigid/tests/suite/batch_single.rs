@@ -1,12 +1,12 @@
-//! Single precision stays near double precision, and what rests in it rests.
+//! Single precision stays close to double precision, and bodies at rest stay at rest.
 
 use crate::batches::*;
 use clench_rigid::Batch;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::options::{FrictionCone, RigidOptions};
 
-/// Largest error of one step in single precision from states of a motion in double precision: of accelerations, over the
-/// largest of the step, and of positions (m, rad).
+/// Returns the largest errors of a single-precision step from states of a double-precision motion: of accelerations,
+/// relative to the largest of the step, and of positions (m, rad).
 fn errors_of_a_step(builder: &ModelBuilder, cone: FrictionCone) -> [f64; 2] {
     let (model, envs) = (model(builder), Vec::from_iter(0..16));
     let options = clench_rigid::BatchOptions {

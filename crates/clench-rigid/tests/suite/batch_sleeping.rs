@@ -1,4 +1,4 @@
-//! Environments of a batch sleep each on its own, and as they would alone: to the bit, whatever lies in the lanes beside them.
+//! Environments of a batch sleep independently, equal to single simulations to the bit.
 
 use crate::batches::*;
 use clench_math::{Instructions, Real};
@@ -9,7 +9,7 @@ use clench_rigid::{Batch, BatchOptions, EnvStatus, Precision, Sim};
 
 const ENVS: usize = 19;
 
-/// Boxes that fall from different heights and come to rest, alone or on each other, and one that begins asleep.
+/// Builds boxes that fall from different heights and come to rest, singly or stacked, and one that starts asleep.
 fn clutter() -> ModelBuilder {
     let mut b = world();
     b.physics.flags.sleep = true;
@@ -24,7 +24,7 @@ fn clutter() -> ModelBuilder {
     b
 }
 
-/// What happens to environment `env` before a step: it is thrown, later pushed and once more, each at times of its own.
+/// Disturbs environment `env` before a step: throws it at the start, and pushes it twice at times of its own.
 fn disturb<S: Precision>(env: usize, step: usize, qvel: &mut [S], qfrc_applied: &mut [S]) {
     if step == 0 {
         let mut numbers = Numbers(env as u64 + 1);
@@ -96,7 +96,7 @@ fn lanes_sleep_as_alone_whoever_looks_on() {
     compare::<f64>(400, &["xpos", "qacc", "contact_count"]);
 }
 
-/// What is recorded of sleeping environments is what simulations alone say.
+/// Recorded outputs of sleeping environments equal those of single simulations.
 #[test]
 fn outputs_of_what_sleeps_are_known() {
     let model = model(&clutter());

@@ -1,4 +1,4 @@
-//! States of environments: saved and restored, reset alone, read and written as rows; bad input is refused.
+//! States of environments: save, restore, reset, read and write rows; invalid input is refused.
 
 use crate::batches::*;
 use clench_math::{Instructions, Quat, Vec3};
@@ -26,7 +26,7 @@ fn states(batch: &Batch<f64>) -> Vec<State<f64>> {
 #[test]
 fn what_is_restored_moves_on_as_it_would_have() {
     let mut batch = moving();
-    // Every table takes part.
+    // Fill every table.
     for (i, x) in batch
         .state
         .xfrc_applied
@@ -58,7 +58,7 @@ fn what_is_restored_moves_on_as_it_would_have() {
     }
 }
 
-/// As `assert_state`, but for a row that holds a NaN.
+/// Calls `assert_state` unless the row holds a NaN.
 fn assert_state_but(batch: &Batch<f64>, env: usize, state: &State<f64>, skip: bool) {
     if !skip {
         assert_state(batch, env, state, &|| "again".into());
@@ -222,7 +222,7 @@ fn foreign_tables_are_refused() {
     batch.step().expect("all is well again");
 }
 
-/// As many numbers in rows of another width are not those of the batch either.
+/// Rows of another width are refused even if the total length is equal.
 #[test]
 fn tables_of_another_width_are_refused() {
     let mut b = world();

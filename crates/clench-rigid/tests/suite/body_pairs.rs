@@ -1,4 +1,4 @@
-//! Two bodies of several geoms each, whose pairs are looked at only where boxes about the bodies meet.
+//! Bodies of several geoms, whose pairs are checked only if the bodies' bounding boxes overlap.
 
 use crate::scenes::{Numbers, add, free, sim, sphere, world};
 use clench_math::Vec3;
@@ -6,7 +6,7 @@ use clench_rigid::builder::{GeomSpec, ModelBuilder};
 use clench_rigid::{Batch, Model, Sim};
 use std::sync::Arc;
 
-/// Three free bodies of four spheres each; those of the first have a margin.
+/// Builds three free bodies of four spheres each; those of the first have a margin.
 fn clusters(numbers: &mut Numbers) -> ModelBuilder {
     let mut b = world();
     for body in 0..3 {
@@ -24,7 +24,7 @@ fn clusters(numbers: &mut Numbers) -> ModelBuilder {
     b
 }
 
-/// Positions of three bodies, some near each other and some not, in every orientation.
+/// Returns random poses of three bodies, some of them close together.
 fn poses(numbers: &mut Numbers) -> Vec<f64> {
     let pose = |_| {
         let mut pose = Vec::from_iter((0..3).map(|_| 0.6 * numbers.next()));
@@ -34,7 +34,7 @@ fn poses(numbers: &mut Numbers) -> Vec<f64> {
     (0..3).flat_map(pose).collect()
 }
 
-/// The pairs of geoms whose spheres are within their margins.
+/// Returns the pairs of geoms whose spheres are within their margins.
 fn expected(model: &Model, sim: &Sim) -> Vec<[usize; 2]> {
     let p = &model.params;
     let centers = &sim.workspace().position.geom_xpos;

@@ -1,11 +1,11 @@
-//! What a model's budget bounds: a step that would need more is a fault with its own text, and nothing is allocated for it.
+//! Budgets of models: a step that would exceed one is a fault with its own text, and allocates nothing for it.
 
 use clench_rigid::builder::{BodySpec, BuildError, GeomSpec, JointSpec, ModelBuilder};
 use clench_rigid::{Batch, Budget, Fault, Model, Sim, SimError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Free balls, each `spacing` metres from the next.
+/// Builds free balls, each `spacing` metres from the next.
 fn balls(count: usize, spacing: f64, budget: Budget) -> Result<Arc<Model>, BuildError> {
     let mut builder = ModelBuilder::new("balls");
     builder.budget = budget;
@@ -19,7 +19,7 @@ fn balls(count: usize, spacing: f64, budget: Budget) -> Result<Arc<Model>, Build
     builder.build().map(Arc::new)
 }
 
-/// What a step of `count` balls in one place says.
+/// Returns the fault of a step of `count` balls in one place.
 #[track_caller]
 fn fault(count: usize, budget: Budget) -> String {
     let mut sim = Sim::<f64>::new(balls(count, 0.0, budget).unwrap()).unwrap();
@@ -43,14 +43,14 @@ fn a_step_of_too_many_contacts_is_a_fault() {
     let text = fault(60, few);
     assert!(text.contains("more than 1000 contacts; "), "{text}");
     assert!(text.contains("larger budget"), "{text}");
-    // Many geoms are not compared with each other one by one.
+    // Many geoms are not compared pair by pair.
     let text = fault(150, few);
     assert!(text.contains("more than 4000 pairs of geoms"), "{text}");
 }
 
 #[test]
 fn a_step_of_too_large_a_matrix_is_a_fault() {
-    // 1770 contacts of 3 rows, each over 12 dofs; 360 dofs that are all coupled.
+    // 1770 contacts of 3 rows over 12 dofs each, and 360 coupled dofs.
     let (jacobian, factor) = (1770 * 36, 360 * 361 / 2);
     let of = |matrix: u64| Budget {
         matrix,

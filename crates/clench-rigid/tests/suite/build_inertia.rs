@@ -5,7 +5,7 @@ use clench_rigid::Model;
 use clench_rigid::builder::{BodySpec, GeomSpec, InertiaFromGeom, JointSpec, ModelBuilder};
 use std::f64::consts::PI;
 
-/// ∫ f over [a, b] by Gauss–Legendre on many pieces: exact to rounding for what is smooth here.
+/// Computes ∫ f over [a, b] by Gauss–Legendre on many pieces, exact to rounding for these smooth functions.
 fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     const NODES: [f64; 3] = [
         0.238_619_186_083_196_9,
@@ -28,8 +28,8 @@ fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// Volume and moments (across, along the axis) at density 1 of the solid whose radius at height z is r(z), z from 0 to
-/// `top`, and its mirror image.
+/// Computes volume and moments (across, along the axis) at density 1 of a solid of revolution with radius r(z), for z
+/// from 0 to `top`, and its mirror image.
 fn solid_of_revolution(top: &[f64], r: impl Fn(f64) -> f64) -> [f64; 3] {
     let both = |f: &dyn Fn(f64) -> f64| {
         2.0 * top
@@ -45,7 +45,7 @@ fn solid_of_revolution(top: &[f64], r: impl Fn(f64) -> f64) -> [f64; 3] {
     ]
 }
 
-/// The same of a surface, from pieces of its profile: (r, z, |d(r, z)/dt|) for t in [0, 1], and their mirror images.
+/// A piece of a surface's profile: (r, z, |d(r, z)/dt|) for t in [0, 1], and its mirror image.
 type Profile<'a> = &'a dyn Fn(f64) -> (f64, f64, f64);
 fn surface_of_revolution(pieces: &[Profile]) -> [f64; 3] {
     let both = |weight: &dyn Fn(f64, f64) -> f64| {
@@ -165,7 +165,7 @@ fn a_box_shell_is_the_difference_of_two_boxes() {
             volume * (x * x + y * y) / 3.0,
         ]
     };
-    // The derivative with respect to growth, by central differences of a quintic: exact in the limit.
+    // The derivative with respect to growth, by extrapolated central differences of a quintic.
     let step = 1e-4;
     let slope: Vec<f64> = (0..4)
         .map(|i| {
@@ -197,7 +197,7 @@ fn a_box_shell_is_the_difference_of_two_boxes() {
 fn an_ellipsoid_is_a_stretched_sphere() {
     let [a, b, c] = [0.2, 0.3, 0.5];
     let p = one_geom(GeomSpec::ellipsoid([a, b, c]).mass(2.0)).params;
-    // Second moments of a ball of radius 1 are 1/5 per mass; stretching scales each by a semi-axis squared.
+    // A ball of radius 1 has second moments of 1/5 per mass; stretching scales each by a semi-axis squared.
     let second =
         [a, b, c].map(|s| integrate(-1.0, 1.0, |x| 0.75 * (1.0 - x * x) * x * x) * s * s * 2.0);
     assert_close(p.body_inertia[1].x, second[1] + second[2], "about x");
@@ -205,7 +205,7 @@ fn an_ellipsoid_is_a_stretched_sphere() {
     assert_close(p.body_inertia[1].z, second[0] + second[1], "about z");
 }
 
-/// Inertia of body 1 about its origin, in its frame.
+/// Returns the inertia of body 1 about its origin, in its frame.
 fn inertia_about_origin(model: &Model) -> Mat3<f64> {
     let p = &model.params;
     let axes = p.body_iquat[1].to_matrix();
@@ -228,7 +228,7 @@ fn parts_weigh_as_much_as_the_whole() {
     let quat = Quat::from_f64(turn).normalize();
     let whole = one_geom(GeomSpec::cuboid(half).at(centre.to_array()).turned(turn));
 
-    // Cut at x = 0.05: the parts are 0.25 and 0.15 long.
+    // A cut at x = 0.05 gives parts 0.25 and 0.15 long.
     let part = |from: f64, to: f64| {
         let middle = centre + quat.rotate(Vec3::new(0.5 * (from + to), 0.0, 0.0));
         GeomSpec::cuboid([0.5 * (to - from), half[1], half[2]])
@@ -254,7 +254,7 @@ fn parts_weigh_as_much_as_the_whole() {
             "{a:?} instead of {b:?}"
         );
     }
-    // The principal moments come largest first, whatever the order of the whole box's.
+    // The principal moments come largest first, for any order of the whole box's.
     let moments = cut.params.body_inertia[1];
     assert!(moments.x >= moments.y && moments.y >= moments.z);
 }

@@ -1,4 +1,4 @@
-//! What the builder derives from the model as a whole: inverse inertias, springs, servo damping, equality data.
+//! Quantities that the builder derives from the whole model: inverse inertias, springs, servo damping, equality data.
 
 use clench_dynamics::constants::CONSTANTS;
 use clench_math::{Quat, Vec3};
@@ -20,7 +20,7 @@ fn assert_close(actual: f64, expected: f64) {
     assert!(error < 1e-12, "{actual} instead of {expected}");
 }
 
-/// A point mass (nearly) at the end of a massless rod of length 1.
+/// Returns an (almost) point mass at the end of a massless rod of length 1.
 fn bob(name: &str, mass: f64) -> BodySpec {
     BodySpec::new(name).inertial(mass, [0.0, 0.0, -1.0], [1e-14; 3])
 }
@@ -84,7 +84,7 @@ fn a_double_pendulum_resists_with_the_inverse_of_its_mass_matrix() {
     assert_close(p.dof_invweight0[0], c / det);
     assert_close(p.dof_invweight0[1], a / det);
     assert_close(p.tendon_invweight0[0], (4.0 * c + 4.0 * b + a) / det);
-    // The lower bob moves along x by −2 and −1 per radian, so a third of J M⁻¹ Jᵀ.
+    // The lower bob moves along x by −2 and −1 per radian; the weight is a third of J M⁻¹ Jᵀ.
     assert_close(p.body_invweight0[2][0], (4.0 * c - 4.0 * b + a) / det / 3.0);
     assert_eq!(p.body_subtreemass, [5.0, 5.0, 3.0]);
 }
@@ -97,7 +97,7 @@ fn a_lone_slider_resists_with_its_mass_in_every_direction() {
     builder.add_body(ModelBuilder::WORLD, ball().joint(slider(Y)));
     builder.add_body(ModelBuilder::WORLD, ball().joint(slider([0.0, 1.0, 1.0])));
     let p = builder.build().unwrap().params;
-    // MuJoCo's rule for what slides along a coordinate axis, and the general one for what does not.
+    // MuJoCo's rule for slides along a coordinate axis, and the general rule for others.
     assert_eq!(
         (p.body_invweight0[1], p.dof_invweight0[0]),
         ([0.5, 0.0], 0.5)
@@ -129,7 +129,7 @@ fn springs_and_servos_get_the_damping_ratio_asked_for() {
     let (k, b, m) = (p.jnt_stiffness[0], p.dof_damping[0], 2.0 + 1e-14);
     assert_close(2.0 * m / b, 0.1);
     assert_close(b / (2.0 * (k * m).sqrt()), 0.7);
-    // Through a gear of 3 the joint feels nine times kp and kv.
+    // With a gear of 3, nine times kp and kv act on the joint.
     let (kp, kv) = (80.0 * 9.0, -p.actuator_biasprm[0][2] * 9.0);
     assert_close(kv / (2.0 * (kp * 5.0_f64).sqrt()), 0.4);
 }

@@ -1,4 +1,4 @@
-//! Meshes and height fields by hand: where they stand, what they weigh, and what batches may change of them.
+//! Meshes and height fields computed by hand: poses, masses, and changes of their parameters in batches.
 
 use crate::common::hourglass;
 use clench_collide::ShapeKind;
@@ -8,7 +8,7 @@ use clench_rigid::builder::{
 use clench_rigid::{Model, Sim};
 use std::sync::Arc;
 
-/// A box from the origin to (1, 2, 3).
+/// Returns a box from the origin to (1, 2, 3).
 fn corners() -> Vec<[f64; 3]> {
     (0..8)
         .map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|side| side as f64))
@@ -41,7 +41,7 @@ fn a_hull_of_points_stands_about_its_centre() {
         let error = (back.iter().zip(written)).map(|(a, b)| (a - b).abs());
         assert!(error.fold(0.0, f64::max) < 1e-12);
     }
-    // m (b² + c²) / 12, largest first.
+    // m (b² + c²) / 12, the largest first.
     let moments = p.body_inertia[1].to_array();
     for (found, expected) in moments.iter().zip([6.5, 5.0, 2.5]) {
         assert!((found - expected).abs() < 1e-12, "{moments:?}");
@@ -62,10 +62,10 @@ fn the_ways_to_weigh_differ_where_a_mesh_is_not_convex() {
         .body_mass[1]
     };
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a}, not {b}");
-    // Base 2, height 1, twice.
+    // Two tetrahedra of base 2 and height 1.
     near(mass(MeshInertia::Exact), 4.0 / 3.0);
     near(mass(MeshInertia::Convex), 4.0);
-    // The centroid is in neither half of what it sees: pyramids that should be subtracted are added.
+    // The centroid is outside both halves, so pyramids that should be subtracted are added.
     assert!(mass(MeshInertia::Legacy) > 4.0 / 3.0 + 0.01);
     let area = mass(MeshInertia::Shell);
     let sides = 2.0 * (2.0 + 2.0 * 1.5f64.sqrt() + 2f64.sqrt());
@@ -77,12 +77,12 @@ fn axes_turn_only_where_the_digits_of_vertices_tell() {
     let centered: Vec<[f64; 3]> = (corners().into_iter())
         .map(|[x, y, z]| [2.0 * x - 1.0, y - 1.0, z - 1.5])
         .collect();
-    // Moments of the box with half sides 1, 1 + part, 1.5, as parts of the largest.
+    // The box has half sides 1, 1 + part and 1.5; `part` is a relative difference.
     let frame = |part: f64| {
         let mesh = MeshSpec::hull("m", &centered).scaled([1.0, 1.0 + part, 1.0]);
         build(mesh).params.geom_quat[0]
     };
-    // About y and about x: 1 + 1.5² against 1 + 2 part + 1.5², so the first is larger where the part is negative.
+    // The moments about y and x are 1 + 1.5² and 1 + 2 part + 1.5²: the first is larger if part is negative.
     let (unknown, known) = (1.5e-7, 1.8e-7);
     assert_eq!(frame(-unknown), clench_math::Quat::IDENTITY);
     assert_ne!(frame(-known), clench_math::Quat::IDENTITY);

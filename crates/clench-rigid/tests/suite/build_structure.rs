@@ -1,4 +1,4 @@
-//! How the builder numbers and completes a model, and what it refuses.
+//! Numbering, completion and validation of models by the builder.
 
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
@@ -149,7 +149,7 @@ fn pairs_mix_what_they_do_not_say() {
     builder.pairs = vec![pair(None), pair(Some(1))];
     let model = builder.build().unwrap();
     let p = &model.params;
-    // The geom of the earlier body comes first, whatever was said first.
+    // The geom of the earlier body comes first, in any order of the pair.
     assert_eq!(model.pairs[0].geoms, [0, 1]);
     assert_eq!((model.pairs[0].condim, model.pairs[1].condim), (4, 1));
     assert_eq!(p.pair_friction[0], [1.0, 1.0, 0.1, 0.2, 0.2]);
@@ -181,7 +181,7 @@ fn keyframes_are_completed_from_the_initial_state() {
     assert_eq!(model.keyframes[0].qvel, [0.0; 4]);
 }
 
-/// A change to a sound model, the element that the error must name, and a part of its message.
+/// A change to a valid model, the element that the error must name, and a part of its message.
 type Case = (fn(&mut ModelBuilder), &'static str, &'static str);
 
 fn joint(b: &mut ModelBuilder) -> &mut JointSpec {
@@ -190,7 +190,7 @@ fn joint(b: &mut ModelBuilder) -> &mut JointSpec {
 fn geom(b: &mut ModelBuilder) -> &mut GeomSpec {
     &mut b.bodies[1].geoms[0]
 }
-/// A servo that pushes away from its target, so that no damping is critical.
+/// Returns a servo that pushes away from its target, so that no damping is critical.
 fn backwards() -> ActuatorSpec {
     let joint = TransmissionSpec::Joint("a joint".into());
     ActuatorSpec {
@@ -292,7 +292,7 @@ const CASES: &[Case] = &[
     (|b| b.keyframes.push(KeyframeSpec::at("k", vec![f64::NAN])), "keyframe \"k\"", "qpos"),
 ];
 
-/// Adds a tendon between sites and geoms that are there.
+/// Adds a tendon between existing sites and geoms.
 fn string(b: &mut ModelBuilder, path: Vec<WrapSpec>) {
     b.bodies[2] = std::mem::take(&mut b.bodies[2]).site("tip", [0.0; 3]);
     b.bodies[0] = std::mem::take(&mut b.bodies[0]).site("base", [0.0, 1.0, 0.0]);
@@ -358,7 +358,7 @@ fn an_error_says_where_the_element_was_written() {
     );
 }
 
-/// Two hinges about the same axis: nothing tells their motions apart.
+/// Two hinges about the same axis have indistinguishable motions.
 #[test]
 fn a_mass_matrix_without_inverse_is_refused() {
     let mut builder = ModelBuilder::new("singular");

@@ -1,4 +1,4 @@
-//! What equalities, limits and dry friction do to bodies: what stays closed, what holds, what brakes.
+//! Effects of equalities, limits and dry friction on bodies.
 
 use crate::scenes::{
     G, add, bodies, cuboid, free, geom, joint, rest_penetration, run, sim, sphere, world,
@@ -12,7 +12,7 @@ use clench_rigid::model::JointKind;
 use clench_rigid::options::RigidOptions;
 use clench_rigid::{Sim, readout};
 
-/// A crank, a coupler and a rocker; the last joint of the loop is a connect.
+/// Builds a crank, a coupler and a rocker; a connect closes the loop.
 fn four_bar() -> ModelBuilder {
     let mut b = world();
     let link = |half: f64| GeomSpec {
@@ -46,7 +46,7 @@ fn four_bar() -> ModelBuilder {
     b
 }
 
-/// The largest violation of equality rows over some time.
+/// Returns the largest violation of equality rows during `time`.
 fn worst_violation(sim: &mut Sim, time: f64) -> f64 {
     let end = sim.state.time + time;
     let mut worst: f64 = 0.0;
@@ -74,7 +74,7 @@ fn a_four_bar_linkage_keeps_closed() {
     };
     let (soft, stiff) = (play(0.02), play(0.005));
     assert!(soft < 0.002, "{soft} m of play in links of 20 and 50 cm");
-    // Stiffness goes with the inverse square of the time constant.
+    // Stiffness is proportional to the inverse square of the time constant.
     assert!(stiff < soft / 10.0, "{stiff} m against {soft} m");
 }
 
@@ -89,7 +89,7 @@ fn a_weld_holds_and_can_be_let_go() {
         free(),
         vec![cuboid([0.1, 0.1, 0.1])],
     );
-    // The anchor is in the second body's frame, here the world: the load's centre.
+    // The anchor is the load's centre, in the second body's frame, which is the world.
     let anchor = bodies("load", "", [0.3, 0.0, 1.0]);
     let kind = EqualityKind::Weld {
         anchor,
@@ -100,7 +100,7 @@ fn a_weld_holds_and_can_be_let_go() {
     let mut sim = sim(&b);
     run(&mut sim, 1.0);
     let held = sim.state.qpos[2];
-    // It hangs where −k d² r / (1 − d) = −g, and carries its weight.
+    // It hangs where −k d² r / (1 − d) = −g, and the constraint carries its weight.
     let sag = rest_penetration(1.0, 1.0, DEFAULT_SOLIMP, 0.02);
     assert!(
         (1.0 - held - sag).abs() < 1e-9,
@@ -138,7 +138,7 @@ fn a_joint_equality_gears_two_wheels() {
     let mut sim = sim(&b);
     sim.state.qfrc_applied[0] = 0.1;
     run(&mut sim, 1.0);
-    // Both wheels of inertia I follow: (I + 9 I) a = τ, but for what the impedance of 0.95 leaves over.
+    // Both wheels have inertia I: (I + 9 I) a = τ, up to the error of an impedance of 0.95.
     let inertia = 0.5 * 0.01 + 0.01;
     let expected = 0.1 / (10.0 * inertia);
     assert!(
@@ -227,7 +227,7 @@ fn dry_friction_holds_a_pendulum_and_brakes_a_wheel() {
     );
     run(&mut sim, 1.5);
     assert!(sim.state.qvel[1].abs() < 1e-9, "then it stands");
-    // Below the loss dry friction is a damper that lets (1 − d) / (b d) of the free acceleration through as a speed.
+    // Below the loss, dry friction acts as a damper: the speed is (1 − d) / (b d) times the free acceleration.
     let creep = sim.state.qvel[0].abs();
     assert!(
         creep > 1e-4 && creep < 0.05,

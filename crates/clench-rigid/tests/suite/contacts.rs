@@ -1,4 +1,4 @@
-//! What contacts do to bodies: where things rest, when they slip, what forces they feel.
+//! Effects of contacts on bodies: rest positions, slip and forces.
 
 use crate::scenes::{
     G, add, cuboid, free, parts_on_a_mesh, plane, rest_penetration, run, sim, sphere, world,
@@ -9,7 +9,7 @@ use clench_rigid::contact::Contact;
 use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Sim, readout};
 
-/// A box of 1 kg and 20 cm height on a floor that is tilted by `angle` about y.
+/// Builds a box of 1 kg and 20 cm height on a floor that is tilted by `angle` about y.
 fn box_on_slope(angle: f64, friction: f64) -> ModelBuilder {
     let mut b = world();
     let turn = Quat::new((angle / 2.0).cos(), 0.0, (angle / 2.0).sin(), 0.0);
@@ -86,7 +86,7 @@ fn a_box_sticks_below_the_friction_angle_and_slides_above() {
         let slope: f64 = 0.5;
         let speed = |friction: f64| {
             let mut builder = box_on_slope(slope, friction);
-            // So flat that it does not rock.
+            // It is so flat that it does not rock.
             let flat = &mut builder.bodies[1];
             flat.geoms[0].size.z = 0.01;
             flat.pos = flat.quat.rotate(Vec3::new(0.0, 0.0, 0.01));
@@ -95,7 +95,7 @@ fn a_box_sticks_below_the_friction_angle_and_slides_above() {
             sim.state.qvel[0].hypot(sim.state.qvel[2])
         };
         let creep = speed(slope.tan() * 1.05);
-        // Soft friction lets some motion through.
+        // Soft friction allows some motion.
         assert!(creep < 0.02, "{cone:?}: {creep} m/s where it should stick");
         let friction = slope.tan() * 0.8;
         let (found, expected) = (speed(friction), G * (slope.sin() - friction * slope.cos()));
@@ -178,7 +178,7 @@ fn a_ball_with_rolling_friction_comes_to_rest() {
         sim.state.qvel[0]
     };
     assert!(end_speed(3) > 0.9, "nothing stops it: {}", end_speed(3));
-    // Rolling decelerates by 5/7 g c / r = 0.7 m/s²: 1 m/s is gone after 1.43 s.
+    // Rolling friction decelerates by 5/7 g c / r = 0.7 m/s², so 1 m/s vanishes after 1.43 s.
     assert!(
         end_speed(6).abs() < 0.01,
         "rolling friction does: {}",
@@ -208,7 +208,7 @@ fn options_switch_constraints_off_and_soften_them() {
 fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
     let [several, one] = [true, false].map(|multiccd| {
         let mut sim = sim(&parts_on_a_mesh(multiccd));
-        // Tilted, so that one point is the deepest.
+        // It is tilted, so that one point is the deepest.
         for (k, body) in [0, 7, 14].into_iter().enumerate() {
             let turn = Quat::from_rotation_vector(Vec3::new(6e-4, 8e-4, 0.0) * (1.0 + k as f64));
             sim.state.qpos[body + 3..body + 7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
@@ -237,7 +237,7 @@ fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
     }
 }
 
-/// A stack of three like bodies, each a few millimetres beside the one below.
+/// Builds a stack of three equal bodies, each offset by a few millimetres.
 fn stack(shape: &GeomSpec, base: GeomSpec) -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();

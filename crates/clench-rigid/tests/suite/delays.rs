@@ -1,4 +1,4 @@
-//! Controls that arrive late.
+//! Controls and sensors with delays.
 
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, GeomSpec, HistorySpec, JointSpec, ModelBuilder, SensorSpec,
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 const STEP: f64 = 0.002;
 
-/// A slider, weightless but for its mass, and a motor with so many past controls.
+/// Builds a slider without gravity and a motor with `nsample` past controls.
 fn slider(nsample: usize, delay: f64, interp: Interpolation) -> Result<Arc<Model>, String> {
     slider_with(
         HistorySpec {
@@ -22,7 +22,7 @@ fn slider(nsample: usize, delay: f64, interp: Interpolation) -> Result<Arc<Model
     )
 }
 
-/// The same with past controls and past positions, which a second sensor tells late.
+/// Builds it with past controls and positions, which a second sensor reports with a delay.
 fn slider_with(of_motor: HistorySpec, of_sensor: HistorySpec) -> Result<Arc<Model>, String> {
     let mut builder = ModelBuilder::new("slider");
     builder.physics.gravity = [0.0; 3];
@@ -46,7 +46,7 @@ fn slider_with(of_motor: HistorySpec, of_sensor: HistorySpec) -> Result<Arc<Mode
         .map_err(|error| error.to_string())
 }
 
-/// The forces of steps whose controls are 1, 2, 3, ...
+/// Returns the forces of steps whose controls are 1, 2, 3, ...
 fn forces(model: Arc<Model>, count: usize) -> Vec<f64> {
     let mut sim = Sim::new(model).expect("valid");
     (1..=count)
@@ -146,7 +146,7 @@ fn a_delayed_sensor_tells_what_was_measured_before() {
     }
 }
 
-/// What a position that grows from 100 by one a step of one second is told as, less 100, with this period and phase and this late.
+/// Returns the readings, minus 100, of a position that grows from 100 by 1 per step of 1 s, at this interval and delay.
 fn ticks(interval: [f64; 2], delay: f64, steps: usize) -> Vec<f64> {
     let mut builder = ModelBuilder::new("slider");
     builder.physics.gravity = [0.0; 3];
@@ -191,7 +191,7 @@ fn ticks(interval: [f64; 2], delay: f64, steps: usize) -> Vec<f64> {
 
 #[test]
 fn a_period_that_is_no_multiple_of_the_step_alternates() {
-    // MuJoCo's documentation has these two examples.
+    // These two examples are from MuJoCo's documentation.
     let seen = ticks([2.5, 0.0], 0.0, 14);
     assert_eq!(seen[..6], [0.0, 0.0, 0.0, 3.0, 3.0, 5.0]);
     assert_eq!(seen[6..], [5.0, 5.0, 8.0, 8.0, 10.0, 10.0, 10.0, 13.0]);

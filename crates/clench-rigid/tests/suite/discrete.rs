@@ -1,4 +1,4 @@
-//! The integrator `discrete`: forces are taken at the end of the step, springs as dampers, and constraints with them.
+//! The integrator `discrete` takes the forces of springs, dampers and constraints at the end of the step.
 
 use crate::batches::{assert_state, with};
 use crate::common::{model, sim};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 const H: f64 = 0.1;
 
-/// Two cars on parallel rails, of 2 and 3 kg, without gravity.
+/// Builds two cars on parallel rails, of 2 and 3 kg, without gravity.
 fn cars() -> ModelBuilder {
     let mut b = world("cars");
     b.physics.gravity = [0.0; 3];
@@ -32,7 +32,7 @@ fn cars() -> ModelBuilder {
     b
 }
 
-/// The acceleration of the first step from these positions and velocities.
+/// Returns the acceleration of the first step from these positions and velocities.
 fn first_step(b: &ModelBuilder, qpos: [f64; 2], qvel: [f64; 2]) -> [f64; 2] {
     let mut sim = sim(b);
     sim.state.qpos.copy_from_slice(&qpos);
@@ -70,7 +70,7 @@ fn a_spring_is_taken_at_the_end_of_the_step() {
     assert_near([acceleration, 0.0], [(after - v) / H, 0.0]);
 }
 
-/// A tendon with the length l = x₀ − 2 x₁ couples trees, which are no chain in the mass matrix.
+/// A tendon with the length l = x₀ − 2 x₁ couples trees that form no chain in the mass matrix.
 #[test]
 fn a_tendon_couples_trees_within_the_step() {
     let (k, d, x, v) = (500.0, 4.0, [0.3, -0.1], [0.4, 0.7]);
@@ -84,7 +84,7 @@ fn a_tendon_couples_trees_within_the_step() {
     let pull = -k * (length + H * rate) - d * rate;
     let expected = solve(2.0 + s, -2.0 * s, 3.0 + 4.0 * s, [pull, -2.0 * pull]);
     assert_near(first_step(&b, x, v), expected);
-    // The acceleration without constraints is the same, and constraints pull with nothing.
+    // The acceleration without constraints is equal, and the constraint forces are zero.
     let mut sim = sim(&b);
     sim.state.qpos.copy_from_slice(&x);
     sim.state.qvel.copy_from_slice(&v);
@@ -93,7 +93,7 @@ fn a_tendon_couples_trees_within_the_step() {
     assert_near([smooth[0], smooth[1]], expected);
     let held = sim.output("qfrc_constraint").expect("an output");
     assert!(held.iter().all(|force| force.abs() < 1e-9), "{held:?}");
-    // In its dead band it is slack.
+    // In its dead band the tendon is slack.
     b.tendons[0].springlength = Some([-9.0, 9.0]);
     b.tendons[0].damping[0] = 0.0;
     assert_eq!(first_step(&b, x, v), [0.0; 2]);
@@ -148,8 +148,8 @@ fn inverse_dynamics_undo_a_step_with_couplings() {
     }
 }
 
-/// The rope is slack in some environments and taut in others, the left car is at the end of its rail in some, and the right one rubs on a
-/// plate in some.
+/// Compares lanes with single simulations. In some environments the rope is slack, the left car is at the end of its
+/// rail, or the right car rubs on a plate.
 fn couplings_in_lanes<S: Precision>(rigid: &RigidOptions) {
     const ENVS: usize = 21;
     let mut b = cars();
@@ -213,7 +213,7 @@ fn couplings_are_the_same_in_lanes() {
     }
 }
 
-/// A ball that falls on a floor as stiff as the step resolves is at rest on it after a step, neither below nor thrown back.
+/// A ball falls on a floor as stiff as the step resolves. It stays there, neither below nor thrown back.
 #[test]
 fn a_contact_that_the_step_cannot_resolve_does_not_rebound() {
     let mut b = ModelBuilder::new("ball");

@@ -1,4 +1,4 @@
-//! A motion that leaves all bounds is a fault that names the joint, or begins anew where the options say so.
+//! A motion that diverges is a fault that names the joint, or resets if the options say so.
 
 use crate::batches::*;
 use clench_math::Instructions;
@@ -8,7 +8,7 @@ use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, EnvStatus, Fault, Precision, Sim, SimError};
 use std::sync::Arc;
 
-/// Two masses on sliders, the second on a spring too stiff for the time step.
+/// Builds two masses on sliders, the second on a spring too stiff for the time step.
 fn stiff(integrator: Integrator) -> ModelBuilder {
     let mut b = world();
     b.physics.integrator = integrator;
@@ -78,7 +78,7 @@ fn a_position_or_velocity_beyond_the_bounds_is_not_stepped_from() {
     }
 }
 
-/// Steps a batch and a simulation for each of its environments, with controls of rollouts and without.
+/// Steps a batch and a simulation for each environment, with and without controls of rollouts.
 fn begins_anew<S: Precision>(instructions: Instructions, threads: usize) {
     let model = model(&stiff(Integrator::Euler));
     let options = RigidOptions::new().autoreset(true);
@@ -86,7 +86,7 @@ fn begins_anew<S: Precision>(instructions: Instructions, threads: usize) {
     let mut batch = Batch::<S>::with_options(Arc::clone(&model), 13, wide).expect("valid");
     let mut alone = Vec::new();
     for env in 0..13 {
-        // Some rest, and some diverge sooner than others.
+        // Some are at rest, and some diverge sooner than others.
         let push = if env % 4 == 0 { 0.0 } else { 1e-4 * env as f64 };
         batch.state.qpos.row_mut(env)[1] = S::new(push);
         batch.state.qfrc_applied.row_mut(env)[0] = S::new(1.0);
@@ -103,7 +103,7 @@ fn begins_anew<S: Precision>(instructions: Instructions, threads: usize) {
     }
     for (env, &resets) in batch.resets().iter().enumerate() {
         assert_eq!(resets, u64::from(env % 4 != 0), "environment {env}");
-        // The forces that a user applied are gone where it began anew.
+        // A reset clears the forces that a user applied.
         let force = batch.state.qfrc_applied.row(env)[0].to_f64();
         assert_eq!(force, if env % 4 == 0 { 1.0 } else { 0.0 });
     }
@@ -137,7 +137,7 @@ fn with_autoreset_what_fails_from_the_initial_state_too_is_a_fault() {
     assert_eq!(alone.step(), Err(SimError::Fault(fault)));
 }
 
-/// 3 × 10⁷ steps of 1/1024 s: the last digit of a clock in single precision is worth 1/512 s there.
+/// After 3 × 10⁷ steps of 1/1024 s, the last digit of a single-precision clock is 1/512 s.
 #[test]
 fn the_clock_is_exact_in_single_precision() {
     let mut b = world();

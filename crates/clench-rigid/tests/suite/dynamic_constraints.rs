@@ -7,7 +7,7 @@ use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, DynamicConstraint, Model, Precision, Sim, SimError, State};
 use std::sync::Arc;
 
-/// A weld of the file that is off.
+/// Returns a weld of the model that is off.
 fn weld(name: &str, body1: &str, body2: &str) -> EqualitySpec {
     let anchor = ConnectAnchor::Bodies {
         body1: body1.into(),
@@ -25,7 +25,7 @@ fn weld(name: &str, body1: &str, body2: &str) -> EqualitySpec {
     }
 }
 
-/// Three boxes in the air above a floor.
+/// Builds three boxes in the air above a floor.
 fn boxes() -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();
@@ -37,7 +37,7 @@ fn boxes() -> ModelBuilder {
     b
 }
 
-/// Thrown, and stepped a little.
+/// Returns a thrown simulation after a few steps.
 fn thrown(model: &Arc<Model>) -> Sim {
     let mut sim = Sim::new(model.clone()).expect("valid");
     begin(3, &mut sim.state);
@@ -173,7 +173,7 @@ fn a_saved_state_holds_what_is_tied() {
     assert_eq!(sim.state, other.state);
 }
 
-/// What environment `env` ties and unties before a step.
+/// The operations that add and remove constraints.
 trait Grip<S: Precision> {
     fn weld(&mut self, bodies: [usize; 2]) -> DynamicConstraint;
     fn connect(&mut self, bodies: [usize; 2]) -> DynamicConstraint;
@@ -212,7 +212,7 @@ impl<S: Precision> Grip<S> for Row<'_, S> {
     }
 }
 
-/// Each environment ties other bodies, in other slots, at other times.
+/// Adds and removes constraints; bodies, slots and times differ between environments.
 fn act<S: Precision>(
     env: usize,
     step: usize,

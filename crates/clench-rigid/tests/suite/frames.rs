@@ -1,4 +1,4 @@
-//! How objects move: Jacobians against velocities and differences, what forces on bodies mean for dofs.
+//! Motion of objects: Jacobians against velocities and differences, and joint forces from body forces.
 
 use crate::machines::{Numbers, distance, everything, floating, shake, sim};
 use clench_math::Vec3;
@@ -38,7 +38,7 @@ fn numbers(vectors: &[Vec3<f64>]) -> Vec<f64> {
     vectors.iter().flat_map(|v| v.to_array()).collect()
 }
 
-/// Another simulation, a little later by the velocities alone.
+/// Returns a simulation advanced by the velocities only.
 fn moved(sim: &Sim, time: f64) -> Sim {
     let mut other = Sim::new(Arc::clone(sim.model())).unwrap();
     other.state.copy_from(&sim.state);

@@ -1,4 +1,4 @@
-//! Inverse kinematics: goals within reach are reached, limits are kept, what is out of reach is said to be.
+//! Inverse kinematics: reachable goals are reached, limits hold, and unreachable goals are reported.
 
 use crate::machines::{Numbers, distance, floating};
 use clench_math::{Quat, Vec3};
@@ -11,7 +11,7 @@ use clench_rigid::{
 };
 use std::sync::Arc;
 
-/// An arm of seven hinges about turning axes, with a site at its end.
+/// Builds an arm of seven hinges about alternating axes, with a site at its end.
 fn arm(range: f64) -> Arc<Model> {
     let mut b = crate::machines::world("arm");
     let mut parent = ModelBuilder::WORLD;
@@ -82,7 +82,7 @@ fn an_arm_reaches_poses_that_it_can_take() {
     assert!(reached >= 80, "{reached} of 100");
 }
 
-/// From one start every seventh search or so ends against limits that the goal's own posture does not touch.
+/// From one start, about every seventh search ends at limits that the goal's own posture does not touch.
 #[test]
 fn other_starts_reach_what_one_did_not() {
     let model = arm(1.2);
@@ -109,14 +109,14 @@ fn other_starts_reach_what_one_did_not() {
     assert!(reached(&once) < 36, "the goals are too easy");
     assert!(reached(&often) >= 39, "{} of 40", reached(&often));
     for (first, best) in once.iter().zip(&often) {
-        // What was reached at once is left as it was.
+        // Restarts do not change a solution that reached its goal.
         if first.status == IkStatus::Reached {
             assert_eq!(first, best);
         }
         assert!(best.iterations >= first.iterations);
         assert!(best.qpos.iter().all(|q| q.abs() <= 1.2));
     }
-    // The same in lanes.
+    // Lanes give the same results.
     let options = IkOptions {
         restarts: 12,
         ..IkOptions::default()
@@ -156,7 +156,7 @@ fn a_goal_beyond_the_arm_is_pointed_at() {
     let mut sim: Sim = Sim::new(Arc::clone(&model)).unwrap();
     let found = sim.ik(&ik, &[3.0, 0.0, 0.4], Some(&[0.2; 7])).unwrap();
     assert_ne!(found.status, IkStatus::Reached);
-    // From the shoulder, 0.4 m up where the first bending joint is, 1.2 m of links point there.
+    // The 1.2 m of links point there from the shoulder, the first bending joint at 0.4 m.
     let at = tip(&model, &found.qpos).0;
     assert!((at - Vec3::new(1.2, 0.0, 0.4)).norm() < 1e-3, "{at:?}");
     assert!((found.errors[0] - 1.8).abs() < 1e-5);

@@ -1,4 +1,4 @@
-//! Integrators: their order, what they conserve, and where they are exact.
+//! Integrators: order, conservation, and exact cases.
 
 use crate::machines::{distance, floating, shake, sim, turn_between, world};
 use clench_math::{Quat, Vec3};
@@ -20,7 +20,7 @@ fn after(builder: &ModelBuilder, h: f64, time: f64) -> Sim {
     sim
 }
 
-/// The distance of two configurations, orientations by angle.
+/// Returns the distance of two configurations, of orientations by angle.
 fn pose_distance(a: &Sim, b: &Sim) -> f64 {
     for sim in [a, b] {
         assert_eq!(sim.state.qpos.len(), 16);
@@ -35,7 +35,7 @@ fn pose_distance(a: &Sim, b: &Sim) -> f64 {
     trunk.norm().max(arm.norm()).max(rest).max(place)
 }
 
-/// By how much halving the time step shrinks the error of the configuration, against a much finer solution.
+/// Returns the factor by which half the time step shrinks the error, against a much finer solution.
 fn error_ratio(integrator: Integrator, h: f64) -> f64 {
     let mut builder = floating();
     builder.physics.integrator = integrator;
@@ -52,7 +52,7 @@ fn runge_kutta_is_of_fourth_order_in_orientations_too() {
     assert!((13.0..20.0).contains(&ratio), "{ratio}");
 }
 
-/// As in MuJoCo, which keeps what the last stage computed.
+/// MuJoCo also keeps the results of the last stage.
 #[test]
 fn after_runge_kutta_an_actuator_moves_as_its_joint_did_in_the_last_stage() {
     let mut builder = world("bob");
@@ -69,7 +69,7 @@ fn after_runge_kutta_an_actuator_moves_as_its_joint_did_in_the_last_stage() {
         .push(ActuatorSpec::motor("motor", target, 3.0));
     let mut sim = sim(&builder);
     sim.step().expect("a good state");
-    // The body's velocity about the world's y axis, which is the joint's.
+    // The body's angular velocity about the world's y axis, the joint's axis.
     let spin = sim.workspace().velocity.cvel[1].angular.y;
     let found = sim.workspace().velocity.actuator_velocity[0];
     assert!(spin != 0.0 && (found - 3.0 * spin).abs() < 1e-12 * spin.abs());
@@ -103,7 +103,7 @@ fn energy_is_conserved_to_the_order_of_the_integrator() {
     };
     let ratio = drift(Integrator::Euler, 0.001) / drift(Integrator::Euler, 0.0005);
     assert!((1.8..2.2).contains(&ratio), "{ratio}");
-    // Fourth order, or better where the leading error changes its sign.
+    // Fourth order, or higher where the leading error changes its sign.
     let ratio = drift(Integrator::Rk4, 0.02) / drift(Integrator::Rk4, 0.01);
     assert!(ratio > 12.0, "{ratio}");
     assert!(drift(Integrator::Rk4, 0.005) < 1e-6);
@@ -148,7 +148,7 @@ fn slider(mass: f64) -> ModelBuilder {
     builder
 }
 
-/// Velocity after a step from 1 m/s at h = 0.1 s.
+/// Returns the velocity after a step from 1 m/s at h = 0.1 s.
 fn velocity_after_step(builder: &ModelBuilder) -> f64 {
     let mut sim = sim(builder);
     sim.set_timestep(0.1).expect("a time step");
@@ -196,7 +196,7 @@ fn servos_are_implicit_only_while_they_are_not_saturated() {
     assert!((velocity_after_step(&by_joint) - held).abs() < 1e-15);
 }
 
-/// A spinning body with something welded to it, its joint away from its centre of mass.
+/// Builds a spinning body with a welded part and a joint away from its centre of mass.
 fn tumbler() -> ModelBuilder {
     let mut builder = world("tumbler");
     builder.physics.gravity = [0.0; 3];
@@ -233,7 +233,7 @@ fn a_tumbling_body_gains_no_energy() {
     }
 }
 
-/// (M + h ∂bias/∂v) a = −bias, with the slope by differences.
+/// (M + h ∂bias/∂v) a = −bias, with the derivative by differences.
 #[test]
 fn a_single_body_is_solved_with_its_gyroscopic_derivatives() {
     let builder = tumbler();
@@ -298,7 +298,7 @@ fn activations_follow_their_dynamics() {
         1.0 - 0.8 * decay,
     );
     near(step(DynamicsKind::Integrator, euler, [-1.0, 0.25]), 0.25);
-    // Runge–Kutta takes the series of the exponential to the fourth order.
+    // Runge–Kutta follows the series of the exponential to fourth order.
     let x: f64 = -0.1 / 0.3;
     let series = 1.0 + x + x * x / 2.0 + x.powi(3) / 6.0 + x.powi(4) / 24.0;
     near(

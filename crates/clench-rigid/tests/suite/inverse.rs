@@ -1,4 +1,4 @@
-//! Inverse dynamics undo forward dynamics, with every kind of constraint at work.
+//! Inverse dynamics inverts forward dynamics, with every kind of constraint active.
 
 use crate::scenes::{Numbers, everything, humanoid, shake};
 use clench_math::Vec3;
@@ -21,7 +21,7 @@ fn shaken(builder: &ModelBuilder, options: RigidOptions, seed: u64) -> Sim {
     sim
 }
 
-/// Actuators and what users apply.
+/// Returns the forces of actuators and users.
 fn given(sim: &mut Sim) -> Vec<f64> {
     let mut forces = sim.output("qfrc_actuator").unwrap();
     for (sum, applied) in forces.iter_mut().zip(&sim.state.qfrc_applied) {
@@ -36,7 +36,7 @@ fn given(sim: &mut Sim) -> Vec<f64> {
     forces
 }
 
-/// Relative to the largest force, those of constraints among them.
+/// Compares relative to the largest force, constraint forces included.
 fn assert_close(sim: &Sim, found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     let all = expected.iter().chain(&sim.workspace().qfrc_constraint);
     let scale = all.fold(1.0_f64, |most, x| most.max(x.abs()));
@@ -54,7 +54,7 @@ fn inverse_dynamics_find_the_forces_that_forward_dynamics_were_given() {
         for (seed, builder) in [everything(), humanoid()].iter().enumerate() {
             let options = RigidOptions::new().friction_cone(cone);
             let mut sim = shaken(builder, options, seed as u64 + 2);
-            // Both begin with a free joint: lower, so that they touch the floor.
+            // Both begin with a free joint. Lower them until they touch the floor.
             sim.forward().unwrap();
             while sim.contacts().is_empty() && sim.state.qpos[2] > -1.0 {
                 sim.state.qpos[2] -= 0.02;

@@ -11,7 +11,7 @@ use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Sim, readout};
 use std::collections::HashSet;
 
-/// Displacement of the differences (rad, m): their error is its square, and 1e-16 over it from rounding.
+/// The step of finite differences (rad, m). Their error is its square, plus rounding of 1e-16 over it.
 const H: f64 = 1e-5;
 const TOLERANCE: f64 = 1e-8;
 
@@ -21,7 +21,7 @@ fn shaken(seed: u64) -> Sim {
     sim
 }
 
-/// The constraint rows after moving along `velocity` for `time`, without contacts.
+/// Returns the constraint rows after moving along `velocity` for `time`, without contacts.
 fn rows_at(sim: &Sim, velocity: &[f64], time: f64) -> Vec<readout::ConstraintRow> {
     let mut moved = Sim::new(sim.model().clone()).expect("as the original");
     moved.state.copy_from(&sim.state);
@@ -107,7 +107,7 @@ fn tendon_friction_acts_along_the_tendon() {
 
 #[test]
 fn connect_and_weld_ask_for_the_right_acceleration() {
-    // aref + b v + k d r = −J̇ v, the change of the row's rate while velocities stay.
+    // aref + b v + k d r = −J̇ v, the row's acceleration at constant velocities.
     for seed in 0..5 {
         let mut sim = shaken(seed);
         let v = sim.state.qvel.clone();
@@ -144,7 +144,7 @@ fn connect_and_weld_ask_for_the_right_acceleration() {
     }
 }
 
-/// Contacts between bodies of one tree, of two trees, and with the world.
+/// Returns contacts between bodies of one tree, of two trees, and with the world.
 fn given_contacts(sim: &Sim) -> Vec<Contact<f64>> {
     let geom = |name: &str| {
         let body = sim
@@ -184,7 +184,7 @@ fn given_contacts(sim: &Sim) -> Vec<Contact<f64>> {
     .collect()
 }
 
-/// Where a body's material point and frame have gone, in the contact frame: displacement, then small rotation.
+/// Returns the displacement and small rotation of a body's material point and frame, in the contact frame.
 fn displacement(
     before: &Sim,
     after: &Sim,

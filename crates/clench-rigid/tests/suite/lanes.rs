@@ -1,4 +1,4 @@
-//! Environments that share a register move as if each were alone, to the bit.
+//! Environments that share a register move as single simulations, to the bit.
 
 use crate::scenes::{Numbers, loose_parts};
 use clench_dynamics::Step;
@@ -9,7 +9,7 @@ use clench_rigid::{Model, Sim, State, StepSettings};
 use clench_solver::ConstraintSolver;
 use std::sync::Arc;
 
-/// One of so many environments: its own velocities, and the weld on in the last.
+/// Returns one of `count` environments: its velocities differ, and the last has the weld on.
 fn start(model: &Arc<Model>, options: RigidOptions, lane: usize, count: usize) -> Sim {
     let mut sim = Sim::with_options(model.clone(), options).expect("valid");
     Numbers(lane as u64).fill(&mut sim.state.qvel, 1.5);
@@ -17,7 +17,7 @@ fn start(model: &Arc<Model>, options: RigidOptions, lane: usize, count: usize) -
     sim
 }
 
-/// Steps environments in the lanes of every instruction set that this processor has; whether any had too many contacts.
+/// Steps environments in lanes of every available instruction set. Returns true if any had too many contacts.
 fn compare(options: RigidOptions, integrator: Integrator, steps: usize) -> bool {
     let mut overflow = false;
     for instructions in Instructions::all_available::<f64>() {
@@ -45,7 +45,7 @@ impl LaneTask<f64> for Compare {
     }
 }
 
-/// Steps all environments together and alone; whether any had too many contacts.
+/// Steps all environments together and singly. Returns true if any had too many contacts.
 fn in_lanes<T: Real<Scalar = f64>>(
     options: RigidOptions,
     integrator: Integrator,

@@ -1,5 +1,5 @@
-//! Tests of simulations through the crate's public face: one program, so that its generic code is compiled once for all of them. The
-//! three beside this folder count what is allocated and need programs of their own.
+//! Tests of the crate's public API. One program compiles its generic code once. The three programs next to this folder
+//! count allocations and must be separate.
 
 mod actuation;
 mod batch_backend;

@@ -7,7 +7,7 @@ use clench_rigid::model::{BiasKind, DynamicsKind, GainKind};
 use clench_rigid::{Budget, Model, Sim};
 use std::sync::Arc;
 
-/// A muscle on a slider that is limited to [−0.1, 0.2] m.
+/// Returns a muscle on a slider that is limited to [−0.1, 0.2] m.
 fn muscle() -> ActuatorSpec {
     let mut spec = ActuatorSpec::motor("muscle", TransmissionSpec::Joint("slide".into()), 1.0);
     let prm = [0.75, 1.05, 30.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2, 0.0];

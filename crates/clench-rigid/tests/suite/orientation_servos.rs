@@ -1,4 +1,4 @@
-//! Servos that turn what they hold to an orientation.
+//! Servos that control an orientation.
 
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
@@ -23,7 +23,7 @@ fn servo() -> ActuatorSpec {
     servo
 }
 
-/// A box on a ball joint without gravity, and its servo.
+/// Builds a box on a ball joint without gravity, and its servo.
 fn build(servo: ActuatorSpec) -> Result<Arc<Model>, String> {
     let mut builder = ModelBuilder::new("turning");
     builder.physics.gravity = [0.0; 3];

@@ -1,4 +1,4 @@
-//! What rays hit and how far apart geoms are, in scenes whose answers are plain.
+//! Ray hits and distances of geoms in scenes with simple answers.
 
 use crate::common::hourglass;
 use clench_collide::ShapeKind;
@@ -22,7 +22,7 @@ fn forwarded(builder: &ModelBuilder) -> Sim {
     sim
 }
 
-/// A floor of 4 m by 6 m, a post on it, and a ball that can move, 2 m above, with a small box inside it.
+/// Builds a 4 m by 6 m floor, a post on it, and 2 m above it a movable ball with a small box inside.
 fn scene() -> ModelBuilder {
     let mut builder = ModelBuilder::new("scene");
     builder.add_ground(GeomSpec {
@@ -77,7 +77,7 @@ fn a_ray_hits_the_first_geom_that_it_may() {
         ..all
     };
     expect(v(0.0, 0.0, 4.0), down, past_the_ball, "floor", 8.0);
-    // From inside it leaves.
+    // A ray from inside hits the surface as it leaves.
     expect(v(0.0, 0.0, 2.3), UP, all, "ball", 0.2);
     expect(v(0.0, 0.0, 2.0), UP, all, "core", 0.1);
     expect(v(3.0, 0.0, 0.5), v(-1.0, 0.0, 0.0), all, "post", 1.9);
@@ -95,14 +95,14 @@ fn a_ray_hits_the_first_geom_that_it_may() {
         hit(&mut sim, v(0.0, 0.0, 4.0), down, groups([false; 6])),
         None
     );
-    // The floor ends.
+    // The floor is finite.
     assert_eq!(hit(&mut sim, v(2.1, 0.0, 1.0), down, all), None);
     assert_eq!(hit(&mut sim, v(0.0, 3.1, 1.0), down, all), None);
     for nothing in [V::ZERO, v(f64::NAN, 0.0, 1.0), v(0.0, f64::INFINITY, 0.0)] {
         assert_eq!(hit(&mut sim, v(0.0, 0.0, 4.0), nothing, all), None);
         assert_eq!(hit(&mut sim, nothing * f64::NAN, down, all), None);
     }
-    // A group beyond the last is the last.
+    // A group number above the last counts as the last.
     let mut far = scene();
     far.bodies[1].geoms[0].group = 99;
     let mut far = forwarded(&far);
@@ -158,7 +158,7 @@ fn rays_pass_through_the_waist_of_a_mesh_whose_hull_collides() {
         let place = |local: V| v(0.1, 0.2, 0.3) + turn.rotate(local);
         let along = turn.rotate(v(0.0, 1.0, 0.0));
         let all = RayFilter::default();
-        // Beside the waist; at half height of the upper half; and from above.
+        // Beside the waist, at half height of the upper half, and from above.
         assert_eq!(sim.ray(place(v(-0.3, -4.0, 0.0)), along, &all), Ok(None));
         let side = sim
             .ray(place(v(-0.3, -4.0, 0.5)), along, &all)
@@ -168,7 +168,7 @@ fn rays_pass_through_the_waist_of_a_mesh_whose_hull_collides() {
         let top = sim.ray(place(v(-0.3, 0.0, 3.0)), -UP, &all);
         let top = top.unwrap().expect("a hit");
         assert!((top.distance - 2.0).abs() < 1e-9 && (top.normal - UP).norm() < 1e-9);
-        // Its distance is that of its hull, whether it collides or not.
+        // The distance is that of the hull, even if the mesh does not collide.
         let mesh = (0..2)
             .find(|g| sim.model().geoms[*g].kind == ShapeKind::Mesh)
             .unwrap();
@@ -182,7 +182,7 @@ fn rays_pass_through_the_waist_of_a_mesh_whose_hull_collides() {
             .unwrap();
         assert!((found.distance - back.distance).abs() < 1e-12);
         assert_eq!(found.points, [back.points[1], back.points[0]]);
-        // The ball is nearest to the hull's upright edge at the tips.
+        // The ball is nearest to the hull's upright edge between the tips.
         let edge = place(v(1.0, 0.0, 0.0));
         let truth = (v(5.0, 0.0, 0.3) - edge).norm() - 0.1;
         assert!(
@@ -228,7 +228,7 @@ fn distances_are_of_geoms_that_exist() {
     let near = sim.distance(0, 2, f64::INFINITY).unwrap().unwrap();
     assert!((near.distance - 1.5).abs() < 1e-12);
     assert!((near.points[1] - v(0.0, 0.0, 1.5)).norm() < 1e-12);
-    // Geoms of one body, too: the box leaves the ball by its own half and the ball's radius.
+    // Geoms of one body also have a distance: minus the half size of the box and the ball's radius.
     let within = sim.distance(2, 3, 0.0).unwrap().unwrap();
     assert!((within.distance + 0.6).abs() < 1e-12);
     assert!(matches!(
@@ -241,7 +241,7 @@ fn distances_are_of_geoms_that_exist() {
     ));
 }
 
-/// What a ray from above meets, and how far two geoms are apart.
+/// Returns the distance of a ray from above, and that of two geoms.
 fn ask(sim: &mut Sim) -> (f64, f64) {
     let down = sim.ray(v(0.0, 0.0, 9.0), -UP, &RayFilter::default());
     let apart = sim.distance(0, 2, f64::INFINITY).unwrap().unwrap();
@@ -270,16 +270,16 @@ fn queries_see_what_was_written_and_steps_as_in_mujoco() {
     let mut sim = forwarded(&scene());
     sim.step().unwrap();
     sim.step().unwrap();
-    // After a step, what follows from the state at its start.
+    // After a step, outputs follow from the state at its start.
     let (xpos, qpos) = (sim.output("xpos").unwrap(), sim.state.qpos.clone());
     assert!(xpos[5] > qpos[2]);
     let (down, apart) = ask(&mut sim);
     assert!((9.0 - down - (xpos[5] + 0.5)).abs() < 1e-12);
     assert!((apart - (xpos[5] - 0.5)).abs() < 1e-12);
-    // Controls and forces count from the next step on.
+    // Controls and forces take effect in the next step.
     sim.state.qfrc_applied[2] = 7.0;
     assert_eq!(sim.output("xpos").unwrap(), xpos);
-    // Positions at once.
+    // Positions take effect at once.
     sim.state.qpos[2] = 4.0;
     let (down, apart) = ask(&mut sim);
     assert!((down - 4.5).abs() < 1e-12 && (apart - 3.5).abs() < 1e-12);
@@ -291,7 +291,7 @@ fn queries_see_what_was_written_and_steps_as_in_mujoco() {
     assert_eq!(sim.mass_matrix().unwrap()[0], 2.0);
     sim.reset();
     assert_eq!(sim.output("xpos").unwrap()[5], 2.0);
-    // A state that no step can start from has no answer.
+    // A query of an invalid state returns an error.
     sim.state.qpos[2] = f64::NAN;
     assert!(matches!(sim.mass_matrix(), Err(SimError::Fault(_))));
     sim.state.qpos[2] = 3.0;

@@ -7,7 +7,7 @@ use clench_rigid::model::Integrator;
 use clench_rigid::{Model, Sim};
 use std::sync::Arc;
 
-/// A bar that turns, with an actuator of gear 2, in which `change` may change something.
+/// Builds a bar that turns, with an actuator of gear 2; `change` edits both.
 fn bar(change: impl FnOnce(&mut JointSpec, &mut ActuatorSpec)) -> Arc<Model> {
     let mut joint = JointSpec::hinge("turn", [0.0, 1.0, 0.0]);
     let target = TransmissionSpec::Joint("turn".into());
@@ -36,7 +36,7 @@ fn path(model: Arc<Model>, set: impl FnOnce(&mut Sim)) -> Vec<f64> {
     path
 }
 
-/// With powers of two nothing is rounded otherwise.
+/// Powers of two avoid different rounding.
 #[test]
 fn a_gear_reflects_damping_and_armature_by_its_square() {
     for integrator in [Integrator::Euler, Integrator::ImplicitFast, Integrator::Rk4] {

@@ -1,10 +1,10 @@
-//! Steps of a scene in which everything sleeps as before do what steps do that know nothing of the one before.
+//! Steps of a sleeping scene equal those of a new simulation in the same state.
 
 use crate::scenes::*;
 use clench_rigid::builder::{BodySpec, ModelBuilder};
 use clench_rigid::{Sim, State};
 
-/// Two boxes on the floor and a ball that is placed from outside.
+/// Builds two boxes on the floor and a ball that is positioned by the user.
 fn boxes() -> ModelBuilder {
     let mut b = world();
     b.physics.flags.sleep = true;
@@ -21,7 +21,7 @@ fn boxes() -> ModelBuilder {
     b
 }
 
-/// The scene some steps after all have fallen asleep.
+/// Returns the scene some steps after all bodies have fallen asleep.
 fn rested() -> Sim {
     let mut sim = sim(&boxes());
     for _ in 0..600 {
@@ -33,7 +33,7 @@ fn rested() -> Sim {
 
 type Write = fn(&mut State<f64>);
 
-/// What users may write between two steps.
+/// Changes that users may make between two steps.
 const WRITES: [(&str, Write); 15] = [
     ("nothing", |_| {}),
     ("a force", |s| s.qfrc_applied[2] = 100.0),

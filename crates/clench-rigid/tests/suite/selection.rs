@@ -1,4 +1,4 @@
-//! Which geoms may collide, in which order, and with what parameters.
+//! Selection of geoms that may collide: order and parameters.
 
 use crate::scenes::{add, free, geom, joint, model, plane, sphere, world};
 use clench_collide::ShapeKind;
@@ -19,7 +19,7 @@ fn hinge() -> Vec<clench_rigid::builder::JointSpec> {
     vec![joint(JointKind::Hinge, "", [0.0, 1.0, 0.0])]
 }
 
-/// Names of the candidates' geoms.
+/// Returns the names of the candidates' geoms.
 fn pairs(builder: &ModelBuilder) -> Vec<String> {
     let model = model(builder);
     let name = |g: u32| model.geoms[g as usize].name.clone();
@@ -27,7 +27,7 @@ fn pairs(builder: &ModelBuilder) -> Vec<String> {
     candidates(&model).iter().map(label).collect()
 }
 
-/// floor; a (free) > b (hinge) > c (welded to b) > d (hinge); e (free); m (mocap) > n (fixed to it).
+/// Builds the bodies floor; a (free) > b (hinge) > c (welded to b) > d (hinge); e (free); m (mocap) > n (fixed to it).
 fn family() -> ModelBuilder {
     let mut b = world();
     b.bodies[0].geoms.push(named("floor"));
@@ -44,8 +44,8 @@ fn family() -> ModelBuilder {
 
 #[test]
 fn relatives_and_bodies_that_cannot_move_do_not_collide() {
-    // As MuJoCo 4.0.0 does for the same model: parents are taken after welding, the world is no parent, and the mocap
-    // body collides with all that moves but not with the world.
+    // As in MuJoCo 4.0.0: parents are determined after welding, the world is no parent, and the mocap body collides
+    // with all moving bodies but not with the world.
     let expected = [
         "floor-a", "floor-b", "floor-c", "floor-d", "floor-e", "a-d", "a-e", "a-m", "a-n", "b-e",
         "b-m", "b-n", "c-e", "c-m", "c-n", "d-e", "d-m", "d-n", "e-m", "e-n",
@@ -81,7 +81,7 @@ fn masks_and_excludes_take_pairs_out_and_explicit_pairs_bring_them_in() {
         ..PairSpec::default()
     };
     builder.pairs = vec![pair("m", "a"), pair("b", "a"), pair("d", "floor")];
-    // As MuJoCo 4.0.0 does.
+    // As in MuJoCo 4.0.0.
     let expected = [
         "floor-a", "floor-b", "floor-c", "floor-d", "a-b", "a-d", "a-m", "a-n", "b-m", "b-n",
         "c-m", "c-n", "d-m", "d-n", "e-m",
@@ -129,7 +129,7 @@ fn order_is_by_bodies_then_by_geoms_the_simpler_shape_first() {
     );
 }
 
-/// The parameters of the only candidate of a floor and a ball.
+/// Returns the parameters of the only candidate of a floor and a ball.
 fn mixed(edit: impl FnOnce(&mut GeomSpec, &mut GeomSpec)) -> (std::sync::Arc<Model>, Candidate) {
     let mut builder = world();
     let (mut floor, mut ball) = (plane(), sphere(0.1));
@@ -265,7 +265,7 @@ fn lanes_mix_like_scalars() {
 
 #[test]
 fn the_sweep_of_a_large_scene_finds_what_a_list_would() {
-    // 60 moving balls in a heap, once with enough far-away shapes that the scene is swept. About each ball is one that is only seen.
+    // 60 moving balls in a heap, each in a larger visual-only ball. Far-away shapes trigger the sweep.
     let seen = || GeomSpec {
         contype: 0,
         conaffinity: 0,

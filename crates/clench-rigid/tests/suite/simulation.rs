@@ -1,4 +1,4 @@
-//! A simulation takes good input, refuses bad input, and says when it cannot go on.
+//! A simulation accepts valid input, refuses invalid input, and reports when it cannot go on.
 
 use crate::scenes::{add, free, joint, model, plane, run, sim, sphere, world};
 use clench_collide::frame_from_normal;
@@ -211,7 +211,7 @@ fn a_replay_is_the_same_to_the_bit() {
     assert_eq!(trace(&mut sim), first);
 }
 
-/// A contact of the ball with the floor that pushes it up, in the given frame.
+/// Returns a contact of the ball with the floor that pushes it up, in the given frame.
 fn contact_in(frame: Mat3<f64>) -> Contact<f64> {
     Contact {
         geoms: [0, 1],

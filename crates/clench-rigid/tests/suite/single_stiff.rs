@@ -1,4 +1,4 @@
-//! What is hard in single precision: masses whose matrix is ill-conditioned, and constraints far stiffer than what they move.
+//! Hard cases for single precision: ill-conditioned mass matrices, and very stiff constraints.
 
 use crate::batches::*;
 use clench_collide::ShapeKind;
@@ -10,7 +10,7 @@ use clench_rigid::{Batch, Precision};
 
 const LINK: f64 = 0.1;
 
-/// Links of 10 cm, each on a hinge across the one before, the first on the world. `turn` is the angle between them (rad).
+/// Builds 10 cm links, each on a hinge across the previous one, the first on the world, at angles of `turn` (rad).
 fn chain(links: usize, turn: f64, range: Option<f64>) -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();
@@ -38,7 +38,7 @@ fn chain(links: usize, turn: f64, range: Option<f64>) -> ModelBuilder {
     b
 }
 
-/// A ring: a chain of 15 links whose end is connected to its start.
+/// Builds a ring: a chain of 15 links whose end is connected to its start.
 fn ring() -> ModelBuilder {
     let links = 15;
     let mut b = chain(links, std::f64::consts::TAU / links as f64, None);
@@ -48,7 +48,7 @@ fn ring() -> ModelBuilder {
     b
 }
 
-/// Accelerations in the initial configuration, thrown as environment 3 is.
+/// Returns the accelerations of environment 3 in its initial state.
 fn accelerations<S: Precision>(builder: &ModelBuilder) -> Vec<f64> {
     let mut sim = alone::<S>(&model(builder), RigidOptions::new(), 3);
     sim.forward().expect("the masses are positive");
@@ -71,7 +71,7 @@ fn accelerations_of_long_chains_keep_their_digits_in_single_precision() {
     }
 }
 
-/// Takes 1,000 steps in single precision, alone and in lanes; returns the largest speed.
+/// Takes 1,000 steps in single precision, singly and in lanes, and returns the largest speed.
 fn fastest(builder: &ModelBuilder) -> f64 {
     let model = model(builder);
     let envs = Vec::from_iter(0..9);
@@ -107,8 +107,8 @@ fn long_chains_and_rings_live_in_single_precision() {
     }
 }
 
-/// Six cubes about the middle of a seventh that is not there, each on a hinge through its own centre of mass and overlapping
-/// its neighbours by a millimetre, as those in the faces of a Rubik's cube.
+/// Builds six cubes around a missing centre cube, like the faces of a Rubik's cube. Each is on a hinge through its
+/// centre of mass and overlaps its neighbours by 1 mm.
 fn faces(cone: FrictionCone) -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new().friction_cone(cone);

@@ -1,4 +1,4 @@
-//! Bodies of any size from 10⁻⁹ to 10⁹ m move as Euler's equations say, as far as their inertias' numbers tell it.
+//! Bodies of sizes from 10⁻⁹ to 10⁹ m obey Euler's equations, to the precision of their inertias.
 
 use clench_math::{Quat, Vec3};
 use clench_rigid::Sim;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 const G: f64 = 9.81;
 
-/// Random numbers in [−1, 1) (Knuth's linear congruence).
+/// Random numbers in [−1, 1) (Knuth's linear congruential generator).
 struct Numbers(u64);
 
 impl Numbers {
@@ -21,8 +21,8 @@ impl Numbers {
     }
 }
 
-/// The acceleration of a free box without contacts, its spin in its own frame; the box has a mass of 1 kg or water's density. Or why
-/// there is none: nothing to divide by.
+/// Returns the acceleration of a free box without contacts, of 1 kg or water's density; `spin` is in its own frame.
+/// Returns an error if the inertia is too small to divide by.
 fn acceleration(
     half: Vec3<f64>,
     one_kg: bool,
@@ -48,7 +48,7 @@ fn acceleration(
     Ok(sim.workspace().qacc.clone())
 }
 
-/// Euler's: I dω/dt = Iω × ω, with moments of inertia m (b² + c²) / 3.
+/// Computes the acceleration by Euler: I dω/dt = Iω × ω, with moments of inertia m (b² + c²) / 3.
 fn euler(half: Vec3<f64>, w: Vec3<f64>) -> Vec3<f64> {
     let [a, b, c] = half.to_array();
     let about = |b: f64, c: f64| (c - b) * (c + b) / (b * b + c * c);
@@ -68,7 +68,7 @@ fn a_cube_of_any_size_only_falls() {
             let half = Vec3::new(1.0, 1.0, 1.0) * 10f64.powi(exponent);
             let turn = Quat::from_rotation_vector(numbers.vector() * 3.0);
             let Ok(found) = acceleration(half, one_kg, turn, numbers.vector()) else {
-                // What weighs less than a molecule has no inertia that numbers could be divided by.
+                // Below the mass of a molecule, the inertia is too small to divide by.
                 assert!(exponent < -2, "a cube of 1e{exponent} m");
                 continue;
             };
@@ -88,7 +88,7 @@ fn a_box_of_any_shape_tumbles_as_euler_says_to_the_digits_of_its_inertias() {
     let mut moved = 0;
     for _ in 0..2000 {
         let size = 9.0 * numbers.next();
-        // From cubes to needles and sheets.
+        // Shapes range from cubes to needles and sheets.
         let spread = 8.0 * numbers.next();
         let half = Vec3::from_array(
             numbers
@@ -104,7 +104,7 @@ fn a_box_of_any_shape_tumbles_as_euler_says_to_the_digits_of_its_inertias() {
         moved += 1;
         let [a, b, c] = half.to_array();
         let inertias = [b.hypot(c).powi(2), c.hypot(a).powi(2), a.hypot(b).powi(2)];
-        // Of Iω × ω the digits are lost that the largest moment of inertia has more than the smallest.
+        // Iω × ω loses precision by the ratio of the largest to the smallest moment of inertia.
         let ratio = inertias.iter().fold(0.0, |most: f64, x| most.max(*x))
             / inertias
                 .iter()

@@ -1,5 +1,5 @@
-//! What sleeps, what wakes it, and what stays as it is meanwhile. The rules are those of `docs/sleeping.md`; that they are
-//! MuJoCo's says `parity/test_sleeping.py`.
+//! Sleeping: conditions, waking, and the state meanwhile. The rules are in `docs/sleeping.md`;
+//! `parity/test_sleeping.py` checks that they are MuJoCo's.
 
 use crate::scenes::*;
 use clench_math::Vec3;
@@ -10,12 +10,12 @@ use clench_rigid::builder::{
 use clench_rigid::model::{Integrator, JointKind, SleepPolicy};
 use clench_rigid::{Sim, State};
 
-/// A number of a tree that moves.
+/// The `tree_asleep` value of a moving tree.
 const AWAKE: f64 = -11.0;
-/// Steps in which the scenes come to rest.
+/// The number of steps in which the scenes come to rest.
 const REST: usize = 600;
 
-/// The floor, and the flag.
+/// Builds the floor and sets the flag.
 fn floor() -> ModelBuilder {
     let mut b = world();
     b.physics.flags.sleep = true;
@@ -27,7 +27,7 @@ fn add_box(b: &mut ModelBuilder, name: &str, pos: [f64; 3]) {
     add(b, 0, name, pos, free(), vec![cuboid([0.1; 3])]);
 }
 
-/// Two boxes on top of each other and a third beside them, on the floor.
+/// Builds two stacked boxes and a third next to them, on the floor.
 fn boxes() -> ModelBuilder {
     let mut b = floor();
     add_box(&mut b, "low", [0.0, 0.0, 0.1]);
@@ -42,7 +42,7 @@ fn steps(sim: &mut Sim, count: usize) {
     }
 }
 
-/// The scene after it has come to rest.
+/// Returns the scene after it has come to rest.
 fn rested(b: &ModelBuilder) -> Sim {
     let mut sim = sim(b);
     steps(&mut sim, REST);
@@ -177,7 +177,7 @@ fn a_force_keeps_awake_for_as_long_as_it_acts() {
     assert_eq!(asleep(&sim), [true; 3]);
 }
 
-/// The step in which it wakes has the contacts of a simulation that never slept.
+/// The step that wakes the stack has the contacts of a simulation that never slept.
 #[test]
 fn waking_loses_no_contact() {
     let mut b = boxes();
@@ -207,7 +207,7 @@ fn waking_loses_no_contact() {
         plain.forward().expect("finite");
         let of_stack = |sim: &Sim| {
             let contacts = sim.contacts().iter();
-            // Without the box that still sleeps beside.
+            // Excludes the box next to it, which still sleeps.
             Vec::from_iter(
                 contacts
                     .filter(|c| !c.geoms.contains(&3))

@@ -1,4 +1,4 @@
-//! Smooth dynamics against the definitions of what it computes.
+//! Smooth dynamics compared with its definitions.
 
 use crate::machines::{distance, everything, floating, shake, sim, turn_between};
 use clench_math::{Force, Motion, Vec3};
@@ -9,7 +9,7 @@ use clench_rigid::dynamics::project::{force_at, project_forces};
 use clench_rigid::{Sim, readout};
 use clench_solver::{TreeLu, TreeMatrix};
 
-/// Displacement of finite differences: their error is its square, and 1e-16 over it from rounding.
+/// The step of finite differences. Their error is its square, plus rounding of 1e-16 over it.
 const H: f64 = 1e-5;
 
 fn shaken(builder: &clench_rigid::builder::ModelBuilder, seed: u64) -> Sim {
@@ -19,7 +19,7 @@ fn shaken(builder: &clench_rigid::builder::ModelBuilder, seed: u64) -> Sim {
     sim
 }
 
-/// The same simulation after moving along `velocity` for `time`.
+/// Returns the simulation after moving along `velocity` for `time`.
 fn moved(sim: &Sim, velocity: &[f64], time: f64) -> Sim {
     let mut other = Sim::new(sim.model().clone()).expect("as the original");
     other.state.copy_from(&sim.state);
@@ -28,7 +28,7 @@ fn moved(sim: &Sim, velocity: &[f64], time: f64) -> Sim {
     other
 }
 
-/// Spatial velocities of all bodies when only dof `dof` moves, at unit velocity.
+/// Returns the spatial velocities of all bodies if only dof `dof` moves, at unit velocity.
 fn unit_velocities(sim: &Sim, dof: usize) -> Vec<Motion<f64>> {
     let mut other = Sim::new(sim.model().clone()).expect("as the original");
     other.state.copy_from(&sim.state);
@@ -63,7 +63,7 @@ fn dof_axes_turn_as_their_rate_says() {
     let qvel = sim.state.qvel.clone();
     let (after, before) = (moved(&sim, &qvel, H), moved(&sim, &qvel, -H));
     let velocity = &sim.workspace().velocity;
-    // Only the sum over a body's dofs is defined, and about a fixed point.
+    // Only the sum over a body's dofs is defined, about a fixed point.
     let about_origin = |sim: &Sim, body: usize| {
         let (model, ws) = (sim.model(), sim.workspace());
         let com = ws.position.subtree_com[model.bodies[body].root];
@@ -107,12 +107,12 @@ fn mass_matrix_is_the_sum_of_body_inertias() {
                 assert_eq!(mass[i * nv + j], mass[j * nv + i]);
             }
         }
-        // A positive definite matrix is what the factorization accepts.
+        // The factorization accepts positive definite matrices only.
         assert!(!sim.workspace().singular);
     }
 }
 
-/// Momentum and angular momentum about the world's origin of each body.
+/// Returns the momentum and angular momentum of each body about the world's origin.
 fn momenta(sim: &Sim) -> Vec<Force<f64>> {
     let (model, ws) = (sim.model(), sim.workspace());
     (model.bodies.iter().enumerate())
@@ -125,7 +125,7 @@ fn momenta(sim: &Sim) -> Vec<Force<f64>> {
         .collect()
 }
 
-/// d'Alembert: while dofs keep their velocities, the rates of change of all momenta, less gravity, along each dof.
+/// d'Alembert: the rates of change of all momenta at constant dof velocities, less gravity, along each dof.
 #[test]
 fn bias_is_what_steady_motion_takes() {
     for seed in 0..4 {
@@ -138,7 +138,7 @@ fn bias_is_what_steady_motion_takes() {
             .collect();
         for (b, force) in forces.iter_mut().enumerate() {
             let weight = model.params.gravity * model.params.body_mass[b];
-            // Turn to the tree's reference point, and add what holds the weight.
+            // Move to the tree's reference point and add the force that carries the weight.
             let com = ws.position.subtree_com[model.bodies[b].root];
             force.angular -= com.cross(force.linear);
             *force -= force_at(
@@ -202,11 +202,11 @@ fn kinetic_energy_is_that_of_the_bodies() {
     assert!((kinetic - bodies - rotors).abs() < 1e-12 * kinetic);
 }
 
-/// Everything but Coriolis: ∂(passive + actuator)/∂v in the entries that the tree has.
+/// Compares ∂(passive + actuator)/∂v, without Coriolis terms, in the entries of the tree.
 #[test]
 fn velocity_derivatives_agree_with_differences_of_the_forces() {
     let mut machine = everything();
-    // As in MuJoCo the range of a joint's total force does not hold the derivatives of what pulls on it from elsewhere.
+    // As in MuJoCo, the range of a joint's total force does not clamp derivatives of other transmissions.
     machine
         .actuators
         .retain(|a| a.name != "string" && a.name != "piston");
@@ -250,7 +250,7 @@ fn velocity_derivatives_agree_with_differences_of_the_forces() {
 #[test]
 fn bias_derivatives_agree_with_differences_of_the_bias() {
     let mut machine = everything();
-    // As in MuJoCo the bias of tendons with inertia is left out.
+    // As in MuJoCo, the bias of tendons with inertia is omitted.
     machine.tendons.iter_mut().for_each(|t| t.armature = 0.0);
     for seed in 0..3 {
         let sim = shaken(&machine, seed);
@@ -289,7 +289,7 @@ fn bias_derivatives_agree_with_differences_of_the_bias() {
                 (expected[above], expected[below]) = (0.0, 0.0);
             }
         }
-        // Dofs of different branches do not feel each other.
+        // Dofs of different branches do not affect each other.
         assert!(expected.iter().all(|x| x.abs() < 1e-7));
     }
 }
@@ -302,7 +302,7 @@ fn actuator_velocity_is_the_rate_of_its_length() {
     let length = |sim: &Sim| sim.workspace().position.actuator_length.clone();
     let (a, b) = (length(&after), length(&before));
     for (u, actuator) in sim.model().actuators.iter().enumerate() {
-        // Rotation vectors do not add up, and a free joint has no length.
+        // Rotation vectors are not additive, and a free joint has no length.
         if ["ball", "thruster", "jet"].contains(&actuator.name.as_str()) {
             continue;
         }
@@ -349,7 +349,7 @@ fn applied_forces_accelerate_the_centre_of_mass() {
     shake(&mut sim, 3);
     let (force, hand) = (Vec3::new(1.0, -2.0, 0.5), 3);
     sim.state.xfrc_applied[hand] = Force::new(Vec3::new(0.3, 0.2, 0.1), force);
-    // The rate of the total momentum by stepping there and back in time.
+    // The rate of the total momentum, from steps forward and backward in time.
     let momentum = |sim: &Sim| {
         momenta(sim)
             .iter()

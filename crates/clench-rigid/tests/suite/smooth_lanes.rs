@@ -1,4 +1,4 @@
-//! A machine with joints, tendons and actuators of all kinds moves in a batch as alone, to the bit, under every integrator.
+//! Bitwise equality of batches and single simulations: all joints, tendons and actuators, under every integrator.
 
 use crate::batches::{assert_state, with};
 use crate::machines;
@@ -10,7 +10,7 @@ use clench_rigid::{Batch, Precision, Sim, State};
 const ENVS: u64 = 19;
 const STEPS: usize = 25;
 
-/// Random state `seed` of the machine; one is pushed, another has a quaternion that is not of unit length.
+/// Returns random state `seed`; one is pushed, another has a quaternion that is not of unit length.
 fn shaken<S: Precision>(model: &Model, seed: u64) -> State<S> {
     let mut sim = machines::sim(&machines::everything());
     machines::shake(&mut sim, seed);

@@ -1,17 +1,17 @@
-//! Softness: MuJoCo's numbers, and what they mean for a mass.
+//! Softness: MuJoCo's numbers, and their effect on a mass.
 
 use clench_math::{Lanes, Real};
 use clench_rigid::constraint::Softness;
 use clench_rigid::constraint::impedance;
 
-/// Twice a time step of 2 ms, MuJoCo's `refsafe`.
+/// The limit of MuJoCo's `refsafe`: twice a time step of 2 ms.
 const LEAST: f64 = 0.004;
 
 type Solref = [f64; 2];
 type Solimp = [f64; 5];
 
-/// Impedance, stiffness k, damping b and R of a slide's limit with A₀ = 0.5, measured in MuJoCo 4.0.0
-/// (`efc_KBIP`, `efc_R`; its solref, solimp, position).
+/// The solref, solimp and position of a slide's limit with A₀ = 0.5, and its impedance, stiffness k, damping b and R,
+/// measured in MuJoCo 4.0.0 (`efc_KBIP`, `efc_R`).
 #[rustfmt::skip]
 const MEASURED: [(Solref, Solimp, f64, [f64; 4]); 14] = [
     ([0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0], -0.0001, [0.901, 2770.083102493075, 105.26315789473685, 0.054938956714761365]),
@@ -53,7 +53,7 @@ fn softness_has_mujocos_numbers() {
 
 #[test]
 fn a_mass_on_one_constraint_moves_as_the_impedance_says() {
-    // minimise m/2 (a − a_unc)² + D/2 (a − aref)² with A₀ = 1/m.
+    // Minimizes m/2 (a − a_unc)² + D/2 (a − aref)² with A₀ = 1/m.
     let (m, a_unc, v, r) = (3.0, -9.81, -0.2, -0.0004);
     let soft = Softness::new([0.05, 0.8], [0.6, 0.9, 0.001, 0.4, 3.0], r, 0.0);
     let d = 1.0 / soft.regularization(1.0 / m);

@@ -1,4 +1,4 @@
-//! What stands still: its poses are computed once, and many geoms of it are looked at once and not in each step.
+//! Static bodies: poses are computed once, and many geoms are checked once, not in each step.
 
 use crate::scenes::{add, cuboid, free, joint, sphere, world};
 use clench_math::Vec3;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 const TILES: usize = 160;
 
-/// A row of tiles 1 m apart, the top of each at 0; a ball that touches the first, and one a metre above the second.
+/// Builds a row of tiles 1 m apart with tops at 0, a ball that touches the first, and one 1 m above the second.
 fn tiles() -> ModelBuilder {
     let mut b = world();
     for i in 0..TILES {
@@ -23,7 +23,7 @@ fn tiles() -> ModelBuilder {
     b
 }
 
-/// Positions of all geoms where the tiles are raised by so much.
+/// Returns the positions of all geoms with the tiles raised by `by`.
 fn raised(sim: &Sim, by: f64) -> Vec<f64> {
     let mut pos = sim.param("geom_pos").expect("a field");
     for tile in pos.chunks_exact_mut(3).take(TILES) {
@@ -100,7 +100,7 @@ fn environments_with_their_own_scenes_move_as_if_alone() {
     }
 }
 
-/// A table with a box fixed on it, a pedestal with a pendulum on it, and a free ball, each body with a site.
+/// Builds a table with a fixed box, a pedestal with a pendulum, and a free ball, each body with a site.
 fn furniture() -> ModelBuilder {
     let mut b = world();
     let block = || vec![cuboid([0.1, 0.2, 0.1])];

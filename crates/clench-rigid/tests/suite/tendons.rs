@@ -1,4 +1,4 @@
-//! Tendons and transmissions: their lengths, what they change with, and the inertia of tendons.
+//! Tendons and transmissions: lengths, their derivatives, and the inertia of tendons.
 
 use crate::machines::{everything, shake, sim};
 use clench_rigid::dynamics::integrate::integrate_positions;
@@ -6,7 +6,7 @@ use clench_rigid::model::Wrap;
 use clench_rigid::{Sim, readout};
 use std::collections::HashSet;
 
-/// Displacement of the differences (rad, m): their error is its square, and 1e-16 over it from rounding.
+/// The step of finite differences (rad, m). Their error is its square, plus rounding of 1e-16 over it.
 const H: f64 = 1e-5;
 const TOLERANCE: f64 = 1e-8;
 const SEEDS: u64 = 12;
@@ -18,7 +18,7 @@ fn shaken(seed: u64) -> Sim {
     sim
 }
 
-/// The same machine a little later, or earlier, if it moves with `velocity`.
+/// Returns the machine after moving with `velocity` for `time`, which may be negative.
 fn moved(sim: &Sim, velocity: &[f64], time: f64) -> Sim {
     let mut moved = Sim::new(sim.model().clone()).expect("as the original");
     moved.state.copy_from(&sim.state);
@@ -27,13 +27,13 @@ fn moved(sim: &Sim, velocity: &[f64], time: f64) -> Sim {
     moved
 }
 
-/// Lengths of tendons, then of actuators.
+/// Returns the lengths of tendons, then of actuators.
 fn lengths(sim: &Sim) -> Vec<f64> {
     let pos = &sim.workspace().position;
     [&pos.ten_length[..], &pos.actuator_length].concat()
 }
 
-/// The gradients of the same, dense.
+/// Returns the dense gradients of the lengths.
 fn gradients(sim: &Sim) -> Vec<Vec<f64>> {
     let (model, pos) = (sim.model(), &sim.workspace().position);
     let dense = |row: &mut dyn Iterator<Item = (usize, f64)>| {
@@ -49,7 +49,7 @@ fn gradients(sim: &Sim) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Whether an actuator has no length whose derivative its moment could be: a wrench.
+/// Returns true for a wrench: an actuator without a length from which its moment could follow.
 fn is_wrench(sim: &Sim, index: usize) -> bool {
     let tendons = sim.model().tendons.len();
     index >= tendons && sim.workspace().position.actuator_length[index - tendons] == 0.0
@@ -66,7 +66,7 @@ fn moment_arms_are_derivatives_of_lengths() {
             let (after, before) = (moved(&sim, &along, H), moved(&sim, &along, -H));
             let (after, before) = (lengths(&after), lengths(&before));
             for (i, row) in gradients.iter().enumerate() {
-                // On a ball joint the length is part of a rotation vector, which does not change with the angular velocity alone.
+                // On a ball joint, the length is part of a rotation vector, whose rate is not the angular velocity.
                 let ball = i >= sim.model().tendons.len()
                     && sim.model().actuators[i - sim.model().tendons.len()].name == "ball";
                 if is_wrench(&sim, i) || ball {
@@ -85,7 +85,7 @@ fn moment_arms_are_derivatives_of_lengths() {
 
 #[test]
 fn every_string_is_seen_straight_and_bent() {
-    // What the test above compares is worth something if the cases occur in it.
+    // The test above must cover these cases.
     let mut seen = HashSet::new();
     let straight = |sim: &Sim, t: usize| {
         let (model, pos) = (sim.model(), &sim.workspace().position);
@@ -125,7 +125,7 @@ fn velocities_are_rates_of_lengths() {
     }
 }
 
-/// The machine whose tendons have no inertia.
+/// Returns the machine with tendons without inertia.
 fn light(sim: &Sim) -> Sim {
     let mut model = (**sim.model()).clone();
     model.params.tendon_armature.fill(0.0);

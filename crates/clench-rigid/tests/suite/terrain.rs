@@ -1,4 +1,4 @@
-//! What moves over terrain: on a flat field as on a plane, whatever triangles it is made of.
+//! Bodies on terrain: a flat field acts like a plane for any triangulation.
 
 use clench_math::Vec3;
 use clench_rigid::Sim;
@@ -34,7 +34,7 @@ fn moving(shape: GeomSpec, ground: Option<HeightFieldSpec>, velocity: [f64; 6]) 
         .joint(JointSpec::free("free"))
         .geom(shape);
     builder.add_body(ModelBuilder::WORLD, body);
-    // What is found does not depend on the order of contacts or on their tangents.
+    // The result does not depend on the order of contacts or on their tangents.
     let options = RigidOptions::new()
         .tolerance(0.0)
         .friction_cone(FrictionCone::Elliptic);
@@ -104,7 +104,7 @@ fn bodies_come_to_rest_in_the_valleys_of_rough_ground() {
             "{:?}",
             shape.kind
         );
-        // It neither fell through nor was thrown out, and hardly moves.
+        // It neither falls through nor is thrown out, and hardly moves.
         assert!(
             position.x.abs() < 1.5 && position.y.abs() < 1.5,
             "{:?}: {position:?}",

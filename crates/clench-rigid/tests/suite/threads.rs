@@ -1,11 +1,11 @@
-//! Threads that share the steps of one simulation change nothing but their time.
+//! Threads that share the steps of one simulation change only its speed.
 
 use crate::common::model;
 use crate::scenes::{add, everything, free, heap_of_boxes, shake, sphere};
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::{Precision, Sim, SimError};
 
-/// A large island, and balls beside it, each an island.
+/// Builds a large island, and balls that are islands of their own.
 fn heap_and_balls() -> ModelBuilder {
     let mut builder = heap_of_boxes();
     for i in 0..12 {
@@ -15,7 +15,7 @@ fn heap_and_balls() -> ModelBuilder {
     builder
 }
 
-/// States after some steps, with their contacts, by so many threads.
+/// Returns the positions and contact counts of some steps with `threads` threads.
 fn run<T: Precision>(builder: &ModelBuilder, threads: usize) -> Vec<(Vec<T>, usize)> {
     let mut sim = Sim::<T>::new(model(builder)).expect("valid");
     sim.set_threads(threads).expect("threads start");

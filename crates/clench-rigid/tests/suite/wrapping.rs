@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 const TOLERANCE: f64 = 1e-12;
 
-/// An obstacle of radius 1 at the origin.
+/// Returns an obstacle of radius 1 at the origin.
 fn unit(shape: WrapShape, side: Option<[f64; 3]>) -> Obstacle<f64> {
     Obstacle {
         shape,
@@ -38,7 +38,7 @@ fn a_string_that_misses_is_straight() {
 
 #[test]
 fn a_string_around_half_a_circle_is_as_long_as_that() {
-    // Tangents along ±x at the height ±1, as long as the ends are away: the arc is half the circle.
+    // The tangents along ±x at height ±1 make the arc half the circle.
     let side = Some([1.5, 0.0, 0.0]);
     for shape in SHAPES {
         let ends = [[-2.0, 1.0, 0.0], [-2.0, -1.0, 0.0]];
@@ -64,12 +64,12 @@ fn a_string_turns_as_the_line_by_the_side_site_does() {
         let ends = [[-2.0, 0.3, 0.0], [2.0, 0.3, 0.0]];
         let below = string(ends, &unit(shape, Some([0.0, -1.5, 0.0])));
         assert!(below.touches && below.points.iter().all(|point| point.y < 0.0));
-        // Both ways around together are the whole circle and the four tangents.
+        // Both paths together are the whole circle minus the angles of the four tangents.
         let above = string(ends, &unit(shape, None));
         let turn = above.length + below.length;
         let tangents = 4.0 * (1.0f64 / (4.0f64 + 0.09).sqrt()).acos();
         assert!((turn + tangents - 2.0 * PI).abs() < TOLERANCE);
-        // A string that already passes on that side is left alone.
+        // A string that already passes on that side is unchanged.
         let clear = string(
             [[-2.0, 1.1, 0.0], [2.0, 1.2, 0.0]],
             &unit(shape, Some([0.1, 2.0, 0.0])),
@@ -97,9 +97,9 @@ fn a_string_through_a_geom_is_reflected_at_equal_angles() {
         let at = found.points[0];
         assert!((at.norm() - 1.0).abs() < TOLERANCE && (found.points[1] - at).norm() == 0.0);
         let angle = |end: [f64; 3]| (Vec3::from_f64(end) - at).normalize().0.dot(at);
-        // To the tolerance of Newton's method, which is MuJoCo's.
+        // Newton's method has MuJoCo's tolerance.
         assert!((angle(ends[0]) - angle(ends[1])).abs() < 1e-5);
-        // What meets the geom of itself is straight.
+        // A string that crosses the geom anyway is straight.
         let straight = string(
             [[-2.0, 0.3, 0.0], [2.0, 0.3, 0.0]],
             &unit(shape, Some([0.0; 3])),

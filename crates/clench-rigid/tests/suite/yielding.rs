@@ -1,4 +1,4 @@
-//! Springs that yield: how far they pull at most, where they rest afterwards, and what of that is state.
+//! Yielding springs: their maximum force, their rest position afterwards, and their state.
 
 use crate::common::{model, sim};
 use crate::machines::world;
@@ -16,7 +16,7 @@ const INTEGRATORS: [Integrator; 4] = [
     Integrator::Rk4,
 ];
 
-/// A bob of 1 kg on a slide whose spring of 10 N/m yields at 0.2 m, and a fixed tendon along the same.
+/// Builds a bob of 1 kg on a slide whose spring of 10 N/m yields at 0.2 m.
 fn bob(integrator: Integrator) -> ModelBuilder {
     let mut b = world("bob");
     b.physics.gravity = [0.0; 3];
@@ -50,7 +50,7 @@ fn a_spring_pulls_no_harder_than_its_yield_lets_it() {
             let force = sim.output("qfrc_passive").unwrap()[0];
             assert!(force.abs() < 2.0 + 1e-9, "{integrator:?}: {force}");
         }
-        // With a force of 2 N it would stop after 2/2 = 1 m beyond the yield at 0.3 m, less what the spring took before.
+        // A force of 2 N would stop it 2/2 = 1 m beyond the yield at 0.3 m, less the work of the spring before.
         assert!((1.0..1.2).contains(&start), "{integrator:?}: {start}");
     }
 }
@@ -84,7 +84,7 @@ fn where_springs_rest_is_state() {
     assert_eq!(sim.state.plastic, [0.1]);
 }
 
-/// A ball joint keeps the part of its turn that is within the yield.
+/// A ball joint springs back only by the part of its rotation within the yield.
 #[test]
 fn a_ball_joint_rests_at_an_orientation() {
     let mut b = world("ball");
@@ -112,7 +112,7 @@ fn a_ball_joint_rests_at_an_orientation() {
     assert!(left.y > 0.0 && left.x == 0.0 && left.z == 0.0, "{left:?}");
 }
 
-/// The band moves as a whole, and no further than to where the tendon is out of it by its yield.
+/// The dead band moves as a whole, until the tendon exceeds it by the yield.
 #[test]
 fn the_dead_band_of_a_tendon_follows() {
     for integrator in INTEGRATORS {

@@ -1,6 +1,6 @@
 //! The problem as a conic program, solved by Clarabel in 106-bit arithmetic.
 //!
-//! Every cost is a squared distance, plus a cost of the point that it is measured to. With D diagonal:
+//! Every cost is the minimum over v of a squared distance to v plus a cost of v. With D diagonal:
 //!
 //! ```text
 //! s(y) = min over v of  ½ (v − y)ᵀ D (v − y) + σ(v)
@@ -12,9 +12,9 @@
 //! elliptic    v₀ ≥ |(μ_j v_j)|, the dual of the friction cone |(f_j / μ_j)| ≤ f₀
 //! ```
 //!
-//! The first four follow at once. (Huber: the best v is 0 while |D y| ≤ η, else y ∓ Rη.) The last is MuJoCo's elliptic cost
-//! and no approximation of it. MuJoCo scales to N = μ y₀, U_j = μ_j y_j, T = |U|, with μ the regularized coefficient, and
-//! ties D_j = D₀ (μ_j / μ)², so that Σ D (v − y)² = (D₀ / μ²) × squared distance in (N, U). There the set of allowed v is the
+//! The first four are immediate. (Huber: the best v is 0 if |D y| ≤ η, else y ∓ Rη.) The last is exactly MuJoCo's
+//! elliptic cost. MuJoCo scales to N = μ y₀, U_j = μ_j y_j, T = |U|, with μ the regularized coefficient, and sets D_j =
+//! D₀ (μ_j / μ)², so that Σ D (v − y)² = (D₀ / μ²) × squared distance in (N, U). There the set of feasible v is the
 //! circular cone N ≥ μT: μ cancels in v₀ ≥ |(μ_j v_j)|, so it changes the metric but not the set. Its boundary rays are
 //! (μ, u), |u| = 1, so its polar cone is μN + T ≤ 0. Hence:
 //!
@@ -24,7 +24,7 @@
 //! middle  else          nearest to the ray        distance² = (N − μT)² / (1 + μ²)  s = ½ D₀ / (μ² (1 + μ²)) (N − μT)²
 //! ```
 //!
-//! In terms of u = a − a_unc and t = √D (v − y), which is the force over √D, what Clarabel gets is
+//! In terms of u = a − a_unc and t = √D (v − y), which is the force over √D, Clarabel solves
 //!
 //! ```text
 //! minimise  ½ uᵀ M u + ½ |t|² + Σ (η / √D) ρ    over u, t, ρ    with z = √D (J u + J a_unc − aref) + t
@@ -42,16 +42,16 @@ use clarabel::solver::{
 use clench_solver::Cost;
 use num_traits::Float;
 
-/// What Clarabel found.
+/// The solution found by Clarabel.
 pub struct Optimum {
     /// a − a_unc.
     pub u: Vec<Wide>,
-    /// The primal and the dual objective: the minimum lies between.
+    /// The primal objective. The minimum lies between it and the dual objective.
     pub primal: Wide,
     pub dual: Wide,
 }
 
-/// Minimises the cost of `problem`, measured in `unit`: tolerances are relative to 1.
+/// Minimises the cost of `problem`, scaled by `unit` because tolerances are relative to 1.
 pub fn minimise(problem: &WideProblem, unit: Wide) -> Optimum {
     let length = unit.sqrt();
     let nv = problem.nv;
@@ -76,7 +76,8 @@ pub fn minimise(problem: &WideProblem, unit: Wide) -> Optimum {
     }
 }
 
-/// ½ xᵀ P x + qᵀ x over b − A x in a product of cones. Matrices are lists of (row, column, value).
+/// The program: minimise ½ xᵀ P x + qᵀ x with b − A x in a product of cones. Matrices are lists of (row, column,
+/// value).
 #[derive(Default)]
 struct Program {
     quadratic: Vec<(usize, usize, Wide)>,
@@ -98,14 +99,14 @@ impl Program {
         self.linear.len() - 1
     }
 
-    /// A new t.
+    /// Adds a variable t with the cost ½ t².
     fn force(&mut self) -> usize {
         let t = self.variable(wide(0.0));
         self.quadratic.push((t, t, wide(1.0)));
         t
     }
 
-    /// Asks for the values to be in a cone.
+    /// Requires the values to be in a cone.
     fn require(&mut self, cone: fn(usize) -> SupportedConeT<Wide>, values: Vec<Affine>) {
         self.cones.push(cone(values.len()));
         for Affine { terms, constant } in values {
@@ -167,8 +168,8 @@ impl Program {
         }
     }
 
-    /// Second-order cones keep their digits only if the iterates stay away from the boundary, so steps are shorter than
-    /// Clarabel's own; where rounding ends an attempt early, shorter ones.
+    /// Solves the program. Second-order cones retain their digits only if the iterates stay away from the boundary, so
+    /// steps are shorter than Clarabel's default. If rounding ends an attempt early, the next takes shorter steps.
     fn solve(self) -> DefaultSolution<Wide> {
         let n = self.linear.len();
         let quadratic = sparse(n, n, self.quadratic);
@@ -188,7 +189,7 @@ impl Program {
 }
 
 impl Affine {
-    /// y of one row.
+    /// Returns y of one row.
     fn row(nv: usize, block: &WideBlock, i: usize) -> Self {
         let row = &block.jacobian[i * nv..(i + 1) * nv];
         Affine {
@@ -205,7 +206,7 @@ impl Affine {
         self.terms.push((variable, coefficient));
         self
     }
-    /// The sum of two functions of the same variables.
+    /// Returns the sum of two functions of the same variables.
     fn add(mut self, other: Affine) -> Self {
         let pairs = self.terms.iter_mut().zip(other.terms);
         pairs.for_each(|((_, c), (_, other))| *c += other);
@@ -214,7 +215,7 @@ impl Affine {
     }
 }
 
-/// Clarabel's own defaults are for 53 bits.
+/// Returns settings for 106 bits. Clarabel's defaults are for 53.
 fn settings(step: f64) -> DefaultSettings<Wide> {
     DefaultSettings {
         verbose: false,

@@ -1,10 +1,10 @@
 //! The solver against an independent one, on problems of all costs, well and badly conditioned.
 //!
-//! The reference is Clarabel, an interior-point method for conic programs; `conic.rs` derives the programs and proves that
-//! they are the problem. It runs in numbers of 106 bits: at condition numbers of 1e10 no answer in 53 bits could judge
-//! another. Every reference is checked before use: its primal and its dual objective enclose the minimum to 1e-13, and
-//! its objective equals the cost by MuJoCo's definition at its minimiser, so that the derivation is checked as well.
-//! Costs are evaluated in 106 bits, at the accelerations of 53 bits that the solver returns.
+//! The reference is Clarabel, an interior-point method for conic programs; `conic.rs` derives the programs and proves
+//! that they are equivalent to the problem. It computes in 106 bits: at condition numbers of 1e10 one 53-bit result
+//! cannot validate another. Every reference is checked before use: its primal and its dual objective enclose the
+//! minimum to 1e-13, and its objective equals the cost by MuJoCo's definition at its minimiser, which also checks the
+//! derivation. Costs are evaluated in 106 bits, at the 53-bit accelerations that the solver returns.
 //!
 //! `cargo test -p clench-solver --test clarabel -- --nocapture` prints the worst differences.
 
@@ -23,7 +23,7 @@ use number::{Wide, wide};
 use reference::{CLASSES, Reference, draw, references};
 use wide::WideProblem;
 
-/// As far as the working precision goes.
+/// Returns settings that iterate to the working precision.
 fn exact() -> Settings {
     SolverOptions::new()
         .tolerance(0.0)
@@ -71,7 +71,7 @@ impl<const N: usize> Drop for Worst<N> {
     }
 }
 
-/// What the rounding of an acceleration may add to its cost, in parts of the minimum.
+/// The maximum effect of the rounding of an acceleration on its cost, relative to the minimum.
 const ROUNDING: f64 = 1e-12;
 
 /// Condition numbers of M and D up to 1e10.
@@ -104,7 +104,7 @@ fn minima_agree_and_the_gap_certifies_them() {
     }
 }
 
-/// The gap bounds the true error wherever a solve stops.
+/// Checks that the gap bounds the true error wherever a solve stops.
 fn check_early_stops(k: usize, reference: &Reference) {
     let newton = SolverOptions::new();
     let cg = newton.constraint_solver(ConstraintSolver::Cg);
@@ -149,7 +149,7 @@ fn accelerations_and_forces_agree_from_every_start() {
     }
 }
 
-/// ‖Jᵀf − M u‖ over ‖M u‖, or over a small part of the smooth force where hardly a constraint acts.
+/// Returns ‖Jᵀf − M u‖ over ‖M u‖, or over a small part of the smooth force if hardly any constraint acts.
 fn force_difference(reference: &Reference, solver: &Solver<f64>) -> f64 {
     let problem = &reference.problem;
     let expected = reference.qfrc_constraint();
@@ -165,7 +165,7 @@ fn force_difference(reference: &Reference, solver: &Solver<f64>) -> f64 {
     norm(&error) / norm(&expected).max(1e-8 * norm(&smooth))
 }
 
-/// Condition numbers of M up to 1e7, of D up to 1e5: the iterations of conjugate gradients grow with its root.
+/// Condition numbers of M up to 1e7, of D up to 1e5, since conjugate gradients take about √condition iterations.
 #[test]
 fn dense_sparse_islands_and_conjugate_gradients_reach_the_same_minimiser() {
     let mut worst = Worst::new(["dense", "sparse", "islands", "CG", "CG's cost"]);
@@ -193,7 +193,7 @@ fn dense_sparse_islands_and_conjugate_gradients_reach_the_same_minimiser() {
     }
 }
 
-/// The conditions of optimality to the last digits: M (a − a_unc) = Jᵀf, f = −∇s(J a − aref), f in its cone.
+/// Checks the optimality conditions to the last digits: M (a − a_unc) = Jᵀf, f = −∇s(J a − aref), f in its cone.
 /// Condition numbers of M and D up to 1e10.
 #[test]
 fn solutions_are_optimal_to_the_last_digits() {
@@ -215,8 +215,8 @@ fn solutions_are_optimal_to_the_last_digits() {
     }
 }
 
-/// What is left of M (a − a_unc) − Jᵀf, and by how much a force differs from that of its residual, both over what the rounding
-/// of a changes in them.
+/// Returns the residual of M (a − a_unc) − Jᵀf and the largest difference between a force and that of its residual,
+/// both relative to the effect of the rounding of a.
 fn optimality(problem: &Problem<f64>, solver: &Solver<f64>) -> [f64; 2] {
     let wide_problem = WideProblem::new(problem);
     let (a, smooth) = (solver.qacc(), &problem.qacc_smooth);
@@ -238,7 +238,7 @@ fn optimality(problem: &Problem<f64>, solver: &Solver<f64>) -> [f64; 2] {
             .collect();
         let (_, expected) = cost_and_force(&block, &y);
         let force = &solver.force()[block.rows()];
-        // In the metric of the cost, in which a force is a distance: divided by √D.
+        // In the norm of the cost, a force is a distance: divided by √D.
         let mut error = Vec::new();
         let mut scale = Vec::new();
         for (i, row) in wide_block.jacobian.chunks_exact(problem.nv()).enumerate() {
@@ -259,7 +259,7 @@ fn optimality(problem: &Problem<f64>, solver: &Solver<f64>) -> [f64; 2] {
     [norm(&balance) / norm(&rounding), worst_force].map(|error| error / f64::EPSILON)
 }
 
-/// Σ |row| |x|.
+/// Returns Σ |row| |x|.
 fn magnitude(row: &[Wide], x: &[f64]) -> f64 {
     let terms = row.iter().zip(x).map(|(m, x)| (m.to_f64() * x).abs());
     terms.sum()

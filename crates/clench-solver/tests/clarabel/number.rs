@@ -1,4 +1,4 @@
-//! A number of 106 bits for which Clarabel can be compiled: `xprec`'s double-double with the traits that it lacks.
+//! A 106-bit number type for Clarabel: `xprec`'s double-double with the traits that it lacks.
 
 use num_traits::FloatConst;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::ops::{
 };
 use xprec::Df64;
 
-/// About 32 decimal digits, in the range of f64.
+/// A number of about 32 decimal digits, with the range of f64.
 #[derive(
     Clone,
     Copy,

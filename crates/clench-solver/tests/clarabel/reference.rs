@@ -1,4 +1,4 @@
-//! Problems together with their minimum.
+//! Problems with their minimum.
 
 use crate::common::{ALL_COSTS, Rng};
 use crate::conic::{self, Optimum};
@@ -9,7 +9,7 @@ use crate::wide::{WideProblem, dot, half};
 use clench_solver::{Problem, Solver};
 use num_traits::Float;
 
-/// Each cost alone, and all together.
+/// Each cost separately, and all together.
 pub const CLASSES: [&str; 6] = [
     "quadratic",
     "one-sided",
@@ -19,18 +19,18 @@ pub const CLASSES: [&str; 6] = [
     "mixture",
 ];
 
-/// A problem with its minimum as Clarabel finds it.
+/// A problem with its minimum found by Clarabel.
 pub struct Reference {
-    /// Which of [`CLASSES`].
+    /// The index in [`CLASSES`].
     pub class: usize,
     pub problem: Problem<f64>,
     wide: WideProblem,
     optimum: Optimum,
-    /// What costs are compared in: the minimum; where that is zero, a tiny part of the energy of a_unc.
+    /// The unit of costs: the minimum or, if that is zero, a tiny part of the energy of a_unc.
     unit: Wide,
 }
 
-/// How closely Clarabel encloses each minimum.
+/// The tolerance of Clarabel's enclosure of each minimum.
 const ENCLOSED: f64 = 1e-13;
 
 impl Reference {
@@ -38,7 +38,7 @@ impl Reference {
         let wide = WideProblem::new(&problem);
         let a = &wide.qacc_smooth;
         let energy = half(dot(a, &wide.inertial(a)));
-        // Our cost is good for a unit; what the unit is does not matter to the outcome.
+        // Our cost is accurate enough for a unit; the choice of unit does not affect the result.
         let mut solver = Solver::new(problem.tree());
         solver.solve(&problem, &exact(), None).unwrap();
         let cost = wide.cost(&wide.relative(solver.qacc()));
@@ -54,7 +54,7 @@ impl Reference {
         reference
     }
 
-    /// Checks that the minimum is enclosed, and that the conic program is the problem.
+    /// Checks that the minimum is enclosed, and that the conic program is equivalent to the problem.
     fn check(&self) {
         let Optimum { u, primal, dual } = &self.optimum;
         let enclosed = self.parts(*primal - *dual);
@@ -70,30 +70,30 @@ impl Reference {
         (cost / self.unit).to_f64()
     }
 
-    /// A cost, in parts of the minimum.
+    /// Returns a cost relative to the minimum.
     pub fn relative(&self, cost: f64) -> f64 {
         self.parts(wide(cost))
     }
 
-    /// The cost at `a` above the minimum, in parts of it.
+    /// Returns the cost at `a` above the minimum, relative to the minimum.
     pub fn excess(&self, a: &[f64]) -> f64 {
         self.parts(self.wide.cost(&self.wide.relative(a)) - self.optimum.primal)
     }
 
-    /// The minimiser.
+    /// Returns the minimiser.
     pub fn qacc(&self) -> Vec<f64> {
         self.wide.acceleration(&self.optimum.u)
     }
 
-    /// The constraint forces at the minimum, as they act on the dofs: M (a − a_unc).
+    /// Returns the constraint forces at the minimum, as they act on the dofs: M (a − a_unc).
     pub fn qfrc_constraint(&self) -> Vec<f64> {
         let inertial = self.wide.inertial(&self.optimum.u);
         inertial.into_iter().map(Wide::to_f64).collect()
     }
 }
 
-/// `count` problems from all classes. `mass` and `stiffness` are the worst condition numbers of M and of D: a third of the
-/// problems have just these, the others any up to them.
+/// Returns `count` problems from all classes. `mass` and `stiffness` are the largest condition numbers of M and D: a
+/// third of the problems have exactly these, the others random ones up to them.
 pub fn references(
     seed: u64,
     count: usize,
@@ -110,7 +110,7 @@ pub fn references(
     })
 }
 
-/// Problem `k` of a class.
+/// Draws problem `k` of a class.
 pub fn draw(rng: &mut Rng, class: usize, k: usize, mass: f64, stiffness: f64) -> Problem<f64> {
     let mut up_to = |worst: f64| {
         if k.is_multiple_of(3) {

@@ -1,18 +1,18 @@
-//! Random problems whose conditioning is set: that of M, and the range of D.
+//! Random problems with prescribed conditioning: the condition number of M and the range of D.
 
 use crate::common::{Rng, humanoid, norm, random_forest};
 use clench_solver::{Cost, Problem, Tree};
 use std::sync::Arc;
 
-/// What to draw.
+/// The parameters of a random problem.
 #[derive(Clone, Debug)]
 pub struct Recipe {
     pub costs: Vec<Cost>,
-    /// Condition number of M.
+    /// The condition number of M.
     pub mass: f64,
-    /// Largest D over smallest, among blocks.
+    /// The ratio of the largest to the smallest D among blocks.
     pub stiffness: f64,
-    /// Whether D is in units of the inertia that the block feels, as softness formulas choose it, or plain.
+    /// True if D is in units of the effective inertia of the block, as in softness formulas; otherwise it is unscaled.
     pub scaled: bool,
 }
 
@@ -44,14 +44,14 @@ pub fn problem(rng: &mut Rng, recipe: &Recipe) -> Problem<f64> {
     problem
 }
 
-/// Two different numbers below `n`, if there are two.
+/// Returns two different numbers below `n`, if there are two.
 fn two_of(rng: &mut Rng, n: usize) -> (usize, usize) {
     let first = rng.below(n);
     (first, (first + 1 + rng.below(n.max(2) - 1)) % n)
 }
 
-/// M = LᵀDL with the range of D no less than the condition number asked for (which bounds that of M from below), then as
-/// much of the identity as brings it down to what was asked.
+/// Sets M = LᵀDL with the range of D at least the requested condition number (a lower bound on that of M), then adds
+/// the multiple of the identity that reduces it to the requested one.
 fn set_mass(rng: &mut Rng, problem: &mut Problem<f64>, condition: f64) {
     let tree = problem.tree().clone();
     let nv = tree.nv();
@@ -86,7 +86,7 @@ fn set_mass(rng: &mut Rng, problem: &mut Problem<f64>, condition: f64) {
     assert!(problem.factor_mass());
 }
 
-/// Smallest and largest eigenvalue of M, to some percent, by power iteration.
+/// Returns the smallest and largest eigenvalue of M, to a few percent, by power iteration.
 pub fn extreme_eigenvalues(problem: &mut Problem<f64>) -> (f64, f64) {
     let tree = problem.tree().clone();
     let nv = tree.nv();
@@ -130,7 +130,7 @@ fn push(rng: &mut Rng, recipe: &Recipe, problem: &mut Problem<f64>, stiffness: f
         .map(|_| rng.range(-1.0, 1.0))
         .collect();
     if problem.nblock() > 0 && rng.unit() < 0.1 {
-        // The same rows again: contacts of one face are redundant.
+        // Repeats the rows: contacts of one face are redundant.
         let other = problem.block(rng.below(problem.nblock()));
         if other.dim == dim {
             dofs = other.dofs.to_vec();
@@ -162,7 +162,7 @@ fn push(rng: &mut Rng, recipe: &Recipe, problem: &mut Problem<f64>, stiffness: f
         Cost::Quadratic | Cost::OneSided => {}
     }
     if cost == Cost::Elliptic {
-        // The square root of impratio divides.
+        // The coefficient is divided by the square root of impratio.
         block.shape[0] = block.shape[1] / rng.scale(0.3, 10.0);
         for j in 1..dim {
             block.d[j] = block.d[0] * (block.shape[j] / block.shape[0]).powi(2);
@@ -173,7 +173,7 @@ fn push(rng: &mut Rng, recipe: &Recipe, problem: &mut Problem<f64>, stiffness: f
     }
 }
 
-/// J M⁻¹ Jᵀ of one row.
+/// Returns J M⁻¹ Jᵀ of one row.
 fn inverse_inertia(problem: &Problem<f64>, dofs: &[u32], row: &[f64]) -> f64 {
     let mut x = vec![0.0; problem.nv()];
     for (&dof, &j) in dofs.iter().zip(row) {

@@ -1,10 +1,10 @@
-//! Problems copied into 106-bit numbers: cost and force there, by MuJoCo's definitions.
+//! Problems copied into 106-bit numbers, with the cost by MuJoCo's definitions.
 
 use crate::number::{Wide, wide};
 use clench_solver::{Block, Cost, Problem};
 use num_traits::Float;
 
-/// The problem in u = a − a_unc.
+/// The problem in terms of u = a − a_unc.
 pub struct WideProblem {
     pub nv: usize,
     /// nv × nv.
@@ -13,14 +13,14 @@ pub struct WideProblem {
     pub qacc_smooth: Vec<Wide>,
 }
 
-/// A block over all dofs.
+/// A block with a column for every dof.
 pub struct WideBlock {
     pub cost: Cost,
     /// dim × nv row-major.
     pub jacobian: Vec<Wide>,
     /// J a_unc − aref.
     pub offset: Vec<Wide>,
-    /// Elliptic: D₀ (μ_j / μ)², so that the rounding of the given D_j does not bend the cone.
+    /// For elliptic blocks D₀ (μ_j / μ)², so that the rounding of the stored D_j does not deform the cone.
     pub d: Vec<Wide>,
     pub shape: Vec<Wide>,
 }
@@ -40,25 +40,25 @@ impl WideProblem {
         }
     }
 
-    /// a − a_unc.
+    /// Returns a − a_unc.
     pub fn relative(&self, a: &[f64]) -> Vec<Wide> {
         let pairs = a.iter().zip(&self.qacc_smooth);
         pairs.map(|(&a, &b)| wide(a) - b).collect()
     }
 
-    /// a_unc + u, rounded.
+    /// Returns a_unc + u, rounded.
     pub fn acceleration(&self, u: &[Wide]) -> Vec<f64> {
         let pairs = u.iter().zip(&self.qacc_smooth);
         pairs.map(|(&u, &b)| (u + b).to_f64()).collect()
     }
 
-    /// M u.
+    /// Returns M u.
     pub fn inertial(&self, u: &[Wide]) -> Vec<Wide> {
         let rows = self.mass.chunks_exact(self.nv);
         rows.map(|row| dot(row, u)).collect()
     }
 
-    /// The cost at a_unc + u.
+    /// Returns the cost at a_unc + u.
     pub fn cost(&self, u: &[Wide]) -> Wide {
         let constraints = self
             .blocks
@@ -96,13 +96,13 @@ impl WideBlock {
         }
     }
 
-    /// y at a_unc + u.
+    /// Returns y at a_unc + u.
     pub fn residual(&self, u: &[Wide]) -> Vec<Wide> {
         let rows = self.jacobian.chunks_exact(u.len()).zip(&self.offset);
         rows.map(|(row, &offset)| dot(row, u) + offset).collect()
     }
 
-    /// s(y), as MuJoCo's documentation defines it.
+    /// Returns s(y), as defined in MuJoCo's documentation.
     fn cost(&self, y: &[Wide]) -> Wide {
         let zero = wide(0.0);
         let (d, shape) = (&self.d, &self.shape);

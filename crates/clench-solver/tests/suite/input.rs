@@ -1,4 +1,4 @@
-//! Bad input is an error or a status, never a panic; and what a solve reports is true.
+//! Bad input gives an error or a status, never a panic, and the values that a solve reports are true.
 
 use crate::common::*;
 use clench_solver::{
@@ -26,7 +26,7 @@ fn arrays(blocks: &[PlainBlock<f64>]) -> Result<Problem<f64>, ProblemError> {
 
 #[test]
 fn a_stop_gives_by_its_softness() {
-    // One coordinate: minimise ½ m (a + 1)² + ½ D a² where a < 0: a = −m / (m + D).
+    // One coordinate: minimise ½ m (a + 1)² + ½ D a² for a < 0: a = −m / (m + D).
     let block = PlainBlock {
         cost: Cost::OneSided,
         jacobian: vec![1.0],
@@ -202,7 +202,7 @@ fn limits_are_kept_and_reported() {
         .resolve::<f64>();
     let stats = solver.solve(&problem, &settings, None).unwrap().lane(0);
     assert!(stats.ls_evaluations <= 6);
-    // Without an evaluation a search takes its first guess, Newton's step.
+    // Without evaluations, the line search takes its initial guess, the Newton step.
     let settings = SolverOptions::new()
         .iterations(1)
         .ls_iterations(0)

@@ -1,4 +1,4 @@
-//! Solving by islands changes nothing but the work.
+//! Solving by islands changes the work but not the result.
 
 use crate::common::*;
 use clench_math::{Lanes, Real};
@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 fn scenes(count: usize) -> impl Iterator<Item = Problem<f64>> {
     let mut rng = Rng(3);
     (0..count).map(move |k| {
-        // Many small trees; from few couplings, with islands of several trees and free trees, to one island of all.
+        // Many small trees. More couplings in each scene: islands of several trees and free trees at first, one island
+        // at the end.
         let parents = (0..30)
             .map(|i: usize| {
                 if i.is_multiple_of(3) {
@@ -76,7 +77,7 @@ fn islands_and_the_whole_problem_agree() {
 fn free_trees_are_untouched_and_islands_counted() {
     for problem in scenes(50) {
         let solver = solve(&problem, options(Switch::Auto));
-        // Merge by hand: label trees until nothing changes.
+        // Merges islands independently: relabels trees until nothing changes.
         let tree = problem.tree();
         let mut label: Vec<usize> = (0..tree.ntree()).collect();
         let mut touched = vec![false; tree.ntree()];
@@ -113,7 +114,7 @@ fn free_trees_are_untouched_and_islands_counted() {
 #[test]
 fn each_island_is_as_if_alone() {
     for problem in scenes(50) {
-        // The same solve with one tree's problem removed: what is left has the same bits.
+        // Solves again without the island of one tree: the remaining islands must have the same bits.
         let all = solve(&problem, options(Switch::On));
         let gone = problem.tree().tree_of(problem.block(0).dofs[0] as usize);
         let mut rest = Problem::new(problem.tree().clone());

@@ -1,4 +1,4 @@
-//! Problems solved side by side give, to the bit, what each gives alone.
+//! Problems solved in lanes give, to the bit, the results of separate solves.
 
 use crate::common::*;
 use clench_math::{Lanes, Real, Scalar};
@@ -8,17 +8,18 @@ use clench_solver::{
 
 const N: usize = 4;
 
-/// The share of blocks that a lane does not have.
+/// The fraction of blocks that are absent in a lane.
 const ABSENT: f64 = 0.3;
 
-/// N problems of one structure, in each of which this share of the blocks is absent; packed, and each alone.
+/// Returns N problems of one structure, packed and separate. Each block is absent from a lane with probability
+/// `absent`.
 fn pack<S: Scalar>(
     rng: &mut Rng,
     shape: &Shape,
     absent: f64,
 ) -> (Problem<Lanes<S, N>>, Vec<Problem<S>>) {
     let seed = rng.bits();
-    // The same seed chooses the same structure; the numbers are then drawn anew.
+    // The template fixes the structure; the numbers of each lane are drawn separately.
     let template = random_problem(&mut Rng(seed), shape);
     let mut packed: Problem<Lanes<S, N>> = Problem::new(template.tree().clone());
     let mut alone: Vec<Problem<S>> = (0..N)
@@ -48,7 +49,7 @@ fn pack<S: Scalar>(
         let slot = packed.push(block.cost, block.dim, block.dofs);
         for (lane, alone) in alone.iter_mut().enumerate() {
             if rng.unit() < absent {
-                // Idle: no D, and whatever the slot held before, as long as it is finite.
+                // Inactive: D is zero, and the other values are leftovers, which need only be finite.
                 slot.r
                     .iter_mut()
                     .for_each(|r| r.set_lane(lane, number(3.0)));
@@ -84,7 +85,7 @@ fn same<S: Scalar>(packed: &[Lanes<S, N>], lane: usize, alone: &[S], what: &str)
     assert_eq!(packed, alone, "{what}");
 }
 
-/// On humanoids and forests, as wholes.
+/// Compares humanoids and forests, without islands.
 fn compare<S: Scalar>(options: SolverOptions, costs: &[Cost], rounds: usize) {
     let options = options.islands(Switch::Off);
     compare_on::<S>(options, costs, rounds, ABSENT, |rng, round| {
@@ -93,7 +94,8 @@ fn compare<S: Scalar>(options: SolverOptions, costs: &[Cost], rounds: usize) {
     });
 }
 
-/// Solves problems of many shapes side by side and alone; in how many of them lanes had different numbers of islands.
+/// Solves problems of many shapes in lanes and separately. Returns the number of rounds in which lanes had different
+/// numbers of islands.
 fn compare_on<S: Scalar>(
     options: SolverOptions,
     costs: &[Cost],
@@ -103,7 +105,7 @@ fn compare_on<S: Scalar>(
 ) -> usize {
     let mut rng = Rng(11);
     let settings = options.resolve::<S>();
-    // One for all, so that what is left of one problem could be seen in the next.
+    // One solver for all problems, so that leftovers of one would show in the next.
     let mut together = Solver::new(&Tree::dense(0));
     let mut different = 0;
     for round in 0..rounds {
@@ -150,7 +152,7 @@ fn compare_results<S: Scalar>(
     compare_forces(packed, together, lane, alone, single, name);
 }
 
-/// Block by block, skipping those that the lane does not have.
+/// Compares the forces of each block, skipping those absent from the lane.
 fn compare_forces<S: Scalar>(
     packed: &Problem<Lanes<S, N>>,
     together: &Solver<Lanes<S, N>>,
@@ -225,7 +227,7 @@ fn conjugate_gradients_in_lanes_equal_scalars() {
         &ALL_COSTS,
         20,
     );
-    // To the working precision: lanes begin anew where they seem stuck, and the others go on.
+    // To the working precision: stalled lanes restart while the others continue.
     let options = options()
         .constraint_solver(ConstraintSolver::Cg)
         .tolerance(0.0);
@@ -266,7 +268,7 @@ fn a_failing_lane_disturbs_no_other() {
     }
 }
 
-/// An arm of six dofs, and a free body.
+/// Returns an arm of six dofs and a free body.
 fn arm_and_body(rng: &mut Rng, _: usize) -> Shape {
     let parents = (0..12)
         .map(|i: usize| (!i.is_multiple_of(6)).then(|| i - 1))
@@ -276,7 +278,7 @@ fn arm_and_body(rng: &mut Rng, _: usize) -> Shape {
     shape
 }
 
-/// Many small trees: few couplings at first, then islands of several trees, in the end large ones.
+/// Returns many small trees: few couplings at first, then islands of several trees, large ones at the end.
 fn many_trees(_: &mut Rng, round: usize) -> Shape {
     let parents = (0..36)
         .map(|i: usize| (!i.is_multiple_of(3)).then(|| i - 1))
@@ -286,13 +288,14 @@ fn many_trees(_: &mut Rng, round: usize) -> Shape {
     shape
 }
 
-/// Trees whose dofs alternate.
+/// Returns trees whose dofs alternate.
 fn tangled_trees(rng: &mut Rng, _: usize) -> Shape {
     let parents = (0..18).map(|i: usize| i.checked_sub(3)).collect();
     Shape::new(parents, 1 + rng.below(6))
 }
 
-/// With islands, on all shapes: lanes have different ones in many rounds, and where few blocks are absent, the same large ones.
+/// Compares all shapes with islands. Lanes have different islands in many rounds, and the same large ones if few blocks
+/// are absent.
 fn compare_islands<S: Scalar>(options: SolverOptions, costs: &[Cost], rounds: usize) {
     assert!(options.islands.is_none());
     for (islands, absent) in [(Switch::Auto, ABSENT), (Switch::On, 0.02)] {

@@ -1,11 +1,11 @@
-//! A loose tolerance ends a solve early, never late.
+//! A loose tolerance terminates a solve earlier, never later.
 
 use crate::common::*;
 use clench_solver::{ConstraintSolver, Cost, Problem, Solver, SolverOptions, Status, Tree};
 use std::sync::Arc;
 
-/// A bent chain of links whose masses differ by orders of magnitude; each dof is at or beyond one end of its range, and some
-/// have dry friction.
+/// Returns a bent chain of links whose masses differ by orders of magnitude. Each dof has dry friction or a one-sided
+/// limit.
 fn chain(rng: &mut Rng, nv: usize) -> Problem<f64> {
     let parents: Vec<Option<usize>> = (0..nv).map(|i: usize| i.checked_sub(1)).collect();
     let tree = Arc::new(Tree::new(&parents).unwrap());
@@ -59,7 +59,7 @@ fn chain(rng: &mut Rng, nv: usize) -> Problem<f64> {
     problem
 }
 
-/// Iterations of 1,000 solves together, each to this tolerance; all of them reach it.
+/// Returns the total iterations of 1,000 solves with this tolerance, all of which must reach it.
 fn iterations(algorithm: ConstraintSolver, tolerance: f64) -> usize {
     let mut rng = Rng(13);
     let mut sum = 0;

@@ -1,5 +1,6 @@
-//! Tests of the solver through its public face: one program, so that its generic code is compiled once for all of them. `allocation.rs`
-//! beside this folder counts what is allocated and needs a program of its own; `clarabel` holds solutions to another solver.
+//! Tests of the solver through its public API, in one program so that its generic code is compiled once.
+//! `allocation.rs` next to this folder counts allocations and needs its own program; `clarabel` compares solutions with
+//! another solver.
 
 mod common;
 mod input;

@@ -1,4 +1,4 @@
-//! After enough sweeps, friction no longer slips where its bound allows it not to.
+//! After enough sweeps, friction slips only at its limit.
 
 use crate::common::*;
 use clench_solver::{Block, Cost, Problem, Solver, SolverOptions};
@@ -28,7 +28,8 @@ fn solve(problem: &Problem<f64>, sweeps: usize) -> Solver<f64> {
     solver
 }
 
-/// Slip that a friction row of bound `limit` should not have: all of it inside, only what the force resists at the bound.
+/// Returns the slip that a friction row should not have: all of it inside the limit, only that along the force at the
+/// limit.
 fn wrong_slip(force: f64, limit: f64, slip: f64) -> f64 {
     let at = |bound: f64| (force - bound).abs() < 1e-9 * limit;
     match () {
@@ -39,7 +40,7 @@ fn wrong_slip(force: f64, limit: f64, slip: f64) -> f64 {
     }
 }
 
-/// The slip left over in a block, by the optimality conditions of noslip.
+/// Returns the remaining slip of a block, by the optimality conditions of noslip.
 fn leftover(problem: &Problem<f64>, solver: &Solver<f64>, k: usize, block: &Block<f64>) -> f64 {
     let slip = residual(block, solver.qacc());
     let force = &solver.force()[block.rows()];
@@ -93,7 +94,7 @@ fn sweeps_converge_to_friction_without_slip() {
     }
 }
 
-/// A block of dry friction may have six rows, and its rows may work on the same dofs.
+/// A block of dry friction may have six rows, and its rows may act on the same dofs.
 #[test]
 fn rows_of_one_block_come_to_rest_together() {
     let mut rng = Rng(11);

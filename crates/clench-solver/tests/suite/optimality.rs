@@ -1,4 +1,4 @@
-//! The solution satisfies the optimality conditions, and every way to it agrees.
+//! The solution satisfies the optimality conditions, and all methods agree on it.
 
 use crate::common::*;
 use clench_solver::{ConstraintSolver, Problem, Settings, Solver, SolverOptions, Status, Switch};
@@ -13,12 +13,12 @@ fn solve(problem: &Problem<f64>, settings: &Settings) -> Solver<f64> {
     solver
 }
 
-/// Every cost alone, then all together, on trees of many shapes.
+/// Returns problems of each cost separately and of all together, on trees of many shapes.
 fn problems(count: usize) -> impl Iterator<Item = Problem<f64>> {
     problems_with_stiffness(count, (1.0, 1e4))
 }
 
-/// Better conditioned: conjugate gradients take about √condition iterations.
+/// Returns better conditioned problems: conjugate gradients take about √condition iterations.
 fn soft_problems(count: usize) -> impl Iterator<Item = Problem<f64>> {
     problems_with_stiffness(count, (1.0, 100.0))
 }
@@ -44,7 +44,8 @@ fn problems_with_stiffness(
     })
 }
 
-/// Gradient norm at the solution over the size of the numbers that cancel in it, in units of the working precision.
+/// Returns the gradient norm at the solution over the size of the terms that cancel in it, in units of the working
+/// precision.
 fn relative_gradient(problem: &Problem<f64>, solver: &Solver<f64>) -> f64 {
     let a = solver.qacc();
     let (_, gradient) = cost_and_gradient(problem, a);

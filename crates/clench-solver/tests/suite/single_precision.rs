@@ -1,15 +1,15 @@
-//! Forces that press against each other cancel, and leave rounding of single precision in place of a slope or a gradient.
+//! Opposing forces cancel, and leave rounding of single precision in place of a slope or a gradient.
 
 use crate::common::*;
 use clench_math::{Real, Scalar};
 use clench_solver::{Cost, LaneStats, PlainBlock, Problem, Solver, SolverOptions};
 
-/// Things clamped between two sides: the two rows of each pair push against each other, with forces thousands of times as large
-/// as what is left of them.
+/// A problem of clamped bodies: the two rows of each pair push against each other, with forces thousands of times as
+/// large as their sum.
 struct Clamped {
     mass: Vec<f64>,
     qacc_smooth: Vec<f64>,
-    /// J, aref and R of a row.
+    /// J, aref and R of each row.
     rows: Vec<(Vec<f64>, f64, f64)>,
 }
 

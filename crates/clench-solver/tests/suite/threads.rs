@@ -1,9 +1,9 @@
-//! Threads that share a solve change no bit of it.
+//! Sharing a solve among threads changes no bit of the result.
 
 use crate::common::*;
 use clench_solver::{Problem, Solver, SolverOptions, Threads};
 
-/// A heap of free bodies, most of which touch; with few contacts it falls into several heaps.
+/// Returns a heap of free bodies, most of which touch; with few contacts it splits into several heaps.
 fn heap(rng: &mut Rng, bodies: usize, contacts: usize) -> Problem<f64> {
     let parent = |i: usize| (!i.is_multiple_of(6)).then(|| i - 1);
     let mut shape = Shape::new((0..6 * bodies).map(parent).collect(), contacts);
@@ -27,7 +27,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         for crew in &crews {
             let mut shared = Solver::new(problem.tree());
             shared.set_threads(crew.clone());
-            // The second solve finds the memory of the first.
+            // The second solve reuses the memory of the first.
             for _ in 0..2 {
                 shared
                     .solve(&problem, &settings, None)

@@ -1,11 +1,11 @@
-//! A frame and what has changed make the next one, whatever lies between, and what rests is not sent again.
+//! A frame and its delta make the next frame, over any interval, and static data is not sent again.
 
 use clench::{Sim, load_str};
 use clench_view::delta::{DELTA, delta};
 use clench_view::frame::{FrameExtras, SECTIONS, encode};
 use std::sync::Arc;
 
-/// A ball that falls, one that rests, and fifty that are part of the world.
+/// A falling ball, a ball at rest, and fifty that are part of the world.
 const SCENE: &str = "<mujoco><worldbody><geom type='plane' size='1 1 1'/>
     <body pos='0 0 .3'><freejoint/><geom size='.1'/></body>
     <body pos='1 0 .1'><freejoint/><geom size='.1'/></body>
@@ -16,7 +16,7 @@ fn number(bytes: &[u8], at: usize) -> usize {
     u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize
 }
 
-/// What a browser does.
+/// Applies a delta as a browser does.
 fn patched(before: &[u8], changed: &[u8]) -> Vec<u8> {
     assert!(changed.starts_with(&DELTA));
     let head = 20 + 4 * SECTIONS.len();
@@ -75,7 +75,7 @@ fn what_rests_is_not_sent_again() {
     };
     let (first, second) = (frame(), frame());
     let changed = delta(&first, &second).unwrap();
-    // Of fifty-three bodies two may have moved.
+    // At most two of fifty-three bodies have moved.
     assert!(
         4 * changed.len() < second.len(),
         "{} of {}",

@@ -1,4 +1,4 @@
-//! Tests of the server and of what it sends: one program.
+//! Tests of the server and its messages, in one program.
 
 mod deltas;
 mod pushes;

@@ -1,9 +1,9 @@
-//! What pictures show of limits and equalities is what statics says.
+//! The displayed forces of limits and equalities agree with statics.
 
 use clench::{Sim, load_str};
 use std::sync::Arc;
 
-/// A simulation at rest.
+/// Returns a simulation at rest.
 fn settled(body: &str, rest: &str) -> Sim<f64> {
     let text = format!(
         "<mujoco><option timestep='0.002' gravity='0 0 -10'/><worldbody>{body}</worldbody>{rest}</mujoco>"
@@ -16,7 +16,7 @@ fn settled(body: &str, rest: &str) -> Sim<f64> {
     sim
 }
 
-/// Equal but for what soft constraints still sway.
+/// Asserts equality up to the residual motion of soft constraints.
 fn close(found: [f64; 3], wanted: [f64; 3]) {
     let apart = found.iter().zip(wanted).map(|(a, b)| (a - b).abs());
     assert!(apart.fold(0.0, f64::max) < 0.05, "{found:?} {wanted:?}");
@@ -34,7 +34,7 @@ fn a_weld_to_the_world_carries_the_weight_and_its_lever() {
     };
     assert_eq!(push.body, 1);
     close(push.force, [0.0, 0.0, 20.0]);
-    // The weight turns the body about y and the weld, which gives way a little, against it.
+    // The weight exerts a torque about y, and the slightly compliant weld the opposite one.
     let lever = sim.workspace().position.xipos[1].x - push.at[0];
     assert!(lever > 0.3, "{lever}");
     close(push.torque, [0.0, -20.0 * lever, 0.0]);

@@ -1,4 +1,4 @@
-//! The server keeps strangers out, bears bad input, and serves many at once.
+//! The server rejects unauthorized clients, tolerates bad input, and serves many at once.
 
 use clench::{Sim, load_str};
 use clench_view::{Command, Page, Player, Scene, ServeError, Server, ServerOptions};
@@ -17,7 +17,7 @@ fn player() -> Player<Sim<f64>> {
     Player::new(Sim::new(model).unwrap(), true)
 }
 
-/// A page with a place for data.
+/// Returns a page with a slot for data.
 fn page() -> Page {
     let place = "<script id=\"recording\" type=\"application/json\"></script>";
     Page::of(format!("<html><body>the page{place}</body></html>")).unwrap()
@@ -32,7 +32,7 @@ fn server(player: &Player<Sim<f64>>) -> Server {
     .unwrap()
 }
 
-/// Address and token of a server.
+/// Returns the address and token of a server.
 fn place(server: &Server) -> (String, String) {
     let url = server.url();
     let (address, token) = url.split_once("/?token=").unwrap();
@@ -134,7 +134,7 @@ fn frames_come_when_they_are_asked_for() {
     let frame = socket.read().unwrap().into_data();
     assert_eq!(&frame[..4], b"CLNF");
     assert_eq!(frame.as_ref(), player.frame().unwrap());
-    // Then what has changed, for those who ask for that.
+    // Then the changes, for clients that request them.
     say(&mut socket, r#"{"do": "next", "changes": true}"#);
     let nothing = socket.read().unwrap().into_data();
     assert_eq!(&nothing[..4], b"CLND");
@@ -165,7 +165,7 @@ fn messages_that_make_no_sense_are_answered_and_change_nothing() {
     socket.send(Message::binary(vec![0; 100])).unwrap();
     assert!(text(&mut socket).contains("no binary"));
     assert_eq!(server.commands(), []);
-    // One that is too long ends the connection, and only that.
+    // A message that is too long closes only its own connection.
     let _ = socket.send(Message::text("x".repeat(100_000)));
     assert!(wait_for(|| server.clients() == 0));
     text(&mut connect(&server));
@@ -237,7 +237,7 @@ fn a_spring_pulls_the_body_to_where_the_user_points() {
     for _ in 0..4 {
         player.apply(Command::Step { count: 1000 }).unwrap();
     }
-    // It hangs below the target by g over the spring's rate of 100 a second squared.
+    // It hangs below the target by g over the spring's rate of 100 per second squared.
     let height = player.viewed().state.qpos[2];
     assert!((height - (1.0 - 9.81 / 100.0)).abs() < 1e-6, "{height}");
     player.apply(Command::Release {}).unwrap();
@@ -279,7 +279,7 @@ fn a_user_can_look_at_any_moment_of_the_past_and_come_forward_again() {
     player.apply(Command::Moment { time: end.time }).unwrap();
     assert_eq!(state(&player).qpos, end.qpos);
     assert_eq!(state(&player).time, end.time);
-    // What would have come after a moment is forgotten where another future begins.
+    // A new future discards the recorded one.
     player.apply(Command::Moment { time: 0.3 }).unwrap();
     player.apply(Command::Step { count: 1 }).unwrap();
     let time = player.viewed().state.time;
@@ -338,7 +338,7 @@ fn simulated_time_follows_real_time() {
         player.advance(Duration::from_millis(20), long).unwrap();
     }
     assert!((player.viewed().state.time - 1.0).abs() < 0.003);
-    // What does not fit into the budget is left out, so that the page stays alive.
+    // Time that exceeds the budget is skipped, so that the page stays responsive.
     let before = player.viewed().state.time;
     player
         .advance(Duration::from_secs(3600), Duration::ZERO)

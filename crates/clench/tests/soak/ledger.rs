@@ -1,4 +1,4 @@
-//! Keeps account of every environment: which run, which failed and why, and that none is lost in between.
+//! A ledger of environments: which run, which failed and why, and that none is lost.
 
 use clench::math::Scalar;
 
@@ -6,7 +6,7 @@ use clench::rigid::batch::{Rows, StateRows, Summary};
 use clench::rigid::{Batch, EnvStatus, Fault, Precision};
 use std::fmt::{self, Display, Formatter};
 
-/// What a step may change of a state.
+/// Returns the tables that a step may change.
 pub fn motion<S: Precision>(state: &StateRows<S>) -> [&Rows<S>; 4] {
     let StateRows {
         qpos,
@@ -18,18 +18,18 @@ pub fn motion<S: Precision>(state: &StateRows<S>) -> [&Rows<S>; 4] {
     [qpos, qvel, act, qacc_warmstart]
 }
 
-/// The same bits, NaN included.
+/// Returns true if the bits are equal, NaN included.
 pub fn same<S: Scalar>(a: &[S], b: &[S]) -> bool {
     let bits = |x: &S| x.to_f64().to_bits();
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
 }
 
-/// What is expected of an environment in the next step.
+/// The expectation for an environment in the next step.
 #[derive(Clone, Copy, Default)]
 pub struct Expectation {
-    /// It was just reset, and nothing was done to it since.
+    /// True if it was just reset and not changed since.
     pub runs: bool,
-    /// A field of its state holds a number that no step can start from.
+    /// The field of its state that holds an invalid number.
     pub not_finite: Option<&'static str>,
 }
 
@@ -62,7 +62,7 @@ impl<S: Precision> Ledger<S> {
         }
     }
 
-    /// What is expected of environment `env`, to be told.
+    /// Returns the expectation for environment `env`, to be set.
     pub fn expect(&mut self, env: usize) -> &mut Expectation {
         &mut self.expected[env]
     }
@@ -119,7 +119,7 @@ impl<S: Precision> Ledger<S> {
         }
     }
 
-    /// A failed environment keeps its last good state.
+    /// Checks that a failed environment keeps its last good state.
     fn check_kept(&self, batch: &Batch<S>, env: usize) {
         let time = batch.state.time.row(env);
         assert!(
@@ -151,7 +151,7 @@ impl<S: Precision> Ledger<S> {
         }
     }
 
-    /// A soak in which nothing went wrong has shown nothing.
+    /// Checks that every kind of event happened.
     pub fn check_everything_happened(&self) {
         let counts = [self.resets, self.poisoned, self.not_finite, self.diverged];
         assert!(

@@ -1,8 +1,8 @@
-//! Many environments for long, under random controls, random resets and random poison: none is lost, none disturbs another,
-//! nothing leaks, and who is saved and resumed arrives where it would have.
+//! Runs many environments for long, with random controls, resets and poison. None is lost, none affects another,
+//! nothing leaks, and a saved and resumed run ends in the same states.
 //!
 //! The short forms are ordinary tests; `cargo xtask soak` runs the long ones. `SOAK_SEED` chooses other random numbers,
-//! `SOAK_SCALE=10` a tenth of the steps.
+//! `SOAK_SCALE=10` runs a tenth of the steps.
 
 mod dice;
 mod ledger;
@@ -26,35 +26,35 @@ use watch::Watch;
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
 
-/// The memory of the whole program is counted: one test at a time.
+/// Serializes the tests, because the memory of the whole program is counted.
 static TURN: Mutex<()> = Mutex::new(());
 
-/// Waits for the turn of a test, which ends with what is returned.
+/// Waits for the turn of a test, which ends when the guard is dropped.
 fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What is soaked, and how.
+/// The parameters of a soak.
 struct Plan {
     model: &'static str,
-    /// A capacity that some poses exceed.
+    /// A limit that some poses exceed.
     max_contacts: usize,
     envs: usize,
     steps: usize,
-    /// Environments that are also stepped alone, without poison.
+    /// The number of environments that are also stepped singly, without poison.
     watched: usize,
 }
 
-/// A step resets one environment in so many, one in so many of those that failed, and poisons one in so many.
+/// A step resets one environment in `RESETS`, one failed in `COMEBACKS`, and poisons one in `POISONS`.
 const RESETS: u64 = 1000;
 const COMEBACKS: u64 = 20;
 const POISONS: u64 = 400;
 
-/// By how many bytes the batch may grow once a quarter of the steps is done: buffers still meet groups with more contacts
-/// than any before. A byte a step of each environment would be seven times as much in the long form.
+/// The bytes by which the batch may grow after a quarter of the steps: buffers still grow for groups with more
+/// contacts. A byte per step and environment would be seven times as much in the long form.
 const GROWTH: isize = 1 << 20;
 
-/// A humanoid in double and a quadruped in single precision, of so many environments and steps.
+/// Soaks a humanoid in double and a quadruped in single precision.
 fn soak_both(envs: usize, steps: usize) {
     let _turn = turn();
     let size = |model, max_contacts| Plan {
@@ -109,7 +109,7 @@ fn resume_long() {
     resume_both(1_000, 10_000 / scale());
 }
 
-/// What the steps of a long form are divided by.
+/// Returns the divisor of the steps of a long form.
 fn scale() -> usize {
     let text = std::env::var("SOAK_SCALE").unwrap_or("1".into());
     text.parse().expect("SOAK_SCALE is a whole number")
@@ -129,7 +129,7 @@ fn soak<S: Precision>(plan: &Plan) {
     let (mut grown, mut warm) = (0, 0);
     for step in 0..plan.steps {
         control(&mut batch, &mut dice);
-        // What a step keeps of a failure, its place in the model, a reset gives back.
+        // A reset frees the record of a failure's location that a step allocates.
         let heap = ALLOCATOR.allocated();
         reset(&mut batch, &mut ledger, &mut watch, &mut dice);
         grown += ALLOCATOR.allocated() as isize - heap as isize;
@@ -177,7 +177,7 @@ fn batch_with<S: Precision>(plan: &Plan, options: BatchOptions) -> Batch<S> {
     Batch::with_options(Arc::new(model), plan.envs, options).expect("a batch of our own model")
 }
 
-/// New controls for one environment in ten.
+/// Sets new controls for one environment in ten.
 fn control<S: Precision>(batch: &mut Batch<S>, dice: &mut Dice) {
     for env in 0..batch.count() {
         if dice.one_in(10) {
@@ -187,7 +187,7 @@ fn control<S: Precision>(batch: &mut Batch<S>, dice: &mut Dice) {
     }
 }
 
-/// Resets some environments, most often such as failed, to the initial state or a keyframe.
+/// Resets some environments, more often failed ones, to the initial state or a keyframe.
 fn reset<S: Precision>(
     batch: &mut Batch<S>,
     ledger: &mut Ledger<S>,
@@ -211,7 +211,7 @@ fn reset<S: Precision>(
     }
 }
 
-/// Poisons some of the environments that run.
+/// Poisons some of the running environments.
 fn give_poison<S: Precision>(
     batch: &mut Batch<S>,
     ledger: &mut Ledger<S>,
@@ -231,7 +231,7 @@ fn give_poison<S: Precision>(
     }
 }
 
-/// None is lost: after a reset every environment runs.
+/// Checks that every environment runs after a reset.
 fn all_come_back<S: Precision>(batch: &mut Batch<S>) {
     for env in 0..batch.count() {
         batch.reset(env).expect("an environment that is there");

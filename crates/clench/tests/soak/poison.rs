@@ -1,18 +1,18 @@
-//! Numbers that no state should hold.
+//! Numbers that are invalid in a state.
 
 use crate::dice::Dice;
 use clench::rigid::Precision;
 use clench::rigid::batch::StateRows;
 
-/// What an environment was given.
+/// The poison of an environment.
 pub struct Poison {
-    /// Which part of the state.
+    /// The poisoned field of the state.
     pub field: &'static str,
-    /// Whether a step can start from it all the same.
+    /// True if a step can start from it.
     pub finite: bool,
 }
 
-/// Writes a bad number somewhere into the state of an environment.
+/// Writes a bad number to a random position in the state of an environment.
 pub fn poison<S: Precision>(state: &mut StateRows<S>, env: usize, dice: &mut Dice) -> Poison {
     let values = [
         f64::NAN,

@@ -1,5 +1,5 @@
-//! A run that is saved every hundred steps: a new batch, otherwise threaded, grouped and laned, resumes it from there and must
-//! arrive where the run that it left arrives, to the bit, failures included.
+//! A run that is saved every hundred steps. A new batch with other threads, grouping and lanes resumes it and must end
+//! in the same states as the original, to the bit, failures included.
 
 use crate::dice::Dice;
 use crate::ledger::{motion, same};
@@ -9,9 +9,9 @@ use clench::math::Instructions;
 use clench::rigid::{EnvStatus, Precision};
 use clench::{Batch, BatchOptions};
 
-/// Steps between two saves.
+/// The number of steps between two saves.
 const LEG: usize = 100;
-/// A step resets one environment in so many, and poisons one in so many.
+/// A step resets one environment in `RESETS`, and poisons one in `POISONS`.
 const RESETS: u64 = 500;
 const POISONS: u64 = 2000;
 
@@ -53,7 +53,7 @@ pub fn resume<S: Precision>(plan: &Plan) {
     );
 }
 
-/// Options that may change speed and nothing else.
+/// Returns options that may change only the speed.
 fn otherwise<S: Precision>(leg: usize) -> BatchOptions {
     let available: Vec<Instructions> = Instructions::all_available::<S>().collect();
     BatchOptions {
@@ -64,7 +64,7 @@ fn otherwise<S: Precision>(leg: usize) -> BatchOptions {
     }
 }
 
-/// A leg: the same controls, resets and poison for every batch that is in the same state.
+/// Runs a leg: batches in equal states get equal controls, resets and poison.
 fn run<S: Precision>(batch: &mut Batch<S>, leg: usize) {
     let mut dice = Dice::new(seed().wrapping_mul(1_000_003).wrapping_add(leg as u64));
     for _ in 0..LEG {

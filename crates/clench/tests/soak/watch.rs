@@ -1,4 +1,4 @@
-//! Some environments are also stepped alone, without poison: until they are poisoned, both must agree to the bit.
+//! Some environments are also stepped singly, without poison. Until poisoned, both must be equal to the bit.
 
 use crate::ledger::same;
 use clench::rigid::{Batch, EnvStatus, Fault, Precision};
@@ -8,7 +8,7 @@ use std::fmt::{self, Display, Formatter};
 struct Alone<S: Precision> {
     env: usize,
     sim: Sim<S>,
-    /// Neither poisoned nor failed since it was last reset.
+    /// True if neither poisoned nor failed since the last reset.
     healthy: bool,
 }
 
@@ -38,7 +38,7 @@ impl<S: Precision> Watch<S> {
         self.alone.iter_mut().find(|alone| alone.env == env)
     }
 
-    /// Environment `env` was reset, to a keyframe or to the initial state.
+    /// Records that environment `env` was reset, to a keyframe or to the initial state.
     pub fn reset(&mut self, env: usize, keyframe: Option<usize>) {
         if let Some(alone) = self.find(env) {
             alone.healthy = true;
@@ -49,14 +49,14 @@ impl<S: Precision> Watch<S> {
         }
     }
 
-    /// Environment `env` was poisoned.
+    /// Records that environment `env` was poisoned.
     pub fn poisoned(&mut self, env: usize) {
         if let Some(alone) = self.find(env) {
             alone.healthy = false;
         }
     }
 
-    /// Takes over the controls of the batch.
+    /// Copies the controls of the batch.
     pub fn copy_controls(&mut self, batch: &Batch<S>) {
         for alone in self.alone.iter_mut().filter(|alone| alone.healthy) {
             let ctrl = batch.state.ctrl.row(alone.env);
@@ -64,7 +64,7 @@ impl<S: Precision> Watch<S> {
         }
     }
 
-    /// Steps what the batch has stepped, and compares.
+    /// Steps the watched environments and compares them with the batch.
     pub fn step(&mut self, batch: &Batch<S>) {
         for alone in self.alone.iter_mut().filter(|alone| alone.healthy) {
             let Alone { env, sim, healthy } = alone;

@@ -1,4 +1,4 @@
-//! The program, run as a user runs it.
+//! Runs the program as a user does.
 
 #![allow(dead_code, missing_docs)] // Each test file uses some of it.
 
@@ -8,18 +8,18 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A folder that goes away with the test.
+/// Returns a folder that is removed at the end of the test.
 pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder can be made")
 }
 
-/// One of the repository's own models.
+/// Returns the path of a model of the repository.
 pub fn model(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     root.join("models").join(format!("{name}.xml"))
 }
 
-/// A model with one control, written into a folder.
+/// Writes a model with one control into a folder.
 pub fn driven(folder: &Path) -> PathBuf {
     let path = folder.join("driven.xml");
     let text = r#"<mujoco><worldbody><body><joint name="j"/><geom size=".1" pos=".2 0 0"/></body></worldbody>
@@ -28,21 +28,21 @@ pub fn driven(folder: &Path) -> PathBuf {
     path
 }
 
-/// The program with these words, one a space.
+/// Returns the program with these arguments, separated by spaces.
 pub fn command(words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clench"));
     command.args(words.split_whitespace());
     command
 }
 
-/// What comes of `clench simulate MODEL`, the words, then paths with their flags.
+/// Runs `clench simulate MODEL` with these arguments, then paths with their flags.
 pub fn simulate(model: &Path, words: &str, files: &[(&str, &Path)]) -> Output {
     simulation(model, words, files)
         .output()
         .expect("the program can be run")
 }
 
-/// The same, not yet started.
+/// Returns the command without running it.
 pub fn simulation(model: &Path, words: &str, files: &[(&str, &Path)]) -> Command {
     let mut command = command("simulate");
     command.arg(model).args(words.split_whitespace());
@@ -52,7 +52,7 @@ pub fn simulation(model: &Path, words: &str, files: &[(&str, &Path)]) -> Command
     command
 }
 
-/// Starts a command whose output is kept.
+/// Starts a command whose output is captured.
 pub fn start(mut command: Command) -> Child {
     let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command.spawn().expect("the program can be run")
@@ -69,7 +69,7 @@ pub fn errors(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The summary of a run with `--json`.
+/// Returns the summary of a run with `--json`.
 pub fn summary(output: &Output) -> serde_json::Value {
     let text = String::from_utf8_lossy(&output.stdout);
     let last = text
@@ -79,7 +79,7 @@ pub fn summary(output: &Output) -> serde_json::Value {
     serde_json::from_str(last).expect("the summary is JSON")
 }
 
-/// The run was refused, with a message that has all these words.
+/// Asserts that the run was refused, with a message that contains all these words.
 pub fn refused(output: &Output, words: &[&str]) {
     let message = errors(output);
     assert_eq!(code(output), 2, "{message}");
@@ -89,7 +89,7 @@ pub fn refused(output: &Output, words: &[&str]) {
     }
 }
 
-/// The numbers of an array of a record, and its shape.
+/// Returns the shape and the numbers of an array of a recording.
 pub fn array(record: &Path, name: &str) -> (Vec<u64>, Vec<f64>) {
     let file = File::open(record).expect("the record is there");
     let mut archive = zip::ZipArchive::new(file).expect("the record is a whole archive");
@@ -105,7 +105,7 @@ pub fn array(record: &Path, name: &str) -> (Vec<u64>, Vec<f64>) {
     )
 }
 
-/// Writes an `.npy` file with any header one likes, which may claim another length than it has.
+/// Writes an `.npy` file with any header, which may claim a wrong length.
 pub fn npy(path: &Path, version: u8, header: &str, claimed: Option<u32>, numbers: &[f64]) {
     let mut bytes = b"\x93NUMPY".to_vec();
     bytes.extend([version, 0]);
@@ -120,7 +120,7 @@ pub fn npy(path: &Path, version: u8, header: &str, claimed: Option<u32>, numbers
     std::fs::write(path, bytes).expect("the file can be written");
 }
 
-/// The header of an array of numbers of 64 bits.
+/// Returns the header of an array of 64-bit numbers.
 pub fn header(rows: u64, columns: u64) -> String {
     format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}\n")
 }

@@ -1,10 +1,10 @@
-//! Height fields to collide, and what touches them.
+//! Height fields to collide, and the shapes that touch them.
 
 use super::Random;
 use clench_collide::{Contacts, HeightField, Pose, Shape, ShapeKind, collide};
 use std::sync::OnceLock;
 
-/// What may stand on a field, but for hulls.
+/// The shapes that may stand on a field, except hulls.
 pub const KINDS: [ShapeKind; 5] = [
     ShapeKind::Sphere,
     ShapeKind::Capsule,
@@ -13,13 +13,13 @@ pub const KINDS: [ShapeKind; 5] = [
     ShapeKind::Box,
 ];
 
-/// A field of a metre by 80 cm with random heights, on 20 cm of ground.
+/// Returns a field of 1 m by 80 cm with random heights, on 20 cm of ground.
 pub fn rough(random: &mut Random, rows: usize, columns: usize, elevation: f64) -> HeightField {
     let heights = (0..rows * columns).map(|_| random.unit()).collect();
     HeightField::new(rows, columns, heights, [0.5, 0.4, elevation, 0.2]).unwrap()
 }
 
-/// The contacts of a field at the origin and a shape.
+/// Returns the contacts of a field at the origin and a shape.
 pub fn touch(
     field: &HeightField,
     shape: &Shape<f64>,
@@ -38,13 +38,14 @@ pub fn touch(
     out
 }
 
-/// The least distance of some contacts.
+/// Returns the smallest distance of the contacts.
 pub fn deepest(contacts: &Contacts<f64>) -> f64 {
     let distances = contacts.as_slice().iter().map(|c| c.distance);
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Flat, gentle and wild ones that live as long as the tests, some huge, some tiny, some a thousand times as high as wide.
+/// Returns flat, gentle and steep fields that live as long as the tests: some huge, some tiny, some a thousand times as
+/// high as wide.
 pub fn troubled() -> &'static [HeightField] {
     static FIELDS: OnceLock<Vec<HeightField>> = OnceLock::new();
     FIELDS.get_or_init(|| {

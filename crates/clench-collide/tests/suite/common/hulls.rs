@@ -1,24 +1,24 @@
-//! Hulls to collide: made once, since their shapes are borrowed for as long as the tests run.
+//! Hulls to collide, created once because shapes borrow them for as long as the tests run.
 
 use super::{Random, V};
 use clench_collide::{Hull, convex_hull};
 use clench_math::Vec3;
 use std::sync::OnceLock;
 
-/// The hull of points that have one.
+/// Returns the hull of points that have one.
 pub fn hull_of(points: &[V]) -> &'static Hull {
     let surface = convex_hull(points, None).unwrap();
     Box::leak(Box::new(Hull::new(&surface, points)))
 }
 
-/// The corners of a box, given its half lengths.
+/// Returns the corners of a box with the given half lengths.
 pub fn corners(half: V) -> Vec<V> {
     let sign = |k: usize, axis: usize| if k >> axis & 1 == 1 { 1.0 } else { -1.0 };
     let corner = |k| half.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2)));
     (0..8).map(corner).collect()
 }
 
-/// The circles of the caps of a cylinder about z, `sides` points each.
+/// Returns the cap circles of a cylinder about z, `sides` points each.
 pub fn cap_circles(radius: f64, half_length: f64, sides: usize) -> Vec<V> {
     let at = |k: usize| (k as f64 * std::f64::consts::TAU / sides as f64).sin_cos();
     let ends = [-half_length, half_length];
@@ -26,27 +26,27 @@ pub fn cap_circles(radius: f64, half_length: f64, sides: usize) -> Vec<V> {
     ends.into_iter().flat_map(circle).collect()
 }
 
-/// Points on an ellipsoid with these semi-axes.
+/// Returns points on an ellipsoid with these semi-axes.
 pub fn round(random: &mut Random, count: usize, semi_axes: V) -> Vec<V> {
     (0..count)
         .map(|_| random.direction().scale_by(semi_axes))
         .collect()
 }
 
-/// Hulls about as large as the other shapes of random scenes: 5 cm to half a metre.
+/// Returns hulls about as large as the other shapes of random scenes: 5 cm to half a metre.
 pub fn wide() -> &'static [&'static Hull] {
     static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
     HULLS.get_or_init(|| some_of_all(0.05, 0.5))
 }
 
-/// Hulls of about 10 cm.
+/// Returns hulls of about 10 cm.
 pub fn handy() -> &'static [&'static Hull] {
     static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
     HULLS.get_or_init(|| some_of_all(0.04, 0.12))
 }
 
-/// Random ones of 6 to 60 vertices, one of a thousand, boxes, prisms that stand for cylinders, thin plates; about the origin or
-/// beside it.
+/// Returns random hulls of 6 to 60 vertices, one of a thousand, boxes, prisms in place of cylinders and thin plates,
+/// centred on the origin or not.
 fn some_of_all(low: f64, high: f64) -> Vec<&'static Hull> {
     let mut random = Random(77);
     let mut hulls = Vec::new();
@@ -66,7 +66,7 @@ fn some_of_all(low: f64, high: f64) -> Vec<&'static Hull> {
     hulls
 }
 
-/// Hulls that are huge, tiny, thin as a needle or a leaf.
+/// Returns hulls that are huge, tiny, or as thin as a needle or a leaf.
 pub fn troubled() -> &'static [&'static Hull] {
     static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
     HULLS.get_or_init(|| {
@@ -89,7 +89,7 @@ pub fn troubled() -> &'static [&'static Hull] {
     })
 }
 
-/// A crumpled ball.
+/// Returns a crumpled ball.
 pub fn bumpy(random: &mut Random) -> (Vec<V>, Vec<[u32; 3]>) {
     let (rings, around) = (9, 14);
     let mut vertices = Vec::new();
@@ -100,7 +100,7 @@ pub fn bumpy(random: &mut Random) -> (Vec<V>, Vec<[u32; 3]>) {
             let pole = ring == 0 || ring == rings;
             let radius = if pole { 0.3 } else { random.range(0.2, 0.5) };
             let (sine, cosine) = polar.sin_cos();
-            // The corners around a pole leave no gap.
+            // The vertices at a pole coincide, without a gap.
             let sine = if pole { 0.0 } else { sine };
             vertices.push(Vec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine) * radius);
         }

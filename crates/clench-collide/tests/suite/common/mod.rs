@@ -1,6 +1,6 @@
-//! What the tests share: random scenes, and the truth about them by means that the library does not use.
+//! Code shared by the tests: random scenes, and their true contacts by methods that the library does not use.
 
-// Each test program uses a part of it.
+// Each test uses a part of this module.
 
 pub mod fields;
 pub mod hulls;
@@ -13,7 +13,7 @@ pub use truth::{mesh_hull, off_surface, support};
 
 pub type V = Vec3<f64>;
 
-/// All shapes that a ball holds and that are convex.
+/// All convex shapes of finite size.
 pub const BOUNDED: [ShapeKind; 6] = {
     use ShapeKind::*;
     [Sphere, Capsule, Ellipsoid, Cylinder, Box, Mesh]
@@ -53,7 +53,7 @@ pub const PAIRS: [(ShapeKind, ShapeKind); 27] = {
     ]
 };
 
-/// Whether a pair is found by its support functions, with patches from its features.
+/// Returns true if a pair is collided by its support functions, with patches from its features.
 pub fn by_support((a, b): (ShapeKind, ShapeKind)) -> bool {
     use ShapeKind::*;
     a != Plane && [a, b].iter().any(|kind| matches!(kind, Ellipsoid | Mesh))
@@ -95,7 +95,7 @@ impl Random {
     pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[(self.unit() * from.len() as f64) as usize]
     }
-    /// Three lengths.
+    /// Returns three lengths.
     pub fn size(&mut self, low: f64, high: f64) -> V {
         Vec3::new(
             self.range(low, high),
@@ -109,7 +109,7 @@ impl Random {
             _ => Shape::new(kind, self.size(0.05, 0.5)),
         }
     }
-    /// A pair at random, near enough that most touch: sometimes aligned with the axes, on round coordinates.
+    /// Returns a random pair, near enough that most touch; sometimes aligned with the axes, on round coordinates.
     pub fn scene(&mut self, kinds: (ShapeKind, ShapeKind)) -> Scene {
         let (a, b) = (self.shape(kinds.0), self.shape(kinds.1));
         let pose = Pose {
@@ -153,7 +153,7 @@ impl Random {
         }
         scene
     }
-    /// An exact rotation of the cube onto itself.
+    /// Returns an exact rotation of the cube onto itself.
     pub fn quarter_turns(&mut self) -> Mat3<f64> {
         let mut rotation = Mat3::IDENTITY;
         for _ in 0..(self.unit() * 6.0) as usize {
@@ -172,7 +172,7 @@ fn grid(v: V) -> V {
     Vec3::from_array(v.to_array().map(|x| ((x * 10.0).round() / 10.0).max(0.1)))
 }
 
-/// Two shapes and where they are.
+/// Two shapes and their poses.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
     pub a: Shape<'static, f64>,
@@ -195,7 +195,7 @@ impl Scene {
         );
         out
     }
-    /// The deepest point.
+    /// Returns the deepest point.
     pub fn deepest(&self) -> Option<ContactPoint<f64>> {
         let contacts = self.contacts();
         let points = contacts.as_slice().iter();
@@ -205,12 +205,12 @@ impl Scene {
     }
 }
 
-/// A shape in another number type, the same in every lane.
+/// Returns a shape in another number type, the same in every lane.
 pub fn convert_shape<T: Real>(s: &Shape<'static, f64>) -> Shape<'static, T> {
     s.resized(Vec3::from_f64(s.size().to_array()))
 }
 
-/// A pose in another number type, the same in every lane.
+/// Returns a pose in another number type, the same in every lane.
 pub fn convert_pose<T: Real>(p: &Pose<f64>) -> Pose<T> {
     Pose {
         position: Vec3::from_f64(p.position.to_array()),

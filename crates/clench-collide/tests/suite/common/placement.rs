@@ -1,10 +1,10 @@
-//! Two shapes as a simulation meets them, and as it should never meet them.
+//! Placements of two shapes, typical of a simulation or degenerate.
 
 use super::{Random, Scene, V, fields, hulls, mesh_hull};
 use clench_collide::{Pose, Shape, ShapeKind};
 use clench_math::{Quat, Vec3};
 
-/// How many numbers the size of a shape has.
+/// Returns the number of values in the size of a shape.
 pub fn size_count(kind: ShapeKind) -> usize {
     match kind {
         ShapeKind::Sphere => 1,
@@ -13,7 +13,7 @@ pub fn size_count(kind: ShapeKind) -> usize {
     }
 }
 
-/// How two shapes are placed.
+/// The placement of two shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placement {
     /// Up to 2 cm deep, at random.
@@ -22,11 +22,11 @@ pub enum Placement {
     Apart,
     /// Turned by right angles, on multiples of 2 cm.
     Grid,
-    /// A face or side on the other's, tilted by 1e-7 to 3e-3 rad.
+    /// A face or side on that of the other, tilted by 1e-7 to 3e-3 rad.
     Resting,
 }
 
-/// Each way of placing, in turn.
+/// All placements.
 pub const PLACEMENTS: [Placement; 4] = [
     Placement::Pressed,
     Placement::Apart,
@@ -34,7 +34,7 @@ pub const PLACEMENTS: [Placement; 4] = [
     Placement::Resting,
 ];
 
-/// Two shapes of about 10 cm.
+/// Returns two shapes of about 10 cm.
 pub fn placed(random: &mut Random, kinds: (ShapeKind, ShapeKind), placement: Placement) -> Scene {
     let round = |v: V| Vec3::from_array(v.to_array().map(|x| (x * 50.0).round() / 50.0));
     let mut shapes = [kinds.0, kinds.1].map(|kind| match kind {
@@ -99,7 +99,8 @@ pub fn placed(random: &mut Random, kinds: (ShapeKind, ShapeKind), placement: Pla
     scene
 }
 
-/// Shapes and poses of every kind of trouble: without extent, tiny, huge, thin, concentric, aligned, touching exactly, far away.
+/// Returns degenerate shapes and poses of every kind: of zero size, tiny, huge, thin, concentric, aligned, touching
+/// exactly, far away.
 pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     let length = |random: &mut Random| match (random.unit() * 8.0) as usize {
         0 => 0.0,
@@ -132,7 +133,7 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     let (a, mut b) = (shape(random, kinds.0), shape(random, kinds.1));
     let is_terrain = a.kind() == ShapeKind::HeightField;
     if random.unit() < 0.2 && mesh_hull(&a) == mesh_hull(&b) && !is_terrain {
-        // The sizes of the first, as many as it has.
+        // Copies the sizes that the first shape has.
         let mut size = b.size();
         (0..size_count(a.kind())).for_each(|i| size[i] = a.size()[i]);
         b = b.resized(size);
@@ -158,7 +159,7 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     };
     let finite = |r: f64| if r.is_finite() { r } else { 1.0 };
     let reach = finite(a.bounding_radius()) + finite(b.bounding_radius());
-    // Terrain has no support function: somewhere near its surface will do.
+    // A height field has no support function; any position near its surface will do.
     let touching = match a.kind() {
         ShapeKind::HeightField => a.size().z * random.range(-1.0, 4.0),
         _ => -scene.gap_along(direction),

@@ -5,21 +5,22 @@ use clench_collide::{Hull, Pose, Shape, ShapeKind};
 use clench_math::Vec3;
 
 impl Scene {
-    /// How far apart the shapes are along a direction from the first to the second; negative if they overlap.
+    /// Returns the gap between the shapes along a direction from the first to the second; negative if they overlap.
     pub fn gap_along(&self, n: V) -> f64 {
         let back = support(&self.b, &self.pose_b, -n);
         let front = support(&self.a, &self.pose_a, n);
         (back - front).dot(n)
     }
 
-    /// The signed distance of the shapes, which is the largest gap along any direction.
+    /// Returns the signed distance of the shapes, which is the largest gap along any direction.
     pub fn distance(&self, random: &mut Random) -> f64 {
         self.optima(random)[0].0
     }
 
-    /// The directions of largest gap, by search, best first: many starts, each improved by random steps that shrink when they
-    /// fail. The gap has creases across edges, so some steps go along one crease or to where two cross. The normal that the
-    /// library found is one of the starts: it may have found a better one than chance does.
+    /// Searches for the directions of largest gap and returns them best first. Many starts are each improved by random
+    /// steps that shrink when they fail. The gap has creases across edges, so some steps go along one crease or to the
+    /// intersection of two. The normal that the library found is one of the starts, as it may be better than a random
+    /// one.
     pub fn optima(&self, random: &mut Random) -> Vec<(f64, V)> {
         if self.a.kind() == ShapeKind::Plane {
             let normal = self.pose_a.axis();
@@ -81,7 +82,7 @@ impl Scene {
     }
 }
 
-/// The unit direction of some straight edge of a shape, of a hull one near the vertex furthest along `n`.
+/// Returns the unit direction of some straight edge of a shape; of a hull, one near the vertex furthest along `n`.
 fn edge(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V, random: &mut Random) -> V {
     let Some(hull) = mesh_hull(shape) else {
         return pose.rotation.column((random.unit() * 3.0) as usize);
@@ -105,7 +106,7 @@ fn farthest_vertex(hull: &Hull, d: V) -> V {
     hull.vertices().iter().fold(hull.vertices()[0], further)
 }
 
-/// The hull of a shape that is a mesh.
+/// Returns the hull of a shape that is a mesh.
 pub fn mesh_hull(shape: &Shape<'static, f64>) -> Option<&'static Hull> {
     match shape {
         Shape::Mesh(mesh) => mesh.hull,
@@ -113,7 +114,7 @@ pub fn mesh_hull(shape: &Shape<'static, f64>) -> Option<&'static Hull> {
     }
 }
 
-/// The point of a shape furthest along a direction (of a plane: its origin).
+/// Returns the point of a shape furthest along a direction (of a plane: its origin).
 pub fn support(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V) -> V {
     let d = pose.rotation.transpose_mul(n);
     let s = shape.size();
@@ -137,8 +138,8 @@ pub fn support(shape: &Shape<'static, f64>, pose: &Pose<f64>, n: V) -> V {
     pose.point(local)
 }
 
-/// How far a point is from a shape's surface. (For ellipsoids, to first order near the surface; for hulls, from the plane of a
-/// face.)
+/// Returns the distance of a point from a shape's surface: for ellipsoids to first order near the surface, for hulls
+/// from the plane of a face.
 pub fn off_surface(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> f64 {
     let p = pose.local(point);
     let s = shape.size();
@@ -165,7 +166,7 @@ pub fn off_surface(shape: &Shape<'static, f64>, pose: &Pose<f64>, point: V) -> f
     signed.abs()
 }
 
-/// Signed distance to a box-like shape from the excess over each of its sides.
+/// Returns the signed distance to a box-like shape from the excess over each of its sides.
 fn outside(excess: &[f64]) -> f64 {
     let beyond = excess
         .iter()

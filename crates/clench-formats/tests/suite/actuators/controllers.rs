@@ -1,4 +1,4 @@
-//! PID controllers and DC motors: what their attributes stand for, and what other elements take over from their classes.
+//! PID controllers and DC motors: the parameters set by their attributes, and the values inherited from their classes.
 
 use super::{actuator, rejected, servo};
 use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
@@ -29,7 +29,7 @@ fn a_pid_is_a_servo_with_an_integral_and_setpoints_of_its_own() {
     assert!(rejected("<pid joint='j' posrange='0 1' inheritrange='1'/>").contains("both"));
 }
 
-/// The numbers are MuJoCo's.
+/// The expected numbers are MuJoCo's.
 #[test]
 fn a_dc_motor_finds_its_constants() {
     let constants = |element: &str| {
@@ -100,7 +100,7 @@ fn a_class_lends_the_saturation_of_its_motor() {
         range("<dcmotor saturation='0'/>", "motor"),
         ([0.0; 2], None)
     );
-    // A `general` that is a motor by its class lends what it makes of the range.
+    // A `general` that is a motor by its class passes on the force range that it computes.
     let classes = "<dcmotor resistance='2' motorconst='.5' saturation='2'/><default class='b'>\
         <general forcerange='-5 6'/><default class='c'><motor forcerange='-.4 .2'/></default></default>";
     let found = actuator(classes, "<dcmotor class='c' joint='j'/>");
@@ -136,7 +136,7 @@ fn a_general_of_a_motors_class_has_its_activations_and_no_range_of_them() {
     let class = "<default class='c'><dcmotor motorconst='.1' resistance='1'/></default>";
     let pid = "class='c' joint='j' dyntype='pid' gaintype='pid' biastype='affine' dynprm='0 2'";
     assert_eq!(actuator(class, &format!("<general {pid}/>")).actdim, None);
-    // Other shortcuts begin anew, but for the range.
+    // Other shortcuts reset the attributes except for the range.
     let range = "<general actlimited='true' actrange='-1 1' dyntype='filter'/>";
     let cylinder = actuator(range, "<cylinder joint='j'/>");
     assert_eq!(

@@ -1,4 +1,5 @@
-//! Actuators and the parameters that their shortcuts stand for; those with a controller or a motor's circuit are in `controllers`.
+//! Actuators and the parameters that their shortcuts set. The tests of controllers and motor circuits are in
+//! `controllers`.
 
 mod controllers;
 
@@ -6,7 +7,7 @@ use clench_formats::read_str;
 use clench_rigid::builder::{ActuatorSpec, TransmissionSpec};
 use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 
-/// The actuator of a model with these defaults.
+/// Returns the actuator of a model with these defaults.
 fn actuator(defaults: &str, element: &str) -> ActuatorSpec {
     let text =
         format!("<mujoco><default>{defaults}</default><actuator>{element}</actuator></mujoco>");
@@ -21,7 +22,7 @@ fn rejected(element: &str) -> String {
     read_str(&text).unwrap_err().message
 }
 
-/// Gain, bias on length, bias on velocity.
+/// Returns the gain, the bias on length and the bias on velocity.
 fn servo(actuator: &ActuatorSpec) -> [f64; 3] {
     [
         actuator.gainprm[0],
@@ -166,7 +167,7 @@ fn servos_dampers_and_cylinders_have_the_parameters_of_their_shortcuts() {
     assert_eq!(cylinder.biasprm[..3], [1.0, 2.0, 3.0]);
 }
 
-/// Of a muscle's own attributes a negative number counts as none, which leaves the force to `scale`.
+/// A negative value of a muscle's own attribute counts as unset, so `scale` determines the force.
 #[test]
 fn a_muscle_has_the_same_parameters_for_gain_and_bias() {
     let defaults = [0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2, 0.0];
@@ -301,7 +302,8 @@ fn an_orientation_servo_is_a_general_actuator() {
     }
 }
 
-/// A damping ratio belongs to what pulls back, whatever the kind of its gain. Elsewhere the same parameter is a coefficient.
+/// A damping ratio applies if the bias is the negated gain, whatever its type. Otherwise the same parameter is a
+/// coefficient.
 #[test]
 fn a_damping_ratio_from_a_class_counts_where_the_bias_pulls_back_with_the_gain() {
     let defaults = "<intvelocity kp='3' dampratio='0.6'/>";
@@ -312,7 +314,7 @@ fn a_damping_ratio_from_a_class_counts_where_the_bias_pulls_back_with_the_gain()
             (pulls_back.dampratio, servo(&pulls_back)),
             (Some(0.6), [3.0, -3.0, 0.0])
         );
-        // A range is only inherited by servos.
+        // Only servos inherit a range.
         assert_eq!(pulls_back.inheritrange == 1.0, gain == "fixed");
     }
     let softer = actuator(defaults, "<general joint='j' gainprm='2'/>");
@@ -329,7 +331,7 @@ fn a_filter_without_a_time_constant_in_a_class_filters_no_position() {
     assert_eq!(kind("0.1"), DynamicsKind::FilterExact);
 }
 
-/// MuJoCo hears nothing of `actlimited` here: a range limits, and without one there is no limit.
+/// MuJoCo ignores `actlimited` here: the activation is limited if and only if it has a range.
 #[test]
 fn an_integrated_velocity_is_limited_where_it_has_a_range() {
     for limited in ["false", "true", "auto"] {

@@ -1,10 +1,10 @@
-//! What the tests of meshes and height fields share: a cube in every format, and a folder for files.
+//! Shared helpers of the tests of meshes and height fields: a cube in every format, and a folder for files.
 
 use clench_rigid::Model;
 use std::fs;
 use std::path::PathBuf;
 
-/// A unit cube from (0, 0, 0) to (1, 1, 1).
+/// The corners of a unit cube from (0, 0, 0) to (1, 1, 1).
 pub const CORNERS: [[f32; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [0.0, 0.0, 1.0],
@@ -30,7 +30,7 @@ pub const TRIANGLES: [[u32; 3]; 12] = [
     [1, 7, 3],
 ];
 
-/// A folder that goes with its test.
+/// A folder that is removed at the end of its test.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -47,7 +47,7 @@ impl Folder {
         self.write("model.xml", text);
         clench_formats::load(self.0.join("model.xml")).map_err(|error| error.to_string())
     }
-    /// A free body that is a mesh.
+    /// Loads a free body with a mesh geom.
     pub fn load_mesh(&self, attributes: &str) -> Result<Model, String> {
         self.load(&of_mesh(attributes, ""))
     }
@@ -101,7 +101,7 @@ pub fn text_stl() -> String {
     text + "endsolid cube\n"
 }
 
-/// The same in two solids of six triangles, in capitals and without names.
+/// Returns the same cube as two solids of six triangles, in capitals and without names.
 pub fn text_stl_of_two() -> String {
     const LINES_OF_A_TRIANGLE: usize = 7;
     let text = text_stl().to_uppercase().replace(" CUBE", "");

@@ -1,4 +1,4 @@
-//! A directory of files of which the model is called `main.xml`; it goes with its test.
+//! A directory of files for one test, which is removed at its end. The model is called `main.xml`.
 
 use clench_formats::{LoadError, read};
 use clench_rigid::builder::ModelBuilder;
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub struct Files(PathBuf);
 
 impl Files {
-    /// Files by their names, which may have directories, and their contents.
+    /// Writes files with these names, which may contain directories, and contents.
     pub fn new(files: &[(&str, &str)]) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);

@@ -1,6 +1,6 @@
-//! Pictures for tests, also for those of other crates.
+//! Pictures for tests, also used by other crates.
 
-/// A PNG image of colours with three parts.
+/// Encodes an RGB image as PNG.
 pub fn png(size: [u32; 2], pixels: &[[u8; 3]]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);

@@ -1,4 +1,4 @@
-//! Robots whose base is freed when they are loaded.
+//! Robots that get a free joint at the base.
 
 use super::{joint, link, names, robot};
 use clench_formats::{LoadError, Loader};
@@ -37,7 +37,7 @@ fn the_base_gets_a_free_joint_and_keeps_what_it_is() {
         ["floating_base", "hip"]
     );
     assert_eq!(model.joints[0].kind, JointKind::Free);
-    // The fixed link is part of the base, as it is without floating of a base that a file frees.
+    // The fixed link is fused into the base, as in a file that frees the base itself.
     assert_eq!(
         names(model.bodies.iter().map(|b| &b.name)),
         ["world", "trunk", "leg"]

@@ -1,4 +1,4 @@
-//! How joints move, and what limits and drives them.
+//! Kinds, limits and drives of joints.
 
 use super::{joint, link, loaded, names, step, with_joint};
 use clench_rigid::Sim;
@@ -37,7 +37,7 @@ fn a_planar_joint_slides_across_its_axis_and_turns_about_it() {
         assert!(axes[first].dot(axes[second]).abs() < 1e-15);
     }
     assert_eq!(model.params.dof_damping, [2.0; 3]);
-    // A limit holds the first direction alone.
+    // The limit applies to the first direction only.
     assert_eq!(
         [0, 1, 2].map(|j| model.joints[j].limited),
         [true, false, false]
@@ -49,7 +49,7 @@ fn roll_pitch_and_yaw_turn_about_fixed_axes() {
     let model = with_joint("revolute", "<origin xyz='1 2 3' rpy='0.3 -0.5 1.1'/>");
     let (sin, cos) = (f64::sin, f64::cos);
     let (r, p, y): (f64, f64, f64) = (0.3, -0.5, 1.1);
-    // The first column of Rz(yaw) Ry(pitch) Rx(roll), and an entry that roll decides.
+    // The first column of Rz(yaw) Ry(pitch) Rx(roll), and one entry that depends on roll.
     let turn = model.params.body_quat[1].to_matrix();
     let expected = [cos(y) * cos(p), sin(y) * cos(p), -sin(p)];
     for (row, expected) in turn.rows.iter().zip(expected) {
@@ -82,7 +82,7 @@ fn limits_count_where_they_rise() {
         limit("continuous", "lower='-1' upper='2'"),
         (false, [0.0, 0.0], 0)
     );
-    // MuJoCo ignores limits that cannot be, and so does this reader, but says so.
+    // MuJoCo ignores impossible limits. So does this reader, with a warning.
     assert_eq!(
         limit("revolute", "lower='1' upper='1'"),
         (false, [1.0, 1.0], 1)

@@ -1,4 +1,4 @@
-//! Links: shapes, inertias, and those that become one body.
+//! Links: shapes, inertias, and links that are fused into one body.
 
 use super::{joint, link, loaded, names, step};
 use clench_formats::load;
@@ -46,11 +46,11 @@ fn links_that_no_joint_moves_become_part_of_their_parents() {
         let off = actual.iter().zip(expected).map(|(a, e)| (a - e).abs());
         assert!(off.fold(0.0, f64::max) < 1e-15, "{actual:?} {expected:?}");
     };
-    // The flange stands at (1, 0, 0), its z axis along x: its centre of mass at (1.1, 0, 0), its ball at (2, 0, 0).
+    // The flange is at (1, 0, 0), its z axis along x: its centre of mass at (1.1, 0, 0), its ball at (2, 0, 0).
     near(fused.params.body_ipos[1].to_array(), [0.55, 0.0, 0.05]);
     near(fused.params.geom_pos[2].to_array(), [2.0, 0.0, 0.0]);
     near(fused.params.body_pos[2].to_array(), [3.0, 0.0, 0.0]);
-    // Fused or not, it moves alike.
+    // The motion is the same with and without fusing.
     let apart = loaded(&parts("<compiler fusestatic='false'/>"));
     assert_eq!(apart.nbody(), 5);
     let fall = |model: Model| {
@@ -118,7 +118,7 @@ fn what_is_only_seen_is_left_out_unless_the_file_wants_it() {
         ),
         (0, 0, 1)
     );
-    // It weighs nothing, and its colour, through which rays pass, is also that of what follows.
+    // The visual has no mass. Its transparent colour, which rays pass through, also applies to the elements after it.
     assert_eq!(with.params.body_mass, without.params.body_mass);
     assert!(!with.geoms[0].visible && !with.geoms[1].visible);
 }

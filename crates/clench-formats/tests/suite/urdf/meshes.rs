@@ -1,10 +1,10 @@
-//! Meshes and where they are found.
+//! Meshes and the paths at which they are found.
 
 use super::{joint, link, names, robot};
 use crate::assets::Folder;
 use clench_formats::{Loader, load};
 
-/// A tetrahedron of a side.
+/// Returns a tetrahedron with this side.
 fn tetrahedron(side: f64) -> String {
     format!(
         "v 0 0 0\nv {side} 0 0\nv 0 {side} 0\nv 0 0 {side}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
@@ -76,7 +76,7 @@ fn escapes_of_uris_are_decoded() {
         folder.write("model.urdf", with_meshes(&[&format!("filename='{file}'")]));
         assert_eq!(load(&path).unwrap().meshes[0].name, "a part", "{file}");
     }
-    // No URI, and no escapes.
+    // Neither a URI nor escapes.
     folder.write("parts/a%20%zz%.obj", tetrahedron(1.0));
     for file in ["parts/a%20%zz%.obj", "package://parts/a%2520%zz%.obj"] {
         folder.write("model.urdf", with_meshes(&[&format!("filename='{file}'")]));

@@ -1,4 +1,4 @@
-//! What is noted and what is refused.
+//! Mistakes with warnings, and errors.
 
 use super::{joint, link, robot};
 use clench_formats::{LoadError, load_str};

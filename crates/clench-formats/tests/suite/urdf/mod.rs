@@ -1,4 +1,4 @@
-//! URDF: links, joints, meshes of packages, MuJoCo's extension, and what is wrong with a file.
+//! URDF: links, joints, meshes of packages, MuJoCo's extension, and invalid files.
 
 mod floating;
 mod joints;
@@ -9,7 +9,7 @@ mod mistakes;
 use clench_formats::load_str;
 use clench_rigid::{Model, Sim};
 
-/// A link of one kilogram, with more in it.
+/// Returns a link of one kilogram with additional content.
 fn link(name: &str, more: &str) -> String {
     format!(
         "<link name='{name}'><inertial><origin xyz='0 0 0.1'/><mass value='1'/>\
@@ -17,7 +17,7 @@ fn link(name: &str, more: &str) -> String {
     )
 }
 
-/// A joint from link to link, with more in it.
+/// Returns a joint between two links with additional content.
 fn joint(name: &str, kind: &str, from: &str, to: &str, more: &str) -> String {
     format!(
         "<joint name='{name}' type='{kind}'><parent link='{from}'/><child link='{to}'/>{more}</joint>"
@@ -37,7 +37,7 @@ fn loaded(parts: &[String]) -> Model {
     load_str(&robot(parts)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// One joint between two links, with this in it.
+/// Loads a model of two links and one joint with the given content.
 #[track_caller]
 fn with_joint(kind: &str, more: &str) -> Model {
     loaded(&[

@@ -1,4 +1,4 @@
-//! How far the device is from the processor, stage by stage, and how far it may be.
+//! The distance of the device from the processor, stage by stage, and its tolerance.
 
 use super::{Random, assert_all_run, computed, convert, general_batch, random_state, upload, used};
 use clench_gpu::GpuBatch;
@@ -7,7 +7,8 @@ use clench_rigid::{Sim, State};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The largest difference between two rows, over the largest number of the second; another length is no small difference.
+/// Returns the largest difference between two rows relative to the largest number of the second; infinity if the
+/// lengths differ.
 pub fn difference(found: &[f64], expected: &[f64]) -> f64 {
     if found.len() != expected.len() {
         return f64::INFINITY;
@@ -24,8 +25,8 @@ pub fn difference(found: &[f64], expected: &[f64]) -> f64 {
     gaps.fold(0.0, larger) / scale
 }
 
-/// Of a field of one environment: how far the device is from the processor in single precision, from that in double precision,
-/// and how far the two are from each other.
+/// For a field of one environment: the distance of the device from the processor in single and in double precision, and
+/// the distance between these two.
 #[derive(Clone, Copy, Debug)]
 pub struct Distance {
     pub single: f64,
@@ -33,7 +34,7 @@ pub struct Distance {
     pub noise: f64,
 }
 
-/// How far the device is from the processor: by field, environment by environment.
+/// Computes the distances of the device from the processor: by field, one per environment.
 pub fn distances(batch: &GpuBatch, states: &[State<f32>]) -> BTreeMap<&'static str, Vec<Distance>> {
     let model = batch.model().clone();
     let mut single = Sim::<f32>::new(model.clone()).expect("a good model");
@@ -67,32 +68,33 @@ pub fn distances(batch: &GpuBatch, states: &[State<f32>]) -> BTreeMap<&'static s
     all
 }
 
-/// Largest difference of a field, over its largest number.
+/// The tolerance of a field, relative to its largest number.
 pub const TOLERANCE: f64 = 1e-4;
 
 impl Distance {
-    /// Whether the device is within the tolerance of the processor, in either precision, or as near to it as the processor's own
-    /// precisions are to each other, in this state or usually: where an impedance is near zero, say, R is the quotient of two
-    /// roundings, and a light finger on a heavy arm is moved by what rounding leaves of large forces.
+    /// Returns true if the device is within the tolerance of the processor, in either precision, or within three times
+    /// the noise of the processor's precisions, in this state or usually. For example, R is the quotient of two
+    /// roundings where an impedance is near zero, and rounding errors of large forces move a light finger on a heavy
+    /// arm.
     pub fn is_near(&self, usual_noise: f64, tolerance: f64) -> bool {
         let noise = self.noise.max(usual_noise);
         self.single.min(self.double) <= tolerance.max(3.0 * noise)
     }
 }
 
-/// What the processor's precisions differ by in one state of twenty at least.
+/// Returns the 95th percentile of the difference of the processor's precisions.
 pub fn usual_noise(found: &[Distance]) -> f64 {
     let mut noises: Vec<f64> = found.iter().map(|d| d.noise).collect();
     noises.sort_by(f64::total_cmp);
     noises[noises.len() * 19 / 20]
 }
 
-/// Every field of every state is near the processor's, and most of them are not so because of noise alone.
+/// Asserts that every field of every state is near the processor's, and that most of them are within the tolerance.
 pub fn agree(model: &Arc<Model>, count: usize, spread: f64) -> Option<GpuBatch> {
     agree_within(TOLERANCE, 0, model, count, spread)
 }
 
-/// The same, with a tolerance of its own, which so many states may exceed.
+/// Asserts the same with a given tolerance, which `strays` states may exceed.
 pub fn agree_within(
     tolerance: f64,
     strays: usize,
@@ -105,7 +107,8 @@ pub fn agree_within(
     Some(batch)
 }
 
-/// Every field of a random state in each environment is near the processor's after a forward pass, but for so many states.
+/// Asserts that every field of a random state in each environment is near the processor's after a forward pass, except
+/// for `strays` states.
 pub fn forward_agrees(batch: &mut GpuBatch, tolerance: f64, strays: usize, spread: f64) {
     let model = batch.model().clone();
     let count = batch.count();

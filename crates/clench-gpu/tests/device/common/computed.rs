@@ -1,4 +1,4 @@
-//! What the processor computed, by the names of the device's fields.
+//! The processor's results, by the names of the device's fields.
 
 use clench_gpu::GpuSolve;
 use clench_math::{Mat3, Motion, Quat, Real, Scalar, Vec3};
@@ -6,7 +6,7 @@ use clench_rigid::Sim;
 use clench_rigid::batch::Precision;
 use std::collections::BTreeMap;
 
-/// What the processor computed of one environment, by the names of the device's fields.
+/// Returns the processor's results for one environment, by the names of the device's fields.
 pub fn computed<S: Precision>(sim: &Sim<S>) -> BTreeMap<&'static str, Vec<f64>> {
     let ws = sim.workspace();
     let (pos, vel, force) = (&ws.position, &ws.velocity, &ws.force);
@@ -58,7 +58,7 @@ pub fn computed<S: Precision>(sim: &Sim<S>) -> BTreeMap<&'static str, Vec<f64>> 
     all
 }
 
-/// Pair by pair as on the device, but for the number of the pair.
+/// Returns the contacts pair by pair as on the device, without the number of the pair.
 fn contact_numbers<S: Precision>(sim: &Sim<S>) -> Vec<f64> {
     let contacts = sim.contacts().iter();
     let numbers = contacts.flat_map(|c| {
@@ -69,7 +69,7 @@ fn contact_numbers<S: Precision>(sim: &Sim<S>) -> Vec<f64> {
     numbers.map(first).collect()
 }
 
-/// What the convex problem holds of each row, in order.
+/// Returns the data of the convex problem for each row, in order.
 fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
     let ws = sim.workspace();
     let nv = ws.problem.nv();
@@ -77,7 +77,7 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
     for block in ws.problem.blocks() {
         aref.extend(block.aref.iter().copied().map(first));
         r.extend(block.r.iter().copied().map(first));
-        // A block may move no dof.
+        // A block may have no dofs.
         let width = block.dofs.len();
         for row in 0..block.aref.len() {
             let mut dense = vec![0.0; nv];
@@ -97,12 +97,12 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
     ]
 }
 
-/// The number of the one environment of a simulation.
+/// Returns the number of the single environment of a simulation.
 fn first<T: Real>(x: T) -> f64 {
     x.lane(0).to_f64()
 }
 
-/// The part of a row that is in use; of contacts, what is not the number of their pair.
+/// Returns the used part of a row; for contacts, without the number of their pair.
 pub fn used(name: &str, mut row: Vec<f64>, solve: &GpuSolve, nv: usize) -> Vec<f64> {
     match name {
         "contacts" => {

@@ -1,4 +1,4 @@
-//! How far trajectories on the device drift from double precision.
+//! The drift of trajectories on the device from double precision.
 
 use super::{assert_all_run, convert, general_batch, some_states, upload};
 use clench_rigid::batch::Precision;
@@ -6,7 +6,7 @@ use clench_rigid::model::Model;
 use clench_rigid::{Sim, State};
 use std::sync::Arc;
 
-/// Where the processor gets from a state in so many steps.
+/// Returns the positions that the processor reaches from a state after `steps` steps.
 fn arrival<S: Precision>(model: &Arc<Model>, from: &State<f32>, steps: usize) -> Vec<f64> {
     let mut sim = Sim::<S>::new(model.clone()).expect("a good model");
     sim.state = convert(model, from);
@@ -23,8 +23,8 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// After `steps` steps from `count` states the device is not further from double precision than three times what the processor's single
-/// precision is, by the medians.
+/// Asserts that after `steps` steps from `count` states the median distance of the device from double precision is at
+/// most three times that of the processor's single precision.
 pub fn drift_alike(model: &Arc<Model>, count: usize, steps: usize) {
     let starts = some_states(model, count);
     let Some(mut batch) = general_batch::<f32>(model, count) else {

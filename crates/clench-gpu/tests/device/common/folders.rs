@@ -1,4 +1,4 @@
-//! Models of others, in folders that environment variables name.
+//! Third-party models, in folders named by environment variables.
 
 use super::{agree, drift_alike};
 use clench_gpu::{GpuBatch, GpuError, GpuOptions};
@@ -7,12 +7,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Models that are not compared in single precision: light fingers on heavy arms, which what rounding leaves of large forces accelerates
-/// (`double.rs` compares them).
+/// Models that are not compared in single precision: light fingers on heavy arms, accelerated by the rounding errors of
+/// large forces (`double.rs` compares them).
 const NOT_COMPARED: [&str; 2] = ["manipulator", "stacker"];
 
-/// Every model of a folder that an environment variable names agrees with the processor on so many states of each, so far from its
-/// initial one, but for those whose names are `refused`, which are. Without the variable there is nothing to test.
+/// Asserts that the models (name, states, spread) in the folder named by an environment variable agree with the
+/// processor, except for those in `refused`, which must be refused. Does nothing without the variable.
 pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &[&str]) {
     let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
         eprintln!("skipped: {variable} names no folder");
@@ -40,14 +40,14 @@ pub fn agree_on_folder(variable: &str, models: &[(&str, usize, f64)], refused: &
     }
 }
 
-/// A model of others, in a folder.
+/// Loads a third-party model from a folder.
 pub fn public(folder: &Path, name: &str) -> Arc<Model> {
     let path = folder.join(format!("{name}.xml"));
     Arc::new(clench_formats::load(path).expect("a public model loads"))
 }
 
-/// Every model of a list in a folder that an environment variable names drifts as on the processor, in 200 steps from 8 states each. Without the
-/// variable there is nothing to test.
+/// Asserts that the models in the folder named by an environment variable drift as on the processor, in 200 steps from
+/// 8 states each. Does nothing without the variable.
 pub fn drift_on_folder(variable: &str, models: &[(&str, usize, f64)]) {
     let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {
         eprintln!("skipped: {variable} names no folder");
@@ -58,7 +58,7 @@ pub fn drift_on_folder(variable: &str, models: &[(&str, usize, f64)]) {
     });
 }
 
-/// Fails with the names of all models for which something does not hold: a device that was never tried tells more at a time.
+/// Checks all models, then fails with the names of those that failed: one run on a new device reports all.
 fn hold_for_all(models: &[(&str, usize, f64)], holds: impl Fn(&(&str, usize, f64))) {
     let mut failed = Vec::new();
     for model in models {

@@ -1,4 +1,5 @@
-//! What several tests share: models, batches and random states here, and how far the device is from the processor in the files beside.
+//! Shared helpers: models, batches and random states here, and the distance of the device from the processor in the
+//! other files.
 #![allow(dead_code)] // Each test uses a part.
 
 mod agreement;
@@ -17,35 +18,35 @@ use clench_rigid::batch::Precision;
 use clench_rigid::model::{JointKind, Model};
 use std::sync::Arc;
 
-/// A model of this repository.
+/// Loads a model of this repository.
 pub fn model(name: &str) -> Arc<Model> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/");
     Arc::new(clench_formats::load(format!("{path}{name}.xml")).expect("a model of ours loads"))
 }
 
-/// The text of a model in `tests/device/models`.
+/// Returns the text of a model in `tests/device/models`.
 pub fn own(name: &str) -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/device/models/");
     std::fs::read_to_string(format!("{folder}{name}.xml")).expect("a model of ours is there")
 }
 
-/// A model from the text of a file.
+/// Loads a model from the text of a file.
 pub fn text(file: &str) -> Arc<Model> {
     Arc::new(clench_formats::load_str(file).expect("a model of ours loads"))
 }
 
-/// A batch with kernels made for its model, as they are by default; none where there is no device.
+/// Returns a batch with kernels specialized for its model, the default; `None` if there is no device.
 pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
     with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A batch with kernels that serve any model, which Mesa's software device, slow to compile, compiles once for all tests. With the environment
-/// variable `CLENCH_GPU_KERNELS` set to `own`, those of the model.
+/// Returns a batch with kernels for any model, which Mesa's slow software device compiles once for all tests. If the
+/// environment variable `CLENCH_GPU_KERNELS` is `own`, the kernels are specialized for the model.
 pub fn general_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
     try_general_batch(model, count).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The same of a model that the device may refuse.
+/// Returns such a batch, or an error if the device refuses the model.
 pub fn try_general_batch<S: GpuReal>(
     model: &Arc<Model>,
     count: usize,
@@ -58,8 +59,8 @@ pub fn try_general_batch<S: GpuReal>(
     with_options(model, count, options)
 }
 
-/// A batch; none where the machine has no device, or none of its precision, or the environment variable `CLENCH_GPU` says to skip: then the
-/// test has nothing to say. Where that says to require one, none is a failure.
+/// Returns a batch, or `None` to skip the test if there is no device of this precision or the environment variable
+/// `CLENCH_GPU` is `skip`. If it is `require`, a missing device is a failure.
 fn with_options<S: GpuReal>(
     model: &Arc<Model>,
     count: usize,
@@ -83,7 +84,7 @@ fn with_options<S: GpuReal>(
     }
 }
 
-/// Random numbers, the same in every run.
+/// A reproducible generator of random numbers.
 pub struct Random(u64);
 
 impl Random {
@@ -91,7 +92,7 @@ impl Random {
         Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
 
-    /// Between −1 and 1.
+    /// Returns a number between −1 and 1.
     pub fn signed(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -100,8 +101,9 @@ impl Random {
     }
 }
 
-/// A state near the initial one, rounded to single precision so that both precisions start from the same numbers: joints turned
-/// by up to `spread` of their range or a radian, roots moved by as many metres, velocities of the same size, and all controls.
+/// Returns a state near the initial one, rounded to single precision so that both precisions start from the same
+/// numbers: joints rotated by up to `spread` of their range or a radian, roots moved by as many metres, velocities of
+/// the same size, and all controls.
 pub fn random_state(model: &Model, random: &mut Random, spread: f64) -> State<f32> {
     let mut state = State::<f32>::new(model);
     for (j, joint) in model.joints.iter().enumerate() {
@@ -147,7 +149,7 @@ fn turn(q: &mut [f32], random: &mut Random, spread: f64) {
     }
 }
 
-/// The same state in another precision.
+/// Converts a state to another precision.
 pub fn convert<S: Precision>(model: &Model, from: &State<f32>) -> State<S> {
     let mut state = State::<S>::new(model);
     let rows = [
@@ -174,7 +176,7 @@ fn vector<S: Scalar>([x, y, z]: [S; 3]) -> Vec3<S> {
     Vec3 { x, y, z }
 }
 
-/// Gives the states to a batch, one an environment.
+/// Uploads the states to a batch, one per environment.
 pub fn upload<S: GpuReal>(batch: &mut GpuBatch<S>, states: &[State<f32>]) {
     let number = |x: f32| S::new(f64::from(x));
     let rows = |pick: fn(&State<f32>) -> &Vec<f32>| -> Vec<S> {
@@ -199,7 +201,7 @@ pub fn upload<S: GpuReal>(batch: &mut GpuBatch<S>, states: &[State<f32>]) {
     }
 }
 
-/// Asserts that no environment stands still, and that the last pass went well in all.
+/// Asserts that no environment has stopped, and that the last pass succeeded in all.
 pub fn assert_all_run<S: GpuReal>(batch: &GpuBatch<S>) {
     for faults in [batch.statuses(), batch.last_faults()] {
         let faults = faults.expect("a device");
@@ -207,7 +209,7 @@ pub fn assert_all_run<S: GpuReal>(batch: &GpuBatch<S>) {
     }
 }
 
-/// So many random states near the initial one.
+/// Returns `count` random states near the initial one.
 pub fn some_states(model: &Model, count: usize) -> Vec<State<f32>> {
     let mut random = Random::new(11);
     (0..count)

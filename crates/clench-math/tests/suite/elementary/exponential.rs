@@ -1,4 +1,4 @@
-//! Exponential, logarithm, real powers, and the exponents that they split off.
+//! Exponential, logarithm, real powers, and the splitting of exponents.
 
 use super::{SAMPLES, distance, error_32, sweep};
 use crate::support::Random;
@@ -165,7 +165,7 @@ fn powf_is_accurate() {
         functions,
         Real::powf,
     );
-    // Results over the whole range of exponents, from every mantissa: here the logarithm's extra digits count.
+    // Results over the whole range of exponents, from every mantissa: these need the logarithm's extra digits.
     sweep(
         "powf",
         || (random.between(0.5, 2.0), random.between(-2000.0, 2000.0)),

@@ -1,14 +1,14 @@
-//! Accuracy of the elementary functions, and what they do at the edges.
+//! Accuracy of the elementary functions, and their results at the edges.
 //!
-//! The reference is the standard library (the platform's libm), itself off by up to one unit in the last place; in
-//! `f32` it is the standard library in `f64`, which is exact for the purpose.
+//! The reference is the standard library (the platform's libm), itself off by up to one unit in the last place. For
+//! `f32` it is the standard library in `f64`, which is exact for this purpose.
 
 mod exponential;
 mod trigonometric;
 
 const SAMPLES: usize = 200_000;
 
-/// How many representable numbers apart.
+/// Returns the number of representable steps between two numbers.
 fn distance(a: f64, b: f64) -> u64 {
     if a.is_nan() && b.is_nan() {
         return 0;
@@ -24,15 +24,15 @@ fn distance(a: f64, b: f64) -> u64 {
     position(a).abs_diff(position(b))
 }
 
-/// Error in units in the last place of the exact value.
+/// Returns the error in units in the last place of the exact value.
 fn error_32(value: f32, exact: f64) -> f64 {
     let rounded = (exact as f32).abs();
     let unit = f64::from(rounded.next_up()) - f64::from(rounded);
     (f64::from(value) - exact).abs() / unit
 }
 
-/// The worst error over random arguments stays within the bound: 2 numbers in `f64` (libm's own error included), 2 ulp in
-/// `f32`.
+/// Checks that the worst error over random arguments is at most 2 steps in `f64` (libm's own error included) and 2 ulp
+/// in `f32`.
 fn sweep(
     name: &str,
     mut arguments: impl FnMut() -> (f64, f64),

@@ -32,7 +32,7 @@ fn sine_and_cosine_are_accurate() {
     }
 }
 
-/// Where the reduction cancels most: the numbers next to the multiples of π/2.
+/// Checks the numbers next to the multiples of π/2, where the reduction cancels most.
 #[test]
 fn sine_and_cosine_are_accurate_at_quarter_turns() {
     for quarters in 1..200_000 {

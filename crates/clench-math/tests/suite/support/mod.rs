@@ -1,7 +1,7 @@
 //! Reproducible random numbers for the tests.
 //!
-//! Own code rather than a crate: the tests want control of bit patterns (subnormals, signed zeros, NaN), and this is
-//! ten lines of splitmix64 (Steele, Lea and Flood, 2014).
+//! This is no external crate: the tests need control of bit patterns (subnormals, signed zeros, NaN), and splitmix64
+//! (Steele, Lea and Flood, 2014) takes ten lines.
 
 use clench_math::{Instructions, LaneTask, Lanes, Quat, Real, Scalar, Vec3, kernel, read_lane};
 
@@ -19,7 +19,7 @@ impl Random {
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
     }
-    /// Uniform in `[low, high)`.
+    /// Returns a uniform number in `[low, high)`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
     }
@@ -37,7 +37,7 @@ impl Random {
         let mut part = || self.between(-1.0, 1.0);
         Quat::new(part(), part(), part(), part()).normalize()
     }
-    /// A number of any kind: special values, any bit pattern, or something ordinary.
+    /// Returns a number of any kind: a special value, any bit pattern or an ordinary number.
     pub fn any<S: TestScalar>(&mut self) -> S {
         let choice = self.bits();
         match choice % 4 {
@@ -64,16 +64,16 @@ impl Random {
             }
             1 => S::from_any_bits(self.bits()),
             2 => S::new(self.between(-10.0, 10.0)),
-            // Whole numbers: where floor, comparisons and ties are decided.
+            // Multiples of 0.5, which exercise floor, comparisons and ties.
             _ => S::new(self.between(-8.0, 8.0).floor() * 0.5),
         }
     }
 }
 
-/// Access to the representation, which `Scalar` does not give.
+/// Access to the representation, which `Scalar` does not provide.
 pub trait TestScalar: Scalar {
     fn from_any_bits(bits: u64) -> Self;
-    /// The bits, all NaNs alike.
+    /// Returns the bits; all NaNs are equal.
     fn identity(self) -> u64;
 }
 impl TestScalar for f64 {
@@ -118,20 +118,20 @@ pub fn in_arrays<S: TestScalar>(task: impl LaneTask<S, Output = ()> + Copy) {
     task.run::<Lanes<S, 16>>();
 }
 
-/// Numbers computed from numbers by code that is written once for every `Real`.
+/// A function from numbers to numbers, written once for every `Real`.
 pub trait Formula: Copy {
-    /// How many numbers go in.
+    /// The number of arguments.
     const ARGUMENTS: usize;
-    /// What comes out, by name. To be marked `#[inline(always)]`.
+    /// Returns the named results. Implementations are to be marked `#[inline(always)]`.
     fn evaluate<T: Real>(self, arguments: &[T]) -> Vec<(&'static str, T)>;
 }
 
-/// A task: in lanes a formula gives each environment what it gives that environment alone, to the bit.
+/// A task that checks that a formula in lanes gives each environment, to the bit, its result alone.
 #[derive(Clone, Copy)]
 pub struct EqualsAlone<'a, F, S> {
     pub formula: F,
     pub rounds: usize,
-    /// Draws an argument.
+    /// The function that draws an argument.
     pub draw: &'a dyn Fn(&mut Random) -> S,
 }
 impl<S: TestScalar, F: Formula> LaneTask<S> for EqualsAlone<'_, F, S> {
@@ -166,7 +166,7 @@ fn evaluate<T: Real, F: Formula>(formula: F, arguments: &[T]) -> Vec<(&'static s
     formula.evaluate(arguments)
 }
 
-/// |a − b| in every coordinate is at most `tolerance`.
+/// Asserts that |a − b| is at most `tolerance` in every coordinate.
 pub fn assert_close<T: Real<Scalar = f64>>(a: &[T], b: &[T], tolerance: f64, what: &str) {
     assert_eq!(a.len(), b.len(), "{what}: lengths differ");
     for (i, (x, y)) in a.iter().zip(b).enumerate() {

@@ -1,4 +1,4 @@
-//! What the tests of batches share: scenes in which environments go their own ways, and comparison to the bit.
+//! Shared by the tests of batches: scenes whose environments behave differently, and bitwise comparison.
 
 pub use crate::scenes::*;
 use clench_collide::ShapeKind;
@@ -9,14 +9,14 @@ use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, Model, Precision, Sim, State};
 use std::sync::Arc;
 
-/// The humanoid, solved as a user would.
+/// Returns the humanoid with a user's solver options.
 pub fn walker() -> ModelBuilder {
     let mut b = humanoid();
     b.options = RigidOptions::new();
     b
 }
 
-/// An arm that hangs over a box on the floor: swinging, it touches the box at some times and in some environments.
+/// Builds an arm that swings over a box on the floor and touches it at some times and in some environments.
 pub fn arm_and_box() -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();
@@ -44,7 +44,7 @@ pub fn arm_and_box() -> ModelBuilder {
     b
 }
 
-/// Twelve bodies thrown into a box: they touch in all ways, in the end nearly all of them.
+/// Builds twelve bodies thrown into a box; finally nearly all of them touch.
 pub fn many_islands() -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new();
@@ -73,7 +73,7 @@ pub fn many_islands() -> ModelBuilder {
     b
 }
 
-/// How environment `env` begins: thrown in a direction of its own; every fifth has its equalities the other way.
+/// Starts environment `env`: throws it in its own direction; every fifth has its equalities switched.
 pub fn begin<S: Precision>(env: usize, state: &mut State<S>) {
     let mut numbers = Numbers(env as u64 + 1);
     for v in &mut state.qvel {
@@ -84,13 +84,13 @@ pub fn begin<S: Precision>(env: usize, state: &mut State<S>) {
     }
 }
 
-/// The control `i` of environment `env` in a step.
+/// Returns the control `i` of environment `env` in a step.
 pub fn control<S: Precision>(env: usize, step: usize, i: usize) -> S {
     let phase = 0.05 * step as f64 + 1.3 * i as f64 + 0.7 * env as f64;
     S::new(phase.sin())
 }
 
-/// A simulation of environment `env` at its beginning.
+/// Returns a simulation of environment `env` at its start.
 pub fn alone<S: Precision>(model: &Arc<Model>, options: RigidOptions, env: usize) -> Sim<S> {
     let mut sim = Sim::with_options(model.clone(), options).expect("valid");
     begin(env, &mut sim.state);
@@ -104,7 +104,7 @@ pub fn drive_alone<S: Precision>(sim: &mut Sim<S>, env: usize, step: usize) {
     }
 }
 
-/// A batch whose row k is environment `envs[k]` at its beginning.
+/// Returns a batch whose row k is environment `envs[k]` at its start.
 pub fn batch<S: Precision>(model: &Arc<Model>, envs: &[usize], options: BatchOptions) -> Batch<S> {
     let mut batch = Batch::with_options(model.clone(), envs.len(), options).expect("valid");
     let mut state = State::new(model);

@@ -1,4 +1,4 @@
-//! What the tests of this crate share: from a builder to a simulation, and reproducible numbers.
+//! Helpers of this crate's tests: building simulations, and reproducible numbers.
 
 use clench_rigid::builder::{MeshSpec, ModelBuilder};
 use clench_rigid::dynamics::integrate::integrate_positions;
@@ -38,7 +38,7 @@ impl Numbers {
     }
 }
 
-/// Two tetrahedra that share a corner: not convex, between them is air within the hull.
+/// Returns two tetrahedra that share a corner. They are not convex: the hull contains air between them.
 pub fn hourglass() -> MeshSpec {
     let vertices = [
         [0.0, 0.0, 0.0],

@@ -9,7 +9,7 @@ use clench_rigid::builder::{
 };
 use clench_rigid::model::{BiasKind, DynamicsKind, Flags, GainKind, JointKind};
 
-/// A world without contacts and other constraints.
+/// Returns a world without contacts and other constraints.
 pub fn world(name: &str) -> ModelBuilder {
     let mut builder = ModelBuilder::new(name);
     builder.physics.flags = Flags {
@@ -23,7 +23,7 @@ fn offset(joint: JointSpec, pos: [f64; 3]) -> JointSpec {
     joint.at(pos).armature(0.02)
 }
 
-/// A floating trunk with two limbs, every kind of joint among them, axes and centres of mass askew.
+/// Builds a floating trunk with two limbs, every kind of joint, and oblique axes and centres of mass.
 pub fn floating() -> ModelBuilder {
     let mut b = world("floating");
     let askew = [0.8, 0.36, -0.48, 0.0];
@@ -111,7 +111,7 @@ pub fn floating() -> ModelBuilder {
     b
 }
 
-/// [`floating`] with springs, dampers and actuators of every kind, in a breeze.
+/// Builds [`floating`] with springs, dampers and actuators of every kind, in wind.
 pub fn everything() -> ModelBuilder {
     let mut b = floating();
     for body in &mut b.bodies {
@@ -141,7 +141,7 @@ pub fn everything() -> ModelBuilder {
     b
 }
 
-/// Adds strings of every kind: straight, around and through a ball and a drum, to either side, in branches.
+/// Adds strings of every kind: straight, around and through a ball and a drum, on either side, in branches.
 fn add_strings(b: &mut ModelBuilder) {
     let sites = [
         (0, "post", [0.1, 0.2, 2.0]),
@@ -291,7 +291,7 @@ fn actuators() -> Vec<ActuatorSpec> {
     ]
 }
 
-/// Moves everything that can move to somewhere in `seed`'s direction.
+/// Randomizes positions, velocities, activations and controls by `seed`.
 pub fn shake(sim: &mut Sim, seed: u64) {
     let mut numbers = Numbers(seed);
     turn(sim, &mut numbers, 1.0);
@@ -300,7 +300,7 @@ pub fn shake(sim: &mut Sim, seed: u64) {
     numbers.fill(&mut sim.state.ctrl, 1.0);
 }
 
-/// The largest difference of two slices.
+/// Returns the largest difference of two slices.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     (a.iter().zip(b)).fold(0.0, |worst, (x, y)| {
@@ -309,7 +309,7 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     })
 }
 
-/// The rotation vector from one orientation to another, in the world's axes.
+/// Returns the rotation vector from one orientation to another, in world axes.
 pub fn turn_between(from: Quat<f64>, to: Quat<f64>) -> Vec3<f64> {
     (to * from.conjugate()).to_rotation_vector()
 }

@@ -14,7 +14,7 @@ use clench_rigid::constraint::impedance;
 use clench_rigid::model::JointKind;
 use clench_rigid::options::RigidOptions;
 
-/// An empty world that is solved as precisely as numbers allow.
+/// Returns an empty world with the most precise solver settings.
 pub fn world() -> ModelBuilder {
     ModelBuilder {
         options: RigidOptions::new()
@@ -25,7 +25,7 @@ pub fn world() -> ModelBuilder {
     }
 }
 
-/// Adds a body and returns its number.
+/// Adds a body and returns its index.
 pub fn add(
     builder: &mut ModelBuilder,
     parent: usize,
@@ -79,7 +79,7 @@ pub fn cuboid(half: [f64; 3]) -> GeomSpec {
     geom(ShapeKind::Box, half)
 }
 
-/// A shape that collides with nothing.
+/// Makes a geom collide with nothing.
 pub fn ghost(mut geom: GeomSpec) -> GeomSpec {
     geom.contype = 0;
     geom.conaffinity = 0;
@@ -94,12 +94,12 @@ pub fn bodies(body1: &str, body2: &str, anchor: [f64; 3]) -> ConnectAnchor {
     }
 }
 
-/// Gravity, m/s².
+/// The gravity, m/s².
 pub const G: f64 = 9.81;
 
-/// The penetration at which n like contacts carry the weight of a free body of mass m, whose bodies' inverse weight is
-/// 1/m: n f = m g with f = −k d r / R and R = ρ (1 − d) / (d m), where ρ is 1 for frictionless and elliptic contacts,
-/// and for a pyramid's 4 edges, which together are 4/R as stiff, ρ = 2 μ² (1 + μ²).
+/// Returns the penetration at which n equal contacts carry a free body of mass m, whose bodies' inverse weight is 1/m:
+/// n f = m g with f = −k d r / R and R = ρ (1 − d) / (d m). ρ is 1 for frictionless and elliptic contacts; for a
+/// pyramid's 4 edges, whose total stiffness is 4/R, ρ = 2 μ² (1 + μ²).
 pub fn rest_penetration(n: f64, rho: f64, solimp: [f64; 5], timeconst: f64) -> f64 {
     let k = 1.0 / (solimp[1] * timeconst).powi(2);
     let excess = |r: f64| {
@@ -118,7 +118,7 @@ pub fn rest_penetration(n: f64, rho: f64, solimp: [f64; 5], timeconst: f64) -> f
     low
 }
 
-/// Steps until `time` has passed, s.
+/// Steps for `time` seconds.
 pub fn run(sim: &mut Sim, time: f64) {
     let end = sim.state.time + time;
     while sim.state.time < end - 1e-9 {
@@ -126,7 +126,7 @@ pub fn run(sim: &mut Sim, time: f64) {
     }
 }
 
-/// A jointed pair, a ball and a box above a floor; the box can be welded to the world.
+/// Builds a jointed pair, a ball and a box above a floor; the box can be welded to the world.
 pub fn loose_parts() -> ModelBuilder {
     let mut b = world();
     b.options = RigidOptions::new().constraint_timeconst(0.0);
@@ -173,7 +173,7 @@ pub fn loose_parts() -> ModelBuilder {
     b
 }
 
-/// 48 boxes on the floor, three layers of four by four, each of which touches its neighbours: one large island.
+/// Builds 48 boxes in three layers of four by four. Each touches its neighbours: one large island.
 pub fn heap_of_boxes() -> ModelBuilder {
     let mut b = world();
     b.bodies[0].geoms.push(plane());
@@ -185,7 +185,7 @@ pub fn heap_of_boxes() -> ModelBuilder {
     b
 }
 
-/// A box and a cylinder on a cube that is a mesh, and a box on that box, with or without several contacts a pair.
+/// Builds a mesh cube that carries a box and a cylinder, and a box on that box. `multiccd` enables multiple contacts.
 pub fn parts_on_a_mesh(multiccd: bool) -> ModelBuilder {
     let mut b = world();
     b.physics.flags.multiccd = multiccd;
@@ -223,7 +223,7 @@ pub fn parts_on_a_mesh(multiccd: bool) -> ModelBuilder {
     b
 }
 
-/// A branched tree and a loose body, with every kind of constraint at work, far from rest.
+/// Builds a branched tree and a loose body, far from rest, with every kind of constraint active.
 pub fn everything() -> ModelBuilder {
     let mut b = world();
     let limited = |mut j: JointSpec, range: [f64; 2]| {
@@ -376,7 +376,7 @@ pub fn shake(sim: &mut Sim, seed: u64) {
     numbers.fill(&mut sim.state.qvel, 1.0);
 }
 
-/// A torso with a head and four limbs of two links, on the floor.
+/// Builds a torso with a head and four limbs of two links, on the floor.
 pub fn humanoid() -> ModelBuilder {
     let mut b = world();
     b.bodies[0].geoms.push(plane());

@@ -10,7 +10,7 @@ use clench_rigid::model::{
     Attachment, ContactField, ContactReduction, RayField, SensorData, SensorKind,
 };
 
-/// A camera of every kind, on the trunk.
+/// Returns a camera of every kind, on the trunk.
 fn cameras() -> impl Iterator<Item = CameraSpec> {
     let modes = [
         ("fixed", CameraTracking::Fixed),
@@ -41,7 +41,7 @@ fn cameras() -> impl Iterator<Item = CameraSpec> {
         })
 }
 
-/// Sensors of contacts: by geom, body, subtree and site, in every order.
+/// Returns contact sensors by geom, body, subtree and site, in every order.
 fn contact_queries() -> impl Iterator<Item = SensorSubject> {
     let reductions = [
         (ContactReduction::None, 3),
@@ -80,7 +80,7 @@ fn contact_queries() -> impl Iterator<Item = SensorSubject> {
     })
 }
 
-/// A mesh with tangents, and names of the geoms in whose frames it feels.
+/// Adds a mesh with tangents, and names the geoms of its tactile sensors.
 fn add_skin(b: &mut ModelBuilder) {
     let corners = [
         [-0.3, -0.3, -0.3],
@@ -101,7 +101,7 @@ fn add_skin(b: &mut ModelBuilder) {
     }
 }
 
-/// Adds a sensor of every kind to [`everything`](super::everything), those of frames with and without a reference.
+/// Adds a sensor of every kind to [`everything`](super::everything), frame sensors with and without a reference.
 pub fn add(b: &mut ModelBuilder) {
     let trunk = b.bodies.iter_mut().find(|found| found.name == "trunk");
     trunk.expect("it is there").cameras.extend(cameras());

@@ -1,9 +1,9 @@
-//! Random problems, and the definitions of the costs written a second time, as plainly as possible.
+//! Random problems, and a second implementation of the costs, as simple as possible.
 
 use clench_solver::{Block, Cost, Problem, Tree, TreeMatrix};
 use std::sync::Arc;
 
-/// SplitMix64: small, seeded, the same everywhere.
+/// A small seeded generator (SplitMix64) with the same output on every machine.
 pub struct Rng(pub u64);
 
 impl Rng {
@@ -14,7 +14,7 @@ impl Rng {
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
     }
-    /// Uniform in [0, 1).
+    /// Returns a uniform number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -24,22 +24,22 @@ impl Rng {
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }
-    /// Log-uniform.
+    /// Returns a log-uniform number.
     pub fn scale(&mut self, low: f64, high: f64) -> f64 {
         (self.range(low.ln(), high.ln())).exp()
     }
 }
 
-/// What a random problem looks like.
+/// The parameters of a random problem.
 #[derive(Clone)]
 pub struct Shape {
-    /// Parent of each dof.
+    /// The parent of each dof.
     pub parents: Vec<Option<usize>>,
     pub blocks: usize,
     pub costs: Vec<Cost>,
-    /// Range of D.
+    /// The range of D.
     pub stiffness: (f64, f64),
-    /// Share of blocks that couple two branches.
+    /// The fraction of blocks that couple two branches.
     pub cross: f64,
 }
 
@@ -63,7 +63,7 @@ impl Shape {
     }
 }
 
-/// A free root of six dofs, a spine of three, and four limbs: 23 dofs numbered depth first.
+/// Returns a free root of six dofs, a spine of three, and four limbs: 23 dofs numbered depth first.
 pub fn humanoid() -> Vec<Option<usize>> {
     let mut parents: Vec<Option<usize>> = (0..9).map(|i: usize| i.checked_sub(1)).collect();
     for (root, length) in [(8, 4), (8, 4), (6, 3), (6, 3)] {
@@ -75,7 +75,7 @@ pub fn humanoid() -> Vec<Option<usize>> {
     parents
 }
 
-/// A forest with random branching.
+/// Returns a forest with random branching.
 pub fn random_forest(rng: &mut Rng, nv: usize) -> Vec<Option<usize>> {
     (0..nv)
         .map(|i| match i {
@@ -102,7 +102,7 @@ pub fn random_problem(rng: &mut Rng, shape: &Shape) -> Problem<f64> {
     problem
 }
 
-/// M = LᵀDL with L and D random: positive definite, in the pattern of the tree.
+/// Returns M = LᵀDL with L and D random: positive definite, with the sparsity pattern of the tree.
 fn random_mass(rng: &mut Rng, tree: &Tree) -> TreeMatrix<f64> {
     let nv = tree.nv();
     let mut mass = TreeMatrix::zeros(tree);
@@ -138,7 +138,7 @@ fn push_random_block(rng: &mut Rng, shape: &Shape, tree: &Tree, problem: &mut Pr
     push_block(rng, shape, tree, problem, cost, dim);
 }
 
-/// Blocks that press: contacts of one kind as a standing robot has them.
+/// Adds contacts of one kind, like those of a standing robot.
 pub fn push_contacts(
     rng: &mut Rng,
     shape: &Shape,
@@ -201,7 +201,7 @@ fn push_block(
     }
 }
 
-/// y = J a − aref of one block.
+/// Returns y = J a − aref of one block.
 pub fn residual(block: &Block<f64>, a: &[f64]) -> Vec<f64> {
     let n = block.dofs.len();
     (0..block.dim)
@@ -216,7 +216,7 @@ pub fn residual(block: &Block<f64>, a: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Cost and force of one block, by the definitions in MuJoCo's documentation.
+/// Returns the cost and force of one block, by the definitions in MuJoCo's documentation.
 pub fn cost_and_force(block: &Block<f64>, y: &[f64]) -> (f64, Vec<f64>) {
     let one_sided = |d: f64, y: f64| {
         if y < 0.0 {
@@ -290,7 +290,7 @@ pub fn cost_and_force(block: &Block<f64>, y: &[f64]) -> (f64, Vec<f64>) {
     (cost, force)
 }
 
-/// The total cost at `a` and its gradient, from the definitions.
+/// Returns the total cost at `a` and its gradient, by the definitions.
 pub fn cost_and_gradient(problem: &Problem<f64>, a: &[f64]) -> (f64, Vec<f64>) {
     let nv = problem.nv();
     let difference: Vec<f64> = a
@@ -325,13 +325,13 @@ pub fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// |x − y| / max(|x|, |y|).
+/// Returns |x − y| / max(|x|, |y|).
 pub fn difference(x: &[f64], y: &[f64]) -> f64 {
     let d: Vec<f64> = x.iter().zip(y).map(|(x, y)| x - y).collect();
     norm(&d) / norm(x).max(norm(y)).max(f64::MIN_POSITIVE)
 }
 
-/// Fails where a force is not one that its constraint can exert.
+/// Asserts that the constraint can exert the force.
 pub fn assert_in_cone(block: &Block<f64>, f: &[f64]) {
     let slack = 1e-12 * norm(f);
     let along = |j: usize| f[j].abs() / block.shape[j];
