@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders whose sources are checked.
-const FOLDERS: [&str; 4] = ["crates", "python/src", "xtask/src", "fuzz"];
+const FOLDERS: [&str; 4] = ["crates", "python/src", "xtask", "fuzz"];
 /// Words that no doc comment begins with: what follows them is a noun clause.
 const OPENINGS: [&str; 7] = ["What", "Where", "How", "Whether", "Who", "Which", "When"];
 /// Words of the glossary's left column that have no other sense here.
@@ -18,7 +18,7 @@ fn doc_comments_are_sentences_in_the_usual_terms() {
     for folder in FOLDERS {
         collect(&root.join(folder), &mut files);
     }
-    assert!(files.len() > 500, "only {} files", files.len());
+    assert!(files.len() > 800, "only {} files", files.len());
     let mut wrong = Vec::new();
     for file in &files {
         let text = fs::read_to_string(file).expect("a source file");
@@ -29,13 +29,13 @@ fn doc_comments_are_sentences_in_the_usual_terms() {
     assert!(wrong.is_empty(), "see docs/words.md:\n{}", wrong.join("\n"));
 }
 
-/// Collects the Rust and WGSL files of a folder, except tests, examples and build products.
+/// Collects the Rust and WGSL files of a folder, except build products.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).expect("a folder of the repository");
     for path in entries.map(|entry| entry.expect("an entry").path()) {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let is_source = path.extension().is_some_and(|e| e == "rs" || e == "wgsl");
-        if path.is_dir() && !["tests", "examples", "target"].contains(&&*name) {
+        if path.is_dir() && name != "target" {
             collect(&path, files);
         } else if is_source {
             files.push(path);

@@ -140,7 +140,7 @@ fn a_hull_has_flat_faces_and_finds_the_farthest_vertex() {
     }
 }
 
-/// Tests few vertices, many, and so many in a small range of normals that the search must climb.
+/// Tests few vertices, many, and enough in a small range of normals that the search must climb.
 #[test]
 fn the_farthest_vertex_is_found_along_any_direction() {
     let mut noise = Noise(104_729);
