@@ -25,64 +25,63 @@ mod web;
 use std::process::ExitCode;
 
 const HELP: &str = "\
-Clench's own chores.
+Tests, benches and other tasks of Clench.
 
 Usage: cargo xtask COMMAND
 
 Commands:
   test [--release | --quick] [STAGE...]
-                    Check everything, or only the named stages, in this order:
-                      fmt      rustfmt finds nothing to change
-                      page     the viewer's page, built by Node; without npm skipped
+                    Run all tests, or only the named stages, in this order:
+                      fmt      rustfmt changes nothing
+                      page     build the viewer's page; skipped without npm
                       clippy   no warnings in any crate, test or example
-                      unit     all Rust tests but those on a graphics device
+                      unit     all Rust tests except those of the GPU
                       doc      rustdoc without warnings
-                      build    the `clench` program, as the stages after it run it
-                      size     the release program and Python module, which may not outgrow their limits; on 64-bit Linux
-                      browser  the page driven in Chromium; without one skipped (CHROMIUM names another than /usr/bin/chromium)
-                      python   .venv with MuJoCo and gymnasium
-                      gpu      steps on a graphics device, or on Mesa's software device; without a driver skipped
-                      package  the Python package, built and installed in .venv by pip; its types
-                      pytest   its tests, every example in a short form among them
-                      parity   `clench` against MuJoCo, with pytest
-                    The program and the package are compiled as the Rust tests are, with their checks, for all instruction sets,
-                    and lanes are tested in those that the processor has.
-                    --release  compiles both as users have them, for this processor.
-                    --quick    takes minutes: it compiles for this processor, and leaves out clippy, doc, size, browser, gpu, package
-                               and pytest, and tests that take long. Named after it, clippy, package and pytest run in a
-                               short form. It ends with a list of what it left out.
-                    It says at each stage how long the rest will take, by the last such run (target/xtask-times).
-  bench [ARG...]    Build `clench` with the `dist` profile, as it is shipped, and time it against MuJoCo.
-                    Arguments go to bench/speed.py; try `cargo xtask bench --help`.
+                      build    build the `clench` program for the stages after it
+                      size     size limits of the release program and the Python module; 64-bit Linux
+                      browser  drive the page in Chromium; skipped without one (CHROMIUM names it)
+                      python   create .venv with MuJoCo and gymnasium
+                      gpu      tests of the GPU, or of Mesa's software device; skipped without a driver
+                      package  build the Python package and install it in .venv; check its types
+                      pytest   its tests, with every example in a short form
+                      parity   compare `clench` with MuJoCo
+                    The program and the package are compiled like the Rust tests, with debug checks, for all instruction
+                    sets; lanes are tested for those that the processor has.
+                    --release  compiles both as users do, for this processor.
+                    --quick    takes minutes: it compiles for this processor and omits clippy, doc, size, browser, gpu,
+                               package, pytest, and tests that take long. If you name clippy, package or pytest after
+                               it, they run in a short form. It lists what it omitted.
+                    Each stage prints the remaining time, from the last such run (target/xtask-times).
+  bench [ARG...]    Build `clench` with the `dist` profile and time it against MuJoCo. Arguments go to bench/speed.py; see
+                    `cargo xtask bench --help`.
   soak [--only NAME] [SEED]
-                    Look long for rare failures. `test` runs a short form of each. SOAK_SCALE=10 does a tenth of the steps.
-                      models      compare 20,000 random models with MuJoCo; those that differ are cut down and kept in
+                    Search long for rare failures. `test` runs a short form of each. SOAK_SCALE=10 runs a tenth of the steps.
+                      models      compare 20,000 random models with MuJoCo; those that differ are minimized and stored in
                                   parity/differences
-                      device      compare 5,000 random models on a graphics device, or Mesa's, with the processor
+                      device      compare 5,000 random models on a GPU, or Mesa's device, with the processor
                       batch       step 10,000 environments 1,000 times under random controls, resets and poison; none may
                                   be lost, disturb another, or leak
                       endurance   the same, 10,000 times
-                      resume      save a batch every 100 steps; what is resumed from there arrives where it would have
-                      collide     a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones;
-                                  nothing may panic, hang, or be no number
-                      recordings  end `clench simulate --record` by kill -9; no half a file may be left
-  lanes             List the functions of the release program in which operations on lanes are calls: where a #[kernel] is missing.
-  docs              Build the site in target/site: pages, notebooks, which are run, and the reference of the Python package.
-  stubs             Install the Python package, and write the sections of its stub that follow from tables in Rust.
-  wheel             Build the Python package that this machine can, in target/wheels, for all processors of its kind, with the
-                    licences of what is compiled in.
-  others [NAME]     Test the Python package beside large packages of others, which are installed below .venv:
-                      ray       a batch on a cluster, whose workers are killed (500 MB)
+                      resume      save a batch every 100 steps; a resumed run must arrive where the original does
+                      collide     a million poses of each pair of shapes, degenerate, huge, tiny and concentric ones
+                                  included; none may panic, hang, or return NaN
+                      recordings  end `clench simulate --record` by kill -9; no partial file may remain
+  lanes             List the functions of the release program that call operations on lanes: they lack a #[kernel].
+  docs              Build the site in target/site: pages, executed notebooks, and the reference of the Python package.
+  stubs             Install the Python package, and write the sections of its stub that are generated from tables in Rust.
+  wheel             Build a Python wheel in target/wheels, for all processors of this kind, with the licences of its crates.
+  others [NAME]     Test the Python package with large packages, which are installed below .venv:
+                      ray       a batch on a cluster whose workers are killed (500 MB)
                       learning  Stable-Baselines3 and TorchRL (5 GB)
   fuzz [--only TARGET] [--seconds N] [--address]
-                    Search for bytes that break a reader, an hour each, with libFuzzer; needs a C++ compiler. --address checks
-                    every access to memory. See docs/testing.md.
-  sanitize [ARG...] Run the Rust tests under AddressSanitizer, or those that the arguments choose, which go to `cargo test`.
+                    Fuzz the readers, an hour each, with libFuzzer; needs a C++ compiler. --address adds AddressSanitizer.
+                    See docs/testing.md.
+  sanitize [ARG...] Run the Rust tests under AddressSanitizer; arguments go to `cargo test`.
   sanitize python [ARG...]
-                    The same for the tests of the Python package, with arguments of pytest; needs GCC's runtimes.
-  audit             Licences, duplicate crates and advisories of dependencies; needs cargo-deny.
+                    Run the tests of the Python package under AddressSanitizer; arguments go to pytest. Needs GCC's runtimes.
+  audit             Check licences, duplicate crates and advisories of dependencies; needs cargo-deny.
 
-Needs Python 3.11 or later with venv. A package index must be reachable on the first run, and for the stage `package`.";
+Needs Python 3.11 or later with venv. The first run, and the stage `package`, need a package index.";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
