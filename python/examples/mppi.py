@@ -41,7 +41,8 @@ CART = """
 def cost(rows: dict[str, NDArray[Any]]) -> NDArray[Any]:
     """Return the cost of each sample (n), which is low for an upright pole and a centred cart, both at rest."""
     (x, angle), velocity = np.moveaxis(rows["qpos"], 2, 0), rows["qvel"]
-    return (4 * (1 + np.cos(angle)) + 0.5 * x**2 + 0.02 * (velocity**2).sum(axis=2)).sum(axis=1)
+    total: NDArray[Any] = (4 * (1 + np.cos(angle)) + 0.5 * x**2 + 0.02 * (velocity**2).sum(axis=2)).sum(axis=1)
+    return total
 
 
 def main() -> None:

@@ -25,7 +25,8 @@ def main() -> None:
     options = plots.parser(__doc__).parse_args()
     sim = clench.Sim(clench.Model.from_file(plots.MODELS / "pinch.xml"))
     weight = -float(sim.model.gravity[2]) * float(sim.body("block").mass)
-    times, shares = [], []
+    times: list[float] = []
+    shares: list[float] = []
     with clench.view(sim, open_browser=not options.quick) as viewer:
         print(f"look at {viewer.url}; close the page to end")
         begin = time.monotonic()
@@ -36,7 +37,7 @@ def main() -> None:
             sim.step()
             friction = sum(np.linalg.norm(contact.force[1:3]) for contact in sim.contacts.of_body("block"))
             times.append(sim.time)
-            shares.append(friction / weight)
+            shares.append(float(friction / weight))
             viewer.draw_text(sim.body("block").xpos + [0, 0, 0.1], f"friction carries {shares[-1]:.2f} of the weight")
             viewer.sync()
         print(f"{sim.time:.2f} s in {time.monotonic() - begin:.2f} s; the block sank by {1e3 * (0.5 - sim.body('block').xpos[2]):.3f} mm")

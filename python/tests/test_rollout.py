@@ -209,7 +209,8 @@ def test_controls_are_those_of_the_call() -> None:
 def test_a_function_gives_the_controls_of_each_step(shared: bool) -> None:
     batch, hand = (clench.Batch(example("humanoid"), 3) for _ in range(2))
     initial = start(batch)
-    times, given = [], []
+    times: list[Any] = []
+    given: list[Any] = []
 
     def policy(step: int) -> Any:
         assert step == len(times)
