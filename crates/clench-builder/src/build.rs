@@ -5,7 +5,7 @@ use super::placed::Assets;
 use super::resolve::AllNames;
 use super::{
     BuildError, DEFAULT_DYNAMIC_CONSTRAINTS, actuators, bodies, budget, cameras, check, contacts,
-    equalities, fuse, invweight0, keyframes, length_range, lights, sensors, sleep, tendons,
+    derived, equalities, fuse, keyframes, length_range, lights, sensors, sleep, tendons,
     user_numbers,
 };
 use clench_dynamics::constants::pose;
@@ -55,8 +55,8 @@ impl ModelBuilder {
         bodies::add_all(self, &order, &assets, &mut model)?;
         model.same_frames = SameFrames::of(&model.params);
         assets.keep(self, &mut model);
-        invweight0::require_inertia(&model, &order)?;
-        invweight0::masses(self, &mut model);
+        derived::require_inertia(&model, &order)?;
+        derived::masses(self, &mut model);
         budget::matrices(self, &model)?;
         model.tree = Arc::new(tree(&model)?);
         contacts::add_all(self, &names, &mut model)?;
@@ -76,7 +76,7 @@ impl ModelBuilder {
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);
         let springdampers: Vec<_> = joints.map(|j| j.springdamper).collect();
-        invweight0::derive(self, &order, &springdampers, pose0, &mut model)?;
+        derived::derive(self, &order, &springdampers, pose0, &mut model)?;
         length_range::find_all(self, &mut model)?;
         budget::keyframes(self, &model)?;
         keyframes::add_all(self, &mut model)?;

@@ -14,7 +14,7 @@ use crate::model::{CameraMode, EqualityTarget, JointKind, Model, ParamField, Par
 use crate::singular::first_bad_pivot;
 use crate::stages::Positions;
 use crate::{State, Step};
-use clench_math::{Motion, Vec3};
+use clench_math::{Motion, Scalar, Vec3};
 use clench_solver::{TreeFactor, TreeMatrix};
 
 /// The smallest mass (kg), inertia (kg m²) or inverse that is used as a divisor (MuJoCo's `mjMINVAL`).
@@ -69,20 +69,11 @@ impl SingularMass {
 }
 
 impl Constants {
-    /// Computes the initial configuration of a model with these parameters.
+    /// Computes the mass matrix of a model with these parameters; `pose` are the poses at qpos0.
     ///
     /// # Errors
     /// Returns an error if the mass matrix is not positive definite.
-    pub fn new(model: &Model, params: &Params<f64>) -> Result<Self, SingularMass> {
-        let pose = pose(model, params, &params.qpos0);
-        Self::at(model, params, pose)
-    }
-
-    /// Does the same with given poses at qpos0.
-    ///
-    /// # Errors
-    /// Returns an error if the mass matrix is not positive definite.
-    pub fn at(
+    pub fn new(
         model: &Model,
         params: &Params<f64>,
         mut pose: Positions<f64>,
@@ -102,11 +93,6 @@ impl Constants {
         })
     }
 
-    /// Returns the poses.
-    pub fn pose(&self) -> &Positions<f64> {
-        &self.pose
-    }
-
     /// Computes the fields of [`CONSTANTS`] from the others.
     ///
     /// # Errors
@@ -120,14 +106,7 @@ impl Constants {
         self.set_unit_accelerations(model, params);
         self.set_cameras(model, params);
         self.set_anchors(model, params);
-        let is_finite = |field: &ParamField| {
-            let row = params.read_lane(*field, 0);
-            row.iter().all(|x| x.is_finite())
-        };
-        match CONSTANTS.iter().all(is_finite) {
-            true => Ok(()),
-            false => Err(SingularMass { dof: None }),
-        }
+        require_finite(&rows::<f64>(params))
     }
 
     /// Computes J M⁻¹ Jᵀ for actuator output `output` (below `Model::nout`).
@@ -284,6 +263,40 @@ impl Constants {
                 | (None, EqualityTarget::Tendon { .. }) => {}
             }
         }
+    }
+}
+
+/// Computes the fields of [`CONSTANTS`] from the others, and returns their values in the precision of a simulation.
+///
+/// # Errors
+/// Returns an error if the mass matrix is not positive definite, or if a value is not finite in this precision.
+pub fn constants<S: Scalar>(
+    model: &Model,
+    params: &mut Params<f64>,
+) -> Result<Vec<Vec<S>>, SingularMass> {
+    let pose = pose(model, params, &params.qpos0);
+    Constants::new(model, params, pose)?.set(model, params)?;
+    let rows = rows(params);
+    require_finite(&rows)?;
+    Ok(rows)
+}
+
+/// Returns the values of the fields of [`CONSTANTS`].
+fn rows<S: Scalar>(params: &Params<f64>) -> Vec<Vec<S>> {
+    let row = |field: &ParamField| {
+        params
+            .read_lane(*field, 0)
+            .into_iter()
+            .map(S::new)
+            .collect()
+    };
+    CONSTANTS.iter().map(row).collect()
+}
+
+fn require_finite<S: Scalar>(rows: &[Vec<S>]) -> Result<(), SingularMass> {
+    match rows.iter().flatten().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(SingularMass { dof: None }),
     }
 }
 

@@ -24,6 +24,11 @@ impl<S: Scalar + Shared> ParamRows<S> {
     pub fn read<T: Real<Scalar = S>>(&self, env: usize, lane: usize, params: &mut Params<T>) {
         params.write_lane(self.field, lane, self.rows.row(env));
     }
+    /// Copies the row of an environment in double precision.
+    pub(super) fn read_f64(&self, env: usize, params: &mut Params<f64>) {
+        let row = self.rows.row(env).iter().map(|x| x.to_f64());
+        params.write_lane(self.field, 0, &Vec::from_iter(row));
+    }
     /// Copies the row of an environment into every lane.
     pub fn splat<T: Real<Scalar = S>>(&self, env: usize, params: &mut Params<T>) {
         params.write_lanes(self.field, self.rows.row(env));

@@ -57,31 +57,34 @@ impl<S: Precision> Mirror<S> {
 }
 
 impl<S: Precision> Mirror<S> {
-    /// Returns the device's parameters of environments whose `field` will have these rows.
+    /// Returns the device's parameters of environments after `changes`: the values of fields, for each of `envs` in
+    /// turn.
     ///
     /// # Errors
-    /// Returns an error if the device does not support the parameter per environment.
+    /// Returns an error if the device does not support a parameter per environment.
     pub(super) fn parameters(
         &self,
         model: &Model,
         own: &[ParamRows<S>],
-        field: ParamField,
-        rows: impl Iterator<Item = (usize, Vec<f64>)>,
+        envs: &[usize],
+        changes: &[(ParamField, Vec<S>)],
     ) -> Result<Vec<Vec<S>>, SimError> {
         let mut changed = model.clone();
-        let one = |(env, row): (usize, Vec<f64>)| {
-            changed.params.clone_from(&model.params);
+        let one = |(index, &env): (usize, &usize)| {
+            let params = &mut changed.params;
+            params.clone_from(&model.params);
             for other in own {
-                let numbers = other.rows.row(env).iter().map(|x| x.to_f64());
-                changed
-                    .params
-                    .write_lane(other.field, 0, &Vec::from_iter(numbers));
+                other.read_f64(env, params);
             }
-            changed.params.write_lane(field, 0, &row);
-            changed.params.derive(model, field);
+            for (field, values) in changes {
+                let width = params.width(*field);
+                let row = values[width * index..][..width].iter().map(|x| x.to_f64());
+                params.write_lane(*field, 0, &Vec::from_iter(row));
+                params.derive(model, *field);
+            }
             self.backend.parameters_of(&changed)
         };
-        rows.map(one).collect()
+        envs.iter().enumerate().map(one).collect()
     }
 
     /// Assigns parameters from [`parameters`](Self::parameters) to environments.

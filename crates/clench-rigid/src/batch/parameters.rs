@@ -3,7 +3,7 @@
 use super::env_rows::ParamRows;
 use super::{Batch, Precision, Rows};
 use clench_dynamics::check::check_length;
-use clench_dynamics::constants::{CONSTANTS, Constants};
+use clench_dynamics::constants::{CONSTANTS, constants};
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField};
 use clench_dynamics::options::RigidOptions;
@@ -30,33 +30,52 @@ impl<S: Precision> Batch<S> {
         let mut values = values.to_vec();
         let mut rows = values.chunks_mut(width.max(1));
         rows.try_for_each(|row| field.check_row(&self.model, row))?;
-        let on_device = self.device_parameters(field, envs, &values)?;
-        // Operations that may fail precede the first change.
-        self.param_rows(field)?;
-        let mut follower = None;
-        if let Some(field) = field.follower() {
+        self.assign(envs, &[(field, values)])
+    }
+
+    /// Assigns checked values of fields to environments. Operations that may fail precede the first change.
+    fn assign(&mut self, envs: &[usize], changes: &[(ParamField, Vec<S>)]) -> Result<(), SimError> {
+        let on_device = match &self.mirror {
+            Some(mirror) => mirror.parameters(&self.model, &self.params, envs, changes)?,
+            None => Vec::new(),
+        };
+        for &(field, _) in changes {
             self.param_rows(field)?;
-            follower = Some((field, self.model.params.broadcast::<S>()));
+            field.follower().map(|f| self.param_rows(f)).transpose()?;
         }
-        for (&env, row) in envs.iter().zip(values.chunks(width.max(1))) {
-            Model::clear_structural_guarantees(&mut self.model, field, row);
-            self.param_rows(field)?.row_mut(env).copy_from_slice(row);
-            if let Some(recorded) = &mut self.recorded {
-                recorded.forget(env);
-            }
-            if let Some((follower, params)) = &mut follower {
-                params.write_lane(field, 0, row);
-                params.derive(&self.model, field);
-                let row = params.read_lane(*follower, 0);
-                self.param_rows(*follower)?
-                    .row_mut(env)
-                    .copy_from_slice(&row);
-            }
+        for (field, values) in changes {
+            self.assign_field(*field, envs, values)?;
+        }
+        if let Some(recorded) = &mut self.recorded {
+            envs.iter().for_each(|&env| recorded.forget(env));
         }
         match &mut self.mirror {
             Some(mirror) => mirror.set_parameters(envs, &on_device),
             None => Ok(()),
         }
+    }
+
+    /// Assigns a field and its follower on the processor.
+    fn assign_field(
+        &mut self,
+        field: ParamField,
+        envs: &[usize],
+        values: &[S],
+    ) -> Result<(), SimError> {
+        let follower = field.follower();
+        let mut follower = follower.map(|f| (f, self.model.params.broadcast::<S>()));
+        for (&env, row) in envs.iter().zip(rows_of(&self.model, field, values)) {
+            Model::clear_structural_guarantees(&mut self.model, field, row);
+            self.param_rows(field)?.row_mut(env).copy_from_slice(row);
+            if let Some((follower, params)) = &mut follower {
+                params.write_lane(field, 0, row);
+                params.derive(&self.model, field);
+                let row = params.read_lane(*follower, 0);
+                let rows = self.param_rows(*follower)?;
+                rows.row_mut(env).copy_from_slice(&row);
+            }
+        }
+        Ok(())
     }
 
     /// Computes the derived parameters of environments in the initial configuration, as
@@ -68,55 +87,33 @@ impl<S: Precision> Batch<S> {
     pub fn set_constants(&mut self, envs: &[usize]) -> Result<(), SimError> {
         self.check_envs(envs)?;
         let mut params = self.model.params.clone();
-        let mut rows = CONSTANTS.map(|_| Vec::new());
+        let mut changes = CONSTANTS.map(|field| (field, Vec::new())).to_vec();
         for &env in envs {
             for own in &self.params {
-                let row = own.rows.row(env).iter().map(|x| x.to_f64());
-                params.write_lane(own.field, 0, &Vec::from_iter(row));
+                own.read_f64(env, &mut params);
             }
-            let constants = Constants::new(&self.model, &params);
-            let set = constants.and_then(|mut all| all.set(&self.model, &mut params));
-            set.map_err(|singular| singular.error(&self.model, Some(env)))?;
-            for (rows, field) in rows.iter_mut().zip(CONSTANTS) {
-                rows.extend(params.read_lane(field, 0).into_iter().map(S::new));
+            let rows = constants::<S>(&self.model, &mut params);
+            let rows = rows.map_err(|singular| singular.error(&self.model, Some(env)))?;
+            for ((_, values), row) in changes.iter_mut().zip(rows) {
+                values.extend(row);
             }
         }
-        for (rows, field) in rows.iter().zip(CONSTANTS) {
-            // Subtree masses are already up to date.
-            if field != ParamField::body_subtreemass && self.differs(field, envs, rows) {
-                self.randomize(field.name(), envs, rows)?;
-            }
+        changes.retain(|(field, values)| self.differs(*field, envs, values));
+        if changes.is_empty() {
+            return Ok(());
         }
-        Ok(())
+        self.assign(envs, &changes)
     }
 
     /// Returns true if environments have other values of a field.
     fn differs(&self, field: ParamField, envs: &[usize], values: &[S]) -> bool {
-        let width = self.model.params.width(field).max(1);
         let of_model: Vec<S> = model_row(&self.model, field);
         let own = self.params.iter().find(|own| own.field == field);
-        let mut rows = envs.iter().zip(values.chunks(width));
+        let mut rows = envs.iter().zip(rows_of(&self.model, field, values));
         rows.any(|(&env, row)| match own {
             Some(own) => own.rows.row(env) != row,
             None => of_model != row,
         })
-    }
-
-    /// Returns the device's parameters, if there is one, of environments whose `field` will have these values.
-    fn device_parameters(
-        &self,
-        field: ParamField,
-        envs: &[usize],
-        values: &[S],
-    ) -> Result<Vec<Vec<S>>, SimError> {
-        let Some(mirror) = &self.mirror else {
-            return Ok(Vec::new());
-        };
-        let width = self.model.params.width(field).max(1);
-        let numbers = |row: &[S]| Vec::from_iter(row.iter().map(|x| x.to_f64()));
-        let rows = values.chunks(width).map(numbers);
-        let rows = envs.iter().copied().zip(rows);
-        mirror.parameters(&self.model, &self.params, field, rows)
     }
 
     /// Returns a parameter field, by name, of environment `env`.
@@ -161,6 +158,11 @@ impl<S: Precision> Batch<S> {
         };
         Ok(&mut self.params[index].rows)
     }
+}
+
+/// Splits the values of a field into rows, one for each environment.
+fn rows_of<'a, S>(model: &Model, field: ParamField, values: &'a [S]) -> std::slice::Chunks<'a, S> {
+    values.chunks(model.params.width(field).max(1))
 }
 
 /// Returns the model's values of a field.

@@ -2,7 +2,7 @@
 
 use super::Sim;
 use crate::Precision;
-use clench_dynamics::constants::{CONSTANTS, Constants};
+use clench_dynamics::constants::{CONSTANTS, constants};
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField, Params};
 use clench_dynamics::options::RigidOptions;
@@ -41,12 +41,10 @@ impl<T: Precision> Sim<T> {
             let row = self.params.read_lane(field, 0);
             params.write_lane(field, 0, &Vec::from_iter(row.iter().map(|x| x.to_f64())));
         }
-        let constants = Constants::new(&self.model, &params);
-        let set = constants.and_then(|mut all| all.set(&self.model, &mut params));
-        set.map_err(|singular| singular.error(&self.model, None))?;
-        for field in CONSTANTS {
-            let row = params.read_lane(field, 0).into_iter().map(T::new);
-            self.params.write_lanes(field, &Vec::from_iter(row));
+        let rows = constants(&self.model, &mut params);
+        let rows = rows.map_err(|singular| singular.error(&self.model, None))?;
+        for (field, row) in CONSTANTS.into_iter().zip(rows) {
+            self.params.write_lanes(field, &row);
         }
         self.forget();
         Ok(())

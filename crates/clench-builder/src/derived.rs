@@ -13,7 +13,7 @@ use clench_dynamics::stages::Positions;
 /// Components of a unit axis below this count as zero (MuJoCo's `mjEPS`).
 const ALIGNED: f64 = 1e-14;
 
-/// Scales masses to the author's total.
+/// Scales masses to the author's total, and sums those of subtrees.
 pub(super) fn masses(builder: &ModelBuilder, model: &mut Model) {
     let p = &mut model.params;
     if let Some(wanted) = builder.compiler.settotalmass {
@@ -80,7 +80,7 @@ pub(super) fn derive(
         let may = !builder.bodies[old].never_simple && !with_inertia[b];
         model.bodies[b].diagonal_inertia = may && moves_alone(model, b);
     }
-    let constants = Constants::at(model, &model.params, pose0);
+    let constants = Constants::new(model, &model.params, pose0);
     let mut constants = constants.map_err(|found| singular(model, found))?;
     let mut params = std::mem::take(&mut model.params);
     let set = constants.set(model, &mut params);
