@@ -278,18 +278,19 @@ def test_control_c_ends_a_rollout() -> None:
 @pytest.mark.parametrize("ctrl", [None, lambda _: None], ids=["held", "function"])
 def test_what_was_recorded_until_control_c_is_returned(ctrl: Any) -> None:
     batch, other = humanoids(), humanoids()
-    # The memory of the record is allocated before the first step.
-    steps = steps_of(1, humanoids)
+    # Far more steps than fit in the time until the signal, and a small record, which is allocated before the first step.
+    steps = steps_of(10, humanoids)
     interrupt_soon()
     with pytest.warns(RuntimeWarning, match="interrupted after") as warned:
-        rows = batch.rollout(None, ctrl, steps=steps)
+        rows = batch.rollout(None, ctrl, steps=steps, record=["energy"])
     found = re.search(r"after (\d+) of (\d+) steps", str(warned[0].message))
     assert found is not None
     done, whole = map(int, found.groups())
     assert 0 < done < steps == whole
     # With a function, Ctrl-C may occur after a step and before it is recorded.
     assert round(float(batch.time[0]) / batch.model.timestep) - done in ([0] if ctrl is None else [0, 1])
-    expected = other.rollout(steps=done)
+    expected = other.rollout(steps=done, record=["energy"])
+    assert list(rows) == ["energy"]
     for name, array in rows.items():
         np.testing.assert_array_equal(array[:, :done], expected[name])
         assert np.isnan(array[:, done:]).all()
