@@ -1,6 +1,6 @@
 //! Conversion of option values from and to Python, and their validation.
 
-use clench::rigid::options::{FrictionCone, MaxContacts, OptionValue, RigidOption};
+use clench::rigid::options::{ContactModel, FrictionCone, MaxContacts, OptionValue, RigidOption};
 use clench::solver::{ConstraintSolver, Switch};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -95,6 +95,12 @@ impl OptionType for FrictionCone {
     }
 }
 
+impl OptionType for ContactModel {
+    fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        choose(name, value, &CONTACT_MODELS)
+    }
+}
+
 const ALGORITHMS: [(&str, ConstraintSolver); 2] = [
     ("Newton", ConstraintSolver::Newton),
     ("CG", ConstraintSolver::Cg),
@@ -102,6 +108,10 @@ const ALGORITHMS: [(&str, ConstraintSolver); 2] = [
 const CONES: [(&str, FrictionCone); 2] = [
     ("pyramidal", FrictionCone::Pyramidal),
     ("elliptic", FrictionCone::Elliptic),
+];
+const CONTACT_MODELS: [(&str, ContactModel); 2] = [
+    ("convex", ContactModel::Convex),
+    ("coulomb", ContactModel::Coulomb),
 ];
 
 fn choose<T: Copy>(name: &str, value: &Bound<'_, PyAny>, choices: &[(&str, T)]) -> PyResult<T> {
@@ -203,6 +213,14 @@ impl Show for FrictionCone {
         match self {
             FrictionCone::Pyramidal => "pyramidal".show(py),
             FrictionCone::Elliptic => "elliptic".show(py),
+        }
+    }
+}
+impl Show for ContactModel {
+    fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        match self {
+            ContactModel::Convex => "convex".show(py),
+            ContactModel::Coulomb => "coulomb".show(py),
         }
     }
 }

@@ -28,6 +28,9 @@ macro_rules! given {
     (FrictionCone) => {
         "{\"pyramidal\", \"elliptic\"}"
     };
+    (ContactModel) => {
+        "{\"convex\", \"coulomb\"}"
+    };
 }
 
 macro_rules! declare_class {

@@ -20,6 +20,9 @@ pub(crate) struct SolverStats {
     improvement: f64,
     /// float : The duality gap, an upper bound of cost minus minimum, in the units of the cost.
     gap: f64,
+    /// float : Largest difference between the normal force of a contact and the one that limits its friction, N. Zero
+    /// where Coulomb's law holds, and in the convex contact model; over islands, the maximum.
+    normal_residual: f64,
     /// int : Number of changes of a constraint's state (a contact began to slip, a limit became inactive), in all
     /// iterations.
     active_set_changes: usize,
@@ -55,6 +58,7 @@ impl From<LaneStats> for SolverStats {
             gradient: stats.gradient,
             improvement: stats.improvement,
             gap: stats.gap,
+            normal_residual: stats.normal_residual,
             active_set_changes: stats.active_set_changes,
             ls_evaluations: stats.ls_evaluations,
             factorizations: stats.factorizations,

@@ -21,6 +21,7 @@ OPTION_TYPES = {
     'int or "auto"': ('SupportsIndex | Literal["auto"]', 'int | Literal["auto"]'),
     '{"Newton", "CG"}': ('Literal["Newton", "CG"]', 'Literal["Newton", "CG"]'),
     '{"pyramidal", "elliptic"}': ('Literal["pyramidal", "elliptic"]', 'Literal["pyramidal", "elliptic"]'),
+    '{"convex", "coulomb"}': ('Literal["convex", "coulomb"]', 'Literal["convex", "coulomb"]'),
 }
 OPTIONS: list[tuple[str, str]] = re.findall(r"^(\w+) : (.*), optional$", RigidOptions.__doc__ or "", re.MULTILINE)
 STATE_TYPES = {"number": "NDArray[Any]", "int32": "NDArray[np.int32]", "bool": "_Flags"}

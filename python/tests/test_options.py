@@ -22,6 +22,7 @@ EXAMPLES: dict[str, Any] = {
     'int or "auto"': 12,
     '{"Newton", "CG"}': "CG",
     '{"pyramidal", "elliptic"}': "elliptic",
+    '{"convex", "coulomb"}': "coulomb",
 }
 VALUES = {name: EXAMPLES[kind] for name, kind in OPTIONS}
 
@@ -124,7 +125,7 @@ def test_wrong_types() -> None:
     for name in [*BOOLEANS, *SWITCHES]:
         for value in [0, 1.0, np.array([True])]:
             mistyped(name, value)
-    for name in ["constraint_solver", "friction_cone"]:
+    for name in ["constraint_solver", "friction_cone", "contact_model"]:
         for value in [0, b"CG", ["CG"]]:
             mistyped(name, value)
 

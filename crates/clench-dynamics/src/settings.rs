@@ -5,7 +5,7 @@ use crate::contact::check_supported;
 use crate::dynamics::discrete_limits::check_discrete;
 use crate::error::SimError;
 use crate::model::Flags;
-use crate::options::{FrictionCone, MaxContacts, OptionError, RigidOptions};
+use crate::options::{ContactModel, FrictionCone, MaxContacts, OptionError, RigidOptions};
 use clench_math::Real;
 use clench_solver::{Settings, Switch};
 

@@ -5,6 +5,7 @@ use crate::methods::points_of_pair;
 use crate::tables::is_read;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::{EqualityTarget, Integrator, Model, Sensor};
+use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 
 /// The simulation that a batch is to step.
@@ -34,6 +35,10 @@ rules! {
     };
     "environments do not start over by themselves yet: look at the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
+    };
+    "only the convex contact model is there yet": |s| {
+        let coulomb = s.settings.contact_model == ContactModel::Coulomb;
+        coulomb.then(|| "option contact_model".to_owned())
     };
     "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
     "a sensor of this kind is not read yet, so that it can have no delay": |s| {

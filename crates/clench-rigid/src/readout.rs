@@ -59,7 +59,7 @@ pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Constrain
             _ => &ws.solver.force()[block.rows()],
         };
         let pos = |i: usize| ws.record.pos[block.row + i];
-        let is_friction = matches!(block.cost, Cost::Elliptic);
+        let is_friction = matches!(block.cost, Cost::Elliptic | Cost::Coulomb);
         for (row, edge) in edges(&block, lane).enumerate() {
             let combine = |values: &[T]| edge.combine(values, lane);
             rows.push(ConstraintRow {

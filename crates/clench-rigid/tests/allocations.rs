@@ -10,7 +10,7 @@ mod scenes;
 
 use clench_rigid::Sim;
 use clench_rigid::model::Integrator;
-use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
 use clench_solver::ConstraintSolver;
 use scenes::{add, everything, free, humanoid, model, plane, shake, sphere, world};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -68,16 +68,21 @@ fn allocations_of_a_replay(sim: &mut Sim, steps: usize) -> (usize, usize) {
 fn a_replayed_humanoid_allocates_nothing() {
     let model = model(&humanoid());
     for solver in [ConstraintSolver::Newton, ConstraintSolver::Cg] {
-        for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
+        for (cone, law) in [
+            (FrictionCone::Pyramidal, ContactModel::Convex),
+            (FrictionCone::Elliptic, ContactModel::Convex),
+            (FrictionCone::Elliptic, ContactModel::Coulomb),
+        ] {
             let options = RigidOptions::new()
                 .constraint_solver(solver)
                 .friction_cone(cone)
+                .contact_model(law)
                 .tolerance(1e-8)
                 .noslip_iterations(3);
             let mut sim = Sim::with_options(model.clone(), options).expect("valid");
             let (allocations, contacts) = allocations_of_a_replay(&mut sim, 1000);
             assert!(contacts > 2000, "it lies on the floor: {contacts}");
-            assert_eq!(allocations, 0, "{solver:?}, {cone:?}");
+            assert_eq!(allocations, 0, "{solver:?}, {cone:?}, {law:?}");
         }
     }
 }

@@ -92,7 +92,7 @@ fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
         if at(block.d, 0) == 0.0 {
             continue;
         }
-        if matches!(block.cost, Cost::Pyramid | Cost::Elliptic)
+        if matches!(block.cost, Cost::Pyramid | Cost::Elliptic | Cost::Coulomb)
             && (1..block.dim).any(|j| at(block.shape, j) <= 0.0)
         {
             return Err("a friction coefficient is not positive");
@@ -111,6 +111,15 @@ fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
             };
             if !(1..block.dim).all(consistent) {
                 return Err("the rows of an elliptic cone need D_j = D_0 (mu_j / mu)²");
+            }
+        }
+        if block.cost == Cost::Coulomb {
+            let scale = at(block.d, 1) / at(block.shape, 1).powi(2);
+            let consistent = |j| {
+                (at(block.d, j) / (scale * at(block.shape, j).powi(2)) - 1.0).abs() < CONSISTENT
+            };
+            if !(1..block.dim).all(consistent) {
+                return Err("the friction rows of a Coulomb contact need D_j = D_1 (mu_j / mu_1)²");
             }
         }
     }

@@ -55,12 +55,16 @@ pub(crate) struct Convergence<T: Real> {
     /// 1 / (mean inertia × nv), the scale of gradients and improvements.
     scale: T,
     tolerance: T,
+    /// CG: the duality gap, times `scale`, when friction was last limited by its own normal forces.
+    outer_gap: T,
 }
 
 /// An improvement below this many times the rounding error of the cost is negligible.
 const NEGLIGIBLE: f64 = 4.0;
 /// A gradient counts as progress if it is below this fraction of the best so far.
 const NOTICEABLE: f64 = 0.7;
+/// CG solves for given limits of friction until the duality gap is this fraction of the one that new limits left.
+const INNER: f64 = 0.1;
 
 /// Minimises the cost, starting from the better of `warmstart` and the unconstrained acceleration.
 #[kernel]
@@ -81,7 +85,7 @@ pub(crate) fn minimise<T: Real, D: Direction<T>>(
     let SolverState { iterate, ray, .. } = &mut *state;
     let totals = iterate.start(problem, warmstart, ray);
     let mut convergence = Convergence::new(totals, T::ONE / inertia, tolerance);
-    convergence.judge_start::<D>(problem, state);
+    convergence.judge_start(problem, direction, state);
     if !direction.prepare(problem, settings) {
         let all = T::Mask::splat(true);
         convergence.end(all, Status::TooLarge, &mut state.stats);
@@ -133,6 +137,7 @@ impl<T: Real> Convergence<T> {
             refreshed: T::Mask::splat(false),
             scale,
             tolerance,
+            outer_gap: T::ZERO,
         }
     }
 
@@ -146,7 +151,12 @@ impl<T: Real> Convergence<T> {
 
     /// Ends the lanes that need no iteration.
     #[inline(always)]
-    fn judge_start<D: Direction<T>>(&mut self, problem: &Problem<T>, state: &mut SolverState<T>) {
+    fn judge_start<D: Direction<T>>(
+        &mut self,
+        problem: &Problem<T>,
+        direction: &mut D,
+        state: &mut SolverState<T>,
+    ) {
         let SolverState {
             iterate,
             ray,
@@ -169,7 +179,9 @@ impl<T: Real> Convergence<T> {
         }
         if proven.any() {
             let gap = self.scale * gap(problem, iterate, &mut ray.direction);
-            self.end(proven & gap.le(self.tolerance), Status::Proven, stats);
+            let proven = proven & gap.le(self.tolerance);
+            let proven = self.consistent(problem, direction, (iterate, ray, stats), proven);
+            self.end(proven, Status::Proven, stats);
         }
     }
 
@@ -221,14 +233,17 @@ impl<T: Real> Convergence<T> {
             stats.gradient.le(self.tolerance) & settled & !in_continuation
         } else {
             let gap = self.scale * direction.gap(problem, iterate);
-            gap.le(self.tolerance)
+            gap.le(self.tolerance.max(T::new(INNER) * self.outer_gap))
         };
+        let converged = self.consistent(problem, direction, (iterate, ray, stats), converged);
         self.end(converged, Status::Converged, stats);
         // At this minimum, a gradient that rounding of its terms explains is zero to working precision.
         let minimum = self.live & exact & !in_continuation;
         if minimum.any() {
             let rounding = iterate.rounding(problem, &mut ray.mass_direction);
-            self.end(minimum & norm.le(rounding), Status::NoProgress, stats);
+            let minimum = minimum & norm.le(rounding);
+            let minimum = self.consistent(problem, direction, (iterate, ray, stats), minimum);
+            self.end(minimum, Status::NoProgress, stats);
         }
 
         let rounding = T::splat(T::Scalar::EPSILON) * T::new(NEGLIGIBLE) * cost;
@@ -238,7 +253,9 @@ impl<T: Real> Convergence<T> {
         // Stopping is not due to the precision if the search was not allowed to reach a lower cost.
         let cut = stuck & step.cut & step.alpha.eq(T::ZERO);
         self.end(cut & self.refreshed, Status::IterationLimit, stats);
-        self.end(stuck & self.refreshed, Status::NoProgress, stats);
+        let refreshed = stuck & self.refreshed;
+        let done = self.consistent(problem, direction, (iterate, ray, stats), refreshed);
+        self.end(done, Status::NoProgress, stats);
         let again = stuck & self.live;
         if again.any() {
             // Retry once without the accumulated rounding of the steps.
@@ -247,6 +264,40 @@ impl<T: Real> Convergence<T> {
             self.refreshed |= again;
             direction.restart(again);
         }
+    }
+
+    /// Returns the lanes of `mask` that live and whose friction is limited by their own normal forces: all without
+    /// Coulomb contacts. The others continue with new limits.
+    #[kernel]
+    fn consistent<D: Direction<T>>(
+        &mut self,
+        problem: &Problem<T>,
+        direction: &mut D,
+        (iterate, ray, stats): (&mut Iterate<T>, &mut Ray<T>, &mut SolveStats<T>),
+        mask: T::Mask,
+    ) -> T::Mask {
+        let mask = mask & self.live;
+        if !(iterate.normal_forces.exist() && mask.any()) {
+            return mask;
+        }
+        let gamma = iterate.normal_forces.replace(problem, &iterate.force, mask);
+        let norm = self.reevaluate(problem, iterate, mask);
+        stats.gradient = T::select(mask, self.scale * norm, stats.gradient);
+        let rounding = iterate.rounding(problem, &mut ray.mass_direction);
+        let mut consistent = stats.gradient.le(self.tolerance) | norm.le(rounding);
+        if !D::NEWTON {
+            let gap = self.scale * gap(problem, iterate, &mut ray.mass_direction);
+            consistent |= gap.le(self.tolerance);
+            self.outer_gap = T::select(mask, gap, self.outer_gap);
+        }
+        let others = mask & !consistent;
+        if others.any() {
+            iterate.normal_forces.mix(problem, gamma, others);
+            self.reevaluate(problem, iterate, others);
+            self.refreshed &= !others;
+            direction.restart(others);
+        }
+        mask & consistent
     }
 
     /// Returns true if the gradient has not decreased noticeably for too many iterations of negligible improvement.
@@ -258,15 +309,16 @@ impl<T: Real> Convergence<T> {
         self.idle.ge(patience)
     }
 
-    /// Reevaluates after the lanes of `mask` were changed by more than a step.
+    /// Reevaluates after the lanes of `mask` were changed by more than a step; returns the norm of the gradient.
     #[kernel]
-    fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) {
+    fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) -> T {
         let totals = iterate.evaluate(problem);
         let norm = iterate.differentiate(problem);
         self.curved = totals.curved;
         self.same_hessian &= !mask;
         self.best = T::select(mask, norm, self.best);
         self.idle = T::select(mask, T::ZERO, self.idle);
+        norm
     }
 
     /// Completes the statistics.
@@ -287,6 +339,7 @@ impl<T: Real> Convergence<T> {
             stats.gradient = T::select(in_continuation, self.scale * norm, stats.gradient);
         }
         stats.gap = gap(problem, iterate, &mut ray.direction);
+        stats.normal_residual = iterate.normal_forces.residual(problem, &iterate.force);
     }
 }
 

@@ -2,8 +2,9 @@
 
 use crate::Problem;
 use crate::continuation::Continuation;
-use crate::costs::{BlockCost, Rows, Totals, with_cost};
+use crate::costs::{BlockCost, Coulomb, MAX_DIM, Rows, Totals, with_cost};
 use crate::jacobian::{BlockIndex, Jacobian};
+use crate::normal_forces::NormalForces;
 use crate::ray::Ray;
 use clench_math::{Mask, Real, Scalar, kernel};
 
@@ -25,6 +26,7 @@ pub(crate) struct Iterate<T: Real> {
     /// The piece of its cost that each row or edge is on.
     pub active_set: Vec<T>,
     pub continuation: Continuation<T>,
+    pub normal_forces: NormalForces<T>,
 }
 
 impl<T: Real> Iterate<T> {
@@ -63,6 +65,7 @@ impl<T: Real> Iterate<T> {
         self.qacc.extend_from_slice(qacc);
         problem.jacobian.mul(&self.qacc, &mut self.residual);
         subtract(&mut self.residual, &problem.aref);
+        self.normal_forces.start(problem, &self.residual);
         self.evaluate(problem)
     }
 
@@ -73,7 +76,7 @@ impl<T: Real> Iterate<T> {
         &mut self,
         problem: &Problem<T>,
         warm: &[T],
-        totals: Totals<T>,
+        mut totals: Totals<T>,
         ray: &mut Ray<T>,
     ) -> Totals<T> {
         // The ray from the current point to `warm`.
@@ -87,6 +90,11 @@ impl<T: Real> Iterate<T> {
         ray.rows.resize(problem.nrow(), T::ZERO);
         problem.jacobian.mul(warm, &mut ray.rows);
         subtract(&mut ray.rows, &problem.aref);
+        if self.normal_forces.exist() {
+            // Costs can be compared if friction has the same limits: those of `warm`, which is near the solution.
+            self.normal_forces.start(problem, &ray.rows);
+            totals = self.evaluate(problem);
+        }
         self.residual.swap_with_slice(&mut ray.rows);
         let warm_totals = self.evaluate(problem);
         let inertial = T::new(0.5) * dot(&ray.direction, &ray.mass_direction);
@@ -117,13 +125,20 @@ impl<T: Real> Iterate<T> {
         blend(mask, &mut self.residual, &ray.rows);
     }
 
-    /// Returns the cost parameters of a block, softened for the current stage of continuation.
+    /// Returns the cost parameters of a block for the current stage of continuation and the given normal forces.
     #[inline(always)]
     pub(crate) fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
         Rows {
             softer: self.continuation.of(b),
+            given: self.normal_forces.of(b),
             ..problem.rows(b)
         }
+    }
+
+    /// Returns μ_j u_j of the friction rows of a Coulomb block; see [`slip`](crate::costs).
+    #[inline(always)]
+    pub(crate) fn slip_direction(&self, problem: &Problem<T>, b: &BlockIndex) -> [T; MAX_DIM] {
+        Coulomb::slip_direction(problem.rows(b), &self.residual[b.rows()])
     }
 
     /// Evaluates every block at the residual: forces, the active set, and the cost of the constraints.

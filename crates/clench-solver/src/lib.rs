@@ -6,7 +6,7 @@
 //!
 //! A [`Problem`] holds M in the sparsity of a kinematic [`Tree`], the unconstrained acceleration and the constraint
 //! blocks. A [`Solver`] computes the acceleration and the constraint forces. This crate has no notion of bodies, joints
-//! or contacts: a constraint is given by J, aref, D and one of five [`Cost`]s.
+//! or contacts: a constraint is given by J, aref, D and one of six [`Cost`]s.
 
 #![deny(unreachable_pub)]
 // Kernels traverse several arrays by the same row or column; an index is clearer than a chain of zips.
@@ -26,10 +26,12 @@ mod line_search;
 mod metric_terms;
 mod minimum_degree;
 mod newton;
+mod normal_forces;
 mod noslip;
 mod options;
 mod partition;
 mod plain;
+mod prediction;
 mod problem;
 mod ray;
 mod results;

@@ -7,6 +7,7 @@ use crate::costs::{BlockCost, with_cost};
 use crate::descent::{Convergence, Direction, SolverState};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
+use crate::prediction::Prediction;
 use crate::{Problem, Settings, SolvePart, SolveStats, Switch};
 use clench_math::{Mask, Real, Scalar, kernel};
 
@@ -14,6 +15,7 @@ use clench_math::{Mask, Real, Scalar, kernel};
 #[derive(Clone, Debug)]
 pub(crate) struct Newton<T: Real> {
     hessian: Hessian<T>,
+    prediction: Prediction<T>,
     /// The active set of the factored Hessian, and the lanes in which it can be updated: factored and not curved.
     active_set: Vec<T>,
     updatable: T::Mask,
@@ -27,6 +29,7 @@ impl<T: Real> Default for Newton<T> {
     fn default() -> Self {
         Newton {
             hessian: Hessian::default(),
+            prediction: Prediction::default(),
             active_set: Vec::new(),
             updatable: T::Mask::splat(false),
         }
@@ -77,7 +80,11 @@ impl<T: Real> Direction<T> for Newton<T> {
             clock,
             threads,
         } = state;
-        let stale = convergence.live & !convergence.same_hessian;
+        let mut stale = convergence.live & !convergence.same_hessian;
+        if iterate.normal_forces.exist() {
+            // Predictions change pieces as well.
+            stale = convergence.live;
+        }
         let updated = self.update(
             problem,
             iterate,
@@ -105,6 +112,14 @@ impl<T: Real> Direction<T> for Newton<T> {
             self.updatable = !convergence.curved;
         }
         clock.lap(SolvePart::Factorization as usize);
+        if iterate.normal_forces.exist() {
+            let lanes = convergence.live & iterate.normal_forces.predicts();
+            let predicted = (self.prediction).run(problem, &mut self.hessian, iterate, lanes);
+            if predicted.any() {
+                iterate.evaluate(problem);
+                iterate.differentiate(problem);
+            }
+        }
         ray.direction.clear();
         ray.direction.extend_from_slice(&iterate.gradient);
         for x in &mut ray.direction {

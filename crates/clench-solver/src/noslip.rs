@@ -6,7 +6,7 @@
 //! minimise over the friction forces f:  ½ fᵀ A f + fᵀ b,    A = J M⁻¹ Jᵀ,    A f + b = J a(f) − aref
 //! ```
 //!
-//! by Gauss–Seidel sweeps, block by block: dry friction within ±η; elliptic friction within its ellipse; in a pyramid,
+//! by Gauss–Seidel sweeps, block by block: dry friction within ±η; elliptic and Coulomb friction within its ellipse; in a pyramid,
 //! each pair of opposing edges with its sum σ fixed, so that friction along one row is free within ±μ σ. The
 //! acceleration a is updated along the way, so an update costs one row of J and one of M⁻¹Jᵀ. As in MuJoCo, the dropped
 //! regularization cost counts towards the first sweep's improvement.
@@ -127,7 +127,7 @@ impl<T: Real> Noslip<T> {
             for block in &problem.jacobian.blocks {
                 let first = match block.cost {
                     Cost::Huber if !contact => 0,
-                    Cost::Pyramid | Cost::Elliptic if contact => 1,
+                    Cost::Pyramid | Cost::Elliptic | Cost::Coulomb if contact => 1,
                     _ => continue,
                 };
                 self.push(problem, block, first);
@@ -229,7 +229,7 @@ impl<T: Real> Friction<T> {
             block, first, a, ..
         } = self;
         let shape = problem.rows(block).shape;
-        if block.cost == Cost::Elliptic {
+        if let Cost::Elliptic | Cost::Coulomb = block.cost {
             return on_ellipse(a, &residual, &force[1..], &shape[1..], force[0]);
         }
         // Rows are solved one after the other, each with the changes of those before it.

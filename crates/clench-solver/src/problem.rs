@@ -59,7 +59,8 @@ pub struct BlockMut<'a, T> {
     pub r: &'a mut [T],
     /// D = 1 / R per row, or 0 in lanes that have no such constraint (J, aref and R stay finite there).
     pub d: &'a mut [T],
-    /// Huber: η per row. Pyramid: row 0 unused, then μ_j. Elliptic: row 0 the regularized μ = μ₁ √(R₁/R₀), then μ_j.
+    /// Huber: η per row. Pyramid and Coulomb: row 0 unused, then μ_j. Elliptic: row 0 the regularized μ = μ₁ √(R₁/R₀),
+    /// then μ_j.
     pub shape: &'a mut [T],
 }
 
@@ -236,6 +237,7 @@ impl<T: Real> Problem<T> {
             r: &self.r[rows.clone()],
             shape: &self.shape[rows],
             softer: T::ZERO,
+            given: T::ZERO,
         }
     }
 
@@ -327,7 +329,7 @@ pub(crate) fn check_size(
     dofs: &[u32],
     nv: usize,
 ) -> Result<(), &'static str> {
-    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic);
+    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic | Cost::Coulomb);
     if !(1..=MAX_DIM).contains(&dim) {
         return Err("a block has 1 to 6 rows");
     }

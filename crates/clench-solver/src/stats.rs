@@ -65,6 +65,9 @@ pub struct SolveStats<T> {
     pub improvement: T,
     /// The duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
     pub gap: T,
+    /// The largest difference between the normal force of a Coulomb contact and the one that limits its friction, N;
+    /// zero where Coulomb's law holds; over islands, the maximum.
+    pub normal_residual: T,
     /// The number of changes of a constraint's piece in all iterations.
     pub active_set_changes: T,
     /// The number of line-search evaluations.
@@ -94,6 +97,8 @@ pub struct LaneStats {
     /// See [`SolveStats`].
     pub gap: f64,
     /// See [`SolveStats`].
+    pub normal_residual: f64,
+    /// See [`SolveStats`].
     pub active_set_changes: usize,
     /// See [`SolveStats`].
     pub ls_evaluations: usize,
@@ -121,6 +126,7 @@ impl<T: Real> SolveStats<T> {
             (&mut self.iterations, other.iterations),
             (&mut self.gradient, other.gradient),
             (&mut self.improvement, other.improvement),
+            (&mut self.normal_residual, other.normal_residual),
             (&mut self.noslip_iterations, other.noslip_iterations),
             (&mut self.status, other.status),
         ] {
@@ -159,6 +165,7 @@ impl<T: Real> SolveStats<T> {
             gradient: value(self.gradient),
             improvement: value(self.improvement),
             gap: value(self.gap),
+            normal_residual: value(self.normal_residual),
             active_set_changes: count(self.active_set_changes),
             ls_evaluations: count(self.ls_evaluations),
             factorizations: count(self.factorizations),

@@ -202,6 +202,6 @@ pub mod prelude {
         Sim, SimError, State, load, load_str,
     };
     pub use clench_math::{Quat, Vec3};
-    pub use clench_rigid::options::{FrictionCone, MaxContacts};
+    pub use clench_rigid::options::{ContactModel, FrictionCone, MaxContacts};
     pub use clench_solver::{ConstraintSolver, Switch};
 }

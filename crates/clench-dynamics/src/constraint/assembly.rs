@@ -241,7 +241,7 @@ fn raise_regularization<T: Real>(
             r[i] = r[i].max(least);
         }
     }
-    if let Cost::Pyramid | Cost::Elliptic = cost {
+    if let Cost::Pyramid | Cost::Elliptic | Cost::Coulomb = cost {
         r.iter_mut().for_each(|r| *r *= factor);
     }
 }

@@ -12,6 +12,7 @@
 //! ```text
 //! pyramid:    edges y_n ± μ_i y_i, all with R = 2 (μ₁² / impratio) (1 + μ₁²) A₀ (1 − d) / d
 //! elliptic:   R_n = A₀ (1 − d) / d,   R_1 = R_n / impratio,   R_j = R_1 μ₁² / μ_j²,   shape μ = μ₁ √(R_1 / R_n)
+//! Coulomb:    the same R
 //! ```
 //!
 //! If surfaces have a velocity of their own (`surfacevel`), friction rows include it in v. A contact that adheres with
@@ -28,7 +29,7 @@ use super::context::ConstraintContext;
 use super::row::Row;
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
-use crate::options::FrictionCone;
+use crate::options::{ContactModel, FrictionCone};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 
@@ -104,34 +105,37 @@ fn rows<T: Real>(
     }
     let impratio = context.impratio;
     let mu = contact.friction;
-    match context.settings.friction_cone {
-        FrictionCone::Pyramidal => {
-            let mu2 = mu[0] * mu[0];
-            let r = soft.regularization(a0 + mu2 * a0);
-            let r = T::new(2.0) * (mu2 / impratio) * r;
-            for (j, row) in rows.iter_mut().enumerate() {
-                row.r = r;
-                row.shape = if j == 0 { T::ZERO } else { mu[j - 1] };
-            }
-            rows[0].pull = contact.adhesion / T::new(2.0 * (contact.dim as f64 - 1.0));
-            (Cost::Pyramid, rows)
+    if context.settings.contact_model == ContactModel::Convex
+        && context.settings.friction_cone == FrictionCone::Pyramidal
+    {
+        let mu2 = mu[0] * mu[0];
+        let r = soft.regularization(a0 + mu2 * a0);
+        let r = T::new(2.0) * (mu2 / impratio) * r;
+        for (j, row) in rows.iter_mut().enumerate() {
+            row.r = r;
+            row.shape = if j == 0 { T::ZERO } else { mu[j - 1] };
         }
-        FrictionCone::Elliptic => {
-            let r1 = normal.r / impratio;
-            let damping = soft.friction_damping(
-                contact.solreffriction,
-                contact.solimp,
-                context.min_timeconst,
-            );
+        rows[0].pull = contact.adhesion / T::new(2.0 * (contact.dim as f64 - 1.0));
+        return (Cost::Pyramid, rows);
+    }
+    let r1 = normal.r / impratio;
+    let damping = soft.friction_damping(
+        contact.solreffriction,
+        contact.solimp,
+        context.min_timeconst,
+    );
+    for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {
+        row.stiffness = T::ZERO;
+        row.damping = damping;
+        row.r = r1 * mu[0] * mu[0] / (mu_j * mu_j);
+        row.shape = mu_j;
+    }
+    match context.settings.contact_model {
+        ContactModel::Convex => {
             rows[0].shape = mu[0] * (r1 / normal.r).sqrt();
-            for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {
-                row.stiffness = T::ZERO;
-                row.damping = damping;
-                row.r = r1 * mu[0] * mu[0] / (mu_j * mu_j);
-                row.shape = mu_j;
-            }
             (Cost::Elliptic, rows)
         }
+        ContactModel::Coulomb => (Cost::Coulomb, rows),
     }
 }
 

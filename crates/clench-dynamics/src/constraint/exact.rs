@@ -2,7 +2,7 @@
 //! `diagexact`).
 //!
 //! R = A (1 − d) / d, with A = J M⁻¹ Jᵀ of the row in place of A₀. One row determines R of a cone: the normal of an
-//! elliptic one, the first edge of a pyramid, J = J_n + μ₁ J_1. The others keep their ratio to it, which preserves the
+//! elliptic or Coulomb one, the first edge of a pyramid, J = J_n + μ₁ J_1. The others keep their ratio to it, which preserves the
 //! shape of the cone.
 
 use super::row::Row;
@@ -46,7 +46,7 @@ impl<T: Real> ExactDiagonal<'_, T> {
                 let edge = T::new(2.0) * (mu * mu / self.impratio) * inverse_weight(d, a);
                 r[..rows.len()].fill(edge);
             }
-            Cost::Elliptic => {
+            Cost::Elliptic | Cost::Coulomb => {
                 let a = self.inverse_inertia(jacobian, &[], T::ZERO, dofs);
                 let larger = inverse_weight(d, a) / r[0];
                 r[..rows.len()].iter_mut().for_each(|r| *r *= larger);

@@ -69,7 +69,9 @@ impl<T: Real> ImplicitRows<'_, T> {
                 let unit = T::ONE / (T::new(2.0) * (mu * mu / self.impratio));
                 (factor_of(&rows[0], normal, tangent, mu), unit)
             }
-            Cost::Elliptic => (factor_of(&rows[0], &jacobian[..n], &[], T::ZERO), T::ONE),
+            Cost::Elliptic | Cost::Coulomb => {
+                (factor_of(&rows[0], &jacobian[..n], &[], T::ZERO), T::ONE)
+            }
         };
         let first = r[0] * unit;
         let larger = above_least(first * factor) / first;

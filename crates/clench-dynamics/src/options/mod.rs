@@ -4,7 +4,7 @@
 mod table;
 mod value;
 
-pub use value::{FrictionCone, MaxContacts, OptionError, OptionValue, Range};
+pub use value::{ContactModel, FrictionCone, MaxContacts, OptionError, OptionValue, Range};
 
 use clench_solver::{ConstraintSolver, SolverOptions, Switch};
 
@@ -26,6 +26,8 @@ pub enum Mjcf {
     Words(&'static str, &'static [(&'static str, OptionValue)]),
     /// An attribute of `<flag>`, and the values of "disable" and "enable".
     Flag(&'static str, [OptionValue; 2]),
+    /// The data of a `<text>` in `<custom>`, which MuJoCo stores and ignores.
+    Text(&'static str),
     /// Not in MJCF.
     Nowhere,
 }
@@ -136,7 +138,7 @@ macro_rules! declare_options {
 
             /// Returns its location in MJCF.
             pub fn mjcf(self) -> Mjcf {
-                use Mjcf::{Attribute, Flag, Nowhere, Words};
+                use Mjcf::{Attribute, Flag, Nowhere, Text, Words};
                 use OptionValue::{Algorithm, Choice, Truth};
                 match self { $($( RigidOption::$name => $mjcf, )*)* }
             }

@@ -27,7 +27,11 @@ macro_rules! rigid_options {
                 max_contacts: MaxContacts = MaxContacts::Auto, Any, Given("max-contacts"), Nowhere;
                 /// Shape of frictional contacts; pyramidal.
                 friction_cone: FrictionCone = FrictionCone::Pyramidal, Any, Given("cone"), Attribute("cone");
-                /// Ratio of friction to normal impedance in elliptic contacts; 1.
+                /// Law of friction in contacts; convex. In the model coulomb, sliding does not change the normal force,
+                /// and the option `friction_cone` has no effect.
+                contact_model: ContactModel = ContactModel::Convex, Any, Given("contact-model"),
+                    Text("clench.contact_model");
+                /// Ratio of friction to normal impedance in elliptic and Coulomb contacts; 1.
                 impratio: f64 = 1.0, Positive, Given("impratio"), Attribute("impratio");
                 /// Maximum directions that a sensor `insidesite` with `enclosed` tries from each of its starts; 35. (In
                 /// MuJoCo also a limit of collision iterations, which have none here.)

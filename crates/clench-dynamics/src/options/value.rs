@@ -13,6 +13,16 @@ pub enum FrictionCone {
     Elliptic,
 }
 
+/// The law of friction in contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactModel {
+    /// MuJoCo's convex model: sliding friction adds to the normal force.
+    #[default]
+    Convex,
+    /// Coulomb's law: friction opposes sliding with μ times the normal force, which it does not change.
+    Coulomb,
+}
+
 /// The maximum number of contacts of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MaxContacts {
@@ -86,6 +96,11 @@ declare_values! {
     Cone(FrictionCone): "pyramidal or elliptic", &[
         ("pyramidal", OptionValue::Cone(FrictionCone::Pyramidal)),
         ("elliptic", OptionValue::Cone(FrictionCone::Elliptic)),
+    ];
+    /// A law of friction.
+    Law(ContactModel): "convex or coulomb", &[
+        ("convex", OptionValue::Law(ContactModel::Convex)),
+        ("coulomb", OptionValue::Law(ContactModel::Coulomb)),
     ];
 }
 

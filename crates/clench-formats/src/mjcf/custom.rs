@@ -7,14 +7,20 @@ use crate::LoadError;
 use crate::spending::Spending;
 use clench_builder::UserWidths;
 use clench_dynamics::model::{Custom, TupleEntry};
+use clench_dynamics::options::{Mjcf, RigidOption, RigidOptions};
 
 /// The kinds of elements that a tuple may list.
 const KINDS: &str = "body xbody joint geom site camera light flex mesh skin hfield texture material pair exclude equality tendon \
     actuator sensor numeric text tuple key plugin";
 
-/// Reads the user numbers, texts and tuples.
-pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, LoadError> {
+/// Reads the user numbers, texts and tuples, and the options that are texts.
+pub(crate) fn read(
+    root: &Element,
+    options: &mut RigidOptions,
+    spending: &mut Spending,
+) -> Result<Custom, LoadError> {
     let mut custom = Custom::default();
+    let mut texts = Vec::new();
     for element in entries(root, "custom") {
         let name = element.required_text("name")?.to_owned();
         let is_repeated = match element.tag.as_str() {
@@ -26,12 +32,15 @@ pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, Lo
                 repeated
             }
             "text" => {
-                let repeated = custom.texts.iter().any(|(other, _)| *other == name);
+                let repeated = texts.contains(&name);
                 let text = element.string("data");
                 if text.is_empty() {
                     return Err(element.error("data cannot be empty"));
                 }
-                custom.texts.push((name, text));
+                texts.push(name.clone());
+                if !read_option(element, &name, &text, options)? {
+                    custom.texts.push((name, text));
+                }
                 repeated
             }
             _ => {
@@ -45,6 +54,26 @@ pub(crate) fn read(root: &Element, spending: &mut Spending) -> Result<Custom, Lo
         }
     }
     Ok(custom)
+}
+
+/// Sets the option whose text has this name; returns false if there is none.
+fn read_option(
+    element: &Element,
+    name: &str,
+    text: &str,
+    options: &mut RigidOptions,
+) -> Result<bool, LoadError> {
+    let is_named = |option: &&RigidOption| matches!(option.mjcf(), Mjcf::Text(own) if own == name);
+    let Some(&option) = RigidOption::ALL.iter().find(is_named) else {
+        return Ok(false);
+    };
+    let default = option.default(false);
+    let Some(&(_, value)) = default.words().iter().find(|(word, _)| *word == text) else {
+        let what = default.what();
+        return Err(element.error(format!("{name} is \"{text}\", but must be {what}")));
+    };
+    (options.set(option, value)).map_err(|wrong| element.error(wrong.to_string()))?;
+    Ok(true)
 }
 
 /// Reads the counts of user numbers from a `<size>`; -1 means as many as are given.

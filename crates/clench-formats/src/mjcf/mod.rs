@@ -118,7 +118,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     }
     let shortcuts = relations::shortcuts(root, sources)?;
     frames.scale_rest(&shortcuts, &mut builder, spending)?;
-    builder.custom = custom::read(root, spending)?;
+    builder.custom = custom::read(root, &mut builder.options, spending)?;
     if builder.compiler.fusestatic {
         kept::keep_named(root, &mut builder.bodies);
     }

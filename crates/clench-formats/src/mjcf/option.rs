@@ -120,7 +120,7 @@ fn attribute(element: &Element, option: RigidOption) -> Result<Option<OptionValu
         }
         (Mjcf::Attribute(name), default) => element.keyword(name, default.words()),
         (Mjcf::Words(name, words), _) => element.keyword(name, words),
-        (Mjcf::Flag(..) | Mjcf::Nowhere, _) => Ok(None),
+        (Mjcf::Flag(..) | Mjcf::Text(_) | Mjcf::Nowhere, _) => Ok(None),
     }
 }
 
@@ -130,7 +130,7 @@ fn flag_value(element: &Element, option: RigidOption) -> Result<Option<OptionVal
         Mjcf::Flag(name, [disabled, enabled]) => {
             element.keyword(name, &[("disable", disabled), ("enable", enabled)])
         }
-        Mjcf::Attribute(_) | Mjcf::Words(..) | Mjcf::Nowhere => Ok(None),
+        Mjcf::Attribute(_) | Mjcf::Words(..) | Mjcf::Text(_) | Mjcf::Nowhere => Ok(None),
     }
 }
 

@@ -4,7 +4,7 @@ use clench_formats::read_str;
 use clench_math::Vec3;
 use clench_rigid::builder::{ConnectAnchor, EqualityKind, InertiaFromGeom, ModelBuilder, WrapSpec};
 use clench_rigid::model::Integrator;
-use clench_rigid::options::{FrictionCone, RigidOption};
+use clench_rigid::options::{ContactModel, FrictionCone, RigidOption};
 use clench_solver::{ConstraintSolver, Switch};
 
 fn read(sections: &str) -> ModelBuilder {
@@ -61,6 +61,33 @@ fn options_are_read_and_the_last_word_counts() {
         (options.impratio, options.noslip_iterations),
         (Some(10.0), Some(3))
     );
+}
+
+#[test]
+fn an_option_that_mujoco_lacks_is_a_text_that_it_ignores() {
+    let text = |data: &str| {
+        format!(
+            "<custom><text name='clench.contact_model' data='{data}'/><text name='own' data='coulomb'/></custom>"
+        )
+    };
+    let model = read(&text("coulomb"));
+    assert_eq!(model.options.contact_model, Some(ContactModel::Coulomb));
+    assert_eq!(
+        model.custom.texts,
+        [("own".to_owned(), "coulomb".to_owned())]
+    );
+    let error = read_str(&format!("<mujoco>{}</mujoco>", text("sticky")))
+        .err()
+        .unwrap();
+    assert!(
+        error
+            .to_string()
+            .contains("clench.contact_model is \"sticky\", but must be convex or coulomb"),
+        "{error}"
+    );
+    let twice = format!("<mujoco>{}{}</mujoco>", text("convex"), text("coulomb"));
+    let error = read_str(&twice).err().unwrap().to_string();
+    assert!(error.contains("the name is repeated"), "{error}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::batches::*;
 use clench_math::Instructions;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Integrator;
-use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
 use clench_rigid::readout::constraint_rows;
 use clench_rigid::{EnvStatus, Precision};
 use clench_solver::ConstraintSolver;
@@ -64,6 +64,15 @@ fn newton_with_pyramids_moves_environments_as_alone() {
 fn newton_with_elliptic_cones_moves_environments_as_alone() {
     let options = options(ConstraintSolver::Newton, FrictionCone::Elliptic).impratio(3.0);
     assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
+}
+
+#[test]
+fn coulombs_law_moves_environments_as_alone() {
+    for solver in [ConstraintSolver::Newton, ConstraintSolver::Cg] {
+        let options = options(solver, FrictionCone::Elliptic).contact_model(ContactModel::Coulomb);
+        assert!(compare::<f64>(&loose_parts(), options, 300) > 3.0);
+        assert!(compare::<f32>(&loose_parts(), options, 300) > 3.0);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::scenes::{Numbers, everything, humanoid, shake};
 use clench_math::Vec3;
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Integrator;
-use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
 use clench_rigid::{Acceleration, Sim, SimError};
 use std::sync::Arc;
 
@@ -50,9 +50,13 @@ fn assert_close(sim: &Sim, found: &[f64], expected: &[f64], tolerance: f64, what
 
 #[test]
 fn inverse_dynamics_find_the_forces_that_forward_dynamics_were_given() {
-    for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
+    for (cone, law) in [
+        (FrictionCone::Pyramidal, ContactModel::Convex),
+        (FrictionCone::Elliptic, ContactModel::Convex),
+        (FrictionCone::Elliptic, ContactModel::Coulomb),
+    ] {
         for (seed, builder) in [everything(), humanoid()].iter().enumerate() {
-            let options = RigidOptions::new().friction_cone(cone);
+            let options = RigidOptions::new().friction_cone(cone).contact_model(law);
             let mut sim = shaken(builder, options, seed as u64 + 2);
             // Both begin with a free joint. Lower them until they touch the floor.
             sim.forward().unwrap();
@@ -65,7 +69,7 @@ fn inverse_dynamics_find_the_forces_that_forward_dynamics_were_given() {
             let mut found = vec![f64::NAN; qacc.len()];
             (sim.inverse(&qacc, Acceleration::Continuous, &mut found)).unwrap();
             let expected = given(&mut sim);
-            assert_close(&sim, &found, &expected, 1e-9, &format!("{cone:?}"));
+            assert_close(&sim, &found, &expected, 1e-9, &format!("{cone:?}, {law:?}"));
         }
     }
 }

@@ -22,6 +22,7 @@ mod build_structure;
 mod common;
 mod constraints;
 mod contacts;
+mod coulomb;
 mod delays;
 mod discrete;
 mod divergence;

@@ -13,6 +13,8 @@ pub(crate) struct Rows<'a, T> {
     pub shape: &'a [T],
     /// Added to R by a stage of [continuation](crate::continuation); used only by elliptic cones.
     pub softer: T,
+    /// The given normal force of a Coulomb block; see [`normal_forces`](crate::normal_forces).
+    pub given: T,
 }
 
 /// The sums over all evaluated blocks.

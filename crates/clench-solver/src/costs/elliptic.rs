@@ -22,7 +22,8 @@
 //! In the bottom zone W = diag(D).
 //! The piece is 0, 1, 2 for top, middle, bottom.
 
-use super::block_cost::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
+use super::block_cost::{BlockCost, Form, RankOne, Rows, Slope, Totals, Weight};
+use super::slip::{Slip, SlipPath};
 use clench_math::{Mask, Real};
 
 pub(crate) struct Elliptic;
@@ -34,10 +35,8 @@ struct Zone<T: Real> {
     /// N − μT and μN + T if negative, else 0.
     p: T,
     q: T,
-    /// T.
-    t: T,
-    /// The direction of slip, zero without slip.
-    u: [T; MAX_DIM],
+    /// T and u.
+    slip: Slip<T>,
     /// μ² − μ N/T in the middle zone.
     c: T,
     /// The middle and the bottom zone; false in lanes without the contact.
@@ -48,24 +47,13 @@ struct Zone<T: Real> {
 impl<T: Real> Zone<T> {
     #[inline(always)]
     fn new(rows: Rows<T>, y: impl Fn(usize) -> T) -> Self {
-        let dim = rows.d.len();
         let exists = rows.d[0].gt(T::ZERO);
         // A lane without the contact may have zero coefficients; 1 keeps it finite.
         let mu = T::select(exists, rows.shape[0], T::ONE);
         let k = rows.d[0] / (mu * mu * (T::ONE + mu * mu) * stiffening(rows));
         let n = mu * y(0);
-        let mut u = [T::ZERO; MAX_DIM];
-        let mut t2 = T::ZERO;
-        for j in 1..dim {
-            u[j] = rows.shape[j] * y(j);
-            t2 += u[j] * u[j];
-        }
-        let t = t2.sqrt();
-        let slips = t.gt(T::ZERO);
-        let inverse = T::ONE / T::select(slips, t, T::ONE);
-        for u in &mut u[1..dim] {
-            *u *= inverse;
-        }
+        let slip = Slip::new(rows.shape, y);
+        let (t, inverse) = (slip.t, slip.inverse);
         let (a, b) = (n - mu * t, mu * n + t);
         let top = a.ge(T::ZERO);
         let bottom = !top & b.le(T::ZERO) & exists;
@@ -75,8 +63,7 @@ impl<T: Real> Zone<T> {
             mu,
             p: a.min(T::ZERO),
             q: T::select(bottom, b, T::ZERO),
-            t,
-            u,
+            slip,
             c: T::select(middle, mu * mu - mu * n * inverse, T::ZERO),
             middle,
             bottom,
@@ -115,7 +102,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
         let slip = zone.k * (zone.mu * zone.p - zone.q);
         force[0] = normal;
         for j in 1..rows.d.len() {
-            force[j] = slip * zone.u[j] * rows.shape[j];
+            force[j] = slip * zone.slip.u[j] * rows.shape[j];
         }
         totals.cost += zone.cost();
         totals.curved |= zone.middle;
@@ -144,7 +131,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
         let Zone {
             k,
             mu,
-            ref u,
+            slip: Slip { ref u, .. },
             c,
             middle,
             bottom,
@@ -193,9 +180,13 @@ impl<T: Real> BlockCost<T> for Elliptic {
             dp,
             dq,
             dn,
-            along,
-            turn,
-            squares,
+            slip:
+                SlipPath {
+                    along,
+                    turn,
+                    squares,
+                    ..
+                },
             ..
         } = Path::new(rows, y, dy, alpha);
         let (k, mu) = (after.k, after.mu);
@@ -220,8 +211,7 @@ impl<T: Real> BlockCost<T> for Elliptic {
             dp,
             dq,
             dn,
-            along,
-            bend,
+            slip: SlipPath { along, bend, .. },
             in_p,
             in_q,
             ..
@@ -241,14 +231,9 @@ struct Path<T: Real> {
     /// p₁ − p₀, q₁ − q₀.
     dp: T,
     dq: T,
-    /// N' and |U'|².
+    /// N'.
     dn: T,
-    squares: T,
-    /// u₀·U' and the growth of u·U'.
-    along: T,
-    turn: T,
-    /// T₁ − T₀ − α u₀·U' ≥ 0.
-    bend: T,
+    slip: SlipPath<T>,
     /// The lanes in which p, and in which q, is negative at both ends.
     in_p: T::Mask,
     in_q: T::Mask,
@@ -261,33 +246,17 @@ impl<T: Real> Path<T> {
         let before = Zone::new(rows, |j| y[j]);
         let after = Zone::new(rows, |j| y[j] + alpha * dy[j]);
         let dn = before.mu * dy[0];
-        let (mut along, mut squares) = (T::ZERO, T::ZERO);
-        for j in 1..rows.d.len() {
-            let du = rows.shape[j] * dy[j];
-            along += before.u[j] * du;
-            squares += du * du;
-        }
-        // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²). The bend is the height of T₁ above its tangent T₀ + α u₀·U'.
-        let across = (squares - along * along).max(T::ZERO);
-        let straight = before.t + alpha * along;
-        let ahead = straight.gt(T::ZERO);
-        let sum = T::select(ahead, after.t + straight, T::ONE);
-        let bend = T::select(ahead, alpha * alpha * across / sum, after.t - straight);
-        let dt = alpha * along + bend;
-        let slips = after.t.gt(T::ZERO);
-        let turn = (alpha * across - along * bend) / T::select(slips, after.t, T::ONE);
+        let slip = SlipPath::new(rows.shape, dy, alpha, [&before.slip, &after.slip]);
+        let dt = alpha * slip.along + slip.bend;
         let in_p = before.p.lt(T::ZERO) & after.p.lt(T::ZERO);
         let in_q = before.bottom & after.bottom;
         Path {
             dp: T::select(in_p, alpha * dn - before.mu * dt, after.p - before.p),
             dq: T::select(in_q, before.mu * alpha * dn + dt, after.q - before.q),
-            turn: T::select(slips, turn, -along),
-            bend,
             before,
             after,
             dn,
-            squares,
-            along,
+            slip,
             in_p,
             in_q,
         }

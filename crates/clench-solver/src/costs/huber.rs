@@ -86,17 +86,17 @@ impl<T: Real> BlockCost<T> for Huber {
 }
 
 /// One row moving from y₀ to y₁.
-struct Turn<T: Real> {
+pub(super) struct Turn<T: Real> {
     /// c₁ − c₀.
-    change: T,
+    pub change: T,
     /// y₁ − ½ (c₀ + c₁), with the sign of the change.
-    beyond: T,
-    ends_inside: T::Mask,
+    pub beyond: T,
+    pub ends_inside: T::Mask,
 }
 
 impl<T: Real> Turn<T> {
     #[inline(always)]
-    fn new(bound: T, y: T, step: T) -> Self {
+    pub(super) fn new(bound: T, y: T, step: T) -> Self {
         let half = T::new(0.5);
         let end = y + step;
         let (c0, c1) = (y.clamp(-bound, bound), end.clamp(-bound, bound));

@@ -1,15 +1,18 @@
-//! The five constraint costs. Each file derives one: its value, force, Hessian block, and its restriction to a ray.
+//! The six constraint costs. Each file derives one: its value, force, Hessian block, and its restriction to a ray.
 
 mod block_cost;
+mod coulomb;
 mod elliptic;
 mod huber;
 mod one_sided;
 mod pyramid;
 mod quadratic;
+mod slip;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use block_cost::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
+pub(crate) use coulomb::Coulomb;
 pub(crate) use elliptic::Elliptic;
 pub(crate) use huber::Huber;
 pub(crate) use one_sided::OneSided;
@@ -40,6 +43,10 @@ macro_rules! with_cost {
                 type $c = $crate::costs::Elliptic;
                 $body
             }
+            $crate::Cost::Coulomb => {
+                type $c = $crate::costs::Coulomb;
+                $body
+            }
         }
     };
 }
@@ -64,4 +71,7 @@ pub enum Cost {
     Pyramid,
     /// Distance to a circular cone after scaling: frictional contact, exact.
     Elliptic,
+    /// One-sided in the normal; friction within a disc whose radius is the normal force: frictional contact by
+    /// Coulomb's law.
+    Coulomb,
 }

@@ -4,12 +4,13 @@
 use super::*;
 use crate::Cost;
 
-const COSTS: [Cost; 5] = [
+const COSTS: [Cost; 6] = [
     Cost::Quadratic,
     Cost::OneSided,
     Cost::Huber,
     Cost::Pyramid,
     Cost::Elliptic,
+    Cost::Coulomb,
 ];
 
 struct Sample {
@@ -17,6 +18,7 @@ struct Sample {
     d: Vec<f64>,
     r: Vec<f64>,
     shape: Vec<f64>,
+    given: f64,
     y: Vec<f64>,
     dy: Vec<f64>,
 }
@@ -28,6 +30,7 @@ impl Sample {
             r: &self.r,
             shape: &self.shape,
             softer: 0.0,
+            given: self.given,
         }
     }
 
@@ -89,11 +92,11 @@ fn samples() -> Vec<Sample> {
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     let mut samples = Vec::new();
-    for k in 0..5000 {
-        let cost = COSTS[k % 5];
+    for k in 0..6000 {
+        let cost = COSTS[k % 6];
         let dim = match cost {
-            Cost::Pyramid | Cost::Elliptic => 2 + k / 5 % 5,
-            _ => 1 + k / 5 % 3,
+            Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => 2 + k / 6 % 5,
+            _ => 1 + k / 6 % 3,
         };
         let d0 = 0.5 + 3.0 * unit();
         let mut shape: Vec<f64> = (0..dim).map(|_| 0.3 + unit()).collect();
@@ -101,6 +104,13 @@ fn samples() -> Vec<Sample> {
         if cost == Cost::Elliptic {
             (1..dim).for_each(|j| d[j] = d0 * (shape[j] / shape[0]).powi(2));
         }
+        if cost == Cost::Coulomb {
+            (2..dim).for_each(|j| d[j] = d[1] * (shape[j] / shape[1]).powi(2));
+        }
+        let given = match cost {
+            Cost::Coulomb => 2.0 * unit() - 0.2,
+            _ => 0.0,
+        };
         if cost == Cost::Quadratic || cost == Cost::OneSided {
             shape.fill(0.0);
         }
@@ -112,6 +122,7 @@ fn samples() -> Vec<Sample> {
             d,
             r,
             shape,
+            given: given.max(0.0),
             y,
             dy,
         });
@@ -218,7 +229,7 @@ fn a_ray_keeps_its_digits_for_tiny_steps() {
             continue; // the Hessian jumps between active sets
         }
         let second = slope.second;
-        curved += usize::from(s.cost == Cost::Elliptic && second > 0.0);
+        curved += usize::from(matches!(s.cost, Cost::Elliptic | Cost::Coulomb) && second > 0.0);
         for (name, value, expected) in [
             ("growth", slope.growth, alpha * second),
             ("divergence", divergence, 0.5 * alpha * alpha * second),
@@ -230,7 +241,7 @@ fn a_ray_keeps_its_digits_for_tiny_steps() {
             );
         }
     }
-    assert!(curved > 400);
+    assert!(curved > 700);
 }
 
 #[test]
@@ -254,6 +265,10 @@ fn forces_lie_in_their_cones() {
                 let sum: f64 = (1..f.len()).map(|j| (f[j] / s.shape[j]).powi(2)).sum();
                 assert!(sum.sqrt() <= f[0] + 1e-14);
             }
+            Cost::Coulomb => {
+                let sum: f64 = (1..f.len()).map(|j| (f[j] / s.shape[j]).powi(2)).sum();
+                assert!(f[0] >= 0.0 && sum.sqrt() <= s.given + 1e-14);
+            }
         }
     }
 }
@@ -264,6 +279,7 @@ fn a_lane_without_the_constraint_adds_nothing() {
         s.d.fill(0.0);
         s.r.fill(1.0);
         s.shape.fill(0.0);
+        s.given = 0.0;
         let (cost, force, piece) = s.at(&s.y);
         assert!(
             cost == 0.0 && force.iter().all(|&f| f == 0.0) && piece.iter().all(|&p| p == 0.0),

@@ -125,6 +125,7 @@ impl Program {
             Cost::Quadratic => ZeroConeT,
             Cost::OneSided | Cost::Huber | Cost::Pyramid => NonnegativeConeT,
             Cost::Elliptic => SecondOrderConeT,
+            Cost::Coulomb => unreachable!("Coulomb's law is not a convex problem"),
         };
         match block.cost {
             Cost::Quadratic | Cost::OneSided => {
@@ -165,6 +166,7 @@ impl Program {
                 let v = (0..dim).map(v).collect();
                 self.require(cone, v);
             }
+            Cost::Coulomb => unreachable!("Coulomb's law is not a convex problem"),
         }
     }
 

@@ -119,6 +119,7 @@ fn push(rng: &mut Rng, recipe: &Recipe, problem: &mut Problem<f64>, stiffness: f
         Cost::Quadratic => [1, 3, 6][rng.below(3)],
         Cost::OneSided | Cost::Huber => [1, 1, 3][rng.below(3)],
         Cost::Pyramid | Cost::Elliptic => [2, 3, 4, 6][rng.below(4)],
+        Cost::Coulomb => unreachable!("Coulomb's law is not a convex problem"),
     };
     let mut dofs = tree.row(rng.below(nv)).to_vec();
     if rng.unit() < 0.3 {
@@ -160,6 +161,7 @@ fn push(rng: &mut Rng, recipe: &Recipe, problem: &mut Problem<f64>, stiffness: f
                 .for_each(|mu| *mu = rng.scale(0.05, 2.0));
         }
         Cost::Quadratic | Cost::OneSided => {}
+        Cost::Coulomb => unreachable!("Coulomb's law is not a convex problem"),
     }
     if cost == Cost::Elliptic {
         // The coefficient is divided by the square root of impratio.

@@ -135,6 +135,7 @@ impl WideBlock {
                     half(d[0] / (square(mu) * (wide(1.0) + square(mu))) * square(n - mu * t))
                 }
             }
+            Cost::Coulomb => unreachable!("Coulomb's law is not a convex problem"),
         }
     }
 }

@@ -204,6 +204,18 @@ fn newton_in_lanes_equals_scalars_on_cones_to_the_working_precision() {
 }
 
 #[test]
+fn coulombs_law_in_lanes_equals_scalars() {
+    let costs = [Cost::Coulomb, Cost::OneSided];
+    compare::<f64>(options(), &costs, 40);
+    compare::<f64>(options().tolerance(0.0), &costs, 20);
+    compare::<f32>(options(), &costs, 40);
+    compare::<f64>(options().noslip_iterations(10), &costs, 20);
+    compare_islands::<f64>(options(), &costs, 20);
+    let cg = options().constraint_solver(ConstraintSolver::Cg);
+    compare::<f64>(cg.iterations(100), &costs, 20);
+}
+
+#[test]
 fn dense_newton_in_lanes_equals_scalars() {
     compare::<f64>(options().sparse_solve(Switch::Off), &ALL_COSTS, 10);
 }

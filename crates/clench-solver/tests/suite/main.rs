@@ -3,6 +3,7 @@
 //! another solver.
 
 mod common;
+mod coulomb;
 mod input;
 mod islands;
 mod lanes;

@@ -54,7 +54,7 @@ fn leftover(problem: &Problem<f64>, solver: &Solver<f64>, k: usize, block: &Bloc
                 wrong_slip(force[j], block.shape[j] * (pair[0] + pair[1]), slip[j])
             })
             .fold(0.0, f64::max),
-        Cost::Elliptic => {
+        Cost::Elliptic | Cost::Coulomb => {
             let g: Vec<f64> = (1..block.dim).map(|j| force[j] / block.shape[j]).collect();
             let s: Vec<f64> = (1..block.dim).map(|j| slip[j] * block.shape[j]).collect();
             if force[0] == 0.0 {
@@ -78,6 +78,7 @@ fn sweeps_converge_to_friction_without_slip() {
         &[Cost::Huber, Cost::OneSided][..],
         &[Cost::Pyramid],
         &[Cost::Elliptic],
+        &[Cost::Coulomb],
         &ALL_COSTS,
     ] {
         for (scene, problem) in scenes(costs).enumerate() {
@@ -117,7 +118,7 @@ fn normal_forces_stay_and_everything_stays_consistent() {
             let (old, new) = (&before.force()[block.rows()], &after.force()[block.rows()]);
             match block.cost {
                 Cost::Huber => assert!(new[0].abs() <= block.shape[0]),
-                Cost::Pyramid | Cost::Elliptic => assert_eq!(old[0], new[0]),
+                Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => assert_eq!(old[0], new[0]),
                 _ => assert_eq!(old, new),
             }
             if block.cost == Cost::Pyramid {

@@ -20,6 +20,7 @@ mod tests;
 use super::equality;
 use clench_dynamics::Model;
 use clench_dynamics::model::{Custom, Keyframe, TupleEntry};
+use clench_dynamics::options::{Mjcf, RigidOption};
 pub use names::SaveError;
 use xml::Xml;
 
@@ -102,6 +103,12 @@ fn write_custom(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
     }
     for (name, data) in texts {
         xml.tag("text").text("name", name).text("data", data).end();
+    }
+    for &option in RigidOption::ALL {
+        if let (Mjcf::Text(name), Some(value)) = (option.mjcf(), model.options.get(option)) {
+            let data = value.to_string();
+            xml.tag("text").text("name", name).text("data", &data).end();
+        }
     }
     for (name, entries) in tuples {
         xml.tag("tuple").text("name", name).open();

@@ -127,7 +127,7 @@ fn write_attribute<'x>(
         (Mjcf::Attribute(name), OptionValue::Number(x)) => tag.numbers(name, &[x]),
         (Mjcf::Attribute(name), value) => tag.text(name, word(option, value, value.words())?),
         (Mjcf::Words(name, words), value) => tag.text(name, word(option, value, words)?),
-        (Mjcf::Flag(..), _) => tag,
+        (Mjcf::Flag(..) | Mjcf::Text(_), _) => tag,
         // Its effect was checked before.
         (Mjcf::Nowhere, _) if option == RigidOption::constraint_timeconst => tag,
         (Mjcf::Nowhere, value) if value == option.default(false) => tag,

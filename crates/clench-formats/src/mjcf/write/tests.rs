@@ -6,6 +6,7 @@ use clench_dynamics::model::{
     Body, Geom, HeightField, Joint, Mesh, ParamField, Sensor, SensorKind, SensorTarget,
 };
 use clench_math::Vec3;
+use clench_rigid::options::ContactModel;
 use clench_rigid::{Model, Sim};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -377,6 +378,16 @@ fn what_is_to_be_enclosed_comes_back_with_the_bounds_of_its_search() {
     assert!(enclosed);
     let bounds = (again.options.ccd_iterations, again.options.ccd_tolerance);
     assert_eq!(bounds, (Some(7), Some(0.25)));
+}
+
+#[test]
+fn an_option_that_mujoco_lacks_comes_back() {
+    let text =
+        "<mujoco><custom><text name='clench.contact_model' data='coulomb'/></custom></mujoco>";
+    let model = load_str(text).unwrap();
+    let again = saved("coulomb", &model);
+    assert_eq!(again.options.contact_model, Some(ContactModel::Coulomb));
+    assert_eq!(again.options, model.options);
 }
 
 #[test]

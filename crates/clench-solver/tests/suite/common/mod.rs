@@ -43,6 +43,7 @@ pub struct Shape {
     pub cross: f64,
 }
 
+/// The costs whose problem is convex: all except Coulomb's law.
 pub const ALL_COSTS: [Cost; 5] = [
     Cost::Quadratic,
     Cost::OneSided,
@@ -133,7 +134,7 @@ fn push_random_block(rng: &mut Rng, shape: &Shape, tree: &Tree, problem: &mut Pr
     let dim = match cost {
         Cost::Quadratic => [1, 3, 6][rng.below(3)],
         Cost::OneSided | Cost::Huber => 1,
-        Cost::Pyramid | Cost::Elliptic => [2, 3, 4, 6][rng.below(4)],
+        Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => [2, 3, 4, 6][rng.below(4)],
     };
     push_block(rng, shape, tree, problem, cost, dim);
 }
@@ -192,6 +193,15 @@ fn push_block(
             block.shape[0] = block.shape[1] * rng.scale(0.3, 1.5);
             for j in 1..dim {
                 block.d[j] = d0 * (block.shape[j] / block.shape[0]).powi(2);
+            }
+        }
+        Cost::Coulomb => {
+            block.shape[1..]
+                .iter_mut()
+                .for_each(|mu| *mu = rng.range(0.2, 1.5));
+            block.d[1..].fill(d0 * rng.scale(1.0, 10.0));
+            for j in 2..dim {
+                block.d[j] = block.d[1] * (block.shape[j] / block.shape[1]).powi(2);
             }
         }
         Cost::Quadratic | Cost::OneSided => {}
@@ -286,6 +296,15 @@ pub fn cost_and_force(block: &Block<f64>, y: &[f64]) -> (f64, Vec<f64>) {
                 }
             }
         }
+        // Coulomb's law has a force but no cost.
+        Cost::Coulomb => {
+            force[0] = one_sided(block.d[0], y[0]).1;
+            let share = |j: usize| block.d[j] * y[j] / block.shape[j];
+            let size = norm(&(1..block.dim).map(share).collect::<Vec<_>>());
+            for j in 1..block.dim {
+                force[j] = -block.d[j] * y[j] * (force[0] / size).min(1.0);
+            }
+        }
     }
     (cost, force)
 }
@@ -343,7 +362,7 @@ pub fn assert_in_cone(block: &Block<f64>, f: &[f64]) {
             .zip(block.shape)
             .all(|(f, eta)| f.abs() <= eta + slack),
         Cost::Pyramid => (1..block.dim).map(along).sum::<f64>() <= f[0] + slack,
-        Cost::Elliptic => {
+        Cost::Elliptic | Cost::Coulomb => {
             let squares: f64 = (1..block.dim).map(|j| along(j).powi(2)).sum();
             squares.sqrt() <= f[0] + slack
         }

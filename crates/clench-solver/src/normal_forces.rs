@@ -1,0 +1,154 @@
+//! Coulomb's law: friction is limited by the normal force of the solution.
+//!
+//! A Coulomb block limits friction by a given normal force λ, which makes the problem convex (Tresca's friction). Its
+//! solution has normal forces f(λ), and Coulomb's law asks for the fixed point λ = f(λ) (Haslinger, *Approximation of
+//! the Signorini problem with friction, obeying the Coulomb law*, 1983). λ starts at the normal forces of the starting
+//! acceleration. When an inner solve has converged, λ moves to f(λ), mixed with the last change (Anderson, *Iterative
+//! procedures for nonlinear integral equations*, 1965):
+//!
+//! ```text
+//! r = f − λ,   Δr = r − r₋,   γ = r·Δr / |Δr|²,   λ ← max(f − γ (f − f₋), 0)
+//! ```
+//!
+//! A fixed point exists, because f is continuous and bounded: at a large λ all contacts stick. It may not be unique
+//! where friction jams; the iteration from the start selects one.
+
+use crate::jacobian::BlockIndex;
+use crate::{Cost, Problem};
+use clench_math::{Real, kernel};
+
+/// The limits of γ. From 1 on, the last two changes point away from a repelling fixed point; λ then moves to f, which
+/// leads to an attracting one. A very negative γ extrapolates too far from two iterates that are close.
+const MIXING: (f64, f64) = (-10.0, 1.0);
+
+/// The number of predictions, and of updates, after which λ is no longer predicted. Newton's method on pieces can cycle,
+/// and where friction jams it can move away from the solution.
+const MAX_PREDICTIONS: f64 = 30.0;
+const MAX_PREDICTED: f64 = 3.0;
+/// The number of predictions after which every third one moves λ only half of the way, which leaves most cycles.
+const MAX_FULL: f64 = 8.0;
+const CYCLE: f64 = 3.0;
+
+/// The given normal forces of Coulomb blocks, each at the index of its first entry in the active set.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NormalForces<T> {
+    /// λ.
+    given: Vec<T>,
+    /// f and r of the last update, and f − f₋.
+    force: Vec<T>,
+    residual: Vec<T>,
+    change: Vec<T>,
+    /// The number of updates, and of predictions.
+    rounds: T,
+    predictions: T,
+    /// True if the problem has Coulomb blocks.
+    exist: bool,
+}
+
+impl<T: Real> NormalForces<T> {
+    /// Prepares for a problem and sets λ to the normal forces at the residual `y`.
+    #[kernel]
+    pub fn start(&mut self, problem: &Problem<T>, y: &[T]) {
+        self.exist = blocks(problem).next().is_some();
+        self.rounds = T::ZERO;
+        self.predictions = T::ZERO;
+        for v in [
+            &mut self.given,
+            &mut self.force,
+            &mut self.residual,
+            &mut self.change,
+        ] {
+            v.clear();
+            v.resize(if self.exist { problem.nactive } else { 0 }, T::ZERO);
+        }
+        for b in blocks(problem) {
+            self.given[b.active_start] = -(problem.d[b.row] * y[b.row].min(T::ZERO));
+        }
+    }
+
+    /// Returns the lanes in which a Newton step first predicts λ.
+    #[inline(always)]
+    pub(crate) fn predicts(&self) -> T::Mask {
+        self.rounds.lt(T::new(MAX_PREDICTED)) & self.predictions.lt(T::new(MAX_PREDICTIONS))
+    }
+
+    /// Returns true if the problem has Coulomb blocks.
+    #[inline(always)]
+    pub(crate) fn exist(&self) -> bool {
+        self.exist
+    }
+
+    /// Sets λ to the normal forces of `force` in the lanes of `mask`; returns γ.
+    #[kernel]
+    pub fn replace(&mut self, problem: &Problem<T>, force: &[T], mask: T::Mask) -> T {
+        let (mut overlap, mut square) = (T::ZERO, T::ZERO);
+        for b in blocks(problem) {
+            let (k, force) = (b.active_start, force[b.row]);
+            let residual = force - self.given[k];
+            let growth = residual - self.residual[k];
+            overlap += residual * growth;
+            square += growth * growth;
+            for (to, from) in [
+                (&mut self.change[k], force - self.force[k]),
+                (&mut self.force[k], force),
+                (&mut self.residual[k], residual),
+                (&mut self.given[k], force),
+            ] {
+                *to = T::select(mask, from, *to);
+            }
+        }
+        let gamma = (overlap / square).max(T::new(MIXING.0));
+        let mixes = self.rounds.gt(T::ZERO) & square.gt(T::ZERO) & gamma.lt(T::new(MIXING.1));
+        self.rounds += T::select(mask, T::ONE, T::ZERO);
+        T::select(mixes, gamma, T::ZERO)
+    }
+
+    /// Moves λ by −γ (f − f₋) in the lanes of `mask`.
+    #[kernel]
+    pub fn mix(&mut self, problem: &Problem<T>, gamma: T, mask: T::Mask) {
+        for b in blocks(problem) {
+            let given = &mut self.given[b.active_start];
+            let mixed = *given - gamma * self.change[b.active_start];
+            *given = T::select(mask, mixed.max(T::ZERO), *given);
+        }
+    }
+
+    /// Adds `delta`, one number for each of `blocks`, to λ in the lanes of `mask`. A sum below zero predicts a solution
+    /// that does not exist, where friction jams; λ then becomes the normal force of `force`.
+    #[kernel]
+    pub fn move_by(&mut self, blocks: &[BlockIndex], delta: &[T], force: &[T], mask: T::Mask) {
+        self.predictions += T::select(mask, T::ONE, T::ZERO);
+        let count = self.predictions - T::new(MAX_FULL);
+        let phase = count - T::new(CYCLE) * (count / T::new(CYCLE)).floor();
+        let damped = count.gt(T::ZERO) & phase.eq(T::ZERO);
+        let share = T::select(damped, T::new(0.5), T::ONE);
+        for (b, &delta) in blocks.iter().zip(delta) {
+            let given = &mut self.given[b.active_start];
+            let moved = *given + delta;
+            let target = T::select(moved.lt(T::ZERO), force[b.row], moved);
+            let moved = *given + share * (target - *given);
+            *given = T::select(mask, moved, *given);
+        }
+    }
+
+    /// Computes the largest |f − λ|.
+    #[kernel]
+    pub fn residual(&self, problem: &Problem<T>, force: &[T]) -> T {
+        let differences = blocks(problem).map(|b| (force[b.row] - self.of(b)).abs());
+        differences.fold(T::ZERO, |largest, difference| largest.max(difference))
+    }
+
+    /// Returns λ of block `b`; zero for other costs.
+    #[inline(always)]
+    pub(crate) fn of(&self, b: &BlockIndex) -> T {
+        match b.cost {
+            Cost::Coulomb => self.given[b.active_start],
+            _ => T::ZERO,
+        }
+    }
+}
+
+fn blocks<T: Real>(problem: &Problem<T>) -> impl Iterator<Item = &BlockIndex> {
+    let blocks = problem.jacobian.blocks.iter();
+    blocks.filter(|b| b.cost == Cost::Coulomb)
+}

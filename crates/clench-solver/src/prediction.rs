@@ -1,0 +1,166 @@
+//! Predicts the normal forces that a Newton step of Coulomb's law leads to.
+//!
+//! With λ fixed, a Newton step −H⁻¹ g ignores that sliding friction follows the normal force. The semi-smooth Newton
+//! method for the fixed point includes it. In the linear model of a step d, with B the directions of sliding friction,
+//! b_c = J_tᵀ (μ_j u_j) of each sliding contact, and D the weights of the normals that press:
+//!
+//! ```text
+//! d = −H⁻¹ (g + B δ),   λ + δ = f(a + d) = f − D J_n d
+//! (I − D J_n H⁻¹ B) δ = f − λ + D J_n H⁻¹ g
+//! ```
+//!
+//! One unknown a contact, solved by the generalized conjugate residual method (Eisenstat, Elman & Schultz 1983). The
+//! step that follows is Newton's for the convex problem with the friction limits λ + δ, along which the line search
+//! decreases the cost; near the solution it is the step d.
+
+use crate::hessian::Hessian;
+use crate::iterate::{Iterate, dot};
+use crate::jacobian::BlockIndex;
+use crate::{Cost, Problem};
+use clench_math::{Mask, Real, kernel};
+
+/// The maximum number of directions, and the residual, relative to the right-hand side, at which the method stops. The
+/// next Newton step corrects the remaining error.
+const MAX_DIRECTIONS: usize = 6;
+const RESIDUAL: f64 = 1e-2;
+
+/// The memory of predictions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Prediction<T> {
+    /// The Coulomb blocks.
+    blocks: Vec<BlockIndex>,
+    /// The entries μ_j u_j of B for each row, and D for each block.
+    friction: Vec<T>,
+    weights: Vec<T>,
+    /// δ, the residual, and pairs of a direction and its image, one number a block.
+    delta: Vec<T>,
+    residual: Vec<T>,
+    directions: Vec<T>,
+    /// Forces of rows, and a vector over dofs.
+    rows: Vec<T>,
+    dofs: Vec<T>,
+}
+
+impl<T: Real> Prediction<T> {
+    /// Moves λ to the prediction in the lanes of `mask` in which a contact slides, and returns them; `hessian` is factored
+    /// at the iterate. Where all contacts stick, their limits have no effect.
+    #[kernel]
+    pub fn run(
+        &mut self,
+        problem: &Problem<T>,
+        hessian: &mut Hessian<T>,
+        iterate: &mut Iterate<T>,
+        mask: T::Mask,
+    ) -> T::Mask {
+        let mask = self.prepare(problem, iterate, mask);
+        if !mask.any() {
+            return mask;
+        }
+        let count = self.blocks.len();
+        self.dofs.clear();
+        self.dofs.extend_from_slice(&iterate.gradient);
+        hessian.solve(&mut self.dofs);
+        self.residual.clear();
+        for (k, b) in self.blocks.iter().enumerate() {
+            let growth = self.weights[k] * normal_product(problem, b, &self.dofs);
+            let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
+            self.residual
+                .push(T::select(mask, missing + growth, T::ZERO));
+        }
+        self.delta.clear();
+        self.delta.resize(count, T::ZERO);
+        self.directions.clear();
+        let small = T::new(RESIDUAL * RESIDUAL) * dot(&self.residual, &self.residual);
+        let mut open = mask;
+        for i in 0..MAX_DIRECTIONS {
+            open &= dot(&self.residual, &self.residual).gt(small);
+            if !open.any() {
+                break;
+            }
+            self.push_direction(problem, hessian);
+            self.orthogonalize(i, count);
+            let (direction, image) = self.directions[2 * i * count..].split_at(count);
+            let square = dot(image, image);
+            open &= square.gt(T::ZERO);
+            let alpha = dot(&self.residual, image) / square;
+            let alpha = T::select(open, alpha, T::ZERO);
+            for k in 0..count {
+                self.delta[k] += alpha * direction[k];
+                self.residual[k] -= alpha * image[k];
+            }
+        }
+        (iterate.normal_forces).move_by(&self.blocks, &self.delta, &iterate.force, mask);
+        mask
+    }
+
+    /// Lists the blocks with B and D; both are zero outside the lanes of `mask`. Returns the lanes in which one slides.
+    #[inline(always)]
+    fn prepare(&mut self, problem: &Problem<T>, iterate: &Iterate<T>, mask: T::Mask) -> T::Mask {
+        let mut sliding = T::Mask::splat(false);
+        self.blocks.clear();
+        self.weights.clear();
+        self.friction.clear();
+        self.friction.resize(problem.nrow(), T::ZERO);
+        self.rows.resize(problem.nrow(), T::ZERO);
+        let blocks = problem.jacobian.blocks.iter();
+        for b in blocks.filter(|b| b.cost == Cost::Coulomb) {
+            self.blocks.push(*b);
+            let presses = iterate.active_set[b.active_start].gt(T::ZERO) & mask;
+            let slides = iterate.active_set[b.active_start + 1].gt(T::ZERO) & mask;
+            self.weights
+                .push(T::select(presses, problem.d[b.row], T::ZERO));
+            sliding |= slides;
+            let direction = iterate.slip_direction(problem, b);
+            for j in 1..b.dim {
+                self.friction[b.row + j] = T::select(slides, direction[j], T::ZERO);
+            }
+        }
+        sliding
+    }
+
+    /// Appends the residual as a direction, and its image under I − D J_n H⁻¹ B.
+    #[inline(always)]
+    fn push_direction(&mut self, problem: &Problem<T>, hessian: &mut Hessian<T>) {
+        for (k, b) in self.blocks.iter().enumerate() {
+            for row in b.rows() {
+                self.rows[row] = self.friction[row] * self.residual[k];
+            }
+        }
+        self.dofs.fill(T::ZERO);
+        (problem.jacobian).add_transposed_of(&self.blocks, &self.rows, &mut self.dofs);
+        hessian.solve(&mut self.dofs);
+        self.directions.extend_from_slice(&self.residual);
+        for (k, b) in self.blocks.iter().enumerate() {
+            let product = self.weights[k] * normal_product(problem, b, &self.dofs);
+            self.directions.push(self.residual[k] - product);
+        }
+    }
+
+    /// Makes the image of direction `i` orthogonal to those before it.
+    #[inline(always)]
+    fn orthogonalize(&mut self, i: usize, count: usize) {
+        let (before, new) = self.directions.split_at_mut(2 * i * count);
+        let (direction, image) = new.split_at_mut(count);
+        for pair in before.chunks_exact(2 * count) {
+            let (other, other_image) = pair.split_at(count);
+            let square = dot(other_image, other_image);
+            let overlap = dot(image, other_image);
+            let beta = T::select(square.gt(T::ZERO), overlap / square, T::ZERO);
+            for k in 0..count {
+                direction[k] -= beta * other[k];
+                image[k] -= beta * other_image[k];
+            }
+        }
+    }
+}
+
+/// Computes J_n x of a block.
+#[inline(always)]
+fn normal_product<T: Real>(problem: &Problem<T>, b: &BlockIndex, x: &[T]) -> T {
+    let mut sum = T::ZERO;
+    let dofs = problem.jacobian.dofs(b).iter();
+    for (&dof, &j) in dofs.zip(problem.jacobian.values(b)) {
+        sum += j * x[dof as usize];
+    }
+    sum
+}

@@ -1,0 +1,112 @@
+//! Contacts by Coulomb's law: the solution satisfies it, whatever the normal forces do.
+
+use crate::common::*;
+use clench_solver::{ConstraintSolver, Cost, Problem, Solver, SolverOptions};
+
+/// Returns problems of Coulomb contacts, half of them with other constraints.
+fn problems(count: usize, stiffness: f64) -> impl Iterator<Item = Problem<f64>> {
+    let mut rng = Rng(3);
+    (0..count).map(move |k| {
+        let parents = match k % 3 {
+            0 => humanoid(),
+            _ => {
+                let nv = 1 + rng.below(30);
+                random_forest(&mut rng, nv)
+            }
+        };
+        let mut shape = Shape::new(parents, 1 + rng.below(12));
+        shape.costs = match k % 2 {
+            0 => vec![Cost::Coulomb],
+            _ => vec![Cost::Coulomb, Cost::Huber, Cost::Quadratic, Cost::OneSided],
+        };
+        shape.stiffness = (1.0, stiffness);
+        random_problem(&mut rng, &shape)
+    })
+}
+
+/// Returns the number of problems that converge to the tolerance, after checking that all of those satisfy the law and
+/// that all of the others report it.
+fn converged(solver: ConstraintSolver, tolerance: f64, count: usize) -> usize {
+    // Conjugate gradients take about √condition iterations.
+    let stiffness = match solver {
+        ConstraintSolver::Newton => 1e4,
+        ConstraintSolver::Cg => 30.0,
+    };
+    let options = SolverOptions::new()
+        .constraint_solver(solver)
+        .iterations(300)
+        .tolerance(tolerance);
+    let mut converged = 0;
+    for problem in problems(count, stiffness) {
+        let mut solver = Solver::new(problem.tree());
+        let stats = solver
+            .solve(&problem, &options.resolve::<f64>(), None)
+            .unwrap()
+            .lane(0);
+        if !matches!(stats.status.name(), "converged" | "no_progress" | "proven") {
+            assert_eq!(stats.status.name(), "iteration_limit");
+            continue;
+        }
+        converged += 1;
+        assert_eq!(stats.normal_residual, 0.0);
+        // The forces follow from the acceleration by the definition of the law, and balance it.
+        let (_, gradient) = cost_and_gradient(&problem, solver.qacc());
+        let size = norm(solver.qfrc_constraint()).max(1.0);
+        assert!(norm(&gradient) < 1e-5 * size, "{:e}", norm(&gradient));
+        for block in problem.blocks() {
+            let force = &solver.force()[block.rows()];
+            let expected = cost_and_force(&block, &residual(&block, solver.qacc())).1;
+            // The solver updates residuals from step to step; stiff rows magnify their rounding.
+            let d = difference(force, &expected);
+            assert!(d < 1e-7, "{d:e} {force:?} {expected:?}");
+            assert_in_cone(&block, force);
+        }
+    }
+    converged
+}
+
+#[test]
+fn forces_obey_coulombs_law() {
+    let count = 300;
+    let done = converged(ConstraintSolver::Newton, 1e-8, count);
+    assert!(done >= 297, "{done} of {count}");
+}
+
+#[test]
+fn conjugate_gradients_obey_it_too() {
+    let count = 100;
+    let done = converged(ConstraintSolver::Cg, 1e-14, count);
+    assert!(done >= 80, "{done} of {count}");
+}
+
+#[test]
+fn friction_does_not_change_the_normal_force() {
+    // A block that slides along x on a plane: two dofs, one contact, no coupling.
+    let sliding = |aref: f64| {
+        let tree = std::sync::Arc::new(clench_solver::Tree::new(&[None, Some(0)]).unwrap());
+        let mut problem = Problem::<f64>::new(tree);
+        for (i, entry) in [0, 2].into_iter().enumerate() {
+            problem.mass.values[entry] = 2.0;
+            problem.qacc_smooth[i] = [0.0, -10.0][i];
+        }
+        assert!(problem.factor_mass());
+        let block = problem.push(Cost::Coulomb, 2, &[0, 1]);
+        block.jacobian.copy_from_slice(&[0.0, 1.0, 1.0, 0.0]);
+        block.aref[1] = aref;
+        block.r.copy_from_slice(&[0.1, 0.1]);
+        block.d.copy_from_slice(&[10.0, 10.0]);
+        block.shape[1] = 0.5;
+        problem.check().unwrap();
+        let mut solver = Solver::new(problem.tree());
+        let settings = SolverOptions::new().resolve::<f64>();
+        solver.solve(&problem, &settings, None).unwrap();
+        [solver.force()[0], solver.force()[1]]
+    };
+    let [normal, none] = sliding(0.0);
+    assert_eq!(none, 0.0);
+    for aref in [-1e3, -1e1, 1e1, 1e3] {
+        let [pressed, friction] = sliding(aref);
+        assert!((pressed - normal).abs() < 1e-12 * normal);
+        assert!((friction - 0.5 * normal * aref.signum()).abs() < 1e-12 * normal);
+    }
+}
