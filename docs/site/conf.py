@@ -12,6 +12,7 @@ root_doc = "docs/site/index"
 include_patterns = [
     "README.md",
     "docs/*.md",
+    "docs/lab/*.md",
     "docs/notebooks/*.ipynb",
     "docs/site/index.md",
     "docs/site/python.md",
