@@ -6,18 +6,18 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
 COLORS = {"mujoco": "#888888", "clench": "#c04020", "clench f64": "#c04020", "clench f32": "#e0a030"}
-FIELDS = [("contacts_mean", ".0f"), ("iterations_mean", ".1f"), ("gradient_median", ".0e")]
+FIELDS = [("contacts_mean", ".0f"), ("iterations_mean", ".1f")]
 THREADED = "clench, all threads"  # one environment whose steps use all threads
 SMALL = 0.03  # fraction of a step: stages that never take more are drawn as one
 
 
 PAGE = """# Scenes of manipulation and of many bodies
 
-Written by `cargo xtask bench --only families --docs`, on {machine}, beside MuJoCo {mujoco}; `bench/families.py` says how each is timed, and how
-some scenes are measured anew. What the figures mean, and where aims are missed, says [performance.md](performance.md).
+For users whose scenes have arms, heaps or crowds: how fast Clench is compared with MuJoCo {mujoco}, on {machine}.
+`cargo xtask bench --only families --docs` writes this page; `bench/families.py` describes the method.
 
-One environment: microseconds a step, MuJoCo's time over Clench's on one thread, Clench's time on one thread over that on all ({processors}), mean
-contacts and iterations of the solver a step, and the scaled gradient that solves end with (the median; MuJoCo's and Clench's).
+One environment: microseconds a step, MuJoCo's time over Clench's on one thread, Clench's time on one thread over that on all ({processors}), and mean
+contacts and solver iterations a step (MuJoCo's and Clench's).
 
 {alone}
 
@@ -25,7 +25,7 @@ Environments in a batch, one thread: MuJoCo's time (its own batch) over Clench's
 
 {many}
 
-{left_out}
+A ratio is missing if MuJoCo takes too long.
 
 ![Where a step of one environment spends its time](families-stages.svg)
 
@@ -38,8 +38,6 @@ def draw(record, folder):
     scenes = list(dict.fromkeys(row["scene"] for row in record["rows"] if row["family"] != "environments"))
     machine = "{processors} processors ({machine})".format(**record["machine"])
     parts = {"machine": machine, "processors": record["machine"]["processors"], "mujoco": record["machine"]["mujoco"], "alone": alone(record["rows"], scenes), "many": many(record["rows"], scenes)}
-    left_out = [f"- {reason}" for reason in record["not_measured"]]
-    parts["left_out"] = "\n".join(["Not measured, since MuJoCo takes too long:", "", *left_out] if left_out else [])
     (folder / "families.md").write_text(PAGE.format(**parts))
     plt.rcParams |= {"svg.hashsalt": "clench", "font.size": 8, "axes.spines.top": False, "axes.spines.right": False}
     stages(record["stages"], folder / "families-stages.svg")
@@ -48,7 +46,7 @@ def draw(record, folder):
 
 def alone(rows, scenes):
     """Returns the table of one environment, a line per scene."""
-    lines = ["| scene | dofs | MuJoCo µs | Clench µs | ratio | threads | contacts | iterations | gradient |", "| --- " * 9 + "|"]
+    lines = ["| scene | dofs | MuJoCo µs | Clench µs | ratio | threads | contacts | iterations |", "| --- " * 8 + "|"]
     for scene in scenes:
         found = {row["engine"]: row for row in rows if row["scene"] == scene and row["envs"] == 1 and row["family"] != "environments"}
         theirs, ours = found.get("mujoco"), found["clench"]
