@@ -50,7 +50,12 @@ fn add(
     }
     let outputs = match spec.gain {
         GainKind::So3 => orientation::OUTPUTS,
-        _ => 1,
+        GainKind::Fixed
+        | GainKind::Affine
+        | GainKind::Muscle
+        | GainKind::DcMotor
+        | GainKind::Pid
+        | GainKind::User => 1,
     };
     let controller = controller(spec, model.na)?;
     let activations = activations(spec, &controller)?;
@@ -173,7 +178,11 @@ fn activations(spec: &ActuatorSpec, controller: &Controller) -> Result<usize, Bu
         DynamicsKind::None => 0,
         DynamicsKind::Pid | DynamicsKind::DcMotor => controller.count,
         DynamicsKind::Integrator if spec.gain == GainKind::So3 => orientation::OUTPUTS,
-        _ => 1,
+        DynamicsKind::Integrator
+        | DynamicsKind::Filter
+        | DynamicsKind::FilterExact
+        | DynamicsKind::Muscle
+        | DynamicsKind::User => 1,
     };
     let actdim = spec.actdim.unwrap_or(own);
     let any = spec.dynamics == DynamicsKind::User && actdim > 0;

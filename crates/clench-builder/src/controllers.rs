@@ -32,15 +32,24 @@ pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller
     match spec.gain {
         GainKind::Pid => pid(spec, first),
         GainKind::So3 => orientation_servo(spec),
-        _ if spec.bias == BiasKind::So3 => {
-            Err(spec.error("so3 must be the kind of gain and bias, or of none of them"))
+        GainKind::Fixed
+        | GainKind::Affine
+        | GainKind::Muscle
+        | GainKind::DcMotor
+        | GainKind::User => {
+            if spec.bias == BiasKind::So3 {
+                let reason = "so3 must be the kind of gain and bias, or of none of them";
+                return Err(spec.error(reason));
+            }
+            if motor != [false; 3] {
+                return parts_of_motor(spec, first);
+            }
+            Ok(Controller {
+                inputs: vec![ControlInput::Command],
+                states: ControllerStates::default(),
+                count: 0,
+            })
         }
-        _ if motor != [false; 3] => parts_of_motor(spec, first),
-        _ => Ok(Controller {
-            inputs: vec![ControlInput::Command],
-            states: ControllerStates::default(),
-            count: 0,
-        }),
     }
 }
 
@@ -137,7 +146,12 @@ fn parts_of_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, Build
     }
     let controller = match spec.gain {
         GainKind::DcMotor => dc_motor(spec, first)?,
-        _ => Controller {
+        GainKind::Fixed
+        | GainKind::Affine
+        | GainKind::Muscle
+        | GainKind::Pid
+        | GainKind::So3
+        | GainKind::User => Controller {
             inputs: vec![ControlInput::Command],
             ..motor_states(spec, first)
         },
@@ -153,7 +167,11 @@ fn parts_of_motor(spec: &ActuatorSpec, first: usize) -> Result<Controller, Build
         DynamicsKind::None => 0,
         DynamicsKind::DcMotor => controller.count,
         DynamicsKind::User => spec.actdim.unwrap_or(1),
-        _ => 1,
+        DynamicsKind::Integrator
+        | DynamicsKind::Filter
+        | DynamicsKind::FilterExact
+        | DynamicsKind::Muscle
+        | DynamicsKind::Pid => 1,
     };
     if count != controller.count {
         return Err(spec.error(format!(

@@ -290,7 +290,13 @@ impl<'a> Named<'a> {
                         GeomsName::Geom(_) => None,
                     }));
                 }
-                _ => {}
+                // The others name no body, and no site whose body's force they measure.
+                SensorSubject::Nothing
+                | SensorSubject::Element(_)
+                | SensorSubject::Projection { .. }
+                | SensorSubject::Rays { .. }
+                | SensorSubject::Taxels { .. }
+                | SensorSubject::User(..) => {}
             }
         }
         bodies.remove("");

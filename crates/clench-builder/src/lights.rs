@@ -76,7 +76,11 @@ pub(super) fn set_initial_places(pose0: &Positions<f64>, model: &mut Model) {
         let pos = pose0.xpos[light.body] + turn * light.pos;
         let from = match light.mode {
             CameraMode::TrackCom(Some(body)) => body,
-            _ => light.body,
+            CameraMode::Fixed
+            | CameraMode::Track
+            | CameraMode::TrackCom(None)
+            | CameraMode::TargetBody(_)
+            | CameraMode::TargetBodyCom(_) => light.body,
         };
         light.pos0 = pos - pose0.xpos[light.body];
         light.poscom0 = pos - pose0.subtree_com[from];

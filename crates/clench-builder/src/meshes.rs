@@ -132,7 +132,7 @@ fn check(spec: &MeshSpec) -> Result<(), BuildError> {
     spec.require_finite("scale", &spec.scale.to_array())?;
     match spec.inertia {
         MeshInertia::Exact => check_sides(spec),
-        _ => Ok(()),
+        MeshInertia::Convex | MeshInertia::Legacy | MeshInertia::Shell => Ok(()),
     }
 }
 

@@ -240,7 +240,9 @@ fn alike(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
         ShapeKind::Capsule => [radius, (half.z - 0.5 * radius).max(0.0), 0.0],
         ShapeKind::Cylinder => [radius, half.z, 0.0],
         ShapeKind::Ellipsoid | ShapeKind::Box => half.to_array(),
-        _ => return Err(spec.error("this shape cannot be fitted to a mesh")),
+        ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Mesh => {
+            return Err(spec.error("this shape cannot be fitted to a mesh"));
+        }
     };
     Ok(Vec3::from_array(size))
 }
@@ -253,7 +255,9 @@ fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
         ShapeKind::Capsule => [radius, half.z - radius, 0.0],
         ShapeKind::Cylinder => [radius, half.z, 0.0],
         ShapeKind::Ellipsoid | ShapeKind::Box => half.to_array(),
-        _ => return Err(spec.error("this shape cannot be fitted to a mesh")),
+        ShapeKind::Plane | ShapeKind::HeightField | ShapeKind::Mesh => {
+            return Err(spec.error("this shape cannot be fitted to a mesh"));
+        }
     };
     Ok(Vec3::from_array(size))
 }

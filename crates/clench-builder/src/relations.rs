@@ -225,7 +225,6 @@ pub enum ConnectAnchor {
 
 /// The relation that an equality enforces.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum EqualityKind {
     /// Two points coincide.
     Connect(ConnectAnchor),

@@ -40,7 +40,17 @@ pub(super) fn add_all(
         let data = match spec.subject {
             SensorSubject::User(_, data) => data,
             SensorSubject::Inside { enclosed: true, .. } => SensorData::Real,
-            _ => spec.kind.data(),
+            SensorSubject::Inside {
+                enclosed: false, ..
+            }
+            | SensorSubject::Nothing
+            | SensorSubject::Element(_)
+            | SensorSubject::Frame { .. }
+            | SensorSubject::Projection { .. }
+            | SensorSubject::Rays { .. }
+            | SensorSubject::Geoms(_)
+            | SensorSubject::Contacts(_)
+            | SensorSubject::Taxels { .. } => spec.kind.data(),
         };
         let dim = dim(spec, &target, model)
             .filter(|&dim| dim <= MAX_DIM)
@@ -106,31 +116,24 @@ fn dim(spec: &SensorSpec, target: &SensorTarget, model: &Model) -> Option<usize>
 fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTarget, BuildError> {
     use SensorSubject as Of;
     let attachment = spec.kind.attachment();
-    let element = |name: &String| match attachment {
-        Attachment::Site => names.sites.find(name, spec),
-        Attachment::Tendon => names.tendons.find(name, spec),
-        Attachment::Actuator => names.actuators.find(name, spec),
-        Attachment::Body => names.bodies.find(name, spec),
-        _ => {
-            let joint = names.joints.find(name, spec)?;
-            check_joint(spec, name, model.joints[joint].kind)?;
-            Ok(joint)
-        }
-    };
+    let element = |found: Result<usize, BuildError>| found.map(SensorTarget::Element);
     match (attachment, &spec.subject) {
         (Attachment::Nothing, Of::Nothing) | (Attachment::User, Of::User(..)) => {
             Ok(SensorTarget::Nothing)
         }
-        (
-            Attachment::Site
-            | Attachment::ScalarJoint
-            | Attachment::Ball
-            | Attachment::Joint
-            | Attachment::Tendon
-            | Attachment::Actuator
-            | Attachment::Body,
-            Of::Element(name),
-        ) => Ok(SensorTarget::Element(element(name)?)),
+        (Attachment::Site, Of::Element(name)) => element(names.sites.find(name, spec)),
+        (Attachment::Tendon, Of::Element(name)) => element(names.tendons.find(name, spec)),
+        (Attachment::Actuator, Of::Element(name)) => element(names.actuators.find(name, spec)),
+        (Attachment::Body, Of::Element(name)) => element(names.bodies.find(name, spec)),
+        (Attachment::Joint, Of::Element(name)) => element(names.joints.find(name, spec)),
+        (Attachment::ScalarJoint, Of::Element(name)) => {
+            let fits = |kind| matches!(kind, JointKind::Slide | JointKind::Hinge);
+            joint(spec, (names, model), name, fits, "a slide or a hinge")
+        }
+        (Attachment::Ball, Of::Element(name)) => {
+            let fits = |kind| kind == JointKind::Ball;
+            joint(spec, (names, model), name, fits, "a ball joint")
+        }
         (Attachment::Frame | Attachment::WorldFrame, Of::Frame { object, reference }) => {
             if attachment == Attachment::WorldFrame && reference.is_some() {
                 return Err(spec.error("is measured in the world: it has no reference frame"));
@@ -213,7 +216,10 @@ fn inside(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
         }
         let inner = match object {
             FrameObject::Site(inner) => Some(inner),
-            _ => None,
+            FrameObject::Inertial(_)
+            | FrameObject::Body(_)
+            | FrameObject::Geom(_)
+            | FrameObject::Camera(_) => None,
         };
         for site in inner.into_iter().chain([site]) {
             let site = &model.sites[site];
@@ -238,7 +244,7 @@ fn require_bounded(
         ShapeKind::Plane | ShapeKind::HeightField => Err(spec.error(format!(
             "the {element} \"{name}\" is not a bounded convex shape, of which alone can be told whether it is enclosed"
         ))),
-        _ => Ok(()),
+        ShapeKind::Sphere | ShapeKind::Capsule | ShapeKind::Ellipsoid | ShapeKind::Cylinder | ShapeKind::Box | ShapeKind::Mesh => Ok(()),
     }
 }
 
@@ -254,7 +260,9 @@ fn ray_source(
             require_pixels(spec, model, camera)?;
             Ok(RaySource::Camera(camera))
         }
-        _ => Err(spec.error("its rays must go out from a site or a camera")),
+        FrameObject::Inertial(_) | FrameObject::Body(_) | FrameObject::Geom(_) => {
+            Err(spec.error("its rays must go out from a site or a camera"))
+        }
     }
 }
 
@@ -324,19 +332,19 @@ fn contact_query(
     })
 }
 
-fn check_joint(spec: &SensorSpec, name: &str, kind: JointKind) -> Result<(), BuildError> {
-    let (fits, wanted) = match spec.kind.attachment() {
-        Attachment::ScalarJoint => (
-            matches!(kind, JointKind::Slide | JointKind::Hinge),
-            "a slide or a hinge",
-        ),
-        Attachment::Ball => (kind == JointKind::Ball, "a ball joint"),
-        _ => (true, ""),
-    };
-    if fits {
-        return Ok(());
+/// Resolves a joint of the required kinds.
+fn joint(
+    spec: &SensorSpec,
+    (names, model): (&AllNames, &Model),
+    name: &String,
+    fits: impl Fn(JointKind) -> bool,
+    wanted: &str,
+) -> Result<SensorTarget, BuildError> {
+    let joint = names.joints.find(name, spec)?;
+    if !fits(model.joints[joint].kind) {
+        return Err(spec.error(format!("the joint \"{name}\" must be {wanted}")));
     }
-    Err(spec.error(format!("the joint \"{name}\" must be {wanted}")))
+    Ok(SensorTarget::Element(joint))
 }
 
 fn frame(

@@ -80,7 +80,7 @@ impl Solid<'_> {
     pub(super) fn inertia(&self, about: Vec3<f64>) -> (Mat3<f64>, f64) {
         let share = match self.spread {
             MeshInertia::Shell => 1.0 / 12.0,
-            _ => 1.0 / 20.0,
+            MeshInertia::Convex | MeshInertia::Exact | MeshInertia::Legacy => 1.0 / 20.0,
         };
         // The moments xx, yy, zz, xy, xz, yz.
         let mut moments = [0.0; 6];

@@ -26,7 +26,7 @@ impl<'a> GeomUses<'a> {
         let mut named: HashSet<&str> = paths
             .filter_map(|wrap| match wrap {
                 WrapSpec::Geom { geom, .. } => Some(geom.as_str()),
-                _ => None,
+                WrapSpec::Joint { .. } | WrapSpec::Site(_) | WrapSpec::Pulley(_) => None,
             })
             .collect();
         named
@@ -77,10 +77,17 @@ fn geoms_of(subject: &SensorSubject) -> Vec<&str> {
         SensorSubject::Contacts(query) => (query.sides.iter())
             .filter_map(|side| match side {
                 ContactSideName::Geom(name) => Some(name.as_str()),
-                _ => None,
+                ContactSideName::Any | ContactSideName::Body(_) | ContactSideName::Subtree(_) => {
+                    None
+                }
             })
             .collect(),
         SensorSubject::Taxels { geom, .. } => vec![geom],
-        _ => Vec::new(),
+        SensorSubject::Nothing
+        | SensorSubject::Element(_)
+        | SensorSubject::Inside { .. }
+        | SensorSubject::Projection { .. }
+        | SensorSubject::Rays { .. }
+        | SensorSubject::User(..) => Vec::new(),
     }
 }

@@ -145,7 +145,9 @@ impl Constants {
             match joint.kind {
                 JointKind::Slide => 1.0,
                 JointKind::Free if i < joint.dof + 3 => 1.0,
-                _ => sizes[dof.body].max(MIN_SIZE),
+                JointKind::Free | JointKind::Ball | JointKind::Hinge => {
+                    sizes[dof.body].max(MIN_SIZE)
+                }
             }
         });
         params.dof_length = lengths.collect();
@@ -160,7 +162,7 @@ impl Constants {
         for joint in &model.joints {
             let together = match joint.kind {
                 JointKind::Free => 3,
-                kind => kind.nv(),
+                JointKind::Ball | JointKind::Slide | JointKind::Hinge => joint.kind.nv(),
             };
             let dofs = &mut weights[joint.dof..joint.dof + joint.kind.nv()];
             for group in dofs.chunks_mut(together) {

@@ -110,7 +110,8 @@ impl Pipelines {
             Integrator::Rk4 => vec![compile(&kernels::RUNGE_KUTTA)?; 4],
             Integrator::ImplicitFast => vec![compile(&kernels::IMPLICIT_FAST)?],
             Integrator::Implicit => vec![compile(&kernels::IMPLICIT)?],
-            _ => vec![compile(&kernels::EULER)?],
+            // A batch refuses the discrete integrator, see `check.rs`.
+            Integrator::Euler | Integrator::Discrete => vec![compile(&kernels::EULER)?],
         };
         let forward = forward.iter().map(compile);
         let forward = forward.collect::<Result<_, _>>()?;

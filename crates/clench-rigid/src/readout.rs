@@ -56,7 +56,9 @@ pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Constrain
         let number = |x: T| x.lane(lane).to_f64();
         let forces = match block.cost {
             Cost::Pyramid => ws.solver.edge_forces(&ws.problem, index),
-            _ => &ws.solver.force()[block.rows()],
+            Cost::Quadratic | Cost::OneSided | Cost::Huber | Cost::Elliptic | Cost::Coulomb => {
+                &ws.solver.force()[block.rows()]
+            }
         };
         let pos = |i: usize| ws.record.pos[block.row + i];
         let is_friction = matches!(block.cost, Cost::Elliptic | Cost::Coulomb);
@@ -78,7 +80,11 @@ pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Constrain
                 impedance: number(record.impedance),
                 frictionloss: match block.cost {
                     Cost::Huber => number(block.shape[row]),
-                    _ => 0.0,
+                    Cost::Quadratic
+                    | Cost::OneSided
+                    | Cost::Pyramid
+                    | Cost::Elliptic
+                    | Cost::Coulomb => 0.0,
                 },
                 force: number(forces[row]),
             });

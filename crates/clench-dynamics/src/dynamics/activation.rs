@@ -73,7 +73,12 @@ pub(crate) fn next_activation<T: Real>(
         DynamicsKind::DcMotor => {
             return dc_motor::next_activation(model, params, u, a, (act, act_dot), velocity);
         }
-        _ => act + act_dot * h,
+        DynamicsKind::None
+        | DynamicsKind::Integrator
+        | DynamicsKind::Filter
+        | DynamicsKind::Muscle
+        | DynamicsKind::Pid
+        | DynamicsKind::User => act + act_dot * h,
     };
     if actuator.actlimited {
         let [low, high] = params.actuator_actrange[u];

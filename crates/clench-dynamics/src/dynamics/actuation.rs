@@ -57,7 +57,12 @@ pub fn actuation<T: Real>(
             let out = &mut force.actuator_force[actuator.outputs.clone()];
             match actuator.gain {
                 GainKind::So3 => orientation::limit(out, range),
-                _ => out[0] = out[0].clamp(range[0], range[1]),
+                GainKind::Fixed
+                | GainKind::Affine
+                | GainKind::Muscle
+                | GainKind::DcMotor
+                | GainKind::Pid
+                | GainKind::User => out[0] = out[0].clamp(range[0], range[1]),
             }
         }
         // Ranges of tendons and actuators limit the force of a motor's current, without cogging and friction.
@@ -85,10 +90,9 @@ pub fn actuation<T: Real>(
 /// Returns the tendon of an actuator, if the tendon's total force is limited.
 #[inline(always)]
 pub(super) fn limited_tendon(model: &Model, transmission: Transmission) -> Option<usize> {
-    match transmission {
-        Transmission::Tendon(t) if model.tendons[t].actfrclimited => Some(t),
-        _ => None,
-    }
+    transmission
+        .tendon()
+        .filter(|&t| model.tendons[t].actfrclimited)
 }
 
 /// Scales the actuators of a tendon by a common factor if their total exceeds the tendon's range.

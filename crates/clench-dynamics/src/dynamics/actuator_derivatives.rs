@@ -5,7 +5,7 @@ use super::actuator::{ActuatorInputs, ActuatorMotion, scaling_error};
 use crate::dynamics::actuation::limited_tendon;
 use crate::dynamics::gain::{unlimited_force, unlimited_length_slope, unlimited_slope};
 use crate::dynamics::{dc_motor, orientation};
-use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::model::{BiasKind, GainKind, Model, Params};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Mask, Real, kernel};
@@ -64,7 +64,9 @@ pub(crate) fn length_derivative<T: Real>(
     let slope = T::select(held, T::ZERO, slope);
     let slope = match actuator.bias {
         BiasKind::DcMotor => slope + dc_motor::cogging_slope(params, u, at.length),
-        _ => slope,
+        BiasKind::None | BiasKind::Affine | BiasKind::Muscle | BiasKind::So3 | BiasKind::User => {
+            slope
+        }
     };
     unless_joint_holds(model, params, force, u, slope)
 }
@@ -94,7 +96,11 @@ fn is_held<T: Real>(
         // Cogging and friction of a motor follow its limit, which clamps only the current's force.
         let limited = match actuator.bias {
             BiasKind::DcMotor => unlimited_force(model, params, given, &force.act_dot, u, at),
-            _ => force.actuator_force[actuator.outputs.start],
+            BiasKind::None
+            | BiasKind::Affine
+            | BiasKind::Muscle
+            | BiasKind::So3
+            | BiasKind::User => force.actuator_force[actuator.outputs.start],
         };
         held |= is_saturated(limited, params.actuator_forcerange[u]);
     }
@@ -113,15 +119,14 @@ fn unless_joint_holds<T: Real>(
     u: usize,
     slope: T,
 ) -> T {
-    match model.actuators[u].transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j)
-            if model.joints[j].actfrclimited =>
-        {
+    let joint = model.actuators[u].transmission.joint();
+    match joint.filter(|&j| model.joints[j].actfrclimited) {
+        Some(j) => {
             let total = force.qfrc_actuator[model.joints[j].dof];
             let held = is_saturated(total, params.jnt_actfrcrange[j]);
             T::select(held, T::ZERO, slope)
         }
-        _ => slope,
+        None => slope,
     }
 }
 

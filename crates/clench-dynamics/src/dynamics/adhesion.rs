@@ -49,7 +49,7 @@ fn body_arms<T: Real>(
         for (part, side) in chains.parts() {
             let (body, along) = match side {
                 Side::Second => (bodies[1], -normal),
-                _ => (bodies[0], normal),
+                Side::First | Side::Both => (bodies[0], normal),
             };
             let offset = BodyPoint::new(model, pos, body, contact.pos).offset;
             for &dof in part {

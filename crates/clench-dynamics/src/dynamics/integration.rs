@@ -59,7 +59,10 @@ impl<T: Real> Integration<T> {
     pub fn new(model: &Model) -> Self {
         let (full, coriolis) = match model.integrator {
             Integrator::Implicit => (TreeLu::zeros(&model.tree), Coriolis::new(model)),
-            _ => Default::default(),
+            Integrator::Euler
+            | Integrator::ImplicitFast
+            | Integrator::Rk4
+            | Integrator::Discrete => Default::default(),
         };
         Integration {
             matrix: TreeMatrix::zeros(&model.tree),

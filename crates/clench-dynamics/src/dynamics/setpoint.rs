@@ -40,7 +40,13 @@ impl<T: Real> Setpoints<T> {
                 if let Some(a) = actuator.states.slew {
                     let rate = match actuator.dynamics {
                         DynamicsKind::Pid => params.actuator_dynprm[u][1],
-                        _ => params.actuator_dynprm[u][7],
+                        DynamicsKind::None
+                        | DynamicsKind::Integrator
+                        | DynamicsKind::Filter
+                        | DynamicsKind::FilterExact
+                        | DynamicsKind::Muscle
+                        | DynamicsKind::DcMotor
+                        | DynamicsKind::User => params.actuator_dynprm[u][7],
                     };
                     let (before, step) = (given.act[a], rate * params.timestep);
                     value = nearest_setpoint(model, params, u, value, before);
@@ -99,7 +105,12 @@ pub(crate) fn nearest_setpoint<T: Real>(
             (T::Mask::splat(on_ball), &gear[..3])
         }
         Transmission::SiteInFrame(_) => (Vec3::from_slice(gear).norm().eq(T::ZERO), &gear[3..]),
-        _ => (T::Mask::splat(false), &gear[..3]),
+        Transmission::Tendon(_)
+        | Transmission::Site(_)
+        | Transmission::SliderCrank(_)
+        | Transmission::Body(_)
+        | Transmission::Rotation(_)
+        | Transmission::RotationInFrame(_) => (T::Mask::splat(false), &gear[..3]),
     };
     let pid = actuator.gain == GainKind::Pid;
     let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;

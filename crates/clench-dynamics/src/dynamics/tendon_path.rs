@@ -80,7 +80,14 @@ fn section_spans<T: Real>(
     let obstacle = Obstacle {
         shape: match model.geoms[geom].kind {
             ShapeKind::Cylinder => WrapShape::Cylinder,
-            _ => WrapShape::Sphere,
+            // No tendon wraps around the other shapes: the builder refuses them.
+            ShapeKind::Sphere
+            | ShapeKind::Plane
+            | ShapeKind::HeightField
+            | ShapeKind::Capsule
+            | ShapeKind::Ellipsoid
+            | ShapeKind::Box
+            | ShapeKind::Mesh => WrapShape::Sphere,
         },
         centre: pos.geom_xpos[geom],
         axes: pos.geom_xmat[geom],
@@ -154,7 +161,7 @@ fn add_span<T: Real>(
     for (part, side) in chains.parts() {
         let (end, pull) = match side {
             Side::Second => (1, span.pull),
-            _ => (0, -span.pull),
+            Side::First | Side::Both => (0, -span.pull),
         };
         let offset = BodyPoint::new(model, pos, span.bodies[end], span.points[end]).offset;
         let mut column = 0;

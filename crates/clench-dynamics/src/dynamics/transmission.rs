@@ -3,7 +3,7 @@
 use crate::dynamics::site_transmission::{
     relative_pose, relative_turn, slider_crank, turning_arms, wrench_arms,
 };
-use crate::model::{Actuator, Joint, JointKind, Model, Params, Transmission};
+use crate::model::{Joint, JointKind, Model, Params, Transmission};
 use crate::stages::Positions;
 use clench_math::{Quat, Real, Vec3, kernel};
 
@@ -56,38 +56,27 @@ pub fn transmissions<T: Real>(
             Transmission::SliderCrank(sites) => slider_crank(model, params, pos, u, sites, row),
             // Its moment arms are computed after the contacts, see `adhesion`.
             Transmission::Body(_) => T::ZERO,
-            Transmission::Rotation(_) | Transmission::RotationInFrame(_) => {
-                rotation(model, params, pos, actuator, &mut moments);
+            // Three lengths, those of a rotation vector, and arms about the axes of the rotated object.
+            Transmission::Rotation(j) => {
+                let vector = pos.jnt_turn[j].to_rotation_vector();
+                vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
+                for output in actuator.outputs.clone() {
+                    moments[model.actuator_dofs.range(output)].fill(T::ONE);
+                }
+                continue;
+            }
+            Transmission::RotationInFrame(sites) => {
+                let vector = relative_turn(model, params, pos, sites);
+                vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
+                for (axis, output) in actuator.outputs.clone().enumerate() {
+                    let row = &mut moments[model.actuator_dofs.range(output)];
+                    turning_arms(model, pos, sites, axis, row);
+                }
                 continue;
             }
         };
     }
     pos.actuator_moment = moments;
-}
-
-/// Writes the three lengths and moment arms of an orientation: its rotation vector, about the axes of the rotated
-/// object.
-#[inline(always)]
-fn rotation<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    pos: &mut Positions<T>,
-    actuator: &Actuator,
-    moments: &mut [T],
-) {
-    let vector = match actuator.transmission {
-        Transmission::Rotation(j) => pos.jnt_turn[j].to_rotation_vector(),
-        Transmission::RotationInFrame(sites) => relative_turn(model, params, pos, sites),
-        _ => return,
-    };
-    vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
-    for (axis, output) in actuator.outputs.clone().enumerate() {
-        let row = &mut moments[model.actuator_dofs.range(output)];
-        match actuator.transmission {
-            Transmission::RotationInFrame(sites) => turning_arms(model, pos, sites, axis, row),
-            _ => row.fill(T::ONE),
-        }
-    }
 }
 
 /// Writes the moment arms on a joint at position `q` or rotation `turn`, and returns the length.

@@ -38,7 +38,14 @@ impl ParamField {
         let field = found.name();
         match found.rule() {
             Rule::Follows(other) => Err(SimError::Follows { field, other }),
-            _ => Ok(found),
+            Rule::Finite
+            | Rule::Positive
+            | Rule::NotNegative
+            | Rule::AsModel
+            | Rule::IfModel
+            | Rule::Range
+            | Rule::Quaternion
+            | Rule::Axis => Ok(found),
         }
     }
 
@@ -78,7 +85,12 @@ impl ParamField {
             Rule::Quaternion => 4,
             Rule::Axis => 3,
             Rule::Range => return require_rising(field, row),
-            _ => return Ok(()),
+            Rule::Finite
+            | Rule::Positive
+            | Rule::NotNegative
+            | Rule::AsModel
+            | Rule::IfModel
+            | Rule::Follows(_) => return Ok(()),
         };
         (row.chunks_exact_mut(size).enumerate())
             .try_for_each(|(i, direction)| normalize(field, size * i, direction))
@@ -183,45 +195,50 @@ impl Model {
         Model::restrict_same_frames(model, field, row);
         let nonzero = |numbers: &[S]| numbers.iter().any(|&x| x != S::ZERO);
         let bodies = || model.bodies.iter().enumerate();
-        let changes: Vec<usize> = match field {
-            ParamField::dof_frictionloss => (model.dofs.iter().enumerate())
-                .filter(|&(i, dof)| !dof.frictionloss && nonzero(&row[i..=i]))
-                .map(|(i, _)| i)
-                .collect(),
-            ParamField::tendon_frictionloss => (model.tendons.iter().enumerate())
-                .filter(|&(i, tendon)| !tendon.frictionloss && nonzero(&row[i..=i]))
-                .map(|(i, _)| i)
-                .collect(),
+        let shift_inertia: fn(&mut Model, usize) =
+            |model, b| model.bodies[b].simple_inertia = false;
+        let (change, changes): (fn(&mut Model, usize), Vec<usize>) = match field {
+            ParamField::dof_frictionloss => (
+                |model, i| model.dofs[i].frictionloss = true,
+                (model.dofs.iter().enumerate())
+                    .filter(|&(i, dof)| !dof.frictionloss && nonzero(&row[i..=i]))
+                    .map(|(i, _)| i)
+                    .collect(),
+            ),
+            ParamField::tendon_frictionloss => (
+                |model, t| model.tendons[t].frictionloss = true,
+                (model.tendons.iter().enumerate())
+                    .filter(|&(i, tendon)| !tendon.frictionloss && nonzero(&row[i..=i]))
+                    .map(|(i, _)| i)
+                    .collect(),
+            ),
             ParamField::actuator_damping
             | ParamField::actuator_dampingpoly
             | ParamField::actuator_armature => {
                 let width = row.len() / model.actuators.len().max(1);
-                (0..model.actuators.len())
-                    .filter(|&u| !model.reflects(u) && nonzero(&row[width * u..][..width]))
-                    .collect()
+                let changes = (0..model.actuators.len())
+                    .filter(|&u| !model.reflects(u) && nonzero(&row[width * u..][..width]));
+                (Model::let_reflect, changes.collect())
             }
-            ParamField::body_ipos => bodies()
-                .filter(|&(b, body)| body.simple_inertia && nonzero(&row[3 * b..][..3]))
-                .map(|(b, _)| b)
-                .collect(),
-            ParamField::body_iquat => bodies()
-                .filter(|&(b, body)| body.simple_inertia && nonzero(&row[4 * b + 1..][..3]))
-                .map(|(b, _)| b)
-                .collect(),
+            ParamField::body_ipos => (
+                shift_inertia,
+                bodies()
+                    .filter(|&(b, body)| body.simple_inertia && nonzero(&row[3 * b..][..3]))
+                    .map(|(b, _)| b)
+                    .collect(),
+            ),
+            ParamField::body_iquat => (
+                shift_inertia,
+                bodies()
+                    .filter(|&(b, body)| body.simple_inertia && nonzero(&row[4 * b + 1..][..3]))
+                    .map(|(b, _)| b)
+                    .collect(),
+            ),
+            // The step skips nothing because of the others.
             _ => return,
         };
         for i in changes {
-            let model = Arc::make_mut(model);
-            match field {
-                ParamField::dof_frictionloss => model.dofs[i].frictionloss = true,
-                ParamField::tendon_frictionloss => model.tendons[i].frictionloss = true,
-                ParamField::actuator_damping
-                | ParamField::actuator_dampingpoly
-                | ParamField::actuator_armature => {
-                    model.let_reflect(i);
-                }
-                _ => model.bodies[i].simple_inertia = false,
-            }
+            change(Arc::make_mut(model), i);
         }
     }
 }

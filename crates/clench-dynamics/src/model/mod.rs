@@ -187,7 +187,12 @@ impl Model {
                 &mut self.joints[j].reflecting
             }
             Transmission::Tendon(t) => &mut self.tendons[t].reflecting,
-            _ => return,
+            Transmission::Site(_)
+            | Transmission::SiteInFrame(_)
+            | Transmission::SliderCrank(_)
+            | Transmission::Body(_)
+            | Transmission::Rotation(_)
+            | Transmission::RotationInFrame(_) => return,
         };
         if let Err(place) = reflecting.binary_search(&u) {
             reflecting.insert(place, u);
@@ -200,7 +205,12 @@ impl Model {
                 self.joints[j].reflecting.contains(&u)
             }
             Transmission::Tendon(t) => self.tendons[t].reflecting.contains(&u),
-            _ => true,
+            Transmission::Site(_)
+            | Transmission::SiteInFrame(_)
+            | Transmission::SliderCrank(_)
+            | Transmission::Body(_)
+            | Transmission::Rotation(_)
+            | Transmission::RotationInFrame(_) => true,
         }
     }
     /// Returns the total number of sensor values.

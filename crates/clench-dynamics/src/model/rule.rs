@@ -28,14 +28,18 @@ pub(super) enum Rule {
 impl Rule {
     /// Returns the required range of a number that is outside it.
     pub(super) fn refuses<S: Scalar>(self, x: S, of_model: f64) -> Option<&'static str> {
-        let positive = self == Rule::Positive || self == Rule::AsModel && of_model > 0.0;
-        let not_negative = matches!(self, Rule::NotNegative | Rule::AsModel | Rule::IfModel);
+        let positive = || (x > S::ZERO && x.is_finite(), "positive and finite");
         let (holds, range) = match self {
             Rule::Range => (!x.to_f64().is_nan(), "a number, or infinite"),
-            _ if positive => (x > S::ZERO && x.is_finite(), "positive and finite"),
+            Rule::Positive => positive(),
+            Rule::AsModel if of_model > 0.0 => positive(),
             Rule::IfModel if of_model <= 0.0 => (x == S::ZERO, "zero, as in the model"),
-            _ if not_negative => (x >= S::ZERO && x.is_finite(), "finite, zero or more"),
-            _ => (x.is_finite(), "finite"),
+            Rule::NotNegative | Rule::AsModel | Rule::IfModel => {
+                (x >= S::ZERO && x.is_finite(), "finite, zero or more")
+            }
+            Rule::Finite | Rule::Quaternion | Rule::Axis | Rule::Follows(_) => {
+                (x.is_finite(), "finite")
+            }
         };
         (!holds).then_some(range)
     }

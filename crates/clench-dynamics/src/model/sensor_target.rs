@@ -29,7 +29,10 @@ impl FrameObject {
         };
         let own = match self {
             FrameObject::Geom(geom) => Some(geom),
-            _ => None,
+            FrameObject::Inertial(_)
+            | FrameObject::Body(_)
+            | FrameObject::Site(_)
+            | FrameObject::Camera(_) => None,
         };
         let geoms = bodies.flat_map(|body| model.bodies[body].geoms.clone());
         geoms.chain(own)

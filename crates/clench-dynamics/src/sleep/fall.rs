@@ -27,7 +27,7 @@ pub fn fall_asleep<T: Real>(
     // Without islands, trees fall asleep only in lanes without constraints, as in MuJoCo.
     let counting = match settings.solver.islands {
         Switch::Off => !constrained(&ws.problem),
-        _ => T::Mask::splat(true),
+        Switch::Auto | Switch::On => T::Mask::splat(true),
     };
     let mut ready = T::Mask::splat(false);
     for (t, tree) in model.trees.iter().enumerate() {

@@ -68,7 +68,16 @@ impl Size {
         match self {
             Size::Positions => Some(joint.qpos..joint.qpos + joint.kind.nq()),
             Size::Dofs => Some(joint.dof..joint.dof + joint.kind.nv()),
-            _ => None,
+            Size::Activations
+            | Size::Plastic
+            | Size::Actuators
+            | Size::History
+            | Size::Bodies
+            | Size::MocapBodies
+            | Size::Equalities
+            | Size::DynamicConstraints
+            | Size::Trees
+            | Size::AsleepPose => None,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::document::Element;
 use super::rules::rule::{NONE, Rule, section};
-use super::write::names::{SaveError, body_name, label, named};
+use super::write::names::{SaveError, body_name, named};
 use super::write::xml::{Tag, Xml};
 use crate::LoadError;
 use clench_builder::{ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind, EqualitySpec};
@@ -210,10 +210,6 @@ fn write_equality(
                 None => tag,
             };
             tag.numbers("polycoef", &p.eq_polycoef[k])
-        }
-        (target, _) => {
-            let element = label(target.kind(), name, k);
-            return Err(SaveError::new(element, "MJCF has no word for it"));
         }
     };
     if let EqualityTarget::Weld { .. } = target {

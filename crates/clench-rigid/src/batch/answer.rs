@@ -138,7 +138,17 @@ impl<S: Scalar + Shared> Asking<'_, S> {
                 );
                 update_body_forces(self.model, params, state, ws);
             }
-            _ => (Step::compiled().position_stage)(self.model, params, state, ws),
+            Question::Jacobian(_)
+            | Question::SubtreeJacobian(_)
+            | Question::Velocity(..)
+            | Question::MulMass
+            | Question::SolveMass
+            | Question::Rays { .. }
+            | Question::Heights { .. } => {
+                (Step::compiled().position_stage)(self.model, params, state, ws);
+            }
+            // Answered above.
+            Question::Kinematics { .. } | Question::Inverse(_) => {}
         }
         if let Question::Velocity(..) = self.question {
             (Step::compiled().velocities)(self.model, &ws.position, &state.qvel, &mut ws.velocity);
@@ -149,7 +159,14 @@ impl<S: Scalar + Shared> Asking<'_, S> {
                 clench_dynamics::check::good_results(state, ws) & !ws.collision.overflow
             }
             Question::SolveMass => !ws.singular,
-            _ => everywhere,
+            Question::Jacobian(_)
+            | Question::SubtreeJacobian(_)
+            | Question::Velocity(..)
+            | Question::MulMass
+            | Question::Rays { .. }
+            | Question::Heights { .. }
+            | Question::Kinematics { .. }
+            | Question::Inverse(_) => everywhere,
         }
     }
 

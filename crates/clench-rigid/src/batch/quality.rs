@@ -189,7 +189,11 @@ fn held<T: Real>(ws: &Workspace<T>) -> impl Iterator<Item = (usize, &BlockRecord
 fn violation<T: Real>(record: &BlockRecord<T>, pos: T) -> T {
     match record.source {
         ConstraintSource::Equality(_) | ConstraintSource::Dynamic { .. } => pos.abs(),
-        _ => record.margin - pos,
+        ConstraintSource::DofFriction(_)
+        | ConstraintSource::TendonFriction(_)
+        | ConstraintSource::JointLimit(_)
+        | ConstraintSource::TendonLimit(_)
+        | ConstraintSource::Contact(_) => record.margin - pos,
     }
 }
 
@@ -232,7 +236,9 @@ fn worst_violation<T: Real>(results: StepResults<T>, lane: usize) -> Option<Viol
             ConstraintSource::Dynamic { .. } => softness(),
             ConstraintSource::JointLimit(i) => (p.jnt_solref[i], p.jnt_solimp[i]),
             ConstraintSource::TendonLimit(i) => (p.tendon_solref_lim[i], p.tendon_solimp_lim[i]),
-            _ => continue,
+            ConstraintSource::DofFriction(_)
+            | ConstraintSource::TendonFriction(_)
+            | ConstraintSource::Contact(_) => continue,
         };
         for (row, &pos) in rows.iter().enumerate().filter(|_| record.active.lane(lane)) {
             let size = violation(record, pos).lane(lane).to_f64();
@@ -288,7 +294,11 @@ fn implicit_factor<T: Real>(
     let soft = match results.ws.record.blocks[block].source {
         ConstraintSource::Equality(_) | ConstraintSource::Dynamic { .. } => soft,
         _ if results.settings.flags.refsafe => soft.resolved(solref, h),
-        _ => soft,
+        ConstraintSource::DofFriction(_)
+        | ConstraintSource::TendonFriction(_)
+        | ConstraintSource::JointLimit(_)
+        | ConstraintSource::TendonLimit(_)
+        | ConstraintSource::Contact(_) => soft,
     };
     1.0 + h * soft.damping + h * h * soft.stiffness
 }

@@ -208,7 +208,9 @@ where
                 MaxContacts::Limit(limit) if within.lane(lane) => {
                     Fault::ContactOverflow { time, limit }
                 }
-                _ => check::result_fault(model, time, &self.state, &self.ws, lane),
+                MaxContacts::Auto | MaxContacts::Limit(_) => {
+                    check::result_fault(model, time, &self.state, &self.ws, lane)
+                }
             };
             self.fail((env, fault), (start, step), job);
         }

@@ -72,7 +72,9 @@ impl<T: Real> Equations<T> {
                 IkTarget::Posture => {
                     self.add_posture(frames.model, ik, task, (qpos, goal), scratch)
                 }
-                _ => self.add_vector(frames, ik, task, goal, scratch),
+                IkTarget::Position(_) | IkTarget::Orientation(_) | IkTarget::CentreOfMass(_) => {
+                    self.add_vector(frames, ik, task, goal, scratch)
+                }
             };
         }
     }

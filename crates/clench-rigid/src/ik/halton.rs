@@ -44,7 +44,7 @@ pub(super) fn sample_posture<T: Real>(
                 low + (high - low) * share
             }
             JointKind::Hinge => *q + T::new(2.0 * PI) * share - T::new(PI),
-            _ => *q,
+            JointKind::Free | JointKind::Ball | JointKind::Slide => *q,
         };
     }
 }

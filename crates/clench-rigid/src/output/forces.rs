@@ -176,6 +176,10 @@ fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(HeldFrame
             let weld = matches!(target, EqualityTarget::Weld { .. });
             Some((HeldFrames::of_equality(s.params, e, [body1, body2]), weld))
         }
-        _ => None,
+        ConstraintSource::DofFriction(_)
+        | ConstraintSource::TendonFriction(_)
+        | ConstraintSource::JointLimit(_)
+        | ConstraintSource::TendonLimit(_)
+        | ConstraintSource::Contact(_) => None,
     }
 }

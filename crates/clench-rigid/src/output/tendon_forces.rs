@@ -98,9 +98,18 @@ fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
                     tendon2: Some(leader),
                     ..
                 } if leader == t => -equality_slope(s.params, &ws.position, e, leader),
-                _ => continue,
+                EqualityTarget::Tendon { .. }
+                | EqualityTarget::Connect { .. }
+                | EqualityTarget::Weld { .. }
+                | EqualityTarget::Joint { .. } => continue,
             },
-            _ => continue,
+            // Another tendon's, or of no tendon.
+            ConstraintSource::TendonFriction(_)
+            | ConstraintSource::TendonLimit(_)
+            | ConstraintSource::Dynamic { .. }
+            | ConstraintSource::DofFriction(_)
+            | ConstraintSource::JointLimit(_)
+            | ConstraintSource::Contact(_) => continue,
         };
         let force = scale * ws.solver.force()[block.row];
         sum += T::select(record.active, force, T::ZERO);

@@ -12,7 +12,7 @@ pub(crate) fn check_acceleration(model: &Model, given: Acceleration) -> Result<(
     let stages = model.integrator == Integrator::Rk4;
     match given {
         Acceleration::Discrete if stages => Err(SimError::NoDiscreteInverse),
-        _ => Ok(()),
+        Acceleration::Discrete | Acceleration::Continuous => Ok(()),
     }
 }
 

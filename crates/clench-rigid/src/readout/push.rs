@@ -53,7 +53,11 @@ pub(crate) fn pushes<T: Real>(s: &Source<T>, lane: usize) -> Vec<Push> {
             ConstraintSource::Equality(e) => {
                 matches!(s.model.equalities[e].target, EqualityTarget::Joint { .. })
             }
-            _ => false,
+            ConstraintSource::Dynamic { .. }
+            | ConstraintSource::DofFriction(_)
+            | ConstraintSource::TendonFriction(_)
+            | ConstraintSource::TendonLimit(_)
+            | ConstraintSource::Contact(_) => false,
         };
         if joints {
             let forces = &s.ws.solver.force()[block.rows()];

@@ -1,5 +1,6 @@
 //! The smallest distance between two sets of geoms. Each lane is searched separately.
 
+use super::kinds;
 use super::reading::Reading;
 use clench_collide::{Pose, Separation, Shape, distance};
 use clench_dynamics::model::{Sensor, SensorKind};
@@ -24,7 +25,13 @@ impl<T: Real> Reading<'_, T> {
                     let points = found.points.map(Vec3::to_array);
                     put(points.as_flattened());
                 }
-                _ => put(&[<T::Scalar as Real>::ZERO; 6]),
+                (SensorKind::Normal | SensorKind::FromTo, None) => {
+                    put(&[<T::Scalar as Real>::ZERO; 6]);
+                }
+                // The builder gives the other kinds other targets.
+                (kinds!(whole) | kinds!(element) | kinds!(frame) | kinds!(others), _) => {
+                    put(&[<T::Scalar as Real>::ZERO; 6])
+                }
             }
         }
     }

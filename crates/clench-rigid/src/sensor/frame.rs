@@ -3,6 +3,7 @@
 //! Given R, p, ω, v of the reference frame, an object at p' that moves with ω', v' has the relative position Rᵀ(p' −
 //! p), angular velocity Rᵀ(ω' − ω) and linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
+use super::kinds;
 use super::reading::Reading;
 use clench_dynamics::model::{FrameObject, SensorKind};
 use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};
@@ -42,7 +43,8 @@ impl<T: Real> Reading<'_, T> {
             Kind::FrameAngVel => self.relative_velocity(object, reference).angular.write(out),
             Kind::FrameLinAcc => self.acceleration(object).linear.write(out),
             Kind::FrameAngAcc => self.acceleration(object).angular.write(out),
-            _ => out.fill(T::ZERO),
+            // The builder gives these kinds other targets.
+            kinds!(whole) | kinds!(element) | kinds!(geoms) | kinds!(others) => out.fill(T::ZERO),
         }
     }
 

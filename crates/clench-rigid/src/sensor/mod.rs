@@ -23,6 +23,68 @@ use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 use reading::Reading;
 
+/// The patterns of the kinds of sensor by what they are read of, so that a match names every kind.
+macro_rules! kinds {
+    (whole) => {
+        SensorKind::PotentialEnergy
+            | SensorKind::KineticEnergy
+            | SensorKind::Clock
+            | SensorKind::User
+    };
+    (element) => {
+        SensorKind::Touch
+            | SensorKind::Accelerometer
+            | SensorKind::Velocimeter
+            | SensorKind::Gyro
+            | SensorKind::Force
+            | SensorKind::Torque
+            | SensorKind::Magnetometer
+            | SensorKind::JointPos
+            | SensorKind::JointVel
+            | SensorKind::JointActuatorFrc
+            | SensorKind::BallQuat
+            | SensorKind::BallAngVel
+            | SensorKind::JointLimitPos
+            | SensorKind::JointLimitVel
+            | SensorKind::JointLimitFrc
+            | SensorKind::TendonPos
+            | SensorKind::TendonVel
+            | SensorKind::TendonActuatorFrc
+            | SensorKind::TendonLimitPos
+            | SensorKind::TendonLimitVel
+            | SensorKind::TendonLimitFrc
+            | SensorKind::ActuatorPos
+            | SensorKind::ActuatorVel
+            | SensorKind::ActuatorFrc
+            | SensorKind::SubtreeCom
+            | SensorKind::SubtreeLinVel
+            | SensorKind::SubtreeAngMom
+    };
+    (frame) => {
+        SensorKind::FramePos
+            | SensorKind::FrameQuat
+            | SensorKind::FrameXAxis
+            | SensorKind::FrameYAxis
+            | SensorKind::FrameZAxis
+            | SensorKind::FrameLinVel
+            | SensorKind::FrameAngVel
+            | SensorKind::FrameLinAcc
+            | SensorKind::FrameAngAcc
+    };
+    (geoms) => {
+        SensorKind::Distance | SensorKind::Normal | SensorKind::FromTo
+    };
+    // Other objects, rays, contacts or taxels, which the target describes.
+    (others) => {
+        SensorKind::InsideSite
+            | SensorKind::CamProjection
+            | SensorKind::Rangefinder
+            | SensorKind::Contact
+            | SensorKind::Tactile
+    };
+}
+use kinds;
+
 /// Evaluates all sensors of the model if they are read now or later.
 #[kernel]
 pub(crate) fn evaluate<T: Real>(

@@ -1,5 +1,6 @@
 //! The data that sensors are read from.
 
+use super::kinds;
 use clench_dynamics::Step;
 use clench_dynamics::constraint::ConstraintSource;
 use clench_dynamics::dynamics::frames::Frames;
@@ -72,7 +73,10 @@ impl<'a, T: Real> Reading<'a, T> {
             SensorKind::PotentialEnergy => out[0] = energy().potential,
             SensorKind::KineticEnergy => out[0] = energy().kinetic,
             SensorKind::Clock => out[0] = state.rounded_time(),
-            _ => out.fill(T::ZERO),
+            // No program of the user's writes it here.
+            SensorKind::User => out.fill(T::ZERO),
+            // The builder gives these kinds other targets.
+            kinds!(element) | kinds!(frame) | kinds!(geoms) | kinds!(others) => out.fill(T::ZERO),
         }
     }
 
@@ -118,7 +122,8 @@ impl<'a, T: Real> Reading<'a, T> {
             Kind::SubtreeCom => ws.position.subtree_com[element].write(out),
             Kind::SubtreeLinVel => self.subtree(element).velocity.write(out),
             Kind::SubtreeAngMom => self.subtree(element).angular_momentum.write(out),
-            _ => out.fill(T::ZERO),
+            // The builder gives these kinds other targets.
+            kinds!(whole) | kinds!(frame) | kinds!(geoms) | kinds!(others) => out.fill(T::ZERO),
         }
     }
 

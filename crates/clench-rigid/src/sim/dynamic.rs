@@ -153,7 +153,7 @@ impl<T: Precision> Sim<T> {
                 let anchor2 = self.carry([body1, body2], anchor1);
                 self.params.eq_anchor2[equality] = Vec3::splat(anchor2);
             }
-            _ => {
+            EqualityTarget::Joint { .. } | EqualityTarget::Tendon { .. } => {
                 return Err(SimError::CannotHold {
                     what: format!("equality \"{}\"", self.model.equalities[equality].name),
                     reason: "only welds and connects hold a pose",

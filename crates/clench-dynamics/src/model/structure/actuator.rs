@@ -28,6 +28,39 @@ pub enum Transmission {
     RotationInFrame([usize; 2]),
 }
 
+impl Transmission {
+    /// Returns the joint of a transmission to the coordinate, rotation vector or wrench of one, in either frame.
+    #[inline(always)]
+    pub fn joint(self) -> Option<usize> {
+        match self {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => Some(j),
+            Transmission::Tendon(_)
+            | Transmission::Site(_)
+            | Transmission::SiteInFrame(_)
+            | Transmission::SliderCrank(_)
+            | Transmission::Body(_)
+            | Transmission::Rotation(_)
+            | Transmission::RotationInFrame(_) => None,
+        }
+    }
+
+    /// Returns the tendon of a transmission to one.
+    #[inline(always)]
+    pub fn tendon(self) -> Option<usize> {
+        match self {
+            Transmission::Tendon(t) => Some(t),
+            Transmission::Joint(_)
+            | Transmission::JointInParent(_)
+            | Transmission::Site(_)
+            | Transmission::SiteInFrame(_)
+            | Transmission::SliderCrank(_)
+            | Transmission::Body(_)
+            | Transmission::Rotation(_)
+            | Transmission::RotationInFrame(_) => None,
+        }
+    }
+}
+
 /// The activation dynamics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DynamicsKind {

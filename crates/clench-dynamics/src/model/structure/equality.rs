@@ -2,7 +2,6 @@
 
 /// The relation that an equality constraint enforces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum EqualityTarget {
     /// Points of two bodies coincide; anchors are `params.eq_anchor1`, `eq_anchor2`.
     Connect {

@@ -168,15 +168,6 @@ impl Frames {
                 let leader = tendon2.as_ref().map(|tendon| self.of_tendon(tendon));
                 scale_coupling(self.of_tendon(tendon1), leader, polycoef)
             }
-            _ => {
-                let message = "an equality of this kind cannot be scaled";
-                return Err(located(
-                    &equality.origin,
-                    "equality",
-                    &equality.name,
-                    message,
-                ));
-            }
         };
         equality.solimp[2] *= width;
         Ok(())
