@@ -1,8 +1,9 @@
 //! A backend of `clench-rigid`'s batch that steps on a graphics device.
 
 use crate::batch::{GpuBatch, GpuOptions};
+use crate::codes::Code;
 use crate::error::{GpuError, GpuFault};
-use crate::kernels::DIVERGED_FIELDS;
+use crate::kernels::DivergedField;
 use crate::precision::GpuReal;
 use clench_math::Motion;
 use clench_rigid::batch::{Backend, Outcome, Trouble};
@@ -56,6 +57,7 @@ fn word(output: Output) -> Option<&'static str> {
     match output {
         Output::contact_count => Some("ncon"),
         Output::solver_iterations => Some("niter"),
+        // The others are fields of their own name, or computed by the host.
         _ => None,
     }
 }
@@ -86,9 +88,9 @@ impl<S: GpuReal> GpuBatch<S> {
                 GpuFault::ContactOverflow { limit } => Trouble::ContactOverflow { limit },
                 GpuFault::Diverged => {
                     let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);
-                    let field = DIVERGED_FIELDS.get(detail(0) as usize);
+                    let field = DivergedField::of(detail(0));
                     Trouble::Diverged {
-                        field: field.copied().unwrap_or(DIVERGED_FIELDS[0]),
+                        field: field.unwrap_or(DivergedField::Qacc).name(),
                         index: detail(1) as usize,
                         value: f64::from(f32::from_bits(detail(2))),
                     }

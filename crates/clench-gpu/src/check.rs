@@ -4,7 +4,7 @@ use crate::error::{GpuError, Refusal};
 use crate::methods::points_of_pair;
 use crate::tables::is_read;
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{EqualityTarget, Integrator, Model, Sensor};
+use clench_rigid::model::{Integrator, Model, Sensor};
 use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 
@@ -46,13 +46,6 @@ rules! {
         let mut late = s.model.sensors.iter().enumerate().filter(late);
         let (i, sensor) = late.find(|(_, sensor)| !is_read(s.model, sensor))?;
         Some(named(&format!("{} sensor", sensor.kind.name()), &sensor.name, i))
-    };
-    "equalities of this kind are not there yet": |s| {
-        use EqualityTarget::{Connect, Joint, Tendon, Weld};
-        let known = |target| matches!(target, Connect { .. } | Weld { .. } | Joint { .. } | Tendon { .. });
-        let e = s.model.equalities.iter().position(|equality| !known(equality.target))?;
-        let equality = &s.model.equalities[e];
-        Some(named(equality.target.kind(), &equality.name, e))
     };
     "the contacts of these two kinds of shape are not there yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;

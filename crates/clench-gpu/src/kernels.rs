@@ -3,11 +3,13 @@
 //! A kernel is a file in `kernels/` with an entry point, and the files that it calls. WGSL has no modules: the texts
 //! are concatenated after the constants of the model. Loops run over tables; nothing is unrolled for a model.
 
+use crate::codes::{Code, codes};
 use crate::fields::Fields;
 use crate::layout::Layout;
 use crate::precision::{Texts, words};
 use crate::solver_memory::SolverMemory;
 use crate::tables::{NONE, Tables};
+use clench_solver::Status;
 use std::collections::HashSet;
 use std::fmt::Write;
 
@@ -68,6 +70,8 @@ macro_rules! kernels {
             workers: Workers::$workers,
             texts: texts![$($name),*],
         };)*
+        #[cfg(test)]
+        const ALL: &[Kernel] = &[$($constant),*];
     };
 }
 
@@ -134,28 +138,53 @@ pub(crate) struct Memory<'a> {
     pub solver: SolverMemory,
 }
 
-/// The codes of `reports`: those of [`GpuFault`](crate::GpuFault), and of environments excluded from a call.
-const FAULTS: [&str; 6] = [
-    "RUNNING",
-    "SINGULAR",
-    "DIVERGED",
-    "CONTACT_OVERFLOW",
-    "ASIDE",
-    "UNFINISHED",
-];
-/// The code of an environment excluded from a call.
-pub(crate) const ASIDE: u32 = 4;
-/// The fields that can diverge, in the order of their codes.
-pub(crate) const DIVERGED_FIELDS: [&str; 5] = ["qacc", "qfrc_constraint", "qvel", "qpos", "act"];
-/// The codes of `clench_solver::Status`, in its order.
-const SOLVE_STATUS: [&str; 6] = [
-    "SOLVE_UNCONSTRAINED",
-    "SOLVE_PROVEN",
-    "SOLVE_CONVERGED",
-    "SOLVE_NO_PROGRESS",
-    "SOLVE_ITERATION_LIMIT",
-    "SOLVE_NON_FINITE",
-];
+codes! {
+    /// The status of an environment in `reports`.
+    enum Report {
+        Running = "RUNNING",
+        Singular = "SINGULAR",
+        Diverged = "DIVERGED",
+        ContactOverflow = "CONTACT_OVERFLOW",
+        /// Excluded from a call by the host.
+        Excluded = "EXCLUDED",
+        Unfinished = "UNFINISHED",
+    }
+}
+codes! {
+    /// The fields that can diverge.
+    enum DivergedField {
+        Qacc = "OF_QACC",
+        QfrcConstraint = "OF_QFRC_CONSTRAINT",
+        Qvel = "OF_QVEL",
+        Qpos = "OF_QPOS",
+        Act = "OF_ACT",
+    }
+}
+
+impl DivergedField {
+    /// Returns the name of the field.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            DivergedField::Qacc => "qacc",
+            DivergedField::QfrcConstraint => "qfrc_constraint",
+            DivergedField::Qvel => "qvel",
+            DivergedField::Qpos => "qpos",
+            DivergedField::Act => "act",
+        }
+    }
+}
+
+codes! {
+    of Status {
+        Unconstrained = "SOLVE_UNCONSTRAINED",
+        Proven = "SOLVE_PROVEN",
+        Converged = "SOLVE_CONVERGED",
+        NoProgress = "SOLVE_NO_PROGRESS",
+        IterationLimit = "SOLVE_ITERATION_LIMIT",
+        NonFinite = "SOLVE_NON_FINITE",
+        TooLarge = "SOLVE_TOO_LARGE",
+    }
+}
 
 /// The declarations that precede the texts of a model's kernels, and the layout that they read.
 pub(crate) struct Preface {
@@ -177,14 +206,15 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     declare("GRID", GRID as usize);
     declare("TEAM", TEAM as usize);
     declare("NONE", NONE as usize);
-    for names in [&FAULTS[..], &SOLVE_STATUS] {
-        for (code, name) in names.iter().enumerate() {
-            declare(name, code);
-        }
-    }
-    for (code, name) in DIVERGED_FIELDS.iter().enumerate() {
-        declare(&format!("OF_{}", name.to_uppercase()), code);
-    }
+    Report::ALL
+        .iter()
+        .for_each(|x| declare(x.constant(), x.code()));
+    DivergedField::ALL
+        .iter()
+        .for_each(|x| declare(x.constant(), x.code()));
+    <Status as Code>::ALL
+        .iter()
+        .for_each(|x| declare(x.constant(), x.code()));
     let mut layout = tables.layout.clone();
     layout.count("STATE", memory.state.size);
     layout.count("ROWS", memory.rows.size);
@@ -215,6 +245,14 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
 }
 
 impl Kernel {
+    /// Returns true if a text of the kernel names a constant, outside comments.
+    #[cfg(test)]
+    fn names(&self, constant: &str) -> bool {
+        let texts = COMMON.iter().chain(self.texts);
+        let code = texts.flat_map(|text| text.lines().filter_map(|line| line.split("//").next()));
+        code.flat_map(words).any(|word| word == constant)
+    }
+
     /// Returns the whole source text in the given number type.
     pub(crate) fn source<S: Texts>(&self, preface: &Preface) -> String {
         let texts = Vec::from_iter(COMMON.iter().chain(self.texts).copied()).join("\n");
@@ -242,5 +280,59 @@ impl Kernel {
             Workers::Rays => [of_threads, (preface.rays as u32).min(GRID), 1],
             Workers::Workgroup => [count.min(GRID), count.div_ceil(GRID), 1],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ALL, Memory, preface};
+    use crate::fields::{self, Fields};
+    use crate::precision::words;
+    use crate::solver_memory::SolverMemory;
+    use crate::tables::Tables;
+    use clench_rigid::options::RigidOptions;
+    use clench_rigid::settings::StepSettings;
+    use clench_solver::ConstraintSolver;
+
+    /// Codes that no kernel compares with.
+    const UNNAMED: [&str; 4] = [
+        // What is not `RUNNING` is excluded.
+        "EXCLUDED",
+        // Only the processor refuses large problems.
+        "SOLVE_TOO_LARGE",
+        // What is not another law is affine.
+        "LAW_AFFINE",
+        // What no other method finds is of convex shapes.
+        "CONVEX",
+    ];
+
+    #[test]
+    fn the_kernels_name_every_constant() {
+        let model = clench_formats::load_str("<mujoco/>").unwrap();
+        let settings = StepSettings::new::<f64>(&model, RigidOptions::default()).unwrap();
+        let (mut tables, capacity) = Tables::new::<f64>(&model, &settings, &[], false);
+        tables.shapes(&model, &[]);
+        let none = Fields::default();
+        let memory = Memory {
+            state: &fields::state_fields(&model, capacity),
+            work: &fields::work_fields(&model, capacity),
+            thread: &none,
+            threads: 1,
+            rays: 0,
+            rows: &fields::row_fields(&model, capacity),
+            reports: &fields::report_fields(&model, capacity),
+            solver: SolverMemory::new::<f64>(0, ConstraintSolver::Newton, 1 << 15, false),
+        };
+        let preface = preface(&tables, &memory);
+        let constants = preface
+            .constants
+            .lines()
+            .filter(|line| line.contains(": u32"));
+        let names = constants.filter_map(|line| words(line).nth(1));
+        let unnamed = names.filter(|name| !ALL.iter().any(|kernel| kernel.names(name)));
+        // The host may need a size alone, and `soften` reads solimp after solref.
+        let implied = |name: &str| name.ends_with("_SIZE") || name.ends_with("_SOLIMP");
+        let unnamed = unnamed.filter(|name| !UNNAMED.contains(name) && !implied(name));
+        assert_eq!(Vec::from_iter(unnamed), Vec::<&str>::new());
     }
 }

@@ -18,6 +18,7 @@ mod base;
 mod batch;
 mod check;
 mod clock;
+mod codes;
 mod device;
 mod error;
 mod fields;

@@ -1,8 +1,9 @@
 //! The report of each environment: its status, its faults, and the status of its solve.
 
 use crate::batch::GpuBatch;
+use crate::codes::Code;
 use crate::error::{GpuError, GpuFault};
-use crate::kernels::ASIDE;
+use crate::kernels::Report;
 use crate::precision::GpuReal;
 use clench_solver::Status;
 use zerocopy::IntoBytes;
@@ -43,12 +44,13 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Decodes a report field into faults.
     pub(crate) fn faults(&self, word: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
         let limit = self.capacity.contacts;
-        let fault = |&code: &u32| match code {
-            0 | ASIDE => None,
-            1 => Some(GpuFault::Singular),
-            3 => Some(GpuFault::ContactOverflow { limit }),
-            5 => Some(GpuFault::Unfinished),
-            _ => Some(GpuFault::Diverged),
+        let fault = |&code: &u32| match Report::of(code) {
+            Some(Report::Running | Report::Excluded) => None,
+            Some(Report::Singular) => Some(GpuFault::Singular),
+            Some(Report::ContactOverflow) => Some(GpuFault::ContactOverflow { limit }),
+            Some(Report::Unfinished) => Some(GpuFault::Unfinished),
+            // No kernel writes another code: its memory is corrupt.
+            Some(Report::Diverged) | None => Some(GpuFault::Diverged),
         };
         Ok(self.report(word)?.iter().map(fault).collect())
     }
@@ -70,14 +72,8 @@ impl<S: GpuReal> GpuBatch<S> {
         self.submit(|batch, encoder| {
             batch.encode(encoder, None, [&batch.pipelines.gap].into_iter());
         })?;
-        let status = |code: u32| match code {
-            0 => Status::Unconstrained,
-            1 => Status::Proven,
-            2 => Status::Converged,
-            3 => Status::NoProgress,
-            4 => Status::IterationLimit,
-            _ => Status::NonFinite,
-        };
+        // No kernel writes another code: its memory is corrupt.
+        let status = |code: u32| Status::of(code).unwrap_or(Status::NonFinite);
         let [ended, niter, gap, ncon, nrow] =
             ["solve_status", "niter", "solve_gap", "ncon", "nrow"].map(|name| self.report(name));
         let (ended, niter, gap, ncon, nrow) = (ended?, niter?, gap?, ncon?, nrow?);
@@ -93,8 +89,14 @@ impl<S: GpuReal> GpuBatch<S> {
 
     /// Restricts subsequent calls to the `running` environments, from step 0.
     pub(crate) fn choose(&mut self, running: &[bool]) {
-        let code = |&runs: &bool| if runs { 0 } else { ASIDE };
-        let codes = Vec::from_iter(running.iter().map(code));
+        let code = |&runs: &bool| {
+            if runs {
+                Report::Running
+            } else {
+                Report::Excluded
+            }
+        };
+        let codes = Vec::from_iter(running.iter().map(|runs| code(runs).code() as u32));
         self.write_report("status", &codes);
         self.write_report("steps", &vec![0; self.count]);
     }

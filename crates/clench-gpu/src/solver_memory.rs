@@ -120,6 +120,7 @@ impl SolverMemory {
         let others = self.tiles().saturating_sub(TILE * TILE);
         let right = if self.share_tiles { others / 4 } else { 0 };
         for (name, value) in [
+            ("TILE", TILE),
             ("WIDTH", TILE * self.most),
             ("RIGHT", right),
             ("SHARED_VECTORS", inside(self.share_vectors, self.vectors())),

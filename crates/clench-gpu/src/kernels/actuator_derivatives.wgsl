@@ -9,7 +9,7 @@ fn unlimited_slope(u: u32) -> f32 {
     let length = fetch(ACTUATOR_LENGTH + output_of(u));
     let velocity = fetch(ACTUATOR_VELOCITY + output_of(u));
     let gain_at = ACTUATOR_GAIN + LAW_SIZE * u;
-    var slope = parameter(gain_at + 2u);
+    var slope = parameter(gain_at + AFFINE_VELOCITY);
     if (ANY_MUSCLE && words[GAIN_LAW + u] == LAW_MUSCLE) {
         slope = muscle_gain_slope(gain_at, length, velocity);
     }
@@ -22,7 +22,7 @@ fn unlimited_slope(u: u32) -> f32 {
     if (ANY_MUSCLE && words[BIAS_LAW + u] == LAW_MUSCLE) {
         return slope;
     }
-    return slope + parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u);
+    return slope + parameter(ACTUATOR_BIAS + LAW_SIZE * u + AFFINE_VELOCITY);
 }
 
 fn is_saturated(x: f32, range: u32) -> bool {

@@ -17,7 +17,7 @@ fn contact_arms(u: u32, body: u32) {
         if (a != body && b != body) {
             continue;
         }
-        let margin = parameter(PAIR_PRM + PAIR_PRM_SIZE * pair);
+        let margin = parameter(PAIR_PRM + PAIR_SIZE * pair + PAIR_MARGIN);
         let acts = fetch(place + 1u) < margin || contact_adhesion(c) != 0.0;
         if (move_alike(a, b) && acts) {
             continue;

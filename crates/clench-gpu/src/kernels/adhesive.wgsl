@@ -6,5 +6,5 @@ fn contact_adhesion(contact: u32) -> f32 {
         return 0.0;
     }
     let pair = u32(fetch(CONTACTS + CONTACT_SIZE * contact));
-    return parameter(PAIR_PRM + PAIR_PRM_SIZE * pair + 16u);
+    return parameter(PAIR_PRM + PAIR_SIZE * pair + PAIR_ADHESION);
 }

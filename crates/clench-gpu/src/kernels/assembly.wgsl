@@ -114,7 +114,7 @@ fn entry(a: u32, i: u32) -> f32 {
         case LIMIT: {
             return limit_entry(source, i);
         }
-        default: {
+        case CONTACT_NORMAL, CONTACT_PYRAMID, CONTACT_ELLIPTIC, default: {
             return contact_entry(source, a - block(b, BLOCK_ROW), i);
         }
     }

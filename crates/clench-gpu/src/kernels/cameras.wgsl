@@ -42,7 +42,7 @@ fn cameras(@builtin(global_invocation_id) id: vec3u) {
             case TRACK_COM: {
                 follow(c, fetch3(SUBTREE_COM + 3u * body), CAM_POSCOM0);
             }
-            default: {
+            case FIXED, TARGET_BODY, TARGET_COM, default: {
                 let mode = words[camera + CAMERA_MODE];
                 fix(c, mode, body, select(words[camera + CAMERA_TARGET], 0u, mode == FIXED));
             }

@@ -67,7 +67,7 @@ fn within_shape(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> vec2f {
         case BOX: {
             return within_box(o, d, size);
         }
-        default: {
+        case PLANE, HEIGHT_FIELD, MESH, default: {
             return vec2f(1.0, -1.0);
         }
     }

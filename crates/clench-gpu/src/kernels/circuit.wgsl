@@ -9,8 +9,8 @@ struct Circuit {
 }
 
 fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circuit {
-    let cold = controller(u, OF_GAIN);
-    let constant = controller(u, OF_GAIN + 1u);
+    let cold = controller(u, CONTROLLER_GAIN);
+    let constant = controller(u, CONTROLLER_GAIN + 1u);
     var voltage: f32 = 0.0;
     var slope: f32 = 0.0;
     if (words[ACTUATOR_CONTROLLED + u] == 1u) {
@@ -19,13 +19,13 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
         if (a != NONE) {
             integral = given(ACT + a);
         }
-        let kd = controller(u, OF_GAIN + 6u);
-        let torque = controller(u, OF_GAIN + 4u) * (setpoints.position - length) + kd * (setpoints.velocity - velocity)
-            + controller(u, OF_GAIN + 5u) * integral + setpoints.feedforward;
+        let kd = controller(u, CONTROLLER_GAIN + 6u);
+        let torque = controller(u, CONTROLLER_GAIN + 4u) * (setpoints.position - length) + kd * (setpoints.velocity - velocity)
+            + controller(u, CONTROLLER_GAIN + 5u) * integral + setpoints.feedforward;
         let per_torque = cold / constant;
         voltage = per_torque * torque + constant * velocity;
         slope = constant - per_torque * kd;
-        let most = controller(u, OF_GAIN + 7u);
+        let most = controller(u, CONTROLLER_GAIN + 7u);
         if (most > 0.0) {
             slope = select(slope, 0.0, abs(voltage) >= most);
             voltage = clamp(voltage, -most, most);
@@ -34,8 +34,8 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
     var resistance = cold;
     let a = state_of(u, STATE_TEMPERATURE);
     if (a != NONE) {
-        let temperature = given(ACT + a) + controller(u, OF_DYNAMICS + 4u);
-        resistance = cold * (1.0 + controller(u, OF_GAIN + 2u) * (temperature - controller(u, OF_GAIN + 3u)));
+        let temperature = given(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 4u);
+        resistance = cold * (1.0 + controller(u, CONTROLLER_GAIN + 2u) * (temperature - controller(u, CONTROLLER_GAIN + 3u)));
     }
     return Circuit(resistance, constant, voltage + setpoints.voltage, slope);
 }
@@ -46,7 +46,7 @@ fn steady_current(circuit: Circuit, velocity: f32) -> f32 {
 }
 
 fn motor_rates(u: u32, setpoints: Setpoints, circuit: Circuit, length: f32, velocity: f32) {
-    controller_rates(u, setpoints, setpoints.position - length, controller(u, OF_DYNAMICS + 8u));
+    controller_rates(u, setpoints, setpoints.position - length, controller(u, CONTROLLER_DYNAMICS + 8u));
     let steady = steady_current(circuit, velocity);
     let current = state_of(u, STATE_CURRENT);
     let temperature = state_of(u, STATE_TEMPERATURE);
@@ -55,16 +55,16 @@ fn motor_rates(u: u32, setpoints: Setpoints, circuit: Circuit, length: f32, velo
         if (current != NONE) {
             flows = given(ACT + current);
         }
-        let loss = given(ACT + temperature) / controller(u, OF_DYNAMICS + 2u);
-        put(ACT_DOT + temperature, (circuit.resistance * flows * flows - loss) / controller(u, OF_DYNAMICS + 3u));
+        let loss = given(ACT + temperature) / controller(u, CONTROLLER_DYNAMICS + 2u);
+        put(ACT_DOT + temperature, (circuit.resistance * flows * flows - loss) / controller(u, CONTROLLER_DYNAMICS + 3u));
     }
     let bristle = state_of(u, STATE_BRISTLE);
     if (bristle != NONE) {
         put(ACT_DOT + bristle, bristle_decay(u, velocity) * given(ACT + bristle) + velocity);
     }
     if (current != NONE) {
-        let rate = (steady - given(ACT + current)) / controller(u, OF_DYNAMICS);
-        let most = controller(u, OF_DYNAMICS + 1u);
+        let rate = (steady - given(ACT + current)) / controller(u, CONTROLLER_DYNAMICS);
+        let most = controller(u, CONTROLLER_DYNAMICS + 1u);
         put(ACT_DOT + current, select(rate, clamp(rate, -most, most), most > 0.0));
     }
 }
@@ -90,7 +90,7 @@ fn motor_input(u: u32, circuit: Circuit, velocity: f32) -> f32 {
 // Returns the back-EMF's reduction of the force of an actuator with this gain: zero if the current is a state, whose
 // equation includes it.
 fn back_emf(u: u32, gain: f32, velocity: f32) -> f32 {
-    return select(0.0, gain * controller(u, OF_GAIN + 1u) * velocity, state_of(u, STATE_CURRENT) == NONE);
+    return select(0.0, gain * controller(u, CONTROLLER_GAIN + 1u) * velocity, state_of(u, STATE_CURRENT) == NONE);
 }
 
 // Returns ∂force/∂velocity of a motor's gain, and of its back-EMF if its bias is a motor's. If the current is a state,
@@ -102,26 +102,26 @@ fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
     if (a == NONE) {
         return steady;
     }
-    let most = controller(u, OF_DYNAMICS + 1u);
+    let most = controller(u, CONTROLLER_DYNAMICS + 1u);
     let is_held = most > 0.0 && abs(fetch(ACT_DOT + a)) >= most;
     if (words[ACTUATOR_EARLY + u] == 0u || is_held) {
         return 0.0;
     }
-    return -steady * exp_less_one(-TIMESTEP / max(controller(u, OF_DYNAMICS), TINY));
+    return -steady * exp_less_one(-TIMESTEP / max(controller(u, CONTROLLER_DYNAMICS), TINY));
 }
 
 // Returns cogging and friction, to which no limit of the motor's torque applies.
 fn mechanical_force(u: u32, length: f32) -> f32 {
-    let phase = controller(u, OF_BIAS + 1u) * length + controller(u, OF_BIAS + 2u);
-    let cogging = controller(u, OF_BIAS) * sin_cos(phase).x;
+    let phase = controller(u, CONTROLLER_BIAS + 1u) * length + controller(u, CONTROLLER_BIAS + 2u);
+    let cogging = controller(u, CONTROLLER_BIAS) * sin_cos(phase).x;
     let a = state_of(u, STATE_BRISTLE);
     if (a == NONE) {
         return cogging;
     }
-    return cogging - (controller(u, OF_DYNAMICS + 5u) * given(ACT + a) + controller(u, OF_DYNAMICS + 6u) * fetch(ACT_DOT + a));
+    return cogging - (controller(u, CONTROLLER_DYNAMICS + 5u) * given(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 6u) * fetch(ACT_DOT + a));
 }
 
 // Returns ∂force/∂velocity of friction, with the deflection's decay constant.
 fn mechanical_slope(u: u32) -> f32 {
-    return select(0.0, -controller(u, OF_DYNAMICS + 6u), state_of(u, STATE_BRISTLE) != NONE);
+    return select(0.0, -controller(u, CONTROLLER_DYNAMICS + 6u), state_of(u, STATE_BRISTLE) != NONE);
 }

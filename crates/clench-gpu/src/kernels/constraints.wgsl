@@ -43,37 +43,40 @@ fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
 }
 
 fn push_friction(k: u32) {
-    let prm = FRICTION_PRM + 9u * k;
-    let soft = soften(prm + 2u, 0.0);
+    let prm = FRICTION_PRM + FRICTION_SIZE * k;
+    let soft = soften(prm + FRICTION_SOLREF, 0.0);
     begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k], soft.impedance);
-    add_row(0.0, 0.0, soft.damping, regularization(soft.impedance, parameter(prm + 1u)), parameter(prm));
+    let r = regularization(soft.impedance, parameter(prm + FRICTION_INVWEIGHT));
+    add_row(0.0, 0.0, soft.damping, r, parameter(prm + FRICTION_LOSS));
 }
 
 // Adds one end of a coordinate's range. `source` is twice the coordinate, plus one at the upper end.
 fn push_limit(prm: u32, distance: f32, source: u32) {
-    let margin = parameter(prm + 2u);
+    let margin = parameter(prm + LIMIT_MARGIN);
     if (distance >= margin) {
         return;
     }
-    let soft = soften(prm + 4u, distance - margin);
+    let soft = soften(prm + LIMIT_SOLREF, distance - margin);
     begin_block(LIMIT, 1u, source, soft.impedance);
     let aref = -soft.stiffness * (distance - margin);
-    add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + 3u)), 0.0);
+    add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + LIMIT_INVWEIGHT)), 0.0);
 }
 
 // Adds both ends.
 fn push_limits(k: u32) {
     let c = words[LIMIT_COORDINATE + k];
-    let prm = LIMIT_PRM + 11u * k;
+    let prm = LIMIT_PRM + LIMIT_SIZE * k;
+    let low = parameter(prm + LIMIT_LOW);
+    let high = parameter(prm + LIMIT_HIGH);
     if (is_ball(c)) {
         let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
         let angle = length(quat_rotation_vector(turn));
-        push_limit(prm, max(parameter(prm), parameter(prm + 1u)) - angle, 2u * c);
+        push_limit(prm, max(low, high) - angle, 2u * c);
         return;
     }
     let value = coordinate_value(c);
-    push_limit(prm, value - parameter(prm), 2u * c);
-    push_limit(prm, parameter(prm + 1u) - value, 2u * c + 1u);
+    push_limit(prm, value - low, 2u * c);
+    push_limit(prm, high - value, 2u * c + 1u);
 }
 
 // Returns the velocity of the second geom's surface relative to the first's at the contact: along both tangents, and
@@ -129,17 +132,17 @@ fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull:
 fn push_contact(contact: u32) {
     let place = CONTACTS + CONTACT_SIZE * contact;
     let pair = u32(fetch(place));
-    let prm = PAIR_PRM + PAIR_PRM_SIZE * pair;
+    let prm = PAIR_PRM + PAIR_SIZE * pair;
     let distance = fetch(place + 1u);
-    let margin = parameter(prm);
+    let margin = parameter(prm + PAIR_MARGIN);
     let adhesion = contact_adhesion(contact);
     let touches = distance < margin;
     if (!(touches || adhesion != 0.0) || move_alike(words[PAIR_BODY + 2u * pair], words[PAIR_BODY + 2u * pair + 1u])) {
         return;
     }
-    let a0 = parameter(prm + 1u);
-    let friction = prm + 2u;
-    let soft = soften(prm + 7u, distance - margin);
+    let a0 = parameter(prm + PAIR_INVWEIGHT);
+    let friction = prm + PAIR_FRICTION;
+    let soft = soften(prm + PAIR_SOLREF, distance - margin);
     let aref = -soft.stiffness * (distance - margin);
     let dim = select(1u, words[PAIR_DIM + pair], touches);
     let plain = regularization(soft.impedance, a0);
@@ -153,9 +156,9 @@ fn push_contact(contact: u32) {
         begin_block(CONTACT_ELLIPTIC, dim, contact, soft.impedance);
         push_normal(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
         var damping = soft.damping;
-        let solref = vec2f(parameter(prm + 14u), parameter(prm + 15u));
+        let solref = vec2f(parameter(prm + PAIR_SOLREFFRICTION), parameter(prm + PAIR_SOLREFFRICTION + 1u));
         if (any(solref != vec2f()) && !is_mixed(solref)) {
-            damping = spring_damper(solref, parameter(prm + 10u)).y;
+            damping = spring_damper(solref, parameter(prm + PAIR_SOLIMP + 1u)).y;
         }
         push_tangents(contact, dim, friction, plain, soft.damping, damping);
         return;

@@ -1,12 +1,11 @@
 // Contacts between two sides. CPU counterpart: `sensor/contact.rs`, which explains the signs.
 //
-// A query is a row of words: the reduction of contacts, the numbers reported of each, the number of fields, the fields,
-// and for each geom its sides (1: the first, 2: the second).
+// A query is a row of words: QUERY_SIZE words, the fields, and for each geom the flags of its sides.
 
 // Returns 1 or −1 if a contact matches, by the order of its geoms; 0 if it does not.
 fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
     let query = QUERIES + words[s + SENSOR_OBJECT];
-    let sides = query + QUERY_FIELDS + words[query + QUERY_NFIELD];
+    let sides = query + QUERY_SIZE + words[query + QUERY_NFIELD];
     let place = CONTACTS + CONTACT_SIZE * c;
     let pair = u32(fetch(place));
     let a = words[sides + words[PAIR_GEOM + 2u * pair]];
@@ -14,10 +13,10 @@ fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
     if (words[s + SENSOR_REFERENCE] != NONE && !is_inside(s, prm, fetch3(place + 2u))) {
         return 0.0;
     }
-    if ((a & 1u) != 0u && (b & 2u) != 0u) {
+    if ((a & FIRST_SIDE) != 0u && (b & SECOND_SIDE) != 0u) {
         return 1.0;
     }
-    return select(f32(0.0), f32(-1.0), (b & 1u) != 0u && (a & 2u) != 0u);
+    return select(f32(0.0), f32(-1.0), (b & FIRST_SIDE) != 0u && (a & SECOND_SIDE) != 0u);
 }
 
 // Returns the force and torque of a contact on its second geom in its frame; zero if it is no constraint. Blocks of
@@ -57,7 +56,7 @@ fn contact_key(reduction: u32, c: u32) -> f32 {
             let force = contact_wrench(c).linear;
             return -dot(force, force);
         }
-        default: {
+        case FIRST_ONES, NET_FORCE, default: {
             return 0.0;
         }
     }
@@ -121,7 +120,7 @@ fn write_contact_data(query: u32, count: f32, data: ContactData, first: u32) {
     for (var k = 0u; k < words[query + QUERY_NFIELD]; k++) {
         var numbers = vec3f();
         var scalar = false;
-        switch words[query + QUERY_FIELDS + k] {
+        switch words[query + QUERY_SIZE + k] {
             case CONTACT_DATA_FOUND: {
                 numbers.x = count;
                 scalar = true;
@@ -148,7 +147,7 @@ fn write_contact_data(query: u32, count: f32, data: ContactData, first: u32) {
             case CONTACT_DATA_LINVEL: {
                 numbers = data.motion.linear;
             }
-            default: {
+            case CONTACT_DATA_ANGVEL, default: {
                 numbers = data.motion.angular;
             }
         }
@@ -191,7 +190,7 @@ fn read_contacts(s: u32, prm: u32, out: u32) {
     for (var c = 0u; c < reports[NCON * envs + env]; c++) {
         count += abs(match_sign(s, prm, c));
     }
-    let size = words[query + QUERY_SIZE];
+    let size = words[query + QUERY_WIDTH];
     let net = words[query + QUERY_REDUCTION] == NET_FORCE;
     var last = NONE;
     for (var first = 0u; first < words[s + SENSOR_DIM]; first += size) {

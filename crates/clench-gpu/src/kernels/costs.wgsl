@@ -82,7 +82,7 @@ fn block_along(b: u32, alpha: f32) -> Along {
         case CONTACT_PYRAMID: {
             return pyramid_along(first, block(b, BLOCK_DIM), alpha);
         }
-        default: {
+        case LIMIT, CONTACT_NORMAL, default: {
             return edge_along(row(D + first), row(RESIDUAL + first), row(RAY + first), alpha);
         }
     }
@@ -163,7 +163,7 @@ fn evaluate_block(b: u32) -> Value {
         case CONTACT_PYRAMID: {
             return evaluate_pyramid(first, block(b, BLOCK_DIM));
         }
-        default: {
+        case LIMIT, CONTACT_NORMAL, default: {
             return evaluate_edge(first);
         }
     }

@@ -1,31 +1,27 @@
 // The states of direct-current motors. CPU counterpart: `dynamics/dc_motor.rs`, which lists formulas and parameters.
 // Each actuator with a controller has ten numbers of its dynamics, then of its gain, then of its bias.
 
-const OF_DYNAMICS: u32 = 0u;
-const OF_GAIN: u32 = 10u;
-const OF_BIAS: u32 = 20u;
-
 fn controller(u: u32, place: u32) -> f32 {
-    return parameter(CONTROLLER_PRM + 30u * words[ACTUATOR_CONTROLLER + u] + place);
+    return parameter(CONTROLLER_PRM + CONTROLLER_SIZE * words[ACTUATOR_CONTROLLER + u] + place);
 }
 
 // Returns the activation that is the given state of actuator `u`, one of the STATE_ constants; NONE if it has none.
 fn state_of(u: u32, which: u32) -> u32 {
-    return words[ACTUATOR_STATES + 5u * u + which];
+    return words[ACTUATOR_STATES + STATE_SIZE * u + which];
 }
 
 // Returns −σ₀ |ω| / g(ω), the decay rate of the bristle's deflection.
 fn bristle_decay(u: u32, velocity: f32) -> f32 {
-    let coulomb = controller(u, OF_BIAS + 3u);
-    let ratio = velocity / max(controller(u, OF_BIAS + 5u), TINY);
-    let level = coulomb + (controller(u, OF_BIAS + 4u) - coulomb) * exponential(-ratio * ratio);
-    return -controller(u, OF_DYNAMICS + 5u) * abs(velocity) / max(level, TINY);
+    let coulomb = controller(u, CONTROLLER_BIAS + 3u);
+    let ratio = velocity / max(controller(u, CONTROLLER_BIAS + 5u), TINY);
+    let level = coulomb + (controller(u, CONTROLLER_BIAS + 4u) - coulomb) * exponential(-ratio * ratio);
+    return -controller(u, CONTROLLER_DYNAMICS + 5u) * abs(velocity) / max(level, TINY);
 }
 
 // Returns an activation of a motor one time step later.
 fn next_motor_activation(u: u32, a: u32, act: f32, rate: f32, velocity: f32) -> f32 {
     if (a == state_of(u, STATE_CURRENT)) {
-        let te = max(controller(u, OF_DYNAMICS), TINY);
+        let te = max(controller(u, CONTROLLER_DYNAMICS), TINY);
         return act - rate * te * exp_less_one(-TIMESTEP / te);
     }
     if (a == state_of(u, STATE_BRISTLE)) {
@@ -36,7 +32,7 @@ fn next_motor_activation(u: u32, a: u32, act: f32, rate: f32, velocity: f32) -> 
         return (change + 1.0) * act + time * velocity;
     }
     let next = act + rate * TIMESTEP;
-    let bound = controller(u, OF_DYNAMICS + 8u);
+    let bound = controller(u, CONTROLLER_DYNAMICS + 8u);
     if (a == state_of(u, STATE_INTEGRAL) && bound > 0.0) {
         return clamp(next, -bound, bound);
     }

@@ -39,7 +39,7 @@ fn ellipsoid(e: u32) -> Ellipsoid {
 
 fn flow_of(e: Ellipsoid) -> Flow {
     let v = e.velocity.linear;
-    let normal = v * parameter3(e.prm + 15u);
+    let normal = v * parameter3(e.prm + ELLIPSOID_AREA);
     let along = dot(v, normal);
     let squared = dot(normal, normal);
     let speed = length(v);
@@ -50,7 +50,7 @@ fn flow_of(e: Ellipsoid) -> Flow {
 // Returns the change of the flow for a change `dv` of the velocity.
 fn flow_change(e: Ellipsoid, flow: Flow, dv: vec3f) -> Flow {
     let v = e.velocity.linear;
-    let normal = dv * parameter3(e.prm + 15u);
+    let normal = dv * parameter3(e.prm + ELLIPSOID_AREA);
     let speed = dot(v, dv) / positive(flow.speed);
     let along = dot(flow.normal, dv) / positive(dot(v, flow.normal));
     let squared = dot(flow.normal, normal) / positive(dot(flow.normal, flow.normal));
@@ -60,7 +60,7 @@ fn flow_change(e: Ellipsoid, flow: Flow, dv: vec3f) -> Flow {
 
 // Returns the drag force divided by the velocity.
 fn linear_drag(e: Ellipsoid, flow: Flow) -> f32 {
-    return parameter(e.prm + 8u) + flow.speed * (parameter(e.prm + 10u) + parameter(e.prm + 11u) * flow.area);
+    return parameter(e.prm + ELLIPSOID_VISCOUS) + flow.speed * (parameter(e.prm + ELLIPSOID_SLENDER) + parameter(e.prm + ELLIPSOID_BLUNT) * flow.area);
 }
 
 // Returns the spatial force, about the reference point of its tree, of a torque and a force at the geom's origin, along
@@ -75,12 +75,12 @@ fn from_geom_frame(geom: u32, torque: vec3f, force: vec3f) -> Spatial {
 fn ellipsoid_force(e: Ellipsoid) -> Spatial {
     let v = e.velocity.linear;
     let w = e.velocity.angular;
-    let momentum = v * parameter3(e.prm);
-    let spin = w * parameter3(e.prm + 3u);
+    let momentum = v * parameter3(e.prm + ELLIPSOID_MASS);
+    let spin = w * parameter3(e.prm + ELLIPSOID_INERTIA);
     let flow = flow_of(e);
-    let lift = cross(cross(flow.normal, v), v) * (parameter(e.prm + 7u) * flow.lift);
-    let force = cross(momentum, w) + cross(w, v) * parameter(e.prm + 6u) + lift - v * linear_drag(e, flow);
-    let turning = parameter(e.prm + 9u) + length(w * parameter3(e.prm + 12u));
+    let lift = cross(cross(flow.normal, v), v) * (parameter(e.prm + ELLIPSOID_KUTTA) * flow.lift);
+    let force = cross(momentum, w) + cross(w, v) * parameter(e.prm + ELLIPSOID_MAGNUS) + lift - v * linear_drag(e, flow);
+    let turning = parameter(e.prm + ELLIPSOID_VISCOUS_ANGULAR) + length(w * parameter3(e.prm + ELLIPSOID_ANGULAR));
     return from_geom_frame(e.geom, cross(momentum, v) + cross(spin, w) - w * turning, force);
 }
 

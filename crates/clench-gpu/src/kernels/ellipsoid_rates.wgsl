@@ -9,22 +9,22 @@ fn ellipsoid_derivative(e: Ellipsoid, motion: Spatial) -> Spatial {
     let dw = change_of_velocity.angular;
     let flow = flow_of(e);
     let change = flow_change(e, flow, dv);
-    let widest = parameter(e.prm + 10u);
-    let blunt = parameter(e.prm + 11u);
+    let widest = parameter(e.prm + ELLIPSOID_SLENDER);
+    let blunt = parameter(e.prm + ELLIPSOID_BLUNT);
     let ddrag = change.speed * (widest + blunt * flow.area) + flow.speed * blunt * change.area;
     let drag = -(v * ddrag) - dv * linear_drag(e, flow);
-    let angular_drag = parameter3(e.prm + 12u);
+    let angular_drag = parameter3(e.prm + ELLIPSOID_ANGULAR);
     let resisted = w * angular_drag;
     let size = length(resisted);
     let slope = dot(resisted, dw * angular_drag) / positive(size);
-    let turning = -(w * slope) - dw * (parameter(e.prm + 9u) + size);
-    let mass = parameter3(e.prm);
-    let inertia = parameter3(e.prm + 3u);
+    let turning = -(w * slope) - dw * (parameter(e.prm + ELLIPSOID_VISCOUS_ANGULAR) + size);
+    let mass = parameter3(e.prm + ELLIPSOID_MASS);
+    let inertia = parameter3(e.prm + ELLIPSOID_INERTIA);
     let turned = cross(flow.normal, v);
     let dturned = cross(change.normal, v) + cross(flow.normal, dv);
     let dlift = cross(turned, v) * change.lift + (cross(dturned, v) + cross(turned, dv)) * flow.lift;
-    let force = cross(dv * mass, w) + cross(v * mass, dw) + (cross(dw, v) + cross(w, dv)) * parameter(e.prm + 6u)
-        + dlift * parameter(e.prm + 7u) + drag;
+    let force = cross(dv * mass, w) + cross(v * mass, dw) + (cross(dw, v) + cross(w, dv)) * parameter(e.prm + ELLIPSOID_MAGNUS)
+        + dlift * parameter(e.prm + ELLIPSOID_KUTTA) + drag;
     let torque = cross(dv * mass, v) + cross(v * mass, dv) + cross(dw * inertia, w) + cross(w * inertia, dw) + turning;
     return from_geom_frame(e.geom, torque, force);
 }

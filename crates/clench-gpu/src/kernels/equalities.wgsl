@@ -4,21 +4,22 @@
 fn push_coupling(equality: u32, prm: u32) {
     let follower = words[EQ_PAIR + 2u * equality];
     let leader = words[EQ_PAIR + 2u * equality + 1u];
-    var value = parameter(prm + 2u);
+    var value = parameter(prm + COUPLING_POLYCOEF);
     var slope: f32 = 0.0;
     if (leader != NONE) {
-        let e = coordinate_value(leader) - parameter(prm + 1u);
-        value = parameter(prm + 6u);
+        let e = coordinate_value(leader) - parameter(prm + COUPLING_INITIAL + 1u);
+        value = parameter(prm + COUPLING_POLYCOEF + 4u);
         for (var k = 4u; k > 0u; k--) {
             slope = slope * e + value;
-            value = value * e + parameter(prm + 1u + k);
+            value = value * e + parameter(prm + COUPLING_POLYCOEF + k - 1u);
         }
     }
-    let violation = coordinate_value(follower) - parameter(prm) - value;
-    let soft = soften(prm + 8u, violation);
+    let violation = coordinate_value(follower) - parameter(prm + COUPLING_INITIAL) - value;
+    let soft = soften(prm + COUPLING_SOLREF, violation);
     begin_block(COUPLING, 1u, equality, soft.impedance);
     // The slope is stored as the cost's shape, which this cost does not use.
-    add_row(violation, -soft.stiffness * violation, soft.damping, regularization(soft.impedance, parameter(prm + 7u)), slope);
+    let r = regularization(soft.impedance, parameter(prm + COUPLING_INVWEIGHT));
+    add_row(violation, -soft.stiffness * violation, soft.damping, r, slope);
 }
 
 // Returns J̇ v of the last three rows of a weld, for bias accelerations with the difference `alpha`.
@@ -41,32 +42,37 @@ fn add_held_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
     }
 }
 
-fn push_held(equality: u32, prm: u32, dim: u32) {
+fn push_held(equality: u32, prm: u32, is_weld: bool) {
     let p = held_point(equality, 0u);
     let q = held_point(equality, 1u);
     let first = bias_acceleration(words[EQ_PAIR + 2u * equality], p);
     let second = bias_acceleration(words[EQ_PAIR + 2u * equality + 1u], q);
     let apart = p - q;
     var turned = vec3f();
-    if (dim == 6u) {
+    if (is_weld) {
         turned = relative_quat(equality).yzw * torquescale(equality);
     }
-    let soft = soften(prm + 17u, sqrt(dot(apart, apart) + dot(turned, turned)));
-    begin_block(HELD, dim, equality, soft.impedance);
-    add_held_rows(apart, first.linear - second.linear, soft, parameter(prm + 15u));
-    if (dim == 6u) {
-        add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + 16u));
+    let soft = soften(prm + HELD_SOLREF, sqrt(dot(apart, apart) + dot(turned, turned)));
+    begin_block(HELD, words[EQ_ROWS + equality], equality, soft.impedance);
+    add_held_rows(apart, first.linear - second.linear, soft, parameter(prm + HELD_INVWEIGHT));
+    if (is_weld) {
+        add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + HELD_INVWEIGHT + 1u));
     }
 }
 
 fn push_equality(equality: u32) {
-    let dim = words[EQ_ROWS + equality];
-    if (dim == 0u || given(EQ_ACTIVE + equality) == 0.0) {
+    if (given(EQ_ACTIVE + equality) == 0.0) {
         return;
     }
-    if (dim == 1u) {
-        push_coupling(equality, words[EQ_PRM + equality]);
-    } else {
-        push_held(equality, words[EQ_PRM + equality], dim);
+    let kind = words[EQ_KIND + equality];
+    switch kind {
+        case EQ_COUPLING: {
+            push_coupling(equality, words[EQ_PRM + equality]);
+        }
+        case EQ_CONNECT, EQ_WELD: {
+            push_held(equality, words[EQ_PRM + equality], kind == EQ_WELD);
+        }
+        case EQ_STATIC, default: {
+        }
     }
 }

@@ -5,7 +5,8 @@
 // motor. Terms that a kind lacks have a zero coefficient.
 
 fn affine(place: u32, length: f32, velocity: f32) -> f32 {
-    return parameter(place) + parameter(place + 1u) * length + parameter(place + 2u) * velocity;
+    let moved = parameter(place + AFFINE_CONSTANT) + parameter(place + AFFINE_LENGTH) * length;
+    return moved + parameter(place + AFFINE_VELOCITY) * velocity;
 }
 
 // Returns control `c` of actuator `u` after its delay, clamped to its range.
@@ -43,7 +44,7 @@ fn activation_rate(u: u32, ctrl: f32, act: f32) -> f32 {
             }
             return muscle_rate(ctrl, act, parameter3(DYNAMICS_PRM + 3u * u));
         }
-        default: {
+        case DYN_NONE, DYN_PID, DYN_DC_MOTOR, DYN_USER, default: {
             return 0.0;
         }
     }

@@ -4,14 +4,15 @@
 // Returns the origin of the first or second frame of an equality, in the world.
 fn held_point(equality: u32, side: u32) -> vec3f {
     let b = words[EQ_PAIR + 2u * equality + side];
-    let anchor = parameter3(words[EQ_PRM + equality] + 3u * side);
+    let anchor = parameter3(words[EQ_PRM + equality] + select(HELD_ANCHOR2, HELD_ANCHOR1, side == 0u));
     return fetch3(XPOS + 3u * b) + fetch_matrix(XMAT + 9u * b) * anchor;
 }
 
 // Returns the orientation of a frame.
 fn held_quat(equality: u32, side: u32) -> vec4f {
     let b = words[EQ_PAIR + 2u * equality + side];
-    return quat_product(fetch4(XQUAT + 4u * b), parameter4(words[EQ_PRM + equality] + 6u + 4u * side));
+    let quat = words[EQ_PRM + equality] + select(HELD_QUAT2, HELD_QUAT1, side == 0u);
+    return quat_product(fetch4(XQUAT + 4u * b), parameter4(quat));
 }
 
 // Returns the inverse of the second frame's orientation.
@@ -26,7 +27,7 @@ fn relative_quat(equality: u32) -> vec4f {
 }
 
 fn torquescale(equality: u32) -> f32 {
-    return parameter(words[EQ_PRM + equality] + 14u);
+    return parameter(words[EQ_PRM + equality] + HELD_TORQUESCALE);
 }
 
 // Returns the imaginary part of ½ (0, u) q.

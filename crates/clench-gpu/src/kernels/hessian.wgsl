@@ -35,7 +35,7 @@ fn weigh(b: u32, i: u32) {
             weigh_pyramid(b, first, block(b, BLOCK_DIM), i);
         }
         // Piece 1 has curvature in quadratic costs, dry friction and one-sided costs.
-        default: {
+        case HELD, COUPLING, DRY_FRICTION, LIMIT, CONTACT_NORMAL, default: {
             let stiff = row(ACTIVE_SET + b) == 1.0;
             for (var a = first; a < first + block(b, BLOCK_DIM); a++) {
                 weigh_edge(a, i, select(0.0, row(D + a), stiff));

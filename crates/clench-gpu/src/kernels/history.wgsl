@@ -1,13 +1,12 @@
 // Buffers of past controls: an owner's number, the times of samples, oldest first, relative to the present, and their
-// values. CPU counterpart: `history.rs` of clench-rigid. A buffer is four words at `h`: its offset in HISTORY, its
-// samples, the numbers of each, and the interpolation.
+// values. CPU counterpart: `history.rs` of clench-rigid. A buffer is a row of words at `h`.
 
 fn sample_time(h: u32, k: u32) -> f32 {
-    return given(HISTORY + words[h] + 1u + k);
+    return given(HISTORY + words[h + HISTORY_START] + 1u + k);
 }
 
 fn sample_value(h: u32, k: u32, part: u32) -> f32 {
-    return given(HISTORY + words[h] + 1u + words[h + 1u] + k * words[h + 2u] + part);
+    return given(HISTORY + words[h + HISTORY_START] + 1u + words[h + HISTORY_SAMPLES] + k * words[h + HISTORY_WIDTH] + part);
 }
 
 // Returns the slope between two samples; one second replaces a zero time difference.
@@ -23,20 +22,20 @@ fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
     let difference = sample_time(h, k) - sample_time(h, k - 1u);
     let span = select(1.0, difference, difference > 0.0);
     let x = (at - sample_time(h, k - 1u)) / span;
-    switch words[h + 3u] {
+    switch words[h + HISTORY_INTERPOLATION] {
         case HOLD: {
             return before;
         }
         case LINEAR: {
             return before + x * (after - before);
         }
-        default: {
+        case CUBIC, default: {
             var left: f32 = 0.0;
             if (k > 1u) {
                 left = sample_slope(h, k - 2u, k, part);
             }
             var right: f32 = 0.0;
-            if (k + 1u < words[h + 1u]) {
+            if (k + 1u < words[h + HISTORY_SAMPLES]) {
                 right = sample_slope(h, k - 1u, k + 1u, part);
             }
             let squared = x * x;
@@ -53,12 +52,12 @@ fn between_samples(h: u32, k: u32, at: f32, part: u32) -> f32 {
 fn read_history(h: u32, at: f32, part: u32) -> f32 {
     let same = max(8.0 * EPSILON * abs(at), TINY);
     var newest = 0u;
-    for (var k = 1u; k < words[h + 1u]; k++) {
+    for (var k = 1u; k < words[h + HISTORY_SAMPLES]; k++) {
         if (sample_time(h, k) <= at + same) {
             newest = k;
         }
     }
-    if (newest + 1u < words[h + 1u] && sample_time(h, newest) + same < at) {
+    if (newest + 1u < words[h + HISTORY_SAMPLES] && sample_time(h, newest) + same < at) {
         return between_samples(h, newest + 1u, at, part);
     }
     return sample_value(h, newest, part);

@@ -10,9 +10,9 @@ fn shift_down(first: u32, count: u32, by: u32) {
 
 // Replaces the oldest sample by a new one at the present; returns the offset of its values.
 fn take_sample(h: u32) -> u32 {
-    let samples = words[h + 1u];
-    let width = words[h + 2u];
-    let times = HISTORY + words[h] + 1u;
+    let samples = words[h + HISTORY_SAMPLES];
+    let width = words[h + HISTORY_WIDTH];
+    let times = HISTORY + words[h + HISTORY_START] + 1u;
     let values = times + samples;
     shift_down(times, samples, 1u);
     keep(times + samples - 1u, 0.0);
@@ -22,8 +22,8 @@ fn take_sample(h: u32) -> u32 {
 
 // Ages the samples by a time step.
 fn age_samples(h: u32) {
-    let times = HISTORY + words[h] + 1u;
-    for (var k = 0u; k < words[h + 1u]; k++) {
+    let times = HISTORY + words[h + HISTORY_START] + 1u;
+    for (var k = 0u; k < words[h + HISTORY_SAMPLES]; k++) {
         keep(times + k, given(times + k) - TIMESTEP);
     }
 }
@@ -35,7 +35,7 @@ fn push_controls() {
             continue;
         }
         let sample = take_sample(h);
-        for (var part = 0u; part < words[h + 2u]; part++) {
+        for (var part = 0u; part < words[h + HISTORY_WIDTH]; part++) {
             keep(sample + part, given(CTRL + words[ACTUATOR_CTRL + u] + part));
         }
         age_samples(h);
@@ -49,12 +49,12 @@ fn push_measurements() {
         if (h == NONE) {
             continue;
         }
-        let period = parameter(SENSOR_PRM + SENSOR_PRM_SIZE * i + 6u);
+        let period = parameter(SENSOR_PRM + SENSOR_PRM_SIZE * i + SENSOR_PRM_PERIOD);
         if (is_due(h, period)) {
-            keep(HISTORY + words[h], given(HISTORY + words[h]) + max(period, 0.0));
+            keep(HISTORY + words[h + HISTORY_START], given(HISTORY + words[h + HISTORY_START]) + max(period, 0.0));
             let sample = take_sample(h);
-            for (var part = 0u; part < words[h + 2u]; part++) {
-                keep(sample + part, fetch(UNDELAYED + words[s + SENSOR_PLACE] + part));
+            for (var part = 0u; part < words[h + HISTORY_WIDTH]; part++) {
+                keep(sample + part, fetch(UNDELAYED + words[s + SENSOR_OFFSET] + part));
             }
         }
         age_samples(h);

@@ -1,5 +1,5 @@
-// Muscles. CPU counterpart: `dynamics/muscle.rs`, which explains the curves. The parameters at `prm` are strength,
-// resting length, start of the scaled length, lmin, lmax, vmax, fpmax, fvmax.
+// Muscles. CPU counterpart: `dynamics/muscle.rs`, which explains the curves. The parameters at `prm` are
+// the MUSCLE_ constants.
 
 fn divisor(x: f32) -> f32 {
     return max(x, TINY);
@@ -18,7 +18,7 @@ fn muscle_rate(ctrl: f32, act: f32, prm: vec3f) -> f32 {
 }
 
 fn muscle_length(prm: u32, length: f32) -> f32 {
-    return parameter(prm + 2u) + length / parameter(prm + 1u);
+    return parameter(prm + MUSCLE_START) + length / parameter(prm + MUSCLE_RESTING_LENGTH);
 }
 
 // Returns the active force by length.
@@ -58,16 +58,16 @@ fn active_by_velocity(v: f32, fvmax: f32) -> f32 {
 // Returns the factor of the activation.
 fn muscle_gain(prm: u32, length: f32, velocity: f32) -> f32 {
     let l = muscle_length(prm, length);
-    let v = velocity / divisor(parameter(prm + 1u) * parameter(prm + 5u));
-    let by_length = active_by_length(l, parameter(prm + 3u), parameter(prm + 4u));
-    return -parameter(prm) * by_length * active_by_velocity(v, parameter(prm + 7u));
+    let v = velocity / divisor(parameter(prm + MUSCLE_RESTING_LENGTH) * parameter(prm + MUSCLE_VMAX));
+    let by_length = active_by_length(l, parameter(prm + MUSCLE_LMIN), parameter(prm + MUSCLE_LMAX));
+    return -parameter(prm + MUSCLE_STRENGTH) * by_length * active_by_velocity(v, parameter(prm + MUSCLE_FVMAX));
 }
 
 // Returns its derivative with respect to the velocity.
 fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
-    let scale = divisor(parameter(prm + 1u) * parameter(prm + 5u));
+    let scale = divisor(parameter(prm + MUSCLE_RESTING_LENGTH) * parameter(prm + MUSCLE_VMAX));
     let v = velocity / scale;
-    let above = parameter(prm + 7u) - 1.0;
+    let above = parameter(prm + MUSCLE_FVMAX) - 1.0;
     var slope: f32 = 0.0;
     if (v > -1.0 && v <= 0.0) {
         slope = 2.0 * (v + 1.0);
@@ -75,7 +75,7 @@ fn muscle_gain_slope(prm: u32, length: f32, velocity: f32) -> f32 {
         slope = 2.0 * (above - v) / divisor(above);
     }
     let l = muscle_length(prm, length);
-    return -parameter(prm) * active_by_length(l, parameter(prm + 3u), parameter(prm + 4u)) * slope / scale;
+    return -parameter(prm + MUSCLE_STRENGTH) * active_by_length(l, parameter(prm + MUSCLE_LMIN), parameter(prm + MUSCLE_LMAX)) * slope / scale;
 }
 
 // Returns the passive force.
@@ -84,9 +84,9 @@ fn muscle_bias(prm: u32, length: f32) -> f32 {
     if (l <= 1.0) {
         return 0.0;
     }
-    let bend = 0.5 * (1.0 + parameter(prm + 4u));
+    let bend = 0.5 * (1.0 + parameter(prm + MUSCLE_LMAX));
     let width = divisor(bend - 1.0);
     let bent = (l - 1.0) / width;
     let force = select(0.5 + (l - bend) / width, 0.5 * bent * bent, l <= bend);
-    return -parameter(prm) * parameter(prm + 6u) * force;
+    return -parameter(prm + MUSCLE_STRENGTH) * parameter(prm + MUSCLE_FPMAX) * force;
 }

@@ -21,7 +21,7 @@ fn first_friction(b: u32) -> u32 {
         case CONTACT_PYRAMID, CONTACT_ELLIPTIC: {
             return first + 1u;
         }
-        default: {
+        case HELD, COUPLING, LIMIT, CONTACT_NORMAL, default: {
             return NONE;
         }
     }

@@ -32,7 +32,7 @@ fn servo_torque(u: u32) -> vec3f {
     let now = quat_from_rotation_vector(fetch3(ACTUATOR_LENGTH + output));
     let error = quat_difference(servo_target(u), now);
     let bias = ACTUATOR_BIAS + LAW_SIZE * u;
-    let damping = fetch3(ACTUATOR_VELOCITY + output) * parameter(bias + 2u);
+    let damping = fetch3(ACTUATOR_VELOCITY + output) * parameter(bias + AFFINE_VELOCITY);
     let torque = error * parameter(ACTUATOR_GAIN + LAW_SIZE * u) + parameter(bias) + damping;
     return select(torque, vec3f(), words[ACTUATOR_OFF + u] == 1u);
 }
@@ -52,5 +52,5 @@ fn limit_torque(u: u32) {
 fn servo_slope(u: u32) -> f32 {
     let norm = length(fetch3(ACTUATOR_FORCE + output_of(u)));
     let held = norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - max(1e-10, 16.0 * EPSILON));
-    return select(parameter(ACTUATOR_BIAS + LAW_SIZE * u + 2u), 0.0, held);
+    return select(parameter(ACTUATOR_BIAS + LAW_SIZE * u + AFFINE_VELOCITY), 0.0, held);
 }

@@ -16,7 +16,7 @@ fn object_position(kind: u32, o: u32) -> vec3f {
         case CAMERA_FRAME: {
             return fetch3(CAM_XPOS + 3u * o);
         }
-        default: {
+        case BODY_FRAME, NO_FRAME, default: {
             return fetch3(XPOS + 3u * o);
         }
     }
@@ -37,7 +37,7 @@ fn object_axes(kind: u32, o: u32) -> mat3x3f {
         case CAMERA_FRAME: {
             return fetch_matrix(CAM_XMAT + 9u * o);
         }
-        default: {
+        case BODY_FRAME, NO_FRAME, default: {
             return fetch_matrix(XMAT + 9u * o);
         }
     }
@@ -60,7 +60,7 @@ fn object_quat(kind: u32, o: u32, body: u32) -> vec4f {
         case CAMERA_FRAME: {
             return quat_product(q, parameter4(CAM_QUAT + 4u * o));
         }
-        default: {
+        case BODY_FRAME, NO_FRAME, default: {
             return q;
         }
     }
@@ -122,7 +122,7 @@ fn read_frame(kind: u32, s: u32, out: u32) {
         case SENSE_FRAMELINACC: {
             put3(out, acceleration_at(body, p).linear);
         }
-        default: {
+        case SENSE_FRAMEANGACC, default: {
             put3(out, acceleration_at(body, p).angular);
         }
     }
@@ -156,7 +156,7 @@ fn read_site(kind: u32, site: u32, out: u32) {
         case SENSE_TORQUE: {
             put3(out, carried_force(site).angular * axes);
         }
-        default: {
+        case SENSE_MAGNETOMETER, default: {
             put3(out, parameter3(MAGNETIC) * axes);
         }
     }
@@ -166,7 +166,7 @@ fn read_site(kind: u32, site: u32, out: u32) {
 fn is_inside(s: u32, prm: u32, p: vec3f) -> bool {
     let site = words[s + SENSOR_REFERENCE];
     let local = (p - fetch3(SITE_XPOS + 3u * site)) * fetch_matrix(SITE_XMAT + 9u * site);
-    return is_in_volume(words[s + SENSOR_SHAPE], parameter3(prm + 2u), local);
+    return is_in_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), local);
 }
 
 // Returns the sum of the normal forces of those contacts of the site's body whose line of force intersects the site's
@@ -190,7 +190,7 @@ fn touch(s: u32, prm: u32) -> f32 {
         }
         let o = (fetch3(place + 2u) - centre) * axes;
         let d = (fetch3(place + 5u) * select(f32(-1.0), f32(1.0), own == second)) * axes;
-        sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], parameter3(prm + 2u), o, d));
+        sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), o, d));
     }
     return sum;
 }
@@ -231,17 +231,19 @@ fn subtree_momentum(s: u32) -> Spatial {
 fn read_subtree(kind: u32, s: u32, out: u32) {
     let body = words[s + SENSOR_OBJECT];
     let com = fetch3(SUBTREE_COM + 3u * body);
-    if (kind == SENSE_SUBTREECOM) {
-        put3(out, com);
-        return;
+    switch kind {
+        case SENSE_SUBTREECOM: {
+            put3(out, com);
+        }
+        case SENSE_SUBTREEANGMOM: {
+            let all = subtree_momentum(s);
+            put3(out, all.angular - cross(com, all.linear));
+        }
+        case SENSE_SUBTREELINVEL, default: {
+            let mass = parameter(BODY_SUBTREEMASS + body);
+            put3(out, select(subtree_momentum(s).linear / mass, vec3f(), mass <= 0.0));
+        }
     }
-    let all = subtree_momentum(s);
-    if (kind == SENSE_SUBTREEANGMOM) {
-        put3(out, all.angular - cross(com, all.linear));
-        return;
-    }
-    let mass = parameter(BODY_SUBTREEMASS + body);
-    put3(out, select(all.linear / mass, vec3f(), mass <= 0.0));
 }
 
 fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
@@ -273,13 +275,13 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
             return fetch(QFRC_ACTUATOR + words[JNT_DOF + e]);
         }
         case SENSE_JOINTLIMITPOS, SENSE_TENDONLIMITPOS: {
-            return limit(e, parameter(prm + 1u), 0u);
+            return limit(e, parameter(prm + SENSOR_PRM_MARGIN), 0u);
         }
         case SENSE_JOINTLIMITVEL, SENSE_TENDONLIMITVEL: {
-            return limit(e, parameter(prm + 1u), 1u);
+            return limit(e, parameter(prm + SENSOR_PRM_MARGIN), 1u);
         }
         case SENSE_JOINTLIMITFRC, SENSE_TENDONLIMITFRC: {
-            return limit(e, parameter(prm + 1u), 2u);
+            return limit(e, parameter(prm + SENSOR_PRM_MARGIN), 2u);
         }
         case SENSE_TENDONPOS: {
             return fetch(TEN_LENGTH + e);
@@ -303,7 +305,7 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
 fn read_sensor(s: u32, prm: u32, out: u32) {
     let kind = words[s + SENSOR_KIND];
     let e = words[s + SENSOR_OBJECT];
-    switch words[s + SENSOR_WAY] {
+    switch words[s + SENSOR_METHOD] {
         case OF_FRAME: {
             read_frame(kind, s, out);
         }
@@ -314,18 +316,27 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
             read_subtree(kind, s, out);
         }
         case OF_BALL: {
-            if (kind == SENSE_BALLQUAT) {
-                put4(out, quat_normalize(given4(QPOS + words[JNT_QPOS + e])));
-            } else {
-                put3(out, given3(QVEL + words[JNT_DOF + e]));
+            switch kind {
+                case SENSE_BALLQUAT: {
+                    put4(out, quat_normalize(given4(QPOS + words[JNT_QPOS + e])));
+                }
+                case SENSE_BALLANGVEL, default: {
+                    put3(out, given3(QVEL + words[JNT_DOF + e]));
+                }
             }
         }
         case OF_ACTUATOR: {
-            var place = ACTUATOR_FORCE;
-            if (kind == SENSE_ACTUATORPOS) {
-                place = ACTUATOR_LENGTH;
-            } else if (kind == SENSE_ACTUATORVEL) {
-                place = ACTUATOR_VELOCITY;
+            var place: u32;
+            switch kind {
+                case SENSE_ACTUATORPOS: {
+                    place = ACTUATOR_LENGTH;
+                }
+                case SENSE_ACTUATORVEL: {
+                    place = ACTUATOR_VELOCITY;
+                }
+                case SENSE_ACTUATORFRC, default: {
+                    place = ACTUATOR_FORCE;
+                }
             }
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
                 put(out + k, fetch(place + e + k));
@@ -350,9 +361,16 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
                 put(out + k, 0.0);
             }
         }
-        default: {
+        case OF_SCALAR, default: {
             put(out, read_scalar(kind, s, prm));
         }
+    }
+}
+
+// Clamps the numbers of a sensor.
+fn clip(s: u32, out: u32, least: f32, most: f32) {
+    for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
+        put(out + k, max(min(fetch(out + k), most), least));
     }
 }
 
@@ -364,12 +382,18 @@ fn sensors(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < bound(NSENSOR); i++) {
         let s = SENSORS + SENSOR_SIZE * i;
         let prm = SENSOR_PRM + SENSOR_PRM_SIZE * i;
-        let out = SENSORDATA + words[s + SENSOR_PLACE];
+        let out = SENSORDATA + words[s + SENSOR_OFFSET];
         read_sensor(s, prm, out);
-        let clip = words[s + SENSOR_CLIP];
-        for (var k = 0u; k < words[s + SENSOR_DIM] && clip != 0u; k++) {
-            let least = select(-3e38, -parameter(prm), clip == 1u);
-            put(out + k, max(min(fetch(out + k), parameter(prm)), least));
+        let cutoff = parameter(prm + SENSOR_PRM_CUTOFF);
+        switch words[s + SENSOR_CLIP] {
+            case CLIPPED: {
+                clip(s, out, -cutoff, cutoff);
+            }
+            case CLIPPED_ABOVE: {
+                clip(s, out, -3e38, cutoff);
+            }
+            case UNCLIPPED, default: {
+            }
         }
         if (ANY_SENSOR_HISTORY && words[s + SENSOR_HISTORY] != NONE) {
             delay_sensor(s, prm, out);

@@ -18,7 +18,7 @@ fn setpoints_of(u: u32) -> Setpoints {
             let a = state_of(u, STATE_SLEW);
             if (a != NONE) {
                 let is_pid = words[ACTUATOR_DYNAMICS + u] == DYN_PID;
-                let rate = controller(u, OF_DYNAMICS + select(7u, 1u, is_pid));
+                let rate = controller(u, CONTROLLER_DYNAMICS + select(7u, 1u, is_pid));
                 let before = given(ACT + a);
                 let most = rate * TIMESTEP;
                 value = clamp(nearest_setpoint(u, value, before), before - most, before + most);
@@ -38,7 +38,7 @@ fn setpoints_of(u: u32) -> Setpoints {
             case INPUT_VOLTAGE: {
                 setpoints.voltage = value;
             }
-            default: {
+            case INPUT_COMMAND, INPUT_ROTATION_VECTOR, INPUT_QUATERNION, default: {
             }
         }
     }
@@ -70,17 +70,17 @@ fn controller_rates(u: u32, setpoints: Setpoints, error: f32, bound: f32) {
 
 fn pid_rates(u: u32, setpoints: Setpoints, length: f32) {
     let target_length = nearest_setpoint(u, setpoints.position, length);
-    controller_rates(u, setpoints, target_length - length, controller(u, OF_DYNAMICS));
+    controller_rates(u, setpoints, target_length - length, controller(u, CONTROLLER_DYNAMICS));
 }
 
 // Returns the part of a PID controller's force due to setpoints and the integral.
 fn pid_force(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> f32 {
     let target_length = nearest_setpoint(u, setpoints.position, length);
-    let pull = setpoints.feedforward - controller(u, OF_BIAS + 1u) * target_length;
-    let force = pull - controller(u, OF_BIAS + 2u) * setpoints.velocity;
+    let pull = setpoints.feedforward - controller(u, CONTROLLER_BIAS + 1u) * target_length;
+    let force = pull - controller(u, CONTROLLER_BIAS + 2u) * setpoints.velocity;
     let a = state_of(u, STATE_INTEGRAL);
     if (a == NONE) {
         return force;
     }
-    return force + controller(u, OF_GAIN) * acting(u, a, velocity);
+    return force + controller(u, CONTROLLER_GAIN) * acting(u, a, velocity);
 }

@@ -25,14 +25,14 @@ var<private> grid: TerrainGrid;
 
 // Begins the height field at an offset.
 fn begin_grid(place: u32) {
-    let sizes = words[place + 2u];
-    grid.rows = i32(words[place]);
-    grid.columns = i32(words[place + 1u]);
-    grid.half = vec2f(numbers[sizes], numbers[sizes + 1u]);
-    grid.step = vec2f(numbers[sizes + 2u], numbers[sizes + 3u]);
-    grid.elevation = numbers[sizes + 4u];
-    grid.base = numbers[sizes + 5u];
-    grid.heights = sizes + 6u;
+    let sizes = words[place + FIELD_SIZES];
+    grid.rows = i32(words[place + FIELD_ROWS]);
+    grid.columns = i32(words[place + FIELD_COLUMNS]);
+    grid.half = vec2f(numbers[sizes + FIELD_NUMBERS_HALF], numbers[sizes + FIELD_NUMBERS_HALF + 1u]);
+    grid.step = vec2f(numbers[sizes + FIELD_NUMBERS_STEP], numbers[sizes + FIELD_NUMBERS_STEP + 1u]);
+    grid.elevation = numbers[sizes + FIELD_NUMBERS_ELEVATION];
+    grid.base = numbers[sizes + FIELD_NUMBERS_BASE];
+    grid.heights = sizes + FIELD_NUMBERS_SIZE;
 }
 
 fn height_at(node: vec2i) -> f32 {

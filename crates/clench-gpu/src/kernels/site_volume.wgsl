@@ -21,7 +21,7 @@ fn is_in_volume(kind: u32, size: vec3f, p: vec3f) -> bool {
         case BOX: {
             return all(abs(p) <= size);
         }
-        default: {
+        case PLANE, HEIGHT_FIELD, MESH, default: {
             return false;
         }
     }

@@ -1,10 +1,9 @@
-// Square tiles of numbers, sixteen rows of four vectors, for the factorization of H. The threads of a workgroup share a
+// Square tiles of TILE rows of four vectors, for the factorization of H. The threads of a workgroup share a
 // product of two: each has four columns in a row of the result, in registers, and reads the factors from workgroup
 // memory.
 
-const TILE: u32 = 16u;
 // Vectors of four numbers in a row of a tile.
-const QUADS: u32 = 4u;
+const QUADS: u32 = TILE / 4u;
 const QUADS_OF_TILE: u32 = TILE * QUADS;
 
 // Tiles of the lower triangle of a matrix, if they fit workgroup memory; else they are stored with the rows of the

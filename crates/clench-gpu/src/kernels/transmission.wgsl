@@ -108,16 +108,19 @@ fn on_slider_crank(u: u32, crank: u32, slider: u32) -> f32 {
 // vector, and arms about the axes of the rotated body.
 fn on_rotation(u: u32, element: u32, frame: u32) {
     let output = output_of(u);
-    if (words[ACTUATOR_ON + u] == ON_ROTATION) {
-        put3(ACTUATOR_LENGTH + output, quat_rotation_vector(quat_normalize(given4(QPOS + words[JNT_QPOS + element]))));
-        put3(ACTUATOR_MOMENT + first_arm(u), vec3f(1.0));
-        return;
-    }
-    put3(ACTUATOR_LENGTH + output, quat_difference(site_quat(element), site_quat(frame)));
-    let axes = fetch_matrix(SITE_XMAT + 9u * element);
-    for (var axis = 0u; axis < bound(3u); axis++) {
-        let pull = pull_at(element, vec3f(), axes[axis]);
-        write_arms_of(output + axis, element, pull, frame, pull_at(frame, vec3f(), -axes[axis]));
+    switch words[ACTUATOR_ON + u] {
+        case ON_ROTATION: {
+            put3(ACTUATOR_LENGTH + output, quat_rotation_vector(quat_normalize(given4(QPOS + words[JNT_QPOS + element]))));
+            put3(ACTUATOR_MOMENT + first_arm(u), vec3f(1.0));
+        }
+        case ON_ROTATION_IN_FRAME, default: {
+            put3(ACTUATOR_LENGTH + output, quat_difference(site_quat(element), site_quat(frame)));
+            let axes = fetch_matrix(SITE_XMAT + 9u * element);
+            for (var axis = 0u; axis < bound(3u); axis++) {
+                let pull = pull_at(element, vec3f(), axes[axis]);
+                write_arms_of(output + axis, element, pull, frame, pull_at(frame, vec3f(), -axes[axis]));
+            }
+        }
     }
 }
 
@@ -130,7 +133,7 @@ fn on_sites(u: u32, site: u32, other: u32) -> f32 {
         case ON_SITE_IN_FRAME: {
             return on_site_in_frame(u, site, other);
         }
-        default: {
+        case ON_SLIDER_CRANK, default: {
             return on_slider_crank(u, site, other);
         }
     }

@@ -1,71 +1,77 @@
-//! Actuators: their transmissions, the dynamics of their activations, and the coefficients of their gains and biases.
+//! Actuators: their transmissions, the dynamics of their activations, their controllers and their ranges.
 
 use super::{ENDLESS, NONE, Tables, starts};
+use crate::codes::{Code, codes, row};
 use clench_rigid::model::{
-    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Transmission,
+    Actuator, BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind, JointKind, Model,
+    Transmission,
 };
 use std::f64::consts::TAU;
 
-/// The kinds of transmission.
-const TRANSMISSIONS: [&str; 10] = [
-    "ON_SCALAR",
-    "ON_BALL",
-    "ON_FREE",
-    "ON_TENDON",
-    "ON_SITE",
-    "ON_SITE_IN_FRAME",
-    "ON_SLIDER_CRANK",
-    "ON_CONTACTS",
-    "ON_ROTATION",
-    "ON_ROTATION_IN_FRAME",
-];
-/// The kinds of activation dynamics.
-const DYNAMICS: [&str; 7] = [
-    "DYN_NONE",
-    "DYN_INTEGRATOR",
-    "DYN_FILTER",
-    "DYN_FILTER_EXACT",
-    "DYN_MUSCLE",
-    "DYN_PID",
-    "DYN_DC_MOTOR",
-];
-/// The kinds of gain and bias.
-const LAWS: [&str; 5] = [
-    "LAW_AFFINE",
-    "LAW_MUSCLE",
-    "LAW_PID",
-    "LAW_DC_MOTOR",
-    "LAW_ORIENTATION",
-];
-/// The kinds of control input of a controller.
-const INPUTS: [&str; 6] = [
-    "INPUT_COMMAND",
-    "INPUT_POSITION",
-    "INPUT_VELOCITY",
-    "INPUT_FEEDFORWARD",
-    "INPUT_VOLTAGE",
-    "INPUT_QUATERNION",
-];
-/// The states of controllers and motors.
-const STATES: [&str; 5] = [
-    "STATE_SLEW",
-    "STATE_INTEGRAL",
-    "STATE_TEMPERATURE",
-    "STATE_BRISTLE",
-    "STATE_CURRENT",
-];
-/// The numbers of a law: three coefficients, or those of a muscle.
-const LAW_SIZE: usize = 9;
-/// The minimum time constant (s) of a filter, and the minimum divisor (MuJoCo's `mjMINVAL`).
-const TINY: f64 = 1e-15;
-
+codes! {
+    /// The transmissions of the kernels, which compare them in this order: joints, tendons, sites, contacts, rotations.
+    enum On {
+        /// A slide or hinge joint.
+        Scalar = "ON_SCALAR",
+        Ball = "ON_BALL",
+        Free = "ON_FREE",
+        Tendon = "ON_TENDON",
+        Site = "ON_SITE",
+        SiteInFrame = "ON_SITE_IN_FRAME",
+        SliderCrank = "ON_SLIDER_CRANK",
+        Contacts = "ON_CONTACTS",
+        Rotation = "ON_ROTATION",
+        RotationInFrame = "ON_ROTATION_IN_FRAME",
+    }
+}
+codes! {
+    of DynamicsKind {
+        None = "DYN_NONE",
+        Integrator = "DYN_INTEGRATOR",
+        Filter = "DYN_FILTER",
+        FilterExact = "DYN_FILTER_EXACT",
+        Muscle = "DYN_MUSCLE",
+        DcMotor = "DYN_DC_MOTOR",
+        Pid = "DYN_PID",
+        User = "DYN_USER",
+    }
+}
+codes! {
+    of ControlInput {
+        Command = "INPUT_COMMAND",
+        Position = "INPUT_POSITION",
+        Velocity = "INPUT_VELOCITY",
+        Feedforward = "INPUT_FEEDFORWARD",
+        Voltage = "INPUT_VOLTAGE",
+        RotationVector = "INPUT_ROTATION_VECTOR",
+        Quaternion = "INPUT_QUATERNION",
+    }
+}
+row! {
+    /// The activations that are states of a controller or motor, or `NONE`.
+    words StateWords, "STATE" {
+        slew,
+        integral,
+        temperature,
+        bristle,
+        current,
+    }
+}
+row! {
+    /// The parameters of an actuator with a controller or motor.
+    numbers ControllerNumbers, "CONTROLLER" {
+        dynamics: 10,
+        gain: 10,
+        bias: 10,
+    }
+}
 impl Tables {
     pub(super) fn actuators(&mut self, m: &Model) {
-        for names in [&TRANSMISSIONS[..], &DYNAMICS, &LAWS, &INPUTS, &STATES] {
-            for (code, name) in names.iter().enumerate() {
-                self.constant(name, code);
-            }
-        }
+        self.codes::<On>();
+        self.codes::<DynamicsKind>();
+        self.codes::<ControlInput>();
+        self.row::<StateWords>();
+        self.row::<ControllerNumbers>();
         let count = m.actuators.len();
         self.count("NU", count);
         self.count("NA", m.na);
@@ -111,11 +117,13 @@ impl Tables {
     fn transmissions(&mut self, m: &Model) {
         let each = || m.actuators.iter().map(|a| target(m, a));
         // Kernels omit what no actuator needs.
-        self.flag("ANY_ON_ROTATION", each().any(|t| (1..3).contains(&t.kind)));
-        self.flag("ANY_ON_TENDON", each().any(|t| t.kind == 3));
-        self.flag("ANY_ON_SITE", each().any(|t| (4..7).contains(&t.kind)));
-        self.flag("ANY_ON_CONTACTS", each().any(|t| t.kind == 7));
-        self.words("ACTUATOR_ON", each().map(|t| t.kind));
+        let any = |kinds: &[On]| each().any(|t| kinds.contains(&t.kind));
+        let sites = [On::Site, On::SiteInFrame, On::SliderCrank];
+        self.flag("ANY_ON_ROTATION", any(&[On::Ball, On::Free]));
+        self.flag("ANY_ON_TENDON", any(&[On::Tendon]));
+        self.flag("ANY_ON_SITE", any(&sites));
+        self.flag("ANY_ON_CONTACTS", any(&[On::Contacts]));
+        self.words("ACTUATOR_ON", each().map(|t| t.kind.code()));
         self.words("ACTUATOR_TARGET", each().flat_map(|t| t.elements));
         self.words(
             "ACTUATOR_IN_PARENT",
@@ -130,21 +138,12 @@ impl Tables {
 
     fn activations(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter());
-        let kind = |a: &Actuator| match a.dynamics {
-            DynamicsKind::Integrator => 1,
-            DynamicsKind::Filter => 2,
-            DynamicsKind::FilterExact => 3,
-            DynamicsKind::Muscle => 4,
-            DynamicsKind::Pid => 5,
-            DynamicsKind::DcMotor => 6,
-            DynamicsKind::None | DynamicsKind::User => 0,
-        };
         let muscle = |a: &Actuator| {
             let law = a.gain == GainKind::Muscle || a.bias == BiasKind::Muscle;
             law || a.dynamics == DynamicsKind::Muscle
         };
         self.flag("ANY_MUSCLE", each().any(muscle));
-        self.words("ACTUATOR_DYNAMICS", each().map(kind));
+        self.words("ACTUATOR_DYNAMICS", each().map(|a| a.dynamics.code()));
         self.words(
             "ACTUATOR_ACT",
             each().map(|a| a.act().unwrap_or(NONE as usize)),
@@ -171,25 +170,36 @@ impl Tables {
     /// Adds controllers and motors: the kind of each control, the activations that are states, and all parameters.
     fn controllers(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter());
-        let input = |input: &ControlInput| match input {
-            ControlInput::Position => 1,
-            ControlInput::Velocity => 2,
-            ControlInput::Feedforward => 3,
-            ControlInput::Voltage => 4,
-            ControlInput::Quaternion => 5,
-            ControlInput::Command | ControlInput::RotationVector => 0,
-        };
         self.words(
             "CONTROL_INPUT",
-            each().flat_map(|a| a.inputs.iter().map(input)),
+            each().flat_map(|a| a.inputs.iter().map(|input| input.code())),
         );
-        let controls = |kind: &ControlInput| matches!(input(kind), 1..4);
+        let controls = |kind: &ControlInput| match kind {
+            ControlInput::Position | ControlInput::Velocity | ControlInput::Feedforward => true,
+            ControlInput::Command
+            | ControlInput::Voltage
+            | ControlInput::RotationVector
+            | ControlInput::Quaternion => false,
+        };
         let controlled = |a: &Actuator| usize::from(a.inputs.iter().any(controls));
         self.words("ACTUATOR_CONTROLLED", each().map(controlled));
         let states = |a: &Actuator| {
-            let s = a.states;
-            let all = [s.slew, s.integral, s.temperature, s.bristle, s.current];
-            all.map(|state| state.unwrap_or(NONE as usize))
+            let ControllerStates {
+                slew,
+                integral,
+                temperature,
+                bristle,
+                current,
+            } = a.states;
+            let act = |state: Option<usize>| state.unwrap_or(NONE as usize);
+            let row = StateWords {
+                slew: act(slew),
+                integral: act(integral),
+                temperature: act(temperature),
+                bristle: act(bristle),
+                current: act(current),
+            };
+            row.words()
         };
         self.words("ACTUATOR_STATES", each().flat_map(states));
         let all =
@@ -198,13 +208,14 @@ impl Tables {
         let place = |u: usize| all.binary_search(&u).unwrap_or(NONE as usize);
         self.words("ACTUATOR_CONTROLLER", (0..m.actuators.len()).map(place));
         let prm = |&u: &usize| {
-            [
-                p.actuator_dynprm[u],
-                p.actuator_gainprm[u],
-                p.actuator_biasprm[u],
-            ]
+            let row = ControllerNumbers {
+                dynamics: p.actuator_dynprm[u],
+                gain: p.actuator_gainprm[u],
+                bias: p.actuator_biasprm[u],
+            };
+            row.numbers()
         };
-        self.numbers("CONTROLLER_PRM", all.iter().flat_map(prm).flatten());
+        self.numbers("CONTROLLER_PRM", all.iter().flat_map(prm));
     }
 
     /// Adds buffers of past controls, and the delays of actuators.
@@ -218,46 +229,6 @@ impl Tables {
         self.numbers("ACTUATOR_DELAY", delays);
     }
 
-    fn gains(&mut self, m: &Model) {
-        let (p, each) = (&m.params, || m.actuators.iter().enumerate());
-        self.constant("LAW_SIZE", LAW_SIZE);
-        let gain_law = |a: &Actuator| match a.gain {
-            GainKind::Muscle => 1,
-            GainKind::Pid => 2,
-            GainKind::DcMotor => 3,
-            GainKind::So3 => 4,
-            GainKind::Fixed | GainKind::Affine | GainKind::User => 0,
-        };
-        self.words("GAIN_LAW", each().map(|(_, a)| gain_law(a)));
-        let bias_law = |a: &Actuator| match a.bias {
-            BiasKind::Muscle => 1,
-            BiasKind::DcMotor => 3,
-            BiasKind::None | BiasKind::Affine | BiasKind::So3 | BiasKind::User => 0,
-        };
-        self.words("BIAS_LAW", each().map(|(_, a)| bias_law(a)));
-        let gain = |(u, a): (usize, &Actuator)| {
-            let prm = &p.actuator_gainprm[u];
-            match a.gain {
-                GainKind::Muscle => muscle(m, u, prm),
-                GainKind::Affine => affine([prm[0], prm[1], prm[2]]),
-                // MuJoCo's default without a callback.
-                GainKind::User => affine([1.0, 0.0, 0.0]),
-                _ => affine([prm[0], 0.0, 0.0]),
-            }
-        };
-        let bias = |(u, a): (usize, &Actuator)| {
-            let prm = &p.actuator_biasprm[u];
-            match a.bias {
-                BiasKind::Muscle => muscle(m, u, prm),
-                BiasKind::Affine => affine([prm[0], prm[1], prm[2]]),
-                BiasKind::So3 => affine([prm[0], 0.0, prm[2]]),
-                _ => affine([0.0; 3]),
-            }
-        };
-        self.numbers("ACTUATOR_GAIN", each().flat_map(gain));
-        self.numbers("ACTUATOR_BIAS", each().flat_map(bias));
-    }
-
     fn actuator_ranges(&mut self, m: &Model) {
         let (p, each) = (&m.params, || m.actuators.iter().enumerate());
         let limited = each().flat_map(|(_, a)| &a.ctrllimited);
@@ -266,9 +237,10 @@ impl Tables {
         self.numbers("CTRL_RANGE", ctrl);
         let force = each().flat_map(|(u, a)| range(a.forcelimited, p.actuator_forcerange[u]));
         self.numbers("FORCE_RANGE", force);
-        let of_tendon = |a: &Actuator| match a.transmission {
-            Transmission::Tendon(t) if m.tendons[t].actfrclimited => t,
-            _ => NONE as usize,
+        let of_tendon = |a: &Actuator| {
+            let tendon = a.transmission.tendon();
+            let limited = tendon.filter(|&t| m.tendons[t].actfrclimited);
+            limited.unwrap_or(NONE as usize)
         };
         self.words("ACTUATOR_LIMITED_TENDON", each().map(|(_, a)| of_tendon(a)));
         self.numbers(
@@ -298,7 +270,7 @@ fn has_controller(a: &Actuator) -> bool {
 
 /// The target of an actuator, in the device's encoding.
 struct Target {
-    kind: usize,
+    kind: On,
     elements: [usize; 2],
     in_parent: bool,
 }
@@ -306,9 +278,9 @@ struct Target {
 fn target(m: &Model, actuator: &Actuator) -> Target {
     let joint = |j: usize, in_parent| Target {
         kind: match m.joints[j].kind {
-            JointKind::Hinge | JointKind::Slide => 0,
-            JointKind::Ball => 1,
-            JointKind::Free => 2,
+            JointKind::Hinge | JointKind::Slide => On::Scalar,
+            JointKind::Ball => On::Ball,
+            JointKind::Free => On::Free,
         },
         elements: [j, 0],
         in_parent,
@@ -321,13 +293,13 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
     match actuator.transmission {
         Transmission::Joint(j) => joint(j, false),
         Transmission::JointInParent(j) => joint(j, true),
-        Transmission::Tendon(t) => other(3, [t, 0]),
-        Transmission::Site(site) => other(4, [site, 0]),
-        Transmission::SiteInFrame(sites) => other(5, sites),
-        Transmission::SliderCrank(sites) => other(6, sites),
-        Transmission::Body(body) => other(7, [body, 0]),
-        Transmission::Rotation(j) => other(8, [j, 0]),
-        Transmission::RotationInFrame(sites) => other(9, sites),
+        Transmission::Tendon(t) => other(On::Tendon, [t, 0]),
+        Transmission::Site(site) => other(On::Site, [site, 0]),
+        Transmission::SiteInFrame(sites) => other(On::SiteInFrame, sites),
+        Transmission::SliderCrank(sites) => other(On::SliderCrank, sites),
+        Transmission::Body(body) => other(On::Contacts, [body, 0]),
+        Transmission::Rotation(j) => other(On::Rotation, [j, 0]),
+        Transmission::RotationInFrame(sites) => other(On::RotationInFrame, sites),
     }
 }
 
@@ -342,7 +314,12 @@ fn whole_turn(m: &Model, u: usize) -> f64 {
             (m.joints[j].kind == JointKind::Ball, &gear[..3])
         }
         Transmission::SiteInFrame(_) => (length(&gear[..3]) == 0.0, &gear[3..]),
-        _ => (false, &gear[..3]),
+        Transmission::Tendon(_)
+        | Transmission::Site(_)
+        | Transmission::SliderCrank(_)
+        | Transmission::Body(_)
+        | Transmission::Rotation(_)
+        | Transmission::RotationInFrame(_) => (false, &gear[..3]),
     };
     let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
     let pulls_back = p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
@@ -355,31 +332,4 @@ fn whole_turn(m: &Model, u: usize) -> f64 {
 
 fn range(limited: bool, range: [f64; 2]) -> [f64; 2] {
     if limited { range } else { [-ENDLESS, ENDLESS] }
-}
-
-/// Returns the coefficients of a + b length + c velocity.
-fn affine([a, b, c]: [f64; 3]) -> [f64; LAW_SIZE] {
-    [a, b, c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
-}
-
-/// Returns the constants of a muscle: its strength, its resting length, the start of its scaled length, and the shape
-/// of its curves. See `dynamics/muscle.rs`.
-fn muscle(m: &Model, u: usize, prm: &[f64; 10]) -> [f64; LAW_SIZE] {
-    let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
-    let [shortest, longest] = m.params.actuator_lengthrange[u];
-    let resting = (longest - shortest) / (high - low).max(TINY);
-    let derived = scale / m.params.actuator_acc0[u].max(TINY);
-    let peak = if force < 0.0 { derived } else { force };
-    let resting = resting.max(TINY);
-    [
-        peak,
-        resting,
-        low - shortest / resting,
-        lmin,
-        lmax,
-        vmax,
-        fpmax,
-        fvmax,
-        0.0,
-    ]
 }

@@ -1,7 +1,17 @@
 //! The tree: bodies, joints, dofs, and the geoms and sites on them.
 
 use super::{NONE, Tables, starts};
+use crate::codes::{Code, codes};
 use clench_rigid::model::{JointKind, Model};
+
+codes! {
+    of JointKind {
+        Free = "FREE",
+        Ball = "BALL",
+        Slide = "SLIDE",
+        Hinge = "HINGE",
+    }
+}
 
 impl Tables {
     pub(super) fn bodies(&mut self, m: &Model) {
@@ -60,9 +70,10 @@ impl Tables {
 
     pub(super) fn joints(&mut self, m: &Model) {
         let joints = &m.joints;
+        self.codes::<JointKind>();
         self.count("NJNT", joints.len());
         self.count("NQ", m.nq);
-        self.words("JNT_KIND", joints.iter().map(|j| j.kind as usize));
+        self.words("JNT_KIND", joints.iter().map(|j| j.kind.code()));
         self.words("JNT_BODY", joints.iter().map(|j| j.body));
         self.words("JNT_QPOS", joints.iter().map(|j| j.qpos));
         self.words("JNT_DOF", joints.iter().map(|j| j.dof).chain([m.nv]));
@@ -127,7 +138,7 @@ impl Tables {
 
     pub(super) fn geoms(&mut self, m: &Model) {
         self.count("NGEOM", m.geoms.len());
-        self.words("GEOM_KIND", m.geoms.iter().map(|g| g.kind as usize));
+        self.words("GEOM_KIND", m.geoms.iter().map(|g| g.kind.code()));
         self.words("GEOM_BODY", m.geoms.iter().map(|g| g.body));
     }
 }

@@ -1,55 +1,62 @@
 //! Cameras: their bodies, targets and lenses.
 
 use super::{NONE, Tables};
+use crate::codes::{Code, codes, row};
 use clench_rigid::model::{CameraMode, Model};
 
-/// The words of a camera.
-const CAMERA_FIELDS: [&str; 7] = [
-    "CAMERA_MODE",
-    "CAMERA_BODY",
-    "CAMERA_TARGET",
-    "CAMERA_WIDTH",
-    "CAMERA_HEIGHT",
-    "CAMERA_ORTHOGRAPHIC",
-    "CAMERA_INTRINSIC",
-];
-/// The camera modes.
-const MODES: [&str; 5] = ["FIXED", "TRACK", "TRACK_COM", "TARGET_BODY", "TARGET_COM"];
+row! {
+    /// The words of a camera.
+    words CameraWords, "CAMERA" {
+        mode,
+        body,
+        target,
+        width,
+        height,
+        orthographic,
+        intrinsic,
+    }
+}
+codes! {
+    /// The camera modes.
+    enum Mode {
+        Fixed = "FIXED",
+        Track = "TRACK",
+        TrackCom = "TRACK_COM",
+        TargetBody = "TARGET_BODY",
+        TargetCom = "TARGET_COM",
+    }
+}
 
-/// Returns the code of a mode, and the target body.
-fn mode(mode: CameraMode) -> [usize; 2] {
+/// Returns a mode without its body, and the target body.
+fn mode(mode: CameraMode) -> (Mode, usize) {
     match mode {
-        CameraMode::Fixed => [0, NONE as usize],
-        CameraMode::Track => [1, NONE as usize],
-        CameraMode::TrackCom(_) => [2, NONE as usize],
-        CameraMode::TargetBody(target) => [3, target],
-        CameraMode::TargetBodyCom(target) => [4, target],
+        CameraMode::Fixed => (Mode::Fixed, NONE as usize),
+        CameraMode::Track => (Mode::Track, NONE as usize),
+        CameraMode::TrackCom(_) => (Mode::TrackCom, NONE as usize),
+        CameraMode::TargetBody(target) => (Mode::TargetBody, target),
+        CameraMode::TargetBodyCom(target) => (Mode::TargetCom, target),
     }
 }
 
 impl Tables {
     pub(super) fn cameras(&mut self, m: &Model) {
-        for names in [&CAMERA_FIELDS[..], &MODES] {
-            for (code, name) in names.iter().enumerate() {
-                self.constant(name, code);
-            }
-        }
-        self.constant("CAMERA_SIZE", CAMERA_FIELDS.len());
+        self.row::<CameraWords>();
+        self.codes::<Mode>();
         let (cameras, p) = (&m.cameras, &m.params);
         self.count("NCAMERA", cameras.len());
         let words = cameras.iter().flat_map(|camera| {
-            let [mode, target] = mode(camera.mode);
+            let (mode, target) = mode(camera.mode);
             let [width, height] = camera.resolution;
-            let [parallel, intrinsic] = [camera.orthographic, camera.intrinsic].map(usize::from);
-            [
-                mode,
-                camera.body,
+            let row = CameraWords {
+                mode: mode.code(),
+                body: camera.body,
                 target,
                 width,
                 height,
-                parallel,
-                intrinsic,
-            ]
+                orthographic: usize::from(camera.orthographic),
+                intrinsic: usize::from(camera.intrinsic),
+            };
+            row.words()
         });
         self.words("CAMERAS", words);
         let vectors =

@@ -1,53 +1,87 @@
 //! Dry friction and limits of dofs, joints and tendons.
 
 use super::{Capacity, Tables};
+use crate::codes::{Code, codes, row};
 use clench_rigid::model::{JointKind, Model};
 use clench_rigid::settings::StepSettings;
 
-/// The kinds of block of the convex problem.
-const BLOCK_KINDS: [&str; 7] = [
-    "HELD",
-    "COUPLING",
-    "DRY_FRICTION",
-    "LIMIT",
-    "CONTACT_NORMAL",
-    "CONTACT_PYRAMID",
-    "CONTACT_ELLIPTIC",
-];
-/// The fields of a block.
-const BLOCK_FIELDS: [&str; 4] = ["BLOCK_KIND", "BLOCK_DIM", "BLOCK_ROW", "BLOCK_SOURCE"];
+codes! {
+    /// The kinds of block of the convex problem; those of contacts come last.
+    enum BlockKind {
+        Held = "HELD",
+        Coupling = "COUPLING",
+        DryFriction = "DRY_FRICTION",
+        Limit = "LIMIT",
+        ContactNormal = "CONTACT_NORMAL",
+        ContactPyramid = "CONTACT_PYRAMID",
+        ContactElliptic = "CONTACT_ELLIPTIC",
+    }
+}
+codes! {
+    /// The fields of a block.
+    enum BlockField {
+        Kind = "BLOCK_KIND",
+        Dim = "BLOCK_DIM",
+        Row = "BLOCK_ROW",
+        Source = "BLOCK_SOURCE",
+    }
+}
 /// The numbers of a block.
-pub(crate) const BLOCK_SIZE: usize = BLOCK_FIELDS.len();
+pub(crate) const BLOCK_SIZE: usize = BlockField::ALL.len();
+
+row! {
+    /// Dry friction of a dof or tendon.
+    numbers FrictionNumbers, "FRICTION" {
+        loss: 1,
+        invweight: 1,
+        solref: 2,
+        solimp: 5,
+    }
+}
+row! {
+    /// The limits of a joint or tendon.
+    numbers LimitNumbers, "LIMIT" {
+        low: 1,
+        high: 1,
+        margin: 1,
+        invweight: 1,
+        solref: 2,
+        solimp: 5,
+    }
+}
 
 impl Tables {
     pub(super) fn friction(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
-        for names in [&BLOCK_KINDS[..], &BLOCK_FIELDS] {
-            for (code, name) in names.iter().enumerate() {
-                self.constant(name, code);
-            }
-        }
+        self.codes::<BlockKind>();
+        self.codes::<BlockField>();
         self.constant("BLOCK_SIZE", BLOCK_SIZE);
+        self.row::<FrictionNumbers>();
         let p = &m.params;
         let on = s.flags.constraint && s.flags.frictionloss;
         let (mut sources, mut numbers) = (Vec::new(), Vec::new());
-        let mut add = |source: usize, strength: [f64; 2], solref: [f64; 2], solimp: [f64; 5]| {
-            if on && strength[0] > 0.0 {
+        let mut add = |source: usize, row: FrictionNumbers| {
+            if on && row.loss[0] > 0.0 {
                 sources.push(source);
-                numbers.extend(strength.into_iter().chain(solref).chain(solimp));
+                numbers.extend(row.numbers());
             }
         };
         for (i, _) in m.dofs.iter().enumerate().filter(|(_, d)| d.frictionloss) {
-            let strength = [p.dof_frictionloss[i], p.dof_invweight0[i]];
-            add(i, strength, p.dof_solref[i], p.dof_solimp[i]);
+            let row = FrictionNumbers {
+                loss: [p.dof_frictionloss[i]],
+                invweight: [p.dof_invweight0[i]],
+                solref: p.dof_solref[i],
+                solimp: p.dof_solimp[i],
+            };
+            add(i, row);
         }
         for (t, _) in (m.tendons.iter().enumerate()).filter(|(_, t)| t.frictionloss) {
-            let strength = [p.tendon_frictionloss[t], p.tendon_invweight0[t]];
-            add(
-                m.nv + t,
-                strength,
-                p.tendon_solref_fri[t],
-                p.tendon_solimp_fri[t],
-            );
+            let row = FrictionNumbers {
+                loss: [p.tendon_frictionloss[t]],
+                invweight: [p.tendon_invweight0[t]],
+                solref: p.tendon_solref_fri[t],
+                solimp: p.tendon_solimp_fri[t],
+            };
+            add(m.nv + t, row);
         }
         self.count("NFRICTION", sources.len());
         capacity.blocks += sources.len();
@@ -61,27 +95,37 @@ impl Tables {
         let p = &m.params;
         let on = s.flags.constraint && s.enable_joint_limit;
         let (mut coordinates, mut numbers) = (Vec::new(), Vec::new());
-        let mut add = |coordinate: usize, place: [f64; 4], solref: [f64; 2], solimp: [f64; 5]| {
+        self.row::<LimitNumbers>();
+        let mut add = |coordinate: usize, row: LimitNumbers| {
             coordinates.push(coordinate);
-            numbers.extend(place.into_iter().chain(solref).chain(solimp));
+            numbers.extend(row.numbers());
         };
         for (j, joint) in m.joints.iter().enumerate() {
             if on && joint.limited && joint.kind != JointKind::Free {
                 let [low, high] = p.jnt_range[j];
-                let place = [low, high, p.jnt_margin[j], p.dof_invweight0[joint.dof]];
-                add(j, place, p.jnt_solref[j], p.jnt_solimp[j]);
+                let row = LimitNumbers {
+                    low: [low],
+                    high: [high],
+                    margin: [p.jnt_margin[j]],
+                    invweight: [p.dof_invweight0[joint.dof]],
+                    solref: p.jnt_solref[j],
+                    solimp: p.jnt_solimp[j],
+                };
+                add(j, row);
             }
         }
         let on = s.flags.constraint && s.flags.limit;
         for (t, _) in (m.tendons.iter().enumerate()).filter(|(_, t)| on && t.limited) {
             let [low, high] = p.tendon_range[t];
-            let place = [low, high, p.tendon_margin[t], p.tendon_invweight0[t]];
-            add(
-                m.joints.len() + t,
-                place,
-                p.tendon_solref_lim[t],
-                p.tendon_solimp_lim[t],
-            );
+            let row = LimitNumbers {
+                low: [low],
+                high: [high],
+                margin: [p.tendon_margin[t]],
+                invweight: [p.tendon_invweight0[t]],
+                solref: p.tendon_solref_lim[t],
+                solimp: p.tendon_solimp_lim[t],
+            };
+            add(m.joints.len() + t, row);
         }
         self.count("NLIMIT", coordinates.len());
         // Both limits of a coordinate can be active if its range is narrower than the margins.

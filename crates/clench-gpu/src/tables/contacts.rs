@@ -3,7 +3,8 @@
 
 use super::distances::{Measured, measured};
 use super::{Capacity, Tables};
-use crate::methods::{METHODS, may_be_general, method_of_pair, points_of_pair};
+use crate::codes::{Code, codes, row};
+use crate::methods::{Method, may_be_general, method_of_pair, points_of_pair};
 use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
 use clench_math::Scalar;
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
@@ -42,20 +43,46 @@ const PATCH_LIST_POINTS: usize = 2 * PATCH_POINTS;
 /// The numbers of a contact: pair, distance, position, normal, two tangents.
 pub(crate) const CONTACT_SIZE: usize = 14;
 
-/// Returns the contact parameters of a pair, in the order in which kernels read them.
-fn parameters(m: &Model, pair: &Candidate) -> Vec<f64> {
+row! {
+    /// The contact parameters of a pair.
+    numbers PairNumbers, "PAIR" {
+        margin: 1,
+        /// The sum of the inverse weights of the bodies.
+        invweight: 1,
+        friction: 5,
+        solref: 2,
+        solimp: 5,
+        solreffriction: 2,
+        adhesion: 1,
+    }
+}
+
+/// Returns the contact parameters of a pair.
+fn parameters(m: &Model, pair: &Candidate) -> PairNumbers {
     let mixed = contact_params::<f64>(m, &m.params, pair);
     let weight = |g: u32| m.params.body_invweight0[m.geoms[g as usize].body][0];
-    let mut row = vec![
-        mixed.includemargin,
-        weight(pair.geoms[0]) + weight(pair.geoms[1]),
-    ];
-    row.extend(mixed.friction);
-    row.extend(mixed.solref);
-    row.extend(mixed.solimp);
-    row.extend(mixed.solreffriction);
-    row.push(mixed.adhesion);
-    row
+    PairNumbers {
+        margin: [mixed.includemargin],
+        invweight: [weight(pair.geoms[0]) + weight(pair.geoms[1])],
+        friction: mixed.friction,
+        solref: mixed.solref,
+        solimp: mixed.solimp,
+        solreffriction: mixed.solreffriction,
+        adhesion: [mixed.adhesion],
+    }
+}
+
+codes! {
+    of ShapeKind {
+        Plane = "PLANE",
+        HeightField = "HEIGHT_FIELD",
+        Sphere = "SPHERE",
+        Capsule = "CAPSULE",
+        Ellipsoid = "ELLIPSOID",
+        Cylinder = "CYLINDER",
+        Box = "BOX",
+        Mesh = "MESH",
+    }
 }
 
 /// Returns the maximum distance of the centres of two geoms (for a plane: from it to the second's) at which they may be
@@ -87,22 +114,12 @@ impl Tables {
         candidates: &[Candidate],
         capacity: &mut Capacity,
     ) {
-        for (name, kind) in [
-            ("PLANE", ShapeKind::Plane),
-            ("HEIGHT_FIELD", ShapeKind::HeightField),
-            ("SPHERE", ShapeKind::Sphere),
-            ("CAPSULE", ShapeKind::Capsule),
-            ("ELLIPSOID", ShapeKind::Ellipsoid),
-            ("CYLINDER", ShapeKind::Cylinder),
-            ("BOX", ShapeKind::Box),
-            ("MESH", ShapeKind::Mesh),
-        ] {
-            self.constant(name, kind as usize);
-        }
-        for (code, name) in METHODS.iter().enumerate() {
-            self.constant(name, code);
-        }
-        self.constant("METHODS", METHODS.len());
+        self.codes::<ShapeKind>();
+        // The shape below a triangle of terrain, which the host does not know.
+        self.constant("PRISM", ShapeKind::ALL.len());
+        self.codes::<Method>();
+        self.constant("METHODS", Method::ALL.len());
+        self.row::<PairNumbers>();
         let measured = measured(m);
         let all = all_pairs(candidates, &measured);
         let geoms = || all.iter().flat_map(|c| c.geoms);
@@ -115,20 +132,18 @@ impl Tables {
         capacity.measured = measured.len();
         self.words("PAIR_GEOM", geoms().map(|g| g as usize));
         self.words("PAIR_BODY", geoms().map(|g| m.geoms[g as usize].body));
-        let method = |c: &Candidate| method_of_pair(c.kinds).unwrap_or(0);
-        self.words("PAIR_METHOD", all.iter().map(method));
+        // A batch refuses candidates without a method, see `check.rs`.
+        let methods = Vec::from_iter(all.iter().filter_map(|c| method_of_pair(c.kinds)));
+        self.words("PAIR_METHOD", methods.iter().map(|method| method.code()));
         let general = all.iter().any(|c| may_be_general(c.kinds));
         let of_a_thread = match general {
             true => CONVEX_PAIRS_OF_A_THREAD,
             false => PAIRS_OF_A_THREAD,
         };
         capacity.threads = (all.len() / of_a_thread).clamp(1, MOST_THREADS);
-        for (code, name) in METHODS.iter().enumerate() {
-            let used = all.iter().any(|c| method(c) == code);
-            self.flag(
-                &format!("ANY_{name}"),
-                used || (general && *name == "CONVEX"),
-            );
+        for method in Method::ALL {
+            let used = methods.contains(method) || (general && *method == Method::Convex);
+            self.flag(&format!("ANY_{}", method.constant()), used);
         }
         let deepest = |c: &Candidate| {
             let [a, b] = c.kinds;
@@ -158,7 +173,6 @@ impl Tables {
         self.flag("ANY_TERRAIN", any_terrain);
         self.constant("MAX_TERRAIN_POINTS", MAX_POINTS);
         self.constant("TERRAIN_POINT_SIZE", TERRAIN_POINT_SIZE);
-        self.constant("FACE_LIST_POINTS", FACE_LIST_POINTS);
         self.constant("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
         self.words("PAIR_DIM", candidates.iter().map(dim));
         let range = |c: &Candidate| contact_range::<f64>(m, &m.params, c).1;
@@ -167,9 +181,8 @@ impl Tables {
         self.numbers("PAIR_RANGE", ranges.iter().copied());
         let reaches = all.iter().zip(&ranges).map(|(c, &r)| reach::<S>(m, c, r));
         self.numbers("PAIR_REACH", reaches);
-        let rows = Vec::from_iter(candidates.iter().map(|c| parameters(m, c)));
-        self.count("PAIR_PRM_SIZE", rows.first().map_or(0, Vec::len));
-        self.numbers("PAIR_PRM", rows.into_iter().flatten());
+        let rows = candidates.iter().flat_map(|c| parameters(m, c).numbers());
+        self.numbers("PAIR_PRM", rows);
         self.surfaces(m, candidates, capacity);
 
         let widest = candidates.iter().map(dim).max().unwrap_or(0);

@@ -1,15 +1,47 @@
 //! Equalities: the two frames or coordinates that each constrains, and its softness.
 
 use super::{Capacity, NONE, Tables};
-use clench_rigid::model::{Coupled, Model};
+use crate::codes::{Code, codes, row};
+use clench_rigid::model::{EqualityTarget, Model};
 use clench_rigid::settings::StepSettings;
 
-/// The numbers of an equality of frames: both anchors, both orientations, the length that scales rotations, the bodies'
-/// inverse weights of translations and of rotations, then solref and solimp.
-const HELD_SIZE: usize = 24;
-/// The numbers of an equality of coordinates: both initial values, five coefficients, the sum of the inverse weights,
-/// then solref and solimp.
-const COUPLING_SIZE: usize = 15;
+codes! {
+    /// The kinds of equality.
+    enum Kind {
+        /// A connect or weld of static bodies, which has no rows.
+        Static = "EQ_STATIC",
+        Connect = "EQ_CONNECT",
+        Weld = "EQ_WELD",
+        /// An equality of joints or tendons.
+        Coupling = "EQ_COUPLING",
+    }
+}
+row! {
+    /// The numbers of an equality of frames.
+    numbers HeldNumbers, "HELD" {
+        anchor1: 3,
+        anchor2: 3,
+        quat1: 4,
+        quat2: 4,
+        torquescale: 1,
+        /// The bodies' inverse weights of translations and of rotations.
+        invweight: 2,
+        solref: 2,
+        solimp: 5,
+    }
+}
+row! {
+    /// The numbers of an equality of coordinates.
+    numbers CouplingNumbers, "COUPLING" {
+        /// The initial values of the follower and of its leader.
+        initial: 2,
+        polycoef: 5,
+        /// The sum of the inverse weights.
+        invweight: 1,
+        solref: 2,
+        solimp: 5,
+    }
+}
 
 impl Tables {
     /// Adds equalities; coordinates are joints, then tendons.
@@ -17,37 +49,51 @@ impl Tables {
         let on = s.flags.constraint && s.flags.equality;
         let count = if on { m.equalities.len() } else { 0 };
         let (mut kinds, mut pairs, mut places) = (Vec::new(), Vec::new(), Vec::new());
-        let mut numbers = Vec::new();
+        let (mut rows, mut numbers) = (Vec::new(), Vec::new());
         for (i, equality) in m.equalities[..count].iter().enumerate() {
             // Frames of static bodies are unconstrained.
-            let moving =
-                |bodies: [usize; 2]| bodies.iter().any(|&b| m.bodies[b].last_dof.is_some());
-            let rows = equality.target.rows();
-            let (rows, pair) = match equality.target.coupled() {
-                Coupled::Bodies(bodies) => (if moving(bodies) { rows } else { 0 }, bodies),
-                Coupled::Joints(follower, leader) => {
-                    (rows, [follower, leader.unwrap_or(NONE as usize)])
+            let moves = |bodies: [usize; 2]| bodies.iter().any(|&b| m.bodies[b].last_dof.is_some());
+            let unless_static = |kind: Kind, bodies: [usize; 2]| match moves(bodies) {
+                true => (kind, bodies),
+                false => (Kind::Static, bodies),
+            };
+            let tendon = |t: usize| m.joints.len() + t;
+            let (kind, pair) = match equality.target {
+                EqualityTarget::Connect { body1, body2 } => {
+                    unless_static(Kind::Connect, [body1, body2])
                 }
-                Coupled::Tendons(follower, leader) => {
-                    let tendon = |t: usize| m.joints.len() + t;
-                    (
-                        rows,
-                        [tendon(follower), leader.map_or(NONE as usize, tendon)],
-                    )
+                EqualityTarget::Weld { body1, body2 } => unless_static(Kind::Weld, [body1, body2]),
+                EqualityTarget::Joint { joint1, joint2 } => {
+                    (Kind::Coupling, [joint1, joint2.unwrap_or(NONE as usize)])
+                }
+                EqualityTarget::Tendon { tendon1, tendon2 } => {
+                    let leader = tendon2.map_or(NONE as usize, tendon);
+                    (Kind::Coupling, [tendon(tendon1), leader])
                 }
             };
-            kinds.push(rows);
+            let dim = match kind {
+                Kind::Static => 0,
+                Kind::Connect | Kind::Weld | Kind::Coupling => equality.target.rows(),
+            };
+            kinds.push(kind.code());
+            rows.push(dim);
             pairs.extend(pair);
             places.push(numbers.len());
-            match rows {
-                1 => numbers.extend(joint_equality(m, i, pair)),
-                _ => numbers.extend(held(m, i, pair)),
+            match kind {
+                Kind::Coupling => numbers.extend(coupling(m, i, pair).numbers()),
+                Kind::Static | Kind::Connect | Kind::Weld => {
+                    numbers.extend(held(m, i, pair).numbers());
+                }
             }
             capacity.blocks += 1;
-            capacity.rows += rows;
+            capacity.rows += dim;
         }
+        self.codes::<Kind>();
+        self.row::<HeldNumbers>();
+        self.row::<CouplingNumbers>();
         self.count("NEQ", count);
-        self.words("EQ_ROWS", kinds);
+        self.words("EQ_KIND", kinds);
+        self.words("EQ_ROWS", rows);
         self.words("EQ_PAIR", pairs);
         let start = self.numbers.len();
         self.words("EQ_PRM", places.into_iter().map(|place| start + place));
@@ -55,23 +101,22 @@ impl Tables {
     }
 }
 
-fn held(m: &Model, i: usize, bodies: [usize; 2]) -> [f64; HELD_SIZE] {
+fn held(m: &Model, i: usize, bodies: [usize; 2]) -> HeldNumbers {
     let p = &m.params;
     let weight = |part: usize| bodies.iter().map(|&b| p.body_invweight0[b][part]).sum();
-    let mut all = [0.0; HELD_SIZE];
-    all[..3].copy_from_slice(&p.eq_anchor1[i].to_array());
-    all[3..6].copy_from_slice(&p.eq_anchor2[i].to_array());
-    all[6..10].copy_from_slice(&p.eq_quat1[i].to_array());
-    all[10..14].copy_from_slice(&p.eq_quat2[i].to_array());
-    all[14] = p.eq_torquescale[i];
-    all[15] = weight(0);
-    all[16] = weight(1);
-    all[17..19].copy_from_slice(&p.eq_solref[i]);
-    all[19..].copy_from_slice(&p.eq_solimp[i]);
-    all
+    HeldNumbers {
+        anchor1: p.eq_anchor1[i].to_array(),
+        anchor2: p.eq_anchor2[i].to_array(),
+        quat1: p.eq_quat1[i].to_array(),
+        quat2: p.eq_quat2[i].to_array(),
+        torquescale: [p.eq_torquescale[i]],
+        invweight: [weight(0), weight(1)],
+        solref: p.eq_solref[i],
+        solimp: p.eq_solimp[i],
+    }
 }
 
-fn joint_equality(m: &Model, i: usize, coordinates: [usize; 2]) -> [f64; COUPLING_SIZE] {
+fn coupling(m: &Model, i: usize, coordinates: [usize; 2]) -> CouplingNumbers {
     let p = &m.params;
     let present = |c: usize| (c != NONE as usize).then_some(c);
     let initial = |c: usize| match m.joints.get(c) {
@@ -82,17 +127,12 @@ fn joint_equality(m: &Model, i: usize, coordinates: [usize; 2]) -> [f64; COUPLIN
         Some(joint) => p.dof_invweight0[joint.dof],
         None => p.tendon_invweight0[c - m.joints.len()],
     };
-    let mut all = [0.0; COUPLING_SIZE];
-    for (to, c) in all.iter_mut().zip(coordinates) {
-        *to = present(c).map_or(0.0, initial);
+    let weights = coordinates.into_iter().filter_map(present).map(weight);
+    CouplingNumbers {
+        initial: coordinates.map(|c| present(c).map_or(0.0, initial)),
+        polycoef: p.eq_polycoef[i],
+        invweight: [weights.sum()],
+        solref: p.eq_solref[i],
+        solimp: p.eq_solimp[i],
     }
-    all[2..7].copy_from_slice(&p.eq_polycoef[i]);
-    all[7] = coordinates
-        .into_iter()
-        .filter_map(present)
-        .map(weight)
-        .sum();
-    all[8..10].copy_from_slice(&p.eq_solref[i]);
-    all[10..].copy_from_slice(&p.eq_solimp[i]);
-    all
 }

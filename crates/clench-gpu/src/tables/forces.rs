@@ -1,21 +1,36 @@
 //! Springs, dampers, gravity compensation and the medium, each reduced to its coefficients; and the settings of the
 //! step.
 
-use super::{NONE, Tables, starts};
+use super::{NONE, TINY, Tables, starts};
+use crate::codes::row;
 use clench_rigid::dynamics::ellipsoid::{ellipsoids, semi_axes};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
-use clench_rigid::model::{Integrator, JointKind, Model};
+use clench_rigid::model::{Integrator, Model};
 use clench_rigid::options::FrictionCone;
 use clench_rigid::settings::StepSettings;
 
 use std::f64::consts::PI;
 
-/// The minimum mass (kg) of a body on which the medium acts; also the minimum (kg m²) of a box's squared sides
-/// (MuJoCo's `mjMINVAL`).
-const TINY: f64 = 1e-15;
-
-/// The numbers of an ellipsoid in the medium.
-const ELLIPSOID_SIZE: usize = 18;
+row! {
+    /// The force coefficients of an ellipsoid in the medium, see `dynamics/ellipsoid.rs`.
+    numbers EllipsoidNumbers, "ELLIPSOID" {
+        /// The density times virtual mass and inertia.
+        mass: 3,
+        inertia: 3,
+        magnus: 1,
+        kutta: 1,
+        /// The viscous drag of translation and of rotation.
+        viscous: 1,
+        viscous_angular: 1,
+        slender: 1,
+        /// The blunt coefficient less the slender one.
+        blunt: 1,
+        /// The angular drag about each axis.
+        angular: 3,
+        /// The squared products of the other two semi-axes.
+        area: 3,
+    }
+}
 
 impl Tables {
     pub(super) fn forces(&mut self, m: &Model) {
@@ -86,8 +101,11 @@ impl Tables {
         self.words("BODY_ELLIPSOID", starts(all.iter().map(Vec::len)));
         let geoms = || all.iter().flatten().copied();
         self.words("ELLIPSOID_GEOM", geoms());
-        self.constant("ELLIPSOID_SIZE", ELLIPSOID_SIZE);
-        self.numbers("ELLIPSOID_PRM", geoms().flat_map(|g| ellipsoid(m, g)));
+        self.row::<EllipsoidNumbers>();
+        self.numbers(
+            "ELLIPSOID_PRM",
+            geoms().flat_map(|g| ellipsoid(m, g).numbers()),
+        );
         self.words("BODY_WELD", m.bodies.iter().map(|b| b.weld));
     }
 
@@ -112,14 +130,6 @@ impl Tables {
         self.flag("NOSLIP", s.solver.noslip_iterations > 0);
         self.count("NOSLIP_ITERATIONS", s.solver.noslip_iterations);
         self.real("NOSLIP_TOLERANCE", s.solver.noslip_tolerance);
-        for (name, kind) in [
-            ("FREE", JointKind::Free),
-            ("BALL", JointKind::Ball),
-            ("SLIDE", JointKind::Slide),
-            ("HINGE", JointKind::Hinge),
-        ] {
-            self.constant(name, kind as usize);
-        }
     }
 }
 
@@ -183,8 +193,8 @@ fn drag(m: &Model, b: usize) -> [f64; 12] {
     all
 }
 
-/// Returns the force coefficients of geom `g`, as `kernels/ellipsoid.wgsl` reads them; see `dynamics/ellipsoid.rs`.
-fn ellipsoid(m: &Model, g: usize) -> [f64; ELLIPSOID_SIZE] {
+/// Returns the force coefficients of geom `g`.
+fn ellipsoid(m: &Model, g: usize) -> EllipsoidNumbers {
     let p = &m.params;
     let heavy = p.body_mass[m.geoms[g].body] >= TINY;
     let felt = |x: f64| if heavy { x.max(0.0) } else { 0.0 };
@@ -198,20 +208,26 @@ fn ellipsoid(m: &Model, g: usize) -> [f64; ELLIPSOID_SIZE] {
     let swept = |axis: f64, others: f64| 8.0 / 15.0 * PI * axis * others.powi(4);
     let others = |i: usize| [r[(i + 1) % 3], r[(i + 2) % 3]];
     let most = swept(middle, largest);
-    let mut all = [0.0; ELLIPSOID_SIZE];
-    for i in 0..3 {
+    let angular_drag = |i: usize| {
         let [a, b] = others(i);
         let moment = swept(r[i], a.max(b));
-        all[i] = density * p.geom_virtualmass[g][i];
-        all[3 + i] = density * p.geom_virtualinertia[g][i];
-        all[12 + i] = density * (angular * moment + slender * (most - moment));
-        all[15 + i] = (a * b).powi(2);
+        density * (angular * moment + slender * (most - moment))
+    };
+    let area = |i: usize| {
+        let [a, b] = others(i);
+        (a * b).powi(2)
+    };
+    let axes = [0, 1, 2];
+    EllipsoidNumbers {
+        mass: axes.map(|i| density * p.geom_virtualmass[g][i]),
+        inertia: axes.map(|i| density * p.geom_virtualinertia[g][i]),
+        magnus: [density * magnus * (4.0 / 3.0 * PI * r.iter().product::<f64>())],
+        kutta: [density * kutta],
+        viscous: [viscosity * 3.0 * PI * diameter],
+        viscous_angular: [viscosity * PI * diameter.powi(3)],
+        slender: [density * slender * PI * largest * middle],
+        blunt: [density * (blunt - slender)],
+        angular: axes.map(angular_drag),
+        area: axes.map(area),
     }
-    all[6] = density * magnus * (4.0 / 3.0 * PI * r.iter().product::<f64>());
-    all[7] = density * kutta;
-    all[8] = viscosity * 3.0 * PI * diameter;
-    all[9] = viscosity * PI * diameter.powi(3);
-    all[10] = density * slender * PI * largest * middle;
-    all[11] = density * (blunt - slender);
-    all
 }

@@ -1,16 +1,36 @@
 //! Buffers of past controls and measurements.
 
 use super::{NONE, Tables};
+use crate::codes::{Code, codes, row};
 use clench_rigid::model::{History, Interpolation};
 
-/// Returns the words of a buffer: its offset, its samples, the numbers of each, and the interpolation.
-fn row(history: &History) -> [usize; 4] {
-    let between = match history.interpolation {
-        Interpolation::Hold => 0,
-        Interpolation::Linear => 1,
-        Interpolation::Cubic => 2,
+row! {
+    /// The words of a buffer.
+    words HistoryWords, "HISTORY" {
+        /// Its offset in the state.
+        start,
+        samples,
+        /// The numbers of each sample.
+        width,
+        interpolation,
+    }
+}
+codes! {
+    of Interpolation {
+        Hold = "HOLD",
+        Linear = "LINEAR",
+        Cubic = "CUBIC",
+    }
+}
+
+fn row(history: &History) -> [usize; HistoryWords::SIZE] {
+    let row = HistoryWords {
+        start: history.start,
+        samples: history.samples,
+        width: history.width,
+        interpolation: history.interpolation.code(),
     };
-    [history.start, history.samples, history.width, between]
+    row.words()
 }
 
 impl Tables {
@@ -24,16 +44,15 @@ impl Tables {
         self.words(name, owners.clone().flatten().flat_map(row));
         let mut place = |history: Option<&History>| {
             let place = next;
-            next += 4 * usize::from(history.is_some());
+            next += HistoryWords::SIZE * usize::from(history.is_some());
             history.map_or(NONE as usize, |_| place)
         };
         owners.map(&mut place).collect()
     }
 
-    /// Adds the kinds of interpolation.
-    pub(super) fn interpolations(&mut self) {
-        for (code, name) in ["HOLD", "LINEAR", "CUBIC"].into_iter().enumerate() {
-            self.constant(name, code);
-        }
+    /// Declares the rows of buffers.
+    pub(super) fn history_rows(&mut self) {
+        self.row::<HistoryWords>();
+        self.codes::<Interpolation>();
     }
 }

@@ -2,25 +2,47 @@
 //! height fields.
 
 use super::{Tables, starts};
+use crate::codes::row;
 use clench_collide::{HeightField, Hull, ShapeKind, convex_hull};
 use clench_math::Vec3;
 use clench_rigid::contact::Candidate;
 use clench_rigid::model::Model;
 
-/// The counts and offsets of a polyhedron, in the order in which kernels read them.
-const PARTS: [&str; 11] = [
-    "HULL_VERTEX_COUNT",
-    "HULL_FACE_COUNT",
-    "HULL_CREASE_COUNT",
-    "HULL_VERTICES",
-    "HULL_PLANES",
-    "HULL_CREASES",
-    "HULL_CREASE_FACES",
-    "HULL_NEIGHBORS",
-    "HULL_VERTEX_FACES",
-    "HULL_FACE_CORNERS",
-    "HULL_FIRST",
-];
+row! {
+    /// The counts and offsets of a polyhedron, before the furthest vertex of each octant.
+    words HullWords, "HULL" {
+        vertex_count,
+        face_count,
+        crease_count,
+        vertices,
+        planes,
+        creases,
+        crease_faces,
+        neighbors,
+        vertex_faces,
+        face_corners,
+    }
+}
+row! {
+    /// The words of a height field.
+    words FieldWords, "FIELD" {
+        rows,
+        columns,
+        /// The offset of its sizes, which its heights follow.
+        sizes,
+    }
+}
+row! {
+    /// The sizes of a height field, m.
+    numbers FieldNumbers, "FIELD_NUMBERS" {
+        /// Half its lengths along x and y.
+        half: 2,
+        /// The lengths of a cell along x and y.
+        step: 2,
+        elevation: 1,
+        base: 1,
+    }
+}
 /// The start directions of hill climbing to the furthest vertex: one per octant.
 const OCTANTS: usize = 8;
 
@@ -72,9 +94,9 @@ impl Tables {
     /// Adds the polyhedra and height fields of a model's pairs, and the one of each geom (`NONE` if it has none).
     /// Returns the maximum number of corners of a face.
     pub(super) fn hulls(&mut self, m: &Model, candidates: &[Candidate]) -> usize {
-        for (offset, name) in PARTS.iter().enumerate() {
-            self.constant(name, offset);
-        }
+        self.row::<HullWords>();
+        self.row::<FieldWords>();
+        self.row::<FieldNumbers>();
         let mut most_corners = 0;
         let mut of_mesh = vec![None; m.meshes.len()];
         let mut of_geom = vec![super::NONE as usize; m.geoms.len()];
@@ -121,34 +143,47 @@ impl Tables {
     fn hull(&mut self, hull: &Hull) -> usize {
         let (vertices, faces) = (0..hull.vertices().len(), 0..hull.face_count());
         let creases = creases(hull);
-        let mut parts = vec![vertices.len(), faces.len(), creases.len()];
-        parts.push(self.add_numbers(hull.vertices().iter().flat_map(|v| v.to_array())));
-        parts.push(self.add_numbers(faces.clone().flat_map(|face| {
+        let planes = faces.clone().flat_map(|face| {
             let Vec3 { x, y, z } = hull.normal(face);
             [x, y, z, hull.offset(face)]
-        })));
-        parts.push(self.add_numbers(creases.iter().flat_map(|crease| crease.numbers(hull))));
-        parts.push(self.add_words(creases.iter().flat_map(|crease| crease.faces)));
-        parts.push(self.lists(vertices.clone().map(|v| hull.neighbors(v))));
-        parts.push(self.lists(vertices.map(|v| hull.faces_at(v))));
-        parts.push(self.lists(faces.map(|face| hull.corners(face))));
-        // The last part holds vertices, not an offset.
-        parts.extend((0..OCTANTS).map(|octant| {
+        });
+        let row = HullWords {
+            vertex_count: vertices.len(),
+            face_count: faces.len(),
+            crease_count: creases.len(),
+            vertices: self.add_numbers(hull.vertices().iter().flat_map(|v| v.to_array())),
+            planes: self.add_numbers(planes),
+            creases: self.add_numbers(creases.iter().flat_map(|crease| crease.numbers(hull))),
+            crease_faces: self.add_words(creases.iter().flat_map(|crease| crease.faces)),
+            neighbors: self.lists(vertices.clone().map(|v| hull.neighbors(v))),
+            vertex_faces: self.lists(vertices.map(|v| hull.faces_at(v))),
+            face_corners: self.lists(faces.map(|face| hull.corners(face))),
+        };
+        let furthest = (0..OCTANTS).map(|octant| {
             let sign = |axis: usize| if octant >> axis & 1 == 1 { -1.0 } else { 1.0 };
             hull.support(Vec3::new(sign(0), sign(1), sign(2)))
-        }));
-        self.add_words(parts)
+        });
+        self.add_words(row.words().into_iter().chain(furthest))
     }
 
-    /// Adds a height field: rows, columns, and the offset of its sizes, followed by its heights, m. Returns its offset.
+    /// Adds a height field. Returns its offset.
     pub(super) fn height_field(&mut self, field: &HeightField) -> usize {
         let [x, y, elevation, base] = field.size();
         let (rows, columns) = (field.rows(), field.columns());
         let step = |half: f64, count: usize| 2.0 * half / (count - 1) as f64;
-        let sizes = [x, y, step(x, columns), step(y, rows), elevation, base];
+        let sizes = FieldNumbers {
+            half: [x, y],
+            step: [step(x, columns), step(y, rows)],
+            elevation: [elevation],
+            base: [base],
+        };
         let heights = field.heights().iter().map(|height| elevation * height);
-        let place = self.add_numbers(sizes.into_iter().chain(heights));
-        self.add_words([rows, columns, place])
+        let row = FieldWords {
+            rows,
+            columns,
+            sizes: self.add_numbers(sizes.numbers().into_iter().chain(heights)),
+        };
+        self.add_words(row.words())
     }
 
     /// Adds lists: the start of each and the end of the last, then all items. Returns their offset.

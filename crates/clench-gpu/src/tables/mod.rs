@@ -9,6 +9,7 @@ mod contacts;
 mod distances;
 mod equalities;
 mod forces;
+mod gains;
 mod histories;
 mod hulls;
 mod rays;
@@ -20,6 +21,7 @@ pub(crate) use contacts::CONTACT_SIZE;
 pub(crate) use rays::ray_count;
 pub(crate) use sensors::{has_sensor_history, is_read};
 
+use crate::codes::{Code, Row};
 use crate::layout::Layout;
 use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
@@ -39,6 +41,8 @@ pub(crate) const ENVS: usize = 2;
 pub(crate) const MEASURES: usize = 3;
 /// The value of an unlimited range; a device may not support infinity.
 const ENDLESS: f64 = 3e38;
+/// The minimum divisor, mass (kg) and squared side of a box (kg m²), MuJoCo's `mjMINVAL`.
+const TINY: f64 = 1e-15;
 
 /// The arrays under construction, and the source text of the constants.
 pub(crate) struct Tables {
@@ -111,7 +115,7 @@ impl Tables {
         tables.geoms(model);
         tables.tendons(model);
         tables.forces(model);
-        tables.interpolations();
+        tables.history_rows();
         tables.actuators(model);
         tables.cameras(model);
         tables.sensors(model);
@@ -159,6 +163,20 @@ impl Tables {
     /// Declares a code, or a size that affects the texts of the kernels.
     fn constant(&mut self, name: &str, value: usize) {
         let _ = writeln!(self.constants, "const {name}: u32 = {value}u;");
+    }
+
+    /// Declares the codes of an enumeration.
+    fn codes<C: Code>(&mut self) {
+        for &variant in C::ALL {
+            self.constant(variant.constant(), variant.code());
+        }
+    }
+
+    /// Declares the offsets of the fields of a row, and its size.
+    fn row<R: Row>(&mut self) {
+        for (name, value) in R::constants() {
+            self.constant(&name, value);
+        }
     }
 
     /// Adds a feature of the model or a requested option; kernels omit code of unused ones.

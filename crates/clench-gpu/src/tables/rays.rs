@@ -1,26 +1,54 @@
 //! Rays of sensors: their origins, the reported fields, and the geoms that they may hit.
 
 use super::{ENDLESS, NONE, Tables};
+use crate::codes::{Code, codes, row};
 use clench_collide::{ShapeKind, TriangleMesh, TriangleNode, allowance};
 use clench_math::{Scalar, Vec3};
 use clench_rigid::model::{Model, RayField, RaySource, Sensor, SensorTarget};
 use std::iter::repeat_n;
 
-/// The words of a sensor with rays.
-const RAY_SENSOR_FIELDS: [&str; 8] = [
-    "RAY_SOURCE",
-    "RAY_ELEMENT",
-    "RAY_BODY",
-    "RAY_FIRST",
-    "RAY_PLACE",
-    "RAY_SIZE",
-    "RAY_FIELD_START",
-    "RAY_FIELD_END",
-];
-/// The origins of rays.
-const SOURCES: [&str; 2] = ["FROM_SITE", "FROM_CAMERA"];
-/// The words of a node of the bounding-box tree of a mesh's triangles.
-const NODE_FIELDS: [&str; 3] = ["NODE_NEXT", "NODE_FACE", "NODE_FACE_COUNT"];
+row! {
+    /// The words of a sensor with rays.
+    words RayWords, "RAY" {
+        source,
+        element,
+        body,
+        /// Its first ray.
+        first,
+        /// The offset of its numbers in `sensordata`.
+        offset,
+        /// The numbers of each ray.
+        width,
+        field_start,
+        field_end,
+    }
+}
+codes! {
+    /// The origins of rays.
+    enum Source {
+        Site = "FROM_SITE",
+        Camera = "FROM_CAMERA",
+    }
+}
+row! {
+    /// The words of a mesh.
+    words MeshWords, "MESH" {
+        /// The number of nodes of its tree.
+        count,
+        /// The offsets of these, of their boxes, and of the corners of its triangles.
+        nodes,
+        boxes,
+        corners,
+    }
+}
+row! {
+    /// The words of a node of the bounding-box tree of a mesh's triangles.
+    words NodeWords, "NODE" {
+        next,
+        face,
+        face_count,
+    }
+}
 /// The margin of a node's box, relative to the largest coordinate of the mesh, so that rays in the plane of a side hit
 /// it.
 const NODE_MARGIN: f64 = 1e-6;
@@ -29,7 +57,14 @@ const NODE_MARGIN: f64 = 1e-6;
 fn rays_of(sensor: &Sensor) -> Option<(RaySource, &[RayField])> {
     match &sensor.target {
         SensorTarget::Rays { source, fields } => Some((*source, fields)),
-        _ => None,
+        SensorTarget::Nothing
+        | SensorTarget::Element(_)
+        | SensorTarget::Frame { .. }
+        | SensorTarget::Inside { .. }
+        | SensorTarget::Projection { .. }
+        | SensorTarget::Geoms(_)
+        | SensorTarget::Contacts(_)
+        | SensorTarget::Taxels { .. } => None,
     }
 }
 
@@ -54,29 +89,32 @@ fn visible(m: &Model) -> impl Iterator<Item = usize> + Clone {
 
 impl Tables {
     pub(super) fn rays<S: Scalar>(&mut self, m: &Model) {
-        for names in [&RAY_SENSOR_FIELDS[..], &SOURCES, &NODE_FIELDS] {
-            for (code, name) in names.iter().enumerate() {
-                self.constant(name, code);
-            }
-        }
+        self.row::<RayWords>();
+        self.codes::<Source>();
+        self.row::<MeshWords>();
+        self.row::<NodeWords>();
         for &field in RayField::ALL {
             let name = format!("RAY_{}", field.name().to_uppercase());
             self.constant(&name, field as usize);
         }
-        self.constant("RAY_SENSOR_SIZE", RAY_SENSOR_FIELDS.len());
-        self.constant("NODE_SIZE", NODE_FIELDS.len());
         let (mut sensors, mut of_ray, mut told, mut cutoffs) = (vec![], vec![], vec![], vec![]);
         let all = m.sensors.iter().filter_map(|s| Some((s, rays_of(s)?)));
         for (index, (sensor, (source, fields))) in all.enumerate() {
             let (source_kind, element, body) = match source {
-                RaySource::Site(s) => (0, s, m.sites[s].body),
-                RaySource::Camera(c) => (1, c, m.cameras[c].body),
+                RaySource::Site(s) => (Source::Site, s, m.sites[s].body),
+                RaySource::Camera(c) => (Source::Camera, c, m.cameras[c].body),
             };
-            let size = fields.iter().map(|field| field.size()).sum();
-            let (first, place) = (of_ray.len(), sensor.numbers.start);
-            let listed = [told.len(), told.len() + fields.len()];
-            sensors.extend([source_kind, element, body, first, place, size]);
-            sensors.extend(listed);
+            let row = RayWords {
+                source: source_kind.code(),
+                element,
+                body,
+                first: of_ray.len(),
+                offset: sensor.numbers.start,
+                width: fields.iter().map(|field| field.size()).sum(),
+                field_start: told.len(),
+                field_end: told.len() + fields.len(),
+            };
+            sensors.extend(row.words());
             told.extend(fields.iter().map(|&field| field as usize));
             of_ray.extend(repeat_n(index, rays_from(m, source)));
             let clips = sensor.cutoff > 0.0;
@@ -95,7 +133,13 @@ impl Tables {
         // Planes are unbounded.
         let reach = |g: usize| match m.geoms[g].kind {
             ShapeKind::Plane => 0.0,
-            _ => m.params.geom_rbound[g] * allowance::<S>().to_f64(),
+            ShapeKind::HeightField
+            | ShapeKind::Sphere
+            | ShapeKind::Capsule
+            | ShapeKind::Ellipsoid
+            | ShapeKind::Cylinder
+            | ShapeKind::Box
+            | ShapeKind::Mesh => m.params.geom_rbound[g] * allowance::<S>().to_f64(),
         };
         self.numbers("RAY_REACH", visible(m).map(reach));
     }
@@ -128,10 +172,15 @@ impl Tables {
         if !mesh.faces().is_empty() {
             depth_first(mesh.nodes(), 0, &mut nodes);
         }
-        let words = nodes
-            .iter()
-            .flat_map(|&(next, node)| [next, node.first as usize, node.count as usize]);
-        let words = self.add_words(words);
+        let words = |&(next, node): &(usize, &TriangleNode)| {
+            let row = NodeWords {
+                next,
+                face: node.first as usize,
+                face_count: node.count as usize,
+            };
+            row.words()
+        };
+        let words = self.add_words(nodes.iter().flat_map(words));
         let coordinates = mesh.vertices().iter().flat_map(|v| v.to_array());
         let margin = NODE_MARGIN * coordinates.fold(0.0, |most: f64, x| most.max(x.abs()));
         let room = Vec3::new(margin, margin, margin);
@@ -141,7 +190,13 @@ impl Tables {
         let corners = mesh.faces().as_flattened().iter();
         let corners = corners.flat_map(|&corner| mesh.vertices()[corner as usize].to_array());
         let corners = self.add_numbers(corners);
-        self.add_words([nodes.len(), words, boxes, corners])
+        let row = MeshWords {
+            count: nodes.len(),
+            nodes: words,
+            boxes,
+            corners,
+        };
+        self.add_words(row.words())
     }
 }
 

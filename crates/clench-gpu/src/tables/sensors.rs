@@ -2,126 +2,259 @@
 
 use super::distances::{is_measured, pairs_of};
 use super::{NONE, Tables, starts};
+use crate::codes::{Code, codes, row};
 use clench_rigid::model::{
-    ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, Model, Sensor,
-    SensorData, SensorKind, SensorTarget, Transmission,
+    Attachment, ContactField, ContactQuery, ContactReduction, ContactSide, FrameObject, Model,
+    Sensor, SensorData, SensorKind, SensorTarget, Transmission,
 };
 
-/// The words of a sensor.
-const SENSOR_FIELDS: [&str; 13] = [
-    "SENSOR_WAY",
-    "SENSOR_KIND",
-    "SENSOR_PLACE",
-    "SENSOR_DIM",
-    "SENSOR_CLIP",
-    "SENSOR_OBJECT_KIND",
-    "SENSOR_OBJECT",
-    "SENSOR_BODY",
-    "SENSOR_REFERENCE_KIND",
-    "SENSOR_REFERENCE",
-    "SENSOR_REFERENCE_BODY",
-    "SENSOR_SHAPE",
-    "SENSOR_HISTORY",
-];
-/// The numbers of a sensor: its cutoff, the margin of its limit, the size of its site, its delay and its period.
-const SENSOR_PRM_SIZE: usize = 7;
-/// The methods that read sensors.
-const WAYS: [&str; 11] = [
-    "OF_SCALAR",
-    "OF_FRAME",
-    "OF_SITE",
-    "OF_SUBTREE",
-    "OF_BALL",
-    "OF_NOTHING",
-    "OF_ACTUATOR",
-    "OF_CONTACTS",
-    "OF_DISTANCE",
-    "OF_PROJECTION",
-    "OF_RAYS",
-];
-/// The words of a contact query, before its fields and the sides of each geom.
-const QUERY: [&str; 4] = [
-    "QUERY_REDUCTION",
-    "QUERY_SIZE",
-    "QUERY_NFIELD",
-    "QUERY_FIELDS",
-];
-/// The reductions of contacts.
-const REDUCTIONS: [&str; 4] = ["FIRST_ONES", "MIN_DIST", "MAX_FORCE", "NET_FORCE"];
-/// The kinds of object with a frame.
-const FRAMES: [&str; 6] = [
-    "NO_FRAME",
-    "INERTIAL_FRAME",
-    "BODY_FRAME",
-    "GEOM_FRAME",
-    "SITE_FRAME",
-    "CAMERA_FRAME",
-];
-
-/// Returns the words of a frame: the kind of its object, its index, and its body.
-fn frame(m: &Model, object: FrameObject) -> [usize; 3] {
-    let (kind, index, body) = match object {
-        FrameObject::Inertial(b) => (1, b, b),
-        FrameObject::Body(b) => (2, b, b),
-        FrameObject::Geom(g) => (3, g, m.geoms[g].body),
-        FrameObject::Site(s) => (4, s, m.sites[s].body),
-        FrameObject::Camera(c) => (5, c, m.cameras[c].body),
-    };
-    [kind, index, body]
+row! {
+    /// The words of a sensor.
+    words SensorWords, "SENSOR" {
+        method,
+        kind,
+        /// The offset of its numbers in `sensordata`, and their count.
+        offset,
+        dim,
+        clip,
+        object_kind,
+        object,
+        body,
+        reference_kind,
+        reference,
+        reference_body,
+        /// The shape of its site.
+        shape,
+        /// The offset of its buffer, or `NONE`.
+        history,
+    }
+}
+row! {
+    /// The numbers of a sensor.
+    numbers SensorNumbers, "SENSOR_PRM" {
+        cutoff: 1,
+        /// The margin of its limit.
+        margin: 1,
+        /// The size of its site.
+        volume: 3,
+        delay: 1,
+        period: 1,
+    }
+}
+codes! {
+    /// The methods that read sensors.
+    enum Method {
+        Scalar = "OF_SCALAR",
+        Frame = "OF_FRAME",
+        Site = "OF_SITE",
+        Subtree = "OF_SUBTREE",
+        Ball = "OF_BALL",
+        Nothing = "OF_NOTHING",
+        Actuator = "OF_ACTUATOR",
+        Contacts = "OF_CONTACTS",
+        Distance = "OF_DISTANCE",
+        Projection = "OF_PROJECTION",
+        Rays = "OF_RAYS",
+    }
+}
+codes! {
+    /// The limits of a sensor's numbers.
+    enum Clip {
+        None = "UNCLIPPED",
+        /// From minus the cutoff to the cutoff.
+        Both = "CLIPPED",
+        /// At most the cutoff.
+        Above = "CLIPPED_ABOVE",
+    }
+}
+row! {
+    /// The words of a contact query, before its fields and the sides of each geom.
+    words QueryWords, "QUERY" {
+        reduction,
+        /// The numbers of each contact.
+        width,
+        nfield,
+    }
+}
+codes! {
+    of ContactReduction {
+        None = "FIRST_ONES",
+        MinDist = "MIN_DIST",
+        MaxForce = "MAX_FORCE",
+        NetForce = "NET_FORCE",
+    }
+}
+/// The flags of a geom's sides of a query.
+const FIRST_SIDE: usize = 1;
+const SECOND_SIDE: usize = 2;
+codes! {
+    /// The kinds of object with a frame.
+    enum Frame {
+        None = "NO_FRAME",
+        Inertial = "INERTIAL_FRAME",
+        Body = "BODY_FRAME",
+        Geom = "GEOM_FRAME",
+        Site = "SITE_FRAME",
+        Camera = "CAMERA_FRAME",
+    }
 }
 
-/// Returns the method, the object and the reference of a sensor, as in [`SENSOR_FIELDS`]; `None` if the device does not
-/// support it.
-fn target(m: &Model, sensor: &Sensor) -> Option<(usize, [usize; 3], [usize; 3])> {
+/// The words of an object: the kind of its frame, its index, and its body.
+#[derive(Clone, Copy)]
+struct Object {
+    kind: Frame,
+    index: usize,
+    body: usize,
+}
+
+impl Object {
+    const NONE: Object = Object::new(Frame::None, 0);
+
+    /// Returns an object whose body is not read.
+    const fn new(kind: Frame, index: usize) -> Self {
+        let body = 0;
+        Object { kind, index, body }
+    }
+}
+
+fn frame(m: &Model, object: FrameObject) -> Object {
+    let (kind, index, body) = match object {
+        FrameObject::Inertial(b) => (Frame::Inertial, b, b),
+        FrameObject::Body(b) => (Frame::Body, b, b),
+        FrameObject::Geom(g) => (Frame::Geom, g, m.geoms[g].body),
+        FrameObject::Site(s) => (Frame::Site, s, m.sites[s].body),
+        FrameObject::Camera(c) => (Frame::Camera, c, m.cameras[c].body),
+    };
+    Object { kind, index, body }
+}
+
+/// Returns the method that reads a kind of sensor; `None` if the device does not support it.
+fn method(kind: SensorKind) -> Option<Method> {
     use SensorKind as Kind;
-    let none = [0; 3];
-    Some(match &sensor.target {
+    Some(match kind {
+        Kind::Touch
+        | Kind::JointPos
+        | Kind::JointVel
+        | Kind::JointActuatorFrc
+        | Kind::JointLimitPos
+        | Kind::JointLimitVel
+        | Kind::JointLimitFrc
+        | Kind::TendonPos
+        | Kind::TendonVel
+        | Kind::TendonActuatorFrc
+        | Kind::TendonLimitPos
+        | Kind::TendonLimitVel
+        | Kind::TendonLimitFrc
+        | Kind::InsideSite
+        | Kind::PotentialEnergy
+        | Kind::KineticEnergy
+        | Kind::Clock => Method::Scalar,
+        Kind::FramePos
+        | Kind::FrameQuat
+        | Kind::FrameXAxis
+        | Kind::FrameYAxis
+        | Kind::FrameZAxis
+        | Kind::FrameLinVel
+        | Kind::FrameAngVel
+        | Kind::FrameLinAcc
+        | Kind::FrameAngAcc => Method::Frame,
+        Kind::Accelerometer
+        | Kind::Velocimeter
+        | Kind::Gyro
+        | Kind::Force
+        | Kind::Torque
+        | Kind::Magnetometer => Method::Site,
+        Kind::SubtreeCom | Kind::SubtreeLinVel | Kind::SubtreeAngMom => Method::Subtree,
+        Kind::BallQuat | Kind::BallAngVel => Method::Ball,
+        Kind::ActuatorPos | Kind::ActuatorVel | Kind::ActuatorFrc => Method::Actuator,
+        Kind::Contact => Method::Contacts,
+        Kind::Distance | Kind::Normal | Kind::FromTo => Method::Distance,
+        Kind::CamProjection => Method::Projection,
+        Kind::Rangefinder => Method::Rays,
+        Kind::User => Method::Nothing,
+        Kind::Tactile => return None,
+    })
+}
+
+/// Returns the object of a sensor that has one element, and its reference.
+fn of_element(m: &Model, kind: SensorKind, e: usize) -> [Object; 2] {
+    let limits_tendon = matches!(
+        kind,
+        SensorKind::TendonLimitPos | SensorKind::TendonLimitVel | SensorKind::TendonLimitFrc
+    );
+    match kind.attachment() {
+        Attachment::Site => [Object::new(Frame::Site, e), Object::NONE],
+        // Up to the end of its subtree.
+        Attachment::Body => [
+            Object::new(Frame::Body, e),
+            Object::new(Frame::None, m.subtree(e).end),
+        ],
+        // Represented by their first output.
+        Attachment::Actuator => {
+            let output = m.actuators[e].outputs.start;
+            [Object::new(Frame::None, output), Object::NONE]
+        }
+        // Limits are represented by coordinates: joints, then tendons.
+        Attachment::Tendon if limits_tendon => {
+            let coordinate = m.joints.len() + e;
+            [Object::new(Frame::None, coordinate), Object::NONE]
+        }
+        Attachment::ScalarJoint | Attachment::Ball | Attachment::Joint | Attachment::Tendon => {
+            [Object::new(Frame::None, e), Object::NONE]
+        }
+        // The builder gives these other targets.
+        Attachment::Nothing
+        | Attachment::Frame
+        | Attachment::WorldFrame
+        | Attachment::Inside
+        | Attachment::Projection
+        | Attachment::Rays
+        | Attachment::Geoms
+        | Attachment::Contacts
+        | Attachment::Taxels
+        | Attachment::User => [Object::NONE; 2],
+    }
+}
+
+/// Returns the method, the object and the reference of a sensor; `None` if the device does not support it. The objects
+/// of distances and contacts are offsets in other tables, which follow.
+fn target(m: &Model, sensor: &Sensor) -> Option<(Method, [Object; 2])> {
+    let objects = match &sensor.target {
         SensorTarget::Frame { object, reference } => {
-            let reference = reference.map_or(none, |other| frame(m, other));
-            (1, frame(m, *object), reference)
+            let reference = reference.map_or(Object::NONE, |other| frame(m, other));
+            [frame(m, *object), reference]
         }
         SensorTarget::Inside { enclosed: true, .. } => return None,
-        SensorTarget::Inside { site, object, .. } => (0, frame(m, *object), [4, *site, 0]),
-        SensorTarget::Projection { site, camera } => (9, [4, *site, 0], [5, *camera, 0]),
-        SensorTarget::Rays { .. } => (10, none, none),
-        SensorTarget::Element(e) => match sensor.kind {
-            Kind::Accelerometer
-            | Kind::Velocimeter
-            | Kind::Gyro
-            | Kind::Force
-            | Kind::Torque
-            | Kind::Magnetometer => (2, [4, *e, 0], none),
-            Kind::SubtreeCom | Kind::SubtreeLinVel | Kind::SubtreeAngMom => {
-                (3, [2, *e, 0], [0, m.subtree(*e).end, 0])
-            }
-            Kind::BallQuat | Kind::BallAngVel => (4, [0, *e, 0], none),
-            // Represented by their first output.
-            Kind::ActuatorPos | Kind::ActuatorVel | Kind::ActuatorFrc => {
-                (6, [0, m.actuators[*e].outputs.start, 0], none)
-            }
-            // Limits are represented by coordinates: joints, then tendons.
-            Kind::TendonLimitPos | Kind::TendonLimitVel | Kind::TendonLimitFrc => {
-                (0, [0, m.joints.len() + e, 0], none)
-            }
-            _ => (0, [0, *e, 0], none),
-        },
-        SensorTarget::Nothing if sensor.kind == Kind::User => (5, none, none),
-        SensorTarget::Nothing => (0, none, none),
-        SensorTarget::Geoms(_) if is_measured(m, sensor) => (8, none, none),
-        SensorTarget::Contacts(query) => (7, none, [4, query.site.unwrap_or(NONE as usize), 0]),
-        _ => return None,
-    })
+        SensorTarget::Inside {
+            site,
+            object,
+            enclosed: false,
+        } => [frame(m, *object), Object::new(Frame::Site, *site)],
+        SensorTarget::Projection { site, camera } => [
+            Object::new(Frame::Site, *site),
+            Object::new(Frame::Camera, *camera),
+        ],
+        SensorTarget::Element(e) => of_element(m, sensor.kind, *e),
+        SensorTarget::Rays { .. } | SensorTarget::Nothing => [Object::NONE; 2],
+        SensorTarget::Geoms(_) if !is_measured(m, sensor) => return None,
+        SensorTarget::Geoms(_) => [Object::NONE; 2],
+        SensorTarget::Contacts(query) => {
+            let site = query.site.unwrap_or(NONE as usize);
+            [Object::NONE, Object::new(Frame::Site, site)]
+        }
+        SensorTarget::Taxels { .. } => return None,
+    };
+    Some((method(sensor.kind)?, objects))
 }
 
 /// Returns the words of a contact query.
 fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
-    let reduction = match query.reduction {
-        ContactReduction::None => 0,
-        ContactReduction::MinDist => 1,
-        ContactReduction::MaxForce => 2,
-        ContactReduction::NetForce => 3,
+    let row = QueryWords {
+        reduction: query.reduction.code(),
+        width: query.size(),
+        nfield: query.fields.len(),
     };
-    let mut row = vec![reduction, query.size(), query.fields.len()];
+    let mut row = row.words().to_vec();
     row.extend(query.fields.iter().map(|&field| field as usize));
     let belongs = |geom: usize, side: &ContactSide| match side {
         ContactSide::Any => true,
@@ -130,7 +263,9 @@ fn query(m: &Model, query: &ContactQuery) -> Vec<usize> {
         ContactSide::Subtree(bodies) => bodies.contains(&m.geoms[geom].body),
     };
     let [first, second] = &query.sides;
-    let sides = |g: usize| usize::from(belongs(g, first)) + 2 * usize::from(belongs(g, second));
+    let sides = |g: usize| {
+        FIRST_SIDE * usize::from(belongs(g, first)) + SECOND_SIDE * usize::from(belongs(g, second))
+    };
     row.extend((0..m.geoms.len()).map(sides));
     row
 }
@@ -147,23 +282,7 @@ pub(crate) fn has_sensor_history(m: &Model) -> bool {
 
 impl Tables {
     pub(super) fn sensors(&mut self, m: &Model) {
-        for names in [&SENSOR_FIELDS[..], &WAYS, &FRAMES, &QUERY, &REDUCTIONS] {
-            for (code, name) in names.iter().enumerate() {
-                self.constant(name, code);
-            }
-        }
-        for &kind in SensorKind::ALL {
-            self.constant(
-                &format!("SENSE_{}", kind.name().to_uppercase()),
-                kind as usize,
-            );
-        }
-        for &field in ContactField::ALL {
-            let name = format!("CONTACT_DATA_{}", field.name().to_uppercase());
-            self.constant(&name, field as usize);
-        }
-        self.constant("SENSOR_SIZE", SENSOR_FIELDS.len());
-        self.constant("SENSOR_PRM_SIZE", SENSOR_PRM_SIZE);
+        self.sensor_constants();
         let p = &m.params;
         let (mut words, mut numbers, mut queries) = (Vec::new(), Vec::new(), Vec::new());
         let read = |(k, s)| Some((k, s, target(m, s)?));
@@ -171,57 +290,77 @@ impl Tables {
         self.flag("SENSING", m.flags.sensor);
         self.flag("ANY_SENSOR_HISTORY", has_sensor_history(m));
         let buffers = readable.iter().map(|(_, s, _)| s.history.as_ref());
-        let mut buffers = self.histories("SENSOR_HISTORIES", buffers).into_iter();
-        let (mut count, mut measured) = (0, 0);
-        for (k, sensor, (way, mut object, mut reference)) in readable {
+        let histories = self.histories("SENSOR_HISTORIES", buffers);
+        self.count("NSENSOR", readable.len());
+        let mut measured = 0;
+        for ((k, sensor, (method, [mut object, mut reference])), history) in
+            readable.into_iter().zip(histories)
+        {
             if let SensorTarget::Geoms(_) = &sensor.target {
-                object[1] = measured;
+                object.index = measured;
                 measured += pairs_of(m, sensor).len();
-                reference[1] = measured;
+                reference.index = measured;
             }
             if let SensorTarget::Contacts(of) = &sensor.target {
-                object[1] = queries.len();
+                object.index = queries.len();
                 queries.extend(query(m, of));
             }
-            let element = object[1];
-            let site = match &sensor.target {
-                SensorTarget::Inside { site, .. } => Some(*site),
-                SensorTarget::Contacts(query) => query.site,
-                SensorTarget::Element(site) if sensor.kind == SensorKind::Touch => Some(*site),
-                _ => None,
+            let site = site_of(sensor);
+            let row = SensorWords {
+                method: method.code(),
+                kind: sensor.kind as usize,
+                offset: sensor.numbers.start,
+                dim: sensor.numbers.len(),
+                clip: clip(sensor).code(),
+                object_kind: object.kind.code(),
+                object: object.index,
+                body: object.body,
+                reference_kind: reference.kind.code(),
+                reference: reference.index,
+                reference_body: reference.body,
+                shape: site.map_or(0, |site| m.sites[site].kind.code()),
+                history,
             };
-            // Rangefinders clip in the ray kernel.
-            let unclipped = matches!(
-                sensor.kind,
-                SensorKind::Contact | SensorKind::FromTo | SensorKind::Rangefinder
-            );
-            let clips = sensor.cutoff > 0.0 && !unclipped;
-            let clip = match sensor.data {
-                SensorData::Real if clips => 1,
-                SensorData::Positive if clips => 2,
-                _ => 0,
+            words.extend(row.words());
+            let row = SensorNumbers {
+                cutoff: [sensor.cutoff],
+                margin: [limit_margin(m, sensor)],
+                volume: site.map_or([0.0; 3], |site| p.site_size[site].to_array()),
+                delay: [p.sensor_delay[k]],
+                period: [p.sensor_interval[k]],
             };
-            let shape = site.map_or(0, |site| m.sites[site].kind as usize);
-            let (place, dim) = (sensor.numbers.start, sensor.numbers.len());
-            words.extend([way, sensor.kind as usize, place, dim, clip]);
-            words.extend(object.into_iter().chain(reference).chain([shape]));
-            words.extend(buffers.next());
-            let margin = match sensor.kind {
-                SensorKind::JointLimitPos => p.jnt_margin[element],
-                SensorKind::TendonLimitPos => p.tendon_margin[element - m.joints.len()],
-                _ => 0.0,
-            };
-            let size = site.map_or([0.0; 3], |site| p.site_size[site].to_array());
-            numbers.extend([sensor.cutoff, margin].into_iter().chain(size));
-            numbers.extend([p.sensor_delay[k], p.sensor_interval[k]]);
-            count += 1;
+            numbers.extend(row.numbers());
         }
-        self.count("NSENSOR", count);
         self.words("SENSORS", words);
         self.words("QUERIES", queries);
         self.numbers("SENSOR_PRM", numbers);
         self.numbers("MAGNETIC", p.magnetic.to_array());
         self.pulls(m);
+    }
+
+    fn sensor_constants(&mut self) {
+        self.row::<SensorWords>();
+        self.row::<SensorNumbers>();
+        self.codes::<Method>();
+        self.codes::<Clip>();
+        self.codes::<Frame>();
+        self.row::<QueryWords>();
+        self.codes::<ContactReduction>();
+        self.constant("FIRST_SIDE", FIRST_SIDE);
+        self.constant("SECOND_SIDE", SECOND_SIDE);
+        // A method that reads one kind does not need its code.
+        let kinds = SensorKind::ALL.iter().map(|&kind| (kind, method(kind)));
+        let has_others = |&(_, of): &(SensorKind, Option<Method>)| {
+            kinds.clone().filter(|k| k.1 == of).count() > 1
+        };
+        for (kind, _) in kinds.clone().filter(has_others) {
+            let name = format!("SENSE_{}", kind.name().to_uppercase());
+            self.constant(&name, kind as usize);
+        }
+        for &field in ContactField::ALL {
+            let name = format!("CONTACT_DATA_{}", field.name().to_uppercase());
+            self.constant(&name, field as usize);
+        }
     }
 
     /// Adds the actuators of each tendon, and their gears.
@@ -237,5 +376,43 @@ impl Tables {
         self.words("PULL_OUTPUT", all.iter().flatten().map(output));
         let gear = |&u: &usize| m.params.actuator_gear[u][0];
         self.numbers("PULL_GEAR", all.iter().flatten().map(gear));
+    }
+}
+
+/// Returns the limits of a sensor's numbers. Rangefinders clip in the ray kernel.
+fn clip(sensor: &Sensor) -> Clip {
+    let unclipped = matches!(
+        sensor.kind,
+        SensorKind::Contact | SensorKind::FromTo | SensorKind::Rangefinder
+    );
+    match sensor.data {
+        _ if unclipped || sensor.cutoff <= 0.0 => Clip::None,
+        SensorData::Real => Clip::Both,
+        SensorData::Positive => Clip::Above,
+        SensorData::Axis | SensorData::Quaternion => Clip::None,
+    }
+}
+
+/// Returns the site whose volume a sensor is about.
+fn site_of(sensor: &Sensor) -> Option<usize> {
+    match &sensor.target {
+        SensorTarget::Inside { site, .. } => Some(*site),
+        SensorTarget::Contacts(query) => query.site,
+        SensorTarget::Element(site) => (sensor.kind == SensorKind::Touch).then_some(*site),
+        SensorTarget::Nothing
+        | SensorTarget::Frame { .. }
+        | SensorTarget::Projection { .. }
+        | SensorTarget::Rays { .. }
+        | SensorTarget::Geoms(_)
+        | SensorTarget::Taxels { .. } => None,
+    }
+}
+
+/// Returns the margin of the limit whose distance a sensor measures; zero for the other kinds.
+fn limit_margin(m: &Model, sensor: &Sensor) -> f64 {
+    match (sensor.kind, &sensor.target) {
+        (SensorKind::JointLimitPos, &SensorTarget::Element(j)) => m.params.jnt_margin[j],
+        (SensorKind::TendonLimitPos, &SensorTarget::Element(t)) => m.params.tendon_margin[t],
+        _ => 0.0,
     }
 }

@@ -31,7 +31,7 @@ fn body_of(geom: u32) -> Body {
         case CYLINDER: {
             return Body(kind, size, 0.0, length(size.xy), hull);
         }
-        default: {
+        case BOX, MESH, PLANE, HEIGHT_FIELD, PRISM, default: {
             return Body(kind, size, 0.0, length(size), hull);
         }
     }
@@ -84,7 +84,7 @@ fn support_without_hull(body: Body, d: vec3f, side: vec3f) -> vec3f {
         case BOX: {
             return vec3f(signed(s.x, side.x), signed(s.y, side.y), signed(s.z, side.z));
         }
-        default: {
+        case SPHERE, PLANE, HEIGHT_FIELD, MESH, PRISM, default: {
             return vec3f();
         }
     }
@@ -103,7 +103,7 @@ fn nearest_of_body(body: Body, p: vec3f) -> vec3f {
         case BOX: {
             return clamp(p, -s, s);
         }
-        default: {
+        case SPHERE, ELLIPSOID, PLANE, HEIGHT_FIELD, MESH, PRISM, default: {
             return vec3f();
         }
     }

@@ -16,7 +16,7 @@ fn plane_of_hull(hull: u32, face: u32) -> vec4f {
 fn furthest_of_hull(hull: u32, d: vec3f) -> u32 {
     let neighbors = words[hull + HULL_NEIGHBORS];
     let octant = select(0u, 1u, d.x < 0.0) | select(0u, 2u, d.y < 0.0) | select(0u, 4u, d.z < 0.0);
-    var vertex = words[hull + HULL_FIRST + octant];
+    var vertex = words[hull + HULL_SIZE + octant];
     var reach = dot(vertex_of_hull(hull, vertex), d);
     var before = NONE;
     while (vertex != before) {

@@ -38,7 +38,7 @@ fn normal_at(kind: u32, size: vec3f, p: vec3f, outwards: vec3f) -> vec3f {
             }
             return vec3f(0.0, 0.0, sign(outwards.z));
         }
-        default: {
+        case SPHERE, PLANE, HEIGHT_FIELD, MESH, default: {
             return direction(p).xyz;
         }
     }

@@ -1,5 +1,5 @@
 // Rays of sensors: one thread per ray, on request. CPU counterparts: `sensor/ray.rs` and `first_hit` in `geometry.rs`.
-// A sensor is a row of RAY_SENSOR_SIZE words.
+// A sensor is a row of RAY_SIZE words.
 
 // Returns true if a ray may hit a ball within a distance: never false if it does, despite rounding.
 fn may_meet(line: Line, centre: vec3f, radius: f32, within: f32) -> bool {
@@ -50,10 +50,14 @@ fn first_hit(line: Line, body: u32) -> Hit {
 // Returns a ray of a sensor.
 fn line_of(s: u32, ray: u32) -> Line {
     let element = words[s + RAY_ELEMENT];
-    if (words[s + RAY_SOURCE] == FROM_SITE) {
-        return Line(fetch3(SITE_XPOS + 3u * element), fetch_matrix(SITE_XMAT + 9u * element)[2]);
+    switch words[s + RAY_SOURCE] {
+        case FROM_SITE: {
+            return Line(fetch3(SITE_XPOS + 3u * element), fetch_matrix(SITE_XMAT + 9u * element)[2]);
+        }
+        case FROM_CAMERA, default: {
+            return line_of_sight(element, ray - words[s + RAY_FIRST]);
+        }
     }
-    return line_of_sight(element, ray - words[s + RAY_FIRST]);
 }
 
 // Returns the axis of the sensor.
@@ -70,23 +74,29 @@ fn read_ray(s: u32, cutoff: f32, ray: u32) {
     let line = line_of(s, ray);
     let hit = first_hit(line, words[s + RAY_BODY]);
     let found = hit.distance < NOWHERE;
-    var out = SENSORDATA + words[s + RAY_PLACE] + words[s + RAY_SIZE] * (ray - words[s + RAY_FIRST]);
+    var out = SENSORDATA + words[s + RAY_OFFSET] + words[s + RAY_WIDTH] * (ray - words[s + RAY_FIRST]);
     for (var k = words[s + RAY_FIELD_START]; k < words[s + RAY_FIELD_END]; k++) {
         let field = words[RAY_FIELD + k];
-        var told = vec3f(-1.0, 0.0, 0.0);
-        if (field == RAY_ORIGIN) {
-            told = line.origin;
-        } else if (field == RAY_DIST || field == RAY_DEPTH) {
-            let share = select(f32(1.0), dot(line.along, axis_of(s)), field == RAY_DEPTH);
-            told.x = select(-1.0, hit.distance * share, found);
-        } else if (!found) {
-            told = vec3f();
-        } else if (field == RAY_DIR) {
-            told = line.along;
-        } else if (field == RAY_POINT) {
-            told = line.origin + line.along * hit.distance;
-        } else {
-            told = hit.normal;
+        var told = vec3f();
+        switch field {
+            case RAY_ORIGIN: {
+                told = line.origin;
+            }
+            case RAY_DIST: {
+                told.x = select(-1.0, hit.distance, found);
+            }
+            case RAY_DEPTH: {
+                told.x = select(-1.0, hit.distance * dot(line.along, axis_of(s)), found);
+            }
+            case RAY_DIR: {
+                told = select(vec3f(), line.along, found);
+            }
+            case RAY_POINT: {
+                told = select(vec3f(), line.origin + line.along * hit.distance, found);
+            }
+            case RAY_NORMAL, default: {
+                told = select(vec3f(), hit.normal, found);
+            }
         }
         told = clamp(told, vec3f(-cutoff), vec3f(cutoff));
         put(out, told.x);
@@ -107,7 +117,7 @@ fn rays(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     }
     for (var ray = id.y; ray < NRAY; ray += groups.y) {
         let sensor = words[RAY_SENSOR + ray];
-        read_ray(RAY_SENSORS + RAY_SENSOR_SIZE * sensor, parameter(RAY_CUTOFF + sensor), ray);
+        read_ray(RAY_SENSORS + RAY_SIZE * sensor, parameter(RAY_CUTOFF + sensor), ray);
     }
     note_end();
 }

@@ -1,8 +1,7 @@
 // Rays against the triangles of a mesh, by a tree of boxes. CPU counterpart: `clench-collide/src/ray/triangles.rs`.
 //
 // Nodes are stored in depth-first order: a node that a ray enters is followed by its children, and each names the node
-// after its subtree. A mesh has the number of nodes, and the offsets of these, their boxes and the corners of its
-// triangles.
+// after its subtree. A mesh is a row of MESH_SIZE words.
 
 // A ray, and the shear that makes it the z axis: the index of its longest axis, which comes last, and the slopes of x
 // and y along z.
@@ -67,15 +66,15 @@ fn hit_triangle(shear: Shear, place: u32) -> f32 {
 // Returns the first hit before a limit, from either side. The normal is on the side from which the corners are
 // counter-clockwise.
 fn hit_mesh(mesh: u32, line: Line, limit: f32) -> Hit {
-    let count = words[mesh];
-    let corners = words[mesh + 3u];
+    let count = words[mesh + MESH_COUNT];
+    let corners = words[mesh + MESH_CORNERS];
     let shear = shear_of(line);
     var nearest = limit;
     var hit = NONE;
     var node = 0u;
     while (node < count) {
-        let row = words[mesh + 1u] + NODE_SIZE * node;
-        if (!enters(line, words[mesh + 2u] + 6u * node, nearest)) {
+        let row = words[mesh + MESH_NODES] + NODE_SIZE * node;
+        if (!enters(line, words[mesh + MESH_BOXES] + 6u * node, nearest)) {
             node = words[row + NODE_NEXT];
             continue;
         }

@@ -1,8 +1,6 @@
 // The ground below a triangle of terrain: a convex body of six corners. CPU counterpart:
 // `clench-collide/src/narrow/convex/prism.rs`.
 
-// A kind outside those of shapes.
-const PRISM: u32 = 100u;
 // The rise of a unit direction above which it is no normal of a wall.
 const WALL_RISE: f32 = 0.1;
 const PRISM_FACES: u32 = 5u;
