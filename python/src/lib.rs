@@ -38,6 +38,7 @@ mod precision;
 mod queries;
 mod recorded;
 mod recording;
+mod renderer;
 mod rollout;
 mod row_sim;
 mod scan;

@@ -5,9 +5,6 @@ use crate::model::Model;
 use crate::viewed::Target;
 use pyo3::prelude::*;
 
-/// A renderer, which cannot exist without the `render` feature.
-pub(crate) enum Renderer {}
-
 /// The picture that a user requests.
 #[expect(dead_code, reason = "nothing draws")]
 pub(crate) struct Wanted<'a, 'py> {

@@ -22,6 +22,7 @@ use crate::dynamics::transmission::transmissions;
 use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
 use crate::profile::Stage;
+use crate::sensors::Sensors;
 use crate::settings::StepSettings;
 use crate::sleep;
 use crate::stages::Positions;
@@ -30,10 +31,6 @@ use crate::workspace::{EnergyScratch, Workspace};
 use clench_math::Real;
 use clench_solver::TreeMatrix;
 use std::slice::from_ref;
-
-/// A function that evaluates the sensors of a model, after a forward pass and before the state advances. This crate has
-/// no sensors.
-pub type Sensors<T> = fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>);
 
 /// Computes the quantities that depend on positions: poses, spatial inertias and dof axes, tendons and transmissions,
 /// and the mass matrix with its factor.

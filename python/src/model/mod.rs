@@ -4,11 +4,11 @@ mod counts;
 mod elements;
 
 use crate::count::Count;
-use crate::drawing::Renderer;
 use crate::error::{load_error, sim_error};
 use crate::fields;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
+use crate::renderer::Renderer;
 use clench::SaveModel;
 use clench::rigid::model::{Integrator, ParamField};
 use numpy::PyArray1;

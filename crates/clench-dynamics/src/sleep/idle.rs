@@ -11,7 +11,7 @@ use crate::check::are_occasional;
 use crate::constraint::assemble;
 use crate::fixed::FixedPoses;
 use crate::model::{Model, Params};
-use crate::pipeline::Sensors;
+use crate::sensors::Sensors;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
