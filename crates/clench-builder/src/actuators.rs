@@ -9,7 +9,8 @@ use super::{ActuatorSpec, BuildError, TransmissionSpec, histories, transmissions
 use clench_dynamics::budget::RAISE;
 use clench_dynamics::dynamics::orientation;
 use clench_dynamics::model::{
-    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Transmission,
+    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Params,
+    Transmission,
 };
 use std::sync::Arc;
 
@@ -75,22 +76,7 @@ fn add(
     if actlimited && activations == 0 {
         return Err(spec.error("has an actrange, but no activation"));
     }
-    if let Transmission::Rotation(j) = transmission
-        && model.joints[j].kind != JointKind::Ball
-    {
-        return Err(spec.error("an orientation servo needs a ball joint"));
-    }
-    if spec.gain == GainKind::So3 && forcelimited && spec.forcerange[0] != 0.0 {
-        return Err(
-            spec.error("the forcerange of an orientation servo bounds a norm: it starts at 0")
-        );
-    }
-    if spec.gain == GainKind::Muscle {
-        check_muscle(spec, "gainprm", &spec.gainprm)?;
-    }
-    if spec.bias == BiasKind::Muscle {
-        check_muscle(spec, "biasprm", &spec.biasprm)?;
-    }
+    check_parts(spec, transmission, forcelimited, model)?;
     let history = histories::add(builder, spec, spec.history, controls.len(), model)?;
     model.actuators.push(Actuator {
         name: spec.name.clone(),
@@ -115,14 +101,51 @@ fn add(
     });
     model.na += activations;
     transmissions::push_dofs(transmission, model);
-    let p = &mut model.params;
+    push_params(
+        spec,
+        ranges.iter().map(|(_, range)| *range),
+        &mut model.params,
+    );
+    reflect(spec, transmission, model)
+}
+
+/// Checks the kinds of gain and bias against the transmission and their parameters.
+fn check_parts(
+    spec: &ActuatorSpec,
+    transmission: Transmission,
+    forcelimited: bool,
+    model: &Model,
+) -> Result<(), BuildError> {
+    if let Transmission::Rotation(j) = transmission
+        && model.joints[j].kind != JointKind::Ball
+    {
+        return Err(spec.error("an orientation servo needs a ball joint"));
+    }
+    if spec.gain == GainKind::So3 && forcelimited && spec.forcerange[0] != 0.0 {
+        return Err(
+            spec.error("the forcerange of an orientation servo bounds a norm: it starts at 0")
+        );
+    }
+    if spec.gain == GainKind::Muscle {
+        check_muscle(spec, "gainprm", &spec.gainprm)?;
+    }
+    if spec.bias == BiasKind::Muscle {
+        check_muscle(spec, "biasprm", &spec.biasprm)?;
+    }
+    Ok(())
+}
+
+fn push_params(
+    spec: &ActuatorSpec,
+    ctrlranges: impl Iterator<Item = [f64; 2]>,
+    p: &mut Params<f64>,
+) {
     p.actuator_gear.push(spec.gear);
     p.actuator_cranklength.push(spec.cranklength);
     p.actuator_dynprm.push(spec.dynprm);
     p.actuator_gainprm.push(spec.gainprm);
     p.actuator_biasprm.push(spec.biasprm);
-    p.actuator_ctrlrange
-        .extend(ranges.iter().map(|(_, range)| *range));
+    p.actuator_ctrlrange.extend(ctrlranges);
     p.actuator_forcerange.push(spec.forcerange);
     p.actuator_actrange.push(spec.actrange);
     p.actuator_lengthrange.push(spec.lengthrange);
@@ -131,6 +154,14 @@ fn add(
     p.actuator_damping.push(linear);
     p.actuator_dampingpoly.push([quadratic, cubic]);
     p.actuator_armature.push(spec.armature);
+}
+
+/// Lets the last actuator damp its target and add inertia to it, if it has damping or armature.
+fn reflect(
+    spec: &ActuatorSpec,
+    transmission: Transmission,
+    model: &mut Model,
+) -> Result<(), BuildError> {
     if spec.damping != [0.0; 3] || spec.armature != 0.0 {
         // As in MuJoCo, the target of an orientation servo gets neither.
         use Transmission::{Joint, JointInParent, Rotation, RotationInFrame, Tendon};

@@ -7,6 +7,7 @@ use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
 use crate::fields::{self, Fields};
 use crate::kernels::{Memory, preface};
+use crate::layout::Layout;
 use crate::pipelines::{Arrays, Pipeline, Pipelines};
 use crate::precision::GpuReal;
 use crate::solver_memory::{SolverMemory, check_dofs};
@@ -134,29 +135,7 @@ impl<S: GpuReal> GpuBatch<S> {
         };
         let preface = preface(&tables, &memory);
 
-        let scope = device
-            .device
-            .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let array = |label, k: usize| device.array(label, (sizes[k] * count) as u64);
-        let numbers = device.array("numbers", (each * tables.numbers.len()) as u64);
-        let arrays = Arrays {
-            words: device.array("words", 4 * tables.words.len() as u64),
-            parameters: numbers.clone(),
-            numbers,
-            state: array("state", 0),
-            work: array("work", 1),
-            rows: array("rows", 2),
-            reports: array("reports", 3),
-            layout: device.constants("layout", &preface.layout.bytes::<S>()),
-        };
-        if pollster::block_on(scope.pop()).is_some() {
-            return Err(GpuError::OutOfMemory {
-                device: device.info.name.clone(),
-                count,
-                bytes: sizes.iter().sum::<usize>() as u64,
-                most: None,
-            });
-        }
+        let arrays = allocate::<S>(&device, (&tables, &preface.layout), sizes, count)?;
         let pipelines = Pipelines::new::<S>(&device, preface, count, model.integrator)?;
         let queue = &device.queue;
         queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
@@ -411,6 +390,39 @@ impl<S: GpuReal> GpuBatch<S> {
         let numbers = [&self.state, &self.work, &self.rows].map(|fields| fields.size);
         size_of::<S>() * numbers.iter().sum::<usize>() + 4 * self.reports.size
     }
+}
+
+/// Allocates the arrays of `count` environments, of the given bytes each.
+fn allocate<S: GpuReal>(
+    device: &Device,
+    (tables, layout): (&Tables, &Layout),
+    sizes: [usize; 4],
+    count: usize,
+) -> Result<Arrays, GpuError> {
+    let scope = device
+        .device
+        .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let array = |label, k: usize| device.array(label, (sizes[k] * count) as u64);
+    let numbers = device.array("numbers", (size_of::<S>() * tables.numbers.len()) as u64);
+    let arrays = Arrays {
+        words: device.array("words", 4 * tables.words.len() as u64),
+        parameters: numbers.clone(),
+        numbers,
+        state: array("state", 0),
+        work: array("work", 1),
+        rows: array("rows", 2),
+        reports: array("reports", 3),
+        layout: device.constants("layout", &layout.bytes::<S>()),
+    };
+    if pollster::block_on(scope.pop()).is_some() {
+        return Err(GpuError::OutOfMemory {
+            device: device.info.name.clone(),
+            count,
+            bytes: sizes.iter().sum::<usize>() as u64,
+            most: None,
+        });
+    }
+    Ok(arrays)
 }
 
 /// Checks that the largest array of `count` environments of the given bytes each fits a buffer and can be indexed.

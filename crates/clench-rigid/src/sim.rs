@@ -2,6 +2,7 @@
 
 mod alone;
 mod dynamic;
+mod given_contacts;
 mod halves;
 mod parameters;
 mod pushes;
@@ -15,7 +16,7 @@ use crate::known::{Extent, Known};
 use crate::output::{Output, Source};
 use crate::{Precision, readout};
 use alone::Room;
-use clench_dynamics::check::{self, check_contact, check_values};
+use clench_dynamics::check::{self, check_values};
 use clench_dynamics::contact::Contact;
 use clench_dynamics::dynamics::energy::Energy;
 use clench_dynamics::error::{SimError, no_such};
@@ -246,41 +247,6 @@ impl<T: Precision> Sim<T> {
             return Ok(());
         }
         Err(check::result_fault(&self.model, time, &self.state, &self.ws, 0).into())
-    }
-
-    /// Runs [`forward`](Self::forward) with these contacts instead of detected ones. A contact is included if it is
-    /// `active` and `dist < includemargin`.
-    ///
-    /// # Errors
-    /// Returns an error as [`step`](Self::step) does, or if a contact is invalid.
-    pub fn forward_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
-        self.with_contacts(contacts, Self::forward)
-    }
-
-    /// Runs [`step`](Self::step) with these contacts instead of detected ones, in every stage of the integrator.
-    ///
-    /// # Errors
-    /// See [`forward_with_contacts`](Self::forward_with_contacts).
-    pub fn step_with_contacts(&mut self, contacts: &[Contact<T>]) -> Result<(), SimError> {
-        self.with_contacts(contacts, Self::step)
-    }
-
-    fn with_contacts(
-        &mut self,
-        contacts: &[Contact<T>],
-        compute: impl FnOnce(&mut Self) -> Result<(), SimError>,
-    ) -> Result<(), SimError> {
-        for (index, contact) in contacts.iter().enumerate() {
-            check_contact(&self.model, contact)
-                .map_err(|reason| SimError::Contact { index, reason })?;
-        }
-        self.ws.contacts.clear();
-        self.ws.contacts.extend(contacts.iter().map(Contact::splat));
-        self.ws.collision.given = true;
-        self.ws.collision.overflow = Mask::splat(false);
-        let result = compute(self);
-        self.ws.collision.given = false;
-        result
     }
 
     /// Resets the state to the model's initial state.

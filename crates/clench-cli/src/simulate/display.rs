@@ -64,6 +64,20 @@ impl Display for Report {
         if let Some(batch) = &self.batch {
             batch.fmt(f)?;
         }
+        self.fmt_verdict(f)?;
+        if let Some(stages) = &self.profile {
+            write!(f, "\n{}", table(stages))?;
+        }
+        match &self.pairs {
+            Some(pairs) if !pairs.is_empty() => write!(f, "\n{}", pair_table(pairs)),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Report {
+    /// Writes the counts of failed steps, the rows recorded and the verdict.
+    fn fmt_verdict(&self, f: &mut Formatter) -> fmt::Result {
         line(
             f,
             "not converged",
@@ -87,14 +101,7 @@ impl Display for Report {
             None => line(f, "recorded", "nothing")?,
         }
         line(f, "quality", self.quality)?;
-        line(f, "status", self.status)?;
-        if let Some(stages) = &self.profile {
-            write!(f, "\n{}", table(stages))?;
-        }
-        match &self.pairs {
-            Some(pairs) if !pairs.is_empty() => write!(f, "\n{}", pair_table(pairs)),
-            _ => Ok(()),
-        }
+        line(f, "status", self.status)
     }
 }
 

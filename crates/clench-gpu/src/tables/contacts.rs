@@ -114,12 +114,7 @@ impl Tables {
         candidates: &[Candidate],
         capacity: &mut Capacity,
     ) {
-        self.codes::<ShapeKind>();
-        // The shape below a triangle of terrain, which the host does not know.
-        self.constant("PRISM", ShapeKind::ALL.len());
-        self.codes::<Method>();
-        self.constant("METHODS", Method::ALL.len());
-        self.row::<PairNumbers>();
+        self.pair_constants();
         let measured = measured(m);
         let all = all_pairs(candidates, &measured);
         let geoms = || all.iter().flat_map(|c| c.geoms);
@@ -171,9 +166,6 @@ impl Tables {
             capacity.terrain = points.map(|points| points * TERRAIN_POINT_SIZE);
         }
         self.flag("ANY_TERRAIN", any_terrain);
-        self.constant("MAX_TERRAIN_POINTS", MAX_POINTS);
-        self.constant("TERRAIN_POINT_SIZE", TERRAIN_POINT_SIZE);
-        self.constant("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
         self.words("PAIR_DIM", candidates.iter().map(dim));
         let range = |c: &Candidate| contact_range::<f64>(m, &m.params, c).1;
         let ranges = candidates.iter().map(range);
@@ -198,6 +190,18 @@ impl Tables {
         capacity.rows += capacity.contacts * widest;
         self.count("MAX_CONTACTS", capacity.contacts);
         self.count("THREAD_CONTACTS", capacity.contacts + capacity.measured);
+    }
+
+    fn pair_constants(&mut self) {
+        self.codes::<ShapeKind>();
+        // The shape below a triangle of terrain, which the host does not know.
+        self.constant("PRISM", ShapeKind::ALL.len());
+        self.codes::<Method>();
+        self.constant("METHODS", Method::ALL.len());
+        self.row::<PairNumbers>();
+        self.constant("MAX_TERRAIN_POINTS", MAX_POINTS);
+        self.constant("TERRAIN_POINT_SIZE", TERRAIN_POINT_SIZE);
+        self.constant("PATCH_LIST_POINTS", PATCH_LIST_POINTS);
         self.constant("CONTACT_SIZE", CONTACT_SIZE);
     }
 

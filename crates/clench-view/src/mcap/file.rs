@@ -1,8 +1,7 @@
 //! MCAP files (<https://mcap.dev/spec>): messages in uncompressed chunks, followed by statistics and an index of the
 //! chunks.
-//!
-//! A file consists of records: a byte for the kind, the length of the content, and the content.
 
+use super::record::{Kind, Record};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::mem::take;
@@ -13,64 +12,6 @@ const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const CHUNK: usize = 1 << 20;
 /// The compression of chunks: none.
 const COMPRESSION: &str = "";
-
-/// Kinds of records.
-#[derive(Clone, Copy)]
-enum Kind {
-    Header = 1,
-    Footer = 2,
-    Schema = 3,
-    Channel = 4,
-    Message = 5,
-    Chunk = 6,
-    MessageIndex = 7,
-    ChunkIndex = 8,
-    Statistics = 11,
-    SummaryOffset = 14,
-    DataEnd = 15,
-}
-
-/// A record under construction.
-struct Record(Vec<u8>);
-
-impl Record {
-    /// The size of the kind and the length, bytes.
-    const START: usize = 9;
-
-    fn new(kind: Kind) -> Self {
-        let mut bytes = vec![0; Self::START];
-        bytes[0] = kind as u8;
-        Record(bytes)
-    }
-    fn raw(mut self, bytes: &[u8]) -> Self {
-        self.0.extend_from_slice(bytes);
-        self
-    }
-    fn u16(self, number: u16) -> Self {
-        self.raw(&number.to_le_bytes())
-    }
-    fn u32(self, number: u32) -> Self {
-        self.raw(&number.to_le_bytes())
-    }
-    fn u64(self, number: u64) -> Self {
-        self.raw(&number.to_le_bytes())
-    }
-    /// Appends bytes preceded by their length: text, a list or a map.
-    fn bytes(self, bytes: &[u8]) -> Self {
-        self.u32(bytes.len() as u32).raw(bytes)
-    }
-    fn text(self, text: &str) -> Self {
-        self.bytes(text.as_bytes())
-    }
-    fn times(self, [first, last]: [u64; 2]) -> Self {
-        self.u64(first).u64(last)
-    }
-    fn end(mut self) -> Vec<u8> {
-        let length = (self.0.len() - Self::START) as u64;
-        self.0[1..Self::START].copy_from_slice(&length.to_le_bytes());
-        self.0
-    }
-}
 
 /// Encodes an entry of a map from channels to numbers.
 fn of_channel(id: u16, number: u64) -> Vec<u8> {

@@ -7,6 +7,7 @@
 mod channels;
 mod file;
 mod messages;
+mod record;
 mod shapes;
 
 use channels::{Channel, channels};

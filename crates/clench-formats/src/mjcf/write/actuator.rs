@@ -17,7 +17,7 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
 fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveError> {
     let Actuator {
         name,
-        transmission,
+        transmission: _,
         dynamics,
         acts,
         gain,
@@ -47,25 +47,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         return Err(SaveError::new(label("actuator", name, u), reason));
     }
     let [quadratic, cubic] = p.actuator_dampingpoly[u];
-    let joint = |j: usize| named("joint", &model.joints[j].name, j);
-    let site = |s: usize| named("site", &model.sites[s].name, s);
-    let tag = xml.tag("general").name(name);
-    let tag = match *transmission {
-        Transmission::Joint(j) => tag.text("joint", joint(j)?),
-        Transmission::JointInParent(j) => tag.text("jointinparent", joint(j)?),
-        Transmission::Tendon(t) => tag.text("tendon", named("tendon", &model.tendons[t].name, t)?),
-        Transmission::Site(s) => tag.text("site", site(s)?),
-        Transmission::Rotation(j) => tag.text("joint", joint(j)?),
-        Transmission::SiteInFrame([s, reference])
-        | Transmission::RotationInFrame([s, reference]) => {
-            tag.text("site", site(s)?).text("refsite", site(reference)?)
-        }
-        Transmission::SliderCrank([crank, slider]) => tag
-            .text("cranksite", site(crank)?)
-            .text("slidersite", site(slider)?)
-            .numbers("cranklength", &[p.actuator_cranklength[u]]),
-        Transmission::Body(b) => tag.text("body", body_name(model, b)?),
-    };
+    let tag = write_transmission(model, u, xml.tag("general").name(name))?;
     let ranges = &p.actuator_ctrlrange[controls.clone()];
     let mut tag = write_controls(inputs, ctrllimited, ranges, tag)
         .numbers_unless("forcerange", &p.actuator_forcerange[u], &[0.0; 2])
@@ -98,6 +80,28 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
     }
     tag.end();
     Ok(())
+}
+
+/// Writes the transmission of actuator `u`.
+fn write_transmission<'a>(model: &Model, u: usize, tag: Tag<'a>) -> Result<Tag<'a>, SaveError> {
+    let joint = |j: usize| named("joint", &model.joints[j].name, j);
+    let site = |s: usize| named("site", &model.sites[s].name, s);
+    Ok(match model.actuators[u].transmission {
+        Transmission::Joint(j) => tag.text("joint", joint(j)?),
+        Transmission::JointInParent(j) => tag.text("jointinparent", joint(j)?),
+        Transmission::Tendon(t) => tag.text("tendon", named("tendon", &model.tendons[t].name, t)?),
+        Transmission::Site(s) => tag.text("site", site(s)?),
+        Transmission::Rotation(j) => tag.text("joint", joint(j)?),
+        Transmission::SiteInFrame([s, reference])
+        | Transmission::RotationInFrame([s, reference]) => {
+            tag.text("site", site(s)?).text("refsite", site(reference)?)
+        }
+        Transmission::SliderCrank([crank, slider]) => tag
+            .text("cranksite", site(crank)?)
+            .text("slidersite", site(slider)?)
+            .numbers("cranklength", &[model.params.actuator_cranklength[u]]),
+        Transmission::Body(b) => tag.text("body", body_name(model, b)?),
+    })
 }
 
 /// Writes the control inputs and their ranges.

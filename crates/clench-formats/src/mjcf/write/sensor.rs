@@ -15,11 +15,11 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
         let Sensor {
             name,
             kind,
-            target,
-            data,
+            target: _,
+            data: _,
             cutoff,
             noise,
-            numbers,
+            numbers: _,
             history,
             phase,
             user,
@@ -29,68 +29,7 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
             .tag(kind.name())
             .name(name)
             .numbers_unless("user", user, &[]);
-        tag = match (target, kind.attachment()) {
-            (SensorTarget::Nothing, Attachment::User) => tag
-                .integer("dim", numbers.len() as i64)
-                .text("datatype", data_type(*data)),
-            (SensorTarget::Nothing, _) => tag,
-            (SensorTarget::Element(element), attachment) => {
-                let (attribute, name) = element_name(model, attachment, *element)
-                    .ok_or_else(|| no_name(sensor, index))?;
-                tag.text(attribute, name)
-            }
-            (SensorTarget::Frame { object, reference }, _) => {
-                let tag = write_frame(model, *object, ["objtype", "objname"], tag)?;
-                match reference {
-                    Some(frame) => write_frame(model, *frame, ["reftype", "refname"], tag)?,
-                    None => tag,
-                }
-            }
-            (
-                SensorTarget::Inside {
-                    site,
-                    object,
-                    enclosed,
-                },
-                _,
-            ) => {
-                let tag = tag.text("site", named("site", &model.sites[*site].name, *site)?);
-                let tag = write_frame(model, *object, ["objtype", "objname"], tag)?;
-                match enclosed {
-                    true => tag.boolean("enclosed", true),
-                    false => tag,
-                }
-            }
-            (SensorTarget::Projection { site, camera }, _) => tag
-                .text("site", named("site", &model.sites[*site].name, *site)?)
-                .text(
-                    "camera",
-                    named("camera", &model.cameras[*camera].name, *camera)?,
-                ),
-            (SensorTarget::Rays { source, fields }, _) => {
-                let tag = match *source {
-                    RaySource::Site(s) => tag.text("site", named("site", &model.sites[s].name, s)?),
-                    RaySource::Camera(c) => {
-                        tag.text("camera", named("camera", &model.cameras[c].name, c)?)
-                    }
-                };
-                tag.words("data", fields.iter().map(|field| field.name()))
-            }
-            (SensorTarget::Contacts(query), _) => write_contacts(model, query, tag)?,
-            (SensorTarget::Taxels { mesh, geom }, _) => tag
-                .text("mesh", &model.meshes[*mesh].name)
-                .text("geom", named("geom", &model.geoms[*geom].name, *geom)?),
-            (SensorTarget::Geoms([first, second]), _) => {
-                let set = |geoms| geoms_name(model, geoms).ok_or_else(|| no_name(sensor, index));
-                let ([of1, name1], [of2, name2]) = (set(first)?, set(second)?);
-                let attribute = |of| match of {
-                    "geom" => ["geom1", "geom2"],
-                    _ => ["body1", "body2"],
-                };
-                tag.text(attribute(of1)[0], name1)
-                    .text(attribute(of2)[1], name2)
-            }
-        };
+        tag = write_target(model, sensor, index, tag)?;
         if let Some(history) = history {
             let delay = model.params.sensor_delay[index];
             tag = write_history(history, delay, tag);
@@ -104,6 +43,77 @@ pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
             .end();
     }
     Ok(())
+}
+
+/// Writes the elements that a sensor measures.
+fn write_target<'a>(
+    model: &Model,
+    sensor: &Sensor,
+    index: usize,
+    tag: Tag<'a>,
+) -> Result<Tag<'a>, SaveError> {
+    Ok(match (&sensor.target, sensor.kind.attachment()) {
+        (SensorTarget::Nothing, Attachment::User) => tag
+            .integer("dim", sensor.numbers.len() as i64)
+            .text("datatype", data_type(sensor.data)),
+        (SensorTarget::Nothing, _) => tag,
+        (SensorTarget::Element(element), attachment) => {
+            let (attribute, name) =
+                element_name(model, attachment, *element).ok_or_else(|| no_name(sensor, index))?;
+            tag.text(attribute, name)
+        }
+        (SensorTarget::Frame { object, reference }, _) => {
+            let tag = write_frame(model, *object, ["objtype", "objname"], tag)?;
+            match reference {
+                Some(frame) => write_frame(model, *frame, ["reftype", "refname"], tag)?,
+                None => tag,
+            }
+        }
+        (
+            SensorTarget::Inside {
+                site,
+                object,
+                enclosed,
+            },
+            _,
+        ) => {
+            let tag = tag.text("site", named("site", &model.sites[*site].name, *site)?);
+            let tag = write_frame(model, *object, ["objtype", "objname"], tag)?;
+            match enclosed {
+                true => tag.boolean("enclosed", true),
+                false => tag,
+            }
+        }
+        (SensorTarget::Projection { site, camera }, _) => tag
+            .text("site", named("site", &model.sites[*site].name, *site)?)
+            .text(
+                "camera",
+                named("camera", &model.cameras[*camera].name, *camera)?,
+            ),
+        (SensorTarget::Rays { source, fields }, _) => {
+            let tag = match *source {
+                RaySource::Site(s) => tag.text("site", named("site", &model.sites[s].name, s)?),
+                RaySource::Camera(c) => {
+                    tag.text("camera", named("camera", &model.cameras[c].name, c)?)
+                }
+            };
+            tag.words("data", fields.iter().map(|field| field.name()))
+        }
+        (SensorTarget::Contacts(query), _) => write_contacts(model, query, tag)?,
+        (SensorTarget::Taxels { mesh, geom }, _) => tag
+            .text("mesh", &model.meshes[*mesh].name)
+            .text("geom", named("geom", &model.geoms[*geom].name, *geom)?),
+        (SensorTarget::Geoms([first, second]), _) => {
+            let set = |geoms| geoms_name(model, geoms).ok_or_else(|| no_name(sensor, index));
+            let ([of1, name1], [of2, name2]) = (set(first)?, set(second)?);
+            let attribute = |of| match of {
+                "geom" => ["geom1", "geom2"],
+                _ => ["body1", "body2"],
+            };
+            tag.text(attribute(of1)[0], name1)
+                .text(attribute(of2)[1], name2)
+        }
+    })
 }
 
 fn no_name(sensor: &Sensor, index: usize) -> SaveError {
