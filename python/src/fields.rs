@@ -7,8 +7,7 @@ use crate::field::{
 use clench::Model;
 use clench::collide::ShapeKind;
 use clench::rigid::model::{
-    BiasKind, Coupled, DynamicsKind, EqualityTarget, GainKind, JointKind, Keyframe, ParamField,
-    Transmission, Wrap,
+    Coupled, EqualityTarget, JointKind, Keyframe, ParamField, Transmission, Wrap,
 };
 
 /// Returns the names of all fields.
@@ -109,13 +108,13 @@ const STRUCTURE: &[Reader] = &[
     }),
     ("actuator_trnid", transmission_targets),
     ("actuator_dyntype", |m| {
-        codes(&m.actuators, |a| dynamics_type(a.dynamics))
+        codes(&m.actuators, |a| a.dynamics.number())
     }),
     ("actuator_gaintype", |m| {
-        codes(&m.actuators, |a| gain_type(a.gain))
+        codes(&m.actuators, |a| a.gain.number())
     }),
     ("actuator_biastype", |m| {
-        codes(&m.actuators, |a| bias_type(a.bias))
+        codes(&m.actuators, |a| a.bias.number())
     }),
     ("actuator_actadr", |m| {
         codes(&m.actuators, |a| first(&a.acts))
@@ -236,42 +235,6 @@ fn geom_type(kind: ShapeKind) -> i32 {
         ShapeKind::Cylinder => 5,
         ShapeKind::Box => 6,
         ShapeKind::Mesh => 7,
-    }
-}
-
-fn dynamics_type(kind: DynamicsKind) -> i32 {
-    match kind {
-        DynamicsKind::None => 0,
-        DynamicsKind::Integrator => 1,
-        DynamicsKind::Filter => 2,
-        DynamicsKind::FilterExact => 3,
-        DynamicsKind::Muscle => 4,
-        DynamicsKind::DcMotor => 5,
-        DynamicsKind::Pid => 6,
-        DynamicsKind::User => 7,
-    }
-}
-
-fn gain_type(kind: GainKind) -> i32 {
-    match kind {
-        GainKind::Fixed => 0,
-        GainKind::Affine => 1,
-        GainKind::Muscle => 2,
-        GainKind::DcMotor => 3,
-        GainKind::So3 => 4,
-        GainKind::Pid => 5,
-        GainKind::User => 6,
-    }
-}
-
-fn bias_type(kind: BiasKind) -> i32 {
-    match kind {
-        BiasKind::None => 0,
-        BiasKind::Affine => 1,
-        BiasKind::Muscle => 2,
-        BiasKind::DcMotor => 3,
-        BiasKind::So3 => 4,
-        BiasKind::User => 5,
     }
 }
 

@@ -239,10 +239,8 @@ fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(),
     Err(spec.error(format!("as a muscle, {wrong} (in {field})")))
 }
 
-/// Returns true if the bias is a restoring spring of the gain's stiffness, which may be damped by a ratio.
 fn pulls_back(spec: &ActuatorSpec) -> bool {
-    let matches = spec.gain == GainKind::Pid || spec.gainprm[0] == -spec.biasprm[1];
-    matches!(spec.bias, BiasKind::Affine | BiasKind::So3) && matches
+    (spec.bias).pulls_back(spec.gain, &spec.gainprm, &spec.biasprm)
 }
 
 /// Returns true if the actuator is a servo: its force vanishes if the control equals the length.

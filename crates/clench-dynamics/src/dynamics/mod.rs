@@ -46,7 +46,7 @@ pub mod polynomial;
 pub mod project;
 pub mod reflected;
 pub(crate) mod rk4;
-pub(crate) mod setpoint;
+pub mod setpoint;
 pub(crate) mod site_transmission;
 pub(crate) mod smooth;
 pub mod spring;

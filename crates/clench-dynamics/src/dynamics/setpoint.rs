@@ -84,19 +84,11 @@ pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
     T::select(high, error.min(T::ZERO), from_low)
 }
 
-/// Moves the setpoint of a servo on a ball joint, or on the rotation of a site in the frame of another, by whole turns
-/// to the one nearest to `near`; returns other inputs unchanged.
-///
-/// A servo is a PID controller, or has a fixed gain and an affine bias with `gain = −bias[1]`; a turn is 2π times the
-/// length of its gear.
+/// Returns the length change in a whole turn of a servo on a ball joint, or on the rotation of a site in the frame of
+/// another: 2π times the length of its gear; zero for other actuators. A servo is a PID controller, or has a fixed gain
+/// and an affine bias with `gain = −bias[1]`.
 #[kernel]
-pub(crate) fn nearest_setpoint<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    u: usize,
-    input: T,
-    near: T,
-) -> T {
+pub fn whole_turn<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
     let actuator = &model.actuators[u];
     let gear = &params.actuator_gear[u];
     let (rotates, axis) = match actuator.transmission {
@@ -115,11 +107,26 @@ pub(crate) fn nearest_setpoint<T: Real>(
     let pid = actuator.gain == GainKind::Pid;
     let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
     if !rotates.any() || !(pid || fixed) {
-        return input;
+        return T::ZERO;
     }
     let turn = Vec3::from_slice(axis).norm() * T::new(std::f64::consts::TAU);
     let pulls_back = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]);
-    let wraps = rotates & (pulls_back | T::Mask::splat(pid)) & turn.gt(T::ZERO);
+    let wraps = rotates & (pulls_back | T::Mask::splat(pid));
+    T::select(wraps, turn, T::ZERO)
+}
+
+/// Moves the setpoint of a servo by [whole turns](whole_turn) to the one nearest to `near`; returns other inputs
+/// unchanged.
+#[kernel]
+pub(crate) fn nearest_setpoint<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    u: usize,
+    input: T,
+    near: T,
+) -> T {
+    let turn = whole_turn(model, params, u);
+    let wraps = turn.gt(T::ZERO);
     if !wraps.any() {
         return input;
     }

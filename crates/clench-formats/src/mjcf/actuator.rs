@@ -189,9 +189,8 @@ impl ActuatorDraft {
         let mut lengthrange = [0.0; 2];
         element.set_range("lengthrange", &mut lengthrange)?;
         // MuJoCo stores a damping ratio as a positive velocity coefficient of a restoring bias, however it is written.
-        let matches = parameters.gainprm[0] == -parameters.biasprm[1];
-        let pulls_back = matches!(parameters.bias, BiasKind::Affine | BiasKind::So3)
-            && (matches || parameters.gain == GainKind::Pid);
+        let pulls_back =
+            (parameters.bias).pulls_back(parameters.gain, &parameters.gainprm, &parameters.biasprm);
         let dampratio =
             (pulls_back && parameters.biasprm[2] > 0.0).then_some(parameters.biasprm[2]);
         let servo = pulls_back && matches!(parameters.gain, GainKind::Fixed | GainKind::Pid);
@@ -221,45 +220,26 @@ impl ActuatorDraft {
     }
 }
 
+/// Returns each kind with its keyword.
+fn keywords<K: Copy>(all: &[K], name: fn(K) -> &'static str) -> Vec<(&'static str, K)> {
+    all.iter().map(|&kind| (name(kind), kind)).collect()
+}
+
 /// Reads `general`: each parameter from its own attribute.
 fn read_general(
     element: &Element,
     mut parameters: ActuatorParams,
 ) -> Result<ActuatorParams, LoadError> {
-    let dynamics = [
-        ("none", DynamicsKind::None),
-        ("integrator", DynamicsKind::Integrator),
-        ("filter", DynamicsKind::Filter),
-        ("filterexact", DynamicsKind::FilterExact),
-        ("muscle", DynamicsKind::Muscle),
-        ("dcmotor", DynamicsKind::DcMotor),
-        ("pid", DynamicsKind::Pid),
-        ("user", DynamicsKind::User),
-    ];
+    let dynamics = keywords(DynamicsKind::ALL, DynamicsKind::name);
     element.set_keyword("dyntype", &dynamics, &mut parameters.dynamics)?;
-    let gains = [
-        ("fixed", GainKind::Fixed),
-        ("affine", GainKind::Affine),
-        ("muscle", GainKind::Muscle),
-        ("dcmotor", GainKind::DcMotor),
-        ("pid", GainKind::Pid),
-        ("so3", GainKind::So3),
-        ("user", GainKind::User),
-    ];
+    let gains = keywords(GainKind::ALL, GainKind::name);
     let inherited = parameters.gain;
     element.set_keyword("gaintype", &gains, &mut parameters.gain)?;
     if parameters.gain != inherited {
         parameters.inputs = None;
     }
     inputs::read_inputs(element, &mut parameters.inputs)?;
-    let biases = [
-        ("none", BiasKind::None),
-        ("affine", BiasKind::Affine),
-        ("muscle", BiasKind::Muscle),
-        ("dcmotor", BiasKind::DcMotor),
-        ("so3", BiasKind::So3),
-        ("user", BiasKind::User),
-    ];
+    let biases = keywords(BiasKind::ALL, BiasKind::name);
     element.set_keyword("biastype", &biases, &mut parameters.bias)?;
     element.overlay("dynprm", &mut parameters.dynprm)?;
     element.overlay("gainprm", &mut parameters.gainprm)?;

@@ -2,11 +2,11 @@
 
 use super::{ENDLESS, NONE, Tables, starts};
 use crate::codes::{Code, codes, row};
+use clench_rigid::dynamics::setpoint::whole_turn;
 use clench_rigid::model::{
     Actuator, BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind, JointKind, Model,
     Transmission,
 };
-use std::f64::consts::TAU;
 
 codes! {
     /// The transmissions of the kernels, which compare them in this order: joints, tendons, sites, contacts, rotations.
@@ -132,7 +132,7 @@ impl Tables {
         let p = &m.params;
         self.numbers("ACTUATOR_GEAR", p.actuator_gear.iter().copied().flatten());
         self.numbers("ACTUATOR_ROD", p.actuator_cranklength.iter().copied());
-        let turns = (0..m.actuators.len()).map(|u| whole_turn(m, u));
+        let turns = (0..m.actuators.len()).map(|u| whole_turn(m, p, u));
         self.numbers("ACTUATOR_TURN", turns);
     }
 
@@ -300,33 +300,6 @@ fn target(m: &Model, actuator: &Actuator) -> Target {
         Transmission::Body(body) => other(On::Contacts, [body, 0]),
         Transmission::Rotation(j) => other(On::Rotation, [j, 0]),
         Transmission::RotationInFrame(sites) => other(On::RotationInFrame, sites),
-    }
-}
-
-/// Returns the length change of a servo on a circle in a full turn; zero for other actuators. See
-/// `dynamics/setpoint.rs`.
-fn whole_turn(m: &Model, u: usize) -> f64 {
-    let (actuator, p) = (&m.actuators[u], &m.params);
-    let length = |axis: &[f64]| axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let gear = &p.actuator_gear[u];
-    let (rotates, axis) = match actuator.transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j) => {
-            (m.joints[j].kind == JointKind::Ball, &gear[..3])
-        }
-        Transmission::SiteInFrame(_) => (length(&gear[..3]) == 0.0, &gear[3..]),
-        Transmission::Tendon(_)
-        | Transmission::Site(_)
-        | Transmission::SliderCrank(_)
-        | Transmission::Body(_)
-        | Transmission::Rotation(_)
-        | Transmission::RotationInFrame(_) => (false, &gear[..3]),
-    };
-    let fixed = actuator.gain == GainKind::Fixed && actuator.bias == BiasKind::Affine;
-    let pulls_back = p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1];
-    if rotates && (actuator.gain == GainKind::Pid || fixed && pulls_back) {
-        TAU * length(axis)
-    } else {
-        0.0
     }
 }
 

@@ -61,64 +61,95 @@ impl Transmission {
     }
 }
 
-/// The activation dynamics.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DynamicsKind {
-    /// No activation: the control acts directly.
-    #[default]
-    None,
-    /// ȧ = control.
-    Integrator,
-    /// ȧ = (control − a) / timeconst.
-    Filter,
-    /// As `Filter`, integrated exactly.
-    FilterExact,
-    /// A filter that rises and falls with different time constants; see [`muscle`](crate::dynamics::muscle).
-    Muscle,
-    /// A direct-current motor; see [`dc_motor`](crate::dynamics::dc_motor).
-    DcMotor,
-    /// The states of a PID controller; see [`pid`](crate::dynamics::pid).
-    Pid,
-    /// A user callback in MuJoCo; without one activations are constant.
-    User,
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $name:ident of $oracle:literal { $($(#[$item:meta])* $kind:ident $keyword:literal $number:literal;)* })*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[$item])* $kind,)*
+        }
+
+        impl $name {
+            /// Every kind.
+            pub const ALL: &[$name] = &[$($name::$kind),*];
+
+            /// Returns its keyword in MJCF.
+            pub fn name(self) -> &'static str {
+                match self { $($name::$kind => $keyword,)* }
+            }
+            #[doc = concat!("Returns its number in MuJoCo, `", $oracle, "`.")]
+            pub fn number(self) -> i32 {
+                match self { $($name::$kind => $number,)* }
+            }
+        }
+    )*};
 }
 
-/// Gain of an actuator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GainKind {
-    /// `gainprm[0]`.
-    #[default]
-    Fixed,
-    /// `gainprm[0] + gainprm[1] · length + gainprm[2] · velocity`.
-    Affine,
-    /// Active force of a muscle by length and velocity.
-    Muscle,
-    /// Torque constant of a direct-current motor.
-    DcMotor,
-    /// Setpoints of a PID controller.
-    Pid,
-    /// Stiffness of an orientation servo; see [`orientation`](crate::dynamics::orientation).
-    So3,
-    /// A user callback in MuJoCo; without one it is 1.
-    User,
+kinds! {
+    /// The activation dynamics.
+    DynamicsKind of "mjtDyn" {
+        /// No activation: the control acts directly.
+        #[default]
+        None "none" 0;
+        /// ȧ = control.
+        Integrator "integrator" 1;
+        /// ȧ = (control − a) / timeconst.
+        Filter "filter" 2;
+        /// As `Filter`, integrated exactly.
+        FilterExact "filterexact" 3;
+        /// A filter that rises and falls with different time constants; see [`muscle`](crate::dynamics::muscle).
+        Muscle "muscle" 4;
+        /// A direct-current motor; see [`dc_motor`](crate::dynamics::dc_motor).
+        DcMotor "dcmotor" 5;
+        /// The states of a PID controller; see [`pid`](crate::dynamics::pid).
+        Pid "pid" 6;
+        /// A user callback in MuJoCo; without one activations are constant.
+        User "user" 7;
+    }
+    /// Gain of an actuator.
+    GainKind of "mjtGain" {
+        /// `gainprm[0]`.
+        #[default]
+        Fixed "fixed" 0;
+        /// `gainprm[0] + gainprm[1] · length + gainprm[2] · velocity`.
+        Affine "affine" 1;
+        /// Active force of a muscle by length and velocity.
+        Muscle "muscle" 2;
+        /// Torque constant of a direct-current motor.
+        DcMotor "dcmotor" 3;
+        /// Setpoints of a PID controller.
+        Pid "pid" 5;
+        /// Stiffness of an orientation servo; see [`orientation`](crate::dynamics::orientation).
+        So3 "so3" 4;
+        /// A user callback in MuJoCo; without one it is 1.
+        User "user" 6;
+    }
+    /// Bias of an actuator.
+    BiasKind of "mjtBias" {
+        /// None.
+        #[default]
+        None "none" 0;
+        /// `biasprm[0] + biasprm[1] · length + biasprm[2] · velocity`.
+        Affine "affine" 1;
+        /// Passive force of a muscle by length.
+        Muscle "muscle" 2;
+        /// Back-EMF, cogging and friction of a direct-current motor.
+        DcMotor "dcmotor" 3;
+        /// Damping of an orientation servo.
+        So3 "so3" 4;
+        /// A user callback in MuJoCo; without one it is zero.
+        User "user" 5;
+    }
 }
 
-/// Bias of an actuator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BiasKind {
-    /// None.
-    #[default]
-    None,
-    /// `biasprm[0] + biasprm[1] · length + biasprm[2] · velocity`.
-    Affine,
-    /// Passive force of a muscle by length.
-    Muscle,
-    /// Back-EMF, cogging and friction of a direct-current motor.
-    DcMotor,
-    /// Damping of an orientation servo.
-    So3,
-    /// A user callback in MuJoCo; without one it is zero.
-    User,
+impl BiasKind {
+    /// Returns true if the bias is a restoring spring of the gain's stiffness, which may be damped by a ratio.
+    pub fn pulls_back(self, gain: GainKind, gainprm: &[f64; 10], biasprm: &[f64; 10]) -> bool {
+        match self {
+            BiasKind::Affine | BiasKind::So3 => gain == GainKind::Pid || gainprm[0] == -biasprm[1],
+            BiasKind::None | BiasKind::Muscle | BiasKind::DcMotor | BiasKind::User => false,
+        }
+    }
 }
 
 /// The meaning of a control of an actuator.

@@ -4,7 +4,7 @@ use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
 use clench_dynamics::Model;
 use clench_dynamics::model::{
-    Actuator, BiasKind, ControlInput, DynamicsKind, GainKind, History, Interpolation, Transmission,
+    Actuator, ControlInput, DynamicsKind, GainKind, History, Interpolation, Transmission,
 };
 
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
@@ -36,12 +36,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         user,
     } = &model.actuators[u];
     let p = &model.params;
-    let pulls_back = match bias {
-        BiasKind::Affine | BiasKind::So3 => {
-            *gain == GainKind::Pid || p.actuator_gainprm[u][0] == -p.actuator_biasprm[u][1]
-        }
-        _ => false,
-    };
+    let pulls_back = bias.pulls_back(*gain, &p.actuator_gainprm[u], &p.actuator_biasprm[u]);
     if pulls_back && p.actuator_biasprm[u][2] > 0.0 {
         let reason = "MJCF takes its positive velocity coefficient for a damping ratio";
         return Err(SaveError::new(label("actuator", name, u), reason));
@@ -57,9 +52,9 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
         .numbers("gear", &p.actuator_gear[u])
         .numbers_unless("user", user, &[])
         .numbers_unless("lengthrange", &p.actuator_lengthrange[u], &[0.0; 2])
-        .text("dyntype", dynamics_type(*dynamics))
-        .text("gaintype", gain_type(*gain))
-        .text("biastype", bias_type(*bias))
+        .text("dyntype", dynamics.name())
+        .text("gaintype", gain.name())
+        .text("biastype", bias.name())
         .numbers("dynprm", &p.actuator_dynprm[u])
         .numbers("gainprm", &p.actuator_gainprm[u])
         .numbers("biasprm", &p.actuator_biasprm[u])
@@ -167,41 +162,5 @@ fn interpolation(between: Interpolation) -> &'static str {
         Interpolation::Hold => "zoh",
         Interpolation::Linear => "linear",
         Interpolation::Cubic => "cubic",
-    }
-}
-
-fn dynamics_type(kind: DynamicsKind) -> &'static str {
-    match kind {
-        DynamicsKind::None => "none",
-        DynamicsKind::Integrator => "integrator",
-        DynamicsKind::Filter => "filter",
-        DynamicsKind::FilterExact => "filterexact",
-        DynamicsKind::Muscle => "muscle",
-        DynamicsKind::DcMotor => "dcmotor",
-        DynamicsKind::Pid => "pid",
-        DynamicsKind::User => "user",
-    }
-}
-
-fn gain_type(kind: GainKind) -> &'static str {
-    match kind {
-        GainKind::Fixed => "fixed",
-        GainKind::Affine => "affine",
-        GainKind::Muscle => "muscle",
-        GainKind::DcMotor => "dcmotor",
-        GainKind::Pid => "pid",
-        GainKind::So3 => "so3",
-        GainKind::User => "user",
-    }
-}
-
-fn bias_type(kind: BiasKind) -> &'static str {
-    match kind {
-        BiasKind::None => "none",
-        BiasKind::Affine => "affine",
-        BiasKind::Muscle => "muscle",
-        BiasKind::DcMotor => "dcmotor",
-        BiasKind::So3 => "so3",
-        BiasKind::User => "user",
     }
 }
