@@ -1,8 +1,8 @@
 //! Numbers that the host and the kernels both know: codes of kinds, and offsets within the rows of a table. Each is one
 //! line of a table; the host's type and the kernels' constants follow from it.
 //!
-//! A variant without a constant does not compile, and neither does a kernel that names a constant that does not exist. A
-//! test checks that the kernels name every constant.
+//! A variant without a constant does not compile, and neither does a kernel that names a constant that does not exist.
+//! A test checks that the kernels name every constant.
 
 /// An enumeration with a constant of the kernels for each variant.
 pub(crate) trait Code: Copy + PartialEq + 'static {

@@ -285,14 +285,16 @@ impl Kernel {
 
 #[cfg(test)]
 mod tests {
-    use super::{ALL, Memory, preface};
-    use crate::fields::{self, Fields};
-    use crate::precision::words;
+    use super::{ALL, Kernel, Memory, Preface, preface};
+    use crate::fields;
+    use crate::precision::{Texts, words};
     use crate::solver_memory::SolverMemory;
     use crate::tables::Tables;
     use clench_rigid::options::RigidOptions;
     use clench_rigid::settings::StepSettings;
     use clench_solver::ConstraintSolver;
+    use wgpu::naga;
+    use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     /// Codes that no kernel compares with.
     const UNNAMED: [&str; 4] = [
@@ -306,24 +308,53 @@ mod tests {
         "CONVEX",
     ];
 
-    #[test]
-    fn the_kernels_name_every_constant() {
+    /// Returns the preface of a model without elements.
+    fn empty_preface(general_kernels: bool) -> Preface {
         let model = clench_formats::load_str("<mujoco/>").unwrap();
         let settings = StepSettings::new::<f64>(&model, RigidOptions::default()).unwrap();
-        let (mut tables, capacity) = Tables::new::<f64>(&model, &settings, &[], false);
+        let (mut tables, capacity) = Tables::new::<f64>(&model, &settings, &[], general_kernels);
         tables.shapes(&model, &[]);
-        let none = Fields::default();
+        tables.ray_shapes(&model);
+        let state = fields::state_fields(&model, capacity);
+        tables.initial_state(&model, &state);
         let memory = Memory {
-            state: &fields::state_fields(&model, capacity),
+            state: &state,
             work: &fields::work_fields(&model, capacity),
-            thread: &none,
+            thread: &fields::thread_fields(&model, capacity),
             threads: 1,
             rays: 0,
             rows: &fields::row_fields(&model, capacity),
             reports: &fields::report_fields(&model, capacity),
-            solver: SolverMemory::new::<f64>(0, ConstraintSolver::Newton, 1 << 15, false),
+            solver: SolverMemory::new::<f64>(0, ConstraintSolver::Newton, 1 << 15, general_kernels),
         };
-        let preface = preface(&tables, &memory);
+        preface(&tables, &memory)
+    }
+
+    /// Parses and validates a kernel as a device would.
+    fn check<S: Texts>(kernel: &Kernel, preface: &Preface) {
+        let source = kernel.source::<S>(preface);
+        let module = match naga::front::wgsl::parse_str(&source) {
+            Ok(module) => module,
+            Err(error) => panic!("{}", error.emit_to_string(&source)),
+        };
+        let (flags, capabilities) = (ValidationFlags::all(), Capabilities::FLOAT64);
+        let result = Validator::new(flags, capabilities).validate(&module);
+        assert!(result.is_ok(), "{}: {:?}", kernel.entry, result.err());
+    }
+
+    #[test]
+    fn the_kernels_are_valid() {
+        for preface in [false, true].map(empty_preface) {
+            for kernel in ALL {
+                check::<f32>(kernel, &preface);
+                check::<f64>(kernel, &preface);
+            }
+        }
+    }
+
+    #[test]
+    fn the_kernels_name_every_constant() {
+        let preface = empty_preface(false);
         let constants = preface
             .constants
             .lines()
