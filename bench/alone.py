@@ -58,7 +58,7 @@ class Rollout:
             iterations += int(counts.sum())
             self.gradients.append(self.last_gradient(data, counts))
         if any(w.number for w in data.warning):
-            raise Unmeasured("MuJoCo warns of an unstable motion: these controls measure nothing")
+            raise Unmeasured("MuJoCo warns of an unstable motion: these controls are useless for measurements")
         return contacts / len(controls), iterations / len(controls)
 
     @staticmethod

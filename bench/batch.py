@@ -36,8 +36,8 @@ def compare(path, args):
             flags = ["--envs", args.envs, "--threads", count, "--precision", bits, *args.clench.split()]
             engines[name], threads[name] = Clench(path, arrays, flags), count
     seconds = alternate(engines, args.repeat)
-    print(f"\n{describe(model, path)}; {args.envs} environments, {args.batch_steps} steps, one thread where not said")
-    print(f"  (MuJoCo by `{engines[BASELINE].way}`)")
+    print(f"\n{describe(model, path)}; {args.envs} environments, {args.batch_steps} steps, one thread unless stated otherwise")
+    print(f"  (MuJoCo by `{engines[BASELINE].method}`)")
     rows = table(engines, seconds, BASELINE, args.envs * args.batch_steps)
     for bits in (64, 32):
         print_lanes(bits, engines[f"clench f{bits}"].summary)
@@ -53,9 +53,9 @@ def print_lanes(bits, summary):
     """Prints the work that SIMD lanes lose because environments differ."""
     divergence = summary["divergence"]
     print(
-        f"  f{bits}: {summary['lanes']} side by side ({summary['instructions']}) need "
-        f"{divergence['iterations_per_group']:.1f} iterations and {divergence['slots_per_group']:.1f} contact slots a step; "
-        f"{100 * divergence['live_share']:.0f}% of lanes at work"
+        f"  f{bits}: {summary['lanes']} lanes ({summary['instructions']}) need "
+        f"{divergence['iterations_per_group']:.1f} iterations and {divergence['slots_per_group']:.1f} contact slots per step; "
+        f"{100 * divergence['live_share']:.0f}% of lanes active"
     )
 
 
@@ -72,23 +72,23 @@ class Batch:
         self.steps = len(ctrl)
         self.ctrl = np.ascontiguousarray(np.broadcast_to(ctrl, (len(states), *ctrl.shape)))
         self.contacts, self.iterations = self.statistics()
-        self.way = min(("rollout", "step"), key=lambda way: min(self.run(way) for _ in range(TRIALS)))
+        self.method = min(("rollout", "step"), key=lambda method: min(self.run(method) for _ in range(TRIALS)))
 
     def statistics(self):
         """Returns the mean contacts and iterations of a step (of RK4 the last stage); checks that MuJoCo is stable."""
         records = self.batch.rollout(self.steps, self.ctrl, record=("ncon", "solver_niter", "nisland"))
         if self.batch.warning.any():
-            raise Unmeasured("MuJoCo warns of an unstable motion: these controls measure nothing")
+            raise Unmeasured("MuJoCo warns of an unstable motion: these controls are useless for measurements")
         parts = np.maximum(records["nisland"], 1)[..., None]
         solved = np.arange(records["solver_niter"].shape[-1]) < parts
         return records["ncon"].mean(), (records["solver_niter"] * solved).sum(axis=-1).mean()
 
-    def run(self, way=None):
+    def run(self, method=None):
         """Returns the seconds of stepping, including writing the controls."""
         self.batch.state[:] = self.start
         ctrl = self.batch.bind("ctrl")
         begin = time.perf_counter()
-        if (way or self.way) == "rollout":
+        if (method or self.method) == "rollout":
             self.batch.rollout(self.steps, self.ctrl, record=())
         else:
             for row in self.ctrl[0]:

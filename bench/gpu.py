@@ -27,16 +27,16 @@ def compare(model, args):
     rows = [json.loads(line) for line in lines]
     if not rows:
         return []
-    print(f"\n{model} on {rows[0]['name']}, {rows[-1]['bytes_per_env']} bytes an environment: steps a second")
+    print(f"\n{model} on {rows[0]['name']}, {rows[-1]['bytes_per_env']} bytes per environment: steps per second")
     print(f"  {'environments':>12}{'device':>14}{'processor':>14}{'ratio':>8}{'MuJoCo Warp':>14}")
     for row in rows:
         warp = warp_speed(model, row["envs"])
         ratio = row["device"] / row["processor"]
         print(f"  {row['envs']:>12}{row['device']:>14.0f}{row['processor']:>14.0f}{ratio:>8.2f}{warp or '-':>14}")
         if row["failed"]:
-            print(f"  {row['failed']} of these {row['envs']} environments failed and stood still: the figure is no figure")
+            print(f"  {row['failed']} of these {row['envs']} environments failed and were not stepped: the figure is invalid")
     stages = ", ".join(f"{stage} {µs:.2f}" for stage, µs in rows[-1]["stages"].items())
-    print(f"  stages, µs an environment: {stages}")
+    print(f"  stages, µs per environment: {stages}")
     return []
 
 

@@ -123,7 +123,7 @@ def line(name, count, seconds, worst, iterations):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--goals", type=int, default=1024)
-    parser.add_argument("--mink-goals", type=int, default=200, help="mink is asked for the first so many")
+    parser.add_argument("--mink-goals", type=int, default=200, help="solve only the first N goals with mink")
     args = parser.parse_args()
     for name, (path, bodies, com) in ROBOTS.items():
         robot = Robot(MODELS / path, bodies, com, args.goals)

@@ -27,7 +27,7 @@ SPACING, ROW = 4.0, 32
 def compare(_, args):
     """Times both engines on every pair, prints a table and returns its rows."""
     mujoco.set_mjcb_time(lambda: 1e9 * time.perf_counter())
-    print("\none pair of shapes, a thousand poses; times in ns, then how many points a pose has")
+    print("\none pair of shapes, a thousand poses; times in ns, then points per pose")
     print(f"  {'pair':<30}{'clench':>8}{'mujoco':>8}{'ratio':>7}{'clench':>9}{'mujoco':>8}")
     try:
         return [measure(name) for name in example("--list").split("\n") if name]

@@ -39,7 +39,7 @@ def main():
     args = arguments()
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0
     if load > 0.5:
-        print(f"other programs are running (load {load:.1f}): expect figures that a quiet machine would not give")
+        print(f"other programs are running (load {load:.1f}): the figures are unreliable")
     models = [find(model) for model in args.models]
     results = []
     for name, (compare, subjects) in {
@@ -72,19 +72,19 @@ def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
     parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "families", "gpu", "public"], help="one of the comparisons")
-    parser.add_argument("--filter", default="", metavar="TEXT", help="public models, or scenes of the families, with this in their name")
-    parser.add_argument("--docs", action="store_true", help="write docs/families.md and its plots anew")
-    parser.add_argument("--steps", type=int, default=5000, help="steps a run of one environment (default: %(default)s)")
+    parser.add_argument("--filter", default="", metavar="TEXT", help="public models, or scenes of the families, whose name contains this")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/families.md and its plots")
+    parser.add_argument("--steps", type=int, default=5000, help="steps per run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
-    parser.add_argument("--batch-steps", type=int, default=500, help="steps a run of the batch (default: %(default)s)")
+    parser.add_argument("--batch-steps", type=int, default=500, help="steps per run of the batch (default: %(default)s)")
     parser.add_argument("--tasks", nargs="*", default=DEFAULT_TASKS, help="vector environments (default: %(default)s)")
-    parser.add_argument("--vector-steps", type=int, default=100, help="steps a run of these (default: %(default)s)")
-    parser.add_argument("--gpu-envs", type=int, default=65536, help="most environments on a graphics device (default: %(default)s)")
-    parser.add_argument("--heap-steps", type=int, default=1500, help="steps a run of a heap (default: %(default)s)")
-    parser.add_argument("--noise", type=float, default=0.1, help="how far starts are moved apart (default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=min(2, batch.processors()), help="threads of Clench's batch beside one")
+    parser.add_argument("--vector-steps", type=int, default=100, help="steps per run of these (default: %(default)s)")
+    parser.add_argument("--gpu-envs", type=int, default=65536, help="maximum number of environments on a GPU (default: %(default)s)")
+    parser.add_argument("--heap-steps", type=int, default=1500, help="steps per run of a heap (default: %(default)s)")
+    parser.add_argument("--noise", type=float, default=0.1, help="noise of the initial states (default: %(default)s)")
+    parser.add_argument("--threads", type=int, default=min(2, batch.processors()), help="threads of Clench's batch, in addition to one")
     parser.add_argument("--repeat", type=int, default=7, help="runs of each engine (default: %(default)s)")
-    parser.add_argument("--clench", default="", metavar="FLAGS", help="further flags for clench, as one string")
+    parser.add_argument("--clench", default="", metavar="FLAGS", help="more flags for clench, as one string")
     parser.add_argument("--json", metavar="FILE", help="write the figures there as well")
     parser.add_argument("--check", action="store_true", help="exit code 1 if Clench is slower on any model")
     return parser.parse_args()

@@ -14,7 +14,7 @@ FRAMES = os.environ.get("FRAMES", str(ROOT / "target/dist/examples/frames"))
 
 def compare(_, args):
     """Runs the example and prints a table; returns no rows, since nothing is compared."""
-    print("\na frame of the viewer, sixty of which are made in a second, every eighth step")
+    print("\na frame of the viewer every eighth step, sixty per second")
     print(f"  {'scene':<24}{'bodies':>8}{'contacts':>10}{'bytes':>9}{'changed':>9}{'µs':>8}{'µs of the steps':>17}")
     lines = subprocess.run([FRAMES], capture_output=True, text=True, check=True).stdout.splitlines()
     for row in map(json.loads, lines):

@@ -115,7 +115,7 @@ def test_contacts_that_are_left_out_are_told_of():
     model, few = program.ROOT / "models/box_stack.xml", ("--max-contacts", 1)
     _, summary = program.simulate(model, "--steps", 10, *few)
     assert summary["status"] == "contact_overflow" and summary["overflow_steps"] == 10
-    assert "left out" in program.run("inspect", model, *few).stdout
+    assert "omitted" in program.run("inspect", model, *few).stdout
     with program.Forward(model, *few) as forward:
         result = forward({})
     assert result["contact_overflow"] and len(result["contacts"]) == 1

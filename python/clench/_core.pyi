@@ -238,7 +238,7 @@ class Model:
     jnt_stiffnesspoly: Final[_Floats]  # (njnt, 2) Coefficients of the spring's quadratic and cubic force.
     jnt_springyield: Final[_Floats]  # (njnt,) Elongation at which the spring yields.
     jnt_range: Final[_Floats]  # (njnt, 2) Allowed positions.
-    jnt_margin: Final[_Floats]  # (njnt,) Distance at which the limit appears.
+    jnt_margin: Final[_Floats]  # (njnt,) Distance at which the limit becomes active.
     jnt_actfrcrange: Final[_Floats]  # (njnt, 2) Limits of the total actuator force.
     jnt_solref: Final[_Floats]  # (njnt, 2) Limit reference dynamics.
     jnt_solimp: Final[_Floats]  # (njnt, 5) Limit impedance.
@@ -322,7 +322,7 @@ class Model:
     tendon_length0: Final[_Floats]  # (ntendon,) Length at qpos0.
     tendon_invweight0: Final[_Floats]  # (ntendon,) Inverse inertia at qpos0.
     tendon_range: Final[_Floats]  # (ntendon, 2) Allowed lengths.
-    tendon_margin: Final[_Floats]  # (ntendon,) Distance at which the limit appears.
+    tendon_margin: Final[_Floats]  # (ntendon,) Distance at which the limit becomes active.
     tendon_actfrcrange: Final[_Floats]  # (ntendon, 2) Limits of the total actuator force.
     tendon_frictionloss: Final[_Floats]  # (ntendon,) Dry friction.
     tendon_solref_lim: Final[_Floats]  # (ntendon, 2) Limit reference dynamics.

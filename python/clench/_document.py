@@ -136,7 +136,7 @@ class Document:
         """
         name = f"{prefix}model"
         if any(name in document.attached for document in self.first().family()):
-            raise ValueError(f"a model is attached with the prefix {prefix!r} already")
+            raise ValueError(f"a model is already attached with the prefix {prefix!r}")
         own = other._prefixed(prefix)
         if body is not None:
             found = own.find("body", f"{prefix}{body}")
@@ -145,7 +145,7 @@ class Document:
             found[0]._hide_all_but(found[1])
         for kind, taken in own._index():
             if self.find(kind, taken) is not None:
-                raise ValueError(f'there is a {kind} "{taken}" already')
+                raise ValueError(f'there is already a {kind} "{taken}"')
         self.first().add_files(own.assets)
         own.assets, own._outer = {}, self
         self.attached[name] = own
@@ -263,7 +263,7 @@ class Document:
         kind = _kind(node, section)
         taken = self.find(kind, written(value)) if kind else None
         if taken is not None and taken[1] is not node:
-            raise ValueError(f'there is a {kind} "{written(value)}" already')
+            raise ValueError(f'there is already a {kind} "{written(value)}"')
 
     def parents(self) -> dict[ET.Element, ET.Element]:
         return {child: parent for parent in self.root.iter() for child in parent}
@@ -328,7 +328,7 @@ class Document:
             parent = parents[include]
             place = list(parent).index(include)
             parent[place : place + 1] = list(included)
-        raise LoadError("files include each other without end", source)
+        raise LoadError("files include each other in a cycle", source)
 
     def _read_assets(self, folder: Path) -> None:
         compiler: dict[str, str] = {}

@@ -59,7 +59,7 @@ class SpecElement:
         try:
             return self._node.attrib[attribute]
         except KeyError:
-            raise KeyError(f"{self._described()} does not say {attribute!r}") from None
+            raise KeyError(f"{self._described()} has no attribute {attribute!r}") from None
 
     def __setitem__(self, attribute: str, value: Value) -> None:
         self._document.check_name(self._section(), self._node, attribute, value)
@@ -267,7 +267,7 @@ class SpecElement:
         """Removes this element, its descendants, and everything that refers to them: removing a joint removes its
         sensors."""
         if self._node not in self._document.parents():
-            raise ValueError(f"{self._described()} is removed already, or is the document itself")
+            raise ValueError(f"{self._described()} was already removed, or is the document itself")
         self._document.remove(self._node)
 
     def rename(self, name: str) -> None:

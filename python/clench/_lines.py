@@ -40,7 +40,7 @@ class Line:
         raise NotImplementedError
 
     def __set__(self, view: ElementView, values: ArrayLike) -> None:
-        raise AttributeError(f"{self._array} follows from the state and cannot be set")
+        raise AttributeError(f"{self._array} is computed from the state and cannot be set")
 
 
 class StateLine(Line):

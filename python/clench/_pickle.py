@@ -50,7 +50,7 @@ def _model(method: str, arguments: dict[str, Any], checksum: int) -> Model:
     source = rest.pop("path" if method == "from_file" else "text")
     model: Model = getattr(Model, method)(source, **rest)
     if _checksum(model) != checksum:
-        raise ValueError(f"{source if method == 'from_file' else 'the text'} is not that of the model that was pickled: it has changed")
+        raise ValueError(f"{source if method == 'from_file' else 'the text'} differs from the pickled model: it has changed")
     return model
 
 

@@ -224,7 +224,7 @@ class ModelSpec:
         kept: dict[str, Value] = {}
         if state is not None:
             if state.qpos.ndim != 1:
-                raise ValueError("a keyframe is of one environment: take the state of batch.sim(env)")
+                raise ValueError("a keyframe is the state of one environment: use that of batch.sim(env)")
             fields = {"mpos": state.mocap_pos, "mquat": state.mocap_quat}
             fields.update({name: getattr(state, name) for name in ("time", "qpos", "qvel", "act", "plastic", "ctrl")})
             kept = {name: values for name, values in fields.items() if values.size}
@@ -248,7 +248,7 @@ class ModelSpec:
         """
         if data is not None:
             if "file" not in attributes:
-                raise ValueError("data without the name of a file")
+                raise ValueError("data needs the name of a file")
             self._document.add_files({written(attributes["file"]): data})
         return self.section("asset").add(tag, **attributes)
 

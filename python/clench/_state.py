@@ -177,7 +177,7 @@ class State(_StateArrays):
             raise TypeError(f"a state is unpacked from bytes, not from {type(data).__name__}")
         stream = io.BytesIO(data)
         if not zipfile.is_zipfile(stream):
-            raise ValueError("these bytes hold no state: they are no whole archive of NumPy's")
+            raise ValueError("these bytes are not a state: they are not a complete NumPy archive")
         try:
             with zipfile.ZipFile(stream) as archive:
                 _require_plain(archive, stream.getbuffer().nbytes)
@@ -186,7 +186,7 @@ class State(_StateArrays):
                 if 1 <= version <= _VERSION:
                     arrays = {name.removesuffix(".npy"): _entry(archive, name) for name in archive.namelist()}
         except Exception as error:  # Readers of damaged archives raise arbitrary exceptions.
-            raise ValueError(f"these bytes hold no state: {error}") from error
+            raise ValueError(f"these bytes are not a state: {error}") from error
         if not 1 <= version <= _VERSION:
             raise ValueError(f"this state has version {version}, and this clench reads versions 1 to {_VERSION}")
         del arrays["version"]
@@ -204,7 +204,7 @@ class State(_StateArrays):
         try:
             return State(**arrays)
         except TypeError as error:
-            raise ValueError(f"these bytes hold no whole state: {error}") from error
+            raise ValueError(f"these bytes are not a complete state: {error}") from error
 
     def __repr__(self) -> str:
         envs = "" if self.qpos.ndim == 1 else f" of {len(self.qpos)} environments"
@@ -229,15 +229,15 @@ def _require_plain(archive: zipfile.ZipFile, size: int) -> None:
     """Rejects an archive of the given size that would take more memory unpacked than packed."""
     entries = archive.infolist()
     if len(entries) > _MAX_ENTRIES:
-        raise ValueError(f"the archive has {len(entries)} entries, and at most {_MAX_ENTRIES} are looked at")
+        raise ValueError(f"the archive has {len(entries)} entries, more than the maximum of {_MAX_ENTRIES}")
     if len({entry.filename for entry in entries}) < len(entries):
-        raise ValueError("the archive has two entries of one name")
+        raise ValueError("the archive has two entries with the same name")
     for entry in entries:
         if entry.compress_type != zipfile.ZIP_STORED:
-            raise ValueError(f"{entry.filename} is compressed, and states never are")
+            raise ValueError(f"{entry.filename} is compressed, but states are not")
     total = sum(entry.file_size for entry in entries)
     if total > size:
-        raise ValueError(f"the archive claims to hold {total} bytes, and has {size}")
+        raise ValueError(f"the archive declares {total} bytes, but has {size}")
 
 
 def _entry(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
@@ -252,6 +252,6 @@ def _entry(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
         raise ValueError(f"{name} holds Python objects")
     claimed, found = math.prod(shape) * dtype.itemsize, stream.getbuffer().nbytes - stream.tell()
     if claimed != found:
-        raise ValueError(f"{name} claims {claimed} bytes of numbers, and has {found}")
+        raise ValueError(f"{name} declares {claimed} bytes of numbers, but has {found}")
     array = np.frombuffer(stream.getbuffer()[stream.tell() :], dtype)
     return array.reshape(shape, order="F" if fortran_order else "C").copy()

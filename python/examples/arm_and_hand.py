@@ -55,7 +55,7 @@ def main() -> None:
     try:
         import mujoco  # type: ignore[import-untyped]
     except ImportError:
-        print("MuJoCo is not installed: nothing to compare with")
+        print("MuJoCo is not installed: there is no comparison")
     else:
         oracle = mujoco.MjModel.from_xml_string(text)
         data = mujoco.MjData(oracle)

@@ -66,7 +66,7 @@ def main() -> None:
     def draw(axes: Axes) -> None:
         axes.plot(recorded["time"][0], forward[:200].T, color="tab:blue", alpha=0.1)
         axes.plot(recorded["time"][0], forward[best], color="tab:red", label=f"gait {best}")
-        axes.set(xlabel="time, s", ylabel="way forward, m", title="Random gaits of a quadruped")
+        axes.set(xlabel="time, s", ylabel="distance forward, m", title="Random gaits of a quadruped")
         axes.legend()
 
     plots.finish(options, draw)

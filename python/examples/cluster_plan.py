@@ -42,8 +42,8 @@ def controls(gaits: Floats, steps: int, model: clench.Model) -> Floats:
 def main() -> None:
     """Run the example."""
     parser = plots.parser(__doc__)
-    parser.add_argument("--workers", type=int, help="how many workers; by default one a machine")
-    parser.add_argument("--kill", action="store_true", help="kill a worker half-way")
+    parser.add_argument("--workers", type=int, help="number of workers (default: one per machine)")
+    parser.add_argument("--kill", action="store_true", help="kill a worker in the middle of the run")
     options = parser.parse_args()
     n, steps, rounds = (64, 100, 4) if options.quick else (1024, 500, 15)
 
@@ -69,7 +69,7 @@ def main() -> None:
 
     def draw(axes: Axes) -> None:
         axes.plot(np.arange(1, rounds + 1), best, marker="o")
-        axes.set(xlabel="round", ylabel="way forward, m", title="A gait found by the cross-entropy method")
+        axes.set(xlabel="round", ylabel="distance forward, m", title="A gait found by the cross-entropy method")
 
     plots.finish(options, draw)
 

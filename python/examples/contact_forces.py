@@ -40,8 +40,8 @@ def main() -> None:
                 pressing[k, feet.index(geom)] += wrench[2]
 
     peak = np.unravel_index(pressing.argmax(), pressing.shape)
-    print(f"the first to touch: {feet[int((pressing > 0.0).argmax(axis=0).argmin())]}")
-    print(f"the hardest blow: {pressing.max():.0f} N on {feet[int(peak[1])]} at {times[peak[0]]:.2f} s")
+    print(f"the first foot to touch: {feet[int((pressing > 0.0).argmax(axis=0).argmin())]}")
+    print(f"the largest impact: {pressing.max():.0f} N on {feet[int(peak[1])]} at {times[peak[0]]:.2f} s")
     print(f"after {sim.time:.0f} s the feet carry {pressing[-1].sum():.1f} N; the weight is {weight:.1f} N")
 
     # Constraint rows contain the same in terms of the solver: each with its force, impedance and Jacobian.

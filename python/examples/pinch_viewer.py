@@ -28,7 +28,7 @@ def main() -> None:
     times: list[float] = []
     shares: list[float] = []
     with clench.view(sim, open_browser=not options.quick) as viewer:
-        print(f"look at {viewer.url}; close the page to end")
+        print(f"open {viewer.url}; close the page to end")
         begin = time.monotonic()
         while sim.time < (0.2 if options.quick else 60) and not viewer.closed:
             # The fingers press harder and harder, then relax a little.

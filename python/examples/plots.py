@@ -16,9 +16,9 @@ MODELS = Path(__file__).resolve().parents[2] / "models"
 def parser(doc: str | None) -> argparse.ArgumentParser:
     """Return a parser with the options of every example; the first line of ``doc`` describes it."""
     options = argparse.ArgumentParser(description=(doc or "").partition("\n")[0])
-    options.add_argument("--quick", action="store_true", help="a short form, as the tests run it")
+    options.add_argument("--quick", action="store_true", help="run the short form that the tests use")
     options.add_argument("--plot", metavar="FILE", help="write a plot to FILE (.png, .svg or .pdf)")
-    options.add_argument("--show", action="store_true", help="open a window with the plot")
+    options.add_argument("--show", action="store_true", help="show the plot in a window")
     return options
 
 

@@ -98,8 +98,8 @@ def main() -> None:
     """Run the example."""
     parser = plots.parser(__doc__)
     parser.add_argument("--task", default="clench/HalfCheetah-v5", help="any task with continuous actions")
-    parser.add_argument("--generations", type=int, help="how many, 100 unless given")
-    parser.add_argument("--seed", type=int, default=0, help="seed of everything random")
+    parser.add_argument("--generations", type=int, help="number of generations (default: 100)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers")
     options = parser.parse_args()
 
     generations, steps, pairs = (20, 200, 32) if options.quick else (100, 1000, 64)

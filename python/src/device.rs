@@ -90,8 +90,7 @@ fn no_devices() -> PyErr {
 pub(crate) fn without(part: &str, feature: &str) -> String {
     format!(
         "this package was built without {part}; wheels have them, and from source \
-         `pip install ./python --config-settings=build-args=--features={feature}` adds them: \
-         about two minutes more on two cores"
+         `pip install ./python --config-settings=build-args=--features={feature}` adds them, which takes about two more minutes on two cores"
     )
 }
 

@@ -129,7 +129,7 @@ impl Kind {
                 _ => Err(none(&index.to_string())),
             },
             Err(error) if error.is_instance_of::<PyOverflowError>(which.py()) => {
-                Err(none("of an index so large"))
+                Err(none("with this index"))
             }
             Err(_) => {
                 let found = which.get_type().name()?;

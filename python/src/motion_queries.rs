@@ -24,7 +24,7 @@ fn anchor<S: Precision>(model: &Model, choices: &Choices, point: Choice) -> PyRe
             body,
             place: vector("point", point)?,
         }),
-        _ => Err(PyValueError::new_err("point goes with body alone")),
+        _ => Err(PyValueError::new_err("point needs body")),
     }
 }
 

@@ -111,7 +111,7 @@ impl Target {
         }
         let found = object.get_type().name()?;
         Err(PyTypeError::new_err(format!(
-            "a Sim or a Batch can be looked at, not {found}"
+            "a viewer needs a Sim or a Batch, not {found}"
         )))
     }
 

@@ -299,7 +299,7 @@ def test_bad_questions_are_errors() -> None:
         sim.jacobian()
     with pytest.raises(ValueError, match="not several"):
         sim.jacobian(body="base", site="tool")
-    with pytest.raises(ValueError, match="point goes with body"):
+    with pytest.raises(ValueError, match="point needs body"):
         sim.jacobian(site="tool", point=[0, 0, 0])
     with pytest.raises(ValueError, match="out has shape"):
         sim.jacobian(site="tool", out=np.zeros(3))
@@ -307,7 +307,7 @@ def test_bad_questions_are_errors() -> None:
         sim.jacobian(site="tool", out=np.zeros((2, 3, sim.model.nv), np.float32))
     with pytest.raises(ValueError, match="qacc has shape"):
         sim.inverse([1, 2])
-    with pytest.raises(ValueError, match="no height field"):
+    with pytest.raises(ValueError, match="not a height field"):
         sim.heights("hand", [[0, 0]])
     with pytest.raises(ValueError, match="a position, a quat or both"):
         clench.FrameTarget(site="tool")

@@ -110,7 +110,7 @@ def test_numbers_of_an_element_can_be_edited() -> None:
     np.testing.assert_array_equal(model.geom("floor").friction, [0.5, 0.01, 0.001])
     del torso["pos"]
     np.testing.assert_array_equal(spec.build().body("torso").pos, [0, 0, 0])
-    with pytest.raises(KeyError, match="does not say"):
+    with pytest.raises(KeyError, match="has no attribute"):
         torso["pos"]
 
 
@@ -200,7 +200,7 @@ def test_what_is_attached_is_found_changed_and_referred_to() -> None:
     ):
         with pytest.raises(clench.LoadError):
             change()
-    with pytest.raises(ValueError, match='there is a body "g_palm" already'):
+    with pytest.raises(ValueError, match='there is already a body "g_palm"'):
         arm.body("upper").rename("g_palm")
     arm.body("g_finger").add_geom(type="mesh")
     with pytest.raises(clench.LoadError, match='^body "g_finger" / geom 2: '):
@@ -254,7 +254,7 @@ def test_the_source_goes_its_own_way() -> None:
     assert "a_l_finger" in other.build().names("body")
     with pytest.raises(ValueError, match='no body "thumb"'):
         room.world.attach(two, prefix="c_", body="thumb")
-    with pytest.raises(ValueError, match='there is a body "left" already'):
+    with pytest.raises(ValueError, match='there is already a body "left"'):
         two.world.attach(two, prefix="")
 
 
@@ -289,7 +289,7 @@ def test_what_refers_to_a_name_follows_it() -> None:
     assert spec.actuator("bend")["joint"] == spec.sensor("bend")["joint"] == "flex"
     model = spec.build()
     assert model.names("joint") == ["flex"] and model.names("body") == ["world", "base", "end"]
-    with pytest.raises(ValueError, match='there is a body "base" already'):
+    with pytest.raises(ValueError, match='there is already a body "base"'):
         spec.body("end").rename("base")
     with pytest.raises(ValueError, match='there is no joint "bend": there are flex'):
         spec.joint("bend")
@@ -305,7 +305,7 @@ def test_what_refers_to_what_is_removed_goes_with_it() -> None:
     assert (model.nv, model.nu, model.ntendon, model.nsensor) == (0, 0, 0, 1)
     whole.body("tip").remove()
     assert whole.build().nbody == 2 and whole.build().nsensor == 0
-    with pytest.raises(ValueError, match="removed already"):
+    with pytest.raises(ValueError, match="already removed"):
         tip = spec.body("tip")
         tip.remove()
         tip.remove()

@@ -110,7 +110,7 @@ export const PLOTS = [
   { name: "solver iterations", unit: "" },
   { name: "duality gap", unit: "log₁₀" },
   { name: "gradient", unit: "log₁₀" },
-  { name: "deepest penetration", unit: "m" },
+  { name: "maximum penetration", unit: "m" },
   { name: "contacts", unit: "" },
   { name: "potential energy", unit: "J" },
   { name: "kinetic energy", unit: "J" },

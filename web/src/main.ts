@@ -94,7 +94,7 @@ function watch(): void {
       show(parts, frame);
     },
     error: notify,
-    lost: () => notify("The simulation has ended, or is not reached. If it was started anew, open the address that it printed."),
+    lost: () => notify("The simulation has ended, or cannot be reached. If it was restarted, open the address that it printed."),
   });
 }
 

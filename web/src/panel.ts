@@ -29,7 +29,7 @@ const LAYERS: [keyof Layers, string][] = [
   ["tendons", "tendons"],
   ["frames", "frames"],
   ["joints", "joint axes"],
-  ["masses", "mass centres"],
+  ["masses", "centres of mass"],
   ["inertia", "inertia boxes"],
 ];
 
@@ -69,7 +69,7 @@ export class Panel {
     private replay: Replay | null,
     private tape: Tape | null,
   ) {
-    this.pause = button("pause", "pause or go on (space)", () => this.toggle());
+    this.pause = button("pause", "pause or continue (space)", () => this.toggle());
     this.pause.id = "pause";
     document.getElementById("bar")!.replaceChildren(...this.bar());
     document.getElementById("panel")!.replaceChildren(...this.sections());
@@ -110,7 +110,7 @@ export class Panel {
       title,
       this.pause,
       step,
-      ...(scene.rewinds ? [button("back", "a second back (←)", () => this.send({ do: "rewind", seconds: 1 })), this.past] : []),
+      ...(scene.rewinds ? [button("back", "go back one second (←)", () => this.send({ do: "rewind", seconds: 1 })), this.past] : []),
       button("reset", "reset (backspace)", () => this.send({ do: "reset" })),
       ...(keys.length > 0 ? [keyframe] : []),
       choice(SPEEDS, "1", (value) => this.send({ do: "speed", factor: Number(value) })),
@@ -129,7 +129,7 @@ export class Panel {
       if (seconds !== "") void tape.save(Number(seconds));
     });
     list.id = "save";
-    list.title = "save what was seen last as a page that replays it";
+    list.title = "save the last seconds as a page that replays them";
     return list;
   }
 
@@ -147,7 +147,7 @@ export class Panel {
 
   /** Creates a slider over the moments that rewinding can reach. */
   private makePast(): HTMLInputElement {
-    const title = "any moment of the last ten seconds";
+    const title = "go back to a moment of the last ten seconds";
     const made = element("input", { id: "past", type: "range", title, min: "0", max: "0", step: "any" });
     made.oninput = () => this.send({ do: "moment", time: made.valueAsNumber });
     made.onchange = () => made.blur();
@@ -182,9 +182,9 @@ export class Panel {
     this.grid = choice(options, "1", (value) => this.show({ count: Number(value) }));
     this.grid.id = "grid";
     return [
-      element("label", { className: "check" }, "environment", field("the environment that is touched", "env", (env) => this.show({ env }))),
+      element("label", { className: "check" }, "environment", field("the selected environment", "env", (env) => this.show({ env }))),
       this.grid,
-      element("label", { className: "check" }, "from", field("the first side by side", "first", (first) => this.show({ first }))),
+      element("label", { className: "check" }, "from", field("the first of the environments side by side", "first", (first) => this.show({ first }))),
     ];
   }
 
@@ -346,7 +346,7 @@ export class Panel {
     const body = this.chosen;
     if (body === null || frame === null) {
       this.facts.replaceChildren(
-        element("p", { className: "hint" }, "Click a body to see its numbers. " + (this.live ? "Ctrl-drag pulls it, with the right button it turns." : "")),
+        element("p", { className: "hint" }, "Click a body to see its quantities. " + (this.live ? "Ctrl-drag pulls it; with the right button it rotates." : "")),
       );
       return;
     }

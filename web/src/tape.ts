@@ -42,7 +42,7 @@ export class Tape {
     const kept = this.frames.filter((frame) => frame.time >= last.time - seconds);
     const reply = await fetch(location.href).catch(() => null);
     if (!reply?.ok) {
-      this.notify("The page could not be fetched again: is the simulation still there?");
+      this.notify("The page could not be fetched again: is the simulation still running?");
       return;
     }
     const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: kept.map(({ bytes }) => letters(bytes)) });

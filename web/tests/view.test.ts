@@ -504,7 +504,7 @@ test("a recording that has all its memory keeps what it has, and the run goes on
   const file = join(mkdtempSync(join(tmpdir(), "clench-recording-")), "full.html");
   const words = ["simulate", "models/box_stack.xml", "--steps", "400", "--json", "--max-memory", "2e-5", "--record", file];
   const done = spawnSync(PROGRAM, words, { cwd: ROOT, encoding: "utf8" });
-  assert.match(done.stderr, /--max-memory; what was recorded is kept, the run goes on/);
+  assert.match(done.stderr, /--max-memory; what was recorded remains, the run continues/);
   const report = JSON.parse(done.stdout) as { status: string; steps: number };
   assert.deepEqual([done.status === 0, report.status, report.steps], [false, "record_failed", 400]);
   const page = await open(browser, `file://${file}`);

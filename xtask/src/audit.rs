@@ -19,7 +19,9 @@ pub(crate) fn audit() -> Result<(), String> {
     match run(deny(&["fetch", "db"])) {
         Ok(()) => run(deny(&["check", "--disable-fetch", "advisories"])),
         Err(error) => {
-            println!("Advisories were not looked at, for their database is out of reach: {error}");
+            println!(
+                "Advisories were not checked, because their database is not reachable: {error}"
+            );
             Ok(())
         }
     }

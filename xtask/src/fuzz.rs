@@ -40,7 +40,7 @@ impl<'a> Plan<'a> {
                     let name = args.next().unwrap_or_default();
                     if !TARGETS.contains(&name) {
                         let known = TARGETS.join(", ");
-                        return Err(format!("`{name}` is no target: there are {known}"));
+                        return Err(format!("`{name}` is not a target; there are {known}"));
                     }
                     plan.targets = vec![name];
                 }
@@ -91,7 +91,7 @@ pub(crate) fn host() -> Result<String, String> {
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     let host = text.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned)
-        .ok_or_else(|| "rustc does not say what it builds for".into())
+        .ok_or_else(|| "rustc does not print its target".into())
 }
 
 fn build(address: bool) -> Result<PathBuf, String> {
@@ -169,7 +169,8 @@ fn search(name: &str, program: &Path, dictionary: &Path, seconds: u64) -> Result
         return Ok(executions);
     }
     Err(format!(
-        "{name} found something after {executions} executions: see above, and {}.\nMake it small by `{} -minimize_crash=1 -runs=100000 FILE`, mend it, and keep it in fuzz/regressions/{name}.",
+        "{name} found something after {executions} executions: see above, and {}.\nMinimize it by `{} -minimize_crash=1 \
+         -runs=100000 FILE`, fix the cause, and add it to fuzz/regressions/{name}.",
         findings.display(),
         program.display()
     ))

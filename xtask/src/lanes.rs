@@ -17,7 +17,7 @@ const FEW: usize = 8;
 /// Returns an error if the program cannot be built or `objdump` is missing.
 pub(crate) fn list() -> Result<(), String> {
     if !cfg!(target_arch = "x86_64") {
-        return Err("the list is made of instructions of x86-64".to_owned());
+        return Err("this list needs a program for x86-64".to_owned());
     }
     run(cargo(&["build", "--release", "--package", "clench-cli"]))?;
     let mut dump = command(

@@ -55,7 +55,7 @@ Commands:
   bench [ARG...]    Build `clench` with the `dist` profile and time it against MuJoCo. Arguments go to bench/speed.py; see
                     `cargo xtask bench --help`.
   soak [--only NAME] [SEED]
-                    Search long for rare failures. `test` runs a short form of each. SOAK_SCALE=10 runs a tenth of the steps.
+                    Search for rare failures for hours. `test` runs a short form of each. SOAK_SCALE=10 runs a tenth of the steps.
                       models      compare 20,000 random models with MuJoCo; those that differ are minimized and stored in
                                   parity/differences
                       device      compare 5,000 random models on a GPU, or Mesa's device, with the processor

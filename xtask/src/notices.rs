@@ -117,12 +117,12 @@ fn notices(folders: &[(&Part, Option<PathBuf>)]) -> Result<String, String> {
             texts.entry(text).or_default().push(&part.name);
         }
     }
-    let mut out = String::from("What is compiled into this package, and under which licences.\n");
+    let mut out = String::from("The crates compiled into this package, and their licences.\n");
     for part in folders.iter().map(|(part, _)| part) {
         out += &format!("\n{}: {}", part.name, part.licence);
     }
     if !without.is_empty() {
-        out += "\n\nOf these the following bring no text of their licence:\n\n";
+        out += "\n\nThe following of these contain no licence text:\n\n";
         out += &without.join("\n");
     }
     for (text, names) in texts {

@@ -40,7 +40,7 @@ pub(crate) fn install(profile: Profile) -> Result<(), String> {
     );
     compile_with(&mut install, profile);
     run(install).map_err(|e| {
-        format!("{e}\nBesides cargo this needs a package index: pip fetches maturin, which builds the package, every time.")
+        format!("{e}\nThis needs a package index: pip fetches maturin, which builds the package, every time.")
     })
 }
 

@@ -46,14 +46,18 @@ pub(crate) fn no_elf() -> Option<String> {
         target_pointer_width = "64",
         target_endian = "little"
     ));
-    (!is_known).then(|| "only files of 64-bit Linux are measured".to_owned())
+    (!is_known).then(|| "only files for 64-bit Linux are measured".to_owned())
 }
 
 /// Returns the size of the text segment of an ELF file, bytes, as in `size`.
 fn text_segment(path: &Path) -> Result<u64, String> {
     let bytes = fs::read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-    sum_of_sections(&bytes)
-        .ok_or_else(|| format!("{} is no 64-bit ELF file, or it is cut off", path.display()))
+    sum_of_sections(&bytes).ok_or_else(|| {
+        format!(
+            "{} is not a 64-bit ELF file, or is truncated",
+            path.display()
+        )
+    })
 }
 
 /// Returns the total size of all sections that are in memory and not writable: code, constants, unwind tables. See

@@ -65,7 +65,7 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
         [] => 1,
         [seed] => seed
             .parse::<u64>()
-            .map_err(|_| format!("`{seed}` is not a seed: give a whole number"))?,
+            .map_err(|_| format!("`{seed}` is not a seed: it must be an integer"))?,
         _ => return Err("soak takes `--only NAME` and a seed, in that order".into()),
     };
     let chosen: Vec<&Soak> = (SOAKS.iter())
@@ -75,7 +75,7 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
     if chosen.is_empty() && !is_chosen(MODELS) && !is_chosen(DEVICE) {
         let names = SOAKS.map(|soak| soak.name).join(", ");
         return Err(format!(
-            "soak knows --only with one of {MODELS}, {DEVICE}, {names}"
+            "soak accepts --only with one of {MODELS}, {DEVICE}, {names}"
         ));
     }
     if is_chosen(MODELS) {

@@ -50,7 +50,7 @@ const STAGES: &[Stage] = &[
     },
     Stage {
         name: "clippy",
-        remedy: "mend the warnings above",
+        remedy: "fix the warnings above",
         check: clippy,
         missing: nothing,
         quick: Quick::Named(""),
@@ -64,21 +64,21 @@ const STAGES: &[Stage] = &[
     },
     Stage {
         name: "doc",
-        remedy: "mend the documentation comments named above",
+        remedy: "fix the documentation comments named above",
         check: doc,
         missing: nothing,
         quick: Quick::Nothing,
     },
     Stage {
         name: "build",
-        remedy: "mend the errors above",
+        remedy: "fix the errors above",
         check: build,
         missing: nothing,
         quick: Quick::All,
     },
     Stage {
         name: "size",
-        remedy: "see what has grown with `cargo xtask lanes` or a tool such as cargo-bloat, or raise the limit in xtask/src/size.rs and say why",
+        remedy: "find what has grown with `cargo xtask lanes` or a tool such as cargo-bloat, or raise the limit in xtask/src/size.rs and say why",
         check: |_| size::check(),
         missing: size::no_elf,
         quick: Quick::Nothing,
@@ -151,7 +151,7 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
     };
     let source = match times.knows(chosen.iter().map(|stage| stage.name)) {
         true => "as the last such run did",
-        false => "a guess by the number of processors",
+        false => "estimated from the number of processors",
     };
     println!(
         "This takes about {}, {source}.",
@@ -203,7 +203,7 @@ fn choose(names: &[&str], profile: Profile) -> Result<Vec<&'static Stage>, Strin
             None => return Err(format!("unknown stage `{name}`; see `cargo xtask --help`")),
             Some(stage) if is_quick && stage.quick == Quick::Nothing => {
                 return Err(format!(
-                    "a quick run leaves out `{name}`: run it without --quick"
+                    "a quick run omits `{name}`: run it without --quick"
                 ));
             }
             Some(_) => {}
@@ -218,7 +218,7 @@ fn choose(names: &[&str], profile: Profile) -> Result<Vec<&'static Stage>, Strin
 
 /// Returns a text with the parts that a quick run of these stages, or of all, omits.
 fn left_out(names: &[&str]) -> String {
-    let mut text = String::from("A quick run leaves out, and `cargo xtask test` has:");
+    let mut text = String::from("This quick run omitted, and `cargo xtask test` includes:");
     for stage in STAGES {
         let is_named = names.contains(&stage.name);
         let what = match stage.quick {

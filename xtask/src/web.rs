@@ -61,7 +61,7 @@ pub(crate) fn no_browser() -> Option<String> {
         let missing = !path.is_file();
         missing.then(|| {
             format!(
-                "there is no Chromium at {}; install Debian's package chromium, or say where it is by CHROMIUM",
+                "there is no Chromium at {}; install Debian's package chromium, or set CHROMIUM to its path",
                 path.display()
             )
         })

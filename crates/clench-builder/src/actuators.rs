@@ -66,7 +66,7 @@ fn add(
     );
     if all as u64 > most {
         return Err(spec.error(format!(
-            "with it there are {all} activations, more than {most}; {RAISE}"
+            "with it the model has {all} activations, more than the maximum of {most}; {RAISE}"
         )));
     }
     let controls = model.nu()..model.nu() + controller.inputs.len();
@@ -229,14 +229,14 @@ fn activations(spec: &ActuatorSpec, controller: &Controller) -> Result<usize, Bu
 fn check_muscle(spec: &ActuatorSpec, field: &str, prm: &[f64; 10]) -> Result<(), BuildError> {
     let [low, high, _, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
     let wrong = match () {
-        () if low >= high => "its range must rise (range[0] < range[1])",
+        () if low >= high => "its range must be increasing (range[0] < range[1])",
         () if lmin >= 1.0 || lmax <= 1.0 => "lmin must be below 1 and lmax above",
         () if scale.min(vmax).min(fpmax).min(fvmax) <= 0.0 => {
             "scale, vmax, fpmax and fvmax must be positive"
         }
         () => return Ok(()),
     };
-    Err(spec.error(format!("as a muscle, {wrong} (in {field})")))
+    Err(spec.error(format!("{field} is invalid for a muscle: {wrong}")))
 }
 
 fn pulls_back(spec: &ActuatorSpec) -> bool {
@@ -283,7 +283,7 @@ fn inherit_range(
         | DynamicsKind::Muscle
         | DynamicsKind::DcMotor
         | DynamicsKind::User => {
-            return Err(spec.error("inheritrange does not know this kind of dynamics"));
+            return Err(spec.error("inheritrange does not support this kind of dynamics"));
         }
     }
     Ok(())

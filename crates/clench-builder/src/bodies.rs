@@ -128,8 +128,7 @@ fn add(
     for geom in &spec.geoms {
         match assets.uses.is_discarded(geom) {
             true if !is_world && is_needed(&builder.compiler, geom) => {
-                let message =
-                    "cannot be discarded as visual where all inertia comes from geoms of its group";
+                let message = "cannot be discarded as visual: the inertia of its body comes from geoms of its group";
                 return Err(within(geom.error(message)));
             }
             true => assets.place(geom).map(drop).map_err(within)?,
@@ -224,7 +223,7 @@ fn check_joints(spec: &BodySpec, parent: usize) -> Result<(), BuildError> {
         .skip_while(|j| j.kind != JointKind::Ball)
         .skip(1);
     if after_ball.any(|j| matches!(j.kind, JointKind::Ball | JointKind::Hinge)) {
-        return Err(spec.error("no rotation can follow a ball joint"));
+        return Err(spec.error("no hinge or ball joint can follow a ball joint"));
     }
     Ok(())
 }

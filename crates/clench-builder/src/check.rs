@@ -78,7 +78,7 @@ fn check_physics(builder: &ModelBuilder) -> Result<(), BuildError> {
     require(
         !(physics.flags.sleep && physics.integrator == Integrator::Rk4),
         "the integrator",
-        "another than RK4 where the flag sleep is on: what falls asleep between its stages would wake again",
+        "other than RK4 if the flag sleep is on: trees that fall asleep between its stages would wake up again",
     )?;
     require(
         not_negative(compiler.boundmass),

@@ -38,7 +38,7 @@ pub(super) fn controller(spec: &ActuatorSpec, first: usize) -> Result<Controller
         | GainKind::DcMotor
         | GainKind::User => {
             if spec.bias == BiasKind::So3 {
-                let reason = "so3 must be the kind of gain and bias, or of none of them";
+                let reason = "gain and bias must both be of the kind so3, or neither";
                 return Err(spec.error(reason));
             }
             if motor != [false; 3] {
@@ -61,7 +61,7 @@ fn orientation_servo(spec: &ActuatorSpec) -> Result<Controller, BuildError> {
     let inputs = spec.inputs.clone().unwrap_or_else(|| vector.clone());
     let integrates = spec.dynamics == DynamicsKind::Integrator;
     if spec.bias != BiasKind::So3 {
-        return Err(spec.error("so3 must be the kind of gain and bias, or of none of them"));
+        return Err(spec.error("gain and bias must both be of the kind so3, or neither"));
     }
     if !integrates && spec.dynamics != DynamicsKind::None {
         return Err(spec.error("a gain of the kind so3 needs an integrator, or no dynamics"));
@@ -238,7 +238,7 @@ fn inputs(
     let rises = given.windows(2).all(|pair| pair[0] < pair[1]);
     if !rises || given.iter().any(|input| !known.contains(input)) {
         return Err(spec.error(format!(
-            "its inputs must be of {known:?}, in this order, but are {given:?}"
+            "its inputs must be some of {known:?}, in this order, but are {given:?}"
         )));
     }
     Ok(given.clone())

@@ -121,7 +121,9 @@ pub(super) fn resolve_range(
     let limited = resolve_limited(element, what, said, range, autolimits)?;
     if limited && range[0] >= range[1] {
         let [low, high] = range;
-        return Err(element.error(format!("{what}range must rise, but is {low} to {high}")));
+        return Err(element.error(format!(
+            "{what}range must be increasing, but is {low} to {high}"
+        )));
     }
     Ok(limited)
 }

@@ -242,7 +242,7 @@ fn polynomial(polycoef: &[f64; 5]) -> Data {
 fn require_different(spec: &EqualitySpec, different: bool) -> Result<(), BuildError> {
     match different {
         true => Ok(()),
-        false => Err(spec.error("holds something equal to itself")),
+        false => Err(spec.error("constrains an element to itself")),
     }
 }
 

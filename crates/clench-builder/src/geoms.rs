@@ -35,7 +35,7 @@ pub(super) fn add_geom(
     let placed = assets.place(spec)?;
     let weld = &model.bodies[model.bodies[b].weld];
     if spec.kind == ShapeKind::Plane && !weld.joints.is_empty() {
-        return Err(spec.error("a plane can only stand on a body that no joint moves"));
+        return Err(spec.error("a plane can only be attached to a static body"));
     }
     let flat = matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField);
     let fluid_ellipsoid = spec.fluid_ellipsoid && !flat;

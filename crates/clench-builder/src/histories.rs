@@ -20,19 +20,19 @@ pub(super) fn add(
 ) -> Result<Option<History>, BuildError> {
     element.require_not_negative("delay", &[spec.delay])?;
     if spec.delay > 0.0 && spec.nsample == 0 {
-        return Err(element.error("a delay needs past values (nsample)"));
+        return Err(element.error("a delay needs stored past values (nsample)"));
     }
     if spec.nsample == 0 {
         return Ok(None);
     }
     if width == 0 {
-        return Err(element.error("nsample needs values to keep, and it has none"));
+        return Err(element.error("nsample needs values to store, but this element has none"));
     }
     let most = builder.budget.matrix;
     let numbers = (spec.nsample as u64).saturating_mul(width as u64 + 1);
     if numbers.saturating_add(model.nhistory as u64) > most {
         return Err(element.error(format!(
-            "with it there are more than {most} past numbers; {RAISE}"
+            "with it the model stores more than {most} past values; {RAISE}"
         )));
     }
     let history = History {

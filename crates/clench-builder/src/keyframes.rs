@@ -66,7 +66,7 @@ fn complete(
     }
     if !values.len().is_multiple_of(group) {
         return Err(spec.error(format!(
-            "{field} has {} numbers, which is no multiple of {group}",
+            "{field} has {} numbers, which is not a multiple of {group}",
             values.len()
         )));
     }

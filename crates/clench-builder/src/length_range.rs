@@ -175,14 +175,14 @@ impl<'a> Search<'a> {
         let advice = "limit its joints, give lengthrange, or change <lengthrange> of the compiler";
         if size.is_nan() || size <= 0.0 {
             return Err(spec.error(format!(
-                "its length was found to range over {range:?}, which does not rise: {advice}"
+                "the computed range of its length, {range:?}, is not increasing: {advice}"
             )));
         }
         for [low, high] in [shortest, longest] {
             if high - low > self.settings.tolrange * size {
                 return Err(spec.error(format!(
-                    "its length did not settle while its range was looked for: it still went from {low} to {high} at the end, \
-                     and the range is {range:?}: {advice}"
+                    "its length did not converge in the search for its range {range:?}: at the end it still varied from {low} to \
+                     {high}: {advice}"
                 )));
             }
         }

@@ -31,7 +31,7 @@ pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
     light.require_finite("colour", [ambient, diffuse, specular].as_flattened())?;
     match light.dir.norm() > 0.0 {
         true => Ok(()),
-        false => Err(light.error("dir is no direction: it is zero")),
+        false => Err(light.error("dir must not be zero")),
     }
 }
 

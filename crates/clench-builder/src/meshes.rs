@@ -112,7 +112,7 @@ fn check(spec: &MeshSpec) -> Result<(), BuildError> {
     let missing = |&c: &u32| c as usize >= spec.vertices.len();
     for (number, face) in spec.faces.iter().enumerate() {
         if let Some(vertex) = face.iter().copied().find(missing) {
-            let message = format!("face {number} names vertex {vertex}, which is not there");
+            let message = format!("face {number} refers to vertex {vertex}, which does not exist");
             return Err(spec.error(message));
         }
     }
@@ -120,7 +120,7 @@ fn check(spec: &MeshSpec) -> Result<(), BuildError> {
     if !spec.tangents.is_empty() && spec.tangents.len() != spec.vertices.len() {
         let counts = (spec.tangents.len(), spec.vertices.len());
         return Err(spec.error(format!(
-            "has tangents at {} of {} vertices",
+            "has {} tangents for {} vertices",
             counts.0, counts.1
         )));
     }
@@ -141,13 +141,13 @@ fn check_texcoords(spec: &MeshSpec) -> Result<(), BuildError> {
     if corners == 0 && places > 0 && places != spec.vertices.len() {
         let count = spec.vertices.len();
         return Err(spec.error(format!(
-            "{places} texture coordinates do not fit {count} vertices"
+            "{places} texture coordinates do not match {count} vertices"
         )));
     }
     if corners > 0 && corners != spec.faces.len() {
         let count = spec.faces.len();
         return Err(spec.error(format!(
-            "texture coordinates of {corners} triangles do not fit {count} triangles"
+            "texture coordinates of {corners} triangles do not match {count} triangles"
         )));
     }
     let missing = |&c: &u32| c as usize >= places;
@@ -180,8 +180,8 @@ fn check_sides(spec: &MeshSpec) -> Result<(), BuildError> {
     match halves.windows(2).find(|pair| pair[0] == pair[1]) {
         None => Ok(()),
         Some(pair) => Err(spec.error(format!(
-            "its faces do not agree on where outside is: see those with the vertices {} and {} \
-             (inertia \"convex\" or \"legacy\" do not ask for it)",
+            "its faces are not oriented consistently: see those with the vertices {} and {} (inertia \"convex\" and \"legacy\" do \
+             not require it)",
             pair[0].0, pair[0].1
         ))),
     }
@@ -262,7 +262,7 @@ fn weigh(
     if measure.is_nan() || measure < NEGLIGIBLE {
         return Err(spec.error(match measure < 0.0 {
             true => "its volume is negative: its triangles face inwards",
-            false => "its volume is too small (inertia \"shell\" asks for none)",
+            false => "its volume is too small (inertia \"shell\" needs none)",
         }));
     }
     let (inertia, measure) = solid(weighed).inertia(pos);

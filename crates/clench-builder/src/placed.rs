@@ -200,7 +200,7 @@ impl<'a> PlacedGeom<'a> {
         if self.spec.kind == ShapeKind::Mesh {
             if self.spec.shellinertia {
                 return Err(self.spec.error(
-                    "shellinertia is for other shapes; a mesh says itself that it is a shell",
+                    "shellinertia is not for meshes: set inertia=\"shell\" of the mesh asset",
                 ));
             }
             self.size = mesh.reach();

@@ -24,7 +24,7 @@ impl<'a> Names<'a> {
         for (index, element) in elements.into_iter().enumerate() {
             let name = element.name();
             if !name.is_empty() && indices.insert(name, index).is_some() {
-                return Err(element.error("this name is taken already"));
+                return Err(element.error("this name is already in use"));
             }
         }
         Ok(Names {

@@ -35,7 +35,7 @@ pub(super) fn add_all(
         if let (SensorKind::Touch, &SensorTarget::Element(site)) = (spec.kind, &target)
             && model.sites[site].kind == ShapeKind::Mesh
         {
-            return Err(spec.error("touch cannot be felt in the volume of a mesh"));
+            return Err(spec.error("a touch sensor cannot use the volume of a mesh"));
         }
         let data = match spec.subject {
             SensorSubject::User(_, data) => data,
@@ -59,13 +59,17 @@ pub(super) fn add_all(
         let searched = spec.kind.attachment() == Attachment::Geoms;
         let turns = matches!(data, SensorData::Axis | SensorData::Quaternion);
         if spec.cutoff > 0.0 && turns && !searched {
-            return Err(spec.error("a direction or an orientation has no cutoff"));
+            return Err(
+                spec.error("a sensor of a direction or an orientation cannot have a cutoff")
+            );
         }
         let history = histories::add(builder, spec, spec.history, dim, model)?;
         let [period, phase] = spec.interval;
         spec.require_not_negative("interval", &[period])?;
         if phase > 0.0 || (period > 0.0 && phase <= -period) {
-            return Err(spec.error("the phase of an interval is within one period before zero"));
+            return Err(
+                spec.error("the phase of an interval must be within one period before zero")
+            );
         }
         model.params.sensor_delay.push(spec.history.delay);
         model.params.sensor_interval.push(period);
@@ -136,7 +140,9 @@ fn target(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
         }
         (Attachment::Frame | Attachment::WorldFrame, Of::Frame { object, reference }) => {
             if attachment == Attachment::WorldFrame && reference.is_some() {
-                return Err(spec.error("is measured in the world: it has no reference frame"));
+                return Err(
+                    spec.error("is measured in the world frame: it cannot have a reference frame")
+                );
             }
             let find = |name: &FrameName| frame(spec, names, name);
             Ok(SensorTarget::Frame {
@@ -204,7 +210,7 @@ fn inside(spec: &SensorSpec, names: &AllNames, model: &Model) -> Result<SensorTa
     let object = frame(spec, names, object)?;
     if *enclosed {
         if let FrameObject::Camera(_) = object {
-            return Err(spec.error("a camera has no extent that could be enclosed"));
+            return Err(spec.error("a camera has no volume that could be enclosed"));
         }
         let is_body = matches!(object, FrameObject::Inertial(_) | FrameObject::Body(_));
         if is_body && object.enclosed_geoms(model).next().is_none() {
@@ -242,7 +248,7 @@ fn require_bounded(
 ) -> Result<(), BuildError> {
     match kind {
         ShapeKind::Plane | ShapeKind::HeightField => Err(spec.error(format!(
-            "the {element} \"{name}\" is not a bounded convex shape, of which alone can be told whether it is enclosed"
+            "the {element} \"{name}\" is not a bounded convex shape; only such shapes can be tested for enclosure"
         ))),
         ShapeKind::Sphere | ShapeKind::Capsule | ShapeKind::Ellipsoid | ShapeKind::Cylinder | ShapeKind::Box | ShapeKind::Mesh => Ok(()),
     }
@@ -261,7 +267,7 @@ fn ray_source(
             Ok(RaySource::Camera(camera))
         }
         FrameObject::Inertial(_) | FrameObject::Body(_) | FrameObject::Geom(_) => {
-            Err(spec.error("its rays must go out from a site or a camera"))
+            Err(spec.error("its rays must start at a site or a camera"))
         }
     }
 }

@@ -72,9 +72,9 @@ pub(super) fn add_trees(
         }
         for tree in trees {
             if let SleepPolicy::Allowed | SleepPolicy::Init = model.trees[tree].sleep {
-                return Err(spec.error(
-                    "pulls on several trees, of which one that may sleep would not notice",
-                ));
+                return Err(
+                    spec.error("acts on several trees and would not wake one of them that sleeps")
+                );
             }
             keep_awake(&mut model.trees[tree]);
         }
@@ -126,7 +126,7 @@ fn tree_of_root(model: &Model, body: usize) -> Option<usize> {
 }
 
 fn not_a_root(spec: &BodySpec) -> BuildError {
-    spec.error("has a sleep policy, which only the moving root of a tree can have")
+    spec.error("has a sleep policy, but is not the moving root of a tree")
 }
 
 /// Deactivates the trees that begin asleep. Islands sleep as a whole: if one tree of an island begins awake, all do,
@@ -170,8 +170,8 @@ pub(super) fn begin_asleep(model: &mut Model) -> Result<(), BuildError> {
         if restless {
             let root = tree.bodies.start;
             let name = describe(&model.bodies[root].name, root);
-            let why = "something that it touches or that is coupled to it does not begin asleep";
-            model.notes.push(format!("{name} begins awake: {why}"));
+            let why = "a tree that it touches or is coupled to starts awake";
+            model.notes.push(format!("{name} starts awake: {why}"));
         }
     }
     Ok(())

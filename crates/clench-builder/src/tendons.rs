@@ -33,7 +33,7 @@ pub(super) fn add_all(
             return Err(spec.error("actuatorfrcrange must contain 0"));
         }
         if spec.springlength.is_some_and(|[low, high]| low > high) {
-            return Err(spec.error("springlength must not fall"));
+            return Err(spec.error("springlength must not be decreasing"));
         }
         let yields = spec.springyield > 0.0;
         let plastic = yields.then_some(model.nplastic);
@@ -51,7 +51,7 @@ pub(super) fn add_all(
             user: Arc::clone(&spec.user),
         };
         if spec.armature > 0.0 && tendon.has_obstacles() {
-            return Err(spec.error("a tendon that goes around geoms cannot have an armature"));
+            return Err(spec.error("a tendon that wraps around geoms cannot have an armature"));
         }
         let dofs = dofs(&tendon, model);
         model.tendon_dofs.push(dofs);
@@ -82,7 +82,7 @@ fn path(spec: &TendonSpec, names: &AllNames, model: &Model) -> Result<Vec<Wrap>,
                 let kind = model.geoms[geom].kind;
                 if !matches!(kind, ShapeKind::Sphere | ShapeKind::Cylinder) {
                     return Err(spec.error(format!(
-                        "goes around the geom \"{name}\", which must be a sphere or a cylinder"
+                        "wraps around the geom \"{name}\", which must be a sphere or a cylinder"
                     )));
                 }
                 let side = side.as_ref().map(|name| names.sites.find(name, spec));
@@ -106,13 +106,13 @@ fn path(spec: &TendonSpec, names: &AllNames, model: &Model) -> Result<Vec<Wrap>,
 fn check_order(spec: &TendonSpec, path: &[Wrap]) -> Result<(), BuildError> {
     let joints = path.iter().filter(|w| matches!(w, Wrap::Joint(_))).count();
     if path.is_empty() {
-        return Err(spec.error("has nothing that it could be made of: no joint and no site"));
+        return Err(spec.error("has neither joints nor sites"));
     }
     if joints == path.len() {
         return Ok(());
     }
     if joints > 0 {
-        return Err(spec.error("must be made of joints, or pass sites and geoms, but not both"));
+        return Err(spec.error("must consist of joints, or of sites and geoms, but not of both"));
     }
     for branch in path
         .split(|wrap| *wrap == Wrap::Pulley)
@@ -121,13 +121,13 @@ fn check_order(spec: &TendonSpec, path: &[Wrap]) -> Result<(), BuildError> {
         let is_site = |wrap: &Wrap| matches!(wrap, Wrap::Site(_));
         match branch {
             [] => return Err(spec.error("has a pulley that starts no branch")),
-            [_] => return Err(spec.error("has a branch of one element; a branch joins two sites")),
+            [_] => return Err(spec.error("has a branch of one element; a branch needs two sites")),
             _ => {}
         }
         let mut ends = [branch.first(), branch.last()].into_iter().flatten();
         let separated = branch.windows(2).all(|pair| pair.iter().any(is_site));
         if !ends.all(is_site) || !separated {
-            return Err(spec.error("goes around a geom that does not stand between two sites"));
+            return Err(spec.error("wraps around a geom that is not between two sites"));
         }
         if branch.windows(2).any(|pair| pair[0] == pair[1]) {
             return Err(spec.error("passes a site twice in a row"));

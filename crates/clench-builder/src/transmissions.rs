@@ -23,9 +23,9 @@ pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission
             reference,
         } if turns => Transmission::RotationInFrame([site(name)?, site(reference)?]),
         _ if turns => {
-            return Err(spec.error(
-                "an orientation servo turns a ball joint, or a site in the frame of a refsite",
-            ));
+            return Err(
+                spec.error("an orientation servo needs a ball joint, or a site with a refsite")
+            );
         }
         TransmissionSpec::Joint(name) => Transmission::Joint(names.joints.find(name, spec)?),
         TransmissionSpec::JointInParent(name) => {

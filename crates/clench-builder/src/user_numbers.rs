@@ -43,7 +43,7 @@ fn width<'a, E: Element + 'a>(
         match given {
             Some(width) if count > width => {
                 return Err(element.error(format!(
-                    "user has {count} numbers, more than the {width} of every {}",
+                    "user has {count} numbers, more than the {width} that each {} has",
                     E::KIND
                 )));
             }
@@ -65,7 +65,7 @@ pub(super) fn pad(builder: &ModelBuilder, model: &mut Model) -> Result<(), Build
         let bytes = (8 * rows.len() as u64).saturating_mul(width as u64);
         left = left.checked_sub(bytes).ok_or_else(|| {
             let message = format!(
-                "its users' numbers would take more than {} bytes; {RAISE}",
+                "its user data would take more than {} bytes; {RAISE}",
                 builder.budget.bytes
             );
             BuildError::new("model", message)

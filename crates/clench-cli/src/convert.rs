@@ -8,7 +8,7 @@ use clench::SaveModel;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Writes a model as an MJCF file that stands alone: every number resolved, explicit inertials, meshes and height
+/// Writes a model as a self-contained MJCF file: every number resolved, explicit inertials, meshes and height
 /// fields in the file. It loads to the same model, here and in MuJoCo.
 #[derive(Args)]
 pub(crate) struct Arguments {

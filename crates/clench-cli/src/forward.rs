@@ -7,12 +7,12 @@ use clap::Args;
 use std::io::{self, BufRead, BufWriter, Write};
 
 /// Each line of standard input is a state: an object with any of `qpos`, `qvel`, `act`, `ctrl`, `qfrc_applied`,
-/// `xfrc_applied` (force, torque a body), `mocap_pos`, `mocap_quat`, `eq_active`, `time`, `qacc_warmstart`; what is
-/// missing keeps the model's default. With `contacts` (the fields of MuJoCo's mjContact) collision detection is
-/// replaced. Each line of standard output is the result for that state.
+/// `xfrc_applied` (force, torque per body), `mocap_pos`, `mocap_quat`, `eq_active`, `time`, `qacc_warmstart`; missing
+/// fields have the model's default. `contacts` (the fields of MuJoCo's mjContact) replaces collision detection. Each
+/// line of standard output is the result for that state.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Add the constraint Jacobian, a row a constraint
+    /// Add the constraint Jacobian, one row per constraint row
     #[arg(long)]
     jacobian: bool,
     /// Add the mass matrix

@@ -11,11 +11,11 @@ use clench::rigid::readout::{ConstraintRow, constraint_rows, contact_rows};
 use clench::{Model, Sim};
 use std::io::{self, Write};
 
-/// Prints a model's sizes, its tree of bodies, the options in force, and a table of the active constraints with their
+/// Prints a model's sizes, its tree of bodies, the effective options, and a table of the active constraints with their
 /// forces, violations and impedances.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Step this often before looking at the constraints
+    /// Number of steps before the constraints are listed
     #[arg(long, value_name = "N", default_value_t = 0)]
     steps: usize,
     /// List the contacts too: geoms, distance, position, frame and forces
@@ -150,7 +150,7 @@ fn print_constraints(out: &mut impl Write, sim: &Sim) -> io::Result<()> {
         sim.state.time
     )?;
     if sim.contact_overflow() {
-        writeln!(out, "  contacts beyond --max-contacts are left out")?;
+        writeln!(out, "  contacts beyond --max-contacts are omitted")?;
     }
     if rows.is_empty() {
         return Ok(());

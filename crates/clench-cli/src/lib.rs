@@ -48,13 +48,13 @@ struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   clench view models/humanoid.xml
-      see a robot move in the browser, and pull it about
+      show a moving robot in the browser, and drag it
   clench simulate models/humanoid.xml --time 2
       step a robot for two seconds and summarise what happened
   clench simulate models/pendulum.xml --steps 500 --record swing.npz --every 5
-      keep every fifth state as NumPy arrays
+      record every fifth state as NumPy arrays
   clench simulate models/humanoid.xml --envs 1024 --noise 0.01 --precision 32
-      step many robots side by side, in single precision
+      step many robots in a batch, in single precision
   echo '{}' | clench forward models/quadruped.xml
       accelerations, contacts and constraint forces of the initial state, as JSON
   clench inspect models/four_bar.xml --steps 100
@@ -64,9 +64,9 @@ Examples:
 
 #[derive(Subcommand)]
 enum Command {
-    /// See a model move in the browser, and touch it
+    /// Show a simulation in the browser, and interact with it
     View(view::Arguments),
-    /// Draw a picture or a film of a model, without a window
+    /// Render an image or a video of a model, without a window
     Render(render::Arguments),
     /// Step a model through time and summarise the run
     Simulate(simulate::Arguments),
@@ -76,10 +76,10 @@ enum Command {
     Inspect(inspect::Arguments),
     /// Write a model as MJCF, with every number resolved
     Convert(convert::Arguments),
-    /// List the graphics devices that `simulate --device gpu` can step on
+    /// List the GPUs for `simulate --device gpu`
     #[command(long_flag = "list-devices")]
     Devices,
-    /// Say what of MJCF is read, what is ignored, and what is refused
+    /// List the parts of MJCF that are read, ignored and refused
     Mjcf(mjcf::Arguments),
 }
 
@@ -111,6 +111,6 @@ pub fn main() -> ExitCode {
 fn without(feature: &str, does: &str) -> anyhow::Error {
     anyhow::anyhow!(
         "this program was built without the feature `{feature}`, which {does}; `cargo run --release --features {feature} -- ...` \
-         builds one that has it, in about two minutes more on two cores"
+         builds one with it, which takes about two more minutes on two cores"
     )
 }

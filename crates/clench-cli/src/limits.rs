@@ -22,7 +22,7 @@ pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
     let steps = (time / timestep).round();
     ensure!(
         steps < MAX_STEPS,
-        "--time: {time} s in steps of {timestep} s are {steps:.3e} steps, more than the {MAX_STEPS:.0e} that can be taken"
+        "--time: {time} s in steps of {timestep} s are {steps:.3e} steps, more than the maximum of {MAX_STEPS:.0e}"
     );
     Ok(steps as usize)
 }
@@ -30,7 +30,7 @@ pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
 /// The memory limit of arrays.
 #[derive(Args)]
 pub struct MemoryArguments {
-    /// Most memory that each array file read, and the record, may take, in gigabytes
+    /// Maximum memory of each input array, and of the record, in gigabytes
     #[arg(long, value_name = "GB", default_value_t = DEFAULT_MEMORY, value_parser = positive)]
     max_memory: f64,
 }

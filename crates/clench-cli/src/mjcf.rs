@@ -6,11 +6,11 @@ use clench::formats::supported;
 use std::io::{self, Write};
 
 /// Prints each element of MJCF with the attributes that are read, those that are accepted without effect on motion,
-/// those that are refused (`name=value`: unless they have that value, which does nothing), and the elements that may
-/// stand in it.
+/// those that are refused (`name=value`: unless they have that value, which has no effect), and the elements that it
+/// may contain.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Only this element; `parent/name` where the parent gives it a meaning of its own
+    /// Only this element; `parent/name` if its meaning depends on the parent
     element: Option<String>,
 }
 

@@ -81,20 +81,20 @@ fn read(path: &Path, width: usize, limit: MemoryLimit) -> Result<Rows> {
 
 /// Reads the header text, which describes the numbers.
 fn read_header(file: &mut impl Read) -> Result<String> {
-    let cut = "the file is no NumPy array: it ends before its header does";
+    let cut = "the file is not a NumPy array: it ends within its header";
     let mut start = [0; MAGIC.len() + 2];
     file.read_exact(&mut start).context(cut)?;
     let (magic, version) = start.split_at(MAGIC.len());
     ensure!(
         magic == MAGIC,
-        "the file is no NumPy array: its first bytes are others"
+        "the file is not a NumPy array: it does not start with \\x93NUMPY"
     );
     let mut length = [0; 4];
     let digits = match version {
         [1, 0] => &mut length[..2],
         [2 | 3, 0] => &mut length[..],
         _ => bail!(
-            "version {}.{} of the format is not known",
+            "version {}.{} of the format is not supported",
             version[0],
             version[1]
         ),
@@ -122,7 +122,7 @@ struct Header<'a> {
 impl<'a> Header<'a> {
     fn parse(text: &'a str) -> Result<Self> {
         let (mut descr, mut by_columns, mut shape) = (None, None, None);
-        let pairs = between(text, '{', '}').context("its header is no dictionary in brackets")?;
+        let pairs = between(text, '{', '}').context("its header is not a dictionary in braces")?;
         for pair in parts(pairs) {
             let (key, value) = (pair.split_once(':')).with_context(|| {
                 format!("its header has {pair} where a key and a value should be")
@@ -133,7 +133,7 @@ impl<'a> Header<'a> {
                 (Some("fortran_order"), "False") => by_columns = Some(false),
                 (Some("fortran_order"), "True") => by_columns = Some(true),
                 (Some("shape"), _) => shape = Some(lengths(value)?),
-                _ => bail!("its header has {pair}, which means nothing in an array"),
+                _ => bail!("its header has the unknown entry {pair}"),
             }
         }
         Ok(Header {
@@ -159,7 +159,7 @@ fn lengths(tuple: &str) -> Result<Vec<u64>> {
         let lengths = parts(inside).into_iter().map(str::parse);
         lengths.collect::<Result<_, _>>().ok()
     });
-    lengths.with_context(|| format!("its shape {tuple} is not whole numbers in brackets"))
+    lengths.with_context(|| format!("its shape {tuple} is not a tuple of integers"))
 }
 
 /// Splits at commas outside of brackets and quotes. The text may end with a comma.
@@ -325,8 +325,8 @@ mod tests {
     #[test]
     fn what_is_wrong_with_a_header_is_said() {
         for (text, complaint) in [
-            ("", "no dictionary"),
-            ("{'descr': '<f8'", "no dictionary"),
+            ("", "not a dictionary"),
+            ("{'descr': '<f8'", "not a dictionary"),
             ("{'descr': '<f8', 'shape': (1,)}", "'fortran_order'"),
             ("{'descr': '<f8', 'fortran_order': False}", "'shape'"),
             ("{'fortran_order': False, 'shape': (1,)}", "'descr'"),

@@ -14,16 +14,16 @@ pub(crate) struct ModelFile {
     /// Model file (MJCF or URDF)
     #[arg(help_heading = "Arguments")]
     pub model: PathBuf,
-    /// Allow the model this many times the usual memory and work
+    /// Multiply the default limits of memory and work of the model by this factor
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     budget: f64,
-    /// A folder that holds packages, of which URDF files name meshes by `package://`; may be repeated
+    /// A folder of packages, for meshes that URDF files name by `package://`; may be repeated
     #[arg(long, value_name = "FOLDER")]
     package_path: Vec<PathBuf>,
-    /// Free the base of a URDF robot, which its file fixes to the world
+    /// Add a free joint to the base of a URDF robot, which its file fixes to the world
     #[arg(long)]
     floating: bool,
-    /// Leave out of an MJCF model what is not supported yet and what the rest can do without, and say what
+    /// Omit unsupported elements and attributes of an MJCF model that the others do not depend on, and list them
     #[arg(long)]
     ignore_unsupported: bool,
 }
@@ -53,7 +53,7 @@ impl ModelFile {
             tell(format_args!("note: {note}"));
         }
         for left_out in &model.left_out {
-            tell(format_args!("left out: {left_out}"));
+            tell(format_args!("omitted: {left_out}"));
         }
         Ok(model)
     }

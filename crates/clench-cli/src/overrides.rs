@@ -72,7 +72,7 @@ fn value_name(default: OptionValue) -> &'static str {
     match default {
         OptionValue::Count(_) | OptionValue::Limit(_) => "N",
         OptionValue::Number(_) => "X",
-        _ => "WORD",
+        _ => "NAME",
     }
 }
 

@@ -22,15 +22,15 @@ const AT_FIRST: usize = 16;
 /// The share of the frame interval that steps may take.
 const STEPPING: f64 = 0.8;
 
-/// Steps the model in real time and shows it in the browser: bodies, contacts, forces, and how the solver does. There
-/// one can pause, step, go back, pull bodies, set controls, and change the solver's options.
+/// Steps the model in real time and shows it in the browser: bodies, contacts, forces, and statistics of the solver. In
+/// the browser you can pause, step, go back, pull bodies, set controls, and change the solver's options.
 #[derive(Args)]
 #[command(after_help = DETAILS)]
 pub(crate) struct Arguments {
     /// Do not open a browser; the address is printed in any case
     #[arg(long)]
     no_open: bool,
-    /// Port to listen at [default: any that is free]
+    /// Port to listen on [default: any free port]
     #[arg(
         long,
         value_name = "PORT",
@@ -38,13 +38,13 @@ pub(crate) struct Arguments {
         hide_default_value = true
     )]
     port: u16,
-    /// Address to listen at; another one lets other machines in that know the token
+    /// Address to listen on; a non-local address admits other machines that know the token
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
     host: String,
-    /// Stand still at first
+    /// Start paused
     #[arg(long)]
     paused: bool,
-    /// Show N environments: one of them, or up to 64 side by side; they differ by --noise or --states
+    /// Show N environments: one of them, or up to 64 side by side; --noise or --states makes them differ
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     envs: Option<u32>,
 
@@ -63,10 +63,10 @@ pub(crate) struct Arguments {
 const TOKEN: &str = "CLENCH_VIEW_TOKEN";
 
 const DETAILS: &str = "\
-The address holds a random token, without which nobody is let in. One of your own, of 16 to 128 letters, digits, - and _ in the
-environment variable CLENCH_VIEW_TOKEN, lets an open page find a viewer again that is started anew at the same --port.
-On a remote machine: `ssh -L 8000:127.0.0.1:8000 machine` here, `clench view MODEL --no-open --port 8000` there, and open the
-printed address here. Ctrl-C ends it.";
+The address contains a random token, which is required for access. If the environment variable CLENCH_VIEW_TOKEN sets the token
+(16 to 128 letters, digits, - and _), an open page reconnects to a viewer that is restarted on the same --port.
+To view a remote machine, run `ssh -L 8000:127.0.0.1:8000 machine` here and `clench view MODEL --no-open --port 8000` there, and
+open the printed address here. Ctrl-C ends the viewer.";
 
 /// Shows the model until a signal arrives.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
@@ -136,7 +136,7 @@ fn play<V: Stepped>(mut player: Player<V>, server: &Server, interrupt: &Interrup
             match player.frame() {
                 Ok(frame) => server.publish(frame),
                 // Users can still rewind or reset.
-                Err(error) => server.tell(&format!("nothing to show: {error}")),
+                Err(error) => server.tell(&format!("the state cannot be shown: {error}")),
             }
         }
         sleep(period.saturating_sub(now.elapsed()));

@@ -34,7 +34,7 @@ fn output(mut command: Command) -> Option<Output> {
         return None;
     }
     let done = command.output().unwrap();
-    if wish != "require" && errors(&done).contains("no device that draws") {
+    if wish != "require" && errors(&done).contains("no device to render on") {
         eprintln!("skipped: {}", errors(&done));
         return None;
     }

@@ -71,4 +71,4 @@ impl Budget {
 
 /// The end of each message: how to raise the limit.
 pub const RAISE: &str =
-    "if that is meant, load the model with a larger budget (`Budget`, `budget=` or `--budget`)";
+    "if this is intended, load the model with a larger budget (`Budget`, `budget=` or `--budget`)";

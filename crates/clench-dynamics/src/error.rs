@@ -52,7 +52,7 @@ pub enum SimError {
         range: &'static str,
     },
     /// A parameter cannot be set because it follows from another.
-    #[error("{field} follows from {other}: set that")]
+    #[error("{field} is computed from {other}: set {other} instead")]
     Follows {
         /// The parameter that was set.
         field: &'static str,
@@ -109,25 +109,23 @@ pub enum SimError {
     Backend(String),
     /// A multi-threaded batch or simulation is used in a forked process: a fork does not copy threads.
     #[error(
-        "the threads are of the process that they were started in, which forked: make a batch, or set the threads of a simulation, in \
+        "the threads belong to the process that started them, which forked: create a batch, or set the threads of a simulation, in \
          each process"
     )]
     Forked,
     /// All slots for constraints at run time are taken.
     #[error(
-        "all {most} slots for constraints at run time are taken: remove one, or give the model a larger max_dynamic_constraints"
+        "all {most} slots for constraints at run time are in use: remove one, or give the model a larger max_dynamic_constraints"
     )]
     NoFreeSlot {
         /// The number of slots.
         most: usize,
     },
     /// The handle is of a constraint that was removed, or that this state does not have.
-    #[error(
-        "this constraint is not there: it was removed, or the state is one that does not have it"
-    )]
+    #[error("this constraint does not exist: it was removed, or this state does not contain it")]
     StaleConstraint,
     /// Bodies or an equality cannot be constrained as requested.
-    #[error("{what} cannot be held so: {reason}")]
+    #[error("{what} cannot be constrained: {reason}")]
     CannotHold {
         /// The object to be constrained.
         what: String,
@@ -135,18 +133,18 @@ pub enum SimError {
         reason: &'static str,
     },
     /// The geom is not a height field.
-    #[error("geom {geom} is no height field")]
+    #[error("geom {geom} is not a height field")]
     NoHeightField {
         /// The geom.
         geom: usize,
     },
     /// Discrete inverse dynamics are undefined for an integrator whose steps have no single acceleration.
     #[error(
-        "the integrator RK4 has no discrete acceleration: it mixes those of four states (choose Euler, implicit or implicitfast)"
+        "the integrator RK4 has no discrete acceleration: it combines those of four states (choose Euler, implicit or implicitfast)"
     )]
     NoDiscreteInverse,
     /// A contact that the user provided is invalid.
-    #[error("given contact {index}: {reason}")]
+    #[error("provided contact {index}: {reason}")]
     Contact {
         /// The index of the contact.
         index: usize,
@@ -196,7 +194,7 @@ pub enum Fault {
     },
     /// The mass matrix of the configuration is not positive definite.
     #[error(
-        "at t = {time} s the mass matrix is not positive definite{}: some dof moves no mass, or the state has diverged",
+        "at t = {time} s the mass matrix is not positive definite{}: a dof moves no mass, or the state has diverged",
         at(place)
     )]
     Singular {
@@ -246,8 +244,8 @@ pub enum Fault {
     },
     /// A device terminated a step early, as Mesa's software device does after 65,535 iterations of loops.
     #[error(
-        "in the step from t = {time} s the device ended a loop before its end (Mesa's software device grants 65,535 turns): a card or the \
-         processor can do it"
+        "in the step from t = {time} s the device terminated a loop early (Mesa's software device stops after 65,535 iterations): \
+         use a GPU or the processor"
     )]
     Unfinished {
         /// Time of the last good state, s.

@@ -23,7 +23,7 @@ pub fn encode(bytes: &[u8]) -> String {
 /// Returns a message if the text is invalid.
 pub fn decode(text: &str) -> Result<Vec<u8>, String> {
     if !text.len().is_multiple_of(4) {
-        return Err(format!("{} letters are no multiple of 4", text.len()));
+        return Err(format!("{} characters are not a multiple of 4", text.len()));
     }
     let ends = ["==", "="];
     let stripped = ends.iter().find_map(|end| text.strip_suffix(end));
@@ -33,13 +33,13 @@ pub fn decode(text: &str) -> Result<Vec<u8>, String> {
         let mut word = 0;
         for (k, &letter) in four.iter().enumerate() {
             let value = value(letter);
-            let value = value.ok_or_else(|| format!("letter {} is wrong", 4 * index + k))?;
+            let value = value.ok_or_else(|| format!("character {} is invalid", 4 * index + k))?;
             word |= u32::from(value) << (18 - 6 * k);
         }
         let [_, three @ ..] = word.to_be_bytes();
         let (whole, rest) = three.split_at(four.len() - 1);
         if rest.iter().any(|&byte| byte != 0) {
-            return Err("it ends within a byte".to_owned());
+            return Err("the last byte is incomplete".to_owned());
         }
         bytes.extend_from_slice(whole);
     }
@@ -83,15 +83,15 @@ mod tests {
     #[test]
     fn other_texts_are_refused() {
         for (text, complaint) in [
-            ("Zg", "2 letters"),
-            ("Zg=", "3 letters"),
-            ("Zh==", "within a byte"),
-            ("Z===", "letter 1 "),
-            ("====", "letter 0 "),
-            ("Zm=v", "letter 2 "),
-            ("Zm9v\n\n\n\n", "letter 4 "),
-            ("Zm9é", "5 letters"),
-            ("Zmé", "letter 2 "),
+            ("Zg", "2 characters"),
+            ("Zg=", "3 characters"),
+            ("Zh==", "last byte"),
+            ("Z===", "character 1 "),
+            ("====", "character 0 "),
+            ("Zm=v", "character 2 "),
+            ("Zm9v\n\n\n\n", "character 4 "),
+            ("Zm9é", "5 characters"),
+            ("Zmé", "character 2 "),
         ] {
             let error = decode(text).expect_err(text);
             assert!(error.contains(complaint), "{text}: {error}");

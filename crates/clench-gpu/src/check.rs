@@ -30,24 +30,24 @@ macro_rules! rules {
 
 rules! {
     "a model without degrees of freedom has nothing to step": |s| (s.model.nv == 0).then(|| "model".to_owned());
-    "the integrator `discrete` is not there yet; `Euler`, `implicitfast`, `implicit` and `RK4` are": |s| {
+    "the integrator `discrete` is not supported yet; `Euler`, `implicitfast`, `implicit` and `RK4` are": |s| {
         (s.model.integrator == Integrator::Discrete).then(|| "option integrator".to_owned())
     };
-    "environments do not start over by themselves yet: look at the statuses": |s| {
+    "environments are not reset automatically yet: check the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
-    "only the convex contact model is there yet": |s| {
+    "only the convex contact model is supported yet": |s| {
         let coulomb = s.settings.contact_model == ContactModel::Coulomb;
         coulomb.then(|| "option contact_model".to_owned())
     };
-    "sleep is not there yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
-    "a sensor of this kind is not read yet, so that it can have no delay": |s| {
+    "sleep is not supported yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
+    "a sensor of this kind is not supported yet, so it cannot have a delay": |s| {
         let late = |(_, sensor): &(usize, &Sensor)| sensor.history.is_some();
         let mut late = s.model.sensors.iter().enumerate().filter(late);
         let (i, sensor) = late.find(|(_, sensor)| !is_read(s.model, sensor))?;
         Some(named(&format!("{} sensor", sensor.kind.name()), &sensor.name, i))
     };
-    "the contacts of these two kinds of shape are not there yet": |s| {
+    "contacts between these two kinds of shape are not supported yet": |s| {
         let unknown = |c: &&Candidate| points_of_pair(c.kinds) == 0;
         let candidate = s.candidates.iter().find(unknown)?;
         let [a, b] = candidate.geoms.map(|g| geom_name(s.model, g as usize));

@@ -25,7 +25,7 @@ impl Clock {
         if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Err(GpuError::Unusable {
                 device: device.info.name.clone(),
-                reason: "it has no clock by which kernels can be timed".to_owned(),
+                reason: "it has no timestamps to measure kernels".to_owned(),
             });
         }
         let descriptor = wgpu::QuerySetDescriptor {

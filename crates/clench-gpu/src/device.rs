@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 pub struct DeviceInfo {
     /// The name that the driver reports.
     pub name: String,
-    /// The kind: GPU, part of the processor, or software.
+    /// The kind: GPU, integrated GPU, virtual GPU, or software.
     pub kind: String,
     /// The API, such as Vulkan, and the driver.
     pub driver: String,
@@ -38,9 +38,9 @@ fn describe(adapter: &wgpu::Adapter) -> DeviceInfo {
     let info = adapter.get_info();
     let software = info.device_type == wgpu::DeviceType::Cpu;
     let kind = match info.device_type {
-        wgpu::DeviceType::DiscreteGpu => "card",
-        wgpu::DeviceType::IntegratedGpu => "part of the processor",
-        wgpu::DeviceType::VirtualGpu => "virtual card",
+        wgpu::DeviceType::DiscreteGpu => "GPU",
+        wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+        wgpu::DeviceType::VirtualGpu => "virtual GPU",
         wgpu::DeviceType::Cpu => "software",
         wgpu::DeviceType::Other => "of unknown kind",
     };

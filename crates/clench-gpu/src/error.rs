@@ -45,7 +45,7 @@ pub enum GpuError {
     },
     /// Double precision was requested, but the device does not support it.
     #[error(
-        "the graphics device \"{device}\" has no double precision: take single precision, or the processor"
+        "the graphics device \"{device}\" has no double precision: use single precision, or the processor"
     )]
     NoDoublePrecision {
         /// The device's name.
@@ -53,7 +53,7 @@ pub enum GpuError {
     },
     /// The device was lost, or its driver failed.
     #[error(
-        "the graphics device \"{device}\" was lost ({reason}): make the batch anew, from states that were read before"
+        "the graphics device \"{device}\" was lost ({reason}): create the batch again, from states that were read before"
     )]
     Lost {
         /// The device's name.
@@ -104,7 +104,7 @@ pub enum GpuError {
     Option(#[from] OptionError),
     /// The parameters would need different kernels.
     #[error(
-        "these parameters cannot differ between environments on a graphics device: they decide what its kernels are made of"
+        "these parameters cannot differ between environments on a graphics device: its kernels are compiled for them"
     )]
     Structure,
     /// The batch on the host refused a request.
@@ -141,7 +141,7 @@ pub enum GpuError {
         known: String,
     },
     /// The field is derived from others.
-    #[error("{field} follows from the state: it can be read only")]
+    #[error("{field} is computed from the state: it is read-only")]
     ReadOnly {
         /// The field.
         field: String,
@@ -164,8 +164,8 @@ impl From<GpuError> for SimError {
 
 fn at_most(most: Option<usize>) -> String {
     most.map_or_else(
-        || ": make fewer, or several batches one after the other".to_owned(),
-        |most| format!(": at most {most} fit its largest buffer; make several batches"),
+        || ": create fewer, or several batches one after the other".to_owned(),
+        |most| format!(": at most {most} fit its largest buffer; create several batches"),
     )
 }
 
@@ -190,6 +190,8 @@ pub enum GpuFault {
         limit: usize,
     },
     /// The device terminated a loop early.
-    #[error("the device ended a loop before its end (Mesa's software device grants 65,535 turns)")]
+    #[error(
+        "the device terminated a loop early (Mesa's software device stops after 65,535 iterations)"
+    )]
     Unfinished,
 }

@@ -222,13 +222,13 @@ fn create(device: &Device, kernel: &Kernel, text: &str) -> Result<wgpu::ComputeP
     if let Some(error) = pollster::block_on(scope.pop()) {
         return Err(GpuError::Unusable {
             device: device.info.name.clone(),
-            reason: format!("it refuses the kernel `{}`: {error}", kernel.entry),
+            reason: format!("it rejects the kernel `{}`: {error}", kernel.entry),
         });
     }
     if let Some(loss) = device.loss() {
         return Err(GpuError::Unusable {
             device: device.info.name.clone(),
-            reason: format!("its driver fails at the kernel `{}`: {loss}", kernel.entry),
+            reason: format!("its driver fails on the kernel `{}`: {loss}", kernel.entry),
         });
     }
     Ok(pipeline)

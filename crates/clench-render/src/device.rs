@@ -10,15 +10,15 @@ use wgpu::{
 pub enum RenderError {
     /// There is no device; includes a remedy.
     #[error(
-        "there is no device that draws: neither a graphics card with Vulkan, Metal or Direct3D 12, nor Mesa's, which needs no card; \
-         on Debian and Ubuntu install the package mesa-vulkan-drivers ({0})"
+        "there is no device to render on: neither a GPU with Vulkan, Metal or Direct3D 12, nor Mesa's software device; on Debian \
+         and Ubuntu install the package mesa-vulkan-drivers ({0})"
     )]
     NoDevice(String),
     /// The device failed.
-    #[error("the device that draws, {0}, failed: {1}")]
+    #[error("the rendering device {0} failed: {1}")]
     Failed(String, String),
     /// The size of the image is out of range.
-    #[error("a picture of {0} x {1} pixels cannot be drawn: each side has from 1 to {2} pixels")]
+    #[error("an image of {0} x {1} pixels cannot be rendered: each side must have 1 to {2} pixels")]
     Size(u32, u32, u32),
     /// The camera does not exist in the model.
     #[error("there is no camera {0}, only {1}")]

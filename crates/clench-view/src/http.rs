@@ -30,22 +30,22 @@ pub(crate) struct Refusal(pub &'static str, pub &'static str);
 
 const BAD: Refusal = Refusal(
     "400 Bad Request",
-    "This is no request that the viewer knows.",
+    "The viewer does not support this request.",
 );
 const FOREIGN: Refusal = Refusal(
     "403 Forbidden",
-    "The viewer only answers its own page, under an address of the machine that it runs on.",
+    "The viewer answers only its own page, at an address of the machine that it runs on.",
 );
 const NO_TOKEN: Refusal = Refusal(
     "403 Forbidden",
-    "The token is wrong: open the whole address that the program printed. Each start has one of its own.",
+    "The token is wrong: open the whole address that the program printed. Each start creates a new token.",
 );
 const UNKNOWN: Refusal = Refusal("404 Not Found", "There is nothing here.");
 const METHOD: Refusal = Refusal("405 Method Not Allowed", "Only GET is allowed.");
 /// The reply to a client above the maximum number.
 pub(crate) const CROWDED: Refusal = Refusal(
     "503 Service Unavailable",
-    "Too many pages look at this viewer already.",
+    "Too many pages are connected to this viewer.",
 );
 
 /// Reads and validates the head of a request.

@@ -69,20 +69,25 @@ impl Marks {
         let (from, to, radius) = mark.place();
         let numbers = from.into_iter().chain(to).chain([radius]);
         if !numbers.clone().all(|x| (x as f32).is_finite()) || radius < 0.0 {
-            return Err("a mark has coordinates or a radius that no picture shows".to_owned());
+            return Err(
+                "a mark has coordinates that are not finite, or an invalid radius".to_owned(),
+            );
         }
         if mark.rgba.iter().any(|part| !(0.0..=1.0).contains(part)) {
             return Err("rgba has numbers that are not between 0 and 1".to_owned());
         }
         if mark.lifetime.is_nan() || mark.lifetime < 0.0 {
-            return Err(format!("the lifetime {} is no time", mark.lifetime));
+            return Err(format!(
+                "the lifetime is {}, but must be zero or more seconds",
+                mark.lifetime
+            ));
         }
         if mark.text().chars().count() > MAX_TEXT {
             return Err(format!("a text has more than {MAX_TEXT} characters"));
         }
         if self.0.len() >= MAX_MARKS {
             return Err(format!(
-                "there are {MAX_MARKS} marks already: clear them, or give them a lifetime"
+                "there are already {MAX_MARKS} marks: clear them, or give them a lifetime"
             ));
         }
         self.0.push((mark, None));

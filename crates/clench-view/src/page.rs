@@ -32,7 +32,7 @@ pub enum PageError {
     NotBuilt,
     /// A program of the build cannot be started.
     #[error(
-        "the viewer's page has to be built once, which needs Node.js 20 or later with npm: {0}; install it, \
+        "the viewer's page must be built once, which needs Node.js 20 or later with npm: {0}; install it, \
          on Debian with `apt-get install nodejs npm`"
     )]
     NoNode(io::Error),

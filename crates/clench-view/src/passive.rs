@@ -124,7 +124,9 @@ impl PassiveViewer {
         }
         match (self.interaction).frame(viewed, self.timing, None, &mut self.marks) {
             Ok(frame) => self.server.publish(frame),
-            Err(error) => self.server.tell(&format!("nothing to show: {error}")),
+            Err(error) => self
+                .server
+                .tell(&format!("the state cannot be shown: {error}")),
         }
     }
 
@@ -138,7 +140,7 @@ impl PassiveViewer {
                 })
             }
             Command::Rewind { .. } | Command::Moment { .. } => {
-                Err("only the program whose loop steps could go back".to_owned())
+                Err("the viewer cannot go back: another program steps this simulation".to_owned())
             }
             command => self.interaction.apply(viewed, command),
         };

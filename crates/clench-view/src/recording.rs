@@ -25,7 +25,7 @@ pub enum RecordError {
     #[error(transparent)]
     Sim(#[from] SimError),
     /// The recording would exceed the limit.
-    #[error("a recording of {0} frames takes all of the {1} MB that it may: record fewer of them")]
+    #[error("a recording of {0} frames reaches the limit of {1} MB: record fewer frames")]
     Full(usize, usize),
 }
 
@@ -33,13 +33,13 @@ pub enum RecordError {
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The page contains no recording, or a truncated one.
-    #[error("this is no page of Clench with a whole recording in it")]
+    #[error("this is not a page of Clench with a complete recording")]
     None,
     /// The format of the frames is of another version.
     #[error("this recording was made by another version of Clench; it can be opened in a browser")]
     Version,
     /// The recording exceeds the limit.
-    #[error("this recording is larger than the {0} MB that it may be")]
+    #[error("this recording exceeds the limit of {0} MB")]
     Full(usize),
 }
 

@@ -92,9 +92,9 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
                     }
                     Err(TrySendError::Disconnected(_)) => return socket.close(None),
                 },
-                None => refuse(&mut socket, "this is no command that the viewer knows")?,
+                None => refuse(&mut socket, "the viewer does not support this command")?,
             },
-            Message::Binary(_) => refuse(&mut socket, "the viewer takes no binary messages")?,
+            Message::Binary(_) => refuse(&mut socket, "the viewer accepts no binary messages")?,
             Message::Close(_) => return Ok(()),
             Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
         }

@@ -45,7 +45,7 @@ def checked_action(action: Any, space: Space[Any], name: str) -> Array:
     try:
         array = np.asarray(action)
     except ValueError as error:
-        raise ValueError(f"{name}: the action is no array: {error}") from error
+        raise ValueError(f"{name}: the action is not an array: {error}") from error
     some = not isinstance(space, Box)
     if array.dtype.kind not in ("biu" if some else "fiu"):
         raise ValueError(f"{name}: an action of dtype {array.dtype}, expected {'integers' if some else 'real numbers'}")
@@ -73,7 +73,7 @@ def checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[i
         return [int(seed) + env for env in range(count)]
     seeds = [None if one is None else int(one) for one in seed]
     if len(seeds) != count:
-        raise ValueError(f"expected {count} seeds, one an environment, got {len(seeds)}")
+        raise ValueError(f"expected {count} seeds, one per environment, got {len(seeds)}")
     return seeds
 
 
@@ -97,7 +97,7 @@ def checked_mask(options: Mapping[str, Any] | None, count: int) -> Array:
     if mask.shape != (count,):
         raise ValueError(f"options['reset_mask'] must have shape ({count},), got {mask.shape}")
     if not mask.any():
-        raise ValueError("options['reset_mask'] names no environment")
+        raise ValueError("options['reset_mask'] selects no environment")
     return mask.copy()
 
 

@@ -26,7 +26,7 @@ class Generators:
     @np_random.setter
     def np_random(self, generators: Sequence[np.random.Generator]) -> None:
         if len(generators) != self.num_envs:
-            raise ValueError(f"expected {self.num_envs} generators, one an environment, got {len(generators)}")
+            raise ValueError(f"expected {self.num_envs} generators, one per environment, got {len(generators)}")
         self._generators, self._seeds = list(generators), [None] * self.num_envs
 
     @property

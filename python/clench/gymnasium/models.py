@@ -46,5 +46,5 @@ def gymnasium_model(xml_file: str) -> Path:
     if not (path.is_absolute() or xml_file.startswith(".")):
         path = Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets" / xml_file
     if not path.is_file():
-        raise FileNotFoundError(f"no model file {path}; one of your own is named by a path that starts with / . or ~")
+        raise FileNotFoundError(f"there is no model file {path}; a path to your own file starts with / . or ~")
     return path

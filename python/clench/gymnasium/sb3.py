@@ -124,12 +124,12 @@ class BatchVecEnv(VecEnv):
             If only some of the environments are chosen: they share their attributes.
         """
         if len(list(self._get_indices(indices))) != self.num_envs:
-            raise ValueError("environments of one batch share their attributes: set that of all")
+            raise ValueError("environments of a batch share their attributes: set the attribute of all")
         setattr(self.envs, attr_name, value)
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
         """Raises an error: methods of a batch apply to all environments at once; call them on `envs`."""
-        raise NotImplementedError(f"environments of one batch have no methods of their own: call `envs.{method_name}`")
+        raise NotImplementedError(f"environments of a batch have no individual methods: call `envs.{method_name}`")
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """Returns False for each environment: none is wrapped separately."""

@@ -140,7 +140,7 @@ class SingleEnv(gymnasium.Env[Any, Array]):
         batch.qpos[0], batch.qvel[0] = given
         batch.revive()
         if batch.outputs and batch.forward():
-            raise SimulationError(f"{self}: cannot go on from there: {batch.fault(0)}")
+            raise SimulationError(f"{self}: cannot continue from this state: {batch.fault(0)}")
 
     def render(self) -> Array | None:
         """Renders the environment.

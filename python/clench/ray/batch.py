@@ -382,7 +382,7 @@ class Batch(Asked, Tied):
         """Makes a query about one environment."""
         index = operator.index(env)
         if not 0 <= index < self.n_envs:
-            raise IndexError(f"environments go from 0 to {self.n_envs}, without it")
+            raise IndexError(f"the environment must be at least 0 and below {self.n_envs}")
         here = next(part for part, rows in enumerate(self._parts) if index < rows.stop)
         inside = index - self._parts[here].start
         return self._ask(lambda worker, part: worker.send(method, inside) if part == here else worker.send("read"))[here]

@@ -59,7 +59,7 @@ class Tied:
         if chosen.ndim != 1 or chosen.dtype.kind not in "iu":
             raise ValueError("envs must be a list of indices")
         if chosen.size and not 0 <= int(chosen.min()) <= int(chosen.max()) < self.n_envs:
-            raise IndexError(f"environments go from 0 to {self.n_envs}, without it")
+            raise IndexError(f"the environment must be at least 0 and below {self.n_envs}")
         return chosen
 
     def _tie(

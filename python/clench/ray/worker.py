@@ -143,7 +143,7 @@ class Worker:
             except self._deaths() as error:
                 death = error
                 self._replace(call)
-        raise ClenchError(f"{_TRIES} workers died one after the other over the call `{call.method}`") from death
+        raise ClenchError(f"{_TRIES} workers died one after the other in the call `{call.method}`") from death
 
     def close(self) -> None:
         """Terminates the worker."""

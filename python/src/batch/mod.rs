@@ -381,8 +381,11 @@ impl Batch {
             found => found.ok().filter(|&env| env < self.n_envs),
         };
         let most = self.n_envs;
-        let missing =
-            || PyIndexError::new_err(format!("environments go from 0 to {most}, without it"));
+        let missing = || {
+            PyIndexError::new_err(format!(
+                "the environment must be at least 0 and below {most}"
+            ))
+        };
         found.ok_or_else(missing)
     }
 

@@ -47,7 +47,7 @@ impl Model {
     fn told(py: Python<'_>, model: clench::Model, source: Source) -> PyResult<Self> {
         if !model.left_out.is_empty() {
             let category = py.get_type::<PyUserWarning>();
-            let message = format!("left out of the model:\n{}", model.left_out.join("\n"));
+            let message = format!("omitted from the model:\n{}", model.left_out.join("\n"));
             let message = CString::new(message.replace('\0', " "))?;
             PyErr::warn(py, &category, &message, 1)?;
         }

@@ -67,7 +67,7 @@ pub(crate) fn check_env(env: usize, envs: usize) -> PyResult<()> {
     if env < envs {
         return Ok(());
     }
-    let text = format!("environments go from 0 to {envs}, without it");
+    let text = format!("the environment must be at least 0 and below {envs}");
     Err(PyIndexError::new_err(text))
 }
 

@@ -99,7 +99,7 @@ def test_initial_state_that_cannot_be() -> None:
         ("left", "dtype <U4"),
         (np.zeros((ENVS, 2), dtype=complex), "dtype complex128"),
         (np.zeros((ENVS, 2), dtype=bool), "dtype bool"),
-        ([[0.0, 1.0], [0.0]], "no array"),
+        ([[0.0, 1.0], [0.0]], "not an array"),
         (np.where(np.arange(12).reshape(6, 2) == 9, np.nan, 0.0), "not finite: nan for actuator 1 of environment 4"),
         (np.where(np.arange(12).reshape(6, 2) == 2, -np.inf, 0.0), "not finite: -inf for actuator 0 of environment 1"),
     ],

@@ -158,5 +158,5 @@ def test_a_single_one_can_be_put_elsewhere_and_asked() -> None:
     with pytest.raises(ValueError, match=r"qvel is an array of shape \(3,\), expected \(2,\)"):
         env.set_state([0.0, 0.0], np.zeros(3))
     assert env.vector.batch.qpos[0, 1] != 0
-    with pytest.raises(clench.SimulationError, match="cannot go on from there"):
+    with pytest.raises(clench.SimulationError, match="cannot continue from this state"):
         env.set_state([np.nan, 0.0], np.zeros(2))

@@ -119,7 +119,7 @@ impl Motion {
             self.sim.step()?;
             self.steps += 1;
             if let Some(signal) = self.interrupt.signal() {
-                bail!("ended by {}", signal.name);
+                bail!("interrupted by {}", signal.name);
             }
         }
         Ok(())
@@ -158,7 +158,7 @@ const GIF_RATE: f64 = 25.0;
 /// Writes a video that repeats; each of its images has its own palette.
 fn write_gif(to: impl Write, motion: &mut Motion, camera: &mut Camera, time: f64) -> Result<()> {
     let side =
-        |pixels: u32| u16::try_from(pixels).context("a film has at most 65535 pixels a side");
+        |pixels: u32| u16::try_from(pixels).context("a GIF has at most 65535 pixels per side");
     let (width, height) = (side(camera.picture.width)?, side(camera.picture.height)?);
     let mut encoder = gif::Encoder::new(BufWriter::new(to), width, height, &[])?;
     encoder.set_repeat(gif::Repeat::Infinite)?;
@@ -177,7 +177,7 @@ const MP4_RATE: f64 = 30.0;
 /// Writes a video by ffmpeg, which receives the raw images and selects the encoder.
 fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f64) -> Result<()> {
     let Some(path) = to.path() else {
-        bail!("a film as .mp4 has to be a file on a disk");
+        bail!("an .mp4 must be a regular file");
     };
     let Picture { width, height, .. } = camera.picture;
     let mut encoder = Command::new("ffmpeg")
@@ -193,7 +193,7 @@ fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f
         .spawn()
         .map_err(|error| match error.kind() {
             ErrorKind::NotFound => anyhow!(
-                "films as .mp4 are encoded by the program ffmpeg, which is not installed: install it, on Debian with \
+                "an .mp4 is encoded by the program ffmpeg, which is not installed: install it, on Debian with \
                  `apt-get install ffmpeg`, or write a .gif"
             ),
             _ => anyhow!("ffmpeg: {error}"),

@@ -9,11 +9,11 @@ use clench::math::Instructions;
 use clench::{BatchOptions, RigidOptions};
 use std::path::PathBuf;
 
-/// Steps the model from its initial state, or a keyframe, and prints a summary: speed of stepping alone, contacts and
-/// solver iterations a step, the worst duality gap (how far a solution's cost may lie above the minimum, proven), the
-/// worst penetration, and the energy drift where nothing in the model adds or removes energy. Of a batch also: how
-/// unlike its environments are, memory, and the environments that failed, if any did. A word says what the run is
-/// worth, see below; what is wrong with it also comes as warnings on standard error.
+/// Steps the model from its initial state, or a keyframe, and prints a summary: the speed without input and output,
+/// contacts and solver iterations per step, the maximum duality gap (a proven bound of the cost above the minimum), the
+/// maximum penetration, and the energy drift if no element of the model adds or removes energy. For a batch also: the
+/// divergence of its environments, the memory, and the environments that failed. One keyword rates the quality of the
+/// run, see below; its defects are also printed as warnings on standard error.
 #[derive(Args)]
 #[command(after_help = DETAILS)]
 pub(crate) struct Arguments {
@@ -26,19 +26,19 @@ pub(crate) struct Arguments {
     /// Controls as a NumPy array (N, nu): row k for step k, the same in every environment
     #[arg(long, value_name = "FILE.npy")]
     pub(super) ctrl: Option<PathBuf>,
-    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`) in place of an old file
-    /// once all is done; of one environment also a page that replays the run in a browser (`.html`), likewise, or
-    /// poses, shapes, forces and plots as messages for Foxglove (`.mcap`), which can be read up to the last second
-    /// wherever the run ends
+    /// Write time, qpos, qvel, ctrl, contact and solver statistics as NumPy arrays (`.npz`); for a single environment
+    /// also a page that replays the run in a browser (`.html`), or poses, shapes, forces and plots as messages for
+    /// Foxglove (`.mcap`). The first two replace an old file at the end of the run; `.mcap` can be read up to the last
+    /// second even if the run is killed
     #[arg(long, value_name = "OUT")]
     pub(super) record: Option<PathBuf>,
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
     pub(super) every: usize,
-    /// Bits of a number [default: 64, on a graphics device 32]
+    /// Floating-point precision [default: 64, on a GPU 32]
     #[arg(long, value_name = "BITS")]
     pub(super) precision: Option<Bits>,
-    /// Tell the time of each stage of a step; reading the clocks adds to it
+    /// Report the time of each stage of a step, including the cost of reading the clock
     #[arg(long)]
     pub(super) profile: bool,
     /// Print the summary as one JSON object, the last line of the output
@@ -60,23 +60,23 @@ pub(crate) struct Arguments {
 }
 
 pub(super) const DETAILS: &str = "\
-A record holds, a row for each recorded step: time, qpos, qvel and ctrl after the step; contacts, penetration (m),
+A record has one row per recorded step: time, qpos, qvel and ctrl after the step; contacts, penetration (m),
 iterations, gradient, improvement, gap and status of its solve (0 unconstrained, 1 proven by the gap, 2 converged,
-3 no progress at the working precision, 4 iteration limit, 5 not finite). That of a batch holds time, qpos, qvel, ctrl,
-contacts and iterations, environment by environment; one that has failed repeats its last good row.
+3 no progress at the working precision, 4 iteration limit, 5 not finite). The record of a batch has time, qpos, qvel, ctrl,
+contacts and iterations of each environment; a failed environment repeats its last valid row.
 
-The quality of a run is `good`, or the gravest of:
+The quality of a run is `good`, or the most severe of:
   energy_growth         mechanical energy rose by more than twice what actuators put in and what lifting each body by its own
-                        radius of gyration takes, and a fifth of the kinetic energy (not judged where mocap bodies, gravity
-                        compensation or wind may give energy too)
+                        radius of gyration takes, and a fifth of the kinetic energy (not tested if mocap bodies, gravity
+                        compensation or wind can add energy)
   deep_penetration      in more than 1% of the steps a contact was deeper than half the thickness of one of its geoms,
                         and deeper than its softness explains: at rest under its force, or in an impact at 5 m/s
   constraint_violation  in more than 5% of the steps an equality or a limit was violated by more than 0.1 (m or rad),
                         and by more than its softness explains
   unconverged           the solves of more than 1% of the steps stopped at the iteration limit
 
-Ctrl-C (SIGINT) and SIGTERM end a run after the step it is in: the record is written, the summary says `interrupted`, and the
-exit code is 130 or 143. A second one ends the program at once, without a record. The exit code is 2 for bad input and for
+Ctrl-C (SIGINT) and SIGTERM end a run after the current step: the record is written, the summary reports `interrupted`, and the
+exit code is 130 or 143. A second signal ends the program at once, without a record. The exit code is 2 for bad input and for
 runs that failed.";
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -102,17 +102,16 @@ pub(crate) struct BatchArguments {
     /// Step N environments as a batch
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     pub envs: Option<u32>,
-    /// Threads of a batch [default: as many as processors], or that share each step of one environment alone [default:
-    /// 1]
+    /// Threads of a batch [default: the number of processors], or of each step of a single environment [default: 1]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
-    /// Layout of the environments of a batch [default: the fastest here]
+    /// Vector instructions of a batch [default: the fastest of this processor]
     #[arg(long, ignore_case = true, requires = "envs")]
     pub(super) instructions: Option<InstructionsName>,
-    /// Device that steps a batch: the processor, or (with the feature `gpu`) a graphics device
+    /// Device that steps a batch: the processor, or (with the feature `gpu`) a GPU
     #[arg(long, value_name = "DEVICE", default_value = "cpu", requires = "envs")]
     pub device: DeviceName,
-    /// Leave the environments of a batch in order, where those of like contacts would be put side by side
+    /// Do not group environments with similar contacts in the same SIMD lanes
     #[arg(long, requires = "envs")]
     pub(super) no_grouping: bool,
 }

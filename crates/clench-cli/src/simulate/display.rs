@@ -7,7 +7,7 @@ use std::fmt::{self, Display, Formatter};
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let lanes = match &self.batch {
-            Some(batch) => format!(", {} side by side ({})", batch.lanes, self.instructions),
+            Some(batch) => format!(", {} in SIMD lanes ({})", batch.lanes, self.instructions),
             None => String::new(),
         };
         let threads = match self.threads {
@@ -36,12 +36,12 @@ impl Display for Report {
         line(
             f,
             "contacts",
-            format_args!("{:.1} a step, at most {}", contacts.0, contacts.1),
+            format_args!("{:.1} per step, at most {}", contacts.0, contacts.1),
         )?;
         line(
             f,
             "solver",
-            format_args!("{:.1} iterations a step", self.iterations_mean),
+            format_args!("{:.1} iterations per step", self.iterations_mean),
         )?;
         line(
             f,
@@ -58,7 +58,7 @@ impl Display for Report {
             None => line(
                 f,
                 "energy drift",
-                "none to tell: the model adds or removes energy",
+                "not reported: the model adds or removes energy",
             )?,
         }
         if let Some(batch) = &self.batch {
@@ -88,13 +88,13 @@ impl Report {
         )?;
         line(
             f,
-            "contacts left out",
+            "contacts omitted",
             format_args!("in {} steps, by --max-contacts", self.overflow_steps),
         )?;
         line(
             f,
             "diverged",
-            format_args!("{} times, and started over by --autoreset", self.resets),
+            format_args!("{} times, then reset by --autoreset", self.resets),
         )?;
         match self.recorded_rows {
             Some(rows) => line(f, "recorded", format_args!("{rows} rows"))?,
@@ -113,7 +113,7 @@ impl Display for BatchReport {
             f,
             "side by side",
             format_args!(
-                "{:.1} iterations and {:.1} contact slots a step, {:.0}% of lanes at work",
+                "{:.1} iterations and {:.1} contact slots per step, {:.0}% of lanes active",
                 divergence.iterations_per_group,
                 divergence.slots_per_group,
                 100.0 * divergence.live_share
@@ -123,7 +123,7 @@ impl Display for BatchReport {
             f,
             "memory",
             format_args!(
-                "{:.1} kB an environment, {:.0} kB a thread",
+                "{:.1} kB per environment, {:.0} kB per thread",
                 kilobytes(self.bytes_per_env),
                 kilobytes(self.scratch_bytes_per_thread)
             ),

@@ -146,12 +146,12 @@ impl fmt::Display for GpuReport {
         )?;
         writeln!(
             f,
-            "{} steps ({:.3} s simulated) in {:.3} s: {:.0} steps of environments a second",
+            "{} steps ({:.3} s simulated) in {:.3} s: {:.0} environment steps per second",
             self.steps, self.simulated_time, self.seconds, self.steps_per_second
         )?;
         writeln!(
             f,
-            "last solve: {:.2} iterations, {:.2} contacts on average; {} bytes an environment",
+            "last solve: {:.2} iterations, {:.2} contacts on average; {} bytes per environment",
             self.iterations_mean, self.contacts_mean, self.bytes_per_env
         )?;
         if let Some(rows) = self.recorded_rows {

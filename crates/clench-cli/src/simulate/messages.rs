@@ -58,7 +58,7 @@ impl MessageRecorder {
                 let moments = self.recorder.len();
                 let context = context(&self.path);
                 tell(format_args!(
-                    "warning: {context}: {error}; nothing is recorded after {moments} moments, the run goes on"
+                    "warning: {context}: {error}; nothing is recorded after {moments} frames, the run continues"
                 ));
                 self.full = Some(error.to_string());
                 Ok(())

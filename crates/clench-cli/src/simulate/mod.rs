@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
             _ => String::new(),
         };
         tell(format_args!(
-            "interrupted by {name}: {done} of {steps} steps are done{recorded}"
+            "interrupted by {name}: {done} of {steps} steps are complete{recorded}"
         ));
         return Ok(ExitCode::from(signal.exit_code()));
     }
@@ -142,7 +142,7 @@ pub(crate) fn list_devices() -> Result<()> {
 
 #[cfg(not(feature = "gpu"))]
 fn no_devices() -> anyhow::Error {
-    crate::without("gpu", "steps batches on graphics devices")
+    crate::without("gpu", "steps batches on GPUs")
 }
 
 fn print(arguments: &Arguments, report: &(impl Serialize + ToString)) -> Result<()> {
@@ -173,8 +173,8 @@ fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> R
                 let steps = (1.0 / timestep).round();
                 ensure!(
                     steps <= MAX_DEFAULT_STEPS,
-                    "one second in steps of {timestep:e} s is {steps:.3e} steps, more than the {MAX_DEFAULT_STEPS:.0e} that are \
-                     taken unasked: choose with --steps or --time"
+                    "one second in steps of {timestep:e} s is {steps:.3e} steps, more than the default maximum of \
+                     {MAX_DEFAULT_STEPS:.0e}: set --steps or --time"
                 );
                 steps as usize
             }

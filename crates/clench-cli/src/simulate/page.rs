@@ -105,7 +105,7 @@ impl PageRecorder {
             Err(error @ RecordError::Full(..)) => {
                 let context = context(&self.path);
                 tell(format_args!(
-                    "warning: {context}: {error}, or raise --max-memory; what was recorded is kept, the run goes on"
+                    "warning: {context}: {error}, or raise --max-memory; what was recorded remains, the run continues"
                 ));
                 self.full = Some(error.to_string());
                 Ok(())

@@ -38,8 +38,8 @@ pub(crate) fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAc
         found.push((
             "energy_growth",
             format!(
-                "the mechanical energy of {count} rose from nowhere, that of environment {env} by {growth} J where actuators \
-                 put in {supplied} J: is the time step too long, or a force too stiff?"
+                "the mechanical energy of {count} rose by more than actuators supplied: that of environment {env} by {growth} J, \
+                 while actuators supplied {supplied} J: is the time step too long, or a force too stiff?"
             ),
         ));
     }
@@ -53,8 +53,8 @@ pub(crate) fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAc
         found.push((
             "deep_penetration",
             format!(
-                "in {deep} of {steps} steps a contact was deeper than half a geom and than softness explains, at worst {depth} \
-                 mm between {a} and {b}: do geoms start inside each other, or is the time step too long?"
+                "in {deep} of {steps} steps a contact was deeper than half a geom and deeper than its softness explains, at worst \
+                 {depth} mm between {a} and {b}: do geoms overlap at the start, or is the time step too long?"
             ),
         ));
     }
@@ -66,8 +66,8 @@ pub(crate) fn verdict(model: &Model, quality: &Quality, energy: Option<&EnergyAc
         found.push((
             "constraint_violation",
             format!(
-                "in {violated} of {steps} steps an equality or a limit was violated by more than 0.1 (m or rad) and than softness \
-                 explains, at worst {which} by {size}"
+                "in {violated} of {steps} steps an equality or a limit was violated by more than 0.1 (m or rad) and by more than \
+                 its softness explains, at worst {which} by {size}"
             ),
         ));
     }

@@ -35,8 +35,8 @@ impl RecordOptions<'_> {
         let context = || format!("--record {}", self.path.display());
         ensure!(
             (self.path.extension()).is_some_and(|end| end.eq_ignore_ascii_case(EXTENSION)),
-            "--record {}: a record is an archive of NumPy arrays, whose name must end in .{EXTENSION}, or, of one environment, a page \
-             (.html) or messages (.mcap)",
+            "--record {}: the name must end in .{EXTENSION} (NumPy arrays) or, for a single environment, .html (a page) or .mcap \
+             (messages)",
             self.path.display()
         );
         let file = Replacement::begin(self.path).with_context(context)?;
@@ -58,7 +58,10 @@ impl RecordOptions<'_> {
         for column in &mut record.columns {
             let room = rows * column.envs * column.width();
             (column.values.try_reserve_exact(room)).with_context(|| {
-                format!("{}: {rows} rows take more memory than there is", context())
+                format!(
+                    "{}: {rows} rows take more memory than is available",
+                    context()
+                )
             })?;
         }
         Ok(record)

@@ -19,13 +19,13 @@ pub(crate) struct StartArguments {
     /// Start from this keyframe (name or index)
     #[arg(long, value_name = "K")]
     keyframe: Option<String>,
-    /// Positions and velocities as a NumPy array (envs, nq + nv): a row an environment, qpos then qvel
+    /// Positions and velocities as a NumPy array (envs, nq + nv): one row per environment, qpos then qvel
     #[arg(long, value_name = "FILE.npy")]
     states: Option<PathBuf>,
-    /// Move each dof's position (m, rad) and velocity (m/s, rad/s) by a number drawn uniformly from -S to S
+    /// Add uniform noise from -S to S to the position (m, rad) and velocity (m/s, rad/s) of each dof
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     noise: f64,
-    /// Seed of the noise; environment e gets the same whatever others there are
+    /// Seed of the noise; the noise of an environment does not depend on the number of environments
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
 }
@@ -54,7 +54,7 @@ impl StartArguments {
     ) -> Result<Starts<'a>> {
         ensure!(
             self.noise.is_finite() && self.noise >= 0.0,
-            "--noise: {} is not a number that states can be moved by",
+            "--noise: {} is not a finite number of zero or more",
             self.noise
         );
         let keyframe = self.keyframe.as_ref();

@@ -37,7 +37,7 @@ impl Excess {
     /// Returns a description of the quantity and its limit.
     pub fn describe(self, budget: &Budget) -> (&'static str, u64) {
         match self {
-            Excess::Pairs => ("pairs of geoms whose bounds meet", budget.pairs()),
+            Excess::Pairs => ("pairs of geoms whose bounds overlap", budget.pairs()),
             Excess::Contacts => ("contacts", budget.contacts),
             Excess::Jacobian => ("numbers in the Jacobian of the contacts", budget.matrix),
             Excess::Factor => (

@@ -6,7 +6,7 @@ use clench_solver::Switch;
 
 /// An option or element that the integrator `discrete` cannot be combined with.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the integrator discrete cannot go with {with}: {reason}")]
+#[error("the integrator discrete cannot be combined with {with}: {reason}")]
 pub struct NotDiscrete {
     /// The option or element.
     pub with: String,
@@ -29,13 +29,13 @@ pub(crate) fn check_discrete(
     }
     let refuse = |with: String, reason| Err(NotDiscrete { with, reason });
     if sleep && islands == Switch::Off {
-        let reason = "what its metric couples must sleep and wake together";
+        let reason = "trees that its metric couples must sleep and wake together";
         return refuse("sleep without islands".to_owned(), reason);
     }
     let coupling = terms(model).find(|along| couples_what_sleeps(model, *along));
     if let (true, Some(along)) = (sleep, coupling) {
-        let reason = "it couples in the metric a tree that may sleep with another, and what a sleeping tree is to the metric is not settled: \
-             MuJoCo 4.0 takes it for free in one half of a step and leaves it out of the other";
+        let reason = "the metric couples a tree that may sleep with another tree, and the metric of a sleeping tree is undefined: \
+            MuJoCo 4.0 includes the tree as free in one half of a step and omits it in the other";
         return refuse(format!("sleep and {}", name(model, along)), reason);
     }
     Ok(())

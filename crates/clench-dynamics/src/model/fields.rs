@@ -131,7 +131,7 @@ fn require_rising<S: Scalar>(field: &'static str, row: &[S]) -> Result<(), SimEr
             field,
             index: 2 * i + 1,
             value: row[2 * i + 1].to_f64(),
-            range: "at least the number before it",
+            range: "at least the preceding number",
         }),
     }
 }
@@ -148,7 +148,7 @@ fn normalize<S: Scalar>(
             field,
             index,
             value: direction[0].to_f64(),
-            range: "part of a direction, neither too short nor too long",
+            range: "part of a direction whose length is finite and not too small",
         });
     }
     direction.iter_mut().for_each(|x| *x /= norm);

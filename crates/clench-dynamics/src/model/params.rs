@@ -143,7 +143,7 @@ params! {
     jnt_springyield: Vec<T>, IfModel;
     /// Allowed positions.
     jnt_range: Vec<[T; 2]>, Range;
-    /// Distance at which the limit appears.
+    /// Distance at which the limit becomes active.
     jnt_margin: Vec<T>, Finite;
     /// Limits of the total actuator force.
     jnt_actfrcrange: Vec<[T; 2]>, Range;
@@ -248,7 +248,7 @@ params! {
     tendon_invweight0: Vec<T>, NotNegative;
     /// Allowed lengths.
     tendon_range: Vec<[T; 2]>, Range;
-    /// Distance at which the limit appears.
+    /// Distance at which the limit becomes active.
     tendon_margin: Vec<T>, Finite;
     /// Limits of the total actuator force.
     tendon_actfrcrange: Vec<[T; 2]>, Range;

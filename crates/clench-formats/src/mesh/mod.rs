@@ -123,7 +123,7 @@ fn check(found: &Triangles) -> Result<(), String> {
     for (number, face) in found.faces.iter().enumerate() {
         if let Some(vertex) = face.iter().find(|&&v| v as usize >= found.vertices.len()) {
             return Err(format!(
-                "face {number} names vertex {vertex}, which is not there"
+                "face {number} refers to vertex {vertex}, which does not exist"
             ));
         }
     }

@@ -35,7 +35,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
         .collect();
     let faces = corners.as_chunks::<3>().0;
     if let Some(bad) = faces.as_flattened().iter().find(|&&corner| corner < 0) {
-        return Err(format!("a face names vertex {bad}"));
+        return Err(format!(
+            "a face refers to vertex {bad}, which does not exist"
+        ));
     }
     Ok(Triangles {
         vertices: points(floats(&bytes[HEADER as usize..end])),

@@ -133,7 +133,7 @@ fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result
 /// Parses a corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; `before` counts the preceding vertices
 /// and texture coordinates.
 fn corner(word: &str, before: [usize; 2], line: usize) -> Result<Corner, String> {
-    let wrong = || format!("line {line}: \"{word}\" is no corner of a face");
+    let wrong = || format!("line {line}: \"{word}\" is not a corner of a face");
     let mut parts = word.split('/');
     let mut index = |before: usize| {
         let index = match parts.next().unwrap_or_default() {

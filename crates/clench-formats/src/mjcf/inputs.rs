@@ -65,7 +65,7 @@ impl Inputs {
                 } else {
                     named.join(" ")
                 };
-                Err(element.error(format!("input \"{text}\" does not go with this gain")))
+                Err(element.error(format!("input \"{text}\" is incompatible with this gain")))
             }
         }
     }

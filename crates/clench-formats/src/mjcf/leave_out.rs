@@ -66,7 +66,7 @@ fn unsupported(parent: &str, element: &Element) -> Option<String> {
     let has_no_shape = tag == "mesh" && element.text("file").is_none() && of_a_plugin(element);
     let is_of_flex = parent == "equality" && element.text("flex").is_some();
     (later || is_field || has_no_shape || is_of_flex)
-        .then(|| "is left out: it is not supported yet".to_owned())
+        .then(|| "is omitted: it is not supported yet".to_owned())
 }
 
 fn leave_out_attributes(parent: &str, element: &mut Element, left_out: &mut Vec<String>) {
@@ -79,7 +79,7 @@ fn leave_out_attributes(parent: &str, element: &mut Element, left_out: &mut Vec<
         .map(|(name, _)| name.clone())
         .collect();
     for name in left {
-        let note = format!("the attribute {name} is left out: it is not supported yet");
+        let note = format!("the attribute {name} is omitted: it is not supported yet");
         left_out.push(element.error(note).to_string());
         element.attributes.retain(|(other, _)| *other != name);
     }

@@ -140,7 +140,7 @@ fn read_or_written(
     })?;
     if further > 0 {
         let note = format!(
-            "of an OBJ file the first object or group counts, as in MuJoCo: {further} faces of others are left out"
+            "only the first object or group of an OBJ file is read, as in MuJoCo: {further} faces of others are omitted"
         );
         notes.push(element.error(note).to_string());
     }

@@ -67,19 +67,21 @@ impl OptionReader {
             flag.set_keyword("override", &SWITCHES, &mut self.contact_override)?;
         }
         if builder.physics.flags.sleep && builder.physics.integrator == Integrator::Rk4 {
-            let message = "the flag sleep and the integrator RK4 cannot go together: what falls asleep would wake in the next step";
+            let message = "the flag sleep and the integrator RK4 cannot be combined: trees that fall asleep would wake up in the \
+                next step";
             return Err(element.error(message));
         }
         if builder.physics.integrator == Integrator::Discrete && self.replaced_solver {
-            let message = "the solver PGS and the integrator discrete cannot go together: MuJoCo then steps in another metric, without \
-                 tendons and actuators; choose Newton or CG";
+            let message = "the solver PGS and the integrator discrete cannot be combined: MuJoCo then steps in another metric, \
+                without tendons and actuators; choose Newton or CG";
             return Err(element.error(message));
         }
         if builder.physics.integrator == Integrator::Discrete
             && builder.physics.flags.sleep
             && builder.options.islands == Some(Switch::Off)
         {
-            let message = "the integrator discrete needs islands where the flag sleep is on: what its metric couples must sleep and wake together";
+            let message = "the integrator discrete needs islands where the flag sleep is on: trees that its metric couples must \
+                sleep and wake together";
             return Err(element.error(message));
         }
         Ok(())

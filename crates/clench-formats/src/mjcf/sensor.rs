@@ -237,7 +237,7 @@ fn read_fields<F: Copy + PartialOrd>(
         };
         if fields.last().is_some_and(|&last| last >= field) {
             let message = format!(
-                "the words of data must come once each and in this order: {}",
+                "the keywords of data must appear once each and in this order: {}",
                 list()
             );
             return Err(element.error(message));

@@ -237,7 +237,7 @@ fn six_files(
             continue;
         };
         if media_type(element, &file)? != "image/png" {
-            return Err(element.error(format!("{name} is no PNG image")));
+            return Err(element.error(format!("{name} is not a PNG image")));
         }
         let picture = read_picture(file, element, spending)?;
         let width = *found.get_or_insert(picture.width);

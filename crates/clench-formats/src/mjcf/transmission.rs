@@ -20,12 +20,12 @@ pub(super) fn read(element: &Element) -> Result<TransmissionSpec, LoadError> {
     let name = |attribute| element.text(attribute).map(str::to_owned);
     let (reference, slider) = (name("refsite"), name("slidersite"));
     if reference.is_some() && element.text("site").is_none() {
-        return Err(element.error("refsite goes with site only"));
+        return Err(element.error("refsite needs site"));
     }
     if element.text("cranksite").is_none() {
         let given = |attribute: &&str| element.text(attribute).is_some();
         if let Some(attribute) = ["slidersite", "cranklength"].iter().find(|a| given(a)) {
-            return Err(element.error(format!("{attribute} goes with cranksite only")));
+            return Err(element.error(format!("{attribute} needs cranksite")));
         }
     }
     if let Some(crank) = name("cranksite") {

@@ -18,9 +18,10 @@ pub(super) fn float(root: &Element, builder: &mut ModelBuilder) -> Result<(), Lo
     let &[base] = &bases[..] else {
         let names = bases.iter().map(|&body| builder.bodies[body].name.as_str());
         return Err(root.error(match bases.is_empty() {
-            true => "there is no link besides the world that could float".to_owned(),
+            true => "there is no link other than the world to which a free joint could be added"
+                .to_owned(),
             false => format!(
-                "one link alone can float, and several stand on the world: {}",
+                "only one link can float, but several are fixed to the world: {}",
                 Vec::from_iter(names).join(", ")
             ),
         }));
@@ -30,7 +31,7 @@ pub(super) fn float(root: &Element, builder: &mut ModelBuilder) -> Result<(), Lo
         Some(joint) if joint.kind == JointKind::Free => return Ok(()),
         Some(joint) => {
             return Err(root.error(format!(
-                "the link \"{}\" cannot float: the joint \"{}\" moves it along the world",
+                "the link \"{}\" cannot float: the joint \"{}\" already moves it relative to the world",
                 body.name, joint.name
             )));
         }

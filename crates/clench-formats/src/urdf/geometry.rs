@@ -114,7 +114,7 @@ impl GeomReader<'_> {
             return name;
         }
         notes.push(format!(
-            "line {}: another geom has the name \"{name}\"; this one stays without",
+            "line {}: another geom has the name \"{name}\"; this one gets no name",
             element.origin.line
         ));
         String::new()

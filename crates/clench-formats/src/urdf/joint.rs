@@ -59,7 +59,7 @@ pub(super) fn read_all(
         let name = element.required_text("name")?;
         if kind != Kind::Fixed && kinds.insert(name, kind).is_some() {
             notes.push(format!(
-                "another joint is called \"{name}\"; this one stays without a name"
+                "another joint has the name \"{name}\"; this one gets no name"
             ));
             joints.iter_mut().for_each(|joint| joint.name.clear());
         }
@@ -161,7 +161,7 @@ fn read_limit(
             (None, None) => None,
             (Some(_), None) => Some("has a lower limit but no upper one".to_owned()),
             (None, Some(_)) => Some("has an upper limit but no lower one".to_owned()),
-            _ if low >= high => Some(format!("its limits {low} and {high} do not rise")),
+            _ if low >= high => Some(format!("its limits {low} and {high} are not increasing")),
             _ => None,
         };
         if let Some(why) = &ignored {

@@ -63,7 +63,7 @@ impl<'a> Meshes<'a> {
         let mut file = Content::open(path, element, spending)?;
         let format = Format::from_extension(&file.extension).ok_or_else(|| {
             element.error(format!(
-                "\"{written}\" is no mesh that can be read: its name must end in .stl, .obj, .dae, .glb, .gltf or .msh"
+                "\"{written}\" is not a readable mesh: its name must end in .stl, .obj, .dae, .glb, .gltf or .msh"
             ))
         })?;
         let directory = file.directory();
@@ -138,7 +138,7 @@ impl<'a> Meshes<'a> {
         });
         first_file(places, written).map_err(|error| {
             format!(
-                "{error}: say where the package \"{name}\" is (the package path), or put its folder beside or above the model"
+                "{error}: add the folder of the package \"{name}\" to the package path, or put it next to or above the model"
             )
         })
     }

@@ -46,7 +46,7 @@ impl<'a> Tree<'a> {
         let mut names = HashMap::new();
         for (index, link) in links.iter().enumerate() {
             if names.insert(link.required_text("name")?, index).is_some() {
-                return Err(link.error("this name is taken already"));
+                return Err(link.error("this name is already in use"));
             }
         }
         let mut joints = Vec::new();
@@ -55,7 +55,7 @@ impl<'a> Tree<'a> {
             let joint = read_joint(element, &names).map_err(super::element::inside(element))?;
             let child = links[joint.child];
             if above[joint.child].is_some() {
-                let message = format!("{} has a parent already", child.label());
+                let message = format!("{} already has a parent", child.label());
                 return Err(element.error(message));
             }
             if child.text("name") == Some(WORLD) {
@@ -139,7 +139,7 @@ fn parents_first(joints: &[Joint], above: &[Option<usize>]) -> Result<Vec<usize>
     match joints.iter().find(|joint| !reached[joint.child]) {
         Some(joint) => Err(joint
             .element
-            .error("this joint is part of a loop, or hangs on one")),
+            .error("this joint is part of a loop, or below one")),
         None => Ok(order),
     }
 }

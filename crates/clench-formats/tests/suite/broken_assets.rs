@@ -273,7 +273,7 @@ fn meshes_that_cannot_be_are_refused() {
         ("builtin='ball' params='4 5'", "there is no builtin ball"),
         (
             "vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 2 0 1 3' inertia='exact'",
-            "outside",
+            "not oriented consistently",
         ),
         (flat, "plane"),
         ("vertex='0 0 0 1 0 0 2 0 0 3 0 0'", "line"),

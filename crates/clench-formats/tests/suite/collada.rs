@@ -123,7 +123,7 @@ fn an_error_says_where_and_what() {
         (
             "wild",
             file("", &wild, ""),
-            "line 10: <triangles>: a face names vertex 7",
+            "line 10: <triangles>: a face refers to vertex 7",
         ),
         (
             "strange",

@@ -147,19 +147,19 @@ fn an_error_says_where_and_what() {
         (
             "beyond",
             plain.replace("\"count\": 12", "\"count\": 13"),
-            "goes beyond its buffer view",
+            "extends beyond its buffer view",
         ),
         (
             "huge",
             plain.replace("\"count\": 12", "\"count\": 18446744073709551615"),
-            "goes beyond",
+            "extends beyond",
         ),
         (
             "huge-without-indices",
             plain
                 .replacen(", \"indices\": 1}", "}", 1)
                 .replace("\"count\": 5", "\"count\": 18446744073709551615"),
-            "goes beyond",
+            "extends beyond",
         ),
         (
             "view",
@@ -169,16 +169,16 @@ fn an_error_says_where_and_what() {
         (
             "wild",
             plain.replace("\"count\": 5", "\"count\": 3"),
-            "names vertex 3",
+            "refers to vertex 3",
         ),
         ("kind", plain.replace("VEC3", "VEC2"), "not three numbers"),
         (
             "base",
             plain.replace("base64,", "base64,*"),
-            "not in base 64",
+            "not in base64",
         ),
         ("lost", text(r#"{"uri": "lost.bin"}"#, ""), "cannot read"),
-        ("none", text("{}", ""), "buffer 0: has no bytes"),
+        ("none", text("{}", ""), "buffer 0: has no data"),
         (
             "lines",
             plain.replace("\"indices\": 1}", "\"mode\": 1}"),

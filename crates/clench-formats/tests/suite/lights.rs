@@ -64,7 +64,7 @@ fn numbers_are_those_of_the_file_or_of_mujoco() {
     };
     assert_eq!(model.visuals.headlight, expected);
     for (light, words) in [
-        ("dir='0 0 0'", "no direction"),
+        ("dir='0 0 0'", "must not be zero"),
         ("mode='targetbody' target='x'", "\"x\""),
         ("directional='true' type='point'", "directional"),
     ] {

@@ -83,14 +83,14 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
         ),
         (
             "<framequat objtype='body' objname='arm' cutoff='1'/>",
-            "no cutoff",
+            "cannot have a cutoff",
         ),
         ("<distance geom1='rod'/>", "either geom2 or body2"),
         ("<distance geom1='rod' body1='arm' geom2='fist'/>", "body1"),
         ("<distance geom1='rod' geom2='rod'/>", "must be different"),
         ("<user/>", "dim"),
         ("<user dim='99999999'/>", "numbers"),
-        ("<clock name='a'/><clock name='a'/>", "taken already"),
+        ("<clock name='a'/><clock name='a'/>", "already in use"),
         ("<camprojection site='tip'/>", "camera"),
         (
             "<camprojection site='tip' camera='blind'/>",
@@ -122,7 +122,7 @@ fn what_no_sensor_can_be_is_refused_with_its_line() {
         ),
         (
             "<insidesite site='tip' objtype='camera' objname='eye' enclosed='true'/>",
-            "a camera has no extent",
+            "a camera has no volume",
         ),
         (
             "<insidesite site='tip' objtype='geom' objname='rod' enclosed='yes'/>",
@@ -213,7 +213,7 @@ fn what_no_camera_can_be_is_refused_with_its_line() {
         ("<camera resolution='5'/>", "2 numbers"),
         ("<camera mode='tracking'/>", "not one of fixed, track"),
         ("<camera quat='0 0 0 0'/>", "quat"),
-        ("<camera name='a'/><camera name='a'/>", "taken already"),
+        ("<camera name='a'/><camera name='a'/>", "already in use"),
     ] {
         let text = format!("<mujoco><worldbody>\n{camera}</worldbody></mujoco>");
         let error = load_str(&text).expect_err(camera).to_string();

@@ -210,7 +210,7 @@ fn corners_of_meshes_have_their_places_in_a_picture() {
     assert_eq!(model.meshes[0].face_texcoords, model.meshes[0].faces);
     for (bad, words) in [
         ("0 0 1", "two numbers"),
-        ("0 0 1 1", "do not fit 4 vertices"),
+        ("0 0 1 1", "do not match 4 vertices"),
     ] {
         let error = written(bad).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");

@@ -105,7 +105,7 @@ fn bodies_that_are_fused_take_theirs_along() {
 fn they_are_held_against_the_budget_before_they_are_made() {
     let text =
         "<mujoco><size nuser_geom='2000000000'/><worldbody><geom size='1'/></worldbody></mujoco>";
-    assert!(refused(text).contains("users' numbers would take more than"));
+    assert!(refused(text).contains("user data would take more than"));
     let modest = text.replace("2000000000", "2000000");
     let small = Budget {
         bytes: 8_000_000,

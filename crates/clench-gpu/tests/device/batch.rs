@@ -363,7 +363,7 @@ fn parameters_that_would_make_other_kernels_are_refused() {
         .expect_err("a spring where there was none")
         .to_string();
     assert!(
-        error.contains("they decide what its kernels are made of"),
+        error.contains("its kernels are compiled for them"),
         "{error}"
     );
     assert_eq!(batch.param("jnt_stiffness", 2).expect("a field"), before);

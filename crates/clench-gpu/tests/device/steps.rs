@@ -320,7 +320,7 @@ fn bad_input_is_told_by_name_and_place() {
     );
     assert_eq!(
         error(batch.write("xpos", &[])),
-        "xpos follows from the state: it can be read only"
+        "xpos is computed from the state: it is read-only"
     );
     assert!(
         error(batch.write("speed", &[]))

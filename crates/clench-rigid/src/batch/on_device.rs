@@ -62,7 +62,7 @@ impl<S: Precision> Batch<S> {
         match &self.mirror {
             None => Ok(()),
             Some(mirror) => Err(SimError::Backend(format!(
-                "{what} of a batch on {} cannot be changed yet: they are as it was made",
+                "{what} of a batch on {} cannot be changed yet: they are fixed when it is created",
                 mirror.name()
             ))),
         }
@@ -139,7 +139,7 @@ impl<S: Precision> Batch<S> {
             }
             if !mirror.backend.holds(field.name) {
                 return Err(SimError::Backend(format!(
-                    "{} cannot have {} of its own yet: an environment was given some",
+                    "{} does not support {} yet, but an environment has a value of it",
                     mirror.name(),
                     field.name
                 )));

@@ -41,7 +41,7 @@ pub struct Quality {
     pub gap_max: f64,
     /// The largest number of contacts.
     pub contacts_max: u64,
-    /// The deepest penetration, m; 0 without penetration.
+    /// The maximum penetration, m; 0 without penetration.
     pub penetration_max: f64,
     /// The number of steps in which some contact was too deep: deeper than softness explains, and deeper than half the
     /// thickness of one of its geoms, so that its centre or middle plane is past the other's surface. Planes and height
@@ -118,7 +118,7 @@ impl Quality {
 struct StepFigures<T: Real> {
     /// The number of contacts.
     contacts: T,
-    /// The deepest penetration, m.
+    /// The maximum penetration, m.
     depth: T,
     /// True if some contact is deeper than half the thickness of a geom.
     deep: T::Mask,

@@ -156,7 +156,7 @@ impl<T: Precision> Sim<T> {
             EqualityTarget::Joint { .. } | EqualityTarget::Tendon { .. } => {
                 return Err(SimError::CannotHold {
                     what: format!("equality \"{}\"", self.model.equalities[equality].name),
-                    reason: "only welds and connects hold a pose",
+                    reason: "only welds and connects constrain a pose",
                 });
             }
         }
@@ -172,8 +172,8 @@ impl<T: Precision> Sim<T> {
             return Err(no_such("body", body, count));
         }
         let reason = match bodies.map(|body| self.model.bodies[body].last_dof) {
-            _ if bodies[0] == bodies[1] => Some("they are one"),
-            [None, None] => Some("nothing moves either"),
+            _ if bodies[0] == bodies[1] => Some("they are the same body"),
+            [None, None] => Some("both are static"),
             _ => None,
         };
         if let Some(reason) = reason {

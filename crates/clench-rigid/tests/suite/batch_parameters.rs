@@ -263,12 +263,12 @@ fn bad_parameters_are_errors_and_change_nothing() {
         (
             "body_subtreemass",
             vec![],
-            "body_subtreemass follows from body_mass: set that",
+            "body_subtreemass is computed from body_mass: set body_mass instead",
         ),
         (
             "geom_rbound",
             vec![],
-            "geom_rbound follows from geom_size: set that",
+            "geom_rbound is computed from geom_size: set geom_size instead",
         ),
         (
             "gravity",
@@ -308,7 +308,7 @@ fn bad_parameters_are_errors_and_change_nothing() {
         (
             "jnt_range",
             range(0.5, -0.5),
-            "jnt_range[1] is -0.5, but must be at least the number before it",
+            "jnt_range[1] is -0.5, but must be at least the preceding number",
         ),
         (
             "jnt_range",
@@ -318,7 +318,7 @@ fn bad_parameters_are_errors_and_change_nothing() {
         (
             "body_quat",
             vec![0.0; 4 * nbody],
-            "body_quat[0] is 0, but must be part of a direction, neither too short nor too long",
+            "body_quat[0] is 0, but must be part of a direction whose length is finite and not too small",
         ),
     ] {
         let together = batch.randomize(field, &[0, 1], &values.repeat(2));

@@ -112,7 +112,7 @@ fn what_cannot_be_names_its_element() {
     assert!(refused(unknown).contains("there is no mesh \"n\""));
     let mut twice = with_mesh(MeshSpec::hull("m", &corners()), GeomSpec::mesh("m"));
     twice.meshes.push(MeshSpec::hull("m", &corners()));
-    assert!(refused(twice).contains("taken already"));
+    assert!(refused(twice).contains("already in use"));
     let mut bad = MeshSpec::hull("m", &corners());
     bad.vertices[3].x = f64::NAN;
     assert!(refused(with_mesh(bad, GeomSpec::mesh("m"))).contains("vertex 3"));

@@ -129,8 +129,8 @@ fn handles_of_what_is_gone_and_bodies_that_cannot_be_tied_are_refused() {
     sim.state.copy_from(&start);
     sim.remove(first).expect("the state has it");
     for (bodies, message) in [
-        ([1, 1], "they are one"),
-        ([0, 4], "nothing moves either"),
+        ([1, 1], "they are the same body"),
+        ([0, 4], "both are static"),
         ([1, 9], "there is no body 9: there are 5"),
     ] {
         let error = sim.add_weld(bodies[0], bodies[1]).expect_err("impossible");

@@ -99,9 +99,9 @@ fn a_model_without_constraints_has_the_length_ranges_that_it_would_have_with_the
 #[test]
 fn a_length_without_end_is_an_error_that_says_so() {
     let endless = slider(muscle(), |b| b.bodies[1].joints[0].limited = Some(false));
-    assert!(endless.unwrap_err().contains("did not settle"));
+    assert!(endless.unwrap_err().contains("did not converge"));
     let short = slider(muscle(), |b| b.compiler.lengthrange.inttotal = 0.0);
-    assert!(short.unwrap_err().contains("does not rise"));
+    assert!(short.unwrap_err().contains("is not increasing"));
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn what_a_muscle_cannot_be_is_an_error() {
         spec.gainprm[index] = value;
         slider(spec, |_| ()).unwrap_err()
     };
-    assert!(with(0, 1.05).contains("range must rise"));
+    assert!(with(0, 1.05).contains("range must be increasing"));
     assert!(with(4, 1.0).contains("lmin must be below 1"));
     assert!(with(5, 0.9).contains("lmin must be below 1"));
     for index in [3, 6, 7, 8] {

@@ -298,7 +298,7 @@ fn a_given_contact_has_a_right_handed_orthonormal_frame_and_two_geoms() {
         let error = sim.forward_with_contacts(&[contact_in(upright), contact_in(frame)]);
         let error = error.expect_err("no frame").to_string();
         assert!(
-            error.starts_with("given contact 1: ") && error.contains(reason),
+            error.starts_with("provided contact 1: ") && error.contains(reason),
             "{error}"
         );
     }
@@ -309,7 +309,7 @@ fn a_given_contact_has_a_right_handed_orthonormal_frame_and_two_geoms() {
     let error = sim.forward_with_contacts(&[same]).expect_err("one geom");
     assert_eq!(
         error.to_string(),
-        "given contact 0: both of its geoms are the same"
+        "provided contact 0: both of its geoms are the same"
     );
 }
 

@@ -382,16 +382,12 @@ mod policies {
         let mut b = pair();
         b.bodies[1].sleep = SleepPolicy::Init;
         b.tendons.push(tendon(1.0, &["a", "b"]));
-        assert!(
-            error(&b).contains("pulls on several trees"),
-            "{}",
-            error(&b)
-        );
+        assert!(error(&b).contains("acts on several trees"), "{}", error(&b));
         let mut b = pair();
         let ball = joint(JointKind::Ball, "", [0.0; 3]);
         let child = add(&mut b, 1, "child", [0.0; 3], vec![ball], vec![sphere(0.1)]);
         b.bodies[child].sleep = SleepPolicy::Allowed;
-        assert!(error(&b).contains("only the moving root"), "{}", error(&b));
+        assert!(error(&b).contains("not the moving root"), "{}", error(&b));
         let mut b = pair();
         b.physics.integrator = Integrator::Rk4;
         assert!(error(&b).contains("RK4"), "{}", error(&b));
@@ -430,7 +426,7 @@ mod policies {
         b.bodies[1].sleep = SleepPolicy::Init;
         let restless = model(&b);
         assert!(
-            restless.notes[0].contains("\"one\" begins awake"),
+            restless.notes[0].contains("\"one\" starts awake"),
             "{:?}",
             restless.notes
         );

@@ -54,7 +54,7 @@ impl Polygons {
             let all: Vec<usize> = numbers(list)?;
             let rows = all.chunks_exact(stride);
             if !rows.remainder().is_empty() {
-                let message = format!("has not {stride} numbers for each corner");
+                let message = format!("does not have {stride} numbers for each corner");
                 return Err(at(list, &message));
             }
             lists.push(rows.map(|row| row[offset]).collect::<Vec<usize>>());
@@ -72,7 +72,7 @@ impl Polygons {
             return Err(at(group, &message));
         }
         if let Some(bad) = corners.iter().find(|&&corner| corner >= positions.len()) {
-            let message = format!("a face names vertex {bad}, which is not there");
+            let message = format!("a face refers to vertex {bad}, which does not exist");
             return Err(at(group, &message));
         }
         Ok(Polygons {
@@ -121,7 +121,10 @@ impl Polygons {
 fn offset(input: Node) -> Result<usize, String> {
     match input.attribute("offset").unwrap_or("0").trim().parse() {
         Ok(offset) if offset < MAX_INPUTS => Ok(offset),
-        _ => Err(at(input, "the offset is no small number")),
+        _ => Err(at(
+            input,
+            "the offset is not an integer in the supported range",
+        )),
     }
 }
 
@@ -139,7 +142,8 @@ fn positions<'a>(file: &File<'a>, vertices: Node<'a, 'a>) -> Result<Vec<Vec3<f64
         else {
             return Ok(default);
         };
-        (written.trim().parse()).map_err(|_| at(node, &format!("{name} is no such number")))
+        (written.trim().parse())
+            .map_err(|_| at(node, &format!("{name} is not a non-negative integer")))
     };
     let (stride, offset) = (setting("stride", 3)?, setting("offset", 0)?);
     if stride < 3 {

@@ -32,7 +32,7 @@ impl<'a> Buffers<'a> {
             bytes.push(match (&buffer.uri, binary) {
                 (Some(uri), _) => Cow::Owned(fetch(uri, beside).map_err(about)?),
                 (None, Some(binary)) if number == 0 => Cow::Borrowed(binary),
-                (None, _) => return Err(about("has no bytes".to_owned())),
+                (None, _) => return Err(about("has no data".to_owned())),
             });
         }
         Ok(Buffers { root, bytes })
@@ -111,18 +111,18 @@ impl<'a> Buffers<'a> {
             .buffer_view
             .ok_or("an accessor has no buffer view")?;
         let view = self.root.buffer_views.get(view);
-        let view = view.ok_or("an accessor names a buffer view that is not there")?;
+        let view = view.ok_or("an accessor refers to a buffer view that does not exist")?;
         let bytes = self.bytes.get(view.buffer);
-        let bytes = bytes.ok_or("a buffer view names a buffer that is not there")?;
+        let bytes = bytes.ok_or("a buffer view refers to a buffer that does not exist")?;
         let stride = view.byte_stride.unwrap_or(size).max(size);
         let viewed = (bytes.get(view.byte_offset..))
             .and_then(|rest| rest.get(..view.byte_length))
             .and_then(|rest| rest.get(accessor.byte_offset..));
-        let viewed = viewed.ok_or("a buffer view goes beyond its buffer")?;
+        let viewed = viewed.ok_or("a buffer view extends beyond its buffer")?;
         let last = accessor.count.saturating_sub(1).checked_mul(stride);
         let needed = last.and_then(|last| last.checked_add(size));
         if accessor.count > 0 && needed.is_none_or(|needed| needed > viewed.len()) {
-            return Err("an accessor goes beyond its buffer view".to_owned());
+            return Err("an accessor extends beyond its buffer view".to_owned());
         }
         Ok((0..accessor.count).map(move |k| &viewed[k * stride..k * stride + size]))
     }
@@ -134,8 +134,8 @@ fn fetch(uri: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
         return beside.read(&percent_decoded(uri));
     };
     let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
-    let encoded = encoded.ok_or("a data URI that is not in base 64")?;
-    base64::decode(encoded).map_err(|error| format!("not in base 64: {error}"))
+    let encoded = encoded.ok_or("a data URI that is not in base64")?;
+    base64::decode(encoded).map_err(|error| format!("not in base64: {error}"))
 }
 
 /// Decodes a file name in which `%20` stands for a space.

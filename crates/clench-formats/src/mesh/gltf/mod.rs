@@ -125,8 +125,8 @@ fn append(
         let mut face = [0; 3];
         for (number, place) in face.iter_mut().zip(corner) {
             let point = places.get(place);
-            let point =
-                point.ok_or_else(|| format!("a face names vertex {place}, which is not there"))?;
+            let point = point
+                .ok_or_else(|| format!("a face refers to vertex {place}, which does not exist"))?;
             *number = *numbers.entry(place).or_insert_with(|| {
                 found.vertices.push(to_single(transform.point(*point)));
                 found.vertices.len() as u32 - 1

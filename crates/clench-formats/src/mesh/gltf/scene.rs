@@ -37,7 +37,7 @@ pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
     }
     let scene = root.scene.unwrap_or(0);
     let scene = root.scenes.get(scene);
-    let scene = scene.ok_or("the scene of the file is not there")?;
+    let scene = scene.ok_or("the scene of the file does not exist")?;
     let mut pending = Vec::new();
     let outermost = (Transform::IDENTITY, 0);
     push(&mut pending, &scene.nodes, outermost);

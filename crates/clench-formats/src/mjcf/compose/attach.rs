@@ -150,10 +150,10 @@ impl Composer<'_, '_> {
             (Conflict::Merge, true) => return Ok(()),
             (Conflict::Merge, false) => {
                 let taken = taken.join(", ");
-                format!("options taken from the attached model \"{name}\": {taken}")
+                format!("options adopted from the attached model \"{name}\": {taken}")
             }
             _ => format!(
-                "the options of the attached model \"{name}\" are left out; those of the model itself count"
+                "the options of the attached model \"{name}\" are omitted; those of the model itself apply"
             ),
         });
         Ok(())
@@ -216,7 +216,7 @@ impl Composer<'_, '_> {
                 .any(|level| level.element.tag == "replicate")
             {
                 let message =
-                    "what is being replicated cannot be attached to itself: not supported yet";
+                    "an element cannot be attached within its own replicate: not supported yet";
                 return Err(element.error(message));
             }
             let so_far = read_so_far(&open[depth..]);

@@ -38,7 +38,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
     let p = &model.params;
     let pulls_back = bias.pulls_back(*gain, &p.actuator_gainprm[u], &p.actuator_biasprm[u]);
     if pulls_back && p.actuator_biasprm[u][2] > 0.0 {
-        let reason = "MJCF takes its positive velocity coefficient for a damping ratio";
+        let reason = "MJCF reads its positive velocity coefficient as a damping ratio";
         return Err(SaveError::new(label("actuator", name, u), reason));
     }
     let [quadratic, cubic] = p.actuator_dampingpoly[u];

@@ -140,7 +140,7 @@ fn word(
     value: OptionValue,
     words: &[(&'static str, OptionValue)],
 ) -> Result<&'static str, SaveError> {
-    let missing = || unwritable(option.name(), &format!("MJCF has no word for {value}"));
+    let missing = || unwritable(option.name(), &format!("MJCF has no keyword for {value}"));
     value.word(words).ok_or_else(missing)
 }
 

@@ -62,7 +62,7 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
     } = tendon;
     let p = &model.params;
     if p.tendon_lengthspring[t] == [-1.0; 2] && p.tendon_length0[t] != -1.0 {
-        let reason = "its spring rests at -1, which means its initial length in MJCF";
+        let reason = "the rest length of its spring is -1, which in MJCF means the initial length";
         return Err(SaveError::new(label("tendon", name, t), reason));
     }
     let polynomial = |linear: f64, [quadratic, cubic]: [f64; 2]| [linear, quadratic, cubic];

@@ -117,7 +117,7 @@ fn write_target<'a>(
 }
 
 fn no_name(sensor: &Sensor, index: usize) -> SaveError {
-    let reason = "what it measures has no name";
+    let reason = "the element that it measures has no name";
     SaveError::new(label("sensor", &sensor.name, index), reason)
 }
 

@@ -115,8 +115,10 @@ fn an_input_only_says_what_it_is_where_the_gain_scales_it() {
             .map(|inputs| inputs.len()),
         Some(1)
     );
-    assert!(rejected("<general joint='j' input='ff'/>").contains("\"ff\" does not go"));
-    assert!(rejected("<general joint='j' gaintype='user' input='pos'/>").contains("does not go"));
+    assert!(rejected("<general joint='j' input='ff'/>").contains("\"ff\" is incompatible"));
+    assert!(
+        rejected("<general joint='j' gaintype='user' input='pos'/>").contains("is incompatible")
+    );
     let class = "<pid input='pos'/>";
     let changed = actuator(
         class,

@@ -72,14 +72,17 @@ fn an_actuator_acts_on_what_its_element_names() {
 fn what_names_no_target_or_two_is_refused() {
     for (element, message) in [
         ("<motor/>", "required"),
-        ("<motor refsite='r'/>", "refsite goes with site"),
+        ("<motor refsite='r'/>", "refsite needs site"),
         ("<motor joint='j' tendon='t'/>", "both"),
         ("<motor joint='j' site='s'/>", "both"),
-        ("<motor joint='j' refsite='r'/>", "refsite goes with site"),
-        ("<motor joint='j' slidersite='s'/>", "slidersite goes with"),
+        ("<motor joint='j' refsite='r'/>", "refsite needs site"),
+        (
+            "<motor joint='j' slidersite='s'/>",
+            "slidersite needs cranksite",
+        ),
         (
             "<motor joint='j' cranklength='1'/>",
-            "cranklength goes with",
+            "cranklength needs cranksite",
         ),
         ("<motor cranksite='c'/>", "slidersite"),
         ("<motor body='b'/>", "unknown attribute"),

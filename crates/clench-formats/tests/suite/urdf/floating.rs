@@ -90,16 +90,16 @@ fn a_base_that_a_file_frees_stays_as_it_is_and_names_stay_unique() {
 fn what_has_no_base_to_free_is_refused() {
     refused(
         &[link("a", ""), link("b", "")],
-        "several stand on the world: a, b",
+        "several are fixed to the world: a, b",
     );
     refused(
         &["<link name='world'/>".to_owned()],
-        "no link besides the world",
+        "no link other than the world",
     );
     let rail = joint("rail", "prismatic", "world", "cart", "");
     refused(
         &["<link name='world'/>".to_owned(), link("cart", ""), rail],
-        "the joint \"rail\" moves it",
+        "the joint \"rail\" already moves it",
     );
     let mjcf = Loader::new()
         .floating(true)

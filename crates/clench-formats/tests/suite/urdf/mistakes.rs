@@ -38,7 +38,7 @@ fn an_error_names_line_element_and_link() {
     let ab = |kind: &str, more: &str| joint("j", kind, "a", "b", more);
     let cases: [(&[&str], u32, &str, &str); 16] = [
         (&["<link/>"], 2, "link", "\"name\" is required"),
-        (&[a, a], 3, "link \"a\"", "taken already"),
+        (&[a, a], 3, "link \"a\"", "already in use"),
         (
             &[a, &joint("j", "fixed", "a", "c", "")],
             3,
@@ -75,7 +75,7 @@ fn an_error_names_line_element_and_link() {
             &[a, b, &ab("fixed", ""), &ab("fixed", "")],
             5,
             "joint \"j\"",
-            "link \"b\" has a parent already",
+            "link \"b\" already has a parent",
         ),
         (
             &[a, b, &ab("fixed", ""), &joint("k", "fixed", "b", "a", "")],
