@@ -22,7 +22,7 @@ import numpy as np
 
 import generated
 import plots
-from alone import Rollout
+from single import Rollout
 from batch import Batch, processors
 from program import CLENCH, Clench
 from scene import NEWTON, ROOT, Unmeasured, load, perturbed_states, smooth_controls
@@ -177,8 +177,8 @@ class Scene:
         run.run()
         return {stage["stage"]: stage["microseconds"] for stage in run.summary["profile"]}
 
-    def affordable(self, envs, most):
-        """Returns the number of steps that MuJoCo takes with `envs` environments in SECONDS: 5 to `most`."""
+    def affordable(self, envs, limit):
+        """Returns the number of steps that MuJoCo takes with `envs` environments in SECONDS: 5 to `limit`."""
         data = mujoco.MjData(self.model)
         if self.state is not None:
             data.qpos[:], data.qvel[:] = np.split(self.state, [self.model.nq])
@@ -187,7 +187,7 @@ class Scene:
         five = time.perf_counter() - begin
         if five * envs > LONGEST.get(envs, math.inf):
             raise Unmeasured(f"five steps would take MuJoCo {five * envs:.0f} s")
-        return min(most, max(5, round(5 * SECONDS / five / envs)))
+        return min(limit, max(5, round(5 * SECONDS / five / envs)))
 
 
 def settled(path, steps):

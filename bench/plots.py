@@ -106,10 +106,10 @@ def growth(rows, path):
     one = [row for row in copies if row["threads"] == 1]
     for engine in ("mujoco", "clench f64", "clench f32"):
         line(axes[1, 0], [row for row in one if row["engine"] == engine], lambda row: row["envs"], engine)
-    most = max((row["envs"] for row in copies), default=0)
+    max_envs = max((row["envs"] for row in copies), default=0)
     for engine in ("clench f64", "clench f32"):
-        line(axes[1, 1], [row for row in copies if row["engine"] == engine and row["envs"] == most], lambda row: row["threads"], engine)
-    titles = ["bodies of a pile", "contacts of large scenes", "environments of an arm and a box", f"threads, {most} environments of it"]
+        line(axes[1, 1], [row for row in copies if row["engine"] == engine and row["envs"] == max_envs], lambda row: row["threads"], engine)
+    titles = ["bodies of a pile", "contacts of large scenes", "environments of an arm and a box", f"threads, {max_envs} environments of it"]
     for axis, title in zip(axes.flat, titles, strict=True):
         axis.set_xlabel(title)
         axis.set_ylabel("µs a step")

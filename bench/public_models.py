@@ -12,7 +12,7 @@ import time
 
 import mujoco
 
-from alone import Rollout
+from single import Rollout
 from batch import Batch
 from program import Clench
 from scene import NEWTON, ROOT, Unmeasured, load, perturbed_states, smooth_controls
@@ -74,14 +74,14 @@ def measure(name, path, model, args):
     return row | {f"{key}_microseconds": 1e6 * min(seconds[key]) / steps / ENVS for key in ("f64", "f32")}
 
 
-def affordable(model, envs, most):
-    """Returns the number of steps that MuJoCo takes with `envs` environments in SECONDS: 5 to `most`."""
+def affordable(model, envs, limit):
+    """Returns the number of steps that MuJoCo takes with `envs` environments in SECONDS: 5 to `limit`."""
     data = mujoco.MjData(model)
     trial = 20
     begin = time.perf_counter()
     mujoco.mj_step(model, data, trial)
     step = (time.perf_counter() - begin) / trial
-    return min(most, max(5, round(SECONDS / step / envs)))
+    return min(limit, max(5, round(SECONDS / step / envs)))
 
 
 def summarize(column, ratios):

@@ -29,7 +29,7 @@ def microseconds(function, calls=CALLS):
 def questions(sim, model, data, rng):
     """Returns each query as its name, Clench's call and MuJoCo's call."""
     nv, body = model.nv, model.nbody - 1
-    room, x = np.zeros((2, 3, nv)), rng.normal(size=nv)
+    out, x = np.zeros((2, 3, nv)), rng.normal(size=nv)
     jacp, jacr, six = np.zeros((3, nv)), np.zeros((3, nv)), np.zeros(6)
     point, force, torque = rng.normal(size=(3, 3))
     directions = rng.normal(size=(100, 3))
@@ -54,7 +54,7 @@ def questions(sim, model, data, rng):
         mujoco.mj_inverse(model, data)
 
     return [
-        ("jacobian(body)", lambda: sim.jacobian(body=body, out=room), lambda: mujoco.mj_jacBody(model, data, jacp, jacr, body)),
+        ("jacobian(body)", lambda: sim.jacobian(body=body, out=out), lambda: mujoco.mj_jacBody(model, data, jacp, jacr, body)),
         ("jacobian_rate(body)", lambda: sim.jacobian_rate(body=body, point=point), lambda: mujoco.mj_jacDot(model, data, jacp, jacr, point, body)),
         ("subtree_jacobian(0)", lambda: sim.subtree_jacobian(0), lambda: mujoco.mj_jacSubtreeCom(model, data, jacp, 0)),
         ("velocity(body)", lambda: sim.velocity(body=body), lambda: mujoco.mj_objectVelocity(model, data, code, body, six, 0)),
@@ -108,8 +108,8 @@ def main():
     batch = clench.Batch(own, args.envs)
     batch.qpos[:] = own.integrate_pos(batch.qpos, rng.normal(0, 0.2, (args.envs, own.nv)))
     print(f"\n{args.envs} environments, {batch.threads} threads{'':<3}µs an environment")
-    for name, ask in batched(batch, rng):
-        print(f"{name:<22}{microseconds(ask, 3) / args.envs:>10.3f}")
+    for name, query in batched(batch, rng):
+        print(f"{name:<22}{microseconds(query, 3) / args.envs:>10.3f}")
 
 
 if __name__ == "__main__":

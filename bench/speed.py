@@ -17,7 +17,7 @@ import os
 import pathlib
 import sys
 
-import alone
+import single
 import batch
 import calls
 import families
@@ -43,7 +43,7 @@ def main():
     models = [find(model) for model in args.models]
     results = []
     for name, (compare, subjects) in {
-        "one": (alone.compare, models),
+        "one": (single.compare, models),
         "batch": (batch.compare, models),
         "calls": (calls.compare, models),
         "vector": (vector.compare, args.tasks),

@@ -46,7 +46,7 @@ def compare(task, args):
 
 
 @contextlib.contextmanager
-def quiet():
+def silenced():
     """Suppresses MuJoCo's deprecation warnings about gymnasium's files, one per environment."""
     kept = os.dup(2)
     try:
@@ -62,7 +62,7 @@ class Vector:
     """A vector environment under fixed actions."""
 
     def __init__(self, task, args, **kwargs):
-        with quiet():
+        with silenced():
             self.env = gymnasium.make_vec(task, num_envs=args.envs, **kwargs)
         self.env.action_space.seed(0)
         self.actions = [self.env.action_space.sample() for _ in range(args.vector_steps)]

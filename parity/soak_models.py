@@ -11,7 +11,7 @@ APART = 1_000_000
 
 
 def main(seed=1, count=20_000):
-    shown = lambda look: print(f"seed {look.seed}: {look.difference}", flush=True)
+    shown = lambda result: print(f"seed {result.seed}: {result.difference}", flush=True)
     findings = search(range(seed * APART, seed * APART + count), report=shown)
     print(findings)
     if findings.differences:

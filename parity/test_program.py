@@ -72,7 +72,7 @@ def test_what_is_supported_is_listed():
     assert len(program.run("mjcf").stdout.splitlines()) > 100
 
 
-def test_forward_tells_the_next_state():
+def test_forward_returns_the_next_state():
     """The next state is that of `simulate` after one step."""
     path = program.ROOT / "models/quadruped.xml"
     record, _ = program.simulate(path, "--steps", 1)
@@ -111,7 +111,7 @@ def test_a_toggled_weld_holds_its_crate():
     assert len(held["constraints"]) == 6 and held["qacc"][4] > -5
 
 
-def test_contacts_that_are_left_out_are_told_of():
+def test_omitted_contacts_are_reported():
     model, few = program.ROOT / "models/box_stack.xml", ("--max-contacts", 1)
     _, summary = program.simulate(model, "--steps", 10, *few)
     assert summary["status"] == "contact_overflow" and summary["overflow_steps"] == 10
@@ -158,7 +158,7 @@ def test_time_limits_and_help():
     ],
     ids=lambda value: value if isinstance(value, str) else value[0],
 )
-def test_what_was_left_out_of_the_program_says_how_to_get_it(command, feature):
+def test_missing_features_are_errors_with_advice(command, feature):
     model = program.ROOT / "models/pendulum.xml"
     done = program.run(*(model if word == "MODEL" else word for word in command))
     assert done.returncode == 2
@@ -184,7 +184,7 @@ STIFF = """
 </mujoco>"""
 
 
-def test_a_motion_that_diverges_begins_anew_where_mujocos_does(tmp_path):
+def test_a_diverged_motion_is_reset_as_by_mujoco(tmp_path):
     path = tmp_path / "stiff.xml"
     path.write_text(STIFF)
     steps = ("--keyframe", "pulled", "--steps", 30)

@@ -36,7 +36,7 @@ def written(request, tmp_path):
     return path, model, *map(np.array, zip(*rows, strict=True))
 
 
-def test_where_springs_rest(written):
+def test_plastic_rest_lengths(written):
     path, model, qpos, qvel, plastic = written
     moved = np.abs(np.diff(plastic, axis=0)).max(axis=0)
     assert (moved > 1e-4).all(), "every spring that can yield does"

@@ -23,7 +23,7 @@ REDUCTION_TIME = 300
 
 
 @dataclasses.dataclass
-class Look:
+class SeedResult:
     """The result of one seed: True if MuJoCo refused it, the MJCF in use, and a difference, if any, with its model."""
 
     seed: int
@@ -43,12 +43,12 @@ class Findings:
     used: collections.Counter = dataclasses.field(default_factory=collections.Counter)
     differences: dict = dataclasses.field(default_factory=dict)
 
-    def add(self, look):
-        self.refused += look.refused
-        self.compared += not look.refused
-        self.used.update(look.used)
-        if look.difference:
-            self.differences[look.seed] = look.difference
+    def add(self, result):
+        self.refused += result.refused
+        self.compared += not result.refused
+        self.used.update(result.used)
+        if result.difference:
+            self.differences[result.seed] = result.difference
 
     def __str__(self):
         lines = [f"{self.compared} models compared, {self.refused} refused by MuJoCo, {len(self.differences)} differ"]
@@ -65,31 +65,31 @@ def model(seed):
     return with_keyframe(root, model, draw) if draw.chance(0.15) else root
 
 
-def look(seed):
+def compare_seed(seed):
     """Compares the model of a seed."""
     try:
         root = model(seed)
         difference = compare.examine(written(root), seed)
     except compare.Refused:
-        return Look(seed, refused=True)
-    return Look(seed, False, set(rules.used(root)), difference, written(root) if difference else "")
+        return SeedResult(seed, refused=True)
+    return SeedResult(seed, False, set(rules.used(root)), difference, written(root) if difference else "")
 
 
-def cut_down(look):
+def cut_down(result):
     """Returns the same difference in a smaller model."""
-    root, difference = reduced(model(look.seed), look.seed, look.difference, REDUCTION_TIME / 2)
-    return dataclasses.replace(look, difference=difference, text=written(root))
+    root, difference = reduced(model(result.seed), result.seed, result.difference, REDUCTION_TIME / 2)
+    return dataclasses.replace(result, difference=difference, text=written(root))
 
 
-def search(seeds, folder=FOLDER, report=lambda look: None):
+def search(seeds, folder=FOLDER, report=lambda result: None):
     """Compares the models of many seeds, on all processors; calls `report` with each that differs."""
     findings = Findings()
     with pebble.ProcessPool(os.cpu_count()) as pool:
-        looks = {pool.schedule(look, (seed,), timeout=COMPARISON_TIME): seed for seed in seeds}
+        results = {pool.schedule(compare_seed, (seed,), timeout=COMPARISON_TIME): seed for seed in seeds}
         smaller = {}
-        for future in concurrent.futures.as_completed(looks):
+        for future in concurrent.futures.as_completed(results):
             if isinstance(future.exception(), TimeoutError):
-                findings.too_slow.append(looks[future])
+                findings.too_slow.append(results[future])
                 continue
             found = future.result()
             findings.add(found)

@@ -91,16 +91,16 @@ def _fragment(document: Document, ancestors: Sequence[ET.Element], node: ET.Elem
     section = ancestors[0].tag if ancestors else node.tag
     if section in _AROUND:
         return ET.tostring(root, encoding="unicode")
-    place = assets if ancestors and section == "asset" else root
+    parent = assets if ancestors and section == "asset" else root
     if ancestors and section != "asset":
-        place = ET.SubElement(root, section)
+        parent = ET.SubElement(root, section)
     if section == "worldbody":
         # The position of an element in the tree does not affect the result.
-        place = ET.SubElement(place, "body") if len(ancestors) > 1 else place
+        parent = ET.SubElement(parent, "body") if len(ancestors) > 1 else parent
     else:
         for ancestor in ancestors[1:]:
-            place = ET.SubElement(place, ancestor.tag, ancestor.attrib)
-    ET.SubElement(place, node.tag, node.attrib)
+            parent = ET.SubElement(parent, ancestor.tag, ancestor.attrib)
+    ET.SubElement(parent, node.tag, node.attrib)
     return ET.tostring(root, encoding="unicode")
 
 

@@ -44,9 +44,9 @@ class LoadError(ClenchError, ValueError):
         self.element = element
 
     def __str__(self) -> str:
-        place = f"{self.file}:" if self.file else ""
-        place += "" if self.line is None else f"{self.line}:"
-        return " ".join(part for part in (place, f"{self.element}:" if self.element else "", self.message) if part)
+        location = f"{self.file}:" if self.file else ""
+        location += "" if self.line is None else f"{self.line}:"
+        return " ".join(part for part in (location, f"{self.element}:" if self.element else "", self.message) if part)
 
 
 class SimulationError(ClenchError, RuntimeError):

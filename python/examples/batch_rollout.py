@@ -32,7 +32,7 @@ def random_gaits(rng: np.random.Generator, n: int, steps: int, model: clench.Mod
     return gaits
 
 
-def alone(model: clench.Model, gait: NDArray[np.float64]) -> NDArray[Any]:
+def step_alone(model: clench.Model, gait: NDArray[np.float64]) -> NDArray[Any]:
     """Return the final positions of one gait in a single simulation."""
     sim = clench.Sim(model)
     for controls in gait:
@@ -60,7 +60,7 @@ def main() -> None:
     print(f"the best, gait {best}, goes {forward[best, -1]:.2f} m; the median {np.median(forward[:, -1]):.2f} m")
     print(f"it has {recorded['contact_count'][best].mean():.1f} contacts on average")
 
-    same = np.array_equal(alone(model, gaits[best]), recorded["qpos"][best, -1])
+    same = np.array_equal(step_alone(model, gaits[best]), recorded["qpos"][best, -1])
     print(f"in a simulation of its own it ends {'in the same place, to the bit' if same else 'somewhere else'}")
 
     def draw(axes: Axes) -> None:

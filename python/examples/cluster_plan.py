@@ -59,11 +59,11 @@ def main() -> None:
             if options.kill and attempt == rounds // 2:
                 os.kill(batch.workers[-1][1], signal.SIGKILL)
             gaits = rng.normal(mean, spread, (n, mean.size))
-            way = batch.rollout(start, controls(gaits, steps, model), record=["qpos"])["qpos"][:, -1, 0]
-            way = np.nan_to_num(way, nan=-np.inf)
-            elite = gaits[np.argsort(way)[-n // 10 :]]
+            distance = batch.rollout(start, controls(gaits, steps, model), record=["qpos"])["qpos"][:, -1, 0]
+            distance = np.nan_to_num(distance, nan=-np.inf)
+            elite = gaits[np.argsort(distance)[-n // 10 :]]
             mean, spread = elite.mean(axis=0), elite.std(axis=0) + 0.01
-            best.append(float(way.max()))
+            best.append(float(distance.max()))
             print(f"round {attempt + 1}: the best goes {best[-1]:.4f} m")
         print(f"{len(batch.workers)} workers, {batch.replaced} replaced")
 

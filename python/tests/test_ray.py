@@ -254,7 +254,7 @@ def test_what_is_tied_at_run_time_survives_a_death(snapshot_every: int) -> None:
             spread.add_weld(first, second, envs=[7])
 
 
-def test_what_is_wrong_is_told_and_changes_nothing() -> None:
+def test_errors_are_reported_and_change_nothing() -> None:
     alone, spread = pair()
     with spread:
         mass = alone.param("body_mass")

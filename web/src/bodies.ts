@@ -22,7 +22,7 @@ interface Drawn {
   mesh: THREE.InstancedMesh;
   slot: number;
   /** The index of its environment among those side by side. */
-  place: number;
+  copyIndex: number;
 }
 
 /** The state of a drawn environment. */
@@ -43,7 +43,7 @@ export interface Hit {
   body: number;
   point: THREE.Vector3;
   /** The index of the environment among those side by side. */
-  place: number;
+  copyIndex: number;
 }
 
 const SLEEPING = new THREE.Color(0.45, 0.45, 0.48);
@@ -62,15 +62,15 @@ export class Bodies {
     private scene: Scene,
     private sight: Sight,
     /** The number of environments with allocated instances. */
-    private room: number,
+    private capacity: number,
   ) {
     this.rebuild();
   }
 
-  /** Allocates instances for `room` environments. */
-  resize(room: number): void {
-    if (room === this.room) return;
-    this.room = room;
+  /** Allocates instances for `capacity` environments. */
+  resize(capacity: number): void {
+    if (capacity === this.capacity) return;
+    this.capacity = capacity;
     this.rebuild();
   }
 
@@ -99,8 +99,8 @@ export class Bodies {
     for (const indices of alike.values()) {
       const first = all[indices[0]];
       // All environments share a plane of the world.
-      const shared = first.kind === "plane" && first.body === 0 && this.room > 1;
-      const copies = shared ? 1 : this.room;
+      const shared = first.kind === "plane" && first.body === 0 && this.capacity > 1;
+      const copies = shared ? 1 : this.capacity;
       const surface = materialOf(this.scene, first);
       surface.color.set(0xffffff);
       if (surface.emissiveIntensity === 0) surface.emissive.set(0);
@@ -119,7 +119,7 @@ export class Bodies {
         const index = indices[slot % indices.length];
         const placed = all[index];
         mesh.setColorAt(slot, tint(placed.rgba));
-        return { placed, index, local: localPose(placed), mesh, slot, place: Math.floor(slot / indices.length) };
+        return { placed, index, local: localPose(placed), mesh, slot, copyIndex: Math.floor(slot / indices.length) };
       });
       if (geoms) this.shown.set(mesh, here);
       this.group.add(mesh);
@@ -130,13 +130,13 @@ export class Bodies {
 
   /** Updates all poses and colours; there are as many copies as allocated environments. */
   update(copies: Copy[]): void {
-    const place = new THREE.Matrix4();
+    const matrix = new THREE.Matrix4();
     for (const drawn of this.geoms) {
       const { body, group, rgba } = drawn.placed;
-      const { poses, fails, asleep, islands, chosen } = copies[drawn.place];
+      const { poses, fails, asleep, islands, chosen } = copies[drawn.copyIndex];
       const visible = this.sight.groups[group] ?? true;
-      place.multiplyMatrices(poses[body], drawn.local);
-      drawn.mesh.setMatrixAt(drawn.slot, visible ? place : NOWHERE);
+      matrix.multiplyMatrices(poses[body], drawn.local);
+      drawn.mesh.setMatrixAt(drawn.slot, visible ? matrix : NOWHERE);
       const tree = this.scene.trees[body];
       const colour = tint(rgba);
       if (this.sight.islands && tree !== null && islands[tree] >= 0) colour.lerp(islandColour(islands[tree]), 0.8);
@@ -147,8 +147,8 @@ export class Bodies {
     }
     for (const drawn of this.sites) {
       const { body, group } = drawn.placed;
-      place.multiplyMatrices(copies[drawn.place].poses[body], drawn.local);
-      drawn.mesh.setMatrixAt(drawn.slot, this.sight.sites && (this.sight.groups[group] ?? true) ? place : NOWHERE);
+      matrix.multiplyMatrices(copies[drawn.copyIndex].poses[body], drawn.local);
+      drawn.mesh.setMatrixAt(drawn.slot, this.sight.sites && (this.sight.groups[group] ?? true) ? matrix : NOWHERE);
     }
     for (const mesh of this.group.children as THREE.InstancedMesh[]) {
       mesh.instanceMatrix.needsUpdate = true;
@@ -161,7 +161,7 @@ export class Bodies {
   pick(ray: THREE.Raycaster): Hit | null {
     for (const hit of ray.intersectObjects([...this.shown.keys()], false)) {
       const drawn = this.shown.get(hit.object)?.[hit.instanceId ?? -1];
-      if (drawn) return { geom: drawn.index, body: drawn.placed.body, point: hit.point, place: drawn.place };
+      if (drawn) return { geom: drawn.index, body: drawn.placed.body, point: hit.point, copyIndex: drawn.copyIndex };
     }
     return null;
   }

@@ -50,10 +50,10 @@ export interface Slider {
   show(value: number): void;
 }
 
-/** Shortens a name to `most` characters by omitting the middle: both ends distinguish it from others. */
-export function shortened(text: string, most: number): string {
-  const head = Math.ceil((most - 1) / 2);
-  return text.length <= most ? text : `${text.slice(0, head)}…${text.slice(head + 1 - most)}`;
+/** Shortens a name to `max` characters by omitting the middle: both ends distinguish it from others. */
+export function shortened(text: string, max: number): string {
+  const head = Math.ceil((max - 1) / 2);
+  return text.length <= max ? text : `${text.slice(0, head)}…${text.slice(head + 1 - max)}`;
 }
 
 /** The number of characters of a name before a slider. */
@@ -94,12 +94,12 @@ export function fold(title: string, open: boolean, ...children: Node[]): HTMLDet
 }
 
 /** Smaller values are rounding errors of zero. */
-const NOTHING = 1e-9;
+const NEGLIGIBLE = 1e-9;
 
 /** Formats a number with few digits. */
 export function brief(value: number): string {
   const size = Math.abs(value);
-  if (size < NOTHING) return "0";
+  if (size < NEGLIGIBLE) return "0";
   if (size < 1e-3 || size >= 1e5) return value.toExponential(2);
   return value.toFixed(size >= 100 ? 1 : 3);
 }

@@ -39,10 +39,10 @@ export class Labels {
   end(): void {
     this.group.children.slice(this.used).forEach((sprite) => (sprite.visible = false));
     // Changing numbers would fill the memory with textures of old ones.
-    if (this.painted.size > 200 + this.used) this.forget();
+    if (this.painted.size > 200 + this.used) this.clear();
   }
 
-  private forget(): void {
+  private clear(): void {
     for (const { texture } of this.painted.values()) texture.dispose();
     this.painted.clear();
   }

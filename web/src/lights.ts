@@ -16,7 +16,7 @@ function colour([red, green, blue]: Numbers3): THREE.Color {
 }
 
 interface Lamp {
-  told: Light;
+  light: Light;
   /** The row in frames. */
   row: number;
   lamp: THREE.DirectionalLight | THREE.SpotLight | THREE.PointLight;
@@ -57,11 +57,11 @@ export class Lights {
     }
     // A laptop can draw only one shadow map sixty times a second.
     const casting = lights.findIndex(({ active, castshadow }) => active && castshadow);
-    lights.forEach((told, row) => {
-      if (!told.active) return;
-      everywhere.add(colour(told.ambient));
-      const lamp = made(told);
-      this.lamps.push({ told, row, lamp });
+    lights.forEach((light, row) => {
+      if (!light.active) return;
+      everywhere.add(colour(light.ambient));
+      const lamp = made(light);
+      this.lamps.push({ light, row, lamp });
       this.add(this.night, lamp, row === casting);
     });
     this.night.add(new THREE.AmbientLight(everywhere, MATT));
@@ -108,7 +108,7 @@ export class Lights {
   update(frame: Frame, target: THREE.Vector3, offset: THREE.Vector3, reach: number): void {
     this.sun.target.position.copy(target);
     this.sun.position.copy(target).addScaledVector(TO_SUN, 5.3 * reach * this.extent);
-    for (const { told, row, lamp } of this.lamps) {
+    for (const { light, row, lamp } of this.lamps) {
       const { data } = frame.rows.lights;
       const at = new THREE.Vector3().fromArray(data, 6 * row).add(offset);
       const along = new THREE.Vector3().fromArray(data, 6 * row + 3);
@@ -119,7 +119,7 @@ export class Lights {
       } else {
         lamp.position.copy(at);
         const distance = at.distanceTo(target);
-        const [constant, linear, square] = told.attenuation;
+        const [constant, linear, square] = light.attenuation;
         // Use the attenuation at the centre of the picture everywhere.
         lamp.intensity = MATT / Math.max(constant + linear * distance + square * distance * distance, 1e-9);
         if (lamp instanceof THREE.SpotLight) lamp.target.position.copy(at).add(along);

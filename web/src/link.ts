@@ -40,14 +40,14 @@ export class Link {
 
   private take(data: string | ArrayBuffer): void {
     if (typeof data === "string") {
-      const said = JSON.parse(data) as Scene | { error: string };
-      if ("error" in said) {
-        this.listener.error(said.error);
+      const message = JSON.parse(data) as Scene | { error: string };
+      if ("error" in message) {
+        this.listener.error(message.error);
         return;
       }
-      this.scene = said;
+      this.scene = message;
       this.last = null;
-      this.listener.scene(said);
+      this.listener.scene(message);
       this.next();
     } else {
       this.last = this.scene && whole(this.scene, data, this.last);

@@ -10,8 +10,8 @@ import { Plots } from "./plots.ts";
 import { Replay } from "./replay.ts";
 import type { Scene } from "./scene.ts";
 import { Stage } from "./stage.ts";
-import { Tape } from "./tape.ts";
-import { listen } from "./touch.ts";
+import { FrameBuffer } from "./frame_buffer.ts";
+import { listen } from "./pointer.ts";
 
 /** The groups of geoms that are hidden initially, as in MuJoCo. */
 const HIDDEN = [3, 4, 5];
@@ -55,13 +55,13 @@ function open(
   scene: Scene,
   first: Frame,
   send: (command: Command) => void,
-  past: Replay | Tape,
+  past: Replay | FrameBuffer,
 ): Parts {
   const replay = past instanceof Replay ? past : null;
-  const tape = past instanceof Tape ? past : null;
+  const frameBuffer = past instanceof FrameBuffer ? past : null;
   view.replaceChildren();
   const stage = new Stage(scene, first, sight, layers, view);
-  const panel = new Panel(scene, stage, sight, layers, send, replay, tape);
+  const panel = new Panel(scene, stage, sight, layers, send, replay, frameBuffer);
   const plots = new Plots(scene, document.getElementById("plots")!);
   listen(replay ? { ...scene, active: false } : scene, stage, panel, send);
   return { stage, panel, plots };
@@ -79,18 +79,18 @@ function show(parts: Parts, frame: Frame): void {
 function watch(): void {
   let scene: Scene | null = null;
   let parts: Parts | null = null;
-  const tape = new Tape(notify);
+  const frameBuffer = new FrameBuffer(notify);
   const link = new Link({
-    scene(told) {
-      scene = told;
+    scene(loaded) {
+      scene = loaded;
       parts?.stage.dispose();
       parts = null;
-      tape.begin(told);
+      frameBuffer.begin(loaded);
       notify("");
     },
     frame(frame) {
-      tape.keep(frame);
-      parts ??= open(scene!, frame, (command) => link.send(command), tape);
+      frameBuffer.store(frame);
+      parts ??= open(scene!, frame, (command) => link.send(command), frameBuffer);
       show(parts, frame);
     },
     error: notify,

@@ -3,25 +3,25 @@
 import * as THREE from "three";
 import { textsOf, type Frame } from "./frame.ts";
 import { Labels } from "./labels.ts";
-import { Many, standing, stretched, UP } from "./many.ts";
+import { Instances, standing, stretched, UP } from "./instances.ts";
 
 /** The number of opacity levels: marks of one level share a call. */
 const STEPS = 10;
 
 class Solids {
-  readonly balls: Many;
-  readonly shafts: Many;
-  readonly heads: Many;
+  readonly balls: Instances;
+  readonly shafts: Instances;
+  readonly heads: Instances;
 
   constructor(opacity: number) {
     const transparent = opacity < 1;
     const surface = new THREE.MeshStandardMaterial({ roughness: 0.6, transparent, opacity, depthWrite: !transparent });
-    this.balls = new Many(new THREE.SphereGeometry(1, 24, 16), surface);
-    this.shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 14)), surface);
-    this.heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), surface);
+    this.balls = new Instances(new THREE.SphereGeometry(1, 24, 16), surface);
+    this.shafts = new Instances(standing(new THREE.CylinderGeometry(1, 1, 1, 14)), surface);
+    this.heads = new Instances(standing(new THREE.ConeGeometry(1, 1, 20)), surface);
   }
 
-  all(): Many[] {
+  all(): Instances[] {
     return [this.balls, this.shafts, this.heads];
   }
 }
@@ -45,13 +45,13 @@ export class Marks {
     this.labels.end();
   }
 
-  private of(opacity: number, most: number): Solids {
+  private of(opacity: number, max: number): Solids {
     const step = Math.round(opacity * STEPS);
     let solids = this.solids.get(step);
     if (!solids) {
       solids = new Solids(step / STEPS);
       solids.all().forEach((many) => {
-        many.begin(most);
+        many.begin(max);
         this.group.add(many.group);
       });
       this.solids.set(step, solids);
@@ -59,7 +59,7 @@ export class Marks {
     return solids;
   }
 
-  private add(mark: Float32Array, text: string, most: number): void {
+  private add(mark: Float32Array, text: string, max: number): void {
     const kind = mark[0];
     const from = new THREE.Vector3(mark[1], mark[2], mark[3]);
     const along = new THREE.Vector3(mark[4], mark[5], mark[6]).sub(from);
@@ -69,7 +69,7 @@ export class Marks {
       this.labels.add(text, from, colour);
       return;
     }
-    const { balls, shafts, heads } = this.of(mark[11], most);
+    const { balls, shafts, heads } = this.of(mark[11], max);
     const length = along.length();
     const direction = length > 0 ? along.divideScalar(length) : UP;
     const head = kind === 2 ? Math.min(5 * radius, 0.5 * length) : 0;

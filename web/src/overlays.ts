@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 import type { Frame } from "./frame.ts";
-import { Many, standing, stretched, UP } from "./many.ts";
+import { Instances, standing, stretched, UP } from "./instances.ts";
 import { Marks } from "./marks.ts";
 import { poseOf } from "./poses.ts";
 import type { Scene } from "./scene.ts";
@@ -34,7 +34,7 @@ const FARTHEST = 0.25;
 const NORMAL = new THREE.Color(0x2f7de1);
 const FRICTION = new THREE.Color(0xf08a24);
 const PULL = new THREE.Color(0xd5348b);
-const HELD = new THREE.Color(0x8d5bd1);
+const EQUALITY = new THREE.Color(0x8d5bd1);
 const LIMIT = new THREE.Color(0xc9a400);
 const STICKS = new THREE.Color(0x2eb872);
 const SLIPS = new THREE.Color(0xe0342c);
@@ -68,10 +68,10 @@ export class Overlays {
   private strained = new Set<number>();
   /** The relative thickness of contact marks: 1 for few contacts. */
   private thin = 1;
-  private discs = new Many(new THREE.CylinderGeometry(1, 1, 0.12, 32), glow(0.85), 3);
-  private shafts = new Many(standing(new THREE.CylinderGeometry(1, 1, 1, 12)), glow(0.95), 5);
-  private heads = new Many(standing(new THREE.ConeGeometry(1, 1, 20)), glow(0.95), 6);
-  private cones = new Many(
+  private discs = new Instances(new THREE.CylinderGeometry(1, 1, 0.12, 32), glow(0.85), 3);
+  private shafts = new Instances(standing(new THREE.CylinderGeometry(1, 1, 1, 12)), glow(0.95), 5);
+  private heads = new Instances(standing(new THREE.ConeGeometry(1, 1, 20)), glow(0.95), 6);
+  private cones = new Instances(
     standing(new THREE.ConeGeometry(1, 1, 40, 1, true).rotateX(Math.PI)),
     new THREE.MeshBasicMaterial({
       transparent: true,
@@ -82,12 +82,12 @@ export class Overlays {
     }),
     2,
   );
-  private strings = new Many(
+  private strings = new Instances(
     standing(new THREE.CylinderGeometry(1, 1, 1, 10)),
     new THREE.MeshStandardMaterial({ roughness: 0.6 }),
   );
-  private balls = new Many(new THREE.SphereGeometry(1, 20, 14), glow(0.9), 4);
-  private boxes = new Many(new THREE.BoxGeometry(2, 2, 2), glow(0.3), 4);
+  private balls = new Instances(new THREE.SphereGeometry(1, 20, 14), glow(0.9), 4);
+  private boxes = new Instances(new THREE.BoxGeometry(2, 2, 2), glow(0.3), 4);
   private marks: Marks;
 
   constructor(
@@ -113,7 +113,7 @@ export class Overlays {
     return (3 * this.forceScale) / this.size;
   }
 
-  private all(): Many[] {
+  private all(): Instances[] {
     return [this.discs, this.shafts, this.heads, this.cones, this.strings, this.balls, this.boxes];
   }
 
@@ -286,7 +286,7 @@ export class Overlays {
 
   /** Draws a limit or an equality: an arrow for its force, one with two heads for its torque. */
   private push(row: Float32Array): void {
-    const colour = row[0] === 1 ? LIMIT : HELD;
+    const colour = row[0] === 1 ? LIMIT : EQUALITY;
     const at = new THREE.Vector3(row[3], row[4], row[5]);
     const force = new THREE.Vector3(row[6], row[7], row[8]).multiplyScalar(this.forceScale);
     const torque = new THREE.Vector3(row[9], row[10], row[11]).multiplyScalar(this.torqueScale);

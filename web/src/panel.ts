@@ -8,7 +8,7 @@ import type { Command } from "./link.ts";
 import type { Replay } from "./replay.ts";
 import { nameOf, type Scene } from "./scene.ts";
 import type { Stage } from "./stage.ts";
-import type { Tape } from "./tape.ts";
+import type { FrameBuffer } from "./frame_buffer.ts";
 
 const SPEEDS: [string, string][] = [
   ["0.1", "0.1 ×"],
@@ -67,7 +67,7 @@ export class Panel {
     private layers: Layers,
     private send: (command: Command) => void,
     private replay: Replay | null,
-    private tape: Tape | null,
+    private frameBuffer: FrameBuffer | null,
   ) {
     this.pause = button("pause", "pause or continue (space)", () => this.toggle());
     this.pause.id = "pause";
@@ -116,17 +116,17 @@ export class Panel {
       choice(SPEEDS, "1", (value) => this.send({ do: "speed", factor: Number(value) })),
       ...(scene.envs > 1 ? this.envControls() : []),
       ...this.cameras(),
-      ...(this.tape ? [this.saves(this.tape)] : []),
+      ...(this.frameBuffer ? [this.saves(this.frameBuffer)] : []),
       this.clock,
     ];
   }
 
   /** Creates the control that saves the last seconds as a page. */
-  private saves(tape: Tape): HTMLElement {
+  private saves(frameBuffer: FrameBuffer): HTMLElement {
     const options = SAVED.map((seconds): [string, string] => [`${seconds}`, `the last ${seconds} s`]);
     const list = choice([["", "save"], ...options], "", (seconds) => {
       list.value = "";
-      if (seconds !== "") void tape.save(Number(seconds));
+      if (seconds !== "") void frameBuffer.save(Number(seconds));
     });
     list.id = "save";
     list.title = "save the last seconds as a page that replays them";
@@ -168,10 +168,10 @@ export class Panel {
   }
 
   private envControls(): HTMLElement[] {
-    const most = this.scene.envs - 1;
+    const max = this.scene.envs - 1;
     const field = (title: string, id: string, changed: (value: number) => void) => {
-      const input = element("input", { type: "number", id, title, min: "0", max: `${most}`, step: "1", value: "0" });
-      input.onchange = () => changed(Math.min(most, Math.max(0, Math.round(input.valueAsNumber || 0))));
+      const input = element("input", { type: "number", id, title, min: "0", max: `${max}`, step: "1", value: "0" });
+      input.onchange = () => changed(Math.min(max, Math.max(0, Math.round(input.valueAsNumber || 0))));
       this.envFields.push(input);
       return input;
     };
@@ -230,12 +230,12 @@ export class Panel {
     if (this.scene.trees.some((tree) => tree !== null)) {
       box.append(check("islands", this.sight.islands, (on) => (this.sight.islands = on)));
     }
-    const anew = (key: "hulls" | "transparent") => (on: boolean) => {
+    const rebuild = (key: "hulls" | "transparent") => (on: boolean) => {
       this.sight[key] = on;
       this.stage.bodies.rebuild();
     };
-    box.append(check("transparent", this.sight.transparent, anew("transparent")));
-    if (this.scene.meshes.length > 0) box.append(check("collision hulls", this.sight.hulls, anew("hulls")));
+    box.append(check("transparent", this.sight.transparent, rebuild("transparent")));
+    if (this.scene.meshes.length > 0) box.append(check("collision hulls", this.sight.hulls, rebuild("hulls")));
     const used = new Set([...this.scene.geoms, ...this.scene.sites].map(({ group }) => group));
     if (used.size > 1) {
       [...used].sort().forEach((group) => {
@@ -329,8 +329,8 @@ export class Panel {
   update(frame: Frame): void {
     this.paused = frame.paused;
     this.readSelection(frame);
-    const still = this.replay ? !this.replay.playing : frame.paused;
-    paint(this.pause, still ? "play" : "pause");
+    const isPaused = this.replay ? !this.replay.playing : frame.paused;
+    paint(this.pause, isPaused ? "play" : "pause");
     const speed = frame.rows.plots.data[8];
     const rate = this.live && !frame.paused ? ` · ${speed.toFixed(2)} ×` : "";
     this.clock.value = `${frame.time.toFixed(3)} s${rate} · ${frame.rows.contacts.count} contacts`;

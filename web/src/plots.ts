@@ -49,19 +49,19 @@ function sources(scene: Scene): Source[] {
 const PAUSE = 100;
 
 /** Smaller values are rounding errors of zero. */
-const NOTHING = 1e-12;
+const NEGLIGIBLE = 1e-12;
 
 /** Returns the axis range of a line; a constant line is padded by half its value on both sides. */
-function reach(least: number | null, most: number | null): uPlot.Range.MinMax {
-  if (least === null || most === null) return [0, 1];
-  const size = Math.max(Math.abs(least), Math.abs(most));
-  if (size < NOTHING) return [-1, 1];
-  if (most - least > NOTHING * size) return uPlot.rangeNum(least, most, 0.1, true);
-  return [least - 0.5 * size, most + 0.5 * size];
+function reach(min: number | null, max: number | null): uPlot.Range.MinMax {
+  if (min === null || max === null) return [0, 1];
+  const size = Math.max(Math.abs(min), Math.abs(max));
+  if (size < NEGLIGIBLE) return [-1, 1];
+  if (max - min > NEGLIGIBLE * size) return uPlot.rangeNum(min, max, 0.1, true);
+  return [min - 0.5 * size, max + 0.5 * size];
 }
 
 /** Returns the width of a vertical axis with its labels and gaps, pixels. */
-function room(texts: string[] | null): number {
+function labelWidth(texts: string[] | null): number {
   return 16 + 6 * Math.max(3, ...(texts ?? []).map((text) => text.length));
 }
 
@@ -112,10 +112,10 @@ class Plot {
         legend: { show: false },
         cursor: { show: false },
         // Stacked areas start at zero.
-        scales: { x: { time: false }, y: { range: (_, least, most) => (parts.length > 0 ? [0, most || 1] : reach(least, most)) } },
+        scales: { x: { time: false }, y: { range: (_, min, max) => (parts.length > 0 ? [0, max || 1] : reach(min, max)) } },
         axes: [
           { size: 22, font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
-          { size: (_, texts) => room(texts), values: (_, ticks) => tickTexts(ticks), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
+          { size: (_, texts) => labelWidth(texts), values: (_, ticks) => tickTexts(ticks), font: "10px system-ui", stroke: "#566", grid: { stroke: "#0001" }, ticks: { show: false } },
         ],
         series: [{}, ...(parts.length > 0 ? stacked : [line])],
       },
@@ -179,10 +179,10 @@ class Plot {
 export class Plots {
   private plots: Plot[];
 
-  constructor(scene: Scene, place: HTMLElement) {
+  constructor(scene: Scene, container: HTMLElement) {
     const all = sources(scene);
     this.plots = [0, 3, 6].map((source, k) => new Plot(all, source, COLOURS[k]));
-    place.replaceChildren(...this.plots.map((plot) => plot.box));
+    container.replaceChildren(...this.plots.map((plot) => plot.box));
   }
 
   add(frame: Frame): void {

@@ -8,8 +8,8 @@ export const ONE = new THREE.Vector3(1, 1, 1);
 
 export function poseOf(pos: ArrayLike<number>, quat: ArrayLike<number>): THREE.Matrix4 {
   // Quaternions of models have w first, those of three.js have it last.
-  const turn = new THREE.Quaternion(quat[1], quat[2], quat[3], quat[0]);
-  return new THREE.Matrix4().compose(new THREE.Vector3(pos[0], pos[1], pos[2]), turn, ONE);
+  const rotation = new THREE.Quaternion(quat[1], quat[2], quat[3], quat[0]);
+  return new THREE.Matrix4().compose(new THREE.Vector3(pos[0], pos[1], pos[2]), rotation, ONE);
 }
 
 export function localPose(placed: { pos: Numbers3; quat: Numbers4 }): THREE.Matrix4 {

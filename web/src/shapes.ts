@@ -60,11 +60,11 @@ function terrain(scene: Scene, index: number): THREE.BufferGeometry {
   const [halfX, halfY, elevation] = size;
   const values = new Float32Array(bytesOf(heights));
   const geometry = new THREE.PlaneGeometry(2 * halfX, 2 * halfY, columns - 1, rows - 1);
-  const place = geometry.attributes.position;
+  const positions = geometry.attributes.position;
   for (let row = 0; row < rows; row++) {
     for (let column = 0; column < columns; column++) {
       const vertex = row * columns + column;
-      place.setXYZ(
+      positions.setXYZ(
         vertex,
         -halfX + (2 * halfX * column) / (columns - 1),
         -halfY + (2 * halfY * row) / (rows - 1),
@@ -86,13 +86,13 @@ function terrain(scene: Scene, index: number): THREE.BufferGeometry {
 /** Creates the material of a geom or site. Colours of models are in sRGB. */
 export function materialOf(scene: Scene, placed: Placed): THREE.MeshStandardMaterial {
   const [red, green, blue, alpha] = placed.rgba;
-  const said = placed.material === null ? null : scene.materials[placed.material];
+  const material = placed.material === null ? null : scene.materials[placed.material];
   const colour = new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace);
   const surface = new THREE.MeshStandardMaterial({
     color: colour,
     emissive: colour,
-    emissiveIntensity: said?.emission ?? 0,
-    roughness: 1 - 0.65 * (said?.shininess ?? 0.5),
+    emissiveIntensity: material?.emission ?? 0,
+    roughness: 1 - 0.65 * (material?.shininess ?? 0.5),
     metalness: 0.05,
     transparent: alpha < 1,
     opacity: alpha,

@@ -15,7 +15,7 @@ const SKY = 0xdfe6ee;
 /** The vertical field of view of the free camera, degrees. */
 const FOV = 42;
 /** The initial directions to the free camera, for one and for several environments. */
-const ASIDE = new THREE.Vector3(1.35, -1.55, 0.62).normalize();
+const OBLIQUE = new THREE.Vector3(1.35, -1.55, 0.62).normalize();
 const ABOVE = new THREE.Vector3(1.35, -1.55, 1.1).normalize();
 /** The radius of the visible ball over that of the model. */
 const ROOMY = 1.08;
@@ -74,7 +74,7 @@ export class Stage {
     first: Frame,
     sight: Sight,
     layers: Layers,
-    private place: HTMLElement,
+    private container: HTMLElement,
   ) {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
@@ -82,7 +82,7 @@ export class Stage {
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
     this.renderer.toneMappingExposure = 0.95;
-    place.append(this.renderer.domElement);
+    container.append(this.renderer.domElement);
 
     readPoses(first, this.poses);
     this.extent = this.measure(scene);
@@ -110,7 +110,7 @@ export class Stage {
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("start", () => (this.isMoved = true));
     // The surrounding controls receive their sizes after the picture, and their lines of text change.
-    for (const part of [place, ...AROUND.map((id) => document.getElementById(id))]) if (part) this.sizes.observe(part);
+    for (const part of [container, ...AROUND.map((id) => document.getElementById(id))]) if (part) this.sizes.observe(part);
     this.fit();
     this.home();
   }
@@ -123,19 +123,19 @@ export class Stage {
   private measure(scene: Scene): number {
     const bounds = new THREE.Box3();
     const whole = new THREE.Box3();
-    const still: THREE.Box3[] = [];
+    const fixedBoxes: THREE.Box3[] = [];
     const lost = this.strays();
     for (const geom of scene.geoms) {
       if (lost.has(geom.body)) continue;
       const box = boxOf(geom, this.poses[geom.body]);
       whole.union(box);
       if (geom.body > 0) bounds.union(box);
-      else if (geom.kind !== "plane" && geom.kind !== "hfield") still.push(box);
+      else if (geom.kind !== "plane" && geom.kind !== "hfield") fixedBoxes.push(box);
     }
     // An object that carries the model, such as the base of an arm, is included; a room is not.
     const size = bounds.isEmpty() ? 0 : diagonal(bounds);
     const near = bounds.clone().expandByScalar(0.5 * size);
-    for (const box of still) if (box.intersectsBox(near) && diagonal(box) < size) bounds.union(box);
+    for (const box of fixedBoxes) if (box.intersectsBox(near) && diagonal(box) < size) bounds.union(box);
     const seen = bounds.isEmpty() ? whole : bounds;
     if (seen.isEmpty()) return 1;
     seen.getCenter(this.centre);
@@ -159,14 +159,14 @@ export class Stage {
 
   /** Returns the bodies that are far away from most others. */
   private strays(): Set<number> {
-    const places = this.poses.slice(1).map((pose) => new THREE.Vector3().setFromMatrixPosition(pose));
+    const positions = this.poses.slice(1).map((pose) => new THREE.Vector3().setFromMatrixPosition(pose));
     const middle = (numbers: number[]) => numbers.sort((a, b) => a - b)[numbers.length >> 1] ?? 0;
     const centre = new THREE.Vector3(
-      middle(places.map(({ x }) => x)),
-      middle(places.map(({ y }) => y)),
-      middle(places.map(({ z }) => z)),
+      middle(positions.map(({ x }) => x)),
+      middle(positions.map(({ y }) => y)),
+      middle(positions.map(({ z }) => z)),
     );
-    const distances = places.map((place) => place.distanceTo(centre));
+    const distances = positions.map((position) => position.distanceTo(centre));
     const usual = middle([...distances]);
     return new Set(distances.flatMap((distance, k) => (distance > 8 * usual + 1 ? [k + 1] : [])));
   }
@@ -194,7 +194,7 @@ export class Stage {
     const side = this.side();
     this.reach = 1 + 0.66 * (side - 1);
     this.lights.shade(this.reach, side > 1);
-    const height = this.place.clientHeight;
+    const height = this.container.clientHeight;
     const free = this.free();
     // The free part of the picture must show a ball that contains everything.
     const radius = ROOMY * (this.extent / 1.2) + 1.5 * this.extent * (side - 1) * Math.SQRT1_2;
@@ -202,7 +202,7 @@ export class Stage {
     const angle = Math.atan(up * Math.min(free.height / height, free.width / height));
     const distance = height > 0 ? radius / Math.sin(angle) : radius;
     this.controls.target.copy(this.centre);
-    this.camera.position.copy(this.centre).addScaledVector(side > 1 ? ABOVE : ASIDE, distance);
+    this.camera.position.copy(this.centre).addScaledVector(side > 1 ? ABOVE : OBLIQUE, distance);
     this.camera.near = 0.01 * this.extent;
     this.camera.far = 120 * this.reach * this.extent;
     this.camera.updateProjectionMatrix();
@@ -211,7 +211,7 @@ export class Stage {
 
   /** Returns the part of the picture that no control covers, or the whole picture if that part is small. */
   free(): Area {
-    const { clientWidth: width, clientHeight: height } = this.place;
+    const { clientWidth: width, clientHeight: height } = this.container;
     const [bar, panel, plots] = AROUND.map((id) => document.getElementById(id)?.getBoundingClientRect());
     const right = panel?.width ? panel.left : width;
     const top = bar?.height ? bar.bottom : 0;
@@ -223,7 +223,7 @@ export class Stage {
 
   /** Fits the picture to its container. The free camera looks through the centre of the free part. */
   fit(): void {
-    const { clientWidth: width, clientHeight: height } = this.place;
+    const { clientWidth: width, clientHeight: height } = this.container;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
@@ -242,7 +242,7 @@ export class Stage {
   }
 
   /** Returns the drawn origin of an environment: they form a square around the origin of the world. */
-  private placeOf(k: number): THREE.Vector3 {
+  private offsetOf(k: number): THREE.Vector3 {
     const side = this.side();
     const at = (index: number) => 1.5 * this.extent * (index - (side - 1) / 2);
     return this.envs.length > 1 ? new THREE.Vector3(at(k % side), -at(Math.floor(k / side)), 0) : new THREE.Vector3();
@@ -250,7 +250,7 @@ export class Stage {
 
   /** Returns the environment at a position, if there are several. */
   envAt(hit: Hit): number | null {
-    return this.envs.length > 1 ? this.envs[hit.place].index : null;
+    return this.envs.length > 1 ? this.envs[hit.copyIndex].index : null;
   }
 
   /** Updates the shown environments of a frame and their positions. */
@@ -258,26 +258,26 @@ export class Stage {
     const envs = envsOf(frame);
     const others = envs.length !== this.envs.length;
     this.envs = envs;
-    const room = Math.max(1, envs.length);
-    this.bodies.resize(room);
-    this.copies = Array.from({ length: room }, (_, k) => this.copies[k] ?? newCopy());
+    const capacity = Math.max(1, envs.length);
+    this.bodies.resize(capacity);
+    this.copies = Array.from({ length: capacity }, (_, k) => this.copies[k] ?? newCopy());
     // Contacts are drawn in the selected environment.
     const own = Math.max(0, envs.findIndex(({ index }) => index === frame.rows.chosen.data[0]));
     this.copies.forEach((copy, k) => {
       if (envs.length > 1) readPosesOf(k, frame, copy.poses);
       else readPoses(frame, copy.poses);
-      const at = this.placeOf(k);
+      const at = this.offsetOf(k);
       for (const pose of copy.poses) pose.setPosition(new THREE.Vector3().setFromMatrixPosition(pose).add(at));
       copy.fails = (envs[k]?.fault ?? "") !== "";
-      copy.asleep = k === own ? frame.rows.asleep.data : NOTHING;
-      copy.islands = k === own ? frame.rows.islands.data : NOTHING;
+      copy.asleep = k === own ? frame.rows.asleep.data : EMPTY;
+      copy.islands = k === own ? frame.rows.islands.data : EMPTY;
       copy.chosen = k === own ? chosen : null;
     });
-    this.offset.copy(this.placeOf(own));
+    this.offset.copy(this.offsetOf(own));
     if (others) this.home();
     this.labels.begin();
     envs.forEach(({ index, fault }, k) => {
-      const at = this.placeOf(k).add(this.centre).addScaledVector(this.camera.up, 0.8 * this.extent);
+      const at = this.offsetOf(k).add(this.centre).addScaledVector(this.camera.up, 0.8 * this.extent);
       const [text, colour] = fault === "" ? [`${index}`, 0x33414d] : [`${index}: ${fault}`, 0x8c1616];
       // Relative to a camera distance that grows with their number.
       if (envs.length > 1) this.labels.add(text, at, new THREE.Color(colour), 2 / (1 + this.side()));
@@ -367,7 +367,7 @@ export class Stage {
   }
 }
 
-const NOTHING = new Float32Array();
+const EMPTY = new Float32Array();
 
 function diagonal(box: THREE.Box3): number {
   return box.getSize(new THREE.Vector3()).length();
@@ -395,7 +395,7 @@ function borderShape(): THREE.ShapeGeometry {
 }
 
 function newCopy(): Copy {
-  return { poses: [], fails: false, asleep: NOTHING, islands: NOTHING, chosen: null };
+  return { poses: [], fails: false, asleep: EMPTY, islands: EMPTY, chosen: null };
 }
 
 /** Returns the length scale of marks on bodies: several times the half size of a typical geom, m. */

@@ -6,9 +6,9 @@ const MANY_DIGITS = 6;
 /** Formats ascending, equidistant ticks, each as short as possible and different from its neighbours. */
 export function tickTexts(ticks: number[]): string[] {
   const step = ticks.length > 1 ? (ticks[ticks.length - 1] - ticks[0]) / (ticks.length - 1) : 0;
-  const most = Math.max(...ticks.map(Math.abs));
-  if (!(step > 0)) return ticks.map((value) => short(value, most / 1e3));
-  if (most / step < 10 ** (MANY_DIGITS - 1)) return ticks.map((value) => short(value, step));
+  const max = Math.max(...ticks.map(Math.abs));
+  if (!(step > 0)) return ticks.map((value) => short(value, max / 1e3));
+  if (max / step < 10 ** (MANY_DIGITS - 1)) return ticks.map((value) => short(value, step));
   const rest = ticks.map((value) => `+${short(value - ticks[0], step)}`);
   return [short(ticks[0], step), ...rest.slice(1)];
 }

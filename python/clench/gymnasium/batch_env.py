@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from clench import Batch, FreeCamera, Model, RigidOptions, SimulationError, State
 from clench.gymnasium import infos as vector_infos
-from clench.gymnasium import observed
+from clench.gymnasium import observations
 from clench.gymnasium.checks import check_action_space, checked_action, checked_mask, checked_seeds, one_each, one_or_all, rows
 from clench.gymnasium.drawn import Drawn
 from clench.gymnasium.models import action_space, loaded
@@ -184,7 +184,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         if self._single_observation_space is None:
             if not self.started and self.batch.outputs:
                 self.batch.forward()
-            self._single_observation_space = observed.space(self.observation())
+            self._single_observation_space = observations.space(self.observation())
         return self._single_observation_space
 
     @single_observation_space.setter
@@ -370,7 +370,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
 
     def observation(self) -> Any:
         """Returns the observation, in separate arrays."""
-        return observed.checked(self.observe(), self.num_envs, f"{self._name}: observe()")
+        return observations.checked(self.observe(), self.num_envs, f"{self._name}: observe()")
 
     def _checked_info(self, info: Mapping[str, Array]) -> Mapping[str, Array]:
         return {key: rows(value, self.num_envs, f"{self._name}: info `{key}`") for key, value in info.items()}

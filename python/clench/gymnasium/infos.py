@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clench.gymnasium.observed import of_one
+from clench.gymnasium.observations import of_one
 
 Array = NDArray[Any]
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from clench import Model, Sim, SimulationError
 from clench.gymnasium.batch_env import BatchEnv
 from clench.gymnasium.checks import check_options, checked_action
-from clench.gymnasium.observed import of_one
+from clench.gymnasium.observations import of_one
 
 Array = NDArray[Any]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clench import State
 from clench.gymnasium.generators import Generators
-from clench.gymnasium.observed import Observation
+from clench.gymnasium.observations import Observation
 
 Array = NDArray[Any]
 

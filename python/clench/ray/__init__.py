@@ -16,13 +16,13 @@
 that dies is replaced: the new one starts from the last snapshot of the lost one and repeats the later calls, so that
 the run ends with the same bits as without the failure.
 
-The modules are the driver's side (`batch.py`, with queries in `asked.py` and dynamic constraints in `tied.py`;
+The modules are the driver's side (`batch.py`, with queries in `queries.py` and dynamic constraints in `dynamic_constraints.py`;
 `worker.py` represents one worker), the code that a worker runs (`shard.py`), arrays that driver and workers share
-(`mirror.py`), and results that are sent between machines (`answers.py`). There is no physics, and ``ray`` is imported
+(`mirror.py`), and results that are sent between machines (`results.py`). There is no physics, and ``ray`` is imported
 only on use.
 """
 
-from clench.ray.answers import IkResult, RayHits
+from clench.ray.results import IkResult, RayHits
 from clench.ray.batch import Batch
 
 __all__ = ["Batch", "IkResult", "RayHits"]

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
 import clench
-from clench.ray.asked import Asked
+from clench.ray.queries import Queries
 from clench.ray.mirror import Mirror
-from clench.ray.tied import Tied
+from clench.ray.dynamic_constraints import DynamicConstraints
 from clench.ray.worker import Worker, ray_module
 
 Array = NDArray[Any]
@@ -23,7 +23,7 @@ Array = NDArray[Any]
 _STATE = tuple(field.name for field in dataclasses.fields(clench.State))
 
 
-class Batch(Asked, Tied):
+class Batch(Queries, DynamicConstraints):
     """Many environments of one model, on the machines of a Ray cluster.
 
     The API is that of `clench.Batch`. Arrays of the state (``qpos``, ``ctrl``, ...) are read and written in the same
@@ -116,7 +116,7 @@ class Batch(Asked, Tied):
             Number of environments that failed in this call.
         """
         steps = operator.index(n)
-        return sum(self._ask(lambda worker, _: worker.send_steps(steps, "step", steps, watched=self._mirror.names)))
+        return sum(self._call_workers(lambda worker, _: worker.send_steps(steps, "step", steps, watched=self._mirror.names)))
 
     def forward(self, mask: ArrayLike | None = None) -> int:
         """Computes the recorded outputs from the states; see `clench.Batch.forward`."""
@@ -164,7 +164,7 @@ class Batch(Asked, Tied):
         if ctrl is not None and steps is None:
             length = int(np.asarray(ctrl).shape[-2]) if np.ndim(ctrl) > 1 else 1
         arguments = [(start, control, tuple(record), steps) for start, control in zip(starts, controls)]
-        each = self._ask(
+        each = self._call_workers(
             lambda worker, part: worker.send_steps(length, "rollout", *arguments[part], watched=self._mirror.names)
         )
         return {name: np.concatenate([recorded[name] for recorded in each]) for name in each[0]}
@@ -345,7 +345,7 @@ class Batch(Asked, Tied):
             raise clench.ClenchError("this batch is closed")
         return self._workers
 
-    def _ask(self, send: Callable[[Worker, int], Any]) -> list[Any]:
+    def _call_workers(self, send: Callable[[Worker, int], Any]) -> list[Any]:
         """Calls all workers, after sending local changes, and waits for them; returns their results, or raises the
         first error."""
         workers = self._open()
@@ -371,12 +371,12 @@ class Batch(Asked, Tied):
 
     def _query_each(self, method: str, arguments: Sequence[tuple[Any, ...]], chosen: dict[str, Any]) -> list[Any]:
         """Makes a query with separate arguments for each worker."""
-        return self._ask(lambda worker, part: worker.send(method, *arguments[part], chosen=chosen))
+        return self._call_workers(lambda worker, part: worker.send(method, *arguments[part], chosen=chosen))
 
     def _change(self, method: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Makes a call that changes the workers."""
         names = self._mirror.names
-        return self._ask(lambda worker, part: worker.send(method, *arguments[part], changes=True, watched=names))
+        return self._call_workers(lambda worker, part: worker.send(method, *arguments[part], changes=True, watched=names))
 
     def _of_env(self, method: str, env: SupportsIndex) -> Any:
         """Makes a query about one environment."""
@@ -385,7 +385,7 @@ class Batch(Asked, Tied):
             raise IndexError(f"the environment must be at least 0 and below {self.n_envs}")
         here = next(part for part, rows in enumerate(self._parts) if index < rows.stop)
         inside = index - self._parts[here].start
-        return self._ask(lambda worker, part: worker.send(method, inside) if part == here else worker.send("read"))[here]
+        return self._call_workers(lambda worker, part: worker.send(method, inside) if part == here else worker.send("read"))[here]
 
     def _split_mask(self, mask: ArrayLike | None) -> list[tuple[Array | None]]:
         if mask is None:

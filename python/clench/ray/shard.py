@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import clench
-from clench.ray.answers import IkResult, RayHits
+from clench.ray.results import IkResult, RayHits
 
 Array = NDArray[Any]
 

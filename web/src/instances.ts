@@ -6,7 +6,7 @@ import * as THREE from "three";
 export const UP = new THREE.Vector3(0, 1, 0);
 
 /** The instances of one shape in a frame. */
-export class Many {
+export class Instances {
   readonly group = new THREE.Group();
   private mesh: THREE.InstancedMesh;
   private fades!: THREE.InstancedBufferAttribute;
@@ -31,9 +31,9 @@ export class Many {
     this.mesh = this.make(64);
   }
 
-  private make(room: number): THREE.InstancedMesh {
-    const mesh = new THREE.InstancedMesh(this.shape, this.surface, room);
-    this.fades = new THREE.InstancedBufferAttribute(new Float32Array(room), 1);
+  private make(capacity: number): THREE.InstancedMesh {
+    const mesh = new THREE.InstancedMesh(this.shape, this.surface, capacity);
+    this.fades = new THREE.InstancedBufferAttribute(new Float32Array(capacity), 1);
     this.shape.setAttribute("fade", this.fades);
     mesh.frustumCulled = false;
     mesh.renderOrder = this.order;
@@ -43,17 +43,17 @@ export class Many {
     return mesh;
   }
 
-  begin(most: number): void {
+  begin(max: number): void {
     this.count = 0;
-    if (most > this.mesh.instanceMatrix.count) {
+    if (max > this.mesh.instanceMatrix.count) {
       this.mesh.dispose();
-      this.mesh = this.make(2 * most);
+      this.mesh = this.make(2 * max);
     }
   }
 
   /** Adds an instance; `fade` is a factor on its surface's opacity, which has an effect on transparent surfaces. */
-  add(place: THREE.Matrix4, colour: THREE.Color, fade = 1): void {
-    this.mesh.setMatrixAt(this.count, place);
+  add(matrix: THREE.Matrix4, colour: THREE.Color, fade = 1): void {
+    this.mesh.setMatrixAt(this.count, matrix);
     this.mesh.setColorAt(this.count, colour);
     this.fades.setX(this.count, fade);
     this.count += 1;
@@ -68,10 +68,10 @@ export class Many {
 
   /** Returns the ends of an instance along its y axis, as drawn. */
   endsOf(index: number): [number[], number[]] {
-    const place = new THREE.Matrix4();
-    this.mesh.getMatrixAt(index, place);
-    const from = new THREE.Vector3().setFromMatrixPosition(place);
-    const to = from.clone().add(new THREE.Vector3().setFromMatrixColumn(place, 1));
+    const matrix = new THREE.Matrix4();
+    this.mesh.getMatrixAt(index, matrix);
+    const from = new THREE.Vector3().setFromMatrixPosition(matrix);
+    const to = from.clone().add(new THREE.Vector3().setFromMatrixColumn(matrix, 1));
     return [from.toArray(), to.toArray()];
   }
 
@@ -87,6 +87,6 @@ export function standing(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
 
 /** Returns the pose of a unit shape along y with this width, from a point along a direction with this length. */
 export function stretched(from: THREE.Vector3, along: THREE.Vector3, wide: number, long: number): THREE.Matrix4 {
-  const turn = new THREE.Quaternion().setFromUnitVectors(UP, along);
-  return new THREE.Matrix4().compose(from, turn, new THREE.Vector3(wide, long, wide));
+  const rotation = new THREE.Quaternion().setFromUnitVectors(UP, along);
+  return new THREE.Matrix4().compose(from, rotation, new THREE.Vector3(wide, long, wide));
 }

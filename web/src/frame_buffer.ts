@@ -9,7 +9,7 @@ const BYTES = 256e6;
 /** The number of bytes that are encoded at once. */
 const PIECE = 0x8000;
 
-export class Tape {
+export class FrameBuffer {
   private scene: Scene | null = null;
   private frames: Frame[] = [];
   private bytes = 0;
@@ -24,7 +24,7 @@ export class Tape {
   }
 
   /** Stores a frame. Later frames, from before a reset, are discarded. */
-  keep(frame: Frame): void {
+  store(frame: Frame): void {
     while (this.frames.length > 0 && this.frames.at(-1)!.time >= frame.time) this.drop(this.frames.pop()!);
     this.frames.push(frame);
     this.bytes += frame.bytes.byteLength;
@@ -39,13 +39,13 @@ export class Tape {
   async save(seconds: number): Promise<void> {
     const last = this.frames.at(-1);
     if (!last || !this.scene) return;
-    const kept = this.frames.filter((frame) => frame.time >= last.time - seconds);
+    const shown = this.frames.filter((frame) => frame.time >= last.time - seconds);
     const reply = await fetch(location.href).catch(() => null);
     if (!reply?.ok) {
       this.notify("The page could not be fetched again: is the simulation still running?");
       return;
     }
-    const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: kept.map(({ bytes }) => letters(bytes)) });
+    const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: shown.map(({ bytes }) => letters(bytes)) });
     const page = new DOMParser().parseFromString(await reply.text(), "text/html");
     // In HTML, any `</` could end a script.
     page.getElementById("recording")!.textContent = data.replaceAll("</", "<\\/");

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 import clench
 from clench._pickle import Target, target_fields
-from clench.ray.answers import IkResult, RayHits
+from clench.ray.results import IkResult, RayHits
 
 Array = NDArray[Any]
 
 
-class Asked:
+class Queries:
     """Queries whose results are rows of environments, and views of elements."""
 
     model: clench.Model

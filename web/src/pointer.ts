@@ -22,7 +22,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
   };
 
   /** Rotates the body with the pointer like a rolling ball: half a turn over the height of the picture. */
-  const turn = (event: PointerEvent) => {
+  const rotate = (event: PointerEvent) => {
     const { body, from, x, y } = turned!;
     const scale = Math.PI / canvas.clientHeight;
     const axis = (k: number) => new THREE.Vector3().setFromMatrixColumn(stage.camera.matrixWorld, k);
@@ -53,7 +53,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
       if (event.button === 2 || event.altKey) {
         const from = new THREE.Quaternion().setFromRotationMatrix(stage.poses[hit.body]);
         turned = { body: hit.body, from, x: event.clientX, y: event.clientY };
-        turn(event);
+        rotate(event);
         return;
       }
       const facing = stage.camera.getWorldDirection(new THREE.Vector3());
@@ -71,7 +71,7 @@ export function listen(scene: Scene, stage: Stage, panel: Panel, send: (command:
   canvas.addEventListener("pointermove", (event) => {
     if (pulled || turned) {
       if (pulled) pull(event);
-      else turn(event);
+      else rotate(event);
       return;
     }
     if (event.buttons !== 0) return;

@@ -12,7 +12,7 @@ Array = NDArray[Any]
 Which = str | SupportsIndex
 
 
-class Tied:
+class DynamicConstraints:
     """Implements dynamic constraints as in `clench.Batch`; but if one worker fails, the changes of the others
     remain."""
 
@@ -26,25 +26,25 @@ class Tied:
     def add_weld(self, body1: Which, body2: Which, envs: ArrayLike | None = None) -> NDArray[np.int64]:
         """Welds two bodies in their current relative pose, in some environments; returns codes for `remove`
         (len(envs)). See `clench.Batch.add_weld`."""
-        return self._tie("add_weld", envs, lambda _: (body1, body2))
+        return self._constrain("add_weld", envs, lambda _: (body1, body2))
 
     def add_connect(
         self, body1: Which, body2: Which, anchor: ArrayLike, envs: ArrayLike | None = None
     ) -> NDArray[np.int64]:
         """Connects a point of the first body (3) to the second, in some environments. See
         `clench.Batch.add_connect`."""
-        return self._tie("add_connect", envs, lambda _: (body1, body2, anchor))
+        return self._constrain("add_connect", envs, lambda _: (body1, body2, anchor))
 
     def remove(self, constraints: ArrayLike, envs: ArrayLike | None = None) -> None:
         """Removes dynamic constraints, one for each of some environments."""
         codes = np.asarray(constraints)
         if codes.shape != self._chosen(envs).shape:
             raise ValueError(f"constraints has shape {codes.shape}, but must have one for each of the environments")
-        self._tie("remove", envs, lambda here: (codes[here],))
+        self._constrain("remove", envs, lambda here: (codes[here],))
 
     def weld_here(self, which: Which, envs: ArrayLike | None = None) -> None:
         """Makes a weld or connect of the model hold its bodies in their current relative pose, in some environments."""
-        self._tie("weld_here", envs, lambda _: (which,))
+        self._constrain("weld_here", envs, lambda _: (which,))
 
     def set_equality(self, which: Which, active: bool | np.bool_ | ArrayLike) -> None:
         """Switches an equality on or off, in all environments or each (n)."""
@@ -62,7 +62,7 @@ class Tied:
             raise IndexError(f"the environment must be at least 0 and below {self.n_envs}")
         return chosen
 
-    def _tie(
+    def _constrain(
         self, method: str, envs: ArrayLike | None, arguments: Callable[[Array], tuple[Any, ...]]
     ) -> NDArray[np.int64]:
         """Makes a call for chosen environments, on any worker; returns the result for each, in their order."""
