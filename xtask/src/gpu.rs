@@ -12,7 +12,7 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 
 /// The compute tests, of `clench-gpu` and of the program, and the rendering tests.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
-const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "films"];
+const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "videos"];
 /// Tests of `device` that take about as long as all others: most compile their own kernels, whereas the others share
 /// kernels for any model. Mesa's software device compiles on one core per program, so both parts run in parallel.
 const PART: [&str; 5] = ["batch::", "outputs::", "double::", "random::", "steps::"];
@@ -104,7 +104,7 @@ pub(crate) fn no_device() -> Option<String> {
         return None;
     }
     try_to_install("mesa-vulkan-drivers");
-    let missing = "there is no driver for Vulkan; install that of your card, or Debian's package mesa-vulkan-drivers";
+    let missing = "there is no driver for Vulkan; install that of your GPU, or Debian's package mesa-vulkan-drivers";
     (!has_driver()).then(|| missing.to_owned())
 }
 

@@ -105,7 +105,7 @@ fn notices(folders: &[(&Part, Option<PathBuf>)]) -> Result<String, String> {
     for (part, folder) in folders {
         let folder = folder.as_ref().ok_or_else(|| {
             format!(
-                "{} is not there: build the package and the page first",
+                "{} does not exist: build the package and the page first",
                 part.name
             )
         })?;

@@ -78,7 +78,7 @@ fn sanitize_python(args: &[String]) -> Result<(), String> {
 
 /// Returns the path of one of GCC's runtime libraries.
 fn runtime(name: &str) -> Result<String, String> {
-    let missing = format!("GCC's {name} is not there: install g++");
+    let missing = format!("GCC's {name} is missing: install g++");
     let found = command("gcc", &[format!("-print-file-name={name}").as_str()]).output();
     let found = found.map_err(|error| format!("{missing} ({error})"))?;
     let path = String::from_utf8_lossy(&found.stdout).trim().to_owned();

@@ -1,4 +1,4 @@
-//! Doc comments follow `docs/words.md`, as far as a program can check.
+//! Doc comments and messages follow `docs/words.md`, as far as a program can check.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,31 @@ const FOLDERS: [&str; 4] = ["crates", "python/src", "xtask", "fuzz"];
 const OPENINGS: [&str; 7] = ["What", "Where", "How", "Whether", "Who", "Which", "When"];
 /// Words of the glossary's left column that have no other sense here.
 const AVOIDED: [&str; 3] = ["sister", "so many", "somebody"];
+/// Words of the left column, and odd phrases, that messages do not contain.
+const AVOIDED_IN_MESSAGES: [&str; 18] = [
+    "anew",
+    "at hand",
+    "card",
+    "cards",
+    "film",
+    "films",
+    "goes with",
+    "leaves out",
+    "left out",
+    "look at",
+    "looked at",
+    "mend",
+    "not there",
+    "sister",
+    "so many",
+    "somebody",
+    "told",
+    "unasked",
+];
 const MAX_COLUMNS: usize = 120;
 
 #[test]
-fn doc_comments_are_sentences_in_the_usual_terms() {
+fn doc_comments_and_messages_use_the_usual_terms() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut files = Vec::new();
     for folder in FOLDERS {
@@ -22,7 +43,9 @@ fn doc_comments_are_sentences_in_the_usual_terms() {
     let mut wrong = Vec::new();
     for file in &files {
         let text = fs::read_to_string(file).expect("a source file");
-        for (line, reason) in faults(&text) {
+        let is_test = file.components().any(|part| part.as_os_str() == "tests");
+        let messages = if is_test { "" } else { &text };
+        for (line, reason) in faults(&text).into_iter().chain(message_faults(messages)) {
             wrong.push(format!("{}:{line}: {reason}", file.display()));
         }
     }
@@ -74,6 +97,72 @@ fn faults(text: &str) -> Vec<(usize, String)> {
         is_inside = !comment.is_empty();
     }
     found
+}
+
+/// Returns the lines of string literals that contain an avoided word, with the word; tests at the end are skipped.
+fn message_faults(text: &str) -> Vec<(usize, String)> {
+    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let mut found = Vec::new();
+    for (line, literal) in literals(text) {
+        let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+        let words = literal.split(|c| !is_letter(c)).filter(|w| !w.is_empty());
+        let spaced = format!(" {} ", Vec::from_iter(words).join(" ").to_lowercase());
+        let used = AVOIDED_IN_MESSAGES
+            .iter()
+            .find(|word| spaced.contains(&format!(" {word} ")));
+        found.extend(used.map(|word| (line, format!("a message contains {word:?}"))));
+    }
+    found
+}
+
+/// Returns the string literals of a Rust file with their lines.
+fn literals(text: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    let (mut rest, mut line) = (text, 1);
+    while let Some(at) = rest.find(['"', '/', '\'']) {
+        line += rest[..at].matches('\n').count();
+        let from = &rest[at..];
+        let length = if from.starts_with("//") {
+            from.find('\n').unwrap_or(from.len())
+        } else if from.starts_with("'\"'") || from.starts_with("'\\") {
+            3
+        } else if from.starts_with('"') {
+            let end = closing_quote(from);
+            found.push((line, from[1..end].replace("\\\n", " ")));
+            end + 1
+        } else {
+            1
+        };
+        let length = length.min(from.len());
+        line += from[..length].matches('\n').count();
+        rest = &from[length..];
+    }
+    found
+}
+
+/// Returns the index of the quote that closes the literal at the start of a text.
+fn closing_quote(text: &str) -> usize {
+    let mut is_escaped = false;
+    let mut inside = text.char_indices().skip(1);
+    let end = inside.find(|&(_, c)| {
+        let closes = c == '"' && !is_escaped;
+        is_escaped = c == '\\' && !is_escaped;
+        closes
+    });
+    end.map_or(text.len() - 1, |(index, _)| index)
+}
+
+#[test]
+fn messages_are_found_in_literals() {
+    let text = "// \"told\"\nlet a = '\"';\nlet b = \"is told \\\n   anew\"; // film\n";
+    let found = message_faults(text);
+    assert_eq!(found, [(3, "a message contains \"anew\"".to_owned())]);
+    assert!(message_faults("\"a_film {told_apart} retold\"").is_empty());
+    assert!(message_faults("#[cfg(test)]\n\"a film\"").is_empty());
+    assert_eq!(
+        message_faults("r#\"<a/>\"#; \"The device is NOT there.\"").len(),
+        1
+    );
 }
 
 #[test]
