@@ -55,7 +55,7 @@ macro_rules! replays {
         )*
 
         #[test]
-        fn no_target_is_left_out() {
+        fn no_target_is_omitted() {
             let replayed = [$(stringify!($target)),*];
             assert_eq!(TARGETS.map(|(name, _)| name), replayed);
         }

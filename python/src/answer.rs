@@ -24,8 +24,8 @@ pub(crate) fn answer<'py, S: Element + Copy>(
         )));
     };
     require_shape("out", array.shape(), shape)?;
-    let mut room = array.try_readwrite()?;
-    for (to, value) in room.as_array_mut().iter_mut().zip(values) {
+    let mut writable = array.try_readwrite()?;
+    for (to, value) in writable.as_array_mut().iter_mut().zip(values) {
         *to = value;
     }
     Ok(out.clone())

@@ -32,15 +32,15 @@ pub(crate) fn in_portions(
     steps: usize,
     mut portion: impl FnMut(usize) -> PyResult<()> + Send,
 ) -> PyResult<()> {
-    let (mut left, mut most) = (steps, FIRST_PORTION);
+    let (mut left, mut max) = (steps, FIRST_PORTION);
     while left > 0 {
         let start = Instant::now();
-        let now = left.min(most);
+        let now = left.min(max);
         py.detach(|| portion(now))?;
         py.check_signals()?;
         left -= now;
         if start.elapsed() < PORTION {
-            most = most.saturating_mul(2);
+            max = max.saturating_mul(2);
         }
     }
     Ok(())

@@ -88,7 +88,7 @@ pub(crate) fn draw<'py>(
         return Err(ClenchError::new_err("nothing draws"));
     };
     let drawn = each_viewed!(target, viewed => py.detach(|| {
-        viewed.ask(env, |sim| renderer.draw(sim, &picture))
+        viewed.query(env, |sim| renderer.draw(sim, &picture))
     }));
     array(
         py,

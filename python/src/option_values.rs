@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
 
 /// The maximum number of iterations, sweeps or contacts.
-const MOST: usize = i32::MAX as usize;
+const MAX_COUNT: usize = i32::MAX as usize;
 
 /// A type of option that can be read from Python.
 pub(crate) trait OptionType: Sized {
@@ -39,14 +39,14 @@ impl OptionType for f64 {
 
 impl OptionType for usize {
     fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let range = format!("from 0 to {MOST}");
+        let range = format!("from 0 to {MAX_COUNT}");
         if value.is_instance_of::<PyBool>() {
             return Err(wrong_type(name, value, "an integer"));
         }
         match value.extract::<i64>() {
             Ok(n) => usize::try_from(n)
                 .ok()
-                .filter(|&n| n <= MOST)
+                .filter(|&n| n <= MAX_COUNT)
                 .ok_or_else(|| out_of_range(name, value, &range)),
             Err(error) => Err(explain(error, name, value, "an integer", &range)),
         }
@@ -196,7 +196,7 @@ impl Show for MaxContacts {
     fn show(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         match self {
             MaxContacts::Auto => "auto".show(py),
-            MaxContacts::Limit(most) => most.show(py),
+            MaxContacts::Limit(max) => max.show(py),
         }
     }
 }

@@ -29,10 +29,10 @@ const LIMIT: usize = 1_000_000_000;
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Recording {
     limit: usize,
-    inner: Mutex<Option<Kept>>,
+    inner: Mutex<Option<Contents>>,
 }
 
-struct Kept {
+struct Contents {
     recording: clench_view::Recording,
     /// The model of the last frame; none if the frames come from a file.
     model: Option<Arc<Model>>,
@@ -40,33 +40,37 @@ struct Kept {
 
 impl Recording {
     /// Returns the recording of a model, and creates it if there is none.
-    fn of<'a>(&self, kept: &'a mut Option<Kept>, model: &Arc<Model>) -> PyResult<&'a mut Kept> {
-        let kept = kept.get_or_insert_with(|| Kept {
+    fn of<'a>(
+        &self,
+        contents: &'a mut Option<Contents>,
+        model: &Arc<Model>,
+    ) -> PyResult<&'a mut Contents> {
+        let contents = contents.get_or_insert_with(|| Contents {
             recording: clench_view::Recording::new(Scene::new(model), self.limit),
             model: Some(Arc::clone(model)),
         });
-        let same = kept
+        let same = contents
             .model
             .as_ref()
             .is_some_and(|old| Arc::ptr_eq(old, model));
         if !same {
-            if !kept.recording.is_of(Scene::new(model)) {
+            if !contents.recording.is_of(Scene::new(model)) {
                 return Err(PyValueError::new_err(
                     "this recording is of another model: one recording shows one model",
                 ));
             }
-            kept.model = Some(Arc::clone(model));
+            contents.model = Some(Arc::clone(model));
         }
-        Ok(kept)
+        Ok(contents)
     }
 
     /// Returns the page that replays the recording.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
         let guard = lock(&self.inner, "recording")?;
-        let Some(kept) = &*guard else {
+        let Some(contents) = &*guard else {
             return Err(PyValueError::new_err("nothing is recorded yet"));
         };
-        Ok(kept.recording.to_html(&page(py)?))
+        Ok(contents.recording.to_html(&page(py)?))
     }
 }
 
@@ -104,8 +108,8 @@ impl Recording {
         check_env(env, target.envs()?)?;
         let mut guard = lock(&self.inner, "recording")?;
         let appended = each_viewed!(&target, viewed => {
-            let kept = self.of(&mut guard, viewed.model())?;
-            viewed.ask(env, |sim| kept.recording.append(sim, &mut Marks::default()))
+            let contents = self.of(&mut guard, viewed.model())?;
+            viewed.query(env, |sim| contents.recording.append(sim, &mut Marks::default()))
         });
         appended.map_err(sim_error)?.map_err(|error| match error {
             RecordError::Sim(error) => sim_error(error),
@@ -164,7 +168,7 @@ impl Recording {
             read.map_err(|error| PyValueError::new_err(format!("{}: {error}", path.display())))?;
         Ok(Recording {
             limit,
-            inner: Mutex::new(Some(Kept {
+            inner: Mutex::new(Some(Contents {
                 recording,
                 model: None,
             })),
@@ -181,13 +185,15 @@ impl Recording {
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let guard = lock(&self.inner, "recording")?;
-        let times = guard.as_ref().map(|kept| kept.recording.times());
+        let times = guard.as_ref().map(|contents| contents.recording.times());
         Ok(PyArray1::from_vec(py, times.unwrap_or_default()))
     }
 
     fn __len__(&self) -> PyResult<usize> {
         let guard = lock(&self.inner, "recording")?;
-        Ok(guard.as_ref().map_or(0, |kept| kept.recording.len()))
+        Ok(guard
+            .as_ref()
+            .map_or(0, |contents| contents.recording.len()))
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {

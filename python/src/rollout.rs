@@ -113,20 +113,20 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
     };
     let start = initial.as_ref().map(|values| &values.numbers[..]);
     let progress = progress.map(Bound::as_unbound);
-    let tell = |py: Python<'_>, done: usize| {
-        progress.map_or(Ok(()), |tell| tell.call1(py, (done, steps)).map(drop))
+    let report = |py: Python<'_>, done: usize| {
+        progress.map_or(Ok(()), |report| report.call1(py, (done, steps)).map(drop))
     };
     let (mut done, mut stopped) = (steps, Ok(()));
     let recording = py.detach(|| {
         batch.rollout_while(start, steps, controls, &names, |so_far| {
             done = so_far;
-            stopped = Python::attach(|py| py.check_signals().and_then(|()| tell(py, so_far)));
+            stopped = Python::attach(|py| py.check_signals().and_then(|()| report(py, so_far)));
             stopped.is_ok()
         })
     });
     let recording = recording.map_err(sim_error)?;
     match stopped {
-        Ok(()) => tell(py, steps)?,
+        Ok(()) => report(py, steps)?,
         Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => {
             let say = module(py)?.getattr("interrupted")?;
             say.call1((done, steps))?;

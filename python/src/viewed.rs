@@ -26,12 +26,12 @@ impl<S: Precision> Viewed for RowSim<S> {
         self.rows.time.row(0)[0]
     }
 
-    fn ask<R>(
+    fn query<R>(
         &mut self,
         _: usize,
-        ask: impl FnOnce(&mut clench::Sim<S>) -> R,
+        query: impl FnOnce(&mut clench::Sim<S>) -> R,
     ) -> Result<R, SimError> {
-        self.current().map(ask)
+        self.current().map(query)
     }
 
     fn change(

@@ -126,7 +126,7 @@ fn text(known: &[(String, String, f64)]) -> String {
 }
 
 /// Formats a time: `40 s`, `7 min`.
-pub(crate) fn spoken(seconds: f64) -> String {
+pub(crate) fn format_duration(seconds: f64) -> String {
     match seconds {
         ..90.0 => format!("{seconds:.0} s"),
         _ => format!("{:.0} min", seconds / 60.0),
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stage_takes_what_it_took_in_a_run_of_the_same_kind() {
+    fn the_estimate_of_a_stage_is_from_a_run_of_the_same_kind() {
         let times = times("dev-cold unit 700.0\ndev-warm unit 123.4\nnonsense\ndev-warm doc NaN\n");
         assert_eq!(times.seconds("unit"), 123.4);
         assert_eq!(times.known.len(), 2);
@@ -167,14 +167,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_again() {
+    fn written_times_are_read_again() {
         let known = times("dev-warm unit 123.4\nquick-cold fmt 1.0\n").known;
         assert_eq!(parse(&text(&known)), known);
     }
 
     #[test]
-    fn times_are_said_in_seconds_or_minutes() {
-        assert_eq!(spoken(41.7), "42 s");
-        assert_eq!(spoken(400.0), "7 min");
+    fn durations_are_in_seconds_or_minutes() {
+        assert_eq!(format_duration(41.7), "42 s");
+        assert_eq!(format_duration(400.0), "7 min");
     }
 }

@@ -47,24 +47,24 @@ pub(crate) fn list() -> Result<(), String> {
 
 /// Returns the maximum number of lane operation calls over the instances of each function.
 fn count(output: ChildStdout) -> std::io::Result<BTreeMap<String, usize>> {
-    let mut most = BTreeMap::new();
+    let mut counts = BTreeMap::new();
     let (mut function, mut calls) = (String::new(), 0);
     for line in BufReader::new(output).split(b'\n') {
         let line = String::from_utf8_lossy(&line?).into_owned();
         if let Some(name) = header(&line) {
-            note(&mut most, &function, calls);
+            record(&mut counts, &function, calls);
             (function, calls) = (name.to_owned(), 0);
         } else if is_call_of_lanes(&line) {
             calls += 1;
         }
     }
-    note(&mut most, &function, calls);
-    Ok(most)
+    record(&mut counts, &function, calls);
+    Ok(counts)
 }
 
-fn note(most: &mut BTreeMap<String, usize>, function: &str, calls: usize) {
+fn record(counts: &mut BTreeMap<String, usize>, function: &str, calls: usize) {
     if calls > 0 {
-        let known = most.entry(function.to_owned()).or_default();
+        let known = counts.entry(function.to_owned()).or_default();
         *known = calls.max(*known);
     }
 }
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn calls_of_operations_are_told_from_other_calls() {
+    fn calls_of_operations_are_distinguished_from_other_calls() {
         let line = |target: &str| format!("  4c93a1:\tcall   4c9370 <{target}>");
         let operation = "core::core_arch::x86::avx512f::_mm512_mul_pd::h0123456789abcdef";
         assert!(is_call_of_lanes(&line(operation)));

@@ -115,14 +115,14 @@ mod tests {
     }
 
     #[test]
-    fn code_and_constants_count_and_what_can_be_written_does_not() {
+    fn code_and_constants_count_and_writable_sections_do_not() {
         let (code, constants, data, notes) = (6, 2, 3, 0);
         let sections = [(code, 100_000), (constants, 20), (data, 7000), (notes, 900)];
         assert_eq!(sum_of_sections(&file(&sections)), Some(100_020));
     }
 
     #[test]
-    fn what_is_no_elf_file_or_cut_off_is_refused() {
+    fn truncated_and_other_files_are_refused() {
         let whole = file(&[(2, 1)]);
         for broken in [&b""[..], b"#!/bin/sh", &whole[..50], &whole[..90]] {
             assert_eq!(sum_of_sections(broken), None);

@@ -1,6 +1,6 @@
 //! The stages of `cargo xtask test`, in order, and `cargo xtask bench`.
 
-use crate::estimate::{Times, spoken};
+use crate::estimate::{Times, format_duration};
 use crate::gpu;
 use crate::package;
 use crate::python;
@@ -155,11 +155,11 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
     };
     println!(
         "This takes about {}, {source}.",
-        spoken(expected(&times, &chosen))
+        format_duration(expected(&times, &chosen))
     );
     let mut summary = String::new();
     for (k, stage) in chosen.iter().enumerate() {
-        let left = spoken(expected(&times, &chosen[k..]));
+        let left = format_duration(expected(&times, &chosen[k..]));
         println!(
             "\n==> [{}/{}] {} (about {left} left)",
             k + 1,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 #[test]
-fn what_the_kernels_are_built_of_has_the_same_features_in_all_packages() {
+fn kernel_crates_have_equal_features_in_all_packages() {
     let program = below("clench-dynamics ", "clench-cli");
     assert!(program.len() > 10, "{program:?}");
     for package in ["clench-python", "clench-gpu", "clench-formats"] {
@@ -16,7 +16,7 @@ fn what_the_kernels_are_built_of_has_the_same_features_in_all_packages() {
 /// Checks the same for `wgpu` and the readers, which take a minute: the Python package is built separately, and the
 /// tests with all packages at once.
 #[test]
-fn what_draws_has_the_features_in_the_python_package_that_it_has_in_tests() {
+fn rendering_crates_have_equal_features_in_the_package_and_in_tests() {
     let package = below("clench-render ", "clench-python");
     assert!(
         package.iter().any(|part| part.starts_with("wgpu ")),

@@ -60,13 +60,13 @@ fn add(
     };
     let controller = controller(spec, model.na)?;
     let activations = activations(spec, &controller)?;
-    let (all, most) = (
+    let (all, limit) = (
         model.na.saturating_add(activations),
         builder.budget.elements,
     );
-    if all as u64 > most {
+    if all as u64 > limit {
         return Err(spec.error(format!(
-            "with it the model has {all} activations, more than the maximum of {most}; {RAISE}"
+            "with it the model has {all} activations, more than the maximum of {limit}; {RAISE}"
         )));
     }
     let controls = model.nu()..model.nu() + controller.inputs.len();
@@ -123,7 +123,7 @@ fn check_parts(
     }
     if spec.gain == GainKind::So3 && forcelimited && spec.forcerange[0] != 0.0 {
         return Err(
-            spec.error("the forcerange of an orientation servo bounds a norm: it starts at 0")
+            spec.error("the forcerange of an orientation servo limits a norm: it must start at 0")
         );
     }
     if spec.gain == GainKind::Muscle {

@@ -275,11 +275,11 @@ fn push_params(model: &mut Model, spec: &BodySpec, frame: &Frame, inertia: &Mass
 /// Returns true if a frame is that of its body, up to [`SAME_FRAME`].
 pub(super) fn is_null(pos: Vec3<f64>, quat: Quat<f64>) -> bool {
     let small = |v: f64| v.abs() < SAME_FRAME;
-    let turn = quat.imaginary();
+    let rotation = quat.imaginary();
     is_null_position(pos)
-        && small(turn.x)
-        && small(turn.y)
-        && small(turn.z)
+        && small(rotation.x)
+        && small(rotation.y)
+        && small(rotation.z)
         && small(quat.w.abs() - 1.0)
 }
 

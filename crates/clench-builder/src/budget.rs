@@ -44,11 +44,11 @@ pub(super) fn equalities(builder: &ModelBuilder, model: &Model) -> Result<(), Bu
 }
 
 fn check_budget(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), BuildError> {
-    let most = builder.budget.matrix;
-    match count > most {
+    let limit = builder.budget.matrix;
+    match count > limit {
         true => Err(BuildError::new(
             "model",
-            format!("its {what} would have {count} numbers, more than {most}; {RAISE}"),
+            format!("its {what} would have {count} numbers, more than {limit}; {RAISE}"),
         )),
         false => Ok(()),
     }
@@ -61,10 +61,10 @@ fn check_budget(builder: &ModelBuilder, what: &str, count: u64) -> Result<(), Bu
 pub(super) fn keyframes(builder: &ModelBuilder, model: &Model) -> Result<(), BuildError> {
     let numbers = model.nq + model.nv + model.na + model.nplastic + model.nu() + 7 * model.nmocap;
     let bytes = (builder.keyframes.len() as u64).saturating_mul(8 * numbers as u64);
-    let most = builder.budget.bytes;
+    let limit = builder.budget.bytes;
     match builder.keyframes.last() {
-        Some(last) if bytes > most => Err(last.error(format!(
-            "{} keyframes would take {bytes} bytes, more than {most}; {RAISE}",
+        Some(last) if bytes > limit => Err(last.error(format!(
+            "{} keyframes would take {bytes} bytes, more than {limit}; {RAISE}",
             builder.keyframes.len()
         ))),
         _ => Ok(()),

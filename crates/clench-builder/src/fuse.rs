@@ -45,7 +45,7 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
             || body.mocap
             || body.never_fused
             || named.keeps(body)
-            || matters(builder, &masses, b, stayed[on.body].0);
+            || affects_motion(builder, &masses, b, stayed[on.body].0);
         if keeps {
             places[b] = Place {
                 body: fused.len(),
@@ -110,7 +110,7 @@ impl Mass {
 }
 
 /// Returns true if the motion would change if body `b` were part of `target`. Parts of the world do not move.
-fn matters(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usize) -> bool {
+fn affects_motion(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usize) -> bool {
     if target == 0 {
         return false;
     }

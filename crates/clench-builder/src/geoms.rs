@@ -17,7 +17,7 @@ pub(super) fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>
     let quat = quat.normalize();
     match moved {
         None => (pos, quat),
-        Some((origin, turn)) => (origin + turn.rotate(pos), (turn * quat).normalize()),
+        Some((origin, rotation)) => (origin + rotation.rotate(pos), (rotation * quat).normalize()),
     }
 }
 

@@ -28,11 +28,11 @@ pub(super) fn add(
     if width == 0 {
         return Err(element.error("nsample needs values to store, but this element has none"));
     }
-    let most = builder.budget.matrix;
+    let limit = builder.budget.matrix;
     let numbers = (spec.nsample as u64).saturating_mul(width as u64 + 1);
-    if numbers.saturating_add(model.nhistory as u64) > most {
+    if numbers.saturating_add(model.nhistory as u64) > limit {
         return Err(element.error(format!(
-            "with it the model stores more than {most} past values; {RAISE}"
+            "with it the model stores more than {limit} past values; {RAISE}"
         )));
     }
     let history = History {

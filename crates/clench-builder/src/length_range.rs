@@ -156,11 +156,11 @@ impl<'a> Search<'a> {
         count: usize,
         spec: &ActuatorSpec,
     ) -> Result<(), BuildError> {
-        let most = builder.budget.steps;
+        let limit = builder.budget.steps;
         let steps = 2.0 * count as f64 * (self.settings.inttotal / self.model.params.timestep);
-        match steps > most as f64 {
+        match steps > limit as f64 {
             true => Err(spec.error(format!(
-                "finding the length ranges of {count} actuators would take {steps:.0} steps, more than {most}; give lengthrange, or {RAISE}"
+                "finding the length ranges of {count} actuators would take {steps:.0} steps, more than {limit}; give lengthrange, or {RAISE}"
             ))),
             false => Ok(()),
         }
@@ -168,8 +168,12 @@ impl<'a> Search<'a> {
 
     /// Returns the shortest and the longest length of an actuator.
     fn range(&mut self, u: usize, spec: &ActuatorSpec) -> Result<[f64; 2], BuildError> {
-        let shortest = self.settle(u, -1.0).map_err(|e| failure(spec, &e.into()))?;
-        let longest = self.settle(u, 1.0).map_err(|e| failure(spec, &e.into()))?;
+        let shortest = self
+            .converge(u, -1.0)
+            .map_err(|e| failure(spec, &e.into()))?;
+        let longest = self
+            .converge(u, 1.0)
+            .map_err(|e| failure(spec, &e.into()))?;
         let range = [shortest[0], longest[1]];
         let size = range[1] - range[0];
         let advice = "limit its joints, give lengthrange, or change <lengthrange> of the compiler";
@@ -190,7 +194,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the minimum and the maximum length at the end of a simulation from qpos0 that pulls in one direction.
-    fn settle(&mut self, u: usize, direction: f64) -> Result<[f64; 2], Fault> {
+    fn converge(&mut self, u: usize, direction: f64) -> Result<[f64; 2], Fault> {
         self.state.copy_from(&self.initial);
         let mut seen: Option<[f64; 2]> = None;
         while self.state.time < self.settings.inttotal {

@@ -37,8 +37,8 @@ pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
 
 /// Adds a light of body `b`, without a target.
 pub(super) fn add(spec: &LightSpec, b: usize, moved: Moved, model: &mut Model) {
-    let (pos, turn) = place(moved, spec.pos, Quat::IDENTITY);
-    let dir = turn.rotate(spec.dir.normalize().0);
+    let (pos, rotation) = place(moved, spec.pos, Quat::IDENTITY);
+    let dir = rotation.rotate(spec.dir.normalize().0);
     model.visuals.lights.push(Light {
         name: spec.name.clone(),
         body: b,
@@ -72,8 +72,8 @@ pub(super) fn aim_all(
 /// Records the initial poses, which tracking lights maintain.
 pub(super) fn set_initial_places(pose0: &Positions<f64>, model: &mut Model) {
     for light in &mut model.visuals.lights {
-        let turn = pose0.xmat[light.body];
-        let pos = pose0.xpos[light.body] + turn * light.pos;
+        let rotation = pose0.xmat[light.body];
+        let pos = pose0.xpos[light.body] + rotation * light.pos;
         let from = match light.mode {
             CameraMode::TrackCom(Some(body)) => body,
             CameraMode::Fixed
@@ -84,6 +84,6 @@ pub(super) fn set_initial_places(pose0: &Positions<f64>, model: &mut Model) {
         };
         light.pos0 = pos - pose0.xpos[light.body];
         light.poscom0 = pos - pose0.subtree_com[from];
-        light.dir0 = turn * light.dir;
+        light.dir0 = rotation * light.dir;
     }
 }

@@ -57,8 +57,8 @@ pub(super) fn add_all(
             .ok_or_else(|| spec.error(format!("has more than {MAX_DIM} numbers")))?;
         // The cutoff of a distance sensor is its search radius.
         let searched = spec.kind.attachment() == Attachment::Geoms;
-        let turns = matches!(data, SensorData::Axis | SensorData::Quaternion);
-        if spec.cutoff > 0.0 && turns && !searched {
+        let is_rotational = matches!(data, SensorData::Axis | SensorData::Quaternion);
+        if spec.cutoff > 0.0 && is_rotational && !searched {
             return Err(
                 spec.error("a sensor of a direction or an orientation cannot have a cutoff")
             );

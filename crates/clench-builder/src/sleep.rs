@@ -54,7 +54,7 @@ pub(super) fn add_trees(
         driven.extend(model.tree_of_body(body));
     }
     for tree in driven {
-        keep_awake(&mut model.trees[tree]);
+        prevent_sleep(&mut model.trees[tree]);
     }
     for (t, spec) in builder.tendons.iter().enumerate() {
         let trees = model.trees_of(model.tendon_dofs.dofs(t));
@@ -76,7 +76,7 @@ pub(super) fn add_trees(
                     spec.error("acts on several trees and would not wake one of them that sleeps")
                 );
             }
-            keep_awake(&mut model.trees[tree]);
+            prevent_sleep(&mut model.trees[tree]);
         }
     }
     for tree in &mut model.trees {
@@ -88,7 +88,7 @@ pub(super) fn add_trees(
 }
 
 /// Keeps a tree awake that something may move undetected, unless its author set a policy.
-fn keep_awake(tree: &mut KinematicTree) {
+fn prevent_sleep(tree: &mut KinematicTree) {
     if tree.sleep == SleepPolicy::Auto {
         tree.sleep = SleepPolicy::Never;
     }

@@ -13,16 +13,16 @@ use clench_dynamics::model::{GainKind, Model, Transmission};
 /// not rotate.
 pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission, BuildError> {
     let site = |name: &String| names.sites.find(name, spec);
-    let turns = spec.gain == GainKind::So3;
+    let is_rotational = spec.gain == GainKind::So3;
     Ok(match &spec.transmission {
-        TransmissionSpec::Joint(name) if turns => {
+        TransmissionSpec::Joint(name) if is_rotational => {
             Transmission::Rotation(names.joints.find(name, spec)?)
         }
         TransmissionSpec::SiteInFrame {
             site: name,
             reference,
-        } if turns => Transmission::RotationInFrame([site(name)?, site(reference)?]),
-        _ if turns => {
+        } if is_rotational => Transmission::RotationInFrame([site(name)?, site(reference)?]),
+        _ if is_rotational => {
             return Err(
                 spec.error("an orientation servo needs a ball joint, or a site with a refsite")
             );

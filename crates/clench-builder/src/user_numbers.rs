@@ -37,7 +37,7 @@ fn width<'a, E: Element + 'a>(
     given: Option<usize>,
     elements: impl Iterator<Item = (&'a E, &'a Arc<[f64]>)>,
 ) -> Result<Option<usize>, BuildError> {
-    let mut most = 0;
+    let mut longest = 0;
     for (element, user) in elements {
         let count = user.len();
         match given {
@@ -47,10 +47,10 @@ fn width<'a, E: Element + 'a>(
                     E::KIND
                 )));
             }
-            _ => most = most.max(count),
+            _ => longest = longest.max(count),
         }
     }
-    Ok(Some(given.unwrap_or(most)))
+    Ok(Some(given.unwrap_or(longest)))
 }
 
 /// Pads the numbers of all elements of a kind to the same length with zeros.

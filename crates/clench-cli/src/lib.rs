@@ -34,7 +34,7 @@ mod zip;
 
 use clap::{Parser, Subcommand};
 use exit::{BAD_INPUT, is_closed_pipe};
-use message::tell;
+use message::print_message;
 use std::process::ExitCode;
 
 /// Constrained motion of articulated rigid bodies, with MuJoCo's numbers.
@@ -100,7 +100,7 @@ pub fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            tell(format_args!("error: {error:#}"));
+            print_message(format_args!("error: {error:#}"));
             ExitCode::from(BAD_INPUT)
         }
     }

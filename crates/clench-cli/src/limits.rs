@@ -73,8 +73,8 @@ impl MemoryLimit {
         if needed <= self.bytes {
             return Ok(());
         }
-        let (needed, most) = (needed / GIGABYTE, self.bytes / GIGABYTE);
-        bail!("{what} take {needed:.3} GB, more than the {most} GB that --max-memory allows")
+        let (needed, limit) = (needed / GIGABYTE, self.bytes / GIGABYTE);
+        bail!("{what} take {needed:.3} GB, more than the {limit} GB that --max-memory allows")
     }
 }
 

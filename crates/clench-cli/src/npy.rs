@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_header_is_said() {
+    fn errors_of_a_header_name_the_fault() {
         for (text, complaint) in [
             ("", "not a dictionary"),
             ("{'descr': '<f8'", "not a dictionary"),

@@ -1,6 +1,6 @@
 //! The arguments that all subcommands share: the model, and options that override the file's.
 
-use crate::message::tell;
+use crate::message::print_message;
 use crate::overrides::{HEADING, Overrides};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -50,10 +50,10 @@ impl ModelFile {
             .ignore_unsupported(self.ignore_unsupported);
         let model = loader.load(&self.model)?;
         for note in &model.notes {
-            tell(format_args!("note: {note}"));
+            print_message(format_args!("note: {note}"));
         }
         for left_out in &model.left_out {
-            tell(format_args!("omitted: {left_out}"));
+            print_message(format_args!("omitted: {left_out}"));
         }
         Ok(model)
     }

@@ -11,7 +11,7 @@ use std::process;
 /// nothing is left behind.
 pub(crate) enum Replacement {
     /// A temporary file in the folder of the path, to which it is renamed at the end.
-    Beside { part: Part, path: PathBuf },
+    Temporary { part: Part, path: PathBuf },
     /// A destination that is not a regular file, such as a pipe, and cannot be replaced.
     Direct(File),
 }
@@ -48,13 +48,13 @@ impl Replacement {
         if let Some(permissions) = old {
             part.file.set_permissions(permissions)?;
         }
-        Ok(Replacement::Beside { part, path })
+        Ok(Replacement::Temporary { part, path })
     }
 
     /// Returns the file to write to.
     pub(crate) fn file(&self) -> io::Result<File> {
         match self {
-            Replacement::Beside { part, .. } => part.file.try_clone(),
+            Replacement::Temporary { part, .. } => part.file.try_clone(),
             Replacement::Direct(file) => file.try_clone(),
         }
     }
@@ -63,7 +63,7 @@ impl Replacement {
     #[cfg(feature = "render")]
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {
-            Replacement::Beside { part, .. } => Some(&part.path),
+            Replacement::Temporary { part, .. } => Some(&part.path),
             Replacement::Direct(_) => None,
         }
     }
@@ -75,7 +75,7 @@ impl Replacement {
     pub(crate) fn finish(self) -> io::Result<()> {
         match self {
             Replacement::Direct(_) => Ok(()),
-            Replacement::Beside { part, path } => {
+            Replacement::Temporary { part, path } => {
                 part.file.sync_all()?;
                 part.rename(&path)
             }

@@ -2,7 +2,7 @@
 
 use crate::interrupt::Interrupt;
 use crate::limits::MemoryArguments;
-use crate::message::tell;
+use crate::message::print_message;
 use crate::options::ModelArguments;
 use crate::simulate::StartArguments;
 use anyhow::Result;
@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
 
 /// Steps and shows a simulation or a batch until a signal arrives.
 fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
-    let page = Page::find(|text| tell(text))?;
+    let page = Page::find(|text| print_message(text))?;
     let place = ServerOptions {
         host: arguments.host.clone(),
         port: arguments.port,
@@ -109,11 +109,11 @@ fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
 fn announce(arguments: &Arguments, server: &Server) {
     let url = server.url();
     if !server.is_local() {
-        tell("note: other machines can reach the viewer, if they know the token");
+        print_message("note: other machines can reach the viewer, if they know the token");
     }
     println!("{url}");
     if !arguments.no_open && open::that_detached(&url).is_err() {
-        tell("note: no browser could be opened; open the address above");
+        print_message("note: no browser could be opened; open the address above");
     }
 }
 
@@ -124,19 +124,19 @@ fn play<V: Stepped>(mut player: Player<V>, server: &Server, interrupt: &Interrup
     while interrupt.signal().is_none() {
         for command in server.commands() {
             if let Err(why) = player.apply(command) {
-                server.tell(&why);
+                server.notify(&why);
             }
         }
         let now = Instant::now();
         if let Err(error) = player.advance(now - last, period.mul_f64(STEPPING)) {
-            server.tell(&format!("paused: {error}"));
+            server.notify(&format!("paused: {error}"));
         }
         last = now;
         if server.clients() > 0 {
             match player.frame() {
                 Ok(frame) => server.publish(frame),
                 // Users can still rewind or reset.
-                Err(error) => server.tell(&format!("the state cannot be shown: {error}")),
+                Err(error) => server.notify(&format!("the state cannot be shown: {error}")),
             }
         }
         sleep(period.saturating_sub(now.elapsed()));

@@ -12,7 +12,7 @@ fn clench(arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn a_run_on_a_device_is_told_as_one_on_the_processor_is() {
+fn a_run_on_a_device_is_reported_as_one_on_the_processor() {
     if std::env::var("CLENCH_GPU").as_deref() != Ok("require") {
         return;
     }

@@ -67,7 +67,7 @@ fn height_in(path: &Path) -> f64 {
 
 /// Also holds if the simulation time starts later.
 #[test]
-fn a_picture_is_taken_after_the_time_that_is_asked_for() {
+fn an_image_is_taken_after_the_requested_time() {
     let folder = folder();
     for start in ["", " --keyframe late"] {
         let words = format!("--time 0.4 --out ball.png{start}");
@@ -124,7 +124,7 @@ fn stand_in(folder: &Path, script: &str) -> String {
 }
 
 #[test]
-fn an_encoder_gets_the_pictures_of_a_film() {
+fn an_encoder_receives_the_images_of_a_video() {
     let folder = folder();
     let script = "echo \"$@\" > arguments; for last; do :; done; cat > \"$last\"";
     let mut film = draw(folder.path(), "--time 0.2 --out ball.mp4");
@@ -146,7 +146,7 @@ fn an_encoder_gets_the_pictures_of_a_film() {
 }
 
 #[test]
-fn what_an_encoder_complains_of_is_said_and_leaves_the_old_film() {
+fn errors_of_an_encoder_are_reported_and_the_old_video_stays() {
     let folder = folder();
     fs::write(folder.path().join("ball.mp4"), "old").unwrap();
     let mut film = draw(folder.path(), "--time 0.2 --out ball.mp4");
@@ -173,7 +173,7 @@ fn what_an_encoder_complains_of_is_said_and_leaves_the_old_film() {
 
 /// The simulation resets whenever it diverges, after a second.
 #[test]
-fn a_film_of_what_starts_over_ends() {
+fn a_video_of_a_simulation_with_autoreset_ends() {
     let folder = folder();
     let command = draw(folder.path(), "--time 3 --out ball.gif");
     let option = "<option gravity='0 0 -9e9'><flag autoreset='enable'/></option>";

@@ -102,16 +102,16 @@ fn find(
         // Near cells first. No point of the field is further away than the sum.
         let size = b.bounding_radius();
         let furthest = field.radius() + size + (pose_b.position - pose_a.position).norm();
-        let most = reach.min(furthest);
+        let limit = reach.min(furthest);
         reach = size.max(furthest * MIN_SEARCH_SHARE);
-        while reach < most {
+        while reach < limit {
             collide(a, pose_a, b, pose_b, reach, &mut contacts);
             if !contacts.as_slice().is_empty() {
                 break;
             }
             reach *= 4.0;
         }
-        reach = most;
+        reach = limit;
     }
     if contacts.as_slice().is_empty() {
         collide(a, pose_a, b, pose_b, reach, &mut contacts);

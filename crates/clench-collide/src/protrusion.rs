@@ -59,8 +59,8 @@ pub fn protrusion<S: Scalar>(
     pose_outer: &Pose<S>,
     search: Ascent,
 ) -> Option<S> {
-    let place = turned(pose_inner, pose_outer);
-    let furthest = |u| place.point(furthest(inner, place.rotation.transpose_mul(u)));
+    let pose = rotated(pose_inner, pose_outer);
+    let furthest = |u| pose.point(furthest(inner, pose.rotation.transpose_mul(u)));
     is_bounded(inner).then(|| highest(furthest, outer, pose_outer, search))?
 }
 
@@ -73,12 +73,12 @@ pub fn protrusion_of_points<S: Scalar>(
     pose_outer: &Pose<S>,
     search: Ascent,
 ) -> Option<S> {
-    let place = turned(pose_points, pose_outer);
+    let pose = rotated(pose_points, pose_outer);
     let furthest = |u| {
-        let d = place.rotation.transpose_mul(u);
+        let d = pose.rotation.transpose_mul(u);
         let local = points.iter().map(|p| Vec3::from_f64(p.to_array()));
         let best = local.reduce(|best, p| if p.dot(d) > best.dot(d) { p } else { best });
-        place.point(best.unwrap_or(Vec3::ZERO))
+        pose.point(best.unwrap_or(Vec3::ZERO))
     };
     (!points.is_empty()).then(|| highest(furthest, outer, pose_outer, search))?
 }
@@ -88,7 +88,7 @@ pub fn protrusion_of_points<S: Scalar>(
 /// The climbs start along the axes of the outer shape, where whole edges and faces of boxes, cylinders and capsules are
 /// furthest. In the rotated coordinates these axes are exact, so rounding does not choose among the corners, as it does
 /// in MuJoCo, which rotates the shape itself.
-fn turned<S: Scalar>(pose: &Pose<S>, by: &Pose<S>) -> Pose<S> {
+fn rotated<S: Scalar>(pose: &Pose<S>, by: &Pose<S>) -> Pose<S> {
     let columns = [0, 1, 2].map(|i| by.rotation.transpose_mul(pose.rotation.column(i)));
     Pose {
         position: by.rotation.transpose_mul(pose.position),

@@ -73,8 +73,8 @@ pub fn check_count(field: &'static str, found: usize, each: usize) -> Result<(),
 /// Returns the first number of a lane that is beyond a limit, if any.
 fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usize, f64)> {
     let value = |i: usize| values[i].lane(lane);
-    let most = bound.of::<T::Scalar>();
-    let index = (0..values.len()).find(|&i| !value(i).abs().le(most))?;
+    let limit = bound.of::<T::Scalar>();
+    let index = (0..values.len()).find(|&i| !value(i).abs().le(limit))?;
     Some((index, value(index).to_f64()))
 }
 
@@ -139,10 +139,10 @@ fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bou
 /// Returns the lanes in which all numbers are within a limit.
 #[inline(always)]
 fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
-    let most = bound.of();
+    let limit = bound.of();
     let mut mask = T::Mask::splat(true);
     for x in values {
-        mask &= x.abs().le(most);
+        mask &= x.abs().le(limit);
     }
     mask
 }

@@ -115,11 +115,11 @@ pub enum SimError {
     Forked,
     /// All slots for constraints at run time are taken.
     #[error(
-        "all {most} slots for constraints at run time are in use: remove one, or give the model a larger max_dynamic_constraints"
+        "all {max} slots for constraints at run time are in use: remove one, or give the model a larger max_dynamic_constraints"
     )]
     NoFreeSlot {
         /// The number of slots.
-        most: usize,
+        max: usize,
     },
     /// The handle is of a constraint that was removed, or that this state does not have.
     #[error("this constraint does not exist: it was removed, or this state does not contain it")]

@@ -43,7 +43,7 @@ impl FixedPoses {
     }
 
     /// Invalidates the poses, because parameters may have changed.
-    pub fn forget(&mut self) {
+    pub fn invalidate(&mut self) {
         self.known = false;
     }
 

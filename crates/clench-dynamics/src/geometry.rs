@@ -83,7 +83,7 @@ impl<'a, T: Real> Geoms<'a, T> {
             return T::Mask::splat(true);
         }
         let center = self.position.geom_xpos[geom];
-        ray.may_meet(center, self.params.geom_rbound[geom], within)
+        ray.may_intersect(center, self.params.geom_rbound[geom], within)
     }
 
     #[inline(always)]

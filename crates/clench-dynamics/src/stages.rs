@@ -24,7 +24,7 @@ pub struct Positions<T> {
     /// Orientations of inertial frames.
     pub ximat: Vec<Mat3<T>>,
     /// Rotation by each joint (njnt).
-    pub(crate) jnt_turn: Vec<Quat<T>>,
+    pub(crate) jnt_rotation: Vec<Quat<T>>,
     /// Joint anchors (njnt).
     pub xanchor: Vec<Vec3<T>>,
     /// Joint axes.
@@ -72,7 +72,7 @@ impl<T: Real> Positions<T> {
             xmat: frames(nbody),
             xipos: points(nbody),
             ximat: frames(nbody),
-            jnt_turn: filled(Quat::IDENTITY, nj),
+            jnt_rotation: filled(Quat::IDENTITY, nj),
             xanchor: points(nj),
             xaxis: points(nj),
             geom_xpos: points(ng),

@@ -119,7 +119,7 @@ impl<T: Real> Workspace<T> {
     /// or must follow from a state regardless of earlier passes.
     pub fn forget_poses(&mut self) {
         self.sleep.forget();
-        self.fixed.forget();
+        self.fixed.invalidate();
     }
 
     /// Returns the mass matrix, whatever metric the problem is solved in.

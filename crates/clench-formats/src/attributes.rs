@@ -29,7 +29,7 @@ impl Element {
     /// Returns the text of an attribute.
     pub(crate) fn text(&self, name: &str) -> Option<&str> {
         #[cfg(test)]
-        asked::note(&self.tag, name);
+        requested::record(&self.tag, name);
         let found = self.attributes.iter().find(|(key, _)| key == name);
         found.map(|(_, value)| value.as_str())
     }
@@ -349,20 +349,20 @@ impl Element {
 
 /// A record of the attributes that readers query, by element name.
 #[cfg(test)]
-pub(crate) mod asked {
+pub(crate) mod requested {
     use std::cell::RefCell;
     use std::collections::HashSet;
 
     thread_local! {
-        static ASKED: RefCell<HashSet<(String, String)>> = RefCell::default();
+        static REQUESTED: RefCell<HashSet<(String, String)>> = RefCell::default();
     }
 
-    pub(super) fn note(tag: &str, name: &str) {
-        ASKED.with_borrow_mut(|asked| asked.insert((tag.to_owned(), name.to_owned())));
+    pub(super) fn record(tag: &str, name: &str) {
+        REQUESTED.with_borrow_mut(|requested| requested.insert((tag.to_owned(), name.to_owned())));
     }
 
     /// Returns true if this thread has queried the attribute of an element of this name.
     pub(crate) fn was(tag: &str, name: &str) -> bool {
-        ASKED.with_borrow(|asked| asked.contains(&(tag.to_owned(), name.to_owned())))
+        REQUESTED.with_borrow(|requested| requested.contains(&(tag.to_owned(), name.to_owned())))
     }
 }

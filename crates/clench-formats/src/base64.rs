@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn other_texts_are_refused() {
+    fn invalid_base64_is_refused() {
         for (text, complaint) in [
             ("Zg", "2 characters"),
             ("Zg=", "3 characters"),

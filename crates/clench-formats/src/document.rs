@@ -36,7 +36,7 @@ pub(crate) struct Element {
 
 impl Element {
     /// Creates an element without children at the location of another.
-    pub(crate) fn in_place_of(other: &Element, tag: &str) -> Element {
+    pub(crate) fn with_location_of(other: &Element, tag: &str) -> Element {
         Element {
             tag: tag.to_owned(),
             attributes: Vec::new(),

@@ -44,10 +44,10 @@ impl Spending {
     /// Returns a message if it exceeds the budget.
     pub(crate) fn bytes(&mut self, count: u64) -> Result<(), String> {
         self.bytes = self.bytes.saturating_add(count);
-        let most = self.budget.bytes;
-        match self.bytes > most {
+        let limit = self.budget.bytes;
+        match self.bytes > limit {
             true => Err(format!(
-                "up to here the model takes more than {most} bytes; {RAISE}"
+                "up to here the model takes more than {limit} bytes; {RAISE}"
             )),
             false => Ok(()),
         }
@@ -59,10 +59,10 @@ impl Spending {
     /// Returns a message if they exceed the budget.
     pub(crate) fn elements(&mut self, count: u64) -> Result<(), String> {
         self.elements = self.elements.saturating_add(count);
-        let most = self.budget.elements;
-        match self.elements > most {
+        let limit = self.budget.elements;
+        match self.elements > limit {
             true => Err(format!(
-                "up to here the model has more than {most} elements; {RAISE}"
+                "up to here the model has more than {limit} elements; {RAISE}"
             )),
             false => Ok(()),
         }

@@ -124,10 +124,8 @@ fn batches(
         GpuBatch::new(model.clone(), count, options)
     };
     match make(count) {
-        Err(GpuError::OutOfMemory {
-            most: Some(most), ..
-        }) if most > 0 => {
-            let pieces = count.div_ceil(most).next_power_of_two();
+        Err(GpuError::OutOfMemory { max: Some(max), .. }) if max > 0 => {
+            let pieces = count.div_ceil(max).next_power_of_two();
             (0..pieces).map(|_| make(count / pieces)).collect()
         }
         made => Ok(vec![made?]),

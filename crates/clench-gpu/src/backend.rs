@@ -6,7 +6,7 @@ use crate::error::{GpuError, GpuFault};
 use crate::kernels::DivergedField;
 use crate::precision::GpuReal;
 use clench_math::Motion;
-use clench_rigid::batch::{Backend, Outcome, Trouble};
+use clench_rigid::batch::{Backend, Outcome, StepFailure};
 use clench_rigid::model::Model;
 use clench_rigid::{Batch, BatchOptions, Output, SimError};
 use std::sync::Arc;
@@ -82,14 +82,14 @@ impl<S: GpuReal> GpuBatch<S> {
             ])
         };
         for env in (0..self.count).filter(|&env| running[env]) {
-            let trouble = faults[env].map(|fault| match fault {
-                GpuFault::Singular => Trouble::Singular,
-                GpuFault::Unfinished => Trouble::Unfinished,
-                GpuFault::ContactOverflow { limit } => Trouble::ContactOverflow { limit },
+            let failure = faults[env].map(|fault| match fault {
+                GpuFault::Singular => StepFailure::Singular,
+                GpuFault::Unfinished => StepFailure::Unfinished,
+                GpuFault::ContactOverflow { limit } => StepFailure::ContactOverflow { limit },
                 GpuFault::Diverged => {
                     let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);
                     let field = DivergedField::of(detail(0));
-                    Trouble::Diverged {
+                    StepFailure::Diverged {
                         field: field.unwrap_or(DivergedField::Qacc).name(),
                         index: detail(1) as usize,
                         value: f64::from(f32::from_bits(detail(2))),
@@ -98,7 +98,7 @@ impl<S: GpuReal> GpuBatch<S> {
             });
             outcomes[env] = Outcome {
                 steps: steps[env] as usize,
-                trouble,
+                failure,
             };
         }
         Ok(())
@@ -193,6 +193,6 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     fn forward(&mut self, running: &[bool], outcomes: &mut [Outcome]) -> Result<(), SimError> {
         self.choose(running);
         self.forward_with_verdict()?;
-        Ok(self.outcomes("trouble", running, outcomes)?)
+        Ok(self.outcomes("failure", running, outcomes)?)
     }
 }

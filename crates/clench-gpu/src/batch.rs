@@ -105,8 +105,8 @@ impl<S: GpuReal> GpuBatch<S> {
         let method = settings.solver.constraint_solver;
         check_dofs(model.nv, method)?;
         let device = Device::open(options.device.as_deref(), S::FEATURES)?;
-        let room = device.limits.max_compute_workgroup_storage_size as usize;
-        let solver = SolverMemory::new::<S>(model.nv, method, room, general_kernels);
+        let available = device.limits.max_compute_workgroup_storage_size as usize;
+        let solver = SolverMemory::new::<S>(model.nv, method, available, general_kernels);
         let (mut tables, mut capacity) =
             Tables::new::<S>(&model, &settings, &pairs, general_kernels);
         solver.reserve(&mut capacity, model.tree.nnz(), model.nv);
@@ -122,7 +122,7 @@ impl<S: GpuReal> GpuBatch<S> {
         let each = size_of::<S>();
         let sizes = [&state, &work, &rows].map(|fields| each * fields.size);
         let sizes = [sizes[0], sizes[1], sizes[2], 4 * reports.size];
-        check_room(&device, count, sizes)?;
+        check_memory(&device, count, sizes)?;
         let memory = Memory {
             state: &state,
             work: &work,
@@ -202,18 +202,18 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Returns an error if the device was lost.
     pub fn forward(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
-            batch.clear_trouble(encoder);
+            batch.clear_failures(encoder);
             batch.encode(encoder, None, batch.pipelines.forward_and_observed());
         })
     }
 
-    /// Runs [`forward`](Self::forward) and records failures in `trouble`.
+    /// Runs [`forward`](Self::forward) and records failures in `failure`.
     ///
     /// # Errors
     /// Returns an error if the device was lost.
     pub(crate) fn forward_with_verdict(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
-            batch.clear_trouble(encoder);
+            batch.clear_failures(encoder);
             let forward = batch.pipelines.forward_and_observed();
             batch.encode(encoder, None, forward.chain([&batch.pipelines.verdict]));
         })
@@ -228,7 +228,7 @@ impl<S: GpuReal> GpuBatch<S> {
         let kernels = Vec::from_iter(self.step_kernels().cloned());
         let clock = Clock::new(&self.device, kernels.len())?;
         self.submit(|batch, encoder| {
-            batch.clear_trouble(encoder);
+            batch.clear_failures(encoder);
             for (k, kernel) in kernels.iter().enumerate() {
                 batch.encode(encoder, clock.around(k), [kernel].into_iter());
             }
@@ -315,7 +315,7 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 
     fn encode_step(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.clear_trouble(encoder);
+        self.clear_failures(encoder);
         self.encode(encoder, None, self.step_kernels());
     }
 
@@ -419,24 +419,24 @@ fn allocate<S: GpuReal>(
             device: device.info.name.clone(),
             count,
             bytes: sizes.iter().sum::<usize>() as u64,
-            most: None,
+            max: None,
         });
     }
     Ok(arrays)
 }
 
 /// Checks that the largest array of `count` environments of the given bytes each fits a buffer and can be indexed.
-fn check_room(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), GpuError> {
+fn check_memory(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), GpuError> {
     let largest = sizes.into_iter().max().unwrap_or(0).max(4) as u64;
     let bytes = device.max_buffer().min(4 * u64::from(u32::MAX));
-    let most = bytes / largest;
-    if count as u64 <= most {
+    let max = bytes / largest;
+    if count as u64 <= max {
         return Ok(());
     }
     Err(GpuError::OutOfMemory {
         device: device.info.name.clone(),
         count,
         bytes: sizes.iter().sum::<usize>() as u64,
-        most: usize::try_from(most).ok(),
+        max: usize::try_from(max).ok(),
     })
 }

@@ -112,16 +112,16 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 
 /// The maximum number of cached kernels of a device. Beyond it the cache is cleared; batches keep the kernels they
 /// have.
-const MOST_KERNELS: usize = 128;
+const MAX_KERNELS: usize = 128;
 
 /// The open devices of this process, with the requested names and features.
-struct Taken {
+struct OpenDevices {
     /// The owner; a forked process cannot use its parent's devices.
     process: u32,
     devices: Vec<(Option<String>, wgpu::Features, Arc<Device>)>,
 }
 
-static TAKEN: Mutex<Option<Taken>> = Mutex::new(None);
+static OPEN_DEVICES: Mutex<Option<OpenDevices>> = Mutex::new(None);
 
 /// Locks a mutex, ignoring poisoning.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -129,14 +129,14 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Calls a function with the open devices of this process.
-fn with_taken<T>(use_it: impl FnOnce(&mut Taken) -> T) -> T {
-    let mut taken = lock(&TAKEN);
+fn with_open_devices<T>(use_it: impl FnOnce(&mut OpenDevices) -> T) -> T {
+    let mut open = lock(&OPEN_DEVICES);
     let process = std::process::id();
-    if taken.as_ref().is_none_or(|taken| taken.process != process) {
+    if open.as_ref().is_none_or(|open| open.process != process) {
         // Dropping a parent's devices would wait for threads that exist only in the parent.
-        std::mem::forget(taken.take());
+        std::mem::forget(open.take());
     }
-    use_it(taken.get_or_insert_with(|| Taken {
+    use_it(open.get_or_insert_with(|| OpenDevices {
         process,
         devices: Vec::new(),
     }))
@@ -170,21 +170,20 @@ impl Device {
         name: Option<&str>,
         features: wgpu::Features,
     ) -> Result<Arc<Self>, GpuError> {
-        let known = with_taken(|taken| {
-            taken
-                .devices
+        let known = with_open_devices(|open| {
+            open.devices
                 .retain(|(_, _, device)| lock(&device.lost).is_none());
             let fits = |(known, able, _): &&(Option<String>, wgpu::Features, _)| {
                 known.as_deref() == name && *able == features
             };
-            taken.devices.iter().find(fits).map(|found| found.2.clone())
+            open.devices.iter().find(fits).map(|found| found.2.clone())
         });
         if let Some(device) = known {
             return Ok(device);
         }
         let device = Arc::new(Self::find(name, features)?);
         let name = name.map(str::to_owned);
-        with_taken(|taken| taken.devices.push((name, features, device.clone())));
+        with_open_devices(|open| open.devices.push((name, features, device.clone())));
         Ok(device)
     }
 
@@ -207,10 +206,10 @@ impl Device {
                 device: adapter.get_info().name,
             });
         }
-        Self::take_up(adapter, features)
+        Self::open_adapter(adapter, features)
     }
 
-    fn take_up(adapter: &wgpu::Adapter, features: wgpu::Features) -> Result<Self, GpuError> {
+    fn open_adapter(adapter: &wgpu::Adapter, features: wgpu::Features) -> Result<Self, GpuError> {
         let info = describe(adapter);
         let limits = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
@@ -226,16 +225,16 @@ impl Device {
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(unusable)?;
         let (failure, lost) = (Arc::default(), Arc::default());
-        let note = |slot: &Arc<Mutex<Option<String>>>| {
+        let recorder = |slot: &Arc<Mutex<Option<String>>>| {
             let slot = slot.clone();
             move |reason: String| {
                 lock(&slot).get_or_insert(reason);
             }
         };
-        let (note_loss, note_failure) = (note(&lost), note(&failure));
-        device.set_device_lost_callback(move |_, reason| note_loss(reason));
+        let (record_loss, record_failure) = (recorder(&lost), recorder(&failure));
+        device.set_device_lost_callback(move |_, reason| record_loss(reason));
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            note_failure(error.to_string())
+            record_failure(error.to_string())
         }));
         let arrays = layout(&device);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -310,7 +309,7 @@ impl Device {
     ) -> Result<wgpu::ComputePipeline, GpuError> {
         let slot = {
             let mut kernels = lock(&self.kernels);
-            if kernels.len() >= MOST_KERNELS && !kernels.contains_key(&text) {
+            if kernels.len() >= MAX_KERNELS && !kernels.contains_key(&text) {
                 kernels.clear();
             }
             Arc::clone(kernels.entry(text.clone()).or_default())
@@ -373,13 +372,13 @@ impl Device {
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(from, start, &copy, 0, bytes);
-        let (tell, told) = mpsc::channel();
+        let (sender, receiver) = mpsc::channel();
         encoder.map_buffer_on_submit(&copy, wgpu::MapMode::Read, .., move |mapped| {
-            let _ = tell.send(mapped);
+            let _ = sender.send(mapped);
         });
         self.submit(encoder.finish())?;
         // Another thread that polls the device may receive the callback.
-        let mapped = told.recv().map_err(|e| self.lost(e.to_string()))?;
+        let mapped = receiver.recv().map_err(|e| self.lost(e.to_string()))?;
         mapped.map_err(|e| self.lost(e.to_string()))?;
         let view = copy.get_mapped_range(..);
         let view = view.map_err(|e| self.lost(e.to_string()))?;

@@ -64,7 +64,7 @@ pub enum GpuError {
     /// The environments do not fit the device's memory.
     #[error(
         "the graphics device \"{device}\" has no memory for {count} environments of {bytes} bytes{}",
-        at_most(*.most)
+        at_most(*.max)
     )]
     OutOfMemory {
         /// The device's name.
@@ -74,7 +74,7 @@ pub enum GpuError {
         /// The bytes of each.
         bytes: u64,
         /// The number that its limits allow, if those are exceeded.
-        most: Option<usize>,
+        max: Option<usize>,
     },
     /// The device does not support the model yet: the first element of each kind.
     #[error("this model cannot be stepped on a graphics device yet: {}", joined(.0))]
@@ -91,11 +91,11 @@ pub enum GpuError {
     },
     /// More dofs than the solver can factor a Hessian for.
     #[error(
-        "Newton's method on a graphics device is for up to {most} dofs, but the model has {nv}: the solver CG has no such limit"
+        "Newton's method on a graphics device is for up to {max} dofs, but the model has {nv}: the solver CG has no such limit"
     )]
     TooManyDofs {
         /// The maximum.
-        most: usize,
+        max: usize,
         /// The number of dofs.
         nv: usize,
     },
@@ -162,10 +162,10 @@ impl From<GpuError> for SimError {
     }
 }
 
-fn at_most(most: Option<usize>) -> String {
-    most.map_or_else(
+fn at_most(max: Option<usize>) -> String {
+    max.map_or_else(
         || ": create fewer, or several batches one after the other".to_owned(),
-        |most| format!(": at most {most} fit its largest buffer; create several batches"),
+        |max| format!(": at most {max} fit its largest buffer; create several batches"),
     )
 }
 

@@ -231,7 +231,7 @@ fields! {
     /// `RUNNING`, or the reason why it has stopped.
     status: 1;
     /// The fault of the current step.
-    trouble: 1;
+    failure: 1;
     /// The field, the index and the bits of a number that diverged.
     fault_field: 1;
     fault_index: 1;

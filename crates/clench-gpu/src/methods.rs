@@ -83,5 +83,5 @@ pub(crate) fn may_be_general(kinds: [ShapeKind; 2]) -> bool {
 
 /// Returns the maximum number of contacts of a pair of shapes; 0 if they have none.
 pub(crate) fn points_of_pair(kinds: [ShapeKind; 2]) -> usize {
-    method(kinds).map_or(0, |(_, most)| most)
+    method(kinds).map_or(0, |(_, max)| max)
 }

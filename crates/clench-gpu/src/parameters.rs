@@ -47,7 +47,7 @@ impl<S: GpuReal> GpuBatch<S> {
                 device: self.device.info.name.clone(),
                 count,
                 bytes: each,
-                most: usize::try_from(self.device.max_buffer() / each.max(1)).ok(),
+                max: usize::try_from(self.device.max_buffer() / each.max(1)).ok(),
             });
         }
         if self.own.is_empty() {

@@ -38,7 +38,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// Returns an error if the device was lost.
     pub fn last_faults(&self) -> Result<Vec<Option<GpuFault>>, GpuError> {
-        self.faults("trouble")
+        self.faults("failure")
     }
 
     /// Decodes a report field into faults.
@@ -110,8 +110,8 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 
     /// Clears the faults of a forward pass outside a step.
-    pub(crate) fn clear_trouble(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(field) = self.reports.find("trouble").filter(|_| self.count > 0) {
+    pub(crate) fn clear_failures(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(field) = self.reports.find("failure").filter(|_| self.count > 0) {
             let bytes = 4 * self.count as u64;
             encoder.clear_buffer(
                 &self.arrays.reports,

@@ -25,7 +25,7 @@ pub(crate) struct SolverMemory {
     newton: bool,
     /// The tiles of H in a row, and the maximum that the memory is for.
     ntile: usize,
-    most: usize,
+    max_tiles: usize,
     share_tiles: bool,
     share_vectors: bool,
 }
@@ -37,7 +37,7 @@ pub(crate) struct SolverMemory {
 pub(crate) fn check_dofs(nv: usize, solver: ConstraintSolver) -> Result<(), GpuError> {
     if solver == ConstraintSolver::Newton && nv > MAX_NEWTON_DOFS {
         return Err(GpuError::TooManyDofs {
-            most: MAX_NEWTON_DOFS,
+            max: MAX_NEWTON_DOFS,
             nv,
         });
     }
@@ -45,30 +45,30 @@ pub(crate) fn check_dofs(nv: usize, solver: ConstraintSolver) -> Result<(), GpuE
 }
 
 impl SolverMemory {
-    /// Chooses the placement for `nv` dofs and a solver if workgroup memory has `room` bytes. Kernels that serve any
-    /// model use as much of it as those with the most dofs whose factor is shared.
+    /// Chooses the placement for `nv` dofs and a solver if workgroup memory has `available` bytes. Kernels that serve
+    /// any model use as much of it as those with the most dofs whose factor is shared.
     pub(crate) fn new<S>(
         nv: usize,
         solver: ConstraintSolver,
-        room: usize,
+        available: usize,
         general_kernels: bool,
     ) -> Self {
         let newton = solver == ConstraintSolver::Newton;
         let ntile = nv.div_ceil(TILE);
-        let room = room / size_of::<S>();
-        let with = |most: usize| {
+        let available = available / size_of::<S>();
+        let with = |max_tiles: usize| {
             let mut memory = SolverMemory {
                 newton,
                 ntile,
-                most,
-                share_tiles: TILE * most <= MAX_SHARED_DOFS,
+                max_tiles,
+                share_tiles: TILE * max_tiles <= MAX_SHARED_DOFS,
                 share_vectors: true,
             };
-            memory.share_vectors = STAGING + memory.vectors() <= room;
+            memory.share_vectors = STAGING + memory.vectors() <= available;
             // One of the tiles that are multiplied occupies the memory of the last tile of the factor.
             let others = memory.tiles().saturating_sub(TILE * TILE);
             let both = STAGING + memory.vectors() + others;
-            memory.share_tiles &= memory.share_vectors && both <= room;
+            memory.share_tiles &= memory.share_vectors && both <= available;
             memory
         };
         if general_kernels {
@@ -82,7 +82,7 @@ impl SolverMemory {
 
     /// Returns the numbers of the tiles of a lower triangle; zero for conjugate gradients.
     fn tiles(self) -> usize {
-        let triangle = TILE * TILE * self.most * (self.most + 1) / 2;
+        let triangle = TILE * TILE * self.max_tiles * (self.max_tiles + 1) / 2;
         if self.newton { triangle } else { 0 }
     }
 
@@ -92,12 +92,12 @@ impl SolverMemory {
         } else {
             CG_VECTORS
         };
-        count * TILE * self.most
+        count * TILE * self.max_tiles
     }
 
     /// Returns true if M is also stored densely.
     fn dense_mass(self) -> bool {
-        self.newton && TILE * self.most <= MAX_SHARED_DOFS
+        self.newton && TILE * self.max_tiles <= MAX_SHARED_DOFS
     }
 
     /// Reserves the memory with the rows for a mass matrix of `nnz` entries and `nv` dofs.
@@ -121,7 +121,7 @@ impl SolverMemory {
         let right = if self.share_tiles { others / 4 } else { 0 };
         for (name, value) in [
             ("TILE", TILE),
-            ("WIDTH", TILE * self.most),
+            ("WIDTH", TILE * self.max_tiles),
             ("RIGHT", right),
             ("SHARED_VECTORS", inside(self.share_vectors, self.vectors())),
         ] {

@@ -216,13 +216,13 @@ fn check_length(field: &str, found: usize, expected: usize) -> Result<(), GpuErr
 }
 
 fn check_row<S: GpuReal>(field: &str, env: usize, row: &[S]) -> Result<(), GpuError> {
-    let most = match field {
+    let max = match field {
         "qpos" | "qvel" => MAX_VALUE,
         _ => f64::MAX,
     };
     match row
         .iter()
-        .position(|x| x.to_f64().is_nan() || x.to_f64().abs() > most)
+        .position(|x| x.to_f64().is_nan() || x.to_f64().abs() > max)
     {
         None => Ok(()),
         Some(index) => Err(GpuError::NotFinite {

@@ -65,8 +65,8 @@ mod tests {
         }
     }
 
-    struct Look<'a>(&'a CompiledKernels);
-    impl<S: Scalar> LaneTask<S> for Look<'_> {
+    struct TableLookup<'a>(&'a CompiledKernels);
+    impl<S: Scalar> LaneTask<S> for TableLookup<'_> {
         type Output = (usize, S);
         fn run<T: Real<Scalar = S>>(self) -> (usize, S) {
             self.0.table::<Counting, T>()(T::new(0.5))
@@ -77,7 +77,7 @@ mod tests {
         let all = Vec::from_iter(Instructions::all_available::<S>());
         assert!(!all.is_empty());
         for instructions in all {
-            let found = S::in_lanes(instructions, Look(compiled));
+            let found = S::in_lanes(instructions, TableLookup(compiled));
             assert_eq!(found, Some((instructions.lanes::<S>(), S::new(0.5))));
         }
     }

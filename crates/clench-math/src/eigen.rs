@@ -16,7 +16,7 @@ const NEGLIGIBLE: f64 = 4e-15;
 /// Moments closer than this fraction of the largest entry are equal, and keep their order, as in MuJoCo.
 const EQUAL: f64 = 1e-12;
 /// The maximum number of rotations. Jacobi's method needs about ten; this limits it on input that is not finite.
-const MAX_TURNS: usize = 60;
+const MAX_ROTATIONS: usize = 60;
 
 /// Computes the principal moments of a rotational inertia, largest first, and the rotation of its principal frame. The
 /// columns of the rotation's matrix are the axes, so `inertia = R diag R^T` (MuJoCo's `mju_eig3`).
@@ -38,17 +38,17 @@ fn diagonalize(inertia: &Mat3<f64>, negligible: f64, equal: f64) -> (Vec3<f64>, 
     let matrix = Mat3::from_rows(a, Vec3::new(a.y, b.y, b.z), Vec3::new(a.z, b.z, c.z));
     let scale = largest_entry(&matrix);
     let mut frame = Quat::IDENTITY;
-    let mut turned = matrix;
-    for _ in 0..MAX_TURNS {
-        let Some(turn) = jacobi_turn(&turned, negligible * scale) else {
+    let mut rotated = matrix;
+    for _ in 0..MAX_ROTATIONS {
+        let Some(rotation) = jacobi_rotation(&rotated, negligible * scale) else {
             break;
         };
-        frame = (frame * turn).normalize();
+        frame = (frame * rotation).normalize();
         let axes = frame.to_matrix();
-        turned = axes.transpose() * matrix * axes;
+        rotated = axes.transpose() * matrix * axes;
     }
     sort_descending(
-        Vec3::new(turned.rows[0].x, turned.rows[1].y, turned.rows[2].z),
+        Vec3::new(rotated.rows[0].x, rotated.rows[1].y, rotated.rows[2].z),
         frame,
         equal * scale,
     )
@@ -62,7 +62,7 @@ fn largest_entry(m: &Mat3<f64>) -> f64 {
 }
 
 /// Returns the rotation that zeroes the largest off-diagonal entry, `None` if that is negligible.
-fn jacobi_turn(d: &Mat3<f64>, negligible: f64) -> Option<Quat<f64>> {
+fn jacobi_rotation(d: &Mat3<f64>, negligible: f64) -> Option<Quat<f64>> {
     let pairs = [(1, 2), (2, 0), (0, 1)];
     let size = |k: usize| d.rows[pairs[k].0][pairs[k].1].abs();
     let k = (0..3).fold(0, |best, k| if size(k) > size(best) { k } else { best });

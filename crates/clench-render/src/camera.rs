@@ -91,15 +91,15 @@ impl View {
                     return Err(crate::RenderError::NoCamera(index, count));
                 }
                 let eye = sim.output("cam_xpos")?;
-                let turn = sim.output("cam_xmat")?;
+                let rotation = sim.output("cam_xmat")?;
                 let number = |x: T| x.to_f64() as f32;
-                let turn = turn[9 * index..].iter().map(|&x| number(x));
-                let turn: Vec<f32> = turn.take(9).collect();
+                let rotation = rotation[9 * index..].iter().map(|&x| number(x));
+                let rotation: Vec<f32> = rotation.take(9).collect();
                 let parallel = sim.model().cameras[index].orthographic;
                 let fovy = sim.params().cam_fovy[index].lane(0).to_f64();
                 Ok(Placed {
                     eye: [0, 1, 2].map(|k| number(eye[3 * index + k])),
-                    axes: [0, 1, 2].map(|k| [turn[k], turn[3 + k], turn[6 + k]]),
+                    axes: [0, 1, 2].map(|k| [rotation[k], rotation[3 + k], rotation[6 + k]]),
                     half: half(fovy, parallel),
                     parallel,
                 })

@@ -121,17 +121,17 @@ pub(crate) fn poses<T: Precision>(
 fn poses_of<T: Precision>(
     sim: &mut Sim<T>,
     places: &str,
-    turns: &str,
+    rotations: &str,
 ) -> Result<Vec<[[f32; 4]; 4]>, clench::SimError> {
     let places = sim.output(places)?;
-    let turns = sim.output(turns)?;
+    let rotations = sim.output(rotations)?;
     let number = |x: T| x.to_f64() as f32;
-    let pose = |(place, turn): (&[T], &[T])| {
+    let pose = |(place, rotation): (&[T], &[T])| {
         let column = |k: usize| {
             [
-                number(turn[k]),
-                number(turn[3 + k]),
-                number(turn[6 + k]),
+                number(rotation[k]),
+                number(rotation[3 + k]),
+                number(rotation[6 + k]),
                 0.0,
             ]
         };
@@ -140,7 +140,7 @@ fn poses_of<T: Precision>(
     };
     Ok(places
         .chunks_exact(3)
-        .zip(turns.chunks_exact(9))
+        .zip(rotations.chunks_exact(9))
         .map(pose)
         .collect())
 }

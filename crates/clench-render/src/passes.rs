@@ -29,7 +29,7 @@ pub(crate) struct Passes {
 }
 
 /// The settings that differ between pipelines.
-struct Way<'a> {
+struct PipelineOptions<'a> {
     vertex: &'a str,
     fragment: Option<&'a str>,
     targets: &'a [Option<ColorTargetState>],
@@ -56,7 +56,7 @@ impl Passes {
         let texture = texture_layout(device);
         let all = [Some(&scene), Some(&light), Some(&texture)];
         let picture = |blend, writes_depth| {
-            let way = Way {
+            let options = PipelineOptions {
                 vertex: "corner",
                 fragment: Some("picture"),
                 targets: &[target(PICTURE, blend)],
@@ -65,9 +65,9 @@ impl Passes {
                 writes_depth,
                 constants: &constants,
             };
-            pipeline(device, &module, &way)
+            pipeline(device, &module, &options)
         };
-        let facts = Way {
+        let facts = PipelineOptions {
             vertex: "corner",
             fragment: Some("facts"),
             targets: &[target(GEOMS, None), target(DISTANCES, None)],
@@ -76,7 +76,7 @@ impl Passes {
             writes_depth: true,
             constants: &[],
         };
-        let shadow = Way {
+        let shadow = PipelineOptions {
             vertex: "shadow_corner",
             fragment: None,
             targets: &[],
@@ -163,18 +163,18 @@ fn texture_layout(device: &Device) -> BindGroupLayout {
     })
 }
 
-fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline {
+fn pipeline(device: &Device, module: &ShaderModule, options: &PipelineOptions) -> RenderPipeline {
     let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: way.layouts,
+        bind_group_layouts: options.layouts,
         immediate_size: 0,
     });
     device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: way.fragment,
+        label: options.fragment,
         layout: Some(&layout),
         vertex: VertexState {
             module,
-            entry_point: Some(way.vertex),
+            entry_point: Some(options.vertex),
             compilation_options: Default::default(),
             buffers: &[Some(VertexBufferLayout {
                 array_stride: size_of::<Vertex>() as u64,
@@ -186,23 +186,23 @@ fn pipeline(device: &Device, module: &ShaderModule, way: &Way) -> RenderPipeline
         primitive: PrimitiveState::default(),
         depth_stencil: Some(DepthStencilState {
             format: DEPTH,
-            depth_write_enabled: Some(way.writes_depth),
+            depth_write_enabled: Some(options.writes_depth),
             depth_compare: Some(CompareFunction::Greater),
             stencil: Default::default(),
             bias: Default::default(),
         }),
         multisample: MultisampleState {
-            count: way.samples,
+            count: options.samples,
             ..MultisampleState::default()
         },
-        fragment: way.fragment.map(|entry| FragmentState {
+        fragment: options.fragment.map(|entry| FragmentState {
             module,
             entry_point: Some(entry),
             compilation_options: PipelineCompilationOptions {
-                constants: way.constants,
+                constants: options.constants,
                 ..Default::default()
             },
-            targets: way.targets,
+            targets: options.targets,
         }),
         multiview_mask: None,
         cache: None,

@@ -52,7 +52,7 @@ struct Item {
 // True if the model has lights. An override constant lets a device that evaluates both sides of a condition skip one.
 override own_lights: bool;
 // The maximum number of parts of a pixel in a plane texture.
-const MOST_PARTS = 8.0;
+const MAX_PARTS = 8.0;
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
@@ -102,7 +102,7 @@ fn plane_color(at: vec2<f32>, across: vec2<f32>, down: vec2<f32>) -> vec3<f32> {
     let longer = select(down, across, lengths.x > lengths.y);
     let long = max(lengths.x, lengths.y);
     let short = max(min(lengths.x, lengths.y), 1e-6);
-    let parts = clamp(ceil(long / short), 1.0, MOST_PARTS);
+    let parts = clamp(ceil(long / short), 1.0, MAX_PARTS);
     let level = log2(max(long / parts, short));
     var sum = vec3(0.0);
     for (var part = 0.5; part < parts; part += 1.0) {

@@ -92,7 +92,7 @@ fn camera(sim: &mut Sim<f64>, index: usize) -> (Vec3<f64>, [Vec3<f64>; 3]) {
 }
 
 #[test]
-fn every_kind_of_geom_is_drawn_where_rays_hit_it() {
+fn every_kind_of_geom_is_drawn_at_the_hits_of_rays() {
     let mut sim = sim();
     let (place, [right, up, back]) = camera(&mut sim, 0);
     let half = 25f64.to_radians().tan();
@@ -159,7 +159,7 @@ fn a_free_camera_looks_at_its_point() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_said() {
+fn impossible_images_are_errors() {
     let mut sim = sim();
     let Some(mut renderer) = renderer(&sim) else {
         return;

@@ -95,7 +95,7 @@ fn a_picture_stands_upright_on_a_plane_a_box_and_a_mesh() {
 }
 
 #[test]
-fn a_picture_repeats_as_often_as_the_material_says() {
+fn a_texture_repeats_as_set_by_the_material() {
     // Twice along each side: each quarter contains a whole picture.
     let twice = textured(
         "texture='four' texrepeat='2 2'",
@@ -117,7 +117,7 @@ fn a_picture_repeats_as_often_as_the_material_says() {
 }
 
 #[test]
-fn a_picture_seen_from_the_side_is_blurred_along_the_line_of_sight_alone() {
+fn a_texture_at_a_grazing_angle_is_blurred_along_the_line_of_sight_only() {
     // Each repetition lacks green on its left. On the plane the footprint of a pixel is twelve times as long as it is
     // wide, and about as long as the picture.
     let scene = textured(
@@ -176,7 +176,7 @@ fn brightness(text: &str) -> Option<[i32; 2]> {
 }
 
 #[test]
-fn lights_of_a_file_shine_as_strong_as_it_says() {
+fn lights_of_a_file_have_its_intensity() {
     let dark = "<headlight active='0'/>";
     let sun = |rest: &str| {
         format!("<light type='directional' diffuse='.5 .5 .5' specular='0 0 0' {rest}/>")
@@ -210,7 +210,7 @@ fn lights_of_a_file_shine_as_strong_as_it_says() {
 }
 
 #[test]
-fn what_is_in_the_way_of_a_light_casts_a_shadow() {
+fn bodies_cast_shadows() {
     for light in [
         "type='directional' pos='0 0 3'",
         "type='spot' pos='0 0 3' cutoff='60' exponent='0'",

@@ -8,12 +8,12 @@
 
 pub mod batch;
 pub mod ik;
-mod known;
 mod output;
 mod query;
 pub mod readout;
 mod sensor;
 mod sim;
+mod validity;
 
 pub use clench_builder as builder;
 pub use clench_dynamics::{

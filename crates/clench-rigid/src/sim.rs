@@ -1,6 +1,6 @@
 //! A simulation of one environment.
 
-mod alone;
+mod computed_state;
 mod dynamic;
 mod given_contacts;
 mod halves;
@@ -12,10 +12,9 @@ mod threads;
 
 pub use dynamic::DynamicConstraint;
 
-use crate::known::{Extent, Known};
 use crate::output::{Output, Source};
+use crate::validity::{Computed, Validity};
 use crate::{Precision, readout};
-use alone::Room;
 use clench_dynamics::check::{self, check_values};
 use clench_dynamics::contact::Contact;
 use clench_dynamics::dynamics::energy::Energy;
@@ -29,6 +28,7 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, read_lane};
 use clench_solver::LaneStats;
+use computed_state::LaneCopy;
 use std::sync::Arc;
 
 /// A model and its state, with the results computed from them.
@@ -46,13 +46,13 @@ pub struct Sim<T: Precision = f64> {
     settings: StepSettings,
     ws: Workspace<T::Alone>,
     /// Memory for the state if it is computed in lanes.
-    room: Room<T>,
+    lane_copy: LaneCopy<T>,
     /// Memory for other values in that type.
     numbers: Vec<T::Alone>,
     initial: State<T>,
     /// The part of the state that a step writes, as it was before the present step.
     last_good: State<T>,
-    known: Known<T>,
+    validity: Validity<T>,
     /// True if the workspace holds the first half of a step and nothing after it.
     halfway: bool,
     resets: u64,
@@ -93,12 +93,12 @@ impl<T: Precision> Sim<T> {
                 ws
             },
             last_good: initial.clone(),
-            known: Known::new(),
+            validity: Validity::new(),
             halfway: false,
             resets: 0,
             last_serial: 0,
             inverse_ws: None,
-            room: alone::room::<T>(&model),
+            lane_copy: computed_state::lane_copy::<T>(&model),
             numbers: Vec::new(),
             initial,
             model,
@@ -149,7 +149,7 @@ impl<T: Precision> Sim<T> {
         self.ws.clock.lap(Stage::Rows as usize);
         self.on_threads(T::step);
         let result = self.check_result(self.last_good.time);
-        self.note(&result);
+        self.record_validity(&result);
         if result.is_err() {
             self.state.copy_moving_from(&self.last_good);
         }
@@ -171,16 +171,16 @@ impl<T: Precision> Sim<T> {
             T::forward(model, params, settings, state, ws);
         });
         let result = self.check_result(self.state.time);
-        self.note(&result);
+        self.record_validity(&result);
         result
     }
 
     /// Records that a step or forward pass computed all results, or that it failed and its results are invalid.
-    fn note(&mut self, result: &Result<(), SimError>) {
+    fn record_validity(&mut self, result: &Result<(), SimError>) {
         self.halfway = false;
         match result {
-            Ok(()) => self.known.note(Extent::Everything, &self.state),
-            Err(_) => self.known.forget(),
+            Ok(()) => self.validity.record(Computed::Everything, &self.state),
+            Err(_) => self.validity.invalidate(),
         }
     }
 
@@ -195,29 +195,29 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`step`](Self::step); nothing is reset.
     pub fn refresh(&mut self) -> Result<(), SimError> {
-        self.require(Extent::Everything)
+        self.require(Computed::Everything)
     }
 
     /// Computes the results of the present positions, even if those of the positions before the last step count as
     /// valid.
     pub(crate) fn refresh_positions(&mut self) -> Result<(), SimError> {
-        self.known.forget();
-        self.require(Extent::Positions)
+        self.validity.invalidate();
+        self.require(Computed::Positions)
     }
 
     /// Marks all results as stale, because parameters changed.
-    fn forget(&mut self) {
+    fn invalidate(&mut self) {
         self.halfway = false;
-        self.known.forget();
+        self.validity.invalidate();
         self.ws.forget_poses();
     }
 
     /// Computes the required results for the present state unless the workspace holds them.
-    pub(crate) fn require(&mut self, wanted: Extent) -> Result<(), SimError> {
-        if wanted <= self.known.extent(&self.state) {
+    pub(crate) fn require(&mut self, wanted: Computed) -> Result<(), SimError> {
+        if wanted <= self.validity.computed(&self.state) {
             return Ok(());
         }
-        if wanted == Extent::Everything {
+        if wanted == Computed::Everything {
             return self.try_forward();
         }
         self.check_present()?;
@@ -225,10 +225,10 @@ impl<T: Precision> Sim<T> {
         self.ws.clock.start();
         self.ws.forget_poses();
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
-        alone::read(&self.state, &mut self.room, |state| {
+        computed_state::read(&self.state, &mut self.lane_copy, |state| {
             T::position_stage(model, params, state, ws);
         });
-        self.known.note(Extent::Positions, &self.state);
+        self.validity.record(Computed::Positions, &self.state);
         Ok(())
     }
 
@@ -252,7 +252,7 @@ impl<T: Precision> Sim<T> {
     /// Resets the state to the model's initial state.
     pub fn reset(&mut self) {
         self.state.copy_from(&self.initial);
-        self.known.forget();
+        self.validity.invalidate();
     }
 
     /// Resets the state to a keyframe of the model. Other fields get their initial values.
@@ -265,7 +265,7 @@ impl<T: Precision> Sim<T> {
         };
         self.state.copy_from(&self.initial);
         self.state.set_keyframe(key);
-        self.known.forget();
+        self.validity.invalidate();
         Ok(())
     }
 
@@ -344,7 +344,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`refresh`](Self::refresh).
     pub fn mass_matrix(&mut self) -> Result<Vec<f64>, SimError> {
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         Ok(readout::mass_matrix(&self.ws, 0))
     }
 
@@ -369,7 +369,7 @@ impl<T: Precision> Sim<T> {
     /// Calls `reader` with the data that outputs are read from.
     pub(crate) fn read<R>(&mut self, reader: impl FnOnce(&mut Source<T::Alone>) -> R) -> R {
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
-        alone::read(&self.state, &mut self.room, |state| {
+        computed_state::read(&self.state, &mut self.lane_copy, |state| {
             reader(&mut Source {
                 model,
                 params,
@@ -412,7 +412,7 @@ impl<T: Precision> Sim<T> {
         let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
         let given = (&qacc[..], given);
         let (params, settings) = (&self.params, &self.settings);
-        alone::read(state, &mut self.room, |state| {
+        computed_state::read(state, &mut self.lane_copy, |state| {
             T::inverse(model, params, settings, state, given, ws, &mut forces);
         });
         read_lane(&forces, 0, qfrc_inverse);
@@ -439,7 +439,7 @@ impl<T: Precision> Sim<T> {
         self.check_present()?;
         let (model, params) = (&self.model, &self.params);
         let scratch = self.ws.energy_scratch(model);
-        let energy = alone::read(&self.state, &mut self.room, |state| {
+        let energy = computed_state::read(&self.state, &mut self.lane_copy, |state| {
             T::state_energy(model, params, state, scratch)
         });
         Ok(Energy {

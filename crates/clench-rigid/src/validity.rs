@@ -5,7 +5,7 @@ use clench_math::{Quat, Scalar, Vec3};
 
 /// The extent of the results computed from a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Extent {
+pub(crate) enum Computed {
     /// Nothing is computed.
     Nothing,
     /// The results of the position stage.
@@ -19,18 +19,18 @@ pub(crate) enum Extent {
 /// Results of the state at the start of a step are valid at its end, as in MuJoCo. Writing other positions or
 /// velocities makes them stale.
 #[derive(Clone, Debug)]
-pub(crate) struct Known<T> {
-    extent: Extent,
+pub(crate) struct Validity<T> {
+    computed: Computed,
     qpos: Vec<T>,
     qvel: Vec<T>,
     mocap_pos: Vec<Vec3<T>>,
     mocap_quat: Vec<Quat<T>>,
 }
 
-impl<T: Scalar> Known<T> {
+impl<T: Scalar> Validity<T> {
     pub(crate) fn new() -> Self {
-        Known {
-            extent: Extent::Nothing,
+        Validity {
+            computed: Computed::Nothing,
             qpos: Vec::new(),
             qvel: Vec::new(),
             mocap_pos: Vec::new(),
@@ -39,13 +39,13 @@ impl<T: Scalar> Known<T> {
     }
 
     /// Marks all results as stale.
-    pub(crate) fn forget(&mut self) {
-        self.extent = Extent::Nothing;
+    pub(crate) fn invalidate(&mut self) {
+        self.computed = Computed::Nothing;
     }
 
     /// Records the extent of the results. They are valid until this state is modified.
-    pub(crate) fn note(&mut self, extent: Extent, state: &State<T>) {
-        self.extent = extent;
+    pub(crate) fn record(&mut self, computed: Computed, state: &State<T>) {
+        self.computed = computed;
         self.qpos.clone_from(&state.qpos);
         self.qvel.clone_from(&state.qvel);
         self.mocap_pos.clone_from(&state.mocap_pos);
@@ -53,19 +53,19 @@ impl<T: Scalar> Known<T> {
     }
 
     /// Returns true if all results of the last recorded state are valid.
-    pub(crate) fn holds_everything(&self) -> bool {
-        self.extent == Extent::Everything
+    pub(crate) fn is_complete(&self) -> bool {
+        self.computed == Computed::Everything
     }
 
     /// Returns the extent of valid results of this state.
-    pub(crate) fn extent(&self, state: &State<T>) -> Extent {
+    pub(crate) fn computed(&self, state: &State<T>) -> Computed {
         let placed = self.qpos == state.qpos
             && self.mocap_pos == state.mocap_pos
             && self.mocap_quat == state.mocap_quat;
-        match self.extent {
-            _ if !placed => Extent::Nothing,
-            Extent::Everything if self.qvel != state.qvel => Extent::Positions,
-            extent => extent,
+        match self.computed {
+            _ if !placed => Computed::Nothing,
+            Computed::Everything if self.qvel != state.qvel => Computed::Positions,
+            computed => computed,
         }
     }
 

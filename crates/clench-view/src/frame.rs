@@ -245,7 +245,7 @@ fn cameras<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[f32; 12]>, SimError> {
     if sim.model().cameras.is_empty() {
         return Ok(Vec::new());
     }
-    let (places, turns) = (sim.output("cam_xpos")?, sim.output("cam_xmat")?);
+    let (places, rotations) = (sim.output("cam_xpos")?, sim.output("cam_xmat")?);
     let row = |(place, turn): (&[T], &[T])| {
         // The matrix is stored in row-major order.
         let axes = (0..9).map(|k| turn[3 * (k % 3) + k / 3]);
@@ -255,7 +255,7 @@ fn cameras<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<[f32; 12]>, SimError> {
         }
         row
     };
-    let both = places.chunks_exact(3).zip(turns.chunks_exact(9));
+    let both = places.chunks_exact(3).zip(rotations.chunks_exact(9));
     Ok(both.map(row).collect())
 }
 

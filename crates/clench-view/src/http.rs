@@ -191,13 +191,13 @@ mod tests {
 
     const TOKEN: &str = "0123456789abcdef";
 
-    fn ask(line: &str, fields: &str) -> Result<Request, Refusal> {
+    fn respond(line: &str, fields: &str) -> Result<Request, Refusal> {
         let head = format!("{line} HTTP/1.1\r\n{fields}\r\n");
         parse(head.as_bytes(), TOKEN, false)
     }
 
     fn page(fields: &str) -> Result<Request, Refusal> {
-        ask(&format!("GET /?token={TOKEN}"), fields)
+        respond(&format!("GET /?token={TOKEN}"), fields)
     }
 
     #[test]
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn other_pages_are_refused_whatever_they_know() {
+    fn other_pages_are_refused() {
         let from = |origin: &str| page(&format!("Host: localhost:80\r\nOrigin: {origin}\r\n"));
         assert_eq!(from("http://localhost:80"), Ok(Request::Page));
         for origin in [
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_enters_without_the_token() {
+    fn access_requires_the_token() {
         let host = "Host: localhost\r\n";
         for target in [
             "/",
@@ -247,20 +247,20 @@ mod tests {
             "/socket?x=1",
         ] {
             assert_eq!(
-                ask(&format!("GET {target}"), host),
+                respond(&format!("GET {target}"), host),
                 Err(NO_TOKEN),
                 "{target}"
             );
         }
-        assert_eq!(ask("GET /etc/passwd", host), Err(UNKNOWN));
-        assert_eq!(ask(&format!("POST /?token={TOKEN}"), host), Err(METHOD));
+        assert_eq!(respond("GET /etc/passwd", host), Err(UNKNOWN));
+        assert_eq!(respond(&format!("POST /?token={TOKEN}"), host), Err(METHOD));
     }
 
     #[test]
     fn a_socket_needs_its_handshake() {
         let socket = format!("GET /socket?token={TOKEN}");
         let whole = "Host: localhost\r\nUpgrade: WebSocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: abc\r\n";
-        assert_eq!(ask(&socket, whole), Ok(Request::Socket("abc".into())));
-        assert_eq!(ask(&socket, "Host: localhost\r\n"), Err(BAD));
+        assert_eq!(respond(&socket, whole), Ok(Request::Socket("abc".into())));
+        assert_eq!(respond(&socket, "Host: localhost\r\n"), Err(BAD));
     }
 }

@@ -29,29 +29,29 @@ pub struct Interaction {
     /// The selected environments.
     pub selection: Selection,
     /// The active spring and its environment.
-    drag: Option<(usize, Hold)>,
+    drag: Option<(usize, Perturbation)>,
 }
 
 /// A spring on a body.
-enum Hold {
+enum Perturbation {
     /// Pulls the body.
     Pull(Drag),
     /// Rotates the body.
     Turn(Turn),
 }
 
-impl Hold {
+impl Perturbation {
     fn apply<T: Precision>(&mut self, sim: &mut Sim<T>) {
         match self {
-            Hold::Pull(drag) => drag.apply(sim),
-            Hold::Turn(turn) => turn.apply(sim),
+            Perturbation::Pull(drag) => drag.apply(sim),
+            Perturbation::Turn(turn) => turn.apply(sim),
         }
     }
 
     fn release<T: Precision>(&self, sim: &mut Sim<T>) {
         match self {
-            Hold::Pull(drag) => drag.release(sim),
-            Hold::Turn(turn) => turn.release(sim),
+            Perturbation::Pull(drag) => drag.release(sim),
+            Perturbation::Turn(turn) => turn.release(sim),
         }
     }
 }
@@ -145,17 +145,17 @@ impl Interaction {
                 point,
                 target,
             } => match &mut self.drag {
-                Some((_, Hold::Pull(drag))) if drag.body == body => drag.target = target,
+                Some((_, Perturbation::Pull(drag))) if drag.body == body => drag.target = target,
                 _ => {
                     self.release(viewed)?;
-                    self.drag = Some((env, Hold::Pull(Drag::new(body, point, target))));
+                    self.drag = Some((env, Perturbation::Pull(Drag::new(body, point, target))));
                 }
             },
             Command::Turn { body, target } => match &mut self.drag {
-                Some((_, Hold::Turn(turn))) if turn.body == body => turn.target = target,
+                Some((_, Perturbation::Turn(turn))) if turn.body == body => turn.target = target,
                 _ => {
                     self.release(viewed)?;
-                    self.drag = Some((env, Hold::Turn(Turn::new(body, target))));
+                    self.drag = Some((env, Perturbation::Turn(Turn::new(body, target))));
                 }
             },
             Command::Release {} => self.release(viewed)?,
@@ -198,8 +198,8 @@ impl Interaction {
     ) -> Result<Vec<u8>, SimError> {
         let Selection { env, first, count } = self.selection;
         let (drag, turn) = match &self.drag {
-            Some((_, Hold::Pull(drag))) => (Some(drag), None),
-            Some((_, Hold::Turn(turn))) => (None, Some(turn)),
+            Some((_, Perturbation::Pull(drag))) => (Some(drag), None),
+            Some((_, Perturbation::Turn(turn))) => (None, Some(turn)),
             None => (None, None),
         };
         let mut extras = FrameExtras {
@@ -219,9 +219,9 @@ impl Interaction {
             extras.chosen = Some([env, first]);
             extras.envs = seen.clone().map(|env| (env, viewed.fault(env))).collect();
             if count > 1 {
-                viewed.ask_each(seen, |_, sim| extras.add_poses(sim))?;
+                viewed.query_each(seen, |_, sim| extras.add_poses(sim))?;
             }
         }
-        viewed.ask(env, |sim| encode(sim, &extras))?
+        viewed.query(env, |sim| encode(sim, &extras))?
     }
 }

@@ -53,12 +53,12 @@ pub enum PageError {
 }
 
 impl Page {
-    /// Returns the embedded page, or else the one in the source folder, which is built first if it is missing; `tell`
+    /// Returns the embedded page, or else the one in the source folder, which is built first if it is missing; `report`
     /// receives a message before a build.
     ///
     /// # Errors
     /// Returns an error with a remedy if no page is available.
-    pub fn find(tell: impl Fn(&str)) -> Result<Self, PageError> {
+    pub fn find(report: impl Fn(&str)) -> Result<Self, PageError> {
         if !EMBEDDED.is_empty() {
             let mut text = String::new();
             let read = GzDecoder::new(EMBEDDED).read_to_string(&mut text);
@@ -70,7 +70,7 @@ impl Page {
         }
         let built = source.join("dist/index.html");
         if !built.is_file() {
-            tell(
+            report(
                 "building the viewer's page, once (npm fetches three packages and their tools) ...",
             );
             npm(source, &["ci", "--no-audit", "--no-fund"])?;
@@ -121,8 +121,8 @@ fn npm(source: &Path, arguments: &[&str]) -> Result<(), PageError> {
     if output.status.success() {
         return Ok(());
     }
-    let said = [output.stdout, output.stderr].concat();
-    let said = String::from_utf8_lossy(&said).trim().to_owned();
+    let output = [output.stdout, output.stderr].concat();
+    let output = String::from_utf8_lossy(&output).trim().to_owned();
     let command = format!("npm {}", arguments.join(" "));
-    Err(PageError::Failed(command, source.to_path_buf(), said))
+    Err(PageError::Failed(command, source.to_path_buf(), output))
 }

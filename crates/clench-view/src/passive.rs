@@ -126,7 +126,7 @@ impl PassiveViewer {
             Ok(frame) => self.server.publish(frame),
             Err(error) => self
                 .server
-                .tell(&format!("the state cannot be shown: {error}")),
+                .notify(&format!("the state cannot be shown: {error}")),
         }
     }
 
@@ -145,7 +145,7 @@ impl PassiveViewer {
             command => self.interaction.apply(viewed, command),
         };
         if let Err(why) = done {
-            self.server.tell(&why);
+            self.server.notify(&why);
         }
     }
 

@@ -130,14 +130,14 @@ impl<V: Stepped> Player<V> {
     /// Returns the reason if the command fails; nothing has changed then.
     pub fn apply(&mut self, command: Command) -> Result<(), String> {
         command.check(self.viewed.model(), self.viewed.envs())?;
-        let said = |error: SimError| error.to_string();
+        let to_text = |error: SimError| error.to_string();
         match command {
             Command::Step { count } => {
                 self.interaction.paused = true;
-                (0..count).try_for_each(|_| self.step()).map_err(said)
+                (0..count).try_for_each(|_| self.step()).map_err(to_text)
             }
-            Command::Rewind { seconds } => self.go_to(self.time() - seconds).map_err(said),
-            Command::Moment { time } => self.go_to(time).map_err(said),
+            Command::Rewind { seconds } => self.go_to(self.time() - seconds).map_err(to_text),
+            Command::Moment { time } => self.go_to(time).map_err(to_text),
             Command::Reset {} | Command::Keyframe { .. } => {
                 self.past.clear();
                 self.at = None;

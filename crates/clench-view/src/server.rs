@@ -118,7 +118,7 @@ impl Server {
             news: Mutex::new(News {
                 number: 0,
                 frame: Bytes::new(),
-                said: 0,
+                message_count: 0,
                 message: Utf8Bytes::default(),
             }),
             changed: Condvar::new(),
@@ -169,9 +169,9 @@ impl Server {
     }
 
     /// Sends a message to all browsers, such as why a simulation has stopped.
-    pub fn tell(&self, text: &str) {
+    pub fn notify(&self, text: &str) {
         let mut news = self.shared.news();
-        news.said += 1;
+        news.message_count += 1;
         news.message = json!({ "error": text }).to_string().into();
     }
 

@@ -27,7 +27,7 @@ pub(crate) struct Shared {
 pub(crate) struct News {
     pub number: u64,
     pub frame: Bytes,
-    pub said: u64,
+    pub message_count: u64,
     pub message: Utf8Bytes,
 }
 

@@ -16,19 +16,19 @@ use tungstenite::{Bytes, Error, Message, WebSocket};
 /// The maximum length of a browser's message, bytes.
 const MAX_MESSAGE: usize = 16 * 1024;
 /// The interval at which an idle connection checks if the server closes.
-const LOOK: Duration = Duration::from_millis(500);
+const POLL_INTERVAL: Duration = Duration::from_millis(500);
 /// The time after which a browser that accepts no data is disconnected.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A message of a browser: an object whose `do` is its kind.
-enum Said {
+enum BrowserMessage {
     /// Requests the next frame, or its difference from the last one received.
     Next { changes: bool },
     /// A command for the code that steps the simulation.
     Command(Command),
 }
 
-impl Said {
+impl BrowserMessage {
     /// Parses a message; `None` if it is invalid.
     fn read(text: &str) -> Option<Self> {
         let mut object: Map<String, Value> = serde_json::from_str(text).ok()?;
@@ -36,11 +36,11 @@ impl Said {
             return None;
         };
         if name != "next" {
-            return Command::read(name, object).map(Said::Command);
+            return Command::read(name, object).map(BrowserMessage::Command);
         }
         let changes = object.remove("changes").unwrap_or(Value::Bool(false));
         let changes = changes.as_bool().filter(|_| object.is_empty())?;
-        Some(Said::Next { changes })
+        Some(BrowserMessage::Next { changes })
     }
 }
 
@@ -50,14 +50,14 @@ impl Said {
 /// Returns an error if the connection breaks.
 pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     stream.set_nodelay(true)?;
-    stream.set_read_timeout(Some(LOOK))?;
+    stream.set_read_timeout(Some(POLL_INTERVAL))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     let config = WebSocketConfig::default()
         .max_message_size(Some(MAX_MESSAGE))
         .max_frame_size(Some(MAX_MESSAGE));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
     socket.send(Message::Text(shared.scene.clone()))?;
-    let (mut seen, mut told) = (0, 0);
+    let (mut seen, mut sent) = (0, 0);
     // The last frame that this browser received; it may have skipped others.
     let mut last = Bytes::new();
     loop {
@@ -72,11 +72,11 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
             Err(error) => return Err(error),
         };
         match message {
-            Message::Text(text) => match Said::read(&text) {
-                Some(Said::Next { changes }) => {
+            Message::Text(text) => match BrowserMessage::read(&text) {
+                Some(BrowserMessage::Next { changes }) => {
                     let news = shared.newer_than(seen);
-                    if news.said > told {
-                        told = news.said;
+                    if news.message_count > sent {
+                        sent = news.message_count;
                         socket.send(Message::Text(news.message))?;
                     }
                     seen = news.number;
@@ -85,7 +85,7 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
                     let frame = changed.map_or_else(|| last.clone(), Bytes::from);
                     socket.send(Message::Binary(frame))?;
                 }
-                Some(Said::Command(command)) => match shared.commands.try_send(command) {
+                Some(BrowserMessage::Command(command)) => match shared.commands.try_send(command) {
                     Ok(()) => {}
                     Err(TrySendError::Full(_)) => {
                         refuse(&mut socket, "the simulation is too busy to take commands")?;

@@ -24,23 +24,23 @@ pub trait Viewed {
     ///
     /// # Errors
     /// Returns an error if the environment does not exist.
-    fn ask<R>(
+    fn query<R>(
         &mut self,
         env: usize,
-        ask: impl FnOnce(&mut Sim<Self::Scalar>) -> R,
+        query: impl FnOnce(&mut Sim<Self::Scalar>) -> R,
     ) -> Result<R, SimError>;
 
     /// Calls a function with each environment of a range in order.
     ///
     /// # Errors
-    /// See [`ask`](Self::ask).
-    fn ask_each(
+    /// See [`query`](Self::ask).
+    fn query_each(
         &mut self,
         envs: Range<usize>,
-        mut ask: impl FnMut(usize, &mut Sim<Self::Scalar>),
+        mut query: impl FnMut(usize, &mut Sim<Self::Scalar>),
     ) -> Result<(), SimError> {
         envs.into_iter()
-            .try_for_each(|env| self.ask(env, |sim| ask(env, sim)))
+            .try_for_each(|env| self.query(env, |sim| query(env, sim)))
     }
 
     /// Changes the state of an environment.
@@ -108,8 +108,8 @@ impl<S: Precision> Viewed for Sim<S> {
         self.state.time
     }
 
-    fn ask<R>(&mut self, _: usize, ask: impl FnOnce(&mut Sim<S>) -> R) -> Result<R, SimError> {
-        Ok(ask(self))
+    fn query<R>(&mut self, _: usize, query: impl FnOnce(&mut Sim<S>) -> R) -> Result<R, SimError> {
+        Ok(query(self))
     }
 
     fn change(
@@ -178,14 +178,18 @@ impl<S: Precision> Viewed for Batch<S> {
         self.state.time.row(env)[0]
     }
 
-    fn ask<R>(&mut self, env: usize, ask: impl FnOnce(&mut Sim<S>) -> R) -> Result<R, SimError> {
-        Ok(ask(&mut self.sim(env)?))
+    fn query<R>(
+        &mut self,
+        env: usize,
+        query: impl FnOnce(&mut Sim<S>) -> R,
+    ) -> Result<R, SimError> {
+        Ok(query(&mut self.sim(env)?))
     }
 
-    fn ask_each(
+    fn query_each(
         &mut self,
         envs: Range<usize>,
-        mut ask: impl FnMut(usize, &mut Sim<S>),
+        mut query: impl FnMut(usize, &mut Sim<S>),
     ) -> Result<(), SimError> {
         let Some(first) = envs.clone().next() else {
             return Ok(());
@@ -194,7 +198,7 @@ impl<S: Precision> Viewed for Batch<S> {
         let mut sim = self.sim(first)?;
         envs.into_iter().try_for_each(|env| {
             self.copy_to_sim(env, &mut sim)?;
-            ask(env, &mut sim);
+            query(env, &mut sim);
             Ok(())
         })
     }

@@ -53,7 +53,7 @@ fn predicted_depth(weight: f64, points: f64, a0: f64, mu: f64) -> f64 {
 }
 
 #[test]
-fn towers_stand_as_deep_as_the_formula_says() {
+fn towers_penetrate_as_the_formula_predicts() {
     let mut sim = start("towers.xml");
     let first = sim.state.qpos.clone();
     run(&mut sim, 10.0);

@@ -380,10 +380,10 @@ impl Batch {
             }
             found => found.ok().filter(|&env| env < self.n_envs),
         };
-        let most = self.n_envs;
+        let max = self.n_envs;
         let missing = || {
             PyIndexError::new_err(format!(
-                "the environment must be at least 0 and below {most}"
+                "the environment must be at least 0 and below {max}"
             ))
         };
         found.ok_or_else(missing)

@@ -16,9 +16,9 @@ use pyo3::prelude::*;
 use pyo3::types::PySlice;
 
 /// Queries one simulation about every environment in turn.
-fn ask_all<S: Precision, R>(
+fn query_all<S: Precision, R>(
     batch: &clench::Batch<S>,
-    mut ask: impl FnMut(usize, &mut clench::Sim<S>) -> Result<R, SimError>,
+    mut query: impl FnMut(usize, &mut clench::Sim<S>) -> Result<R, SimError>,
 ) -> Result<Vec<R>, SimError> {
     let Some(last) = batch.count().checked_sub(1) else {
         return Ok(Vec::new());
@@ -26,7 +26,7 @@ fn ask_all<S: Precision, R>(
     let mut sim = batch.sim(last)?;
     let each = |env| {
         batch.copy_to_sim(env, &mut sim)?;
-        ask(env, &mut sim)
+        query(env, &mut sim)
     };
     (0..=last).map(each).collect()
 }
@@ -114,7 +114,7 @@ impl Batch {
     fn mass_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut guard = lock(&self.inner, "batch")?;
         let any = &mut *guard;
-        let all = py.detach(|| each!(any, batch => ask_all(batch, |_, sim| sim.mass_matrix())));
+        let all = py.detach(|| each!(any, batch => query_all(batch, |_, sim| sim.mass_matrix())));
         let all = all.map_err(sim_error)?.concat();
         let nv = self.model.get().inner().nv;
         let shape = [self.n_envs, nv, nv];
@@ -165,7 +165,7 @@ impl Batch {
         let mut guard = lock(&self.inner, "batch")?;
         let any = &mut *guard;
         let hits = py.detach(|| {
-            each!(any, batch => ask_all(batch, |env, sim| {
+            each!(any, batch => query_all(batch, |env, sim| {
                 let (origin, direction) = (Vec3::from_f64(origins[env]), Vec3::from_f64(directions[env]));
                 let hit = sim.ray(origin, direction, &filter)?;
                 Ok(hit.map(|hit| (hit.distance.to_f64(), hit.geom as i64)))
@@ -212,7 +212,7 @@ impl Batch {
         let mut guard = lock(&self.inner, "batch")?;
         let any = &mut *guard;
         let found = py.detach(|| {
-            each!(any, batch => ask_all(batch, |_, sim| {
+            each!(any, batch => query_all(batch, |_, sim| {
                 let found = sim.distance(geom1, geom2, Real::new(limit))?;
                 Ok(found.map_or(f64::INFINITY, |found| found.distance.to_f64()))
             }))

@@ -44,7 +44,7 @@ struct Source {
 
 impl Model {
     /// Wraps a model, after a warning about omitted elements.
-    fn told(py: Python<'_>, model: clench::Model, source: Source) -> PyResult<Self> {
+    fn with_warning(py: Python<'_>, model: clench::Model, source: Source) -> PyResult<Self> {
         if !model.left_out.is_empty() {
             let category = py.get_type::<PyUserWarning>();
             let message = format!("omitted from the model:\n{}", model.left_out.join("\n"));
@@ -136,7 +136,7 @@ impl Model {
             .ignore_unsupported(ignore_unsupported);
         let mut model = py.detach(|| loader.load(&path)).map_err(load_error)?;
         model.max_dynamic_constraints = max_dynamic_constraints.0;
-        Model::told(py, model, source)
+        Model::with_warning(py, model, source)
     }
 
     /// Loads a model from the text of an MJCF or URDF file.
@@ -199,7 +199,7 @@ impl Model {
             .assets(assets);
         let mut model = py.detach(|| loader.load_str(text)).map_err(load_error)?;
         model.max_dynamic_constraints = max_dynamic_constraints.0;
-        Model::told(py, model, source)
+        Model::with_warning(py, model, source)
     }
 
     /// Rejects an invalid text, but not an incomplete one: nothing is built, and names may be undefined.

@@ -21,7 +21,7 @@ use std::thread::sleep;
 /// # Errors
 /// Returns a `clench.ClenchError` that says what to do.
 pub(crate) fn page(py: Python<'_>) -> PyResult<Page> {
-    let tell = |text: &str| {
+    let notify = |text: &str| {
         // A message without standard error is dropped.
         let _ = Python::attach(|py| {
             let stderr = py.import("sys")?.getattr("stderr")?;
@@ -30,7 +30,7 @@ pub(crate) fn page(py: Python<'_>) -> PyResult<Page> {
                 .map(drop)
         });
     };
-    (py.detach(|| Page::find(tell))).map_err(|error| ClenchError::new_err(error.to_string()))
+    (py.detach(|| Page::find(notify))).map_err(|error| ClenchError::new_err(error.to_string()))
 }
 
 /// A page in the browser that shows a simulation while a Python loop steps it.

@@ -3,7 +3,7 @@
 use super::Arguments;
 use crate::interrupt::Interrupt;
 use crate::limits::steps_in;
-use crate::message::tell;
+use crate::message::print_message;
 use crate::replacement::{Replacement, require_other};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clench::{Model, Sim};
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     };
     written.with_context(|| context(&arguments.out))?;
     file.finish().with_context(|| context(&arguments.out))?;
-    tell(format_args!("drawn by {}", renderer.device()));
+    print_message(format_args!("drawn by {}", renderer.device()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -138,7 +138,7 @@ fn write_png(to: impl Write, image: &Image) -> Result<()> {
 }
 
 /// Renders a motion at `rate` images per second.
-fn film(
+fn render_frames(
     motion: &mut Motion,
     camera: &mut Camera,
     time: f64,
@@ -162,7 +162,7 @@ fn write_gif(to: impl Write, motion: &mut Motion, camera: &mut Camera, time: f64
     let (width, height) = (side(camera.picture.width)?, side(camera.picture.height)?);
     let mut encoder = gif::Encoder::new(BufWriter::new(to), width, height, &[])?;
     encoder.set_repeat(gif::Repeat::Infinite)?;
-    film(motion, camera, time, GIF_RATE, |image| {
+    render_frames(motion, camera, time, GIF_RATE, |image| {
         let mut frame = gif::Frame::from_rgb_speed(width, height, &image.rgb, 10);
         frame.delay = (100.0 / GIF_RATE) as u16;
         Ok(encoder.write_frame(&frame)?)
@@ -199,7 +199,7 @@ fn write_mp4(to: &Replacement, motion: &mut Motion, camera: &mut Camera, time: f
             _ => anyhow!("ffmpeg: {error}"),
         })?;
     let mut pictures = encoder.stdin.take();
-    let shown = film(motion, camera, time, MP4_RATE, |image| {
+    let shown = render_frames(motion, camera, time, MP4_RATE, |image| {
         let written = pictures.as_mut().map(|to| to.write_all(&image.rgb));
         Ok(written.transpose().map(drop)?)
     });

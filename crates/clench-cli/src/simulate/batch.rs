@@ -5,12 +5,12 @@ use super::energy::{EnergyAccount, STEPS_BETWEEN_CHECKS};
 use super::quality::{Verdict, verdict};
 use super::record::BATCH_OUTPUTS;
 use super::report::{BatchReport, DivergenceReport, Failure, Report, pairs, stages};
-use super::rollout::{Rollout, Taken};
+use super::rollout::{Rollout, RunResult};
 use super::run::Run;
 use super::start::widen;
 use super::summary::{is_conservative, status};
 use crate::allocator::ALLOCATOR;
-use crate::message::tell;
+use crate::message::print_message;
 use anyhow::Result;
 use clench::math::{Instructions, Scalar};
 use clench::rigid::batch::Recording;
@@ -44,7 +44,7 @@ pub(crate) fn run<S: Precision>(
     options: RigidOptions,
 ) -> Result<Report> {
     if let Some(advice) = Instructions::advice() {
-        tell(format_args!("note: {advice}"));
+        print_message(format_args!("note: {advice}"));
     }
     let mut heap = Heap::default();
     let options = arguments.batch.options(options);
@@ -54,8 +54,8 @@ pub(crate) fn run<S: Precision>(
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
     let mut account = EnergyAccount::open(&run.model, energies.iter().copied());
-    let most = (ENV_STEPS_A_CALL / batch.count()).max(MIN_STEPS_A_CALL);
-    let rollout = Rollout::new(run, batch.count(), most)?;
+    let max_steps = (ENV_STEPS_A_CALL / batch.count()).max(MIN_STEPS_A_CALL);
+    let rollout = Rollout::new(run, batch.count(), max_steps)?;
     let records = rollout.records();
     let traced: &[&str] = match &account {
         Some(_) if run.model.nu() > 0 => &["actuator_power"],
@@ -63,7 +63,7 @@ pub(crate) fn run<S: Precision>(
     };
     batch.clear_figures();
     let mut spent = Duration::ZERO;
-    let Taken {
+    let RunResult {
         steps,
         recorded_rows,
     } = rollout.take(&mut batch, |batch, range, controls| {

@@ -114,11 +114,11 @@ pub(crate) fn next_steps(
     done: usize,
     steps: usize,
     every: Option<usize>,
-    most: usize,
+    max_steps: usize,
 ) -> Range<usize> {
     let multiple = |of: usize| (done / of + 1).saturating_mul(of);
     let mut end = steps
-        .min(done.saturating_add(most))
+        .min(done.saturating_add(max_steps))
         .min(multiple(STEPS_BETWEEN_CHECKS));
     if let Some(every) = every {
         end = end.min(multiple(every));

@@ -1,7 +1,7 @@
 //! An MCAP record: messages that are written during the run.
 
 use super::record::RecordOptions;
-use crate::message::tell;
+use crate::message::print_message;
 use anyhow::{Context, Result, bail};
 use clench::rigid::Precision;
 use clench::{Model, Sim};
@@ -57,7 +57,7 @@ impl MessageRecorder {
             Err(error @ McapRecordError::File(_)) => {
                 let moments = self.recorder.len();
                 let context = context(&self.path);
-                tell(format_args!(
+                print_message(format_args!(
                     "warning: {context}: {error}; nothing is recorded after {moments} frames, the run continues"
                 ));
                 self.full = Some(error.to_string());

@@ -22,7 +22,7 @@ mod summary;
 
 use crate::interrupt::Interrupt;
 use crate::limits::{MAX_DEFAULT_STEPS, steps_in};
-use crate::message::tell;
+use crate::message::print_message;
 use crate::npy::{Rows, read_rows};
 use crate::replacement::require_other;
 use anyhow::{Context, Result, bail, ensure};
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         report.status = "interrupted";
     }
     for warning in &report.warnings {
-        tell(format_args!("warning: {warning}"));
+        print_message(format_args!("warning: {warning}"));
     }
     let printed = print(arguments, &report);
     if let Some(message) = report.failure {
@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
             (Some(path), Some(rows)) => format!(", {rows} rows are recorded in {}", path.display()),
             _ => String::new(),
         };
-        tell(format_args!(
+        print_message(format_args!(
             "interrupted by {name}: {done} of {steps} steps are complete{recorded}"
         ));
         return Ok(ExitCode::from(signal.exit_code()));

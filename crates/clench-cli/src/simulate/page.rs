@@ -2,7 +2,7 @@
 
 use super::messages::{self, MessageRecorder};
 use super::record::{RecordOptions, Recorder};
-use crate::message::tell;
+use crate::message::print_message;
 use crate::replacement::Replacement;
 use anyhow::{Context, Result, bail};
 use clench::rigid::Precision;
@@ -84,7 +84,7 @@ impl PageRecorder {
         let path = options.path.to_path_buf();
         let file = Replacement::begin(&path).with_context(|| context(&path))?;
         Ok(PageRecorder {
-            page: Page::find(|text| tell(text)).with_context(|| context(&path))?,
+            page: Page::find(|text| print_message(text)).with_context(|| context(&path))?,
             recording: Recording::new(Scene::new(model), options.limit.bytes()),
             every: options.every,
             full: None,
@@ -104,7 +104,7 @@ impl PageRecorder {
             Err(error @ RecordError::Sim(_)) => Err(error).with_context(|| context(&self.path)),
             Err(error @ RecordError::Full(..)) => {
                 let context = context(&self.path);
-                tell(format_args!(
+                print_message(format_args!(
                     "warning: {context}: {error}, or raise --max-memory; what was recorded remains, the run continues"
                 ));
                 self.full = Some(error.to_string());

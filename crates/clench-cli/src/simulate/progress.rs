@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_line_tells_how_far_a_run_is() {
+    fn the_line_shows_the_progress_of_a_run() {
         let after = |seconds, steps, total| line(Duration::from_secs(seconds), steps, total);
         assert_eq!(
             after(90, 250, 1000),

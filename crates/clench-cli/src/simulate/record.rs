@@ -56,8 +56,8 @@ impl RecordOptions<'_> {
             .admit(format_args!("{rows} rows"), rows as u64, bytes)
             .with_context(|| format!("{}: record fewer steps, see --every", context()))?;
         for column in &mut record.columns {
-            let room = rows * column.envs * column.width();
-            (column.values.try_reserve_exact(room)).with_context(|| {
+            let capacity = rows * column.envs * column.width();
+            (column.values.try_reserve_exact(capacity)).with_context(|| {
                 format!(
                     "{}: {rows} rows take more memory than is available",
                     context()

@@ -15,7 +15,7 @@ use std::ops::Range;
 pub(super) struct Rollout<'a, S> {
     run: &'a Run<'a>,
     /// The maximum number of steps of a call.
-    most: usize,
+    max_steps: usize,
     /// The number of steps between rows of the record, if there is one.
     every: Option<usize>,
     recorder: Option<BatchRecorder>,
@@ -23,17 +23,17 @@ pub(super) struct Rollout<'a, S> {
 }
 
 impl<'a, S: Precision> Rollout<'a, S> {
-    /// Prepares a run that takes at most `most` steps per call.
+    /// Prepares a run that takes at most `max_steps` steps per call.
     ///
     /// # Errors
     /// Returns an error if the record cannot be created.
-    pub(super) fn new(run: &'a Run<'a>, envs: usize, most: usize) -> Result<Self> {
+    pub(super) fn new(run: &'a Run<'a>, envs: usize, max_steps: usize) -> Result<Self> {
         let recorder = (run.record.as_ref())
             .map(|options| BatchRecorder::create(options, &run.model, envs))
             .transpose()?;
         Ok(Rollout {
             run,
-            most,
+            max_steps,
             every: run.record.as_ref().map(|options| options.every),
             recorder,
             controls: run.controls.as_ref().map(|rows| narrow(rows.values())),
@@ -54,17 +54,17 @@ impl<'a, S: Precision> Rollout<'a, S> {
         mut self,
         batch: &mut Batch<S>,
         mut call: impl FnMut(&mut Batch<S>, Range<usize>, Controls<S>) -> Result<usize>,
-    ) -> Result<Taken> {
+    ) -> Result<RunResult> {
         let (run, nu) = (self.run, self.run.model.nu());
         let mut progress = Progress::new(run.steps);
         let (mut steps, mut running) = (0, batch.count());
         while steps < run.steps && running > 0 && run.interrupt.signal().is_none() {
-            let range = next_steps(steps, run.steps, self.every, self.most);
+            let range = next_steps(steps, run.steps, self.every, self.max_steps);
             let (cells, end) = (steps * nu..range.end * nu, range.end);
             let ctrl = self.controls.as_ref().map(|rows| &rows[cells]);
             running = match call(batch, range, ctrl.map_or(Controls::Held, Controls::Shared)) {
                 Ok(running) => running,
-                Err(error) => return Err(self.keep(error)),
+                Err(error) => return Err(self.write_before(error)),
             };
             steps = end;
             if let Some(recorder) = &mut self.recorder {
@@ -76,14 +76,14 @@ impl<'a, S: Precision> Rollout<'a, S> {
         }
         drop(progress);
         let recorded_rows = self.write();
-        Ok(Taken {
+        Ok(RunResult {
             steps,
             recorded_rows,
         })
     }
 
     /// Writes the rows recorded before an error, and adds their number to the error.
-    fn keep(self, error: Error) -> Error {
+    fn write_before(self, error: Error) -> Error {
         match self.write() {
             Ok(Some(rows)) => error.context(format!("{rows} rows were recorded before the end")),
             Ok(None) => error,
@@ -97,7 +97,7 @@ impl<'a, S: Precision> Rollout<'a, S> {
 }
 
 /// The result of a run.
-pub(super) struct Taken {
+pub(super) struct RunResult {
     pub(super) steps: usize,
     /// The number of rows of the record, if there is one, or the error of writing it.
     pub(super) recorded_rows: Result<Option<usize>>,

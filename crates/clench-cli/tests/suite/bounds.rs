@@ -22,7 +22,7 @@ fn a_header_of_four_gigabytes_is_not_read() {
 }
 
 #[test]
-fn brackets_within_brackets_are_not_followed() {
+fn nested_brackets_are_rejected() {
     let folder = folder();
     let path = folder.path().join("deep.npy");
     let begin = Instant::now();
@@ -77,7 +77,7 @@ fn a_record_is_as_large_as_memory_may_be() {
 }
 
 #[test]
-fn nobody_takes_a_billion_steps_unasked() {
+fn a_billion_steps_need_an_explicit_flag() {
     let done = simulate(&model("pendulum"), "--timestep 1e-300", &[]);
     refused(&done, &["1e-300", "1.000e300 steps", "--steps", "--time"]);
     let done = simulate(&model("pendulum"), "--timestep 1e-300 --time 1", &[]);

@@ -31,7 +31,7 @@ fn messages(bytes: &[u8], whole: bool) -> BTreeMap<String, Vec<(f64, Value)>> {
 }
 
 #[test]
-fn a_record_of_messages_tells_poses_shapes_forces_and_plots() {
+fn a_record_of_messages_has_poses_shapes_forces_and_plots() {
     let folder = folder();
     let path = folder.path().join("fall.mcap");
     let words = "--time 0.6 --every 10 --json";

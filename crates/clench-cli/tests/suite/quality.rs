@@ -99,7 +99,7 @@ fn an_equality_that_starts_torn_is_a_violation() {
 }
 
 #[test]
-fn energy_from_nowhere_is_energy_growth() {
+fn unexplained_energy_is_energy_growth() {
     let folder = folder();
     // An explicit spring with a period too short for the time step.
     let stiff = scene(
@@ -124,7 +124,7 @@ fn energy_from_nowhere_is_energy_growth() {
 }
 
 #[test]
-fn a_batch_that_failed_says_when() {
+fn a_failed_batch_reports_the_time() {
     let folder = folder();
     let path = scene(
         folder.path(),
@@ -150,7 +150,7 @@ fn a_batch_that_failed_says_when() {
 }
 
 #[test]
-fn the_report_has_the_same_lines_whatever_the_model() {
+fn the_report_has_the_same_lines_for_every_model() {
     let folder = folder();
     let names = |name: &str, words: &str, paths: &[(&str, &Path)]| {
         let done = simulate(&model(name), &format!("--steps 3 {words}"), paths);

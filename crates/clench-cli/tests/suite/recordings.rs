@@ -40,7 +40,7 @@ fn end_by(signal: &str, words: &str, record: &Path) -> Output {
 }
 
 #[test]
-fn a_record_takes_the_place_of_an_old_one() {
+fn a_record_replaces_an_old_one() {
     let folder = folder();
     let path = folder.path().join("out.npz");
     fs::write(&path, "old").unwrap();
@@ -133,7 +133,7 @@ fn a_record_is_none_of_the_inputs() {
 
 #[test]
 #[cfg(unix)]
-fn a_record_through_a_link_replaces_what_it_leads_to() {
+fn a_record_through_a_link_replaces_its_target() {
     let folder = folder();
     let (path, link) = (
         folder.path().join("out.npz"),

@@ -136,12 +136,12 @@ impl BroadPhase {
 
     /// Invalidates the tree of static shapes, which the next search rebuilds. Call it after static shapes have moved or
     /// changed margins.
-    pub fn forget_statics(&mut self) {
+    pub fn invalidate_statics(&mut self) {
         self.built = false;
     }
 
     /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
-    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `most`
+    /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `limit`
     /// pairs; some of their pairs are omitted.
     #[kernel]
     pub fn pairs<T: Real>(
@@ -149,7 +149,7 @@ impl BroadPhase {
         bounds: &[Bound<T>],
         margins: &[T],
         mut allowed: impl FnMut(u32, u32) -> bool,
-        most: u64,
+        limit: u64,
         pairs: &mut Vec<(u32, u32)>,
     ) -> T::Mask {
         let aabb = |shape: u32| Aabb::new(&bounds[shape as usize], margins[shape as usize]);
@@ -163,7 +163,7 @@ impl BroadPhase {
             self.boxes.push(aabb(shape));
         }
         pairs.clear();
-        let mut counter = Counter::<T>::new(most);
+        let mut counter = Counter::<T>::new(limit);
         let mut check = |i: u32, j: u32| {
             let (i, j) = (i.min(j), i.max(j));
             let (a, b) = (i as usize, j as usize);
@@ -188,16 +188,16 @@ impl BroadPhase {
 
 /// Counts the near pairs of each environment.
 struct Counter<T: Real> {
-    most: T,
+    limit: T,
     count: T,
     /// The environments beyond the maximum.
     over: T::Mask,
 }
 
 impl<T: Real> Counter<T> {
-    fn new(most: u64) -> Self {
+    fn new(limit: u64) -> Self {
         Counter {
-            most: T::new(most as f64),
+            limit: T::new(limit as f64),
             count: T::ZERO,
             over: T::Mask::splat(false),
         }
@@ -208,7 +208,7 @@ impl<T: Real> Counter<T> {
     fn admits(&mut self, near: T::Mask) -> bool {
         let found = near & !self.over;
         self.count += T::select(found, T::ONE, T::ZERO);
-        self.over |= self.count.gt(self.most);
+        self.over |= self.count.gt(self.limit);
         found.any()
     }
 }

@@ -79,10 +79,13 @@ impl StaticTree {
                 return;
             }
             let side = |axis: usize| bounds.high[axis] - bounds.low[axis];
-            let axis = (0..3).fold(
-                0,
-                |most, axis| if side(axis) > side(most) { axis } else { most },
-            );
+            let axis = (0..3).fold(0, |largest, axis| {
+                if side(axis) > side(largest) {
+                    axis
+                } else {
+                    largest
+                }
+            });
             let center = |(_, one): &(u32, Aabb)| one.low[axis] + one.high[axis];
             let middle = shapes.len() / 2;
             shapes.select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));

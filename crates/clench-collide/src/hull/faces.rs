@@ -70,7 +70,7 @@ impl Hull {
             along,
             moment: start.cross(along),
             faces,
-            turn: (m.dot(n), m.cross(n).norm()),
+            rotation: (m.dot(n), m.cross(n).norm()),
         })
     }
 }

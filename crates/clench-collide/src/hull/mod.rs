@@ -77,7 +77,7 @@ pub(crate) struct Crease {
     /// The face to its left, and the one to its right, seen from outside.
     pub faces: [usize; 2],
     /// The cosine and the sine of the angle between their normals.
-    pub turn: (f64, f64),
+    pub rotation: (f64, f64),
 }
 
 impl Hull {

@@ -49,14 +49,14 @@ pub(super) struct Quickhull<'a> {
     starting_at: Vec<u32>,
 }
 
-/// Returns the triangles of the hull of the points `among`. `most` limits the number of corners.
+/// Returns the triangles of the hull of the points `among`. `max_vertices` limits the number of corners.
 ///
 /// # Errors
 /// Returns an error if the points have no volume.
 pub(super) fn triangles(
     points: &[Vec3<f64>],
     among: &[u32],
-    most: Option<usize>,
+    max_vertices: Option<usize>,
 ) -> Result<Vec<[u32; 3]>, HullError> {
     let mut hull = Quickhull {
         points,
@@ -67,8 +67,8 @@ pub(super) fn triangles(
     };
     hull.start(simplex(points, among)?, among);
     let mut corners = 4;
-    while most.is_none_or(|most| corners < most)
-        && let Some(facet) = hull.next(most.is_some())
+    while max_vertices.is_none_or(|max_vertices| corners < max_vertices)
+        && let Some(facet) = hull.next(max_vertices.is_some())
     {
         hull.add(facet)?;
         corners += 1;

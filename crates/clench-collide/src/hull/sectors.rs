@@ -64,11 +64,11 @@ impl Sectors {
 fn code(d: Vec3<f64>, fine: bool) -> usize {
     let [x, y, z] = d.to_array().map(f64::abs);
     let larger = |a: f64, b: f64| if b > a { b } else { a };
-    let most = larger(larger(x, y), z);
+    let largest = larger(larger(x, y), z);
     let pack =
         |x: bool, y: bool, z: bool| usize::from(x) | usize::from(y) << 1 | usize::from(z) << 2;
     let beyond = |share: f64| {
-        let least = share * most;
+        let least = share * largest;
         pack(x > least, y > least, z > least)
     };
     let signs = pack(d.x < 0.0, d.y < 0.0, d.z < 0.0);

@@ -194,14 +194,14 @@ impl<S: Scalar> BoxPair<S> {
     /// Returns the normal as an error if an edge pair separates the boxes.
     fn best_edges(&self, face: S) -> Result<(Option<EdgePair>, S), Vec3<S>> {
         let mut best = (None, face);
-        let (turn, offset, [a, b]) = (&self.rotation[0].rows, self.offset[0], self.size);
+        let (rotation, offset, [a, b]) = (&self.rotation[0].rows, self.offset[0], self.size);
         for i in 0..3 {
             let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
             for j in 0..3 {
                 // In the first box's frame the product is (0, -v, u) from axis i on. Up to signs, its components along
                 // the second box's other axes are those of axis i along each one's successor.
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
-                let (u, v) = (turn[i1][j], turn[i2][j]);
+                let (u, v) = (rotation[i1][j], rotation[i2][j]);
                 let sine_squared = u * u + v * v;
                 // The cross product of nearly parallel edges is noise, and the faces cover the case.
                 if sine_squared < S::EPSILON * S::new(0.5) {
@@ -209,8 +209,8 @@ impl<S: Scalar> BoxPair<S> {
                 }
                 let extents = a[i1] * v.abs()
                     + a[i2] * u.abs()
-                    + b[j1] * turn[i][j2].abs()
-                    + b[j2] * turn[i][j1].abs();
+                    + b[j1] * rotation[i][j2].abs()
+                    + b[j2] * rotation[i][j1].abs();
                 let beyond = (u * offset[i2] - v * offset[i1]).abs() - extents;
                 let separation = beyond / sine_squared.sqrt();
                 if separation > self.reach {

@@ -58,20 +58,20 @@ impl<S: Scalar> BoxPair<S> {
     fn opposing_face(&self, owner: usize, axis: usize, side: S) -> Polygon<S> {
         let (rotation, other) = (&self.rotation[owner], self.size[1 - owner]);
         let slope = rotation.rows[axis];
-        let mut most = 0;
+        let mut largest = 0;
         for k in 1..3 {
-            if slope[k].abs() > slope[most].abs() {
-                most = k;
+            if slope[k].abs() > slope[largest].abs() {
+                largest = k;
             }
         }
-        let facing = if side * slope[most] > S::ZERO {
+        let facing = if side * slope[largest] > S::ZERO {
             -S::ONE
         } else {
             S::ONE
         };
         let half = |k: usize| rotation.column(k) * other[k];
-        let center = self.offset[owner] + half(most) * facing;
-        let (u, v) = (half((most + 1) % 3), half((most + 2) % 3));
+        let center = self.offset[owner] + half(largest) * facing;
+        let (u, v) = (half((largest + 1) % 3), half((largest + 2) % 3));
         let height = self.size[owner][axis];
         let mut face = Polygon::empty();
         for (along_u, along_v) in AROUND {

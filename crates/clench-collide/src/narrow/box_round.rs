@@ -275,14 +275,14 @@ impl<T: Real> Nearest<T> {
             *inward = differ(half[i].gt(T::ZERO), self.point[i].gt(T::ZERO));
         }
         let sign = |mask: T::Mask| T::select(mask, T::ONE, -T::ONE);
-        let mut way = T::ZERO;
+        let mut sense = T::ZERO;
         let mut walls = [T::Mask::splat(false); 3];
         let total = half.norm_squared();
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             // An end above face i: towards the other end, within the face.
             let face = limit[i] & !limit[j] & !limit[k];
-            way = T::select(face, -self.along, way);
+            sense = T::select(face, -self.along, sense);
             walls[j] |= face;
             walls[k] |= face;
             // On an edge along i, unless both directions lead off or both sides lead in: over the flatter of its two
@@ -290,8 +290,8 @@ impl<T: Real> Nearest<T> {
             let edge = !limit[i] & limit[j] & limit[k] & differ(inward[j], inward[k]);
             let over_j = edge & half[j].abs().le(half[k].abs());
             let over_k = edge & !over_j;
-            way = T::select(over_j, sign(inward[k]), way);
-            way = T::select(over_k, sign(inward[j]), way);
+            sense = T::select(over_j, sign(inward[k]), sense);
+            sense = T::select(over_k, sign(inward[j]), sense);
             walls[i] |= edge;
             walls[k] |= over_j;
             walls[j] |= over_k;
@@ -304,21 +304,21 @@ impl<T: Real> Nearest<T> {
             let steep = half[i].squared().gt(total * T::new(0.5));
             let along_edge = corner & steep;
             let over_face = corner & !steep;
-            way = T::select(along_edge, sign(inward[i]), way);
-            way = T::select(over_face, -sign(inward[i]), way);
+            sense = T::select(along_edge, sign(inward[i]), sense);
+            sense = T::select(over_face, -sign(inward[i]), sense);
             walls[i] |= along_edge;
             walls[j] |= over_face;
             walls[k] |= over_face;
         }
         // A side that the capsule is parallel to, up to rounding, is no limit.
         let least = total.sqrt() * T::splat(T::Scalar::EPSILON) * T::new(1e4);
-        let mut walk = T::ONE - way * self.along;
+        let mut length = T::ONE - sense * self.along;
         for i in 0..3 {
-            let step = way * half[i];
+            let step = sense * half[i];
             let exit = (size[i].copysign(step) - self.point[i]) / step;
             let counts = walls[i] & exit.gt(T::ZERO) & step.abs().gt(least);
-            walk = T::select(counts, exit.min(walk), walk);
+            length = T::select(counts, exit.min(length), length);
         }
-        (self.along + way * walk, !way.eq(T::ZERO))
+        (self.along + sense * length, !sense.eq(T::ZERO))
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn boxes_near<T: Real>(
         return box_near(b, a.pose.position, radius + margin);
     }
     let (half_a, half_b) = (a.shape.half_lengths(), b.shape.half_lengths());
-    let turn = a.pose.rotation.transpose() * b.pose.rotation;
+    let rotation = a.pose.rotation.transpose() * b.pose.rotation;
     let offset = b.pose.position - a.pose.position;
     let (along_a, along_b) = (
         a.pose.rotation.transpose_mul(offset),
@@ -32,8 +32,8 @@ pub(super) fn boxes_near<T: Real>(
     for i in 0..3 {
         let mut unit = Vec3::ZERO;
         unit[i] = T::ONE;
-        let own = (along_a[i], half_a[i], turn.rows[i], half_b, unit);
-        let column = turn.column(i);
+        let own = (along_a[i], half_a[i], rotation.rows[i], half_b, unit);
+        let column = rotation.column(i);
         let other = (along_b[i], half_b[i], column, half_a, column);
         for (distance, own, axis, other, normal) in [own, other] {
             let across = axis.x.abs() * other.x + axis.y.abs() * other.y + axis.z.abs() * other.z;

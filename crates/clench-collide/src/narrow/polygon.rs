@@ -71,11 +71,11 @@ impl<S: Scalar> Polygon<S> {
             let along = start.x * arm.x + start.y * arm.y;
             let aside = start.x * arm.y - start.y * arm.x;
             let sum = (along.abs() + aside.abs()).max(S::MIN_POSITIVE);
-            let turn = S::ONE - along / sum;
+            let pseudo_angle = S::ONE - along / sum;
             p.z = if aside < -sum * tiny {
-                S::new(4.0) - turn
+                S::new(4.0) - pseudo_angle
             } else {
-                turn
+                pseudo_angle
             };
         }
         self.corners

@@ -33,8 +33,8 @@ pub(crate) fn height_field(
     if !(chord.enter <= chord.leave && chord.leave >= 0.0) {
         return None;
     }
-    let mut walk = Walk::new(field, &line, chord.enter.max(0.0));
-    let above = walk.height(walk.now) >= 0.0;
+    let mut traversal = Traversal::new(field, &line, chord.enter.max(0.0));
+    let above = traversal.height(traversal.now) >= 0.0;
     if !above && chord.enter >= 0.0 {
         // The ray enters through a side or the bottom.
         return Some((chord.enter, chord.entered));
@@ -46,14 +46,14 @@ pub(crate) fn height_field(
         (false, false) => between(-base, 0.0),
     };
     for _ in 0..field.rows() + field.columns() {
-        let end = walk.next.0.min(walk.next.1).min(chord.leave);
-        if let Some(hit) = walk.cross(end.max(walk.now), above) {
+        let end = traversal.next.0.min(traversal.next.1).min(chord.leave);
+        if let Some(hit) = traversal.cross(end.max(traversal.now), above) {
             return Some(hit);
         }
         if end >= chord.leave {
             break;
         }
-        walk.advance();
+        traversal.advance();
     }
     let through_base = in_terrain && chord.left.z < 0.0;
     let normal = if through_base {
@@ -65,7 +65,7 @@ pub(crate) fn height_field(
 }
 
 /// The traversal of cells along a ray.
-struct Walk<'a> {
+struct Traversal<'a> {
     field: &'a HeightField,
     line: &'a Line<f64>,
     /// The lengths of a cell along x and y, m.
@@ -77,7 +77,7 @@ struct Walk<'a> {
     next: (f64, f64),
 }
 
-impl<'a> Walk<'a> {
+impl<'a> Traversal<'a> {
     fn new(field: &'a HeightField, line: &'a Line<f64>, start: f64) -> Self {
         let [half_x, half_y, ..] = field.size();
         let count = [field.columns() - 1, field.rows() - 1];
@@ -90,7 +90,7 @@ impl<'a> Walk<'a> {
             let inside = ((x + half) / step[axis]).clamp(0.0, (count[axis] - 1) as f64);
             inside as usize
         };
-        let mut walk = Walk {
+        let mut traversal = Traversal {
             field,
             line,
             step,
@@ -98,8 +98,8 @@ impl<'a> Walk<'a> {
             now: start,
             next: (0.0, 0.0),
         };
-        walk.next = (walk.border(0), walk.border(1));
-        walk
+        traversal.next = (traversal.border(0), traversal.border(1));
+        traversal
     }
 
     /// Returns the distance of the cell's next border along an axis.

@@ -29,7 +29,7 @@ impl<T: Real> UnitRay<T> {
     /// is never false for a hit, whatever the rounding, and may be true for a near miss. It is false if a number is not
     /// finite.
     #[inline(always)]
-    pub fn may_meet(&self, center: Vec3<T>, radius: T, within: T) -> T::Mask {
+    pub fn may_intersect(&self, center: Vec3<T>, radius: T, within: T) -> T::Mask {
         let from_origin = center - self.origin;
         let ahead = from_origin.dot(self.along);
         let beside = from_origin - self.along * ahead;

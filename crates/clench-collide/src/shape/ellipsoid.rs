@@ -81,10 +81,10 @@ impl<S: Scalar> Ellipsoid<S> {
     pub(crate) fn core(&self) -> EllipsoidCore<S> {
         let s = self.semi_axes;
         let least = s.x.min(s.y).min(s.z);
-        let most = s.x.max(s.y).max(s.z);
+        let largest = s.x.max(s.y).max(s.z);
         EllipsoidCore {
             semi_axes: s,
-            radius: least * (least / most.max(S::MIN_POSITIVE)),
+            radius: least * (least / largest.max(S::MIN_POSITIVE)),
         }
     }
 }

@@ -219,7 +219,7 @@ fn asked(bounds: &[Bound<f64>]) -> (usize, usize) {
 }
 
 #[test]
-fn what_is_asked_about_grows_with_the_scene_and_not_its_square() {
+fn the_number_of_tested_pairs_grows_linearly() {
     for count in [125, 1000, 8000] {
         let bounds = heap(count);
         let (asked, near) = asked(&bounds);
@@ -229,7 +229,7 @@ fn what_is_asked_about_grows_with_the_scene_and_not_its_square() {
 }
 
 #[test]
-fn what_is_large_or_far_or_no_number_does_not_disturb_the_rest() {
+fn large_distant_and_invalid_bounds_do_not_disturb_others() {
     let (mut bounds, ball) = (heap(1000), heap(1)[0]);
     let (_, near) = asked(&bounds);
     let floor = Shape::new(ShapeKind::Box, Vec3::new(100.0, 100.0, 0.05));
@@ -284,7 +284,7 @@ fn pairs_of_mixed_scenes_are_those_of_which_one_moves() {
 }
 
 #[test]
-fn statics_that_moved_are_looked_at_again_when_that_is_said() {
+fn moved_static_shapes_are_checked_again_after_invalidation() {
     let ball = Shape::new(ShapeKind::Sphere, Vec3::new(0.05, 0.0, 0.0));
     let at = |x| {
         let pose = Pose {
@@ -301,6 +301,6 @@ fn statics_that_moved_are_looked_at_again_when_that_is_said() {
         pairs.len()
     };
     assert_eq!(find(&mut broad_phase, 5.0), 0);
-    broad_phase.forget_statics();
+    broad_phase.invalidate_statics();
     assert_eq!(find(&mut broad_phase, 0.05), 1);
 }

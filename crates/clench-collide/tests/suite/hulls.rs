@@ -252,7 +252,7 @@ fn clouds_without_an_inside_are_refused() {
 }
 
 #[test]
-fn sizes_at_both_ends_of_the_numbers_are_no_trouble() {
+fn extreme_sizes_are_supported() {
     for size in [1e-70, 1e-50, 1e-20, 1e20, 1e59] {
         let points = corners_of_box([size, 2.0 * size, 3.0 * size]);
         match convex_hull(&points, None) {

@@ -17,7 +17,7 @@ fn out(search: Ascent) -> f64 {
 }
 
 #[test]
-fn a_search_without_bounds_ends_where_it_cannot_rise() {
+fn an_unbounded_search_ends_at_a_maximum() {
     let unbounded = Ascent {
         iterations: usize::MAX,
         tolerance: 0.0,

@@ -180,7 +180,7 @@ fn lanes_are_scalars_and_single_precision_is_near() {
 }
 
 #[test]
-fn a_ray_meets_the_bounding_sphere_of_what_it_hits_before_the_hit() {
+fn a_ray_enters_the_bounding_sphere_before_the_hit() {
     let mut random = Random(53);
     let (mut hits, mut proofs) = (0, 0);
     for k in 0..20_000 {
@@ -203,16 +203,19 @@ fn a_ray_meets_the_bounding_sphere_of_what_it_hits_before_the_hit() {
         let hit = ray(&ball, &pose, &line).distance;
         if hit.is_finite() {
             hits += 1;
-            assert!(unit.may_meet(center, radius, hit), "{line:?}");
-            assert!(unit.may_meet(center, radius, f64::INFINITY), "{line:?}");
+            assert!(unit.may_intersect(center, radius, hit), "{line:?}");
+            assert!(
+                unit.may_intersect(center, radius, f64::INFINITY),
+                "{line:?}"
+            );
         } else {
-            proofs += usize::from(!unit.may_meet(center, radius, f64::INFINITY));
+            proofs += usize::from(!unit.may_intersect(center, radius, f64::INFINITY));
         }
         let nearest = (center - origin).norm() - radius;
         // The test is sharp for distant balls.
         if nearest > 100.0 * radius {
             let within = 0.99 * nearest / direction.norm();
-            assert!(!unit.may_meet(center, radius, within), "{line:?}");
+            assert!(!unit.may_intersect(center, radius, within), "{line:?}");
         }
     }
     assert!(hits > 2000 && proofs > 2000, "{hits} hits, {proofs} proofs");

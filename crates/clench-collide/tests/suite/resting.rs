@@ -72,7 +72,7 @@ fn a_standing_cylinder_covers_its_cap() {
 }
 
 #[test]
-fn points_of_a_tilted_cap_are_as_deep_as_the_tilt_says() {
+fn points_of_a_tilted_cap_have_the_depth_of_the_tilt() {
     let cylinder = shape(ShapeKind::Cylinder, [0.1, 0.2, 0.0]);
     let ground = shape(ShapeKind::Box, [0.5, 0.5, 0.1]);
     let tilt = 1e-3;

@@ -40,7 +40,7 @@ fn compose(a: &Pose<f64>, b: &Pose<f64>) -> Pose<f64> {
 }
 
 #[test]
-fn every_bounded_shape_meets_terrain() {
+fn every_bounded_shape_collides_with_terrain() {
     for kind in KINDS.into_iter().chain([ShapeKind::Mesh]) {
         assert!(supported(ShapeKind::HeightField, kind) && supported(kind, ShapeKind::HeightField));
     }

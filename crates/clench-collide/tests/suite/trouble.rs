@@ -1,6 +1,6 @@
 //! Degenerate shapes and poses of every kind: nothing breaks, and results are hardly ever off.
 
-use crate::common::placement::{size_count, trouble};
+use crate::common::placement::{degenerate_scene, size_count};
 use crate::common::{BOUNDED, PAIRS, Random, Scene, V, convert_pose, convert_shape};
 use clench_collide::{Contacts, Shape, ShapeKind, collide};
 use clench_math::{Real, Scalar};
@@ -69,7 +69,7 @@ fn assert_unbroken(kinds: (ShapeKind, ShapeKind), poses: usize, seed: u64) -> us
     let mut random = Random(seed);
     let mut points = 0;
     for _ in 0..poses {
-        let scene = trouble(&mut random, kinds);
+        let scene = degenerate_scene(&mut random, kinds);
         let contacts = in_type::<f64>(&scene);
         assert_proper(&contacts, &scene);
         assert_proper(&in_type::<f32>(&scene), &scene);
@@ -103,7 +103,7 @@ fn hardly_any_direction_has_a_larger_gap() {
     {
         let (mut checked, mut exceeded) = (0, 0);
         while checked < 4000 {
-            let scene = trouble(&mut random, kinds);
+            let scene = degenerate_scene(&mut random, kinds);
             let is_extreme = |shape: &Shape<f64>| {
                 let sizes = shape.size().to_array();
                 let mut given = sizes[..size_count(shape.kind())].iter();

@@ -109,12 +109,12 @@ impl<T: Real> Collision<T> {
     pub(super) fn count_within_limit(
         &mut self,
         active: T::Mask,
-        most: MaxContacts,
+        limit: MaxContacts,
         numbers: usize,
         budget: &Budget,
     ) -> T::Mask {
-        let full = match most {
-            MaxContacts::Limit(most) => self.contact_count.ge(T::new(most as f64)),
+        let full = match limit {
+            MaxContacts::Limit(limit) => self.contact_count.ge(T::new(limit as f64)),
             MaxContacts::Auto => T::Mask::splat(false),
         };
         self.overflow |= active & full;

@@ -135,8 +135,8 @@ fn find_points<T: Real>(
 ) {
     let (near, candidates, axes) = (&collision.near, &collision.candidates, &mut collision.axes);
     axes.reserve(near.len());
-    let most = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);
-    let count = most.unwrap_or(1).min(near.len() / MIN_PAIRS).max(1);
+    let limit = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);
+    let count = limit.unwrap_or(1).min(near.len() / MIN_PAIRS).max(1);
     let finders = &mut collision.finders;
     if finders.len() < count {
         finders.resize_with(count, PairFinder::default);

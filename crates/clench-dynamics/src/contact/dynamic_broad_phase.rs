@@ -3,7 +3,7 @@
 use super::Candidate;
 use super::bounding_sphere::{self, BoundingSphere, own_margin};
 use super::placed_shape::{pose, shape};
-use super::select::{explicit, geoms_may_collide, meet_any};
+use super::select::{explicit, geoms_may_collide, match_any};
 use crate::model::{Geom, Model, Params};
 use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
@@ -79,7 +79,7 @@ fn cluster(model: &Model, geom: usize) -> usize {
 
 impl<T: Real> DynamicBroadPhase<T> {
     pub(super) fn new(model: &Model) -> Self {
-        let roles = model.geoms.iter().zip(meet_any(model));
+        let roles = model.geoms.iter().zip(match_any(model));
         let roles = Vec::from_iter(roles.map(|(geom, meets)| match meets {
             true => mobility(model, geom),
             false => Mobility::Excluded,
@@ -133,7 +133,7 @@ impl<T: Real> DynamicBroadPhase<T> {
             (self.margins).extend(all.clone().map(|g| own_margin(model, params, g)));
             self.placements.clear();
             (self.placements).extend(self.statics.iter().map(|&geom| placement(geom)));
-            self.broad_phase.forget_statics();
+            self.broad_phase.invalidate_statics();
             bounding_sphere::update(model, params, pos, all, spheres);
         }
     }
@@ -144,8 +144,8 @@ impl<T: Real> DynamicBroadPhase<T> {
     pub fn find(&mut self, model: &Model, candidates: &mut Vec<Candidate>) -> T::Mask {
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let (bounds, margins, hits) = (&self.bounds, &self.margins, &mut self.hits);
-        let most = model.budget.pairs();
-        let too_many = (self.broad_phase).pairs(bounds, margins, allowed, most, hits);
+        let limit = model.budget.pairs();
+        let too_many = (self.broad_phase).pairs(bounds, margins, allowed, limit, hits);
         candidates.clear();
         candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
         let found =

@@ -28,7 +28,7 @@ pub(super) struct PairFinder<T: Real> {
 #[derive(Clone, Copy, Debug)]
 struct NearPair<T> {
     candidate: u32,
-    place: usize,
+    index: usize,
     axis: SeparatingAxis<T>,
 }
 
@@ -63,11 +63,11 @@ impl<T: Real> PairFinder<T> {
     ) {
         self.clock.run_as(clock);
         self.pairs.extend(near.iter().map(|&candidate| {
-            let place = axes.place(candidates[candidate as usize].geoms);
+            let index = axes.index(candidates[candidate as usize].geoms);
             NearPair {
                 candidate,
-                place,
-                axis: *axes.at(place),
+                index,
+                axis: *axes.at(index),
             }
         }));
     }
@@ -116,7 +116,7 @@ impl<T: Real> PairFinder<T> {
     /// Returns the separating axes and the time spent to their owners.
     pub(super) fn end(&mut self, axes: &mut SeparatingAxes<T>, clock: &mut PairClock) {
         for pair in &self.pairs {
-            *axes.at(pair.place) = pair.axis;
+            *axes.at(pair.index) = pair.axis;
         }
         clock.absorb(&mut self.clock);
     }

@@ -43,7 +43,7 @@ const MAX_COUNTED_GEOMS: usize = 1 << 10;
 /// Returns all candidates of a model if comparing a list of them in each step is the fastest method.
 pub(super) fn listed_candidates(model: &Model) -> Option<Vec<Candidate>> {
     let stands = |geom: &Geom| model.bodies[model.bodies[geom.body].weld].dofs.is_empty();
-    let roles = model.geoms.iter().zip(meet_any(model));
+    let roles = model.geoms.iter().zip(match_any(model));
     let (mut all, mut statics) = (0, 0);
     for (geom, _) in roles.filter(|&(_, meets)| meets) {
         all += 1;
@@ -58,9 +58,9 @@ pub fn candidates(model: &Model) -> Vec<Candidate> {
     candidates_up_to(model, usize::MAX).unwrap_or_default()
 }
 
-/// Returns all candidates in canonical order; `None` if there are more than `most`.
-fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
-    let meets = meet_any(model);
+/// Returns all candidates in canonical order; `None` if there are more than `limit`.
+fn candidates_up_to(model: &Model, limit: usize) -> Option<Vec<Candidate>> {
+    let meets = match_any(model);
     let collides = |&body: &usize| model.bodies[body].geoms.clone().any(|g| meets[g]);
     let bodies = Vec::from_iter((0..model.nbody()).filter(collides));
     let explicit = (0..model.pairs.len()).map(|p| explicit(model, p as u32));
@@ -72,12 +72,12 @@ fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
             }
             for g1 in model.bodies[body1].geoms.clone() {
                 for g2 in model.bodies[body2].geoms.clone() {
-                    if masks_meet(model, g1, g2) && !is_explicit(model, g1, g2) {
+                    if masks_match(model, g1, g2) && !is_explicit(model, g1, g2) {
                         found.push(Candidate::new(model, [g1, g2], None));
                     }
                 }
             }
-            if found.len() > most {
+            if found.len() > limit {
                 return None;
             }
         }
@@ -88,7 +88,7 @@ fn candidates_up_to(model: &Model, most: usize) -> Option<Vec<Candidate>> {
 
 /// Returns, for each geom, true if its type or affinity bits overlap those of any geom, including itself; false for
 /// visual geoms.
-pub(super) fn meet_any(model: &Model) -> Vec<bool> {
+pub(super) fn match_any(model: &Model) -> Vec<bool> {
     let (mut contypes, mut conaffinities) = (0, 0);
     for geom in &model.geoms {
         contypes |= geom.contype;
@@ -105,7 +105,7 @@ pub(super) fn explicit(model: &Model, pair: u32) -> Candidate {
 
 /// Returns true if two geoms that are no explicit pair may collide.
 pub(super) fn geoms_may_collide(model: &Model, g1: usize, g2: usize) -> bool {
-    masks_meet(model, g1, g2)
+    masks_match(model, g1, g2)
         && bodies_may_collide(model, model.geoms[g1].body, model.geoms[g2].body)
         && !is_explicit(model, g1, g2)
 }
@@ -191,7 +191,7 @@ impl Candidate {
     }
 }
 
-fn masks_meet(model: &Model, g1: usize, g2: usize) -> bool {
+fn masks_match(model: &Model, g1: usize, g2: usize) -> bool {
     let (a, b) = (&model.geoms[g1], &model.geoms[g2]);
     a.contype & b.conaffinity != 0 || b.contype & a.conaffinity != 0
 }

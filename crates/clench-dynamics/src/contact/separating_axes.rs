@@ -10,7 +10,7 @@ use clench_math::Real;
 /// The number of pairs in a bucket; a further one evicts another.
 const WAYS: usize = 4;
 /// The number of entries per near pair.
-const PLACES_PER_PAIR: usize = 4;
+const ENTRIES_PER_PAIR: usize = 4;
 
 /// A table of buckets without chains.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +24,9 @@ type Entry<T> = ([u32; 2], SeparatingAxis<T>);
 impl<T: Real> SeparatingAxes<T> {
     /// Reserves capacity for `pairs`. If the table grows, all axes are cleared.
     pub(super) fn reserve(&mut self, pairs: usize) {
-        let wanted = (pairs * PLACES_PER_PAIR).div_ceil(WAYS).next_power_of_two();
+        let wanted = (pairs * ENTRIES_PER_PAIR)
+            .div_ceil(WAYS)
+            .next_power_of_two();
         if self.buckets.len() < wanted {
             let none = ([u32::MAX; 2], SeparatingAxis::default());
             self.buckets.clear();
@@ -34,7 +36,7 @@ impl<T: Real> SeparatingAxes<T> {
 
     /// Returns the index of a pair's axis.
     #[inline(always)]
-    pub(super) fn place(&mut self, geoms: [u32; 2]) -> usize {
+    pub(super) fn index(&mut self, geoms: [u32; 2]) -> usize {
         let mixed = geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B);
         let mixed = mixed ^ (mixed >> 15);
         let bucket = mixed as usize & (self.buckets.len() - 1);
@@ -50,7 +52,7 @@ impl<T: Real> SeparatingAxes<T> {
 
     /// Returns the axis at an index.
     #[inline(always)]
-    pub(super) fn at(&mut self, place: usize) -> &mut SeparatingAxis<T> {
-        &mut self.buckets[place / WAYS][place % WAYS].1
+    pub(super) fn at(&mut self, index: usize) -> &mut SeparatingAxis<T> {
+        &mut self.buckets[index / WAYS][index % WAYS].1
     }
 }

@@ -14,8 +14,8 @@ pub fn fixed_pose<T: Real>(
 ) -> (Vec3<T>, Mat3<T>) {
     let body = model.cameras[camera].body;
     let place = pos.xpos[body] + pos.xmat[body] * params.cam_pos[camera];
-    let turn = (pos.xquat[body] * params.cam_quat[camera]).to_matrix();
-    (place, turn)
+    let rotation = (pos.xquat[body] * params.cam_quat[camera]).to_matrix();
+    (place, rotation)
 }
 
 /// Returns the pose of a camera: its position, and its axes as columns.

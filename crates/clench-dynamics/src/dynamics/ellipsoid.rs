@@ -95,8 +95,8 @@ impl<T: Real> Ellipsoid<T> {
             swept(r.y, r.z.max(r.x)),
             swept(r.z, r.x.max(r.y)),
         );
-        let most = swept(middle, largest);
-        let resisted = |moment: T| (angular * moment + slender * (most - moment)) * density;
+        let maximum = swept(middle, largest);
+        let resisted = |moment: T| (angular * moment + slender * (maximum - moment)) * density;
         let square = |x: T, y: T| (x * y).squared();
         Ellipsoid {
             geom,

@@ -1,7 +1,7 @@
 //! Mechanical energy, J.
 
 use crate::dynamics::spring::{
-    JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
+    JointElongation, joint_elongation, joint_spring, tendon_elongation, tendon_spring,
 };
 use crate::model::{Model, Params};
 use crate::stages::Positions;
@@ -53,18 +53,18 @@ fn spring_energy<T: Real>(
     let mut energy = T::ZERO;
     for j in 0..model.joints.len() {
         let spring = joint_spring(params, j);
-        energy += match joint_stretch(model, params, state, j) {
+        energy += match joint_elongation(model, params, state, j) {
             None => T::ZERO,
-            Some(JointStretch::Scalar(x)) => spring.energy(x),
-            Some(JointStretch::Rotation(turn)) => spring.energy(turn.norm()),
-            Some(JointStretch::Pose(shift, turn)) => {
-                spring.energy(shift.norm()) + spring.energy(turn.norm())
+            Some(JointElongation::Scalar(x)) => spring.energy(x),
+            Some(JointElongation::Rotation(rotation)) => spring.energy(rotation.norm()),
+            Some(JointElongation::Pose(shift, rotation)) => {
+                spring.energy(shift.norm()) + spring.energy(rotation.norm())
             }
         };
     }
     for (t, &length) in pos.ten_length.iter().enumerate() {
-        let stretch = tendon_stretch(model, params, &state.plastic, t, length);
-        energy += tendon_spring(params, t).energy(stretch);
+        let elongation = tendon_elongation(model, params, &state.plastic, t, length);
+        energy += tendon_spring(params, t).energy(elongation);
     }
     energy
 }

@@ -33,8 +33,8 @@ pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T
                     add_scaled(&mut q[..3], v, time);
                     (q, v) = (&mut q[3..], &v[3..]);
                 }
-                let turned = Quat::from_slice(q).integrate(Vec3::from_slice(v), time);
-                turned.write(q);
+                let rotated = Quat::from_slice(q).integrate(Vec3::from_slice(v), time);
+                rotated.write(q);
             }
         }
     }

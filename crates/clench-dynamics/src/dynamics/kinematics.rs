@@ -51,8 +51,8 @@ pub fn kinematics<T: Real>(
     pos.xmat[0] = Mat3::IDENTITY;
     for part in computed.parts {
         let joints = model.joints_of(part);
-        let turns = &mut pos.jnt_turn[joints.clone()];
-        joint_turns(model, params, &state.qpos, joints, turns);
+        let rotations = &mut pos.jnt_rotation[joints.clone()];
+        joint_rotations(model, params, &state.qpos, joints, rotations);
         for b in part.start.max(1)..part.end {
             let (xpos, xquat) = body_pose(model, params, state, pos, b);
             pos.xpos[b] = xpos;
@@ -65,23 +65,23 @@ pub fn kinematics<T: Real>(
 
 /// Computes the rotation of each of some joints from `qpos0` (the whole orientation of a ball or free joint).
 #[inline(always)]
-fn joint_turns<T: Real>(
+fn joint_rotations<T: Real>(
     model: &Model,
     params: &Params<T>,
     qpos: &[T],
     joints: Range<usize>,
-    turns: &mut [Quat<T>],
+    rotations: &mut [Quat<T>],
 ) {
     let axes = &params.jnt_axis[joints.clone()];
-    for ((joint, &axis), turn) in model.joints[joints].iter().zip(axes).zip(turns) {
+    for ((joint, &axis), rotation) in model.joints[joints].iter().zip(axes).zip(rotations) {
         let q = &qpos[joint.qpos..];
         match joint.kind {
             JointKind::Slide => {}
             JointKind::Hinge => {
-                *turn = Quat::from_axis_angle(axis, q[0] - params.qpos0[joint.qpos]);
+                *rotation = Quat::from_axis_angle(axis, q[0] - params.qpos0[joint.qpos]);
             }
-            JointKind::Ball => *turn = Quat::from_slice(q).normalize(),
-            JointKind::Free => *turn = Quat::from_slice(&q[3..]).normalize(),
+            JointKind::Ball => *rotation = Quat::from_slice(q).normalize(),
+            JointKind::Free => *rotation = Quat::from_slice(&q[3..]).normalize(),
         }
     }
 }
@@ -113,7 +113,7 @@ fn body_pose<T: Real>(
         let joint = &model.joints[j];
         if joint.kind == JointKind::Free {
             xpos = Vec3::from_slice(&state.qpos[joint.qpos..]);
-            xquat = pos.jnt_turn[j];
+            xquat = pos.jnt_rotation[j];
             pos.xanchor[j] = xpos;
             pos.xaxis[j] = params.jnt_axis[j];
             continue;
@@ -127,7 +127,7 @@ fn body_pose<T: Real>(
         if joint.kind == JointKind::Slide {
             xpos += xaxis * (state.qpos[joint.qpos] - params.qpos0[joint.qpos]);
         } else {
-            xquat = xquat * pos.jnt_turn[j];
+            xquat = xquat * pos.jnt_rotation[j];
             if !centred {
                 xpos = xanchor - xquat.rotate(params.jnt_pos[j]);
             }

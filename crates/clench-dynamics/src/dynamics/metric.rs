@@ -21,7 +21,7 @@ use crate::dynamics::derivatives::{add_fluid_derivatives, add_outer};
 use crate::dynamics::ellipsoid::FluidForces;
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
 use crate::dynamics::spring::{
-    JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
+    JointElongation, joint_elongation, joint_spring, tendon_elongation, tendon_spring,
 };
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
@@ -245,7 +245,7 @@ fn add_joint_spring<T: Real>(
     metric: &mut Metric<T>,
     mass: &mut TreeMatrix<T>,
 ) {
-    let Some(stretch) = joint_stretch(model, params, state, j) else {
+    let Some(elongation) = joint_elongation(model, params, state, j) else {
         return;
     };
     let (spring, h, first) = (
@@ -261,12 +261,12 @@ fn add_joint_spring<T: Real>(
         }
     };
     let length = |x: Vec3<T>| x.norm();
-    match stretch {
-        JointStretch::Scalar(x) => add(x, first..first + 1),
-        JointStretch::Rotation(turn) => add(length(turn), first..first + 3),
-        JointStretch::Pose(shift, turn) => {
+    match elongation {
+        JointElongation::Scalar(x) => add(x, first..first + 1),
+        JointElongation::Rotation(rotation) => add(length(rotation), first..first + 3),
+        JointElongation::Pose(shift, rotation) => {
             add(length(shift), first..first + 3);
-            add(length(turn), first + 3..first + 6);
+            add(length(rotation), first + 3..first + 6);
         }
     }
 }
@@ -283,9 +283,9 @@ fn tendon_derivatives<T: Real>(
     let mut derivatives = [T::ZERO; 2];
     let spring = tendon_spring(params, t);
     if model.flags.spring && !spring.is_zero() {
-        let stretch = tendon_stretch(model, params, &state.plastic, t, pos.ten_length[t]);
-        let slack = stretch.eq(T::ZERO);
-        derivatives[0] = T::select(slack, T::ZERO, spring.stiffness_slope(stretch));
+        let elongation = tendon_elongation(model, params, &state.plastic, t, pos.ten_length[t]);
+        let slack = elongation.eq(T::ZERO);
+        derivatives[0] = T::select(slack, T::ZERO, spring.stiffness_slope(elongation));
     }
     if model.flags.damper {
         let damper = tendon_damper(model, params, t);

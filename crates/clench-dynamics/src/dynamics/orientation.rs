@@ -107,9 +107,9 @@ pub fn shorten<T: Real>(vector: &mut [T]) {
     if !over.any() {
         return;
     }
-    let turn = T::new(std::f64::consts::TAU);
+    let full_turn = T::new(std::f64::consts::TAU);
     let angle = T::select(over, angle, T::ONE);
-    let rest = angle - turn * (angle / turn + T::new(0.5)).floor();
+    let rest = angle - full_turn * (angle / full_turn + T::new(0.5)).floor();
     let share = T::select(over, rest / angle, T::ONE);
     vector.iter_mut().for_each(|part| *part *= share);
 }

@@ -6,7 +6,7 @@ use crate::dynamics::polynomial::Polynomial;
 use crate::dynamics::project::{force_at, project_forces};
 use crate::dynamics::reflected::{dof_damper, tendon_damper};
 use crate::dynamics::spring::{
-    JointStretch, joint_spring, joint_stretch, tendon_spring, tendon_stretch,
+    JointElongation, joint_elongation, joint_spring, tendon_elongation, tendon_spring,
 };
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
@@ -66,32 +66,32 @@ fn springs<T: Real>(
     for (j, joint) in model.joints.iter().enumerate() {
         let spring = joint_spring(params, j);
         let qfrc = &mut qfrc[joint.dof..];
-        match joint_stretch(model, params, state, j) {
+        match joint_elongation(model, params, state, j) {
             None => {}
-            Some(JointStretch::Scalar(x)) => qfrc[0] += -x * spring.stiffness(x),
-            Some(JointStretch::Rotation(turn)) => pull_back(&spring, turn, qfrc),
-            Some(JointStretch::Pose(shift, turn)) => {
+            Some(JointElongation::Scalar(x)) => qfrc[0] += -x * spring.stiffness(x),
+            Some(JointElongation::Rotation(rotation)) => pull_back(&spring, rotation, qfrc),
+            Some(JointElongation::Pose(shift, rotation)) => {
                 pull_back(&spring, shift, qfrc);
-                pull_back(&spring, turn, &mut qfrc[3..]);
+                pull_back(&spring, rotation, &mut qfrc[3..]);
             }
         }
     }
     for t in 0..model.tendons.len() {
-        let stretch = tendon_stretch(model, params, &state.plastic, t, pos.ten_length[t]);
-        let force = -stretch * tendon_spring(params, t).stiffness(stretch);
+        let elongation = tendon_elongation(model, params, &state.plastic, t, pos.ten_length[t]);
+        let force = -elongation * tendon_spring(params, t).stiffness(elongation);
         add_tendon_force(model, pos, t, force, qfrc);
     }
 }
 
-/// Adds the force of a spring with the elongation `stretch`.
+/// Adds the force of a spring with the elongation `elongation`.
 #[inline(always)]
-fn pull_back<T: Real>(spring: &Polynomial<T>, stretch: Vec3<T>, qfrc: &mut [T]) {
+fn pull_back<T: Real>(spring: &Polynomial<T>, elongation: Vec3<T>, qfrc: &mut [T]) {
     let stiffness = if spring.is_curved().any() {
-        spring.stiffness(stretch.norm())
+        spring.stiffness(elongation.norm())
     } else {
         spring.linear
     };
-    for (qfrc, x) in qfrc.iter_mut().zip(stretch.to_array()) {
+    for (qfrc, x) in qfrc.iter_mut().zip(elongation.to_array()) {
         *qfrc += -x * stiffness;
     }
 }

@@ -6,7 +6,7 @@
 //! their positions after the step, and tendons by extrapolating their initial length and gradient with the velocity
 //! that moved the positions. Stiffness and width of the dead band do not change.
 
-use crate::dynamics::spring::{JointStretch, stretch_of_joint, stretch_outside};
+use crate::dynamics::spring::{JointElongation, elongation_of_joint, elongation_outside};
 use crate::model::{Model, Params};
 use crate::sleep::Sleep;
 use crate::stages::Positions;
@@ -49,12 +49,12 @@ pub(crate) fn yield_springs<T: Real>(
         let Some(place) = joint.plastic else { continue };
         let awake = sleep.is_awake(model.tree.tree_of(joint.dof));
         let limit = params.jnt_springyield[j];
-        let stretch = stretch_of_joint(model, params, (qpos, plastic), j);
+        let elongation = elongation_of_joint(model, params, (qpos, plastic), j);
         let rest = &mut plastic[place..place + joint.kind.nq()];
-        match stretch {
-            JointStretch::Scalar(x) => rest[0] += T::select(awake, beyond(x, limit), T::ZERO),
-            JointStretch::Rotation(turn) => turn_rest(turn, limit, awake, rest),
-            JointStretch::Pose(..) => {}
+        match elongation {
+            JointElongation::Scalar(x) => rest[0] += T::select(awake, beyond(x, limit), T::ZERO),
+            JointElongation::Rotation(rotation) => yield_rotation(rotation, limit, awake, rest),
+            JointElongation::Pose(..) => {}
         }
     }
     for (t, tendon) in model.tendons.iter().enumerate() {
@@ -68,8 +68,8 @@ pub(crate) fn yield_springs<T: Real>(
             awake |= sleep.is_awake(model.tree.tree_of(dof));
         }
         let length = start.length[t] + params.timestep * rate;
-        let stretch = stretch_outside([plastic[place], plastic[place + 1]], length);
-        let moved = beyond(stretch, params.tendon_springyield[t]);
+        let elongation = elongation_outside([plastic[place], plastic[place + 1]], length);
+        let moved = beyond(elongation, params.tendon_springyield[t]);
         for end in &mut plastic[place..place + 2] {
             *end += T::select(awake, moved, T::ZERO);
         }
@@ -78,25 +78,25 @@ pub(crate) fn yield_springs<T: Real>(
 
 /// Returns the signed excess of a stretch over the yield; 0 if the spring does not yield.
 #[inline(always)]
-fn beyond<T: Real>(stretch: T, limit: T) -> T {
-    let above = T::select(stretch.gt(limit), stretch - limit, T::ZERO);
-    let out = T::select(stretch.lt(-limit), stretch + limit, above);
+fn beyond<T: Real>(elongation: T, limit: T) -> T {
+    let above = T::select(elongation.gt(limit), elongation - limit, T::ZERO);
+    let out = T::select(elongation.lt(-limit), elongation + limit, above);
     T::select(limit.gt(T::ZERO), out, T::ZERO)
 }
 
 /// Turns the rest orientation of a ball joint's spring about the axis of its stretch, until the yield remains as
 /// stretch.
 #[inline(always)]
-fn turn_rest<T: Real>(stretch: Vec3<T>, limit: T, awake: T::Mask, rest: &mut [T]) {
-    let (axis, angle) = stretch.normalize();
+fn yield_rotation<T: Real>(elongation: Vec3<T>, limit: T, awake: T::Mask, rest: &mut [T]) {
+    let (axis, angle) = elongation.normalize();
     let too_far = beyond(angle, limit);
     let yields = awake & too_far.gt(T::ZERO);
     if !yields.any() {
         return;
     }
     let old = Quat::from_slice(rest);
-    let turned = (old * Quat::from_axis_angle(axis, too_far)).normalize();
-    Quat::select(yields, turned, old).write(rest);
+    let rotated = (old * Quat::from_axis_angle(axis, too_far)).normalize();
+    Quat::select(yields, rotated, old).write(rest);
 }
 
 /// Returns true if the spring of any tendon yields.

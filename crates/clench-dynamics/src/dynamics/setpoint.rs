@@ -109,10 +109,10 @@ pub fn whole_turn<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
     if !rotates.any() || !(pid || fixed) {
         return T::ZERO;
     }
-    let turn = Vec3::from_slice(axis).norm() * T::new(std::f64::consts::TAU);
+    let full_turn = Vec3::from_slice(axis).norm() * T::new(std::f64::consts::TAU);
     let pulls_back = params.actuator_gainprm[u][0].eq(-params.actuator_biasprm[u][1]);
     let wraps = rotates & (pulls_back | T::Mask::splat(pid));
-    T::select(wraps, turn, T::ZERO)
+    T::select(wraps, full_turn, T::ZERO)
 }
 
 /// Moves the setpoint of a servo by [whole turns](whole_turn) to the one nearest to `near`; returns other inputs
@@ -125,11 +125,11 @@ pub(crate) fn nearest_setpoint<T: Real>(
     input: T,
     near: T,
 ) -> T {
-    let turn = whole_turn(model, params, u);
-    let wraps = turn.gt(T::ZERO);
+    let full_turn = whole_turn(model, params, u);
+    let wraps = full_turn.gt(T::ZERO);
     if !wraps.any() {
         return input;
     }
-    let turns = (input - near) / T::select(wraps, turn, T::ONE) + T::new(0.5);
-    T::select(wraps, input - turn * turns.floor(), input)
+    let turns = (input - near) / T::select(wraps, full_turn, T::ONE) + T::new(0.5);
+    T::select(wraps, input - full_turn * turns.floor(), input)
 }

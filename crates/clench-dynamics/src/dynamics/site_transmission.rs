@@ -77,7 +77,7 @@ pub(crate) fn relative_pose<T: Real>(
     let (along, about) = (Vec3::from_slice(gear), Vec3::from_slice(&gear[3..]));
     let axes = &pos.site_xmat[reference];
     let shift = axes.transpose_mul(pos.site_xpos[site] - pos.site_xpos[reference]);
-    let turn = relative_turn(model, params, pos, [site, reference]);
+    let rotation = relative_rotation(model, params, pos, [site, reference]);
     let (force, couple) = (*axes * along, *axes * about);
     let pulls = [
         Pull {
@@ -92,12 +92,12 @@ pub(crate) fn relative_pose<T: Real>(
         },
     ];
     relative_arms(model, pos, pulls, row);
-    shift.dot(along) + turn.dot(about)
+    shift.dot(along) + rotation.dot(about)
 }
 
 /// Returns the rotation vector of a site in the frame of another.
 #[inline(always)]
-pub(crate) fn relative_turn<T: Real>(
+pub(crate) fn relative_rotation<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,

@@ -6,7 +6,7 @@ use crate::state::State;
 use clench_math::{Quat, Real, Vec3};
 
 /// The displacement of a joint from its spring's rest position.
-pub(crate) enum JointStretch<T> {
+pub(crate) enum JointElongation<T> {
     /// A distance or an angle, on the joint's only dof.
     Scalar(T),
     /// A rotation vector in the child's frame.
@@ -23,25 +23,25 @@ pub(crate) fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<
 
 /// Returns the stretch of joint `j` in a state; `None` if it has no spring in any lane.
 #[inline(always)]
-pub(crate) fn joint_stretch<T: Real>(
+pub(crate) fn joint_elongation<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,
     j: usize,
-) -> Option<JointStretch<T>> {
+) -> Option<JointElongation<T>> {
     let absent = joint_spring(params, j).is_zero();
-    (!absent).then(|| stretch_of_joint(model, params, (&state.qpos, &state.plastic), j))
+    (!absent).then(|| elongation_of_joint(model, params, (&state.qpos, &state.plastic), j))
 }
 
 /// Returns the displacement of joint `j` at positions `qpos` from its spring's rest position, stored in `plastic` if it
 /// yields.
 #[inline(always)]
-pub(crate) fn stretch_of_joint<T: Real>(
+pub(crate) fn elongation_of_joint<T: Real>(
     model: &Model,
     params: &Params<T>,
     (qpos, plastic): (&[T], &[T]),
     j: usize,
-) -> JointStretch<T> {
+) -> JointElongation<T> {
     let joint = &model.joints[j];
     let q = &qpos[joint.qpos..];
     let rest = match joint.plastic {
@@ -54,9 +54,9 @@ pub(crate) fn stretch_of_joint<T: Real>(
             .difference(Quat::from_slice(rest))
     };
     match joint.kind {
-        JointKind::Slide | JointKind::Hinge => JointStretch::Scalar(q[0] - rest[0]),
-        JointKind::Ball => JointStretch::Rotation(rotation(q, rest)),
-        JointKind::Free => JointStretch::Pose(
+        JointKind::Slide | JointKind::Hinge => JointElongation::Scalar(q[0] - rest[0]),
+        JointKind::Ball => JointElongation::Rotation(rotation(q, rest)),
+        JointKind::Free => JointElongation::Pose(
             Vec3::from_slice(q) - Vec3::from_slice(rest),
             rotation(&q[3..], &rest[3..]),
         ),
@@ -71,7 +71,7 @@ pub fn tendon_spring<T: Real>(params: &Params<T>, t: usize) -> Polynomial<T> {
 
 /// Returns the distance of tendon `t` at `length` from its spring's dead band, stored in `plastic` if it yields.
 #[inline(always)]
-pub fn tendon_stretch<T: Real>(
+pub fn tendon_elongation<T: Real>(
     model: &Model,
     params: &Params<T>,
     plastic: &[T],
@@ -82,12 +82,12 @@ pub fn tendon_stretch<T: Real>(
         Some(start) => [plastic[start], plastic[start + 1]],
         None => params.tendon_lengthspring[t],
     };
-    stretch_outside(band, length)
+    elongation_outside(band, length)
 }
 
 /// Returns the signed distance of a length from a dead band.
 #[inline(always)]
-pub(crate) fn stretch_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
+pub(crate) fn elongation_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
     let below = T::select(length.lt(low), length - low, T::ZERO);
     T::select(length.gt(high), length - high, below)
 }

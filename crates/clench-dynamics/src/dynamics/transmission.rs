@@ -1,7 +1,7 @@
 //! Transmissions: the length of each actuator and its moment arms, ∂length/∂q along each dof.
 
 use crate::dynamics::site_transmission::{
-    relative_pose, relative_turn, slider_crank, turning_arms, wrench_arms,
+    relative_pose, relative_rotation, slider_crank, turning_arms, wrench_arms,
 };
 use crate::model::{Joint, JointKind, Model, Params, Transmission};
 use crate::stages::Positions;
@@ -38,8 +38,8 @@ pub fn transmissions<T: Real>(
             Transmission::Joint(j) | Transmission::JointInParent(j) => {
                 let joint = &model.joints[j];
                 let in_parent = matches!(actuator.transmission, Transmission::JointInParent(_));
-                let (q, turn) = (qpos[joint.qpos], pos.jnt_turn[j]);
-                joint_arms(joint, q, turn, gear, in_parent, row)
+                let (q, rotation) = (qpos[joint.qpos], pos.jnt_rotation[j]);
+                joint_arms(joint, q, rotation, gear, in_parent, row)
             }
             Transmission::Tendon(t) => {
                 let gradient = &pos.ten_jacobian[model.tendon_dofs.range(t)];
@@ -58,7 +58,7 @@ pub fn transmissions<T: Real>(
             Transmission::Body(_) => T::ZERO,
             // Three lengths, those of a rotation vector, and arms about the axes of the rotated object.
             Transmission::Rotation(j) => {
-                let vector = pos.jnt_turn[j].to_rotation_vector();
+                let vector = pos.jnt_rotation[j].to_rotation_vector();
                 vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
                 for output in actuator.outputs.clone() {
                     moments[model.actuator_dofs.range(output)].fill(T::ONE);
@@ -66,7 +66,7 @@ pub fn transmissions<T: Real>(
                 continue;
             }
             Transmission::RotationInFrame(sites) => {
-                let vector = relative_turn(model, params, pos, sites);
+                let vector = relative_rotation(model, params, pos, sites);
                 vector.write(&mut pos.actuator_length[actuator.outputs.clone()]);
                 for (axis, output) in actuator.outputs.clone().enumerate() {
                     let row = &mut moments[model.actuator_dofs.range(output)];
@@ -79,12 +79,12 @@ pub fn transmissions<T: Real>(
     pos.actuator_moment = moments;
 }
 
-/// Writes the moment arms on a joint at position `q` or rotation `turn`, and returns the length.
+/// Writes the moment arms on a joint at position `q` or rotation `rotation`, and returns the length.
 #[inline(always)]
 fn joint_arms<T: Real>(
     joint: &Joint,
     q: T,
-    turn: Quat<T>,
+    rotation: Quat<T>,
     gear: &[T; 6],
     in_parent: bool,
     arms: &mut [T],
@@ -95,24 +95,24 @@ fn joint_arms<T: Real>(
             q * gear[0]
         }
         JointKind::Ball => {
-            let axis = to_child(turn, in_parent, gear);
+            let axis = to_child(rotation, in_parent, gear);
             axis.write(arms);
-            turn.to_rotation_vector().dot(axis)
+            rotation.to_rotation_vector().dot(axis)
         }
         JointKind::Free => {
             Vec3::from_slice(gear).write(arms);
-            to_child(turn, in_parent, &gear[3..]).write(&mut arms[3..]);
+            to_child(rotation, in_parent, &gear[3..]).write(&mut arms[3..]);
             T::ZERO
         }
     }
 }
 
-/// Returns a torque on a joint at the rotation `turn`, along the axes of the child.
+/// Returns a torque on a joint at the rotation `rotation`, along the axes of the child.
 #[inline(always)]
-fn to_child<T: Real>(turn: Quat<T>, in_parent: bool, torque: &[T]) -> Vec3<T> {
+fn to_child<T: Real>(rotation: Quat<T>, in_parent: bool, torque: &[T]) -> Vec3<T> {
     let torque = Vec3::from_slice(torque);
     if in_parent {
-        turn.conjugate().rotate(torque)
+        rotation.conjugate().rotate(torque)
     } else {
         torque
     }

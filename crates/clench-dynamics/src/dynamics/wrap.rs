@@ -96,7 +96,7 @@ impl<T: Real> Planar<T> {
     }
     /// Returns `a · self` plus `b` times `self` rotated by a quarter turn.
     #[inline(always)]
-    fn turned(self, a: T, b: T) -> Self {
+    fn rotated(self, a: T, b: T) -> Self {
         Planar::new(self.x * a - self.y * b, self.y * a + self.x * b)
     }
     /// Returns the unit vector along it; the x axis if its length is zero.
@@ -200,15 +200,15 @@ fn plane_through<T: Real>([first, second]: [Vec3<T>; 2]) -> [Vec3<T>; 2] {
 #[inline(always)]
 fn around<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> PlanarWrap<T> {
     let [first, second] = ends;
-    let turn = match side {
+    let angle_between = match side {
         None => first.angle_to(second),
         Some(side) => first.angle_to(side) + side.angle_to(second),
     };
-    let sign = T::select(turn.ge(T::ZERO), T::ONE, -T::ONE);
+    let sign = T::select(angle_between.ge(T::ZERO), T::ONE, -T::ONE);
     let squared_radius = radius * radius;
     let squared = ends.map(|end| end.dot(end));
     let tangents = squared.map(|r2| (r2 - squared_radius).max(T::ZERO).sqrt());
-    let arc = turn.abs() - tangents[0].atan2(radius) - tangents[1].atan2(radius);
+    let arc = angle_between.abs() - tangents[0].atan2(radius) - tangents[1].atan2(radius);
     let apart = Planar::new(second.x - first.x, second.y - first.y);
     let touches = squared[0].ge(squared_radius)
         & squared[1].ge(squared_radius)
@@ -219,7 +219,7 @@ fn around<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> 
     for (i, sign) in [sign, -sign].into_iter().enumerate() {
         let inverse = T::ONE / T::select(touches, squared[i], T::ONE);
         let across = sign * radius * tangents[i] * inverse;
-        points[i] = ends[i].turned(squared_radius * inverse, across);
+        points[i] = ends[i].rotated(squared_radius * inverse, across);
     }
     PlanarWrap {
         touches,
@@ -235,7 +235,7 @@ fn through<T: Real>(ends: [Planar<T>; 2], radius: T) -> PlanarWrap<T> {
     let least = T::new(MIN_LENGTH);
     let distances = ends.map(|end| end.dot(end).sqrt());
     let outside = distances[0].gt(radius) & distances[1].gt(radius) & radius.ge(least);
-    let touches = outside & !meets_circle(ends, radius);
+    let touches = outside & !intersects_circle(ends, radius);
     let middle = Planar::new(first.x + second.x, first.y + second.y).unit();
     let ratios = distances.map(|d| radius / T::select(touches, d, T::ONE));
     let ratios = ratios.map(|ratio| T::select(touches, ratio, T::new(0.5)));
@@ -246,7 +246,7 @@ fn through<T: Real>(ends: [Planar<T>; 2], radius: T) -> PlanarWrap<T> {
     let from = Planar::select(ascending, first, second).unit();
     let ratio = T::select(ascending, ratios[0], ratios[1]);
     let (sine, cosine) = (incidence - asin(ratio * incidence.sin())).sin_cos();
-    let point = Planar::select(solved, from.turned(cosine, sine), middle).turned(radius, T::ZERO);
+    let point = Planar::select(solved, from.rotated(cosine, sine), middle).rotated(radius, T::ZERO);
     PlanarWrap {
         touches,
         points: [point; 2],
@@ -256,7 +256,7 @@ fn through<T: Real>(ends: [Planar<T>; 2], radius: T) -> PlanarWrap<T> {
 
 /// Returns the lanes in which the segment's interior meets the circle.
 #[inline(always)]
-fn meets_circle<T: Real>([first, second]: [Planar<T>; 2], radius: T) -> T::Mask {
+fn intersects_circle<T: Real>([first, second]: [Planar<T>; 2], radius: T) -> T::Mask {
     let along = Planar::new(second.x - first.x, second.y - first.y);
     let squared = along.dot(along);
     let apart = squared.gt(T::new(MIN_LENGTH));
@@ -268,7 +268,7 @@ fn meets_circle<T: Real>([first, second]: [Planar<T>; 2], radius: T) -> T::Mask 
 
 /// Computes f(β) and its slope.
 #[inline(always)]
-fn turned_by<T: Real>(ratios: [T; 2], angle: T, beta: T) -> (T, T) {
+fn rotated_by<T: Real>(ratios: [T; 2], angle: T, beta: T) -> (T, T) {
     let (two, least) = (T::new(2.0), T::new(MIN_LENGTH));
     let (sine, cosine) = beta.sin_cos();
     let (mut value, mut slope) = (T::ZERO, T::ZERO);
@@ -287,7 +287,7 @@ fn reflect<T: Real>(ratios: [T; 2], angle: T) -> (T, T::Mask) {
     let tolerance = T::new(TOLERANCE).max(rounding);
     let least = T::new(MIN_LENGTH);
     let mut beta = T::new(std::f64::consts::FRAC_PI_2);
-    let (mut value, mut slope) = turned_by(ratios, angle, beta);
+    let (mut value, mut slope) = rotated_by(ratios, angle, beta);
     let mut failed = value.gt(T::ZERO) | angle.lt(least);
     let mut busy = !failed & value.abs().gt(tolerance);
     for _ in 0..MAX_ITERATIONS {
@@ -297,7 +297,7 @@ fn reflect<T: Real>(ratios: [T; 2], angle: T) -> (T, T::Mask) {
         let next = T::select(busy, beta - value / slope, beta);
         failed |= busy & next.gt(beta);
         beta = next;
-        let (new_value, new_slope) = turned_by(ratios, angle, beta);
+        let (new_value, new_slope) = rotated_by(ratios, angle, beta);
         value = T::select(busy, new_value, value);
         slope = T::select(busy, new_slope, slope);
         busy &= !failed & value.abs().gt(tolerance);

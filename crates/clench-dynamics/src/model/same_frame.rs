@@ -69,7 +69,7 @@ impl Model {
     }
 
     /// Clears all flags, for arbitrary numbers.
-    pub fn forget_same_frames(model: &mut Arc<Model>) {
+    pub fn invalidate_same_frames(model: &mut Arc<Model>) {
         let mut same = model.same_frames.clone();
         for all in [
             &mut same.bodies,

@@ -258,9 +258,9 @@ impl<T: Real> State<T> {
             let (qpos, mocap) = state.pose_asleep.split_at_mut(model.nq);
             broadcast(&model.params.qpos0, qpos);
             for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
-                let (pos, turn) = (state.mocap_pos[m], state.mocap_quat[m]);
+                let (pos, quat) = (state.mocap_pos[m], state.mocap_quat[m]);
                 pos.write(pose);
-                turn.write(&mut pose[3..]);
+                quat.write(&mut pose[3..]);
             }
         }
         state

@@ -31,9 +31,9 @@ impl Transform {
         }
     }
 
-    pub(super) fn rotation(turn: Quat<f64>) -> Self {
+    pub(super) fn rotation(rotation: Quat<f64>) -> Self {
         Transform {
-            linear: turn.to_matrix(),
+            linear: rotation.to_matrix(),
             ..Self::IDENTITY
         }
     }

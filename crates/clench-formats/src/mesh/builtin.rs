@@ -22,8 +22,8 @@ pub(crate) fn make(
 ) -> Result<Triangles, String> {
     // An upper bound for any of them: a grid of the resolutions.
     let resolution = |k: usize| {
-        let asked = parameters.get(k).map_or(0, |&number| number as usize);
-        asked.min(MAX_RESOLUTION)
+        let requested = parameters.get(k).map_or(0, |&number| number as usize);
+        requested.min(MAX_RESOLUTION)
     };
     let vertices = match name {
         "supersphere" | "supertorus" => resolution(0).pow(2),
@@ -31,17 +31,17 @@ pub(crate) fn make(
         _ => 0,
     };
     spending.bytes(bytes(vertices, 2 * vertices))?;
-    let whole = |what: &str, number: f64, least: usize, most: usize| {
+    let whole = |what: &str, number: f64, min: usize, max: usize| {
         // As in MuJoCo, the fractional part is ignored.
         let integer = number.trunc();
-        match integer >= least as f64 && integer <= most as f64 {
+        match integer >= min as f64 && integer <= max as f64 {
             true => Ok(integer as usize),
             false => Err(format!(
-                "the {what} of params is {number}, but a {name} needs {least} to {most}"
+                "the {what} of params is {number}, but a {name} needs {min} to {max}"
             )),
         }
     };
-    let count = |number: f64, least: usize, most: usize| whole("first", number, least, most);
+    let count = |number: f64, min: usize, max: usize| whole("first", number, min, max);
     let grid = |rows: f64, columns: f64| {
         let columns = || whole("second", columns, 1, MAX_RESOLUTION);
         Ok::<_, String>([count(rows, 1, MAX_RESOLUTION)?, columns()?])
@@ -243,7 +243,7 @@ fn signed_power(x: f64, exponent: f64) -> f64 {
 
 /// Makes a superellipsoid with half axes of length one: rings of points between two poles.
 fn supersphere(resolution: usize, e: f64, n: f64) -> Triangles {
-    let step = |turn: f64, k: usize| k as f64 * turn / resolution as f64;
+    let step = |angle: f64, k: usize| k as f64 * angle / resolution as f64;
     let mut vertices = vec![Vec3::new(0.0, 0.0, -1.0)];
     for ring in 1..resolution {
         let v = -PI / 2.0 + step(PI, ring);
@@ -358,8 +358,8 @@ fn plate(cells: [usize; 2]) -> Triangles {
             vertices.push(point(middle(i, rows), middle(j, columns), -1.0));
             if i > 0 && j > 0 {
                 let [here, below] = [at(i, j), at(i, j - 1)];
-                let [beside, corner] = [at(i - 1, j), at(i - 1, j - 1)];
-                faces.extend([[corner, below, beside], [here, beside, below]]);
+                let [left, corner] = [at(i - 1, j), at(i - 1, j - 1)];
+                faces.extend([[corner, below, left], [here, left, below]]);
             }
         }
     }

@@ -68,7 +68,7 @@ fn clip(flat: impl Iterator<Item = [f32; 2]>) -> Vec<[usize; 3]> {
         let ear = [0, 1, 2].map(|k| left[(first + k) % count]);
         let triangle = ear.map(|(_, point)| point);
         let mut others = (3..count).map(|k| left[(first + k) % count].1);
-        if turns_back(&triangle) || others.any(|point| is_inside(point, &triangle)) {
+        if is_reflex(&triangle) || others.any(|point| is_inside(point, &triangle)) {
             first += 1;
             continue;
         }
@@ -86,10 +86,10 @@ fn clip(flat: impl Iterator<Item = [f32; 2]>) -> Vec<[usize; 3]> {
 }
 
 /// Returns true if a corner turns against the sense of its first edge about the origin.
-fn turns_back([p, q, r]: &[[f32; 2]; 3]) -> bool {
-    let turn = (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]);
+fn is_reflex([p, q, r]: &[[f32; 2]; 3]) -> bool {
+    let rotation = (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]);
     let sense = (p[0] * q[1] - p[1] * q[0]) * 0.5;
-    turn * sense < 0.0
+    rotation * sense < 0.0
 }
 
 /// Returns true if a point is in a triangle: a ray from it along the first axis crosses an odd number of edges.
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_convex_is_cut_as_by_mujoco() {
+    fn concave_polygons_are_triangulated_as_by_mujoco() {
         // The faces that MuJoCo 4.0.0 makes of these polygons.
         let all = [
             [0, 1, 2],
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn polygons_with_more_than_a_hundred_corners_are_left_out() {
+    fn polygons_with_more_than_a_hundred_corners_are_omitted() {
         let count = |corners: u32| {
             let corner = |k: u32| f64::from(k) * std::f64::consts::TAU / f64::from(corners);
             let places: Vec<_> = (0..corners)

@@ -74,12 +74,12 @@ pub(crate) enum Objects {
 }
 
 /// The folder of a mesh file, with the files that it refers to.
-pub(crate) struct Beside<'a> {
+pub(crate) struct MeshFolder<'a> {
     pub directory: &'a Path,
     pub spending: &'a mut Spending,
 }
 
-impl Beside<'_> {
+impl MeshFolder<'_> {
     /// Reads a file that a mesh file refers to.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ pub(crate) fn read(
     bytes: Vec<u8>,
     format: Format,
     objects: Objects,
-    beside: &mut Beside,
+    mesh_folder: &mut MeshFolder,
 ) -> Result<Triangles, String> {
     if bytes.is_empty() {
         return Err("the file is empty".to_owned());
@@ -109,7 +109,7 @@ pub(crate) fn read(
         Format::Obj => obj::read(&bytes, objects),
         Format::Msh => msh::read(&bytes),
         Format::Collada => collada::read(&bytes),
-        Format::Gltf => gltf::read(&bytes, beside),
+        Format::Gltf => gltf::read(&bytes, mesh_folder),
     }?;
     check(&found)?;
     Ok(found)

@@ -118,7 +118,7 @@ impl ActuatorDraft {
             // As in MuJoCo, the attribute is ignored: an activation range limits if there is one.
             _ => None,
         };
-        self.settle_inheritrange(element)
+        self.resolve_inheritrange(element)
     }
 
     /// Reads `dcmotor`: its saturation is a force limit, inherited with the other parameters. It takes precedence over
@@ -158,7 +158,7 @@ impl ActuatorDraft {
 
     /// Resolves a conflict of `inheritrange` with the range that it sets: one written in the element overrides an
     /// inherited one.
-    fn settle_inheritrange(&mut self, element: &Element) -> Result<(), LoadError> {
+    fn resolve_inheritrange(&mut self, element: &Element) -> Result<(), LoadError> {
         if self.parameters.inheritrange == 0.0 {
             return Ok(());
         }

@@ -5,10 +5,10 @@ use super::compiler::CompilerOptions;
 use super::defaults::{Classes, MAIN};
 use super::document::Element;
 use super::joint;
+use super::linear_map::LinearMap;
 use super::orientation::{Orientation, Pose};
 use super::scale::{FrameId, Frames, Named};
 use super::source::Sources;
-use super::stretch::Stretch;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_builder::{
@@ -64,8 +64,8 @@ struct Place {
 
 impl Place {
     /// Returns the linear map of positions by the enclosing frames, in body axes.
-    fn in_body(&self) -> Stretch {
-        self.frame.stretch.turned(self.frame.quat.conjugate())
+    fn in_body(&self) -> LinearMap {
+        self.frame.linear_map.rotated(self.frame.quat.conjugate())
     }
 }
 
@@ -149,11 +149,11 @@ impl<'a> BodyReader<'a> {
     }
 
     /// Counts an element of this size with these texts against the budget.
-    fn charge(&mut self, element: &Element, size: usize, texts: &[&str]) -> Result<(), LoadError> {
+    fn consume(&mut self, element: &Element, size: usize, texts: &[&str]) -> Result<(), LoadError> {
         let texts: usize = texts.iter().map(|text| text.len()).sum();
         let bytes = COPIES * (size + texts);
-        let charged = self.spending.bytes(bytes as u64);
-        charged.map_err(|excess| element.error(excess))
+        let consumed = self.spending.bytes(bytes as u64);
+        consumed.map_err(|excess| element.error(excess))
     }
 
     fn enter_body<'e>(
@@ -161,14 +161,14 @@ impl<'a> BodyReader<'a> {
         element: &'e Element,
         place: &Place,
     ) -> Result<Level<'e>, LoadError> {
-        let stretch = self.push_body(element, place)?;
+        let linear_map = self.push_body(element, place)?;
         let inside = Place {
             body: self.bodies.len() - 1,
             class: self
                 .classes(element)
                 .named_by(element, "childclass", place.class)?,
             frame: Pose {
-                stretch,
+                linear_map,
                 ..Pose::IDENTITY
             },
             scale: place.scale,
@@ -181,7 +181,7 @@ impl<'a> BodyReader<'a> {
     }
 
     /// Reads a body without its contents, and returns the enclosing frames' map of positions in its axes.
-    fn push_body(&mut self, element: &Element, place: &Place) -> Result<Stretch, LoadError> {
+    fn push_body(&mut self, element: &Element, place: &Place) -> Result<LinearMap, LoadError> {
         let written = Pose::read(element, self.compiler(element))?;
         let pose = place.frame.then(written);
         let mut body = BodySpec {
@@ -189,7 +189,7 @@ impl<'a> BodyReader<'a> {
             parent: place.body,
             pos: pose.pos,
             quat: pose.quat,
-            written: Some((place.frame.stretch.apply(written.pos), written.quat)),
+            written: Some((place.frame.linear_map.apply(written.pos), written.quat)),
             compiler: self.own_settings(element),
             origin: Some(element.origin.clone()),
             ..BodySpec::default()
@@ -204,13 +204,13 @@ impl<'a> BodyReader<'a> {
         body.never_fused = fused == Some(false);
         element.set_number("gravcomp", &mut body.gravcomp)?;
         element.set_user(&mut body.user)?;
-        self.charge(element, size_of::<BodySpec>(), &[&body.name])?;
+        self.consume(element, size_of::<BodySpec>(), &[&body.name])?;
         if body.mocap {
             self.mocaps.push(element.number);
         }
-        self.frames.add_body(&body, place.scale, pose.stretch);
+        self.frames.add_body(&body, place.scale, pose.linear_map);
         self.bodies.push(body);
-        Ok(pose.stretch)
+        Ok(pose.linear_map)
     }
 
     fn enter_frame<'e>(
@@ -315,9 +315,9 @@ impl<'a> BodyReader<'a> {
             .clone();
         joint::read(element, &mut joint)?;
         let mut joint = joint::finish(joint, self.compiler(element), &place.frame);
-        let settle = |what, range, said| self.sources.settle_limit(element, what, range, said);
-        settle("", joint.range, &mut joint.limited)?;
-        settle(
+        let resolve = |what, range, said| self.sources.resolve_limit(element, what, range, said);
+        resolve("", joint.range, &mut joint.limited)?;
+        resolve(
             "actuatorfrc",
             joint.actuatorfrcrange,
             &mut joint.actuatorfrclimited,
@@ -332,7 +332,7 @@ impl<'a> BodyReader<'a> {
         place: &Place,
     ) -> Result<(), LoadError> {
         let name = element.string("name");
-        self.charge(element, size_of::<JointSpec>(), &[&name])?;
+        self.consume(element, size_of::<JointSpec>(), &[&name])?;
         self.joints.push((place.body, element.number));
         let mut joint = JointSpec {
             name,
@@ -353,13 +353,14 @@ impl<'a> BodyReader<'a> {
             .clone();
         geom.read(element)?;
         let bytes = size_of::<GeomSpec>() + geom.text_length();
-        self.charge(element, bytes, &[])?;
+        self.consume(element, bytes, &[])?;
         let (mut geom, deformation) =
             geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
         let scaled = self.frames.scale(place.scale).geom(&mut geom, deformation);
         scaled.map_err(|reason| element.error(reason))?;
-        self.frames.instance(&mut geom.mesh, deformation.stretch);
-        self.frames.instance(&mut geom.hfield, deformation.stretch);
+        self.frames.instance(&mut geom.mesh, deformation.linear_map);
+        self.frames
+            .instance(&mut geom.hfield, deformation.linear_map);
         self.frames.add(Named::Geom, &geom.name, place.scale);
         let number = self.bodies[place.body].geoms.len();
         (self.frames).add_mesh(&geom, place.body, number, place.scale);
@@ -374,9 +375,9 @@ impl<'a> BodyReader<'a> {
         site.read(element)?;
         let (mut site, deformation) = site.finish(element, self.compiler(element), &place.frame)?;
         self.frames.scale(place.scale).site(&mut site, deformation);
-        self.frames.instance(&mut site.mesh, deformation.stretch);
+        self.frames.instance(&mut site.mesh, deformation.linear_map);
         self.frames.add(Named::Site, &site.name, place.scale);
-        self.charge(element, size_of::<SiteSpec>(), &[&site.name])?;
+        self.consume(element, size_of::<SiteSpec>(), &[&site.name])?;
         self.bodies[place.body].sites.push(site);
         Ok(())
     }
@@ -388,7 +389,7 @@ impl<'a> BodyReader<'a> {
         light.read(element)?;
         let mut light = light.finish(element, &place.frame);
         self.frames.scale(place.scale).light(&mut light);
-        self.charge(element, size_of::<LightSpec>(), &[&light.name])?;
+        self.consume(element, size_of::<LightSpec>(), &[&light.name])?;
         self.bodies[place.body].lights.push(light);
         Ok(())
     }
@@ -401,7 +402,7 @@ impl<'a> BodyReader<'a> {
         let mut camera = camera.finish(element, self.compiler(element), &place.frame)?;
         self.frames.scale(place.scale).camera(&mut camera);
         self.frames.add(Named::Camera, &camera.name, place.scale);
-        self.charge(element, size_of::<CameraSpec>(), &[&camera.name])?;
+        self.consume(element, size_of::<CameraSpec>(), &[&camera.name])?;
         self.bodies[place.body].cameras.push(camera);
         Ok(())
     }
@@ -432,7 +433,7 @@ fn read_inertia(element: &Element, frame: &Pose) -> Result<InertiaSpec, LoadErro
             Vec3::new(xz, yz, zz),
         ],
     };
-    let turn = frame.quat.to_matrix();
-    let [x, y, z] = (turn * written * turn.transpose()).rows;
+    let rotation = frame.quat.to_matrix();
+    let [x, y, z] = (rotation * written * rotation.transpose()).rows;
     Ok(InertiaSpec::Full([x.x, y.y, z.z, x.y, x.z, y.z]))
 }

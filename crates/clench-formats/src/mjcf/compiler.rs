@@ -64,11 +64,11 @@ impl CompilerOptions {
                 'y' => Vec3::new(0.0, 1.0, 0.0),
                 _ => Vec3::new(0.0, 0.0, 1.0),
             };
-            let turn = Quat::from_axis_angle(axis, self.radians(angle));
+            let rotation = Quat::from_axis_angle(axis, self.radians(angle));
             total = if name.is_ascii_lowercase() {
-                total * turn
+                total * rotation
             } else {
-                turn * total
+                rotation * total
             };
         }
         total.normalize()

@@ -3,8 +3,8 @@
 use super::appearance::{Palette, read_appearance};
 use super::compiler::CompilerOptions;
 use super::document::Element;
+use super::linear_map::{Deformation, LinearMap};
 use super::orientation::{Orientation, Pose, segment};
-use super::stretch::{Deformation, Stretch};
 use crate::LoadError;
 use clench_builder::{GeomMass, GeomSpec};
 use clench_collide::ShapeKind;
@@ -169,13 +169,13 @@ pub(crate) fn place_segment(
     }
     let (written, mut half_length) = segment(points, element)?;
     let (mut pose, mut deformation) = frame.carry(written);
-    if let Stretch::General(map) = frame.stretch {
+    if let LinearMap::General(map) = frame.linear_map {
         let [x0, y0, z0, x1, y1, z1] = points;
         let [from, to] = [Vec3::new(x0, y0, z0), Vec3::new(x1, y1, z1)].map(|point| map * point);
         let mapped = [from.x, from.y, from.z, to.x, to.y, to.z];
         let (between, half) = segment(mapped, element)?;
         let rigid = Pose {
-            stretch: Stretch::NONE,
+            linear_map: LinearMap::NONE,
             ..*frame
         };
         (pose, half_length) = (rigid.then(between), half);

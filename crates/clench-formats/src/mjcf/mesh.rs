@@ -3,7 +3,7 @@
 use super::document::Element;
 use super::files::Files;
 use crate::LoadError;
-use crate::mesh::{self, Beside, Format, Objects, Triangles, builtin, obj};
+use crate::mesh::{self, Format, MeshFolder, Objects, Triangles, builtin, obj};
 use crate::spending::Spending;
 use clench_builder::{MeshInertia, MeshSpec};
 use clench_math::{Quat, Vec3};
@@ -127,7 +127,7 @@ fn read_or_written(
     };
     let format = format.ok_or_else(wrong)?;
     let directory = file.directory();
-    let mut beside = Beside {
+    let mut mesh_folder = MeshFolder {
         directory: &directory,
         spending,
     };
@@ -136,7 +136,7 @@ fn read_or_written(
         if format == Format::Obj {
             further = obj::further_faces(&bytes);
         }
-        mesh::read(bytes, format, Objects::First, &mut beside)
+        mesh::read(bytes, format, Objects::First, &mut mesh_folder)
     })?;
     if further > 0 {
         let note = format!(

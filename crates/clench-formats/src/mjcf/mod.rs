@@ -21,11 +21,12 @@ mod hfield;
 mod include;
 mod inputs;
 mod joint;
-mod kept;
 pub(crate) mod keyframe;
 mod leave_out;
 mod light;
+mod linear_map;
 mod mesh;
+mod never_fused;
 pub(crate) mod option;
 pub(crate) mod orientation;
 mod relations;
@@ -37,7 +38,6 @@ mod sensor;
 mod shortcut;
 mod site;
 mod source;
-mod stretch;
 mod support;
 mod tendon;
 mod texture;
@@ -117,10 +117,10 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         custom::read_widths(size, &mut builder.user_widths)?;
     }
     let shortcuts = relations::shortcuts(root, sources)?;
-    frames.scale_rest(&shortcuts, &mut builder, spending)?;
+    frames.scale_remaining(&shortcuts, &mut builder, spending)?;
     builder.custom = custom::read(root, &mut builder.options, spending)?;
     if builder.compiler.fusestatic {
-        kept::keep_named(root, &mut builder.bodies);
+        never_fused::exclude_from_fusion(root, &mut builder.bodies);
     }
     Ok(builder)
 }

@@ -6,7 +6,7 @@ use clench_builder::BodySpec;
 use std::collections::HashSet;
 
 /// Excludes bodies from fusion that are targets of cameras and lights, bones of skins, or elements of user tuples.
-pub(crate) fn keep_named(root: &Element, bodies: &mut [BodySpec]) {
+pub(crate) fn exclude_from_fusion(root: &Element, bodies: &mut [BodySpec]) {
     let mut names = HashSet::new();
     for section in ["worldbody", "asset", "custom"] {
         let mut pending: Vec<&Element> = entries(root, section).collect();

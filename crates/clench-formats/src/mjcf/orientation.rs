@@ -2,7 +2,7 @@
 
 use super::compiler::CompilerOptions;
 use super::document::Element;
-use super::stretch::{Deformation, Stretch};
+use super::linear_map::{Deformation, LinearMap};
 use crate::LoadError;
 use clench_math::{Mat3, Quat, Vec3};
 
@@ -104,14 +104,14 @@ pub(crate) struct Pose {
     pub pos: Vec3<f64>,
     pub quat: Quat<f64>,
     /// The linear map of positions, applied first.
-    pub stretch: Stretch,
+    pub linear_map: LinearMap,
 }
 
 impl Pose {
     pub(crate) const IDENTITY: Pose = Pose {
         pos: Vec3::ZERO,
         quat: Quat::IDENTITY,
-        stretch: Stretch::NONE,
+        linear_map: LinearMap::NONE,
     };
 
     /// Reads the pose in `pos` and one of the orientation attributes.
@@ -121,7 +121,7 @@ impl Pose {
         Ok(Pose {
             pos: Vec3::from_array(element.numbers("pos")?.unwrap_or_default()),
             quat: orientation.resolve(compiler, element)?,
-            stretch: Stretch::NONE,
+            linear_map: LinearMap::NONE,
         })
     }
 
@@ -130,7 +130,7 @@ impl Pose {
         Pose {
             pos: self.point(inner.pos),
             quat: (self.quat * inner.quat).normalize(),
-            stretch: self.stretch.turned(inner.quat).after(inner.stretch),
+            linear_map: self.linear_map.rotated(inner.quat).after(inner.linear_map),
         }
     }
 
@@ -138,7 +138,7 @@ impl Pose {
     pub(crate) fn carry(&self, shape: Pose) -> (Pose, Deformation) {
         let pose = self.then(shape);
         let deformation = Deformation {
-            stretch: pose.stretch,
+            linear_map: pose.linear_map,
             segment: false,
         };
         (pose, deformation)
@@ -146,7 +146,7 @@ impl Pose {
 
     /// Maps a point of the frame to its parent.
     pub(crate) fn point(&self, local: Vec3<f64>) -> Vec3<f64> {
-        self.pos + self.quat.rotate(self.stretch.apply(local))
+        self.pos + self.quat.rotate(self.linear_map.apply(local))
     }
 }
 
@@ -163,7 +163,7 @@ pub(crate) fn segment(
     let pose = Pose {
         pos: (from + to) * 0.5,
         quat: Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), axis),
-        stretch: Stretch::NONE,
+        linear_map: LinearMap::NONE,
     };
     Ok((pose, length * 0.5))
 }

@@ -64,9 +64,9 @@ pub(crate) fn shortcuts(root: &Element, sources: &Sources) -> Result<Vec<Shortcu
 pub(crate) fn read_tendon(element: &Element, sources: &Sources) -> Result<TendonSpec, LoadError> {
     let draft = sources.of(element).classes.of(element)?.tendon.clone();
     let mut tendon = tendon::read(element, draft)?;
-    let settle = |what, range, said| sources.settle_limit(element, what, range, said);
-    settle("", tendon.range, &mut tendon.limited)?;
-    settle(
+    let resolve = |what, range, said| sources.resolve_limit(element, what, range, said);
+    resolve("", tendon.range, &mut tendon.limited)?;
+    resolve(
         "actuatorfrc",
         tendon.actuatorfrcrange,
         &mut tendon.actuatorfrclimited,
@@ -85,9 +85,9 @@ pub(crate) fn read_actuator(
     let mut draft = classes[class].actuator.clone();
     draft.read(element, shortcut, classes.parameters(class, shortcut))?;
     let mut actuator = draft.finish(element)?;
-    let settle = |what, range, said| sources.settle_limit(element, what, range, said);
-    settle("ctrl", actuator.ctrlrange, &mut actuator.ctrllimited)?;
-    settle("force", actuator.forcerange, &mut actuator.forcelimited)?;
-    settle("act", actuator.actrange, &mut actuator.actlimited)?;
+    let resolve = |what, range, said| sources.resolve_limit(element, what, range, said);
+    resolve("ctrl", actuator.ctrlrange, &mut actuator.ctrllimited)?;
+    resolve("force", actuator.forcerange, &mut actuator.forcelimited)?;
+    resolve("act", actuator.actrange, &mut actuator.actlimited)?;
     Ok(actuator)
 }

@@ -232,7 +232,7 @@ pub(crate) fn suggestion<'a>(mistaken: &str, known: impl Iterator<Item = &'a str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attributes::asked;
+    use crate::attributes::requested;
     use std::path::{Path, PathBuf};
 
     #[test]
@@ -312,7 +312,7 @@ mod tests {
         let mut missing = Vec::new();
         for rule in rules() {
             let tag = rule.element.rsplit('/').next().unwrap_or_default();
-            let unread = words(rule.read).filter(|name| !asked::was(tag, name));
+            let unread = words(rule.read).filter(|name| !requested::was(tag, name));
             missing.extend(unread.map(|name| format!("{} {name}", rule.element)));
         }
         missing.retain(|name| !HANDED_ON.contains(&name.as_str()));

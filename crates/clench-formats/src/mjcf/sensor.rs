@@ -27,7 +27,7 @@ macro_rules! rule {
     };
 }
 
-const NOTHING: Rule = rule!("");
+const NO_ATTRIBUTES: Rule = rule!("");
 const SITE: Rule = rule!("site");
 const JOINT: Rule = rule!("joint");
 const TENDON: Rule = rule!("tendon");
@@ -58,7 +58,7 @@ const RAYS: Rule = rule!("site camera data");
 pub(crate) fn rule(tag: &str) -> Option<&'static Rule> {
     let kind = SensorKind::find(tag)?;
     Some(match kind.attachment() {
-        Attachment::Nothing => &NOTHING,
+        Attachment::Nothing => &NO_ATTRIBUTES,
         Attachment::Site => &SITE,
         Attachment::ScalarJoint | Attachment::Ball | Attachment::Joint => &JOINT,
         Attachment::Tendon => &TENDON,

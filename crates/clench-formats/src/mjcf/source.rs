@@ -86,7 +86,7 @@ impl Sources {
     ///
     /// # Errors
     /// Returns an error if `autolimits` is off and the flag of a range is missing.
-    pub(super) fn settle_limit(
+    pub(super) fn resolve_limit(
         &self,
         element: &Element,
         what: &str,

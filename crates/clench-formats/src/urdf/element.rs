@@ -38,7 +38,7 @@ pub(super) fn inside(outer: &Element) -> impl Fn(LoadError) -> LoadError {
 }
 
 /// Counts an element of this size with these texts against the budget.
-pub(super) fn charge(
+pub(super) fn consume(
     element: &Element,
     size: usize,
     texts: &[&str],
@@ -47,6 +47,6 @@ pub(super) fn charge(
     /// Copies in the builder, in that of the fused bodies, and in the model.
     const COPIES: usize = 4;
     let texts: usize = texts.iter().map(|text| text.len()).sum();
-    let charged = spending.bytes((COPIES * (size + texts)) as u64);
-    charged.map_err(|excess| element.error(excess))
+    let consumed = spending.bytes((COPIES * (size + texts)) as u64);
+    consumed.map_err(|excess| element.error(excess))
 }

@@ -1,6 +1,6 @@
 //! `<collision>` and `<visual>`: shapes on links, and `<material>`, which may make them invisible to rays.
 
-use super::element::charge;
+use super::element::consume;
 use super::meshes::Meshes;
 use crate::LoadError;
 use crate::document::Element;
@@ -76,7 +76,7 @@ impl GeomReader<'_> {
                 }
             }
             let name = self.free_name(element, notes);
-            charge(element, size_of::<GeomSpec>(), &[&name], spending)?;
+            consume(element, size_of::<GeomSpec>(), &[&name], spending)?;
             let mut geom = self.read_shape(element, spending)?;
             geom.name = name;
             geom.visible = rgba.is_none_or(|[.., alpha]| alpha != 0.0);
@@ -175,8 +175,8 @@ pub(super) fn read_origin(element: &Element) -> Result<Pose, LoadError> {
         Vec3::new(0.0, 0.0, 1.0),
     ];
     let angles: [f64; 3] = origin.numbers("rpy")?.unwrap_or_default();
-    let turn = |total: Quat<f64>, (axis, angle)| Quat::from_axis_angle(axis, angle) * total;
-    let quat = axes.into_iter().zip(angles).fold(Quat::IDENTITY, turn);
+    let rotation = |total: Quat<f64>, (axis, angle)| Quat::from_axis_angle(axis, angle) * total;
+    let quat = axes.into_iter().zip(angles).fold(Quat::IDENTITY, rotation);
     Ok(Pose {
         pos: Vec3::from_array(origin.numbers("xyz")?.unwrap_or_default()),
         quat: quat.normalize(),

@@ -39,7 +39,7 @@ const KNOWN: [(&str, &[&str], &[&str]); 21] = [
 ];
 
 /// The maximum number of notes; further mistakes are probably of the same kind.
-const MOST: usize = 20;
+const MAX_NOTES: usize = 20;
 /// The maximum number of names to compare with known ones.
 const MAX_COMPARED: usize = 10_000;
 
@@ -57,7 +57,7 @@ pub(super) fn collect(root: &Element, notes: &mut Vec<String>) {
             }
             compared += 1;
             let hint = suggestion(name, known.iter().copied());
-            if !hint.is_empty() && notes.len() < MOST {
+            if !hint.is_empty() && notes.len() < MAX_NOTES {
                 let of = element.label();
                 notes.push(format!("line {line}: {what} of {of} is ignored{hint}"));
             }

@@ -1,6 +1,6 @@
 //! `<joint>`: the pose of a link on its parent, and its degrees of freedom.
 
-use super::element::{charge, inside};
+use super::element::{consume, inside};
 use super::geometry::read_origin;
 use super::tree::Tree;
 use crate::LoadError;
@@ -68,7 +68,7 @@ pub(super) fn read_all(
             .into_iter()
             .map(|note| format!("line {line}: {}: {note}", element.label()));
         builder.notes.extend(located);
-        charge(
+        consume(
             element,
             joints.len() * size_of::<JointSpec>(),
             &[name],
@@ -135,8 +135,8 @@ fn read(
 /// Returns two axes perpendicular to an axis: x and y under the minimal rotation of z to it.
 fn across(axis: Vec3<f64>) -> [Vec3<f64>; 2] {
     let (unit, _) = axis.normalize();
-    let turn = Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), unit);
-    [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)].map(|v| turn.rotate(v))
+    let rotation = Quat::from_two_vectors(Vec3::new(0.0, 0.0, 1.0), unit);
+    [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)].map(|v| rotation.rotate(v))
 }
 
 /// Reads the limits of position, and of effort as limits of total actuator force. Velocities have no limit.

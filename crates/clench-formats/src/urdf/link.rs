@@ -1,6 +1,6 @@
 //! `<link>`: a body with its mass and shapes.
 
-use super::element::{charge, inside};
+use super::element::{consume, inside};
 use super::geometry::{GeomReader, read_origin};
 use super::tree::Link;
 use crate::LoadError;
@@ -22,7 +22,7 @@ pub(super) fn read(
     let element = link.element;
     if link.body > 0 {
         let name = element.string("name");
-        charge(element, size_of::<BodySpec>(), &[&name], spending)?;
+        consume(element, size_of::<BodySpec>(), &[&name], spending)?;
         builder.bodies.push(BodySpec {
             name,
             parent: link.parent,
@@ -59,8 +59,8 @@ fn read_inertial(link: &Element) -> Result<Option<InertialSpec>, LoadError> {
                     Vec3::new(xz, yz, zz),
                 ],
             };
-            let turn = pose.quat.to_matrix();
-            let [x, y, z] = (turn * written * turn.transpose()).rows;
+            let rotation = pose.quat.to_matrix();
+            let [x, y, z] = (rotation * written * rotation.transpose()).rows;
             InertiaSpec::Full([x.x, y.y, z.z, x.y, x.z, y.z])
         }
     };

@@ -2,7 +2,7 @@
 
 use crate::LoadError;
 use crate::document::Element;
-use crate::mesh::{self, Beside, Format, Objects};
+use crate::mesh::{self, Format, MeshFolder, Objects};
 use crate::mjcf::compiler::CompilerOptions;
 use crate::mjcf::files::{Content, slashes};
 use crate::spending::Spending;
@@ -67,12 +67,12 @@ impl<'a> Meshes<'a> {
             ))
         })?;
         let directory = file.directory();
-        let mut beside = Beside {
+        let mut mesh_folder = MeshFolder {
             directory: &directory,
             spending,
         };
         let triangles = file.parse(element, |bytes| {
-            mesh::read(bytes, format, Objects::All, &mut beside)
+            mesh::read(bytes, format, Objects::All, &mut mesh_folder)
         })?;
         spending
             .bytes(mesh::cost(&triangles))

@@ -44,7 +44,7 @@ fn names<T>(elements: &[T], name: impl Fn(&T) -> &str) -> Vec<&str> {
 }
 
 #[test]
-fn a_body_brings_what_refers_to_it_and_keeps_the_settings_of_its_file() {
+fn an_attached_body_brings_its_references_and_the_settings_of_its_file() {
     let model = attached(
         "<attach model='arm' body='A' prefix='p_'/>",
         "<actuator><motor name='own' joint='p_ja'/></actuator>",
@@ -105,7 +105,7 @@ fn a_model_can_be_attached_twice_and_lends_its_classes() {
 }
 
 #[test]
-fn what_is_attached_can_be_replicated() {
+fn attached_elements_can_be_replicated() {
     let model = attached(
         "<replicate count='2'><attach model='arm' body='B' prefix='p_'/></replicate>",
         "<actuator><motor name='own' joint='p_jb'/></actuator>",
@@ -136,7 +136,7 @@ fn a_model_attaches_parts_of_itself_that_stand_before() {
 }
 
 #[test]
-fn what_acts_on_the_world_alone_follows_no_part_of_it() {
+fn elements_of_the_world_alone_are_not_attached_with_a_part() {
     let model = read_str(
         "<mujoco><worldbody><geom type='plane' size='1 1 1'/>
            <body name='b'><joint/><geom size='1'/></body><attach body='b' prefix='c_'/>
@@ -173,7 +173,7 @@ fn a_site_may_be_called_world() {
 }
 
 #[test]
-fn files_of_attached_models_are_found_from_where_those_are() {
+fn files_of_attached_models_are_relative_to_those_models() {
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     let files = Files::new(&[
         (
@@ -218,7 +218,7 @@ fn a_model_that_attaches_itself_is_refused_with_the_chain() {
 }
 
 #[test]
-fn what_cannot_be_attached_says_why() {
+fn unsupported_attachments_are_refused_with_the_reason() {
     let refused = |compiler: &str, attach: &str, words: &str| {
         let main = main_file(compiler, attach, "");
         let files = Files::new(&[("main.xml", main.as_str()), ("parts/arm.xml", ARM)]);
@@ -278,7 +278,7 @@ fn merged(conflict: &str, own: &str, parts: &[&str]) -> Result<(f64, usize, f64,
 }
 
 #[test]
-fn options_of_attached_models_are_merged_where_they_can_be() {
+fn options_of_attached_models_are_merged_if_possible() {
     let (timestep, iterations, gravity, notes) = merged(
         "merge",
         "<option timestep='.005' iterations='50'/>",
@@ -290,7 +290,7 @@ fn options_of_attached_models_are_merged_where_they_can_be() {
 }
 
 #[test]
-fn what_was_taken_from_a_model_attached_before_counts_as_given() {
+fn options_adopted_from_an_earlier_attached_model_count_as_set() {
     let parts = ["<option timestep='.004'/>", "<option timestep='.001'/>"];
     assert_eq!(merged("merge", "", &parts).unwrap().0, 0.001);
     assert_eq!(merged("merge", "", &parts[..1]).unwrap().0, 0.004);
@@ -317,7 +317,7 @@ fn options_that_cannot_be_merged_are_refused_by_name() {
 }
 
 #[test]
-fn urdf_can_be_attached_and_the_model_around_says_whether_it_is_fused() {
+fn urdf_can_be_attached_and_the_enclosing_model_determines_fusing() {
     let robot = "<robot name='r'>
       <link name='base'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>
       <link name='arm'>

@@ -41,7 +41,7 @@ fn part(element: KeyframeElement, first: &[f64], second: &[f64]) -> KeyframePart
 }
 
 #[test]
-fn keyframes_of_attached_models_say_what_they_say_of_what_is_attached() {
+fn keyframes_of_attached_models_apply_to_the_attached_elements() {
     use KeyframeElement::{Actuator, Joint, Mocap};
     let all = keyframes("<attach model='part' prefix='x_'/>");
     let expected = vec![
@@ -79,7 +79,7 @@ fn a_model_that_is_attached_twice_has_its_keyframes_twice_and_replicas_have_them
 
 /// The values for a model that has its own yielding springs are MuJoCo's.
 #[test]
-fn keyframes_of_attached_models_say_where_springs_rest() {
+fn keyframes_of_attached_models_store_plastic_states() {
     let part = "<mujoco><worldbody><body name='x'>
         <joint name='j' type='slide' springyield='.1'/><joint type='ball' springyield='.1'/><geom size='.1'/>
       </body></worldbody>
@@ -105,7 +105,7 @@ fn keyframes_of_attached_models_say_where_springs_rest() {
 
 /// Values are scaled by the frame that the elements are attached to; omitted values are not scaled.
 #[test]
-fn keyframes_of_attached_models_are_scaled_with_what_they_place() {
+fn keyframes_of_attached_models_are_scaled_with_their_joints() {
     let part = "<mujoco>
       <worldbody>
         <body pos='1 0 0'><joint name='s' type='slide' axis='0 1 0' springyield='.1' springref='.2' stiffness='1'/>

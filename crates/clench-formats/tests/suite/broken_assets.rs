@@ -214,7 +214,7 @@ fn numbers_of_any_size_never_panic() {
 }
 
 #[test]
-fn meshes_that_cannot_be_are_refused() {
+fn invalid_meshes_are_refused() {
     let folder = Folder::new("refused");
     let flat = "vertex='0 0 0 1 0 0 0 1 0 1 1 0'";
     for (attributes, complaint) in [

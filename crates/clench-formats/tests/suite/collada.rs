@@ -80,7 +80,7 @@ fn the_unit_scales_a_mesh_and_the_axis_that_points_up_does_not_turn_it() {
 }
 
 #[test]
-fn what_a_node_says_acts_from_the_last_to_the_first() {
+fn transforms_of_a_node_apply_from_last_to_first() {
     let parts = "<translate>1 0 0</translate><rotate>0 0 1 90</rotate><scale>1 2 -1</scale>";
     let model = read("parts", &file("", TRIANGLES, parts));
     let centre = [1.0 - 2.0 * 0.75, 0.75, -0.75];
@@ -108,7 +108,7 @@ fn polygons_are_cut_into_triangles() {
 }
 
 #[test]
-fn an_error_says_where_and_what() {
+fn an_error_has_its_location_and_reason() {
     let short = TRIANGLES.replace("1 0 2 0 3 0</p>", "1 0 2 0</p>");
     let wild = TRIANGLES.replace("2 0 3 0</p>", "2 0 7 0</p>");
     let strange = TRIANGLES.replace("1 0 2 0 3 0</p>", "1 0 x 0 3 0</p>");

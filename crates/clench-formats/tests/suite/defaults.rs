@@ -46,7 +46,7 @@ fn classes_inherit_and_the_nearest_word_counts() {
 }
 
 #[test]
-fn a_class_sees_what_its_parent_says_after_it() {
+fn a_class_inherits_later_settings_of_its_parent() {
     let model = read(
         "<default>
            <default class='child'><geom margin='2'/></default>
@@ -127,7 +127,7 @@ fn every_kind_of_element_has_defaults() {
 
 /// An unused class may contain values that no element supports.
 #[test]
-fn what_is_not_supported_refuses_nothing_in_a_class_that_serves_none() {
+fn unsupported_attributes_are_accepted_in_unused_classes() {
     let geom = "<worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>";
     for (said, used) in [
         (

@@ -213,7 +213,7 @@ fn numbers_that_are_too_large_for_single_precision_are_refused() {
 }
 
 #[test]
-fn keywords_that_are_none_are_refused() {
+fn unknown_keywords_are_refused() {
     expect("<geom type='ball'/>", "geom", "type is \"ball\"");
     expect(
         "<body><joint limited='True'/></body>",
@@ -316,7 +316,7 @@ fn contradictory_and_missing_values_are_refused() {
 }
 
 #[test]
-fn names_that_lead_nowhere_are_refused() {
+fn unknown_names_are_refused() {
     expect("<geom class='x'/>", "geom", "no default class \"x\"");
     expect(
         "<body childclass='mian'/>",
@@ -385,7 +385,7 @@ fn what_is_not_supported_yet_is_an_error_that_says_so() {
 }
 
 #[test]
-fn what_the_integrator_discrete_cannot_go_with_is_refused() {
+fn unsupported_combinations_with_the_integrator_discrete_are_refused() {
     for (options, words) in [
         ("<option integrator='discrete' solver='PGS'/>", "PGS"),
         (
@@ -409,7 +409,7 @@ fn speculative_contacts_are_refused_with_the_reason() {
 }
 
 #[test]
-fn what_is_not_supported_is_accepted_where_it_does_nothing() {
+fn unsupported_attributes_without_effect_are_accepted() {
     read_str(
         "<mujoco>
            <option><flag ipc='disable' invdiscrete='enable'/></option>

@@ -81,7 +81,7 @@ fn read(name: &str, extension: &str, mesh: impl AsRef<[u8]>) -> Model {
 }
 
 #[test]
-fn bytes_may_be_in_the_text_in_the_file_and_beside_it() {
+fn bytes_may_be_in_the_text_in_the_file_or_in_another_file() {
     let beside = text(r#"{"uri": "numbers%20of%20it.bin", "byteLength": 84}"#, "");
     let inside = text(r#"{"byteLength": 84}"#, "");
     for model in [
@@ -122,7 +122,7 @@ fn strips_and_fans_are_triangles() {
 }
 
 #[test]
-fn an_error_says_where_and_what() {
+fn an_error_has_its_location_and_reason() {
     let plain = embedded("");
     let inside = binary(&text(r#"{"byteLength": 84}"#, ""), &numbers());
     for (name, mesh, message) in [

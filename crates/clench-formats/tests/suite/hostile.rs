@@ -116,7 +116,7 @@ fn names_in_a_namespace_are_other_names() {
 }
 
 #[test]
-fn what_grows_with_the_square_of_a_file_is_bounded() {
+fn quadratic_growth_with_the_file_is_limited() {
     let start = Instant::now();
     let attributes: String = (0..50_000).map(|i| format!(" a{i}=''")).collect();
     refused(

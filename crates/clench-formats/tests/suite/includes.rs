@@ -49,7 +49,7 @@ fn an_error_names_the_included_file() {
 }
 
 #[test]
-fn no_file_is_included_twice_by_whatever_path() {
+fn no_file_is_included_twice_by_different_paths() {
     for second in ["part.xml", "./part.xml", "parts/../part.xml", "main.xml"] {
         let main =
             format!("<mujoco>\n<include file='part.xml'/>\n<include file='{second}'/></mujoco>");

@@ -8,7 +8,7 @@ fn read(text: &str) -> Result<ModelBuilder, LoadError> {
 }
 
 #[test]
-fn plugins_and_deformable_bodies_are_left_out_and_listed() {
+fn plugins_and_deformable_bodies_are_omitted_and_listed() {
     let text = "<mujoco>
   <extension><plugin plugin='p'/></extension>
   <worldbody>
@@ -33,7 +33,7 @@ fn plugins_and_deformable_bodies_are_left_out_and_listed() {
 }
 
 #[test]
-fn signed_distance_fields_are_left_out_with_their_meshes() {
+fn signed_distance_fields_are_omitted_with_their_meshes() {
     let model = read(
         "<mujoco>
            <asset><mesh name='m'><plugin plugin='bowl'/></mesh></asset>
@@ -46,19 +46,19 @@ fn signed_distance_fields_are_left_out_with_their_meshes() {
 }
 
 #[test]
-fn nothing_is_left_out_where_all_is_supported() {
+fn nothing_is_omitted_from_a_supported_model() {
     let model = read("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>").unwrap();
     assert!(model.left_out.is_empty());
 }
 
 #[test]
-fn unknown_words_are_errors_as_ever() {
+fn unknown_keywords_remain_errors() {
     assert!(read("<mujoco><worldbody><goem size='1'/></worldbody></mujoco>").is_err());
     assert!(read("<mujoco><worldbody><geom syze='1'/></worldbody></mujoco>").is_err());
 }
 
 #[test]
-fn files_in_memory_go_before_those_on_disk_whatever_their_folder_and_capitals() {
+fn files_in_memory_precede_those_on_disk_regardless_of_folder_and_case() {
     let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4";
     let loader = Loader::new().assets([
         ("Meshes/T.OBJ", tetrahedron),

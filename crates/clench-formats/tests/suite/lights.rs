@@ -75,7 +75,7 @@ fn numbers_are_those_of_the_file_or_of_mujoco() {
 }
 
 #[test]
-fn lights_are_where_mujoco_has_them() {
+fn lights_have_mujocos_poses() {
     let mut sim = Sim::<f64>::new(Arc::new(load_str(SCENE).unwrap())).unwrap();
     sim.state.qpos[..8].copy_from_slice(&[0.1, 0.2, 0.9, 0.5, 0.5, 0.5, 0.5, 0.7]);
     sim.refresh().unwrap();

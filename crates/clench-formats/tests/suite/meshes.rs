@@ -29,7 +29,7 @@ fn every_format_reads_the_same_cube() {
 }
 
 #[test]
-fn a_note_tells_of_the_faces_of_further_objects() {
+fn a_note_reports_the_faces_of_further_objects() {
     let folder = Folder::new("objects");
     let further = "g rest\nf 1 2 3\nf 1 2 4\n";
     folder.write("parts/cube.obj", [obj(), further.into()].concat());
@@ -187,7 +187,7 @@ fn primitives_fit_meshes() {
 }
 
 #[test]
-fn what_is_only_seen_weighs_but_may_be_discarded() {
+fn visual_geoms_have_mass_but_may_be_discarded() {
     let folder = Folder::new("visual");
     let text = |compiler: &str| {
         format!(
@@ -221,7 +221,7 @@ fn what_is_only_seen_weighs_but_may_be_discarded() {
 }
 
 #[test]
-fn what_other_elements_name_is_not_only_seen() {
+fn referenced_geoms_are_not_visual() {
     let model = clench_formats::load_str(
         "<mujoco><compiler discardvisual='true'/>
            <default><geom size='.1' contype='0' conaffinity='0'/></default>

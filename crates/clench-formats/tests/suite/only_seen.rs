@@ -3,7 +3,7 @@
 use clench_formats::load_str;
 
 #[test]
-fn what_is_only_seen_is_left_out_of_the_world_whatever_inertia_comes_from() {
+fn visual_geoms_of_the_world_are_omitted() {
     let text = "<mujoco><compiler inertiafromgeom='true' discardvisual='true'/><worldbody>
         <geom size='1' contype='0' conaffinity='0'/><geom size='1'/>
         </worldbody></mujoco>";
@@ -11,7 +11,7 @@ fn what_is_only_seen_is_left_out_of_the_world_whatever_inertia_comes_from() {
 }
 
 #[test]
-fn what_is_only_seen_is_left_out_where_its_group_counts_towards_no_inertia() {
+fn visual_geoms_outside_the_inertia_groups_are_omitted() {
     let load = |group: &str| {
         load_str(&format!(
             "<mujoco><compiler inertiafromgeom='true' inertiagrouprange='0 2' discardvisual='true'/>
@@ -26,7 +26,7 @@ fn what_is_only_seen_is_left_out_where_its_group_counts_towards_no_inertia() {
 }
 
 #[test]
-fn what_is_only_seen_and_weighs_nothing_is_left_out_and_what_a_medium_drags_is_kept() {
+fn massless_visual_geoms_are_omitted_unless_a_medium_drags_them() {
     for (geom, left) in [
         ("mass='0'", 1),
         ("density='0'", 1),
@@ -42,7 +42,7 @@ fn what_is_only_seen_and_weighs_nothing_is_left_out_and_what_a_medium_drags_is_k
 }
 
 #[test]
-fn what_is_only_seen_is_accepted() {
+fn visual_geoms_are_accepted() {
     let model = load_str(
         "<mujoco model='seen'>
            <compiler meshdir='meshes' texturedir='textures' strippath='true' discardvisual='false'/>
@@ -68,7 +68,7 @@ fn what_is_only_seen_is_accepted() {
 }
 
 #[test]
-fn opacity_says_what_can_be_seen() {
+fn opacity_determines_visibility() {
     let model = load_str(
         "<mujoco>
            <default>

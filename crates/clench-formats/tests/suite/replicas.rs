@@ -21,7 +21,7 @@ fn names<T>(elements: &[T], name: impl Fn(&T) -> &str) -> Vec<&str> {
 }
 
 #[test]
-fn actuators_and_equalities_follow_only_what_is_all_replicated() {
+fn actuators_and_equalities_are_copied_if_all_their_targets_are() {
     let model = replicated(
         "<actuator><motor name='a' joint='j'/><motor name='own' joint='fj'/></actuator>
          <equality>
@@ -65,7 +65,7 @@ fn one_replicated_object_is_enough_for_pairs_and_sensors_and_one_joint_for_tendo
 }
 
 #[test]
-fn what_refers_to_nothing_is_copied_with_every_replica_and_its_copies_with_the_next() {
+fn elements_without_references_are_copied_with_every_replica() {
     let model = replicated("<sensor><clock name='c'/></sensor>");
     assert_eq!(names(&model.sensors, |s| &s.name), ["c", "c0", "c1", "c01"]);
 }

@@ -40,7 +40,7 @@ fn pendulum(frame: &str, gravity: f64) -> Model {
 /// A scaled model moves as the original would in proportionally weaker gravity: lengths are scaled, and angles are
 /// equal.
 #[test]
-fn a_similar_copy_moves_alike_in_proportional_gravity() {
+fn a_similar_copy_moves_equally_in_proportional_gravity() {
     let (small, large) = (
         pendulum("", -9.81),
         pendulum("scale='2' massscale='5'", -19.62),
@@ -81,7 +81,7 @@ fn frames_multiply_and_each_keeps_its_policy() {
 }
 
 #[test]
-fn a_policy_alone_changes_nothing() {
+fn a_policy_without_a_scale_changes_nothing() {
     let geoms = "<body><joint stiffness='3'/><geom size='0.5'/></body>";
     let plain = load(&format!("<worldbody><frame>{geoms}</frame></worldbody>"));
     for said in [
@@ -127,7 +127,7 @@ fn a_mesh_has_an_instance_for_each_size() {
 }
 
 #[test]
-fn keyframes_are_scaled_with_what_they_place() {
+fn keyframes_are_scaled_with_their_joints() {
     let model = load(
         "<worldbody><frame scale='2'>
            <body><joint axis='0 1 0'/><joint type='slide'/><geom size='1'/></body>
@@ -143,7 +143,7 @@ fn keyframes_are_scaled_with_what_they_place() {
 }
 
 #[test]
-fn controls_and_activations_are_scaled_by_what_they_measure() {
+fn controls_and_activations_are_scaled_by_their_unit() {
     let model = load(
         "<worldbody><site name='w'/><frame scale='2'>
            <body><joint name='slide' type='slide'/><geom size='1'/><site name='s'/></body>
@@ -162,7 +162,7 @@ fn controls_and_activations_are_scaled_by_what_they_measure() {
 }
 
 #[test]
-fn cutoffs_and_noise_of_sensors_are_scaled_by_what_they_measure() {
+fn cutoffs_and_noise_of_sensors_are_scaled_by_their_unit() {
     let model = load(
         "<worldbody><frame scale='2'>
            <body name='b'>
@@ -204,7 +204,7 @@ fn cutoffs_and_noise_of_sensors_are_scaled_by_what_they_measure() {
 }
 
 #[test]
-fn what_cannot_be_scaled_is_refused() {
+fn unscalable_elements_are_refused() {
     let geom = "<body><joint name='j'/><geom size='1'/></body>";
     for (frame, words) in [
         ("scale='0'", "scale must be positive"),
@@ -236,7 +236,7 @@ fn what_cannot_be_scaled_is_refused() {
 
 /// The expected numbers are MuJoCo's.
 #[test]
-fn yields_and_where_springs_rest_are_scaled_along_what_they_measure() {
+fn yields_and_plastic_states_are_scaled_by_their_unit() {
     let model = load(
         "<compiler angle='radian'/>
          <worldbody><site name='w'/>
@@ -293,7 +293,7 @@ fn scales_that_differ_between_axes_act_by_axis() {
 }
 
 #[test]
-fn what_scales_by_axis_would_deform_is_refused() {
+fn elements_that_a_scale_by_axis_would_deform_are_refused() {
     for (scale, part, words) in [
         ("2 2 3", "<geom size='1'/>", "use an ellipsoid"),
         (
@@ -338,7 +338,7 @@ fn what_scales_by_axis_would_deform_is_refused() {
 }
 
 #[test]
-fn a_stretched_mesh_keeps_its_outside() {
+fn a_mirrored_mesh_keeps_its_outside() {
     let mesh = "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1' scale='1 -1 1'/></asset>";
     let geom = "<geom type='mesh' mesh='m' density='1' euler='0 0 30'/>";
     let model = load(&format!(

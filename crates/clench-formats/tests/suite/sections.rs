@@ -15,7 +15,7 @@ fn read(sections: &str) -> ModelBuilder {
 }
 
 #[test]
-fn a_silent_file_means_what_its_format_means() {
+fn a_file_without_options_has_the_defaults_of_its_format() {
     let model = read("");
     let options = model.options;
     assert_eq!(
@@ -91,7 +91,7 @@ fn an_option_that_mujoco_lacks_is_a_text_that_it_ignores() {
 }
 
 #[test]
-fn a_replaced_solver_is_told_once() {
+fn a_replaced_solver_is_reported_once() {
     let model = read("<option solver='PGS'/><option/>");
     assert_eq!(
         model.options.constraint_solver,
@@ -123,7 +123,7 @@ fn flags_switch_features_and_solver_options() {
 
 /// MuJoCo resets a simulation that diverges unless a file disables it; here a file must enable it.
 #[test]
-fn a_file_says_whether_a_motion_that_diverges_begins_anew() {
+fn a_file_sets_autoreset() {
     let flag = |value: &str| read(&format!("<option><flag autoreset='{value}'/></option>"));
     assert_eq!(flag("enable").options.autoreset, Some(true));
     assert_eq!(flag("disable").options.autoreset, Some(false));

@@ -44,7 +44,7 @@ fn sensors_have_their_places_in_the_order_of_the_file() {
 }
 
 #[test]
-fn what_no_sensor_can_be_is_refused_with_its_line() {
+fn invalid_sensors_are_refused_with_their_line() {
     for (sensor, reason) in [
         ("<gyro site='no'/>", "there is no site \"no\""),
         ("<gyro/>", "the attribute \"site\" is required"),
@@ -197,7 +197,7 @@ fn the_numbers_of_a_sensor_follow_from_its_data() {
 }
 
 #[test]
-fn what_no_camera_can_be_is_refused_with_its_line() {
+fn invalid_cameras_are_refused_with_their_line() {
     for (camera, reason) in [
         (
             "<camera mode='targetbody' target='no'/>",
@@ -225,7 +225,7 @@ fn what_no_camera_can_be_is_refused_with_its_line() {
 }
 
 #[test]
-fn a_camera_keeps_the_frame_that_it_has_at_first_where_it_tracks() {
+fn a_tracking_camera_keeps_its_initial_frame() {
     let text = "<mujoco><default><camera resolution='4 2' fovy='30'/></default><worldbody>
         <body name='arm' pos='1 0 0' euler='0 0 90'><joint/><geom size='.1' pos='0 1 0'/>
         <camera name='eye' pos='1 0 0' mode='track'/><camera pos='1 0 0' mode='trackcom' target='arm'/></body>

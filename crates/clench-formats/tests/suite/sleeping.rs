@@ -33,7 +33,7 @@ fn tolerance_flag_and_policies_are_read() {
 }
 
 #[test]
-fn what_cannot_be_is_an_error_with_its_place() {
+fn invalid_policies_are_errors_with_their_line() {
     let enable = "<option><flag sleep='enable'/></option>";
     let spring = "<body sleep='allowed'><joint name='a'/><geom size='1'/></body><body><joint name='b'/><geom size='1'/></body>
         </worldbody><tendon><fixed stiffness='1'><joint joint='a' coef='1'/><joint joint='b' coef='1'/></fixed></tendon><worldbody>";

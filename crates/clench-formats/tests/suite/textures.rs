@@ -68,7 +68,7 @@ fn computed_pixels_are_those_of_mujoco() {
 }
 
 #[test]
-fn random_dots_are_as_many_as_their_probability_says() {
+fn the_number_of_random_dots_matches_their_probability() {
     let found = pixels(
         "<texture name='t' type='2d' builtin='flat' mark='random' random='.1' rgb1='0 0 0' markrgb='1 1 1' \
          width='200' height='200'/>",
@@ -108,7 +108,7 @@ fn cubes_come_from_one_picture_a_grid_or_six_files() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_textures_are_errors() {
     for (texture, words) in [
         (
             "<texture type='2d' name='t' file='no.png'/>",

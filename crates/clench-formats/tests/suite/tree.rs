@@ -28,7 +28,7 @@ fn same_rotation(a: Quat<f64>, b: [f64; 4]) -> bool {
 }
 
 #[test]
-fn what_mujoco_makes_nothing_of_is_no_error() {
+fn attributes_that_mujoco_ignores_are_no_errors() {
     let model = read_str(
         "<mujoco>
            <compiler inertiagrouprange=''/>
@@ -61,7 +61,7 @@ fn bodies_stand_in_the_order_of_the_file_parents_first() {
 
 /// As in MuJoCo: an undefined inertial frame has the same offset from the body as the body from its `<frame>`.
 #[test]
-fn a_body_without_mass_in_a_frame_is_bounded_where_it_is_written() {
+fn boundmass_applies_to_massless_bodies_in_frames() {
     let text = "<mujoco><compiler boundmass='1' boundinertia='1'/><worldbody>
         <frame pos='1 2 3'><frame pos='4 5 6' euler='90 0 0'>
           <body pos='0.1 0.2 0.3'><joint/></body>
@@ -90,7 +90,7 @@ fn orientations_may_be_written_in_five_ways() {
 }
 
 #[test]
-fn angles_are_degrees_unless_the_compiler_says_radian() {
+fn angles_are_degrees_unless_the_compiler_sets_radian() {
     let body = "<worldbody><body euler='0 0 1.5707963267948966'/></worldbody>";
     let quat = read(&format!("<compiler angle='radian'/>{body}")).bodies[1].quat;
     assert!(same_rotation(
@@ -146,7 +146,7 @@ fn frames_carry_their_contents_along() {
 }
 
 #[test]
-fn a_full_inertia_turns_with_its_frame() {
+fn a_full_inertia_rotates_with_its_frame() {
     let model = world(
         "<body><frame euler='0 0 90'><inertial pos='0 0 0' mass='1' fullinertia='1 2 3 0.1 0.2 0.3'/></frame></body>",
     );
@@ -187,7 +187,7 @@ fn degrees_concern_limits_and_references_of_hinges_but_not_slides() {
 }
 
 #[test]
-fn a_free_joint_takes_nothing_from_defaults() {
+fn a_free_joint_ignores_defaults() {
     let model = read(
         "<default><joint damping='3' armature='1'/></default>
          <worldbody><body><freejoint name='root' align='false'/></body></worldbody>",

@@ -15,7 +15,7 @@ fn comments_may_hold_dashes() {
 }
 
 #[test]
-fn what_stands_before_the_model_does_not_count() {
+fn text_before_the_model_is_ignored() {
     loads("\u{feff}<mujoco/>");
     loads(" \n<?xml version='1.0'?>\n<mujoco/>");
     loads("<!DOCTYPE mujoco>\n<mujoco/>");
@@ -57,20 +57,20 @@ fn attributes_may_touch() {
 }
 
 #[test]
-fn the_root_may_say_where_its_schema_is() {
+fn the_root_may_name_its_schema() {
     loads(
         "<mujoco xmlns:xsi='http://www.w3.org/2001/XMLSchema-instance' xsi:noNamespaceSchemaLocation='mjcf.xsd'/>",
     );
 }
 
 #[test]
-fn lines_stay_where_they_are() {
+fn line_numbers_are_preserved() {
     let text = "<mujoco>\n<!-- a -- \n b -->\n<worldbody>\n<geom size='x'/></worldbody></mujoco>";
     assert_eq!(read_str(text).unwrap_err().line, Some(5));
 }
 
 #[test]
-fn what_is_broken_stays_broken() {
+fn malformed_files_stay_errors() {
     for text in [
         "<mujoco><!-- a -- b --><worldbody></mujoco>",
         "<mujoco><!-- a -- b --><worldbody/>",

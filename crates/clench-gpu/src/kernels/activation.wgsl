@@ -2,11 +2,11 @@
 
 // Returns the setpoint of a servo on a circle, moved by full turns to be nearest to `near`; other inputs are unchanged.
 fn nearest_setpoint(u: u32, input: f32, near: f32) -> f32 {
-    let turn = parameter(ACTUATOR_TURN + u);
-    if (turn == 0.0) {
+    let rotation = parameter(ACTUATOR_TURN + u);
+    if (rotation == 0.0) {
         return input;
     }
-    return input - turn * floor((input - near) / turn + 0.5);
+    return input - rotation * floor((input - near) / rotation + 0.5);
 }
 
 fn time_constant(u: u32) -> f32 {

@@ -94,8 +94,8 @@ fn limit_entry(source: u32, i: u32) -> f32 {
     if (i < dof || i >= dof + 3u) {
         return 0.0;
     }
-    let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
-    return -direction(quat_rotation_vector(turn))[i - dof];
+    let rotation = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
+    return -direction(quat_rotation_vector(rotation))[i - dof];
 }
 
 fn entry(a: u32, i: u32) -> f32 {
@@ -208,5 +208,5 @@ fn assemble(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
     for (var b = lane; b < nblock; b += GROUP) {
         finish_block(b);
     }
-    note_end();
+    check_loops();
 }

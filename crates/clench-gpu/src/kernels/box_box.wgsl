@@ -20,18 +20,18 @@ struct Separation {
     distance: f32,
 }
 
-// Finds the best face normal; an owner above 2 means separate boxes. `turn` holds the axes of the second box in the
+// Finds the best face normal; an owner above 2 means separate boxes. `rotation` holds the axes of the second box in the
 // frame of the first.
-fn best_face(turn: mat3x3f, offset: vec3f, a: Placed, b: Placed, reach: f32) -> Separation {
-    var most = Separation(3u, 0u, 0u, -3e38);
+fn best_face(rotation: mat3x3f, offset: vec3f, a: Placed, b: Placed, reach: f32) -> Separation {
+    var largest = Separation(3u, 0u, 0u, -3e38);
     for (var k = 0u; k < bound(6u); k++) {
         let second = k >= 3u;
         let axis = k % 3u;
-        var along = transpose(turn)[axis];
+        var along = transpose(rotation)[axis];
         var extent = dot(abs(along), b.size) + a.size[axis];
         var apart = offset[axis];
         if (second) {
-            along = turn[axis];
+            along = rotation[axis];
             extent = dot(abs(along), a.size) + b.size[axis];
             apart = dot(along, offset);
         }
@@ -39,16 +39,16 @@ fn best_face(turn: mat3x3f, offset: vec3f, a: Placed, b: Placed, reach: f32) -> 
         if (distance > reach) {
             return Separation(3u, 0u, 0u, distance);
         }
-        if (distance > most.distance) {
-            most = Separation(select(0u, 1u, second), axis, 0u, distance);
+        if (distance > largest.distance) {
+            largest = Separation(select(0u, 1u, second), axis, 0u, distance);
         }
     }
-    return most;
+    return largest;
 }
 
 // Finds an edge pair that is better than the best face, if any.
-fn best_edges(face: Separation, turn: mat3x3f, offset: vec3f, a: vec3f, b: vec3f, reach: f32) -> Separation {
-    var most = face;
+fn best_edges(face: Separation, rotation: mat3x3f, offset: vec3f, a: vec3f, b: vec3f, reach: f32) -> Separation {
+    var largest = face;
     for (var k = 0u; k < bound(9u); k++) {
         let i = k / 3u;
         let j = k % 3u;
@@ -56,23 +56,23 @@ fn best_edges(face: Separation, turn: mat3x3f, offset: vec3f, a: vec3f, b: vec3f
         let i2 = (i + 2u) % 3u;
         let j1 = (j + 1u) % 3u;
         let j2 = (j + 2u) % 3u;
-        let u = turn[j][i1];
-        let v = turn[j][i2];
+        let u = rotation[j][i1];
+        let v = rotation[j][i2];
         let sine_squared = u * u + v * v;
         // Nearly parallel edges: their cross product is noise, and the faces cover the case.
         if (sine_squared < 0.5 * EPSILON) {
             continue;
         }
-        let extent = a[i1] * abs(v) + a[i2] * abs(u) + b[j1] * abs(turn[j2][i]) + b[j2] * abs(turn[j1][i]);
+        let extent = a[i1] * abs(v) + a[i2] * abs(u) + b[j1] * abs(rotation[j2][i]) + b[j2] * abs(rotation[j1][i]);
         let distance = (abs(u * offset[i2] - v * offset[i1]) - extent) / sqrt(sine_squared);
         if (distance > reach) {
             return Separation(3u, 0u, 0u, distance);
         }
-        if (distance - EDGE_BIAS * abs(distance) > most.distance && distance > face.distance) {
-            most = Separation(2u, i, j, distance);
+        if (distance - EDGE_BIAS * abs(distance) > largest.distance && distance > face.distance) {
+            largest = Separation(2u, i, j, distance);
         }
     }
-    return most;
+    return largest;
 }
 
 fn unit_axis(axis: u32) -> vec3f {
@@ -83,18 +83,18 @@ fn unit_axis(axis: u32) -> vec3f {
 
 // Fills the polygon with the corners of the other box's face most opposed to the owner's face: x and y in that face, z
 // above it.
-fn opposing_face(axis: u32, side: f32, size: vec3f, turn: mat3x3f, offset: vec3f, other: vec3f) {
-    let slope = transpose(turn)[axis];
-    var most = 0u;
+fn opposing_face(axis: u32, side: f32, size: vec3f, rotation: mat3x3f, offset: vec3f, other: vec3f) {
+    let slope = transpose(rotation)[axis];
+    var largest = 0u;
     for (var k = 1u; k < bound(3u); k++) {
-        if (abs(slope[k]) > abs(slope[most])) {
-            most = k;
+        if (abs(slope[k]) > abs(slope[largest])) {
+            largest = k;
         }
     }
-    let facing = select(f32(1.0), f32(-1.0), side * slope[most] > 0.0);
-    let center = offset + turn[most] * (other[most] * facing);
-    let u = turn[(most + 1u) % 3u] * other[(most + 1u) % 3u];
-    let v = turn[(most + 2u) % 3u] * other[(most + 2u) % 3u];
+    let facing = select(f32(1.0), f32(-1.0), side * slope[largest] > 0.0);
+    let center = offset + rotation[largest] * (other[largest] * facing);
+    let u = rotation[(largest + 1u) % 3u] * other[(largest + 1u) % 3u];
+    let v = rotation[(largest + 2u) % 3u] * other[(largest + 2u) % 3u];
     for (var k = 0u; k < bound(4u); k++) {
         let p = center + u * select(f32(-1.0), f32(1.0), k == 0u || k == 3u) + v * select(f32(-1.0), f32(1.0), k < 2u);
         polygon[k] = vec3f(p[(axis + 1u) % 3u], p[(axis + 2u) % 3u], side * p[axis] - size[axis]);
@@ -103,13 +103,13 @@ fn opposing_face(axis: u32, side: f32, size: vec3f, turn: mat3x3f, offset: vec3f
 }
 
 // Adds the corners of the opposing face clipped to the owner's, each midway between the two faces. Returns the least
-// distance. `turn` and `offset` are those of the other box in the owner's frame.
-fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, turn: mat3x3f, offset: vec3f, out: f32, range: f32) -> f32 {
+// distance. `rotation` and `offset` are those of the other box in the owner's frame.
+fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, rotation: mat3x3f, offset: vec3f, out: f32, range: f32) -> f32 {
     let x = (axis + 1u) % 3u;
     let y = (axis + 2u) % 3u;
     let size = owner.size;
     let side = signed(1.0, offset[axis]);
-    opposing_face(axis, side, size, turn, offset, other.size);
+    opposing_face(axis, side, size, rotation, offset, other.size);
     for (var k = 0u; k < bound(4u); k++) {
         let sign = select(f32(1.0), f32(-1.0), (k & 1u) == 1u);
         clip_polygon(select(vec2f(0.0, sign), vec2f(sign, 0.0), k < 2u), select(size[y], size[x], k < 2u));
@@ -143,44 +143,44 @@ fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, turn: mat3x
 }
 
 fn box_box(pair: u32, a: Placed, b: Placed, range: f32) -> u32 {
-    let turn = transpose(a.axes) * b.axes;
+    let rotation = transpose(a.axes) * b.axes;
     let offset = transpose(a.axes) * (b.center - a.center);
     let slack = max(1e-13, 8.0 * EPSILON) * (a.size.x + a.size.y + a.size.z + b.size.x + b.size.y + b.size.z);
-    let face = best_face(turn, offset, a, b, range + slack);
+    let face = best_face(rotation, offset, a, b, range + slack);
     if (face.owner == 3u) {
         return FOUND;
     }
-    var most = best_edges(face, turn, offset, a.size, b.size, range + slack);
-    if (most.owner == 3u) {
+    var largest = best_edges(face, rotation, offset, a.size, b.size, range + slack);
+    if (largest.owner == 3u) {
         return FOUND;
     }
-    if (most.owner == 2u) {
-        let n = direction(cross(unit_axis(most.axis), turn[most.other])).xyz;
+    if (largest.owner == 2u) {
+        let n = direction(cross(unit_axis(largest.axis), rotation[largest.other])).xyz;
         var along_face = abs(n[face.axis]);
         if (face.owner == 1u) {
-            along_face = abs(dot(turn[face.axis], n));
+            along_face = abs(dot(rotation[face.axis], n));
         }
         let share = ALIAS_SHARE * abs(face.distance) + 1e-15;
-        if (along_face > ALIAS_COSINE && most.distance < face.distance + share) {
-            most = face;
+        if (along_face > ALIAS_COSINE && largest.distance < face.distance + share) {
+            largest = face;
         } else {
-            best = Gap(n * signed(1.0, dot(n, offset)), most.distance, true);
-            return select(AS_CONVEX, ALONG_BEST, most.distance <= 0.0);
+            best = Gap(n * signed(1.0, dot(n, offset)), largest.distance, true);
+            return select(AS_CONVEX, ALONG_BEST, largest.distance <= 0.0);
         }
     }
     var owner = a;
     var other = b;
-    var owner_turn = turn;
+    var owner_rotation = rotation;
     var owner_offset = offset;
-    if (most.owner == 1u) {
+    if (largest.owner == 1u) {
         owner = b;
         other = a;
-        owner_turn = transpose(turn);
+        owner_rotation = transpose(rotation);
         owner_offset = transpose(b.axes) * (a.center - b.center);
     }
     let before = found;
-    let least = face_contacts(pair, most.axis, owner, other, owner_turn, owner_offset, select(f32(1.0), f32(-1.0), most.owner == 1u), range);
-    if (most.distance <= 0.0 || least <= most.distance + slack) {
+    let least = face_contacts(pair, largest.axis, owner, other, owner_rotation, owner_offset, select(f32(1.0), f32(-1.0), largest.owner == 1u), range);
+    if (largest.distance <= 0.0 || least <= largest.distance + slack) {
         return FOUND;
     }
     found = before;

@@ -149,19 +149,19 @@ fn sign_of(mask: u32, i: u32) -> f32 {
 }
 
 // The direction of the second ball along the capsule (0: none), and the sides of the box that limit it, a bit each.
-struct Walk {
-    way: f32,
+struct SecondContact {
+    sense: f32,
     walls: u32,
 }
 
-fn choose_walk(nearest: NearestOfBox, half: vec3f) -> Walk {
+fn choose_second(nearest: NearestOfBox, half: vec3f) -> SecondContact {
     let limit = nearest.limit;
     let inward = axes_mask(
         (half.x > 0.0) != (nearest.point.x > 0.0),
         (half.y > 0.0) != (nearest.point.y > 0.0),
         (half.z > 0.0) != (nearest.point.z > 0.0),
     );
-    var walk = Walk(0.0, 0u);
+    var second = SecondContact(0.0, 0u);
     for (var i = 0u; i < bound(3u); i++) {
         let j = (i + 1u) % 3u;
         let k = (i + 2u) % 3u;
@@ -169,32 +169,32 @@ fn choose_walk(nearest: NearestOfBox, half: vec3f) -> Walk {
         let differs_k = in_mask(inward, i) != in_mask(inward, k);
         if (limit == 1u << i) {
             // An end above face i: towards the other end, within the face.
-            walk = Walk(-nearest.along, 7u & ~(1u << i));
+            second = SecondContact(-nearest.along, 7u & ~(1u << i));
         } else if (limit == (7u & ~(1u << i)) && in_mask(inward, j) != in_mask(inward, k)) {
             // On an edge along i: over the flatter of its two faces.
             let over_j = abs(half[j]) <= abs(half[k]);
-            walk = Walk(sign_of(inward, select(j, k, over_j)), (1u << i) | (1u << select(j, k, over_j)));
+            second = SecondContact(sign_of(inward, select(j, k, over_j)), (1u << i) | (1u << select(j, k, over_j)));
         } else if (limit == 7u && differs_j && differs_k) {
             // At a corner where only axis i leads in the other direction: along the edge i, or else over the face
             // across it.
             if (half[i] * half[i] > 0.5 * dot(half, half)) {
-                walk = Walk(sign_of(inward, i), 1u << i);
+                second = SecondContact(sign_of(inward, i), 1u << i);
             } else {
-                walk = Walk(-sign_of(inward, i), 7u & ~(1u << i));
+                second = SecondContact(-sign_of(inward, i), 7u & ~(1u << i));
             }
         }
     }
-    return walk;
+    return second;
 }
 
 // Returns the length until the capsule ends or leaves the box.
-fn walk_length(walk: Walk, nearest: NearestOfBox, half: vec3f, size: vec3f) -> f32 {
+fn second_length(second: SecondContact, nearest: NearestOfBox, half: vec3f, size: vec3f) -> f32 {
     // A side parallel to the capsule, up to rounding, is no limit.
     let least = length(half) * (1e4 * EPSILON);
-    var far = 1.0 - walk.way * nearest.along;
+    var far = 1.0 - second.sense * nearest.along;
     for (var i = 0u; i < bound(3u); i++) {
-        let step = walk.way * half[i];
-        if (in_mask(walk.walls, i) && abs(step) > least) {
+        let step = second.sense * half[i];
+        if (in_mask(second.walls, i) && abs(step) > least) {
             let exit = (select(size[i], -size[i], step < 0.0) - nearest.point[i]) / step;
             if (exit > 0.0) {
                 far = min(far, exit);
@@ -218,10 +218,10 @@ fn capsule_box(pair: u32, a: Placed, b: Placed, range: f32) -> bool {
         return false;
     }
     let nearest = nearest_of_box(center, half, b.size);
-    let walk = choose_walk(nearest, half);
-    let far = nearest.along + walk.way * walk_length(walk, nearest, half, b.size);
+    let second = choose_second(nearest, half);
+    let far = nearest.along + second.sense * second_length(second, nearest, half, b.size);
     for (var k = 0u; k < bound(2u); k++) {
-        if (k == 0u || walk.way != 0.0) {
+        if (k == 0u || second.sense != 0.0) {
             let along = select(nearest.along, far, k == 1u);
             ball_box(pair, center + half * along, a.size.x, b, range);
         }

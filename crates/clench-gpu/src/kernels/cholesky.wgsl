@@ -56,7 +56,7 @@ fn stage_term(i: u32, j: u32, term: u32, chunks: u32, count: u32) {
 }
 
 // Records the diagonal of H in a diagonal tile.
-fn note_diagonal(own: vec4f) {
+fn record_diagonal(own: vec4f) {
     let r = own_row();
     if (r / 4u == own_quad()) {
         diagonal[r] = own[r % 4u];
@@ -115,21 +115,21 @@ fn factor_hessian(count: u32) {
             var own = mass_tile(i, j);
             for (var term = 0u; term < chunks + j; term++) {
                 if (term == chunks) {
-                    note_diagonal(own);
+                    record_diagonal(own);
                 }
                 stage_term(i, j, term, chunks, count);
                 own += tile_product();
                 workgroupBarrier();
             }
             if (j == 0u) {
-                note_diagonal(own);
+                record_diagonal(own);
             }
             if (i == j) {
                 own = invert_factor(own, min(TILE, NV - TILE * j));
             } else {
                 own = divide_tile(own, j);
             }
-            keep_tile(tile_at(i, j), own);
+            store_tile(tile_at(i, j), own);
             join_vectors();
         }
     }

@@ -74,6 +74,6 @@ fn within_shape(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> vec2f {
 }
 
 // Returns true if a ray hits a shape with this interval on its line.
-fn is_met(t: vec2f) -> bool {
+fn is_hit(t: vec2f) -> bool {
     return t.x <= t.y && t.y >= 0.0;
 }

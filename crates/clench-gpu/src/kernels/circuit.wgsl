@@ -25,10 +25,10 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
         let per_torque = cold / constant;
         voltage = per_torque * torque + constant * velocity;
         slope = constant - per_torque * kd;
-        let most = controller(u, CONTROLLER_GAIN + 7u);
-        if (most > 0.0) {
-            slope = select(slope, 0.0, abs(voltage) >= most);
-            voltage = clamp(voltage, -most, most);
+        let limit = controller(u, CONTROLLER_GAIN + 7u);
+        if (limit > 0.0) {
+            slope = select(slope, 0.0, abs(voltage) >= limit);
+            voltage = clamp(voltage, -limit, limit);
         }
     }
     var resistance = cold;
@@ -64,8 +64,8 @@ fn motor_rates(u: u32, setpoints: Setpoints, circuit: Circuit, length: f32, velo
     }
     if (current != NONE) {
         let rate = (steady - given(ACT + current)) / controller(u, CONTROLLER_DYNAMICS);
-        let most = controller(u, CONTROLLER_DYNAMICS + 1u);
-        put(ACT_DOT + current, select(rate, clamp(rate, -most, most), most > 0.0));
+        let limit = controller(u, CONTROLLER_DYNAMICS + 1u);
+        put(ACT_DOT + current, select(rate, clamp(rate, -limit, limit), limit > 0.0));
     }
 }
 
@@ -102,8 +102,8 @@ fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
     if (a == NONE) {
         return steady;
     }
-    let most = controller(u, CONTROLLER_DYNAMICS + 1u);
-    let is_held = most > 0.0 && abs(fetch(ACT_DOT + a)) >= most;
+    let limit = controller(u, CONTROLLER_DYNAMICS + 1u);
+    let is_held = limit > 0.0 && abs(fetch(ACT_DOT + a)) >= limit;
     if (words[ACTUATOR_EARLY + u] == 0u || is_held) {
         return 0.0;
     }

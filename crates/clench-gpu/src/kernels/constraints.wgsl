@@ -69,8 +69,8 @@ fn push_limits(k: u32) {
     let low = parameter(prm + LIMIT_LOW);
     let high = parameter(prm + LIMIT_HIGH);
     if (is_ball(c)) {
-        let turn = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
-        let angle = length(quat_rotation_vector(turn));
+        let rotation = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
+        let angle = length(quat_rotation_vector(rotation));
         push_limit(prm, max(low, high) - angle, 2u * c);
         return;
     }
@@ -221,5 +221,5 @@ fn constraints(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
         reports[NBLOCK * envs + env] = earlier.x;
         reports[NROW * envs + env] = earlier.y;
     }
-    note_end();
+    check_loops();
 }

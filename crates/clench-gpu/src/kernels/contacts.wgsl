@@ -20,7 +20,7 @@ fn copy_contact(start: u32, place: u32) {
 fn contacts(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);
     for (var thread = 0u; is_first() && thread < NTHREAD; thread++) {
-        trouble(reports[(THREAD_FAULT + thread) * envs + env]);
+        fail(reports[(THREAD_FAULT + thread) * envs + env]);
     }
     for (var k = member; k < NMEASURED; k += TEAM) {
         put(MEASURED + CONTACT_SIZE * k + 1u, TOO_FAR);
@@ -47,7 +47,7 @@ fn contacts(@builtin(global_invocation_id) id: vec3u) {
             continue;
         }
         if (here > MAX_CONTACTS - count) {
-            trouble(CONTACT_OVERFLOW);
+            fail(CONTACT_OVERFLOW);
             break;
         }
         for (var c = 0u; c < here; c++) {

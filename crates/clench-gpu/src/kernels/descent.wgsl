@@ -213,5 +213,5 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
         reports[NITER * envs + env] = c.iterations;
         reports[SOLVE_STATUS * envs + env] = c.status;
     }
-    note_end();
+    check_loops();
 }

@@ -26,14 +26,14 @@ fn sin_cos(x: f32) -> vec2f {
     let z = y * y;
     let sine = y + z * y * (-0.16666655 + z * (0.008332178 - z * 0.00019517296));
     let cosine = 1.0 - 0.5 * z + z * z * (0.041666646 + z * (-0.0013887367 + z * 2.4438449e-05));
-    let turn = i32(quarters) & 3;
-    if (turn == 0) {
+    let quadrant = i32(quarters) & 3;
+    if (quadrant == 0) {
         return vec2f(sine, cosine);
     }
-    if (turn == 1) {
+    if (quadrant == 1) {
         return vec2f(cosine, -sine);
     }
-    if (turn == 2) {
+    if (quadrant == 2) {
         return vec2f(-sine, -cosine);
     }
     return vec2f(-cosine, sine);

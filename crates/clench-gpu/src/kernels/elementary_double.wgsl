@@ -26,14 +26,14 @@ fn sin_cos(x: f64) -> vec2<f64> {
     c = 0.0416666666666666 + z * (-0.0013888888888874138 + z * c);
     let sine = y + z * y * s;
     let cosine = 1.0 - 0.5 * z + z * z * c;
-    let turn = i32(quarters) & 3;
-    if (turn == 0) {
+    let quadrant = i32(quarters) & 3;
+    if (quadrant == 0) {
         return vec2<f64>(sine, cosine);
     }
-    if (turn == 1) {
+    if (quadrant == 1) {
         return vec2<f64>(cosine, -sine);
     }
-    if (turn == 2) {
+    if (quadrant == 2) {
         return vec2<f64>(-sine, -cosine);
     }
     return vec2<f64>(-cosine, sine);
@@ -93,11 +93,11 @@ fn logarithm(x: f64) -> f64 {
     var k = 0;
     // Scales into single precision, whose bits are accessible.
     // The smallest and the largest numbers take 34 iterations.
-    for (var turn = 0u; turn < 34u && m < 2.3283064365386963e-10; turn++) {
+    for (var iteration = 0u; iteration < 34u && m < 2.3283064365386963e-10; iteration++) {
         m *= 4294967296.0;
         k -= 32;
     }
-    for (var turn = 0u; turn < 34u && m > 4294967296.0; turn++) {
+    for (var iteration = 0u; iteration < 34u && m > 4294967296.0; iteration++) {
         m *= 2.3283064365386963e-10;
         k += 32;
     }

@@ -20,7 +20,7 @@ fn energy_of_springs() -> f32 {
             sum += energy_of_spring(law, length(joint_shift(j, q)));
             q += 3u;
         }
-        sum += energy_of_spring(law, length(joint_turn(j, q)));
+        sum += energy_of_spring(law, length(joint_rotation(j, q)));
     }
     for (var t = 0u; t < NTENDON; t++) {
         sum += energy_of_spring(parameter3(TENDON_SPRING + 5u * t + 2u), tendon_stretch(t));

@@ -29,10 +29,10 @@ fn push_contact(source: u32, f: vec3f, t: vec3f) {
     push_by_contact(words[PAIR_BODY + 2u * pair + 1u], 1.0, axes * f, axes * t, at);
 }
 
-fn push_held(equality: u32, force: vec3f, turn: vec3f) {
+fn push_held(equality: u32, force: vec3f, rotation: vec3f) {
     // Zero for a connect.
     let rho = relative_quat(equality);
-    let turned = (turn * rho.x + cross(rho.yzw, turn)) * (0.5 * torquescale(equality));
+    let turned = (rotation * rho.x + cross(rho.yzw, rotation)) * (0.5 * torquescale(equality));
     let couple = quat_rotate(held_quat(equality, 1u), turned);
     push(words[EQ_PAIR + 2u * equality], 1.0, force, couple, held_point(equality, 0u));
     push(words[EQ_PAIR + 2u * equality + 1u], -1.0, force, couple, held_point(equality, 1u));

@@ -15,12 +15,12 @@ fn applied_to_bodies(i: u32) -> f32 {
 
 // Returns true if the user applies any force to bodies.
 fn any_applied_to_bodies() -> bool {
-    var most: f32 = 0.0;
+    var any_applied: f32 = 0.0;
     for (var k = 6u + member; k < bound(6u * NBODY); k += TEAM) {
         let applied = given(XFRC_APPLIED + k);
-        most = select(most, 1.0, applied != 0.0);
+        any_applied = select(any_applied, 1.0, applied != 0.0);
     }
-    return least_of_team(select(1u, 0u, most > 0.0)) == 0u;
+    return least_of_team(select(1u, 0u, any_applied > 0.0)) == 0u;
 }
 
 fn smooth_acceleration() {

@@ -4,7 +4,7 @@
 
 @compute @workgroup_size(GROUP, TEAM)
 fn gap(@builtin(global_invocation_id) id: vec3u) {
-    take_up(id.x);
+    select_environment(id.x);
     column = id.x % GROUP;
     member = select(BEHIND_ALL, id.y, env < envs);
     // An integrator may have stored its own factor there. If M is singular, the gap is NaN.

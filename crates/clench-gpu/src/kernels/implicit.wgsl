@@ -13,7 +13,7 @@ fn implicit(@builtin(global_invocation_id) id: vec3u) {
     if (is_first()) {
         add_bias_derivatives();
         if (!factor_lu()) {
-            trouble(SINGULAR);
+            fail(SINGULAR);
         }
         solve_lu(RATE);
     }

@@ -9,7 +9,7 @@ fn implicit_fast(@builtin(global_invocation_id) id: vec3u) {
     gyroscopic_accelerations();
     join();
     if (!factor_tree()) {
-        trouble(SINGULAR);
+        fail(SINGULAR);
     }
     solve_tree(RATE);
     join();

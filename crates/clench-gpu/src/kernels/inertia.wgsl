@@ -81,7 +81,7 @@ fn positions(@builtin(global_invocation_id) id: vec3u) {
         add_tendon_inertia();
     }
     if (!factor_mass()) {
-        trouble(SINGULAR);
+        fail(SINGULAR);
     }
     end_in_team();
 }

@@ -90,7 +90,7 @@ fn advance_activations(rates: u32, velocities: u32) {
 fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     end_in_team();
     judge_results();
-    let fault = reports[TROUBLE * envs + env];
+    let fault = reports[FAILURE * envs + env];
     if (fault == RUNNING) {
         for (var i = member; i < bound(NV); i += TEAM) {
             keep(QACC_WARMSTART + i, fetch(QACC + i));
@@ -134,7 +134,7 @@ fn added_inertia(i: u32) -> f32 {
 fn factor_damped() {
     if (LONG_PATHS) {
         if (is_first() && !articulated_factor()) {
-            trouble(SINGULAR);
+            fail(SINGULAR);
         }
         return;
     }
@@ -145,7 +145,7 @@ fn factor_damped() {
     }
     join();
     if (!factor_tree()) {
-        trouble(SINGULAR);
+        fail(SINGULAR);
     }
 }
 

@@ -2,7 +2,7 @@
 // `dynamics/kinematics.rs`.
 
 // Returns the rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
-fn joint_turn(joint: u32, kind: u32, q: u32) -> vec4f {
+fn joint_rotation(joint: u32, kind: u32, q: u32) -> vec4f {
     if (kind == HINGE) {
         let angle = given(QPOS + q) - parameter(QPOS0 + q);
         return quat_from_axis_angle(parameter3(JNT_AXIS + 3u * joint), angle);
@@ -34,7 +34,7 @@ fn body_pose(b: u32) {
         let axis = parameter3(JNT_AXIS + 3u * j);
         if (kind == FREE) {
             xpos = given3(QPOS + q);
-            xquat = joint_turn(j, kind, q);
+            xquat = joint_rotation(j, kind, q);
             put3(XANCHOR + 3u * j, xpos);
             put3(XAXIS + 3u * j, axis);
             continue;
@@ -44,7 +44,7 @@ fn body_pose(b: u32) {
         if (kind == SLIDE) {
             xpos += xaxis * (given(QPOS + q) - parameter(QPOS0 + q));
         } else {
-            xquat = quat_product(xquat, joint_turn(j, kind, q));
+            xquat = quat_product(xquat, joint_rotation(j, kind, q));
             xpos = xanchor - quat_rotate(xquat, anchor);
         }
         put3(XANCHOR + 3u * j, xanchor);

@@ -19,7 +19,7 @@ var<private> envs: u32;
 var<private> parameter_start: u32;
 var<private> parameter_stride: u32;
 
-fn take_up(index: u32) {
+fn select_environment(index: u32) {
     env = index;
     envs = words[ENVS];
     let has_own = words[OWN_PARAMETERS] == 1u;
@@ -42,7 +42,7 @@ fn parameter4(place: u32) -> vec4f {
 
 // Begins an environment. Returns false if it does not exist or has stopped.
 fn begin(index: u32) -> bool {
-    take_up(index);
+    select_environment(index);
     if (index >= envs) {
         return false;
     }
@@ -50,9 +50,9 @@ fn begin(index: u32) -> bool {
 }
 
 // Records that this step failed; the first fault is kept.
-fn trouble(fault: u32) {
-    if (reports[TROUBLE * envs + env] == RUNNING) {
-        reports[TROUBLE * envs + env] = fault;
+fn fail(fault: u32) {
+    if (reports[FAILURE * envs + env] == RUNNING) {
+        reports[FAILURE * envs + env] = fault;
     }
 }
 
@@ -132,17 +132,17 @@ fn block(b: u32, field: u32) -> u32 {
 // Returns true if the device runs loops to their end. Mesa's software device limits the total iterations of a thread,
 // and ends every later loop after its first iteration: this loop detects that.
 fn loops_end() -> bool {
-    var turns = 0u;
+    var iterations = 0u;
     for (var k = 0u; k < bound(4u); k++) {
-        turns += 1u;
+        iterations += 1u;
     }
-    return turns == 4u;
+    return iterations == 4u;
 }
 
 // Records a fault if the device terminated a loop early.
-fn note_end() {
+fn check_loops() {
     if (!loops_end() && reports[STATUS * envs + env] == RUNNING) {
-        trouble(UNFINISHED);
+        fail(UNFINISHED);
     }
 }
 

@@ -76,8 +76,8 @@ fn narrow_phase(@builtin(global_invocation_id) id: vec3u) {
     found = 0u;
     overflowed = false;
     let count = reports[NNEAR * envs + env];
-    for (var turn = thread; turn < count; turn += NTHREAD) {
-        let place = (NEAR_PAIRS + reports[(NEAR_BY_METHOD + turn) * envs + env]) * envs + env;
+    for (var rotation = thread; rotation < count; rotation += NTHREAD) {
+        let place = (NEAR_PAIRS + reports[(NEAR_BY_METHOD + rotation) * envs + env]) * envs + env;
         let pair = reports[place];
         first_of_pair = found;
         collide(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u]);

@@ -96,9 +96,9 @@ fn change_rows(start: u32, count: u32, is_pyramid: bool) -> array<f32, MAX_FRICT
     var change = array<f32, MAX_FRICTIONS>();
     for (var j = 0u; j < count; j++) {
         let old = row(FORCE + start + j);
-        var most = row(SHAPE + start + j);
+        var limit = row(SHAPE + start + j);
         if (is_pyramid) {
-            most *= row(RAY + start + j);
+            limit *= row(RAY + start + j);
         }
         var slip = friction[SLIP_AT + j];
         for (var i = 0u; i < j; i++) {
@@ -106,7 +106,7 @@ fn change_rows(start: u32, count: u32, is_pyramid: bool) -> array<f32, MAX_FRICT
         }
         let a = friction[(MAX_FRICTIONS + 1u) * j];
         let free = select(0.0, old - slip / a, a > 0.0);
-        change[j] = clamp(free, -most, most) - old;
+        change[j] = clamp(free, -limit, limit) - old;
     }
     return change;
 }

@@ -42,9 +42,9 @@ fn limit_torque(u: u32) {
     let place = ACTUATOR_FORCE + output_of(u);
     let torque = fetch3(place);
     let norm = length(torque);
-    let most = parameter(FORCE_RANGE + 2u * u + 1u);
-    if (norm > most) {
-        put3(place, torque * (most / norm));
+    let limit = parameter(FORCE_RANGE + 2u * u + 1u);
+    if (norm > limit) {
+        put3(place, torque * (limit / norm));
     }
 }
 

@@ -17,7 +17,7 @@ fn straighten(next: vec2f) {
     while (polygon_count >= 2u) {
         let p = polygon[polygon_count - 2u].xy;
         let q = polygon[polygon_count - 1u].xy;
-        if (turn_of(q - p, next - q) > 0.0) {
+        if (cross_2d(q - p, next - q) > 0.0) {
             break;
         }
         polygon_count--;
@@ -64,7 +64,7 @@ fn find_moments() {
     for (var k = 1u; k + 1u < polygon_count; k++) {
         let p = polygon[k].xy - origin;
         let q = polygon[k + 1u].xy - origin;
-        let twice = turn_of(p, q);
+        let twice = cross_2d(p, q);
         area += twice;
         first += (p + q) * twice;
         second += vec3f(
@@ -120,9 +120,9 @@ fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
     var edge_total = 0u;
     while (edge_total < polygon_count) {
         let p = polygon[corner].xy;
-        let way = polygon[next_corner(corner)].xy - p;
-        let at_start = dot(way, start);
-        let at_end = dot(way, to);
+        let edge = polygon[next_corner(corner)].xy - p;
+        let at_start = dot(edge, start);
+        let at_end = dot(edge, to);
         if (at_end <= 0.0) {
             break;
         }
@@ -171,8 +171,8 @@ fn sample_outline(first: vec2f, same: f32) {
     var to = vec2f();
     for (var k = 0u; k <= bound(PATCH_POINTS); k++) {
         let start = to;
-        let turn = sin_cos(f32(2u * (k % PATCH_POINTS)) * HALF_SECTOR - HALF_SECTOR);
-        to = rounded(vec2f(x.x * turn.y - x.y * turn.x, x.x * turn.x + x.y * turn.y));
+        let rotation = sin_cos(f32(2u * (k % PATCH_POINTS)) * HALF_SECTOR - HALF_SECTOR);
+        to = rounded(vec2f(x.x * rotation.y - x.y * rotation.x, x.x * rotation.x + x.y * rotation.y));
         if (k == 0u) {
             corner = furthest_corner(to);
             continue;

@@ -3,10 +3,10 @@
 //
 // The force of a spring is −(a x + b x² + c x³), that of a damper −(a v + b v |v| + c v³).
 
-// Adds the force of a spring with the elongation `stretch` to three dofs.
-fn pull_back(law: vec3f, stretch: vec3f, qfrc: u32) {
-    let k = stiffness(law, length(stretch));
-    put3(qfrc, fetch3(qfrc) - stretch * k);
+// Adds the force of a spring with the elongation `elongation` to three dofs.
+fn pull_back(law: vec3f, elongation: vec3f, qfrc: u32) {
+    let k = stiffness(law, length(elongation));
+    put3(qfrc, fetch3(qfrc) - elongation * k);
 }
 
 fn springs() {
@@ -21,13 +21,13 @@ fn springs() {
             add(qfrc, -x * stiffness(law, x));
             continue;
         }
-        var turn = q;
+        var rotation = q;
         if (kind == FREE) {
             pull_back(law, joint_shift(j, q), qfrc);
-            turn += 3u;
+            rotation += 3u;
             qfrc += 3u;
         }
-        pull_back(law, joint_turn(j, turn), qfrc);
+        pull_back(law, joint_rotation(j, rotation), qfrc);
     }
 }
 

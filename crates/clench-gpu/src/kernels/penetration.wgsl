@@ -10,7 +10,7 @@ fn towards(center: vec3f, n: vec3f) -> vec3f {
 }
 
 // Returns the direction from the cylinder's axis to the nearest point of the segment, both projected along the axis.
-fn radial_way_out(s: Segment, spare: vec3f) -> vec3f {
+fn radial_penetration_direction(s: Segment, spare: vec3f) -> vec3f {
     let square = max(dot(s.axis.xy, s.axis.xy), TINY);
     let t = clamp(-dot(s.center.xy, s.axis.xy) / square, -s.half_length, s.half_length);
     let nearest = s.center.xy + s.axis.xy * t;
@@ -22,7 +22,7 @@ fn radial_way_out(s: Segment, spare: vec3f) -> vec3f {
 }
 
 // Returns the best direction across the segment, between `a` and `b`.
-fn way_out_across(s: Segment, size: vec3f, a: vec3f, b: vec3f) -> vec3f {
+fn direction_across_segment(s: Segment, size: vec3f, a: vec3f, b: vec3f) -> vec3f {
     let r2 = size.x * size.x;
     let k2 = r2 * s.axis.z * s.axis.z;
     let level = size.y * abs(b.z) - dot(s.center, b);
@@ -64,10 +64,10 @@ fn penetration_depth(s: Segment, size: vec3f) -> vec4f {
                 n = b;
             }
             case 3u: {
-                n = radial_way_out(s, a);
+                n = radial_penetration_direction(s, a);
             }
             case 4u: {
-                n = way_out_across(s, size, a, b);
+                n = direction_across_segment(s, size, a, b);
             }
             default: {}
         }

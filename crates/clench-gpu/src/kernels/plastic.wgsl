@@ -1,20 +1,20 @@
 // Springs that yield. CPU counterpart: `dynamics/plastic.rs`.
 
 // Returns the excess of an elongation over the yield, with its sign; 0 if the spring does not yield.
-fn beyond(stretch: f32, most: f32) -> f32 {
-    if (most <= 0.0 || abs(stretch) <= most) {
+fn beyond(elongation: f32, limit: f32) -> f32 {
+    if (limit <= 0.0 || abs(elongation) <= limit) {
         return 0.0;
     }
-    return select(stretch + most, stretch - most, stretch > 0.0);
+    return select(elongation + limit, elongation - limit, elongation > 0.0);
 }
 
 // Rotates the rest orientation of a ball joint's spring about the axis of its elongation, until that equals the yield.
-fn turn_rest(rest: u32, turn: vec4f, most: f32) {
+fn yield_rotation(rest: u32, rotation: vec4f, limit: f32) {
     let old = given4(rest);
-    let stretch = direction(quat_difference(quat_normalize(turn), old));
-    let too_far = beyond(stretch.w, most);
+    let elongation = direction(quat_difference(quat_normalize(rotation), old));
+    let too_far = beyond(elongation.w, limit);
     if (too_far > 0.0) {
-        let turned = quat_normalize(quat_product(old, quat_from_axis_angle(stretch.xyz, too_far)));
+        let turned = quat_normalize(quat_product(old, quat_from_axis_angle(elongation.xyz, too_far)));
         for (var k = 0u; k < 4u; k++) {
             keep(rest + k, turned[k]);
         }
@@ -30,11 +30,11 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
         }
         let rest = PLASTIC + words[JNT_PLASTIC + j];
         let q = QPOS + words[JNT_QPOS + j];
-        let most = parameter(JNT_YIELD + j);
+        let limit = parameter(JNT_YIELD + j);
         if (words[JNT_KIND + j] == BALL) {
-            turn_rest(rest, given4(q), most);
+            yield_rotation(rest, given4(q), limit);
         } else {
-            keep(rest, given(rest) + beyond(given(q) - given(rest), most));
+            keep(rest, given(rest) + beyond(given(q) - given(rest), limit));
         }
     }
     for (var t = member; t < NTENDON; t += TEAM) {

@@ -2,7 +2,7 @@
 
 @compute @workgroup_size(GROUP)
 fn restart(@builtin(global_invocation_id) id: vec3u) {
-    take_up(id.x);
+    select_environment(id.x);
     if (env >= envs || reports[RESTART * envs + env] == 0u) {
         return;
     }

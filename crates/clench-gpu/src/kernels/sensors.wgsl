@@ -190,7 +190,7 @@ fn touch(s: u32, prm: u32) -> f32 {
         }
         let o = (fetch3(place + 2u) - centre) * axes;
         let d = (fetch3(place + 5u) * select(f32(-1.0), f32(1.0), own == second)) * axes;
-        sum += select(0.0, normal, meets_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), o, d));
+        sum += select(0.0, normal, intersects_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), o, d));
     }
     return sum;
 }

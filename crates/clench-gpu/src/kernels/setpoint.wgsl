@@ -20,8 +20,8 @@ fn setpoints_of(u: u32) -> Setpoints {
                 let is_pid = words[ACTUATOR_DYNAMICS + u] == DYN_PID;
                 let rate = controller(u, CONTROLLER_DYNAMICS + select(7u, 1u, is_pid));
                 let before = given(ACT + a);
-                let most = rate * TIMESTEP;
-                value = clamp(nearest_setpoint(u, value, before), before - most, before + most);
+                let limit = rate * TIMESTEP;
+                value = clamp(nearest_setpoint(u, value, before), before - limit, before + limit);
             }
             setpoints.first = value;
         }

@@ -28,6 +28,6 @@ fn is_in_volume(kind: u32, size: vec3f, p: vec3f) -> bool {
 }
 
 // Returns true if a ray intersects a volume.
-fn meets_volume(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> bool {
-    return is_met(within_shape(kind, size, o, d));
+fn intersects_volume(kind: u32, size: vec3f, o: vec3f, d: vec3f) -> bool {
+    return is_hit(within_shape(kind, size, o, d));
 }

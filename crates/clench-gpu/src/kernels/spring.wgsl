@@ -23,6 +23,6 @@ fn joint_shift(j: u32, q: u32) -> vec3f {
 }
 
 // Returns that of an orientation, as a rotation vector.
-fn joint_turn(j: u32, q: u32) -> vec3f {
+fn joint_rotation(j: u32, q: u32) -> vec3f {
     return quat_difference(quat_normalize(given4(QPOS + q)), vec4f(rest3(j, q), rest(j, q + 3u)));
 }

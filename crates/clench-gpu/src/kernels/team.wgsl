@@ -44,6 +44,6 @@ fn least_of_team(x: u32) -> u32 {
 // Records a fault if the device terminated a loop early.
 fn end_in_team() {
     if (member < TEAM) {
-        note_end();
+        check_loops();
     }
 }

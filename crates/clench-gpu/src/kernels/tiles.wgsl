@@ -51,7 +51,7 @@ fn tile_entry(tile: u32, r: u32, column: u32) -> f32 {
 }
 
 // Stores each thread's part of a tile. All see it after the next barrier.
-fn keep_tile(tile: u32, own: vec4f) {
+fn store_tile(tile: u32, own: vec4f) {
     let place = QUADS_OF_TILE * tile + lane;
     if (SHARE_TILES) {
         tiles[place] = own;

@@ -25,10 +25,10 @@ fn write_arms_of(output: u32, a: u32, first: Spatial, b: u32, second: Spatial) {
     }
 }
 
-// Returns a torque on a joint at the rotation `turn`, along the axes of the child.
-fn to_child(u: u32, turn: vec4f, torque: vec3f) -> vec3f {
+// Returns a torque on a joint at the rotation `rotation`, along the axes of the child.
+fn to_child(u: u32, rotation: vec4f, torque: vec3f) -> vec3f {
     if (words[ACTUATOR_IN_PARENT + u] == 1u) {
-        return quat_rotate(vec4f(turn.x, -turn.yzw), torque);
+        return quat_rotate(vec4f(rotation.x, -rotation.yzw), torque);
     }
     return torque;
 }
@@ -43,10 +43,10 @@ fn on_joint(u: u32, j: u32) -> f32 {
         return given(q) * parameter(gear);
     }
     if (kind == ON_BALL) {
-        let turn = quat_normalize(given4(q));
-        let axis = to_child(u, turn, parameter3(gear));
+        let rotation = quat_normalize(given4(q));
+        let axis = to_child(u, rotation, parameter3(gear));
         put3(arms, axis);
-        return dot(quat_rotation_vector(turn), axis);
+        return dot(quat_rotation_vector(rotation), axis);
     }
     put3(arms, parameter3(gear));
     put3(arms + 3u, to_child(u, quat_normalize(given4(q + 3u)), parameter3(gear + 3u)));
@@ -82,10 +82,10 @@ fn on_site_in_frame(u: u32, site: u32, frame: u32) -> f32 {
     let about = parameter3(ACTUATOR_GEAR + 6u * u + 3u);
     let axes = fetch_matrix(SITE_XMAT + 9u * frame);
     let shift = transpose(axes) * (fetch3(SITE_XPOS + 3u * site) - fetch3(SITE_XPOS + 3u * frame));
-    let turn = quat_difference(site_quat(site), site_quat(frame));
+    let rotation = quat_difference(site_quat(site), site_quat(frame));
     let pull = pull_at(site, axes * along, axes * about);
     write_arms(u, site, pull, frame, pull_at(frame, axes * -along, axes * -about));
-    return dot(shift, along) + dot(turn, about);
+    return dot(shift, along) + dot(rotation, about);
 }
 
 fn on_slider_crank(u: u32, crank: u32, slider: u32) -> f32 {

@@ -49,12 +49,12 @@ fn judge_results() {
         }
     }
     worst = least_of_team(worst);
-    if (is_first() && worst != NONE && reports[TROUBLE * envs + env] == RUNNING) {
+    if (is_first() && worst != NONE && reports[FAILURE * envs + env] == RUNNING) {
         let number = judged(worst);
         reports[FAULT_FIELD * envs + env] = number.field;
         reports[FAULT_INDEX * envs + env] = number.index;
         reports[FAULT_VALUE * envs + env] = report_bits(number.x);
-        trouble(DIVERGED);
+        fail(DIVERGED);
     }
     join();
 }

@@ -28,9 +28,9 @@ fn planar_cross(a: vec2f, b: vec2f) -> f32 {
 
 // Returns the angle from one point to another seen from the origin, in [−π, π].
 fn planar_angle(a: vec2f, b: vec2f) -> f32 {
-    let turn = planar_cross(a, b);
-    let angle = angle_of(abs(turn), dot(a, b));
-    return select(angle, -angle, turn < 0.0);
+    let area = planar_cross(a, b);
+    let angle = angle_of(abs(area), dot(a, b));
+    return select(angle, -angle, area < 0.0);
 }
 
 // Returns `a` times the vector plus `b` times the vector rotated by a quarter turn.
@@ -62,23 +62,23 @@ fn plane_through(p: vec3f, q: vec3f) -> mat2x3f {
     return mat2x3f(axis, direction(cross(across, axis)).xyz);
 }
 
-// Finds the shortest string around a circle that turns by the angle `turn`.
-fn around(p: vec2f, q: vec2f, turn: f32, radius: f32) -> PlanarWrap {
+// Finds the shortest string around a circle that turns by the angle `rotation`.
+fn around(p: vec2f, q: vec2f, rotation: f32, radius: f32) -> PlanarWrap {
     let square = radius * radius;
     let squares = vec2f(dot(p, p), dot(q, q));
     let tangents = sqrt(max(squares - square, vec2f()));
-    let arc = abs(turn) - angle_of(tangents.x, radius) - angle_of(tangents.y, radius);
+    let arc = abs(rotation) - angle_of(tangents.x, radius) - angle_of(tangents.y, radius);
     let touches = all(squares >= vec2f(square)) && radius >= TINY && dot(q - p, q - p) >= TINY && arc > 0.0;
     if (!touches) {
         return PlanarWrap(false, p, q, 0.0);
     }
-    let across = tangents * (select(radius, -radius, turn < 0.0) / squares);
+    let across = tangents * (select(radius, -radius, rotation < 0.0) / squares);
     let along = square / squares;
     return PlanarWrap(true, turned(p, along.x, across.x), turned(q, along.y, -across.y), radius * arc);
 }
 
 // Returns true if the interior of the segment reaches the circle.
-fn meets_circle(p: vec2f, q: vec2f, radius: f32) -> bool {
+fn intersects_circle(p: vec2f, q: vec2f, radius: f32) -> bool {
     let along = q - p;
     let square = dot(along, along);
     let share = -dot(along, p) / max(square, TINY);
@@ -97,8 +97,8 @@ fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
         return vec2f(beta, 0.0);
     }
     for (var k = 0u; k <= bound(REFLECTION_STEPS); k++) {
-        let turn = sin_cos(beta);
-        let a = ratios * turn.x;
+        let rotation = sin_cos(beta);
+        let a = ratios * rotation.x;
         let value = arc_sine(a.x) + arc_sine(a.y) - 2.0 * beta + angle;
         if (k == 0u && value > 0.0) {
             break;
@@ -106,7 +106,7 @@ fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
         if (abs(value) <= REFLECTION_TOLERANCE) {
             return vec2f(beta, 1.0);
         }
-        let slopes = ratios * turn.y / sqrt(max(vec2f(1.0) - a * a, vec2f(TINY)));
+        let slopes = ratios * rotation.y / sqrt(max(vec2f(1.0) - a * a, vec2f(TINY)));
         let next = beta - value / (slopes.x + slopes.y - 2.0);
         if (next > beta) {
             break;
@@ -119,16 +119,16 @@ fn reflect_string(ratios: vec2f, angle: f32) -> vec2f {
 // Finds the string that passes through the circle, straight if that already does.
 fn through(p: vec2f, q: vec2f, radius: f32) -> PlanarWrap {
     let distances = vec2f(length(p), length(q));
-    if (any(distances <= vec2f(radius)) || radius < TINY || meets_circle(p, q, radius)) {
+    if (any(distances <= vec2f(radius)) || radius < TINY || intersects_circle(p, q, radius)) {
         return PlanarWrap(false, p, q, 0.0);
     }
     let ratios = radius / distances;
-    let turn = planar_cross(p, q);
-    let found = reflect_string(ratios, angle_of(abs(turn), dot(p, q)));
+    let area = planar_cross(p, q);
+    let found = reflect_string(ratios, angle_of(abs(area), dot(p, q)));
     var point = planar_unit(p + q);
     if (found.y == 1.0) {
         // From the end that comes first in the sense of rotation.
-        let ascending = turn > 0.0;
+        let ascending = area > 0.0;
         let ratio = select(ratios.y, ratios.x, ascending);
         let rotation = sin_cos(found.x - arc_sine(ratio * sin_cos(found.x).x));
         point = turned(planar_unit(select(q, p, ascending)), rotation.y, rotation.x);
@@ -151,18 +151,18 @@ fn wrap(p: vec3f, q: vec3f, geom: u32, side: u32) -> Wrapped {
     let flat_start = start * plane;
     let flat_end = end * plane;
     var found = PlanarWrap(false, flat_start, flat_end, 0.0);
-    var turn = planar_angle(flat_start, flat_end);
+    var rotation = planar_angle(flat_start, flat_end);
     var inside = false;
     if (side != NONE) {
         let by = transpose(axes) * (fetch3(SITE_XPOS + 3u * side) - center);
         inside = length(by) < radius;
         let toward = planar_unit(by * plane);
-        turn = planar_angle(flat_start, toward) + planar_angle(toward, flat_end);
+        rotation = planar_angle(flat_start, toward) + planar_angle(toward, flat_end);
     }
     if (inside) {
         found = through(flat_start, flat_end, radius);
     } else {
-        found = around(flat_start, flat_end, turn, radius);
+        found = around(flat_start, flat_end, rotation, radius);
     }
     var heights = vec2f();
     if (is_cylinder) {

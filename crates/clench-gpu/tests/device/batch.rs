@@ -68,7 +68,7 @@ fn rows_and_outputs_are_those_of_the_device() {
 }
 
 #[test]
-fn what_is_reset_begins_anew_and_the_others_go_on() {
+fn a_reset_environment_restarts_and_the_others_continue() {
     let model = text(&own("runner"));
     let Some((mut batch, mut alone)) = both(&model) else {
         return;
@@ -90,7 +90,7 @@ fn what_is_reset_begins_anew_and_the_others_go_on() {
 }
 
 #[test]
-fn a_rollout_records_what_steps_bring() {
+fn a_rollout_records_the_results_of_steps() {
     let model = text(&own("runner"));
     let Some((mut batch, mut alone)) = both(&model) else {
         return;
@@ -117,7 +117,7 @@ fn a_rollout_records_what_steps_bring() {
 }
 
 #[test]
-fn what_diverges_is_named_and_disturbs_nobody() {
+fn a_diverged_environment_is_named_and_disturbs_no_other() {
     let model = text(&own("runner"));
     let Some((mut batch, _)) = both(&model) else {
         return;
@@ -158,7 +158,7 @@ fn what_diverges_is_named_and_disturbs_nobody() {
 }
 
 #[test]
-fn a_forward_pass_tells_of_faults_too() {
+fn a_forward_pass_reports_faults() {
     let model = text(&own("runner"));
     let Some((mut batch, _)) = both(&model) else {
         return;
@@ -174,7 +174,7 @@ fn a_forward_pass_tells_of_faults_too() {
 }
 
 #[test]
-fn one_that_diverges_starts_over_where_that_is_wished() {
+fn a_diverged_environment_is_reset_with_autoreset() {
     let model = text(&own("runner"));
     if common::batch(&model, 1).is_none() {
         return;

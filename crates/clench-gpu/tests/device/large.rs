@@ -70,7 +70,7 @@ fn flock(balls: usize, option: &str) -> Arc<Model> {
 
 /// The model is so large that even the vectors do not fit into the memory of a workgroup of Mesa's software device.
 #[test]
-fn conjugate_gradients_go_where_newton_does_not() {
+fn conjugate_gradients_solve_models_too_large_for_newton() {
     let model = flock(136, "solver='CG' tolerance='1e-10'");
     assert_eq!(model.nv, 816);
     let Some(batch) = common::agree_within(1e-3, 0, &model, 3, 0.2) else {
@@ -84,7 +84,7 @@ fn conjugate_gradients_go_where_newton_does_not() {
 fn more_dofs_than_newton_is_for_are_refused() {
     let error =
         GpuBatch::<f32>::new(flock(86, ""), 1, GpuOptions::default()).expect_err("516 dofs");
-    let most = 512;
-    assert_eq!(error, GpuError::TooManyDofs { most, nv: 516 });
+    let max = 512;
+    assert_eq!(error, GpuError::TooManyDofs { max, nv: 516 });
     assert!(error.to_string().contains("CG has no such limit"));
 }

@@ -120,12 +120,12 @@ fn those_of_sensors_by_runge_kutta() {
 }
 
 #[test]
-fn those_of_what_presses_on_each_other() {
+fn outputs_of_bodies_in_contact() {
     agree(&own("pressed"));
 }
 
 #[test]
-fn those_of_what_is_apart() {
+fn outputs_of_separate_bodies() {
     agree(&own("apart"));
 }
 

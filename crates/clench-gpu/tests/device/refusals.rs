@@ -18,7 +18,7 @@ fn model(option: &str) -> String {
 }
 
 #[test]
-fn what_is_not_there_yet_is_refused_by_name() {
+fn unsupported_features_are_refused_by_name() {
     for (text_of_model, words) in [
         (
             model("<option integrator='discrete'/>"),
@@ -54,7 +54,7 @@ fn what_is_not_there_yet_is_refused_by_name() {
 }
 
 #[test]
-fn a_device_that_is_not_there_is_an_error_that_says_what_to_do() {
+fn a_missing_device_is_an_error_with_advice() {
     let options = GpuOptions {
         device: Some("no such card".to_owned()),
         ..GpuOptions::default()

@@ -80,7 +80,7 @@ fn a_heap_of_cylinders_and_boxes() {
 }
 
 #[test]
-fn a_heap_of_hulls_and_all_that_they_meet() {
+fn a_heap_of_hulls_and_all_shapes() {
     heap(&own("hulls"), 2);
 }
 
@@ -114,7 +114,7 @@ fn each_shape_on_terrain_with_cliffs() {
 }
 
 #[test]
-fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
+fn without_multiccd_a_pair_has_only_its_deepest_contact() {
     let one = own("cans").replace(
         "timestep=\"0.004\"/>",
         "timestep=\"0.004\"><flag multiccd=\"disable\"/></option>",

@@ -43,7 +43,7 @@ fn so_do_a_medley_and_a_linkage_implicit_in_velocities() {
 }
 
 #[test]
-fn activations_go_along_by_either_integrator() {
+fn activations_are_integrated_by_either_integrator() {
     let linkage = own("linkage");
     drift_alike(&text(&linkage), 200);
     let rk4 = linkage.replace("<option ", "<option integrator=\"RK4\" ");
@@ -224,7 +224,7 @@ fn batches_that_step_at_a_time_know_nothing_of_each_other() {
 }
 
 #[test]
-fn a_fault_stays_where_it_is() {
+fn a_fault_does_not_spread() {
     let model = runner();
     let mut states = some_states(&model, 40);
     let Some(mut batch) = batch(&model, 40) else {
@@ -296,7 +296,7 @@ fn thousands_run_side_by_side() {
 }
 
 #[test]
-fn bad_input_is_told_by_name_and_place() {
+fn bad_input_is_reported_by_name_and_index() {
     let model = runner();
     let Some(mut batch) = batch(&model, 2) else {
         return;

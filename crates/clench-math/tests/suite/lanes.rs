@@ -299,7 +299,7 @@ impl<S: Scalar> LaneTask<S> for Width {
 }
 
 #[test]
-fn tasks_run_in_the_lanes_asked_for() {
+fn tasks_run_in_the_requested_lanes() {
     fn check<S: Scalar>(instructions: Instructions) {
         let lanes = (instructions.available_for::<S>()).then(|| instructions.lanes::<S>());
         assert_eq!(S::in_lanes(instructions, Width), lanes, "{instructions:?}");

@@ -222,7 +222,7 @@ fn the_difference_leads_from_one_rotation_to_the_other() {
 }
 
 #[test]
-fn integration_turns_at_the_given_velocity() {
+fn integration_rotates_at_the_given_velocity() {
     let mut random = Random::new(9);
     for _ in 0..ROUNDS {
         let (q, w) = (random.rotation(), random.vector(3.0));
@@ -302,7 +302,7 @@ fn principal_axes_diagonalise() {
 }
 
 #[test]
-fn rough_principal_axes_leave_what_is_not_known() {
+fn rough_principal_axes_ignore_rounding() {
     for scale in [1e-9, 1.0, 1e9] {
         let axes = |entry: f64, third: f64| {
             let rows = [[3.0, 3.0 * entry, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, third]];

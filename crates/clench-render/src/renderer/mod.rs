@@ -163,9 +163,12 @@ impl Renderer {
         let centre = self.centre(&items);
         let places = light_places(&self.model, sim.workspace());
         let lighting = Lighting::new(&self.model.visuals, &places, centre, REACH * self.extent);
-        let told = Uniforms::new(&camera, aspect, self.extent, centre, &lighting);
-        let scene =
-            self.scene_group(&[told.as_bytes(), items.as_bytes(), lighting.lamps.as_bytes()]);
+        let uniforms = Uniforms::new(&camera, aspect, self.extent, centre, &lighting);
+        let scene = self.scene_group(&[
+            uniforms.as_bytes(),
+            items.as_bytes(),
+            lighting.lamps.as_bytes(),
+        ]);
         let size = [width, height];
         if self
             .canvas

@@ -53,7 +53,7 @@ impl<S: Copy> Given<'_, S> {
 }
 
 /// The kind of a query.
-pub enum Question<'a, S> {
+pub enum Query<'a, S> {
     /// The Jacobian of an object. No input.
     Jacobian(FrameObject),
     /// The Jacobian of the centre of mass of a subtree. No input.
@@ -84,30 +84,30 @@ pub enum Question<'a, S> {
 }
 
 /// A query of a group of environments.
-pub struct Asking<'a, S: Scalar + Shared> {
+pub struct QueryCall<'a, S: Scalar + Shared> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
     pub rows: EnvRows<'a, S>,
-    pub question: Question<'a, S>,
+    pub query: Query<'a, S>,
     pub given: Given<'a, S>,
     /// The number of input values per environment.
     pub width: usize,
     pub answers: Cells<'a, S>,
 }
 
-impl<S: Scalar + Shared> Asking<'_, S> {
+impl<S: Scalar + Shared> QueryCall<'_, S> {
     /// Appends the answer for environments whose states are in lanes, and returns the lanes in which it is valid.
     pub fn answer<T: Real<Scalar = S>>(
         &self,
         group: &Group<T>,
         (params, state, ws): (&Params<T>, &State<T>, &mut Workspace<T>),
-        memory: &mut AskMemory<T>,
+        memory: &mut QueryMemory<T>,
         out: &mut Vec<T>,
     ) -> T::Mask {
-        let AskMemory { given, search } = memory;
+        let QueryMemory { given, search } = memory;
         self.gather(group, &self.given, self.width, given);
         let everywhere = T::Mask::splat(true);
-        if let Question::Kinematics { ik, start } = &self.question {
+        if let Query::Kinematics { ik, start } = &self.query {
             let memory = search.take().filter(|memory| memory.fits(self.model, ik));
             let search = search.insert(memory.unwrap_or_else(|| Search::new(self.model, ik)));
             search.state.copy_from(state);
@@ -119,14 +119,14 @@ impl<S: Scalar + Shared> Asking<'_, S> {
             search.write(out);
             return everywhere;
         }
-        if let Question::Inverse(kind) = self.question {
+        if let Query::Inverse(kind) = self.query {
             out.resize(self.model.nv, T::ZERO);
             let given = (&given[..], kind);
             (Step::compiled().inverse)(self.model, params, self.settings, state, given, ws, out);
             return clench_dynamics::check::good_results(state, ws);
         }
-        match self.question {
-            Question::Acceleration(..) => {
+        match self.query {
+            Query::Acceleration(..) => {
                 ws.forget_poses();
                 (Step::compiled().forward)(
                     self.model,
@@ -138,35 +138,35 @@ impl<S: Scalar + Shared> Asking<'_, S> {
                 );
                 update_body_forces(self.model, params, state, ws);
             }
-            Question::Jacobian(_)
-            | Question::SubtreeJacobian(_)
-            | Question::Velocity(..)
-            | Question::MulMass
-            | Question::SolveMass
-            | Question::Rays { .. }
-            | Question::Heights { .. } => {
+            Query::Jacobian(_)
+            | Query::SubtreeJacobian(_)
+            | Query::Velocity(..)
+            | Query::MulMass
+            | Query::SolveMass
+            | Query::Rays { .. }
+            | Query::Heights { .. } => {
                 (Step::compiled().position_stage)(self.model, params, state, ws);
             }
             // Answered above.
-            Question::Kinematics { .. } | Question::Inverse(_) => {}
+            Query::Kinematics { .. } | Query::Inverse(_) => {}
         }
-        if let Question::Velocity(..) = self.question {
+        if let Query::Velocity(..) = self.query {
             (Step::compiled().velocities)(self.model, &ws.position, &state.qvel, &mut ws.velocity);
         }
         self.write_answer(params, ws, given, out);
-        match self.question {
-            Question::Acceleration(..) => {
+        match self.query {
+            Query::Acceleration(..) => {
                 clench_dynamics::check::good_results(state, ws) & !ws.collision.overflow
             }
-            Question::SolveMass => !ws.singular,
-            Question::Jacobian(_)
-            | Question::SubtreeJacobian(_)
-            | Question::Velocity(..)
-            | Question::MulMass
-            | Question::Rays { .. }
-            | Question::Heights { .. }
-            | Question::Kinematics { .. }
-            | Question::Inverse(_) => everywhere,
+            Query::SolveMass => !ws.singular,
+            Query::Jacobian(_)
+            | Query::SubtreeJacobian(_)
+            | Query::Velocity(..)
+            | Query::MulMass
+            | Query::Rays { .. }
+            | Query::Heights { .. }
+            | Query::Kinematics { .. }
+            | Query::Inverse(_) => everywhere,
         }
     }
 
@@ -184,37 +184,37 @@ impl<S: Scalar + Shared> Asking<'_, S> {
             params,
             position: pos,
         };
-        match self.question {
-            Question::Jacobian(object) => {
+        match self.query {
+            Query::Jacobian(object) => {
                 out.resize(6 * model.nv, T::ZERO);
                 let point = Frames::of(geoms).point(object);
                 point_jacobian(model, pos, &point, out);
             }
-            Question::SubtreeJacobian(body) => {
+            Query::SubtreeJacobian(body) => {
                 out.resize(3 * model.nv, T::ZERO);
                 subtree_jacobian(model, params, pos, body, out);
             }
-            Question::Velocity(object, axes) => {
+            Query::Velocity(object, axes) => {
                 let frames = Frames::of(geoms);
                 let velocity = frames.velocity(object, &ws.velocity);
                 write_vectors(along(frames, axes, object, velocity), out);
             }
-            Question::Acceleration(object, axes) => {
+            Query::Acceleration(object, axes) => {
                 let (frames, cacc) = (Frames::of(geoms), &ws.sensors.bodies.cacc);
                 let acceleration = frames.acceleration(object, &ws.velocity, cacc);
                 write_vectors(along(frames, axes, object, acceleration), out);
             }
-            Question::MulMass => {
+            Query::MulMass => {
                 out.resize(model.nv, T::ZERO);
                 (Step::compiled().mul)(ws.mass(), &model.tree, given, out);
             }
-            Question::SolveMass => {
+            Query::SolveMass => {
                 out.extend_from_slice(given);
                 (Step::compiled().solve)(ws.mass_factor(), &model.tree, out);
             }
-            Question::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
-            Question::Heights { geom, frame } => sample(geoms, geom, frame, given, out),
-            Question::Inverse(_) | Question::Kinematics { .. } => {}
+            Query::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
+            Query::Heights { geom, frame } => sample(geoms, geom, frame, given, out),
+            Query::Inverse(_) | Query::Kinematics { .. } => {}
         }
     }
 
@@ -237,14 +237,14 @@ pub(super) fn write_vectors<T: Real>(vectors: [Vec3<T>; 2], out: &mut Vec<T>) {
 }
 
 /// Scratch memory of queries.
-pub struct AskMemory<T: Real> {
+pub struct QueryMemory<T: Real> {
     given: Vec<T>,
     search: Option<Search<T>>,
 }
 
-impl<T: Real> AskMemory<T> {
+impl<T: Real> QueryMemory<T> {
     pub fn new() -> Self {
-        AskMemory {
+        QueryMemory {
             given: Vec::new(),
             search: None,
         }

@@ -74,12 +74,12 @@ pub struct Outcome {
     /// The number of completed steps.
     pub steps: usize,
     /// The failure that prevented the next step.
-    pub trouble: Option<Trouble>,
+    pub failure: Option<StepFailure>,
 }
 
 /// The reason why a step failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Trouble {
+pub enum StepFailure {
     /// The mass matrix is not positive definite.
     Singular,
     /// A value is not finite, or beyond 1e10.

@@ -111,7 +111,7 @@ impl<S: Precision> Batch<S> {
             self.state.write(env, &sim.state)?;
             self.serials[env] = sim.last_serial;
             if let Some(recorded) = &mut self.recorded {
-                recorded.forget(env);
+                recorded.invalidate(env);
             }
         }
         Ok(results)

@@ -1,6 +1,6 @@
 //! The input and the reports of the threads of a call.
 
-use super::answer::Asking;
+use super::answer::QueryCall;
 use super::divergence::Divergence;
 use super::env_rows::EnvRows;
 use super::quality::Quality;
@@ -101,7 +101,7 @@ pub trait Stepper<S: Scalar + Shared>: Send {
     /// Runs a job for a group of at most [`lanes`](Self::lanes) environments.
     fn run(&mut self, group: &[u32], job: &Job<S>);
     /// Answers a query of such a group.
-    fn ask(&mut self, group: &[u32], asking: &Asking<S>);
+    fn query(&mut self, group: &[u32], call: &QueryCall<S>);
     /// Returns the events since it was last cleared.
     fn totals(&mut self) -> &mut StepTotals;
     /// Starts or stops its clocks.

@@ -7,8 +7,6 @@
 //! (`on_device.rs`).
 
 mod answer;
-mod ask;
-mod ask_motion;
 mod backend;
 mod cells;
 mod divergence;
@@ -17,11 +15,13 @@ mod env_rows;
 mod group;
 mod job;
 mod mirror;
+mod motion_queries;
 mod on_device;
 mod options;
 mod parameters;
 mod precision;
 mod quality;
+mod queries;
 mod record;
 mod recorded_states;
 mod reset;
@@ -35,7 +35,7 @@ mod summary;
 mod targets;
 
 pub use answer::Given;
-pub use backend::{Backend, Outcome, Trouble};
+pub use backend::{Backend, Outcome, StepFailure};
 pub use divergence::Divergence;
 use env_rows::ParamRows;
 use job::Stepper;

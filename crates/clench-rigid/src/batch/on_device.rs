@@ -1,7 +1,7 @@
 //! Steps on a device. Rows written since the last call are uploaded, results are downloaded, and the device's reports
 //! become statuses, times and resets. Resets, snapshots and queries use the rows, as without a device.
 
-use super::backend::{Backend, Outcome, Trouble};
+use super::backend::{Backend, Outcome, StepFailure};
 use super::job::{Call, Pass};
 use super::mirror::Mirror;
 use super::rows::per_env;
@@ -112,7 +112,7 @@ impl<S: Precision> Batch<S> {
         }
         self.download(mirror, call.pass)?;
         if step == call.steps {
-            self.fetch_kept(mirror)?;
+            self.fetch_recorded(mirror)?;
         }
         let running = |status: &&EnvStatus| **status == EnvStatus::Running;
         summary.running = self.status.iter().filter(running).count();
@@ -231,30 +231,30 @@ impl<S: Precision> Batch<S> {
             let timestep = S::new(self.model.params.timestep).to_f64();
             (0..outcome.steps).for_each(|_| *clock += timestep);
             let time = *clock;
-            let Some(trouble) = outcome.trouble else {
+            let Some(failure) = outcome.failure else {
                 continue;
             };
             mirror.running[env] = false;
             let bounded = matches!(
-                trouble,
-                Trouble::ContactOverflow { .. } | Trouble::Unfinished
+                failure,
+                StepFailure::ContactOverflow { .. } | StepFailure::Unfinished
             );
             if may_restart && !bounded {
                 mirror.restarted[env] = true;
             } else if pass != Pass::Query {
-                self.status[env] = EnvStatus::Failed(self.fault(trouble, time));
+                self.status[env] = EnvStatus::Failed(self.fault(failure, time));
                 summary.failed += 1;
             }
         }
         Ok(())
     }
 
-    fn fault(&self, trouble: Trouble, time: f64) -> Fault {
-        match trouble {
-            Trouble::Singular => Fault::Singular { time, place: None },
-            Trouble::Unfinished => Fault::Unfinished { time },
-            Trouble::ContactOverflow { limit } => Fault::ContactOverflow { time, limit },
-            Trouble::Diverged {
+    fn fault(&self, failure: StepFailure, time: f64) -> Fault {
+        match failure {
+            StepFailure::Singular => Fault::Singular { time, place: None },
+            StepFailure::Unfinished => Fault::Unfinished { time },
+            StepFailure::ContactOverflow { limit } => Fault::ContactOverflow { time, limit },
+            StepFailure::Diverged {
                 field,
                 index,
                 value,
@@ -316,14 +316,14 @@ impl<S: Precision> Batch<S> {
     }
 
     /// Copies the recorded outputs.
-    fn fetch_kept(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
+    fn fetch_recorded(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
         let mut outputs = take(&mut self.outputs);
         let mut kept = outputs.iter_mut();
         let fetched = kept.try_for_each(|own| self.fetch(mirror, own, 0));
         self.outputs = outputs;
         if let Some(recorded) = &mut self.recorded {
             let ran = mirror.running.iter().enumerate().filter(|(_, runs)| **runs);
-            ran.for_each(|(env, _)| recorded.note_row(env, &self.state));
+            ran.for_each(|(env, _)| recorded.record_row(env, &self.state));
         }
         fetched
     }

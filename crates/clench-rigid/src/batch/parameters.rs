@@ -47,7 +47,7 @@ impl<S: Precision> Batch<S> {
             self.assign_field(*field, envs, values)?;
         }
         if let Some(recorded) = &mut self.recorded {
-            envs.iter().for_each(|&env| recorded.forget(env));
+            envs.iter().for_each(|&env| recorded.invalidate(env));
         }
         match &mut self.mirror {
             Some(mirror) => mirror.set_parameters(envs, &on_device),
@@ -140,7 +140,7 @@ impl<S: Precision> Batch<S> {
         self.settings = StepSettings::supported::<S>(&self.model, options)?;
         self.options.options = options;
         if let Some(recorded) = &mut self.recorded {
-            (0..self.status.len()).for_each(|env| recorded.forget(env));
+            (0..self.status.len()).for_each(|env| recorded.invalidate(env));
         }
         Ok(())
     }

@@ -4,7 +4,7 @@
 //! No result of an earlier step is used, so that an answer always holds for the present state, even after a step. An
 //! environment whose state is invalid gets NaN. Environments that do not run are included.
 
-use super::answer::{Asking, Given, Question};
+use super::answer::{Given, Query, QueryCall};
 use super::cells::Cells;
 use super::env_rows::EnvRows;
 use super::run::for_each_group;
@@ -27,7 +27,7 @@ impl<S: Precision> Batch<S> {
     pub fn jacobian(&mut self, object: FrameObject) -> Result<Rows<S>, SimError> {
         check_object(&self.model, object)?;
         let width = 6 * self.model.nv;
-        self.ask(Question::Jacobian(object), Given::Shared(&[]), width)
+        self.run_query(Query::Jacobian(object), Given::Shared(&[]), width)
     }
 
     /// Returns the Jacobian of the centre of mass of a body's subtree (n, 3 × nv), see
@@ -38,7 +38,7 @@ impl<S: Precision> Batch<S> {
     pub fn subtree_jacobian(&mut self, body: usize) -> Result<Rows<S>, SimError> {
         check_body(&self.model, body)?;
         let width = 3 * self.model.nv;
-        self.ask(Question::SubtreeJacobian(body), Given::Shared(&[]), width)
+        self.run_query(Query::SubtreeJacobian(body), Given::Shared(&[]), width)
     }
 
     /// Returns the first hit of each ray in each environment, see [`Sim::rays`](crate::Sim::rays), as five values per
@@ -53,10 +53,10 @@ impl<S: Precision> Batch<S> {
         frame: Option<FrameObject>,
         filter: &RayFilter,
     ) -> Result<Rows<S>, SimError> {
-        let width = self.check_given("rays", &rays)?;
+        let width = self.check_input("rays", &rays)?;
         check_rays(&self.model, frame, rays.all())?;
-        let question = Question::Rays { frame, filter };
-        self.ask(question, rays, width / RAY * HIT)
+        let query = Query::Rays { frame, filter };
+        self.run_query(query, rays, width / RAY * HIT)
     }
 
     /// Returns heights of a height field in each environment (n, k), see [`Sim::heights`](crate::Sim::heights).
@@ -70,9 +70,9 @@ impl<S: Precision> Batch<S> {
         places: Given<S>,
         frame: Option<FrameObject>,
     ) -> Result<Rows<S>, SimError> {
-        let width = self.check_given("places", &places)?;
+        let width = self.check_input("places", &places)?;
         check_places(&self.model, geom, frame, places.all())?;
-        self.ask(Question::Heights { geom, frame }, places, width / 2)
+        self.run_query(Query::Heights { geom, frame }, places, width / 2)
     }
 
     /// Returns the forces along dofs (n, nv) that cause the accelerations `qacc` in the present states, see
@@ -85,7 +85,7 @@ impl<S: Precision> Batch<S> {
         let nv = self.model.nv;
         self.check_numbers("qacc", &qacc, nv)?;
         check_acceleration(&self.model, given)?;
-        self.ask(Question::Inverse(given), qacc, nv)
+        self.run_query(Query::Inverse(given), qacc, nv)
     }
 
     /// Returns joint positions that bring the tasks of `ik` to their goals in each environment, from the present states
@@ -105,7 +105,7 @@ impl<S: Precision> Batch<S> {
             self.check_numbers("start", start, self.model.nq)?;
         }
         let width = IkSolution::<S>::width(&self.model, ik);
-        let rows = self.ask(Question::Kinematics { ik, start }, goals, width)?;
+        let rows = self.run_query(Query::Kinematics { ik, start }, goals, width)?;
         let nq = self.model.nq;
         Ok(rows.iter().map(|row| IkSolution::read(row, nq)).collect())
     }
@@ -125,7 +125,7 @@ impl<S: Precision> Batch<S> {
     }
 
     /// Returns the number of values per environment.
-    fn check_given(&self, name: &'static str, given: &Given<S>) -> Result<usize, SimError> {
+    fn check_input(&self, name: &'static str, given: &Given<S>) -> Result<usize, SimError> {
         let width = given.width(self.count());
         if let Given::Each(values) = given {
             check_length(name, values.len(), width * self.count())?;
@@ -133,9 +133,9 @@ impl<S: Precision> Batch<S> {
         Ok(width)
     }
 
-    pub(super) fn ask(
+    pub(super) fn run_query(
         &mut self,
-        question: Question<S>,
+        query: Query<S>,
         given: Given<S>,
         width: usize,
     ) -> Result<Rows<S>, SimError> {
@@ -146,7 +146,7 @@ impl<S: Precision> Batch<S> {
         self.order.clear();
         self.order.extend(0..count as u32);
         let (motion, inputs) = self.state.share();
-        let asking = Asking {
+        let call = QueryCall {
             model: &self.model,
             settings: &self.settings,
             rows: EnvRows {
@@ -154,7 +154,7 @@ impl<S: Precision> Batch<S> {
                 inputs,
                 params: &self.params,
             },
-            question,
+            query,
             width: given.width(count),
             given,
             answers: Cells::new(&mut answers),
@@ -162,7 +162,7 @@ impl<S: Precision> Batch<S> {
         let (steppers, order) = (&mut self.steppers, &self.order);
         self.threads.enter(|| {
             for_each_group(steppers, order, |stepper, group| {
-                stepper.ask(group, &asking)
+                stepper.query(group, &call)
             })
         });
         Ok(answers)

@@ -44,7 +44,7 @@ impl<S: Scalar + Shared> RecordedStates<S> {
     }
 
     /// Records that the outputs of environment `env` hold for the state in its rows.
-    pub(super) fn note_row(&mut self, env: usize, state: &StateRows<S>) {
+    pub(super) fn record_row(&mut self, env: usize, state: &StateRows<S>) {
         self.qpos.row_mut(env).copy_from_slice(state.qpos.row(env));
         self.qvel.row_mut(env).copy_from_slice(state.qvel.row(env));
         (self.mocap_pos.row_mut(env)).copy_from_slice(state.mocap_pos.row(env));
@@ -52,7 +52,7 @@ impl<S: Scalar + Shared> RecordedStates<S> {
     }
 
     /// Invalidates the recorded outputs of environment `env`.
-    pub(super) fn forget(&mut self, env: usize) {
+    pub(super) fn invalidate(&mut self, env: usize) {
         self.qpos.row_mut(env).fill(S::new(f64::NAN));
         self.qvel.row_mut(env).fill(S::new(f64::NAN));
     }
@@ -77,7 +77,7 @@ pub struct RecordedStateCells<'a, S: Scalar + Shared> {
 
 impl<S: Scalar + Shared> RecordedStateCells<'_, S> {
     /// Records the state of an environment whose outputs were recorded.
-    pub fn note<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
+    pub fn record<T: Real<Scalar = S>>(&self, env: usize, lane: usize, state: &State<T>) {
         self.qpos.write::<Number, T>(env, lane, &state.qpos);
         self.qvel.write::<Number, T>(env, lane, &state.qvel);
         (self.mocap_pos).write::<Vector, T>(env, lane, &state.mocap_pos);

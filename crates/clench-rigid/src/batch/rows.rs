@@ -23,9 +23,9 @@ impl<E: Copy> Rows<E> {
     pub(crate) fn new(count: usize, width: usize, value: E) -> Result<Self, SimError> {
         let spare = ALIGNMENT / size_of::<E>().max(1);
         let len = count.checked_mul(width);
-        let room = len.and_then(|len| len.checked_add(spare));
+        let capacity = len.and_then(|len| len.checked_add(spare));
         let mut buffer = Vec::new();
-        match room.map(|room| buffer.try_reserve_exact(room)) {
+        match capacity.map(|capacity| buffer.try_reserve_exact(capacity)) {
             Some(Ok(())) => {}
             _ => {
                 let bytes = width.saturating_mul(size_of::<E>());
@@ -121,10 +121,10 @@ pub(super) fn per_env<E>(count: usize, value: impl FnMut() -> E) -> Result<Vec<E
 /// Reserves and releases the memory of `count` rows of `bytes` bytes, before many tables are allocated: a system that
 /// grants each of them may still have too little for all, and kills the process when they are written.
 pub(super) fn try_reserve(count: usize, bytes: usize) -> Result<(), SimError> {
-    let mut room = Vec::<u8>::new();
-    let reserved = (count.checked_mul(bytes)).map(|total| room.try_reserve_exact(total));
+    let mut probe = Vec::<u8>::new();
+    let reserved = (count.checked_mul(bytes)).map(|total| probe.try_reserve_exact(total));
     // Prevents the compiler from removing the unused allocation.
-    black_box(&room);
+    black_box(&probe);
     match reserved {
         Some(Ok(())) => Ok(()),
         _ => Err(SimError::OutOfMemory { count, bytes }),

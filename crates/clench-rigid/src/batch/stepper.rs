@@ -1,6 +1,6 @@
 //! A thread's scratch memory, in which a group of environments is gathered, stepped in lanes and scattered.
 
-use super::answer::{AskMemory, Asking};
+use super::answer::{QueryCall, QueryMemory};
 use super::env_rows::EnvRows;
 use super::group::{Group, MAX_LANES};
 use super::job::{Job, Pass, StepTotals, Stepper};
@@ -46,7 +46,7 @@ pub(super) struct LaneStepper<T: Real> {
     /// Environments to be reset to the initial state, with the step to repeat.
     restarts: Vec<(u32, usize)>,
     /// Scratch memory of queries.
-    memory: AskMemory<T>,
+    memory: QueryMemory<T>,
     totals: StepTotals,
 }
 
@@ -74,7 +74,7 @@ where
             has_occasional: false,
             output: Vec::new(),
             restarts: Vec::new(),
-            memory: AskMemory::new(),
+            memory: QueryMemory::new(),
             totals: StepTotals::default(),
         }
     }
@@ -264,7 +264,7 @@ where
         let last = step + 1 == job.steps;
         if let Some(recorded) = job.recorded.as_ref().filter(|_| last) {
             for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
-                recorded.note(env, lane, &self.state);
+                recorded.record(env, lane, &self.state);
             }
         }
         for (&output, target) in Output::ALL.iter().zip(&job.targets) {
@@ -332,13 +332,13 @@ where
         }
     }
 
-    fn ask(&mut self, envs: &[u32], asking: &Asking<T::Scalar>) {
+    fn query(&mut self, envs: &[u32], call: &QueryCall<T::Scalar>) {
         let mut group = Group::new(envs);
         let good = loop {
             if group.len == 0 {
                 return;
             }
-            self.gather(&group, &asking.rows);
+            self.gather(&group, &call.rows);
             let good = check::good_inputs(&self.state, self.has_occasional);
             if good.all() {
                 break good;
@@ -347,9 +347,9 @@ where
         };
         self.output.clear();
         let lanes = (&self.params, &self.state, &mut self.ws);
-        let good = good & asking.answer(&group, lanes, &mut self.memory, &mut self.output);
+        let good = good & call.answer(&group, lanes, &mut self.memory, &mut self.output);
         for (lane, env) in group.iter().filter(|&(lane, _)| good.lane(lane)) {
-            (asking.answers).write::<Number, T>(env, lane, &self.output);
+            (call.answers).write::<Number, T>(env, lane, &self.output);
         }
     }
 

@@ -299,8 +299,8 @@ fn project<T: Real>(model: &Model, params: &Params<T>, ik: &Ik, qpos: &mut [T]) 
         let [low, high] = params.jnt_range[j];
         let q = &mut qpos[joint.qpos..];
         if joint.kind == JointKind::Ball {
-            let turn = Quat::from_slice(q).to_rotation_vector();
-            let (axis, angle) = turn.normalize();
+            let rotation = Quat::from_slice(q).to_rotation_vector();
+            let (axis, angle) = rotation.normalize();
             let back = Quat::from_axis_angle(axis, high);
             Quat::select(angle.gt(high), back, Quat::from_slice(q)).write(q);
         } else {

@@ -146,9 +146,9 @@ pub(crate) fn each_joint_of_bodies<T: Real>(
             continue;
         };
         let [x, y, z, turn_x, turn_y, turn_z] = rows(s.ws, block);
-        let turn = Vec3::new(turn_x, turn_y, turn_z);
+        let rotation = Vec3::new(turn_x, turn_y, turn_z);
         let couple = match weld {
-            true => weld_torque(pos, &frames, turn),
+            true => weld_torque(pos, &frames, rotation),
             false => Vec3::ZERO,
         };
         let wrenches = frames.points(pos).map(|at| Wrench {

@@ -10,8 +10,8 @@ use clench_dynamics::readings::BodyForces;
 pub(crate) use forces::{each_joint_of_bodies, of_contact};
 pub(crate) use source::Source;
 
-use crate::known::Extent;
 use crate::sensor::bodies::update as update_body_forces;
+use crate::validity::Computed;
 use clench_dynamics::Step;
 use clench_dynamics::dynamics::camera::camera_pose;
 use clench_dynamics::dynamics::frames::Frames;
@@ -47,8 +47,8 @@ macro_rules! outputs {
             }
 
             /// Returns the results that it requires.
-            pub(crate) fn extent(self) -> Extent {
-                match self { $(Output::$name => Extent::$extent,)* }
+            pub(crate) fn extent(self) -> Computed {
+                match self { $(Output::$name => Computed::$extent,)* }
             }
 
             /// Appends its numbers to `out`.

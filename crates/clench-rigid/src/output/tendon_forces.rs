@@ -7,7 +7,7 @@
 use super::source::Source;
 use clench_dynamics::constraint::{ConstraintSource, equality_slope};
 use clench_dynamics::dynamics::reflected::{tendon_armature, tendon_damper};
-use clench_dynamics::dynamics::spring::{tendon_spring, tendon_stretch};
+use clench_dynamics::dynamics::spring::{tendon_elongation, tendon_spring};
 use clench_dynamics::dynamics::tendon::gradient;
 use clench_dynamics::dynamics::tendon_path::{Span, bias_acceleration, each_span};
 use clench_dynamics::model::{EqualityTarget, Transmission};
@@ -40,7 +40,7 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let (model, params, ws) = (s.model, s.params, &s.ws);
     let mut force = T::ZERO;
     if model.flags.spring {
-        let stretch = tendon_stretch(
+        let stretch = tendon_elongation(
             model,
             params,
             &s.state.plastic,

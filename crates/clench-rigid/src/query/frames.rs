@@ -5,8 +5,8 @@
 
 use super::{check_body, check_object};
 use crate::Precision;
-use crate::known::Extent;
 use crate::sim::Sim;
+use crate::validity::Computed;
 use clench_dynamics::check::check_length;
 use clench_dynamics::dynamics::chains::BodyPoint;
 use clench_dynamics::dynamics::frames::{Axes, Frames, along};
@@ -37,7 +37,7 @@ impl<T: Precision> Sim<T> {
     /// Returns an error if there is no such object or a length is wrong, or as [`refresh`](Self::refresh) does.
     pub fn jacobian(&mut self, anchor: Anchor<T>, jacobian: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, jacobian.len())?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         self.change(jacobian, |sim, jacobian| {
             let point = sim.body_point(anchor);
             point_jacobian(sim.model(), &sim.workspace().position, &point, jacobian);
@@ -52,7 +52,7 @@ impl<T: Precision> Sim<T> {
     /// See [`jacobian`](Self::jacobian).
     pub fn jacobian_rate(&mut self, anchor: Anchor<T>, rate: &mut [T]) -> Result<(), SimError> {
         self.check_jacobian(anchor, rate.len())?;
-        self.require(Extent::Everything)?;
+        self.require(Computed::Everything)?;
         self.change(rate, |sim, rate| {
             let (point, ws) = (sim.body_point(anchor), sim.workspace());
             point_jacobian_rate(sim.model(), (&ws.position, &ws.velocity), &point, rate);
@@ -68,7 +68,7 @@ impl<T: Precision> Sim<T> {
     pub fn subtree_jacobian(&mut self, body: usize, jacobian: &mut [T]) -> Result<(), SimError> {
         check_body(self.model(), body)?;
         check_length("jacobian", jacobian.len(), 3 * self.model().nv)?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         self.change(jacobian, |sim, jacobian| {
             let pos = &sim.workspace().position;
             subtree_jacobian(sim.model(), sim.params(), pos, body, jacobian);
@@ -83,7 +83,7 @@ impl<T: Precision> Sim<T> {
     /// See [`jacobian`](Self::jacobian).
     pub fn velocity(&mut self, object: FrameObject, axes: Axes) -> Result<[Vec3<T>; 2], SimError> {
         check_object(self.model(), object)?;
-        self.require(Extent::Everything)?;
+        self.require(Computed::Everything)?;
         let velocity = self.frames().velocity(object, &self.workspace().velocity);
         Ok(along(self.frames(), axes, object, velocity).map(|vector| vector.lane(0)))
     }
@@ -99,7 +99,7 @@ impl<T: Precision> Sim<T> {
         axes: Axes,
     ) -> Result<[Vec3<T>; 2], SimError> {
         check_object(self.model(), object)?;
-        self.require(Extent::Everything)?;
+        self.require(Computed::Everything)?;
         self.update_body_forces();
         let ws = self.workspace();
         let cacc = &ws.sensors.bodies.cacc;

@@ -1,8 +1,8 @@
 //! Queries about geoms: ray casts and distances.
 
 use crate::Precision;
-use crate::known::Extent;
 use crate::sim::Sim;
+use crate::validity::Computed;
 use clench_collide::{Ray, Separation, distance};
 use clench_dynamics::error::{SimError, no_such};
 use clench_dynamics::geometry::{Geoms, RayFilter, RayHit};
@@ -22,7 +22,7 @@ impl<T: Precision> Sim<T> {
         direction: Vec3<T>,
         filter: &RayFilter,
     ) -> Result<Option<RayHit<T>>, SimError> {
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let line = Ray {
             origin: Vec3::splat(origin),
             direction: Vec3::splat(direction),
@@ -53,7 +53,7 @@ impl<T: Precision> Sim<T> {
         if let Some(index) = [geom1, geom2].into_iter().find(|geom| *geom >= count) {
             return Err(no_such("geom", index, count));
         }
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let geoms = self.geoms();
         let lane = |geom| (geoms.solid(geom).lane(0), geoms.pose(geom).lane(0));
         let [a, b] = [geom1, geom2].map(lane);

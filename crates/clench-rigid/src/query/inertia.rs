@@ -3,8 +3,8 @@
 use super::check_body;
 use super::frames::Anchor;
 use crate::Precision;
-use crate::known::Extent;
 use crate::sim::Sim;
+use crate::validity::Computed;
 use clench_dynamics::Step;
 use clench_dynamics::check::{check_length, check_values};
 use clench_dynamics::dynamics::jacobian::add_point_forces;
@@ -21,7 +21,7 @@ impl<T: Precision> Sim<T> {
     pub fn mul_mass(&mut self, x: &[T], product: &mut [T]) -> Result<(), SimError> {
         check_values("x", x, self.model().nv)?;
         check_length("product", product.len(), x.len())?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let x = Vec::from_iter(x.iter().copied().map(T::Alone::splat));
         self.change(product, |sim, product| {
             let mass = sim.workspace().mass();
@@ -37,7 +37,7 @@ impl<T: Precision> Sim<T> {
     /// Returns an error as [`mul_mass`](Self::mul_mass) does, or if the mass matrix is singular; x is then unchanged.
     pub fn solve_mass(&mut self, x: &mut [T]) -> Result<(), SimError> {
         check_values("x", x, self.model().nv)?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let (model, ws) = (self.model(), self.workspace());
         if ws.singular.lane(0) {
             let (time, place) = (self.state.time, massless(model, ws, 0));
@@ -64,7 +64,7 @@ impl<T: Precision> Sim<T> {
     ) -> Result<(), SimError> {
         check_body(self.model(), body)?;
         check_length("qfrc", qfrc.len(), self.model().nv)?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let wrench = (Vec3::splat(force), Vec3::splat(torque));
         self.change(qfrc, |sim, qfrc| {
             let point = sim.body_point(Anchor::Point { body, place });

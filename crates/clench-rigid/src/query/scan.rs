@@ -2,8 +2,8 @@
 
 use super::cast::{HIT, RAY, cast, sample};
 use super::check_object;
-use crate::known::Extent;
 use crate::sim::Sim;
+use crate::validity::Computed;
 use crate::{Model, Precision};
 use clench_dynamics::check::{check_count, check_values};
 use clench_dynamics::error::{SimError, no_such};
@@ -54,7 +54,7 @@ impl<T: Precision> Sim<T> {
         filter: &RayFilter,
     ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
         check_rays(self.model(), frame, rays)?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let rays = Vec::from_iter(rays.iter().copied().map(T::Alone::splat));
         let mut hits = Vec::new();
         cast(self.geoms(), frame, &rays, filter, &mut hits);
@@ -82,7 +82,7 @@ impl<T: Precision> Sim<T> {
         frame: Option<FrameObject>,
     ) -> Result<Vec<T>, SimError> {
         check_places(self.model(), geom, frame, places)?;
-        self.require(Extent::Positions)?;
+        self.require(Computed::Positions)?;
         let places = Vec::from_iter(places.iter().copied().map(T::Alone::splat));
         let mut heights = Vec::new();
         sample(self.geoms(), geom, frame, &places, &mut heights);

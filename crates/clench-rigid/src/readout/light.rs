@@ -18,13 +18,13 @@ fn light_place<T: Real>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f6
     let wide = |v: Vec3<T>| Vec3::from_array(v.to_array().map(|x| x.lane(0).to_f64()));
     let at = |body: usize| wide(ws.position.xpos[body]);
     let com = |body: usize| wide(ws.position.subtree_com[body]);
-    let turned = |v: Vec3<f64>| {
+    let rotated = |v: Vec3<f64>| {
         let rows = ws.position.xmat[light.body].rows.map(wide);
         Vec3::from_array(rows.map(|row| row.dot(v)))
     };
-    let fixed = || at(light.body) + turned(light.pos);
+    let fixed = || at(light.body) + rotated(light.pos);
     match light.mode {
-        CameraMode::Fixed => (fixed(), turned(light.dir)),
+        CameraMode::Fixed => (fixed(), rotated(light.dir)),
         CameraMode::Track => (at(light.body) + light.pos0, light.dir0),
         CameraMode::TrackCom(_) => (com(light.body) + light.poscom0, light.dir0),
         CameraMode::TargetBody(target) => (fixed(), (at(target) - fixed()).normalize().0),

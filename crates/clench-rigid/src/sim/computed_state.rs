@@ -8,20 +8,20 @@ use clench_math::{Real, Scalar};
 use std::any::Any;
 
 /// Memory for a copy in lanes, if one is needed.
-pub(super) type Room<S> = Option<Box<State<<S as Scalar>::Alone>>>;
+pub(super) type LaneCopy<S> = Option<Box<State<<S as Scalar>::Alone>>>;
 
 /// Allocates memory for the states of a model.
-pub(super) fn room<S: Scalar>(model: &Model) -> Room<S> {
+pub(super) fn lane_copy<S: Scalar>(model: &Model) -> LaneCopy<S> {
     (S::Alone::LANES > 1).then(|| Box::new(State::new(model)))
 }
 
 /// Calls `pass` with a state.
 pub(super) fn read<S: Scalar, R>(
     state: &State<S>,
-    room: &mut Room<S>,
+    lane_copy: &mut LaneCopy<S>,
     pass: impl FnOnce(&State<S::Alone>) -> R,
 ) -> R {
-    if let Some(copy) = room {
+    if let Some(copy) = lane_copy {
         (Step::compiled().splat_state)(copy, state);
         return pass(copy);
     }
@@ -34,10 +34,10 @@ pub(super) fn read<S: Scalar, R>(
 /// Calls `pass` with a state that it advances.
 pub(super) fn change<S: Scalar, R>(
     state: &mut State<S>,
-    room: &mut Room<S>,
+    lane_copy: &mut LaneCopy<S>,
     pass: impl FnOnce(&mut State<S::Alone>) -> R,
 ) -> R {
-    if let Some(copy) = room {
+    if let Some(copy) = lane_copy {
         (Step::compiled().splat_state)(copy, state);
         let result = pass(copy);
         copy.write_moving(state);

@@ -106,7 +106,7 @@ impl<T: Precision> Sim<T> {
         (state.dynamic_body1[slot], state.dynamic_body2[slot]) = (T::ZERO, T::ZERO);
         (state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]) = (Vec3::ZERO, Vec3::ZERO);
         state.dynamic_quat[slot] = Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO);
-        self.forget();
+        self.invalidate();
         Ok(())
     }
 
@@ -161,7 +161,7 @@ impl<T: Precision> Sim<T> {
             }
         }
         self.state.eq_active[equality] = true;
-        self.forget();
+        self.invalidate();
         Ok(())
     }
 
@@ -183,8 +183,8 @@ impl<T: Precision> Sim<T> {
         }
         let mut slots = 0..self.state.dynamic_kind.len();
         let free = slots.find(|&slot| tied(&self.model, &self.state, slot, 0).is_none());
-        let most = self.state.dynamic_kind.len();
-        free.ok_or(SimError::NoFreeSlot { most })
+        let max = self.state.dynamic_kind.len();
+        free.ok_or(SimError::NoFreeSlot { max })
     }
 
     /// Assigns a slot to a constraint whose frames are already stored there.
@@ -201,7 +201,7 @@ impl<T: Precision> Sim<T> {
         state.dynamic_body1[slot] = T::new(bodies[0] as f64);
         state.dynamic_body2[slot] = T::new(bodies[1] as f64);
         wake_in_state(&self.model, state, bodies);
-        self.forget();
+        self.invalidate();
         DynamicConstraint {
             slot: slot as u32,
             serial: self.last_serial,

@@ -2,7 +2,7 @@
 
 use super::Sim;
 use crate::Precision;
-use crate::known::Extent;
+use crate::validity::Computed;
 use clench_dynamics::error::SimError;
 use clench_dynamics::profile::Stage;
 
@@ -17,7 +17,7 @@ impl<T: Precision> Sim<T> {
         self.on_threads(|model, params, settings, state, ws| {
             T::before_forces(model, params, settings, state, ws);
         });
-        self.known.note(Extent::Positions, &self.state);
+        self.validity.record(Computed::Positions, &self.state);
         self.halfway = true;
         Ok(())
     }
@@ -29,8 +29,8 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`step`](Self::step).
     pub fn step2(&mut self) -> Result<(), SimError> {
-        let begun = self.halfway && self.known.extent(&self.state) == Extent::Positions;
-        if !begun || !self.known.same_velocities(&self.state) || self.settings.flags.sleep {
+        let begun = self.halfway && self.validity.computed(&self.state) == Computed::Positions;
+        if !begun || !self.validity.same_velocities(&self.state) || self.settings.flags.sleep {
             return self.step();
         }
         self.halfway = false;
@@ -38,7 +38,7 @@ impl<T: Precision> Sim<T> {
         self.last_good.copy_moving_from(&self.state);
         self.on_threads(T::step_from_forces);
         let result = self.check_result(self.last_good.time);
-        self.note(&result);
+        self.record_validity(&result);
         if result.is_ok() {
             self.ws.clock.lap(Stage::Rows as usize);
             return result;

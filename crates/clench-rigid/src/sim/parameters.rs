@@ -23,7 +23,7 @@ impl<T: Precision> Sim<T> {
         Model::clear_structural_guarantees(&mut self.model, field, &row);
         self.params.write_lanes(field, &row);
         self.params.derive(&self.model, field);
-        self.forget();
+        self.invalidate();
         Ok(())
     }
 
@@ -46,7 +46,7 @@ impl<T: Precision> Sim<T> {
         for (field, row) in CONSTANTS.into_iter().zip(rows) {
             self.params.write_lanes(field, &row);
         }
-        self.forget();
+        self.invalidate();
         Ok(())
     }
 
@@ -74,8 +74,8 @@ impl<T: Precision> Sim<T> {
     /// Returns the parameters for modification in this simulation. Arrays keep their lengths. Unlike
     /// [`set_param`](Self::set_param), it checks and updates nothing.
     pub fn params_mut(&mut self) -> &mut Params<T::Alone> {
-        self.forget();
-        Model::forget_same_frames(&mut self.model);
+        self.invalidate();
+        Model::invalidate_same_frames(&mut self.model);
         &mut self.params
     }
 
@@ -87,7 +87,7 @@ impl<T: Precision> Sim<T> {
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
         self.settings = StepSettings::supported::<T>(&self.model, options)?;
         self.options = options;
-        self.forget();
+        self.invalidate();
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! Steps in which everything remains asleep.
 
-use super::{Sim, alone};
+use super::{Sim, computed_state};
 use crate::Precision;
 
 impl<T: Precision> Sim<T> {
@@ -9,14 +9,14 @@ impl<T: Precision> Sim<T> {
     pub(super) fn rest(&mut self) -> bool {
         let as_left = self.settings.flags.sleep
             && !self.halfway
-            && self.known.holds_everything()
+            && self.validity.is_complete()
             && self.state.fits(&self.model);
         if !as_left {
             return false;
         }
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
         let ws = &mut self.ws;
-        alone::change(&mut self.state, &mut self.room, |state| {
+        computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
             T::rest(model, params, settings, state, ws)
         })
     }

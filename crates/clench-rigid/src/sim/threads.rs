@@ -1,6 +1,6 @@
 //! Threads that share the work of a step.
 
-use super::{Sim, alone};
+use super::{Sim, computed_state};
 use crate::Precision;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, Params};
@@ -59,7 +59,7 @@ impl<T: Precision> Sim<T> {
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
         let ws = &mut self.ws;
         let threads = ws.threads.clone();
-        alone::change(&mut self.state, &mut self.room, |state| {
+        computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
             threads.enter_awake(|| pass(model, params, settings, state, ws));
         });
     }

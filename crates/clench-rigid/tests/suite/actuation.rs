@@ -32,7 +32,7 @@ fn forward(builder: &ModelBuilder, ctrl: &[f64]) -> Sim {
 }
 
 #[test]
-fn a_tendon_limit_scales_its_actuators_alike() {
+fn a_tendon_limit_scales_all_its_actuators_equally() {
     let mut builder = sliders();
     let mut tendon = TendonSpec::fixed("t", &[("x", 1.0), ("z", 2.0)]);
     tendon.actuatorfrcrange = [-1.0, 3.0];
@@ -141,7 +141,7 @@ fn ball() -> ModelBuilder {
 }
 
 #[test]
-fn a_servo_on_a_ball_takes_the_short_way_round() {
+fn a_servo_on_a_ball_takes_the_shortest_rotation() {
     let mut builder = ball();
     let target = TransmissionSpec::Joint("ball".into());
     let mut servo = ActuatorSpec::position("servo", target, 3.0, 0.0);
@@ -172,7 +172,7 @@ fn filtered(dynamics: DynamicsKind) -> ModelBuilder {
 }
 
 #[test]
-fn a_filtered_servo_on_a_ball_takes_the_short_way_round() {
+fn a_filtered_servo_on_a_ball_takes_the_shortest_rotation() {
     // Angle, activation, control; then, from MuJoCo 4.0: rate, input of the gain, and the activation after 2 ms with a
     // filter and with an exact one.
     let cases = [

@@ -3,7 +3,7 @@
 
 use crate::batches::*;
 use clench_math::{Force, Vec3};
-use clench_rigid::batch::{Backend, Controls, Outcome, Trouble};
+use clench_rigid::batch::{Backend, Controls, Outcome, StepFailure};
 use clench_rigid::builder::ModelBuilder;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -64,21 +64,21 @@ fn replace(state: &mut State<f64>, field: &str, row: &[f64]) {
 }
 
 fn outcome(steps: usize, done: Result<(), SimError>) -> Outcome {
-    let trouble = match done {
+    let failure = match done {
         Ok(()) => None,
         Err(SimError::Fault(Fault::Diverged {
             field,
             index,
             value,
             ..
-        })) => Some(Trouble::Diverged {
+        })) => Some(StepFailure::Diverged {
             field,
             index,
             value,
         }),
         Err(error) => panic!("{error}"),
     };
-    Outcome { steps, trouble }
+    Outcome { steps, failure }
 }
 
 impl Backend<f64> for Played {
@@ -204,7 +204,7 @@ fn each<R: PartialEq + std::fmt::Debug>(
 }
 
 #[test]
-fn what_is_written_goes_up_and_what_moves_comes_down() {
+fn written_fields_are_uploaded_and_moving_fields_downloaded() {
     let (mut batches, _) = both(arm_and_box(), false);
     each(&mut batches, |batch| {
         batch.record(&["qacc", "time", "qvel", "energy"])
@@ -244,7 +244,7 @@ fn nothing_goes_up_that_is_there() {
 }
 
 #[test]
-fn rollouts_are_what_they_are_on_the_processor() {
+fn rollouts_equal_those_of_the_processor() {
     let (mut batches, _) = both(arm_and_box(), false);
     let nu = batches[0].model().nu();
     let ctrl = Vec::from_iter((0..COUNT * 12 * nu).map(|i| (0.3 * i as f64).sin()));
@@ -265,7 +265,7 @@ fn rollouts_are_what_they_are_on_the_processor() {
 }
 
 #[test]
-fn faults_are_told_alike() {
+fn faults_are_reported_equally() {
     let (mut batches, _) = both(walker(), false);
     let summary = each(&mut batches, |batch| {
         batch.state.qfrc_applied.row_mut(2)[1] = 1e30;
@@ -302,7 +302,7 @@ fn those_that_diverge_start_over() {
 }
 
 #[test]
-fn what_the_device_does_not_do_is_said() {
+fn unsupported_operations_of_the_device_are_errors() {
     let ([mut played, _], _) = both(walker(), false);
     let told = |result: Result<(), SimError>| result.expect_err("it cannot").to_string();
     assert_eq!(

@@ -138,7 +138,7 @@ fn poison_stays_where_it_is() {
 }
 
 #[test]
-fn poison_stays_where_it_is_among_islands() {
+fn a_poisoned_environment_with_islands_disturbs_no_other() {
     for instructions in Instructions::all_available::<f64>() {
         soak::<f64>(&loose_parts(), instructions, 1, 150);
     }
@@ -146,7 +146,7 @@ fn poison_stays_where_it_is_among_islands() {
 }
 
 #[test]
-fn a_fault_is_that_of_a_simulation_alone() {
+fn a_fault_equals_that_of_a_single_simulation() {
     let (model, options) = (model(&loose_parts()), RigidOptions::new());
     let envs: Vec<usize> = (0..FIELDS.len() * 3).collect();
     let wide = with(Instructions::widest(), 1, options);
@@ -292,7 +292,7 @@ fn too_many_contacts_in_any_stage_are_a_fault() {
 }
 
 #[test]
-fn what_failed_does_not_count_as_quality() {
+fn failed_environments_do_not_count_in_the_quality() {
     let model = model(&loose_parts());
     let envs: Vec<usize> = (0..5).collect();
     let quality = |poison: Option<f64>| {
@@ -313,7 +313,7 @@ fn what_failed_does_not_count_as_quality() {
 
 /// Writes through a pointer can leave bytes other than 0 and 1 in switches.
 #[test]
-fn a_switch_is_on_whatever_byte_says_so() {
+fn a_switch_is_on_for_any_nonzero_byte() {
     let model = model(&everything());
     let envs: Vec<usize> = (0..21).collect();
     for instructions in Instructions::all_available::<f64>() {

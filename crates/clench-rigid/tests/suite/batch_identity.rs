@@ -216,7 +216,7 @@ fn many_steps_in_a_call_are_single_steps() {
 
 /// In slots that a neighbour uses, a far-away environment holds very large numbers.
 #[test]
-fn what_is_far_away_moves_as_alone() {
+fn distant_bodies_move_as_alone() {
     let model = model(&loose_parts());
     let envs: Vec<usize> = (0..ENVS).collect();
     for far in [1e6, 1e8, 9e9] {

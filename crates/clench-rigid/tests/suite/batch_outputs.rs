@@ -147,7 +147,7 @@ fn a_masked_forward_leaves_the_others_alone() {
 }
 
 #[test]
-fn contact_forces_carry_what_rests() {
+fn contact_forces_carry_bodies_at_rest() {
     for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
         let model = model(&loose_parts());
         let options = with(
@@ -239,7 +239,7 @@ fn forces_on_bodies_come_and_go() {
 }
 
 #[test]
-fn what_is_kept_can_change() {
+fn the_recorded_outputs_can_change() {
     let mut batch = Batch::<f64>::new(model(&walker()), 4).expect("valid");
     batch.record(&["xpos", "qacc"]).expect("known");
     let place = batch.output("xpos").expect("kept").as_slice().as_ptr();
@@ -261,7 +261,7 @@ fn what_is_kept_can_change() {
 }
 
 #[test]
-fn figures_of_divergence_count_what_environments_do() {
+fn divergence_counts_the_work_of_environments() {
     let (model, options) = (model(&walker()), RigidOptions::new());
     let envs: Vec<usize> = (0..40).collect();
     let mut alone: Vec<Sim> = envs.iter().map(|&e| alone(&model, options, e)).collect();
@@ -308,7 +308,7 @@ fn figures_of_divergence_count_what_environments_do() {
 }
 
 #[test]
-fn what_is_recorded_anew_is_of_the_present_state_at_once() {
+fn newly_recorded_outputs_are_of_the_present_state() {
     let model = model(&walker());
     let envs: Vec<usize> = (0..11).collect();
     let wide = with(Instructions::widest(), 2, RigidOptions::new());
@@ -340,7 +340,7 @@ fn what_is_recorded_anew_is_of_the_present_state_at_once() {
 }
 
 #[test]
-fn outputs_follow_what_was_written_when_they_are_refreshed() {
+fn refreshed_outputs_follow_the_written_state() {
     let model = model(&walker());
     let envs: Vec<usize> = (0..23).collect();
     let wide = with(Instructions::widest(), 2, RigidOptions::new());

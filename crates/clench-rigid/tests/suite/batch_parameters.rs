@@ -172,7 +172,7 @@ fn each_number_matters() {
 }
 
 #[test]
-fn masses_and_sizes_bring_what_follows_from_them() {
+fn masses_and_sizes_update_derived_parameters() {
     let model = model(&walker());
     let mut batch = Batch::<f64>::new(model.clone(), 3).expect("valid");
     let doubled: Vec<f64> = model.params.body_mass.iter().map(|m| 2.0 * m).collect();

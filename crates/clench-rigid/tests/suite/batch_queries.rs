@@ -172,7 +172,7 @@ fn rays_and_heights_are_those_of_each_alone() {
 }
 
 #[test]
-fn heights_are_where_rays_from_above_end() {
+fn heights_equal_hits_of_rays_from_above() {
     let (_, mut sims) = pair::<f64>(Instructions::widest(), 1);
     let sim = &mut sims[0];
     let (geom, filter) = (ground(sim), RayFilter::default());
@@ -248,7 +248,7 @@ fn inverse_kinematics_are_those_of_each_alone() {
 }
 
 #[test]
-fn an_environment_that_cannot_be_computed_with_says_so_and_disturbs_nobody() {
+fn an_environment_that_fails_a_query_is_reported_and_disturbs_no_other() {
     let (mut batch, sims) = pair::<f64>(Instructions::widest(), 1);
     let object = hand(&sims[0]);
     let good = batch.jacobian(object).unwrap();

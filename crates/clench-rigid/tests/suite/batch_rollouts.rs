@@ -66,7 +66,7 @@ fn rollouts_are_steps() {
 }
 
 #[test]
-fn rollouts_start_where_they_are_told() {
+fn rollouts_start_at_the_requested_states() {
     let model = model(&everything());
     let (n, steps, nq) = (5, 12, model.nq);
     let mut batch = Batch::<f64>::new(model.clone(), n).expect("valid");
@@ -170,7 +170,7 @@ fn controls_are_shared_or_held() {
 }
 
 #[test]
-fn a_rollout_says_nothing_of_steps_that_were_not_done() {
+fn a_rollout_reports_only_steps_that_were_taken() {
     let model = model(&walker());
     let (n, steps, nu) = (9, 12, model.nu());
     let mut controls = vec![0.1; n * steps * nu];

@@ -68,7 +68,7 @@ fn a_step_in_single_precision_is_near_that_in_double() {
 }
 
 #[test]
-fn what_rests_in_single_precision_does_not_jitter() {
+fn bodies_at_rest_in_single_precision_do_not_jitter() {
     for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
         let mut b = world();
         b.options = RigidOptions::new().friction_cone(cone);

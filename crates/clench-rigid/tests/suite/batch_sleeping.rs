@@ -92,13 +92,13 @@ fn lanes_sleep_as_alone() {
 }
 
 #[test]
-fn lanes_sleep_as_alone_whoever_looks_on() {
+fn lanes_sleep_as_alone_with_any_recorded_outputs() {
     compare::<f64>(400, &["xpos", "qacc", "contact_count"]);
 }
 
 /// Recorded outputs of sleeping environments equal those of single simulations.
 #[test]
-fn outputs_of_what_sleeps_are_known() {
+fn outputs_of_sleeping_bodies_are_valid() {
     let model = model(&clutter());
     let outputs = [
         "xpos",

@@ -89,7 +89,7 @@ fn a_state_can_be_given_to_others() {
 }
 
 #[test]
-fn environments_are_reset_alone() {
+fn environments_are_reset_individually() {
     let mut batch = moving();
     let before = states(&batch);
     let model = batch.model().clone();
@@ -129,7 +129,7 @@ fn environments_are_reset_alone() {
 }
 
 #[test]
-fn a_simulation_of_an_environment_goes_its_way() {
+fn a_simulation_of_an_environment_is_independent() {
     let mut batch = moving();
     let mut sims: Vec<_> = (0..ENVS)
         .map(|env| batch.sim(env).expect("it exists"))
@@ -144,7 +144,7 @@ fn a_simulation_of_an_environment_goes_its_way() {
 }
 
 #[test]
-fn rows_stay_where_they_are() {
+fn rows_do_not_move_in_memory() {
     let mut batch = moving();
     let places = |batch: &Batch<f64>| {
         let rows = &batch.state;

@@ -73,7 +73,7 @@ fn no_contact_is_lost() {
 }
 
 #[test]
-fn lanes_agree_where_bodies_meet_in_some() {
+fn lanes_agree_if_bodies_collide_in_some() {
     let mut numbers = Numbers(2);
     let model = Arc::new(clusters(&mut numbers).build().expect("valid"));
     let envs = 16;

@@ -131,7 +131,7 @@ fn fixed_geoms_may_be_in_one_place_however_many() {
 }
 
 #[test]
-fn what_a_large_model_takes_does_not_grow_with_the_square() {
+fn memory_of_a_large_model_grows_linearly() {
     let start = Instant::now();
     let model = balls(20_000, 1.0, Budget::default()).unwrap();
     let mut sim = Sim::<f64>::new(model).unwrap();

@@ -260,7 +260,7 @@ fn parts_weigh_as_much_as_the_whole() {
 }
 
 #[test]
-fn what_the_compiler_settings_say_about_inertia_holds() {
+fn compiler_settings_of_inertia_apply() {
     let described = |set: &dyn Fn(&mut ModelBuilder)| {
         let mut builder = ModelBuilder::new("settings");
         let body =

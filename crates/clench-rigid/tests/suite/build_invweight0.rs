@@ -107,7 +107,7 @@ fn a_lone_slider_resists_with_its_mass_in_every_direction() {
 }
 
 #[test]
-fn springs_and_servos_get_the_damping_ratio_asked_for() {
+fn springs_and_servos_have_the_requested_damping_ratio() {
     let mut builder = ModelBuilder::new("oscillators");
     let hinge = |name| JointSpec::hinge(name, Y);
     let sprung = JointSpec {

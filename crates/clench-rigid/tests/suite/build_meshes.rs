@@ -52,7 +52,7 @@ fn a_hull_of_points_stands_about_its_centre() {
 }
 
 #[test]
-fn the_ways_to_weigh_differ_where_a_mesh_is_not_convex() {
+fn inertia_modes_differ_for_a_concave_mesh() {
     let mass = |inertia| {
         build(MeshSpec {
             inertia,
@@ -73,7 +73,7 @@ fn the_ways_to_weigh_differ_where_a_mesh_is_not_convex() {
 }
 
 #[test]
-fn axes_turn_only_where_the_digits_of_vertices_tell() {
+fn principal_axes_rotate_only_beyond_the_precision_of_vertices() {
     let centered: Vec<[f64; 3]> = (corners().into_iter())
         .map(|[x, y, z]| [2.0 * x - 1.0, y - 1.0, z - 1.5])
         .collect();
@@ -89,7 +89,7 @@ fn axes_turn_only_where_the_digits_of_vertices_tell() {
 }
 
 #[test]
-fn what_cannot_be_names_its_element() {
+fn errors_name_the_invalid_element() {
     let refused = |builder: ModelBuilder| builder.build().unwrap_err().to_string();
     let mut flat = corners();
     flat.iter_mut().for_each(|corner| corner[2] = 0.0);

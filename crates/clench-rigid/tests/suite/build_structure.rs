@@ -18,7 +18,7 @@ fn hinged(name: &str) -> BodySpec {
 }
 
 #[test]
-fn bodies_come_depth_first_and_know_what_moves_them() {
+fn bodies_are_depth_first_and_have_their_moving_joints() {
     let mut builder = ModelBuilder::new("tree");
     let a = builder.add_body(ModelBuilder::WORLD, hinged("a"));
     let b = builder.add_body(ModelBuilder::WORLD, ball("b"));
@@ -77,7 +77,7 @@ fn an_empty_world_is_a_model() {
 }
 
 #[test]
-fn ranges_limit_where_the_author_or_autolimits_says_so() {
+fn ranges_limit_if_limited_or_autolimits_is_set() {
     let mut builder = ModelBuilder::new("limits");
     let range = |limited| JointSpec {
         range: [-1.0, 2.0],
@@ -124,7 +124,7 @@ fn a_servo_inherits_a_share_of_its_joints_range() {
 }
 
 #[test]
-fn pairs_mix_what_they_do_not_say() {
+fn pairs_mix_parameters_that_are_not_set() {
     let mut builder = ModelBuilder::new("pairs");
     let rough = GeomSpec {
         condim: 4,
@@ -321,7 +321,7 @@ fn pull(b: &mut ModelBuilder, target: TransmissionSpec) {
 }
 
 #[test]
-fn what_cannot_be_is_refused_by_name() {
+fn invalid_elements_are_refused_by_name() {
     let mut sound = ModelBuilder::new("sound");
     let a = sound.add_body(ModelBuilder::WORLD, hinged("a"));
     sound.add_body(a, hinged("b"));
@@ -339,7 +339,7 @@ fn what_cannot_be_is_refused_by_name() {
 }
 
 #[test]
-fn an_error_says_where_the_element_was_written() {
+fn an_error_has_the_location_of_the_element() {
     let mut builder = ModelBuilder::new("origin");
     let origin = Some(Origin {
         file: "robot.xml".into(),

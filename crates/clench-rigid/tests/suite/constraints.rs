@@ -79,7 +79,7 @@ fn a_four_bar_linkage_keeps_closed() {
 }
 
 #[test]
-fn a_weld_holds_and_can_be_let_go() {
+fn a_weld_holds_and_can_be_released() {
     let mut b = world();
     add(
         &mut b,

@@ -205,7 +205,7 @@ fn options_switch_constraints_off_and_soften_them() {
 }
 
 #[test]
-fn without_multiccd_a_pair_has_the_deepest_of_its_contacts_alone() {
+fn without_multiccd_a_pair_has_only_its_deepest_contact() {
     let [several, one] = [true, false].map(|multiccd| {
         let mut sim = sim(&parts_on_a_mesh(multiccd));
         // It is tilted, so that one point is the deepest.

@@ -123,7 +123,7 @@ fn delays_that_cannot_be_are_refused() {
 }
 
 #[test]
-fn a_delayed_sensor_tells_what_was_measured_before() {
+fn a_delayed_sensor_reports_an_earlier_measurement() {
     let late = HistorySpec {
         nsample: 4,
         interp: Interpolation::Hold,
@@ -201,7 +201,7 @@ fn a_period_that_is_no_multiple_of_the_step_alternates() {
 }
 
 #[test]
-fn what_is_measured_periodically_can_be_told_late() {
+fn periodic_measurements_can_be_delayed() {
     let seen = ticks([3.0, 0.0], 2.0, 9);
     assert_eq!(seen[..6], [-100.0, -100.0, 0.0, 0.0, 0.0, 3.0]);
     assert_eq!(seen[6..], [3.0, 3.0, 6.0]);

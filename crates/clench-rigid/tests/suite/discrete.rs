@@ -59,7 +59,7 @@ fn solve(a: f64, b: f64, c: f64, y: [f64; 2]) -> [f64; 2] {
 }
 
 #[test]
-fn a_spring_is_taken_at_the_end_of_the_step() {
+fn springs_are_evaluated_at_the_end_of_the_step() {
     let (k, d, m, x, v) = (400.0, 3.0, 2.0, 0.2, -1.5);
     let mut b = cars();
     let joint = &mut b.bodies[1].joints[0];
@@ -240,7 +240,7 @@ fn a_contact_that_the_step_cannot_resolve_does_not_rebound() {
 }
 
 #[test]
-fn what_it_cannot_go_with_is_refused_by_name() {
+fn unsupported_combinations_are_refused_by_name() {
     let mut b = cars();
     b.tendons
         .push(TendonSpec::fixed("rope", &[("left", 1.0), ("right", -2.0)]));

@@ -110,7 +110,7 @@ fn begins_anew<S: Precision>(instructions: Instructions, threads: usize) {
 }
 
 #[test]
-fn with_autoreset_an_environment_begins_anew_and_its_neighbours_do_not_notice() {
+fn with_autoreset_an_environment_restarts_without_effect_on_its_neighbours() {
     for (i, instructions) in Instructions::all_available::<f64>().enumerate() {
         begins_anew::<f64>(instructions, 1 + i % 3);
     }
@@ -118,7 +118,7 @@ fn with_autoreset_an_environment_begins_anew_and_its_neighbours_do_not_notice() 
 }
 
 #[test]
-fn with_autoreset_what_fails_from_the_initial_state_too_is_a_fault() {
+fn with_autoreset_a_failure_from_the_initial_state_is_a_fault() {
     let mut b = stiff(Integrator::Euler);
     b.bodies[2].joints[0].springref = 1e6;
     let model = model(&b);

@@ -71,7 +71,7 @@ fn a_weld_added_now_is_one_of_the_file_that_holds_the_present_pose() {
 }
 
 #[test]
-fn welded_bodies_keep_their_pose_and_let_go_when_told() {
+fn welded_bodies_keep_their_pose_until_they_are_released() {
     let model = model(&boxes());
     let mut sim = thrown(&model);
     let apart = |sim: &mut Sim| {
@@ -98,7 +98,7 @@ fn welded_bodies_keep_their_pose_and_let_go_when_told() {
 }
 
 #[test]
-fn handles_of_what_is_gone_and_bodies_that_cannot_be_tied_are_refused() {
+fn stale_handles_and_invalid_bodies_are_refused() {
     let mut builder = boxes();
     add(&mut builder, 0, "post", [1.0, 0.0, 0.0], vec![], vec![]);
     let mut found = builder.build().expect("valid");
@@ -108,7 +108,7 @@ fn handles_of_what_is_gone_and_bodies_that_cannot_be_tied_are_refused() {
     let first = sim.add_weld(1, 2).expect("there is room");
     let start = sim.state.clone();
     let second = sim.add_connect(0, 3, Vec3::ZERO).expect("there is room");
-    assert_eq!(sim.add_weld(2, 3), Err(SimError::NoFreeSlot { most: 2 }));
+    assert_eq!(sim.add_weld(2, 3), Err(SimError::NoFreeSlot { max: 2 }));
     sim.remove(first).expect("it is there");
     assert_eq!(sim.remove(first), Err(SimError::StaleConstraint));
     let third = sim.add_weld(2, 3).expect("there is room");
@@ -159,7 +159,7 @@ fn a_slot_that_names_no_bodies_ties_nothing() {
 }
 
 #[test]
-fn a_saved_state_holds_what_is_tied() {
+fn a_saved_state_contains_dynamic_constraints() {
     let model = model(&boxes());
     let mut sim = thrown(&model);
     sim.add_weld(1, 3).expect("there is room");
@@ -262,24 +262,24 @@ fn lanes_equal_one_alone<S: Precision>() {
 }
 
 #[test]
-fn lanes_that_tie_different_bodies_equal_one_alone() {
+fn lanes_that_constrain_different_bodies_equal_a_single_one() {
     lanes_equal_one_alone::<f64>();
 }
 
 #[test]
-fn lanes_that_tie_different_bodies_equal_one_alone_in_single_precision() {
+fn lanes_that_constrain_different_bodies_equal_a_single_one_in_single_precision() {
     lanes_equal_one_alone::<f32>();
 }
 
 #[test]
-fn where_one_environment_cannot_all_stay_as_they_were() {
+fn if_one_environment_fails_all_stay_unchanged() {
     let mut found = boxes().build().expect("valid");
     found.max_dynamic_constraints = 1;
     let mut batch: Batch = Batch::new(Arc::new(found), 3).expect("valid");
     let held = batch.add_weld(&[1], 1, 2).expect("there is room");
     assert_eq!(
         batch.add_weld(&[0, 2, 1], 2, 3),
-        Err(SimError::NoFreeSlot { most: 1 })
+        Err(SimError::NoFreeSlot { max: 1 })
     );
     assert_eq!(batch.state.dynamic_kind.as_slice(), [0, 2, 0]);
     let all = [held[0], held[0]];
@@ -294,7 +294,7 @@ fn where_one_environment_cannot_all_stay_as_they_were() {
 }
 
 #[test]
-fn what_is_tied_wakes_sleeps_and_wakes_together() {
+fn constrained_bodies_sleep_and_wake_together() {
     let mut builder = boxes();
     builder.physics.flags.sleep = true;
     let model = model(&builder);

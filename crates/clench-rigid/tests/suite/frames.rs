@@ -184,7 +184,7 @@ fn questions_change_no_bit_of_later_steps() {
 }
 
 #[test]
-fn what_the_model_does_not_have_is_an_error() {
+fn unknown_elements_are_errors() {
     let mut sim = machines().remove(0);
     let nv = sim.model().nv;
     let mut room = vec![0.0; 6 * nv];

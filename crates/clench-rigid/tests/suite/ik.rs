@@ -84,7 +84,7 @@ fn an_arm_reaches_poses_that_it_can_take() {
 
 /// From one start, about every seventh search ends at limits that the goal's own posture does not touch.
 #[test]
-fn other_starts_reach_what_one_did_not() {
+fn restarts_reach_more_targets() {
     let model = arm(1.2);
     let mut numbers = Numbers(11);
     let goals = Vec::from_iter((0..40).map(|_| {
@@ -128,7 +128,7 @@ fn other_starts_reach_what_one_did_not() {
 }
 
 #[test]
-fn limits_are_kept_and_what_is_out_of_reach_is_approached() {
+fn limits_are_respected_and_unreachable_targets_approached() {
     let model = arm(0.3);
     let task = IkTask::new(&model, IkTarget::Position(TIP), 1.0);
     let solve = |limits: bool| {

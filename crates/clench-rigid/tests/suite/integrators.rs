@@ -158,7 +158,7 @@ fn velocity_after_step(builder: &ModelBuilder) -> f64 {
 }
 
 #[test]
-fn damping_is_taken_at_the_end_of_the_step() {
+fn damping_is_evaluated_at_the_end_of_the_step() {
     let mut builder = slider(2.0);
     builder.bodies[1].joints[0].damping[0] = 30.0;
     // m (v' − v) = −h b v', however large h b / m.

@@ -106,7 +106,7 @@ fn tendon_friction_acts_along_the_tendon() {
 }
 
 #[test]
-fn connect_and_weld_ask_for_the_right_acceleration() {
+fn connect_and_weld_have_the_right_reference_acceleration() {
     // aref + b v + k d r = −J̇ v, the row's acceleration at constant velocities.
     for seed in 0..5 {
         let mut sim = shaken(seed);

@@ -7,7 +7,7 @@ mod batch_faults;
 mod batch_identity;
 mod batch_outputs;
 mod batch_parameters;
-mod batch_questions;
+mod batch_queries;
 mod batch_rollouts;
 mod batch_single;
 mod batch_sleeping;

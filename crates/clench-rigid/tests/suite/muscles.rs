@@ -97,7 +97,7 @@ fn a_model_without_constraints_has_the_length_ranges_that_it_would_have_with_the
 }
 
 #[test]
-fn a_length_without_end_is_an_error_that_says_so() {
+fn an_unbounded_length_is_an_error() {
     let endless = slider(muscle(), |b| b.bodies[1].joints[0].limited = Some(false));
     assert!(endless.unwrap_err().contains("did not converge"));
     let short = slider(muscle(), |b| b.compiler.lengthrange.inttotal = 0.0);
@@ -118,7 +118,7 @@ fn the_search_for_length_ranges_has_a_budget() {
 }
 
 #[test]
-fn what_a_muscle_cannot_be_is_an_error() {
+fn invalid_muscles_are_errors() {
     let with = |index: usize, value: f64| {
         let mut spec = muscle();
         spec.gainprm[index] = value;

@@ -62,7 +62,7 @@ fn the_body_comes_to_rest_in_the_commanded_orientation() {
 }
 
 #[test]
-fn a_quaternion_commands_by_its_direction_alone() {
+fn the_norm_of_a_commanded_quaternion_is_irrelevant() {
     let mut by_quaternion = servo();
     by_quaternion.inputs = Some(vec![ControlInput::Quaternion; 4]);
     let target = Vec3::new(0.5, -1.0, 0.7);

@@ -117,7 +117,7 @@ fn a_ray_hits_the_first_geom_that_it_may() {
 }
 
 #[test]
-fn rays_see_the_geoms_where_they_were_put() {
+fn rays_hit_geoms_at_their_written_poses() {
     let mut sim = forwarded(&scene());
     let all = RayFilter::default();
     let (name, ..) = hit(&mut sim, v(0.0, 0.0, 4.0), -UP, all).unwrap();
@@ -130,7 +130,7 @@ fn rays_see_the_geoms_where_they_were_put() {
 }
 
 #[test]
-fn what_cannot_be_seen_is_not_hit() {
+fn invisible_geoms_are_not_hit() {
     let mut builder = scene();
     builder.bodies[1].geoms[0].visible = false;
     let mut sim = forwarded(&builder);
@@ -242,7 +242,7 @@ fn distances_are_of_geoms_that_exist() {
 }
 
 /// Returns the distance of a ray from above, and that of two geoms.
-fn ask(sim: &mut Sim) -> (f64, f64) {
+fn measure(sim: &mut Sim) -> (f64, f64) {
     let down = sim.ray(v(0.0, 0.0, 9.0), -UP, &RayFilter::default());
     let apart = sim.distance(0, 2, f64::INFINITY).unwrap().unwrap();
     (down.unwrap().expect("a hit").distance, apart.distance)
@@ -251,7 +251,7 @@ fn ask(sim: &mut Sim) -> (f64, f64) {
 #[test]
 fn queries_of_a_new_simulation_see_its_initial_state() {
     let new = || Sim::new(forwarded(&scene()).model().clone()).unwrap();
-    assert_eq!(ask(&mut new()), ask(&mut forwarded(&scene())));
+    assert_eq!(measure(&mut new()), measure(&mut forwarded(&scene())));
     let mass = new().mass_matrix().unwrap();
     assert_eq!(mass, forwarded(&scene()).mass_matrix().unwrap());
     assert!(mass[0] > 500.0, "{mass:?}");
@@ -266,14 +266,14 @@ fn queries_of_a_new_simulation_see_its_initial_state() {
 }
 
 #[test]
-fn queries_see_what_was_written_and_steps_as_in_mujoco() {
+fn queries_use_the_written_state_as_in_mujoco() {
     let mut sim = forwarded(&scene());
     sim.step().unwrap();
     sim.step().unwrap();
     // After a step, outputs follow from the state at its start.
     let (xpos, qpos) = (sim.output("xpos").unwrap(), sim.state.qpos.clone());
     assert!(xpos[5] > qpos[2]);
-    let (down, apart) = ask(&mut sim);
+    let (down, apart) = measure(&mut sim);
     assert!((9.0 - down - (xpos[5] + 0.5)).abs() < 1e-12);
     assert!((apart - (xpos[5] - 0.5)).abs() < 1e-12);
     // Controls and forces take effect in the next step.
@@ -281,7 +281,7 @@ fn queries_see_what_was_written_and_steps_as_in_mujoco() {
     assert_eq!(sim.output("xpos").unwrap(), xpos);
     // Positions take effect at once.
     sim.state.qpos[2] = 4.0;
-    let (down, apart) = ask(&mut sim);
+    let (down, apart) = measure(&mut sim);
     assert!((down - 4.5).abs() < 1e-12 && (apart - 3.5).abs() < 1e-12);
     assert_eq!(sim.output("xpos").unwrap()[5], 4.0);
     // So do velocities, parameters and resets.
@@ -299,14 +299,14 @@ fn queries_see_what_was_written_and_steps_as_in_mujoco() {
 }
 
 #[test]
-fn what_a_step_computed_is_read_without_another_pass() {
+fn results_of_a_step_are_read_without_another_pass() {
     let (mut asked, mut alone) = (forwarded(&scene()), forwarded(&scene()));
     for _ in 0..300 {
         asked.step().unwrap();
         alone.step().unwrap();
         let contacts = alone.workspace().contacts.len();
         assert_eq!(asked.contacts().len(), contacts);
-        ask(&mut asked);
+        measure(&mut asked);
         assert_eq!(asked.output("qacc").unwrap(), alone.workspace().qacc);
         assert_eq!(asked.state.qpos, alone.state.qpos);
     }

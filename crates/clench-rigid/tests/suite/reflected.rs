@@ -59,7 +59,7 @@ fn a_gear_reflects_damping_and_armature_by_its_square() {
 }
 
 #[test]
-fn damping_that_is_set_where_the_model_has_none_acts() {
+fn damping_set_on_an_undamped_joint_acts() {
     let built = bar(|_, actuator| actuator.damping = [0.125, 0.0, 0.0]);
     let set = path(bar(|_, _| ()), |sim| {
         sim.set_param("actuator_damping", &[0.125]).expect("valid");

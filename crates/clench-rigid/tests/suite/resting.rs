@@ -57,7 +57,7 @@ const WRITES: [(&str, Write); 15] = [
 ];
 
 #[test]
-fn whatever_users_write_is_met_as_by_a_simulation_that_knows_nothing() {
+fn writes_to_a_resting_simulation_act_as_on_a_new_one() {
     for (what, write) in WRITES {
         let mut knows = rested();
         let mut fresh = Sim::new(knows.model().clone()).expect("a model");

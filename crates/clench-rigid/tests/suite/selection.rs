@@ -264,7 +264,7 @@ fn lanes_mix_like_scalars() {
 }
 
 #[test]
-fn the_sweep_of_a_large_scene_finds_what_a_list_would() {
+fn the_sweep_of_a_large_scene_finds_all_pairs() {
     // 60 moving balls in a heap, each in a larger visual-only ball. Far-away shapes trigger the sweep.
     let seen = || GeomSpec {
         contype: 0,

@@ -27,7 +27,7 @@ fn ball() -> ModelBuilder {
 }
 
 #[test]
-fn wrong_lengths_and_numbers_are_errors_that_say_where() {
+fn wrong_lengths_and_numbers_are_errors_with_their_index() {
     let mut sim = sim(&ball());
     sim.state.qpos.pop();
     let wrong = SimError::WrongLength {
@@ -277,7 +277,7 @@ fn given_contacts_replace_detection_once() {
 }
 
 #[test]
-fn a_given_contact_has_a_right_handed_orthonormal_frame_and_two_geoms() {
+fn a_provided_contact_has_a_right_handed_orthonormal_frame_and_two_geoms() {
     let mut sim = sim(&ball());
     let upright = frame_from_normal(Vec3::new(0.6, 0.0, 0.8));
     let [n, t, b] = upright.rows;
@@ -344,7 +344,7 @@ fn energy_is_that_of_the_state() {
 }
 
 #[test]
-fn reading_energy_leaves_what_the_last_step_computed() {
+fn reading_energy_preserves_the_results_of_the_last_step() {
     let mut sim = sim(&ball());
     sim.state.qvel[2] = 2.0;
     run(&mut sim, 0.1);
@@ -357,7 +357,7 @@ fn reading_energy_leaves_what_the_last_step_computed() {
 }
 
 #[test]
-fn single_precision_rests_where_double_does() {
+fn single_precision_comes_to_rest_as_double_does() {
     let mut builder = ball();
     builder.options = RigidOptions::new();
     let model = model(&builder);

@@ -83,7 +83,7 @@ fn a_cube_of_any_size_only_falls() {
 }
 
 #[test]
-fn a_box_of_any_shape_tumbles_as_euler_says_to_the_digits_of_its_inertias() {
+fn a_box_of_any_shape_tumbles_by_eulers_equations() {
     let mut numbers = Numbers(5);
     let mut moved = 0;
     for _ in 0..2000 {

@@ -58,7 +58,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 #[test]
-fn what_rests_falls_asleep_by_islands_and_stays_where_it_is() {
+fn bodies_at_rest_fall_asleep_by_islands() {
     let mut sim = rested(&boxes());
     assert_eq!(
         sim.state.tree_asleep,
@@ -144,7 +144,7 @@ fn without_the_flag_nothing_sleeps_and_until_then_nothing_differs() {
 }
 
 #[test]
-fn what_a_user_touches_wakes_with_its_island() {
+fn a_pushed_body_wakes_with_its_island() {
     type Touch = fn(&mut State<f64>);
     let touches: [(&str, Touch); 6] = [
         ("position", |s| s.qpos[0] += 1e-12),
@@ -224,7 +224,7 @@ fn waking_loses_no_contact() {
 }
 
 #[test]
-fn a_mocap_body_wakes_what_it_touches_and_what_it_carries() {
+fn a_mocap_body_wakes_bodies_that_touch_it() {
     let mut b = boxes();
     let hand = BodySpec {
         name: "hand".into(),
@@ -258,7 +258,7 @@ fn a_mocap_body_wakes_what_it_touches_and_what_it_carries() {
 }
 
 #[test]
-fn an_equality_wakes_what_did_not_fall_asleep_together() {
+fn an_equality_wakes_bodies_that_did_not_fall_asleep_together() {
     let mut b = boxes();
     b.equalities.push(EqualitySpec {
         active: false,
@@ -377,7 +377,7 @@ mod policies {
     }
 
     #[test]
-    fn what_cannot_be_is_an_error() {
+    fn invalid_policies_are_errors() {
         let error = |b: &ModelBuilder| b.build().expect_err("cannot be").to_string();
         let mut b = pair();
         b.bodies[1].sleep = SleepPolicy::Init;
@@ -397,7 +397,7 @@ mod policies {
     }
 
     #[test]
-    fn what_begins_asleep_floats_until_a_keyframe_moves_it() {
+    fn an_initially_sleeping_body_floats_until_a_keyframe_moves_it() {
         let mut b = floor();
         add_box(&mut b, "floats", [0.0, 0.0, 2.0]);
         add_box(&mut b, "rests", [1.0, 0.0, 0.1]);
@@ -419,7 +419,7 @@ mod policies {
     }
 
     #[test]
-    fn an_island_begins_asleep_as_a_whole_or_not_at_all() {
+    fn an_island_starts_asleep_as_a_whole_or_not_at_all() {
         let mut b = floor();
         add_box(&mut b, "one", [0.0, 0.0, 0.5]);
         add_box(&mut b, "other", [0.0, 0.0, 0.69]);

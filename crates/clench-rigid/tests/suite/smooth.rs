@@ -58,7 +58,7 @@ fn body_velocities_are_derivatives_of_poses() {
 }
 
 #[test]
-fn dof_axes_turn_as_their_rate_says() {
+fn the_rate_of_dof_axes_is_their_derivative() {
     let sim = shaken(&floating(), 5);
     let qvel = sim.state.qvel.clone();
     let (after, before) = (moved(&sim, &qvel, H), moved(&sim, &qvel, -H));
@@ -127,7 +127,7 @@ fn momenta(sim: &Sim) -> Vec<Force<f64>> {
 
 /// d'Alembert: the rates of change of all momenta at constant dof velocities, less gravity, along each dof.
 #[test]
-fn bias_is_what_steady_motion_takes() {
+fn bias_is_the_force_of_steady_motion() {
     for seed in 0..4 {
         let sim = shaken(&floating(), seed);
         let (model, ws) = (sim.model(), sim.workspace());
@@ -324,7 +324,7 @@ fn full_compensation_floats() {
 }
 
 #[test]
-fn weight_is_added_only_where_some_is_lifted() {
+fn weight_is_compensated_only_if_gravcomp_is_set() {
     let builder = floating();
     let mut sim = sim(&builder);
     let mut compensated = |shares: [f64; 6]| {

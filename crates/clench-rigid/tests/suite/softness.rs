@@ -52,7 +52,7 @@ fn softness_has_mujocos_numbers() {
 }
 
 #[test]
-fn a_mass_on_one_constraint_moves_as_the_impedance_says() {
+fn a_mass_on_one_constraint_follows_the_impedance() {
     // Minimizes m/2 (a − a_unc)² + D/2 (a − aref)² with A₀ = 1/m.
     let (m, a_unc, v, r) = (3.0, -9.81, -0.2, -0.0004);
     let soft = Softness::new([0.05, 0.8], [0.6, 0.9, 0.001, 0.4, 3.0], r, 0.0);

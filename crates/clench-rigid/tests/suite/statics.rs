@@ -37,7 +37,7 @@ fn touching(sim: &Sim) -> Vec<[usize; 2]> {
 }
 
 #[test]
-fn what_stands_still_is_found_where_it_was_put_last() {
+fn static_bodies_collide_at_their_last_poses() {
     let mut sim = crate::scenes::sim(&tiles());
     sim.forward().expect("finite");
     assert_eq!(touching(&sim), [[TILES, 0]]);
@@ -55,7 +55,7 @@ fn what_stands_still_is_found_where_it_was_put_last() {
 }
 
 #[test]
-fn what_is_placed_from_outside_is_found_where_it_is() {
+fn mocap_bodies_collide_at_their_written_poses() {
     let mut b = tiles();
     b.bodies.push(BodySpec {
         pos: Vec3::new(0.0, 50.0, 0.0),
@@ -72,7 +72,7 @@ fn what_is_placed_from_outside_is_found_where_it_is() {
 }
 
 #[test]
-fn environments_with_their_own_scenes_move_as_if_alone() {
+fn environments_with_different_scenes_move_as_alone() {
     let model = crate::scenes::model(&tiles());
     let heights = [0.0, 0.9, -0.2, 0.05, 0.0];
     let mut batch: Batch = Batch::new(Arc::clone(&model), heights.len()).expect("room");
@@ -127,7 +127,7 @@ fn furniture() -> ModelBuilder {
 }
 
 #[test]
-fn what_is_fixed_stands_where_parameters_put_it() {
+fn fixed_bodies_follow_the_parameters() {
     for sleep in [false, true] {
         let mut b = furniture();
         b.physics.flags.sleep = sleep;

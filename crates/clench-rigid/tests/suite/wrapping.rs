@@ -50,7 +50,7 @@ fn a_string_around_half_a_circle_is_as_long_as_that() {
 }
 
 #[test]
-fn without_a_side_the_string_takes_the_shorter_way() {
+fn without_a_side_site_the_string_takes_the_shorter_path() {
     for shape in SHAPES {
         let ends = [[-2.0, 0.3, 0.0], [2.0, 0.3, 0.0]];
         let found = string(ends, &unit(shape, None));
@@ -59,7 +59,7 @@ fn without_a_side_the_string_takes_the_shorter_way() {
 }
 
 #[test]
-fn a_string_turns_as_the_line_by_the_side_site_does() {
+fn a_string_wraps_on_the_side_of_the_side_site() {
     for shape in SHAPES {
         let ends = [[-2.0, 0.3, 0.0], [2.0, 0.3, 0.0]];
         let below = string(ends, &unit(shape, Some([0.0, -1.5, 0.0])));
@@ -147,7 +147,7 @@ fn a_string_and_its_obstacle_move_together() {
 }
 
 #[test]
-fn whatever_lies_on_a_line_or_at_the_centre_gives_numbers() {
+fn degenerate_wraps_give_finite_numbers() {
     const GRID: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
     let points = || {
         GRID.iter()

@@ -56,7 +56,7 @@ fn a_spring_pulls_no_harder_than_its_yield_lets_it() {
 }
 
 #[test]
-fn what_is_not_stretched_too_far_is_elastic() {
+fn springs_below_the_yield_are_elastic() {
     let mut yielding = sim(&bob(Integrator::Euler));
     let mut elastic = bob(Integrator::Euler);
     elastic.bodies[1].joints[0].springyield = 0.0;
@@ -71,7 +71,7 @@ fn what_is_not_stretched_too_far_is_elastic() {
 }
 
 #[test]
-fn where_springs_rest_is_state() {
+fn plastic_rest_lengths_are_state() {
     let mut sim = sim(&bob(Integrator::Euler));
     sim.state.plastic[0] = 0.35;
     sim.state.qpos[0] = 0.25;
@@ -143,7 +143,7 @@ fn springs_that_are_off_do_not_yield() {
 }
 
 #[test]
-fn keyframes_hold_where_springs_rest() {
+fn keyframes_store_plastic_states() {
     let mut b = bob(Integrator::Euler);
     let key = |plastic: Option<Vec<f64>>| KeyframeSpec {
         plastic,
@@ -182,7 +182,7 @@ fn a_free_joint_has_no_spring_that_yields() {
 }
 
 #[test]
-fn a_yield_can_be_changed_where_there_is_one() {
+fn an_existing_yield_can_be_changed() {
     let mut sim: Sim = sim(&bob(Integrator::Euler));
     sim.set_param("jnt_springyield", &[0.0]).unwrap();
     sim.state.qpos[0] = 5.0;

@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dropped_is_finished() {
+    fn a_dropped_file_is_finished() {
         let mut bytes = Vec::new();
         let mut file = McapFile::new(&mut bytes, "test", &streams()).unwrap();
         file.message(1, 0, 5, b"{}").unwrap();

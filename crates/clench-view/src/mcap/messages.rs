@@ -28,7 +28,7 @@ const THICK: f64 = 0.015;
 
 const NORMAL: [f32; 4] = [0.18, 0.49, 0.88, 1.0];
 const FRICTION: [f32; 4] = [0.94, 0.54, 0.14, 1.0];
-const HELD: [f32; 4] = [0.55, 0.36, 0.82, 1.0];
+const PUSH: [f32; 4] = [0.55, 0.36, 0.82, 1.0];
 
 /// The input of the messages.
 pub(crate) struct Moment<'a, T: Precision> {
@@ -125,13 +125,13 @@ pub(crate) fn frames<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
     let position = &moment.sim.workspace().position;
     let transform = |body: usize| {
         let at = position.xpos[body].to_array().map(|x| x.lane(0).to_f64());
-        let turn = position.xquat[body].to_array().map(|x| x.lane(0).to_f64());
+        let quat = position.xquat[body].to_array().map(|x| x.lane(0).to_f64());
         json!({
             "timestamp": time,
             "parent_frame_id": moment.frames[0],
             "child_frame_id": moment.frames[body],
             "translation": point(at),
-            "rotation": shapes::turn(turn),
+            "rotation": shapes::quaternion(quat),
         })
     };
     let transforms: Vec<_> = (1..moment.frames.len()).map(transform).collect();
@@ -180,9 +180,9 @@ pub(crate) fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
             return;
         }
         let head = (3.0 * thick).min(0.5 * length);
-        let turn = Quat::from_two_vectors(Vec3::new(1.0, 0.0, 0.0), force.normalize().0);
+        let quat = Quat::from_two_vectors(Vec3::new(1.0, 0.0, 0.0), force.normalize().0);
         arrows.push(json!({
-            "pose": pose(at, turn.to_array()),
+            "pose": pose(at, quat.to_array()),
             "shaft_length": length - head,
             "shaft_diameter": thick,
             "head_length": head,
@@ -197,7 +197,7 @@ pub(crate) fn forces<T: Precision>(moment: &Moment<T>, time: &Value) -> Value {
         add(row.pos, along, FRICTION);
     }
     for push in moment.pushes {
-        add(push.at, Vec3::from_array(push.force), HELD);
+        add(push.at, Vec3::from_array(push.force), PUSH);
     }
     let things = Map::from_iter([("arrows".to_owned(), Value::Array(arrows))]);
     update(vec![entity(time, &moment.frames[0], "forces", things)])

@@ -18,13 +18,13 @@ pub(crate) fn point([x, y, z]: [f64; 3]) -> Value {
 }
 
 /// Encodes a quaternion; the input has w first.
-pub(crate) fn turn([w, x, y, z]: [f64; 4]) -> Value {
+pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Value {
     json!({"x": x, "y": y, "z": z, "w": w})
 }
 
 /// Encodes a position and a quaternion.
 pub(crate) fn pose(at: [f64; 3], quat: [f64; 4]) -> Value {
-    json!({"position": point(at), "orientation": turn(quat)})
+    json!({"position": point(at), "orientation": quaternion(quat)})
 }
 
 /// Encodes a colour: red, green, blue and opacity.

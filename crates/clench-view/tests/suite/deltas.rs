@@ -67,7 +67,7 @@ fn a_client_that_missed_frames_still_has_the_right_ones() {
 }
 
 #[test]
-fn what_rests_is_not_sent_again() {
+fn unchanged_values_are_not_sent_again() {
     let mut sim = Sim::<f64>::new(Arc::new(load_str(SCENE).unwrap())).unwrap();
     let mut frame = || {
         sim.step().unwrap();

@@ -41,7 +41,7 @@ fn a_weld_to_the_world_carries_the_weight_and_its_lever() {
 }
 
 #[test]
-fn a_body_is_shown_where_the_world_comes_first() {
+fn a_body_is_shown_if_the_world_is_the_first_body() {
     let body = "<body name='b' pos='0 0 1'><freejoint/><geom size='.1' mass='2'/></body>";
     let rest = "<equality><connect body1='world' body2='b' anchor='0 0 1'/></equality>";
     let pushes = settled(body, rest).pushes().unwrap();
@@ -66,7 +66,7 @@ fn limits_push_along_slides_and_about_hinges() {
 }
 
 #[test]
-fn what_holds_nothing_is_not_shown() {
+fn inactive_equalities_are_not_shown() {
     let body = "<body><joint limited='true' range='-1 1'/><geom size='.1'/></body>";
     assert_eq!(settled(body, "").pushes().unwrap(), []);
 }

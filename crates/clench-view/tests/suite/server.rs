@@ -42,7 +42,7 @@ fn place(server: &Server) -> (String, String) {
     )
 }
 
-fn ask(address: &str, target: &str, fields: &str) -> (TcpStream, String) {
+fn request(address: &str, target: &str, fields: &str) -> (TcpStream, String) {
     let mut stream = TcpStream::connect(address).unwrap();
     stream
         .set_read_timeout(Some(Duration::from_secs(20)))
@@ -61,7 +61,7 @@ fn connect(server: &Server) -> WebSocket<TcpStream> {
     let (address, token) = place(server);
     let fields = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n\
          Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
-    let (stream, reply) = ask(&address, &format!("/socket?token={token}"), fields);
+    let (stream, reply) = request(&address, &format!("/socket?token={token}"), fields);
     // The answer to this key is the example of RFC 6455, section 1.3.
     assert!(
         reply.starts_with("HTTP/1.1 101") && reply.contains("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="),
@@ -94,11 +94,11 @@ fn wait_for(what: impl Fn() -> bool) -> bool {
 }
 
 #[test]
-fn only_who_has_the_token_sees_the_page() {
+fn the_page_requires_the_token() {
     let server = server(&player());
     let (address, token) = place(&server);
     assert!(server.is_local() && token.len() == 32);
-    let (mut stream, reply) = ask(&address, &format!("/?token={token}"), "");
+    let (mut stream, reply) = request(&address, &format!("/?token={token}"), "");
     assert!(reply.starts_with("HTTP/1.1 200"), "{reply}");
     let mut page = String::new();
     stream.read_to_string(&mut page).unwrap();
@@ -113,7 +113,7 @@ fn only_who_has_the_token_sees_the_page() {
         ),
         ("/socket?token=".to_owned(), ""),
     ] {
-        let (_, reply) = ask(&address, &target, fields);
+        let (_, reply) = request(&address, &target, fields);
         assert!(
             reply.starts_with("HTTP/1.1 403"),
             "{target} {fields}: {reply}"
@@ -123,7 +123,7 @@ fn only_who_has_the_token_sees_the_page() {
 }
 
 #[test]
-fn frames_come_when_they_are_asked_for() {
+fn frames_are_sent_on_request() {
     let mut player = player();
     let server = server(&player);
     server.publish(player.frame().unwrap());
@@ -224,7 +224,7 @@ fn commands_that_the_model_cannot_follow_are_refused() {
 }
 
 #[test]
-fn a_spring_pulls_the_body_to_where_the_user_points() {
+fn a_spring_pulls_the_body_to_the_pointer() {
     let mut player = player();
     let target = [0.0, 0.0, 1.0];
     let drag = |target| Command::Drag {
@@ -266,7 +266,7 @@ fn a_user_can_go_back_and_the_motion_repeats() {
 }
 
 #[test]
-fn a_user_can_look_at_any_moment_of_the_past_and_come_forward_again() {
+fn a_user_can_seek_in_the_past_and_return() {
     let mut player = player();
     player.apply(Command::Step { count: 400 }).unwrap();
     let state = |player: &Player<Sim<f64>>| player.viewed().state.clone();
@@ -288,7 +288,7 @@ fn a_user_can_look_at_any_moment_of_the_past_and_come_forward_again() {
 }
 
 #[test]
-fn a_body_is_turned_to_where_the_user_wants_it() {
+fn a_body_is_rotated_to_the_target() {
     let free = "<mujoco><option gravity='0 0 0'/><worldbody><body><freejoint/><geom type='box' size='.1 .2 .3'/></body>
         </worldbody></mujoco>";
     let model = Arc::new(load_str(free).unwrap());
@@ -347,7 +347,7 @@ fn simulated_time_follows_real_time() {
 }
 
 #[test]
-fn twenty_pages_look_at_once_and_one_that_stalls_delays_nobody() {
+fn a_stalled_page_does_not_delay_twenty_others() {
     let mut player = player();
     let server = server(&player);
     let stalled = connect(&server);
@@ -384,7 +384,7 @@ fn too_many_connections_are_turned_away_politely() {
         .map(|_| TcpStream::connect(&address).unwrap())
         .collect();
     assert!(wait_for(|| server.clients() == 64));
-    let (_, reply) = ask(&address, &format!("/?token={token}"), "");
+    let (_, reply) = request(&address, &format!("/?token={token}"), "");
     assert!(reply.starts_with("HTTP/1.1 503"), "{reply}");
     drop(crowd);
     assert!(wait_for(|| server.clients() == 0));

@@ -142,7 +142,7 @@ impl<S: Scalar> ProjectedFeature<S> {
         let corners = &self.corners;
         (0..corners.len()).all(|k| {
             let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
-            turn(to - from, p - from) >= -slack * (to - from).norm()
+            cross_2d(to - from, p - from) >= -slack * (to - from).norm()
         })
     }
 
@@ -207,20 +207,20 @@ impl<S: Scalar> ProjectedFeature<S> {
     }
 }
 
-fn turn<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> S {
+fn cross_2d<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> S {
     u.x * v.y - u.y * v.x
 }
 
 fn parallel<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> bool {
     let lengths = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
-    turn(u, v).squared() <= lengths * S::new(PARALLEL * PARALLEL)
+    cross_2d(u, v).squared() <= lengths * S::new(PARALLEL * PARALLEL)
 }
 
 /// Returns the crossing of two segments in the projection, or the nearest approximation.
 fn crossing<S: Scalar>((p, p_end): (Vec3<S>, Vec3<S>), (q, q_end): (Vec3<S>, Vec3<S>)) -> Vec3<S> {
     let (u, v, offset) = (p_end - p, q_end - q, q - p);
-    let inverse = S::ONE / turn(u, v);
-    let s = (turn(offset, v) * inverse).clamp(S::ZERO, S::ONE);
-    let t = (turn(offset, u) * inverse).clamp(S::ZERO, S::ONE);
+    let inverse = S::ONE / cross_2d(u, v);
+    let s = (cross_2d(offset, v) * inverse).clamp(S::ZERO, S::ONE);
+    let t = (cross_2d(offset, u) * inverse).clamp(S::ZERO, S::ONE);
     (p + u * s + q + v * t) * S::new(0.5)
 }

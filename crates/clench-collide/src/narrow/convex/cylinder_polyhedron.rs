@@ -50,7 +50,7 @@ pub(super) fn prism_gap<S: Scalar>(
             along,
             moment: start.cross(along),
             faces: [left, right],
-            turn: (cosine, (S::ONE - cosine * cosine).max(S::ZERO).sqrt()),
+            rotation: (cosine, (S::ONE - cosine * cosine).max(S::ZERO).sqrt()),
         }
     });
     let cylinder = FramedCylinder {
@@ -96,7 +96,7 @@ pub(super) fn box_gap<S: Scalar>(
             along,
             moment: start.cross(along),
             faces,
-            turn: (S::ZERO, S::ONE),
+            rotation: (S::ZERO, S::ONE),
         }
     });
     FramedCylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit)
@@ -121,7 +121,7 @@ pub(super) fn hull_gap<S: Scalar>(
         along: real(crease.along),
         moment: real(crease.moment),
         faces: crease.faces,
-        turn: (S::new(crease.turn.0), S::new(crease.turn.1)),
+        rotation: (S::new(crease.rotation.0), S::new(crease.rotation.1)),
     });
     Some(FramedCylinder::first(pair, cylinder).gap(pair, corners, faces, edges, limit))
 }
@@ -154,14 +154,14 @@ struct PolyhedronEdge<S> {
     /// The index of the face to its left, and of the one to its right, seen from outside.
     faces: [usize; 2],
     /// The cosine and the sine of the angle between their normals.
-    turn: (S, S),
+    rotation: (S, S),
 }
 
 impl<S: Scalar> PolyhedronEdge<S> {
     /// Returns true if the gap through the edge may have its maximum between its faces, at no more than `depth`.
     #[inline(always)]
     fn may_touch(&self, [m, n]: [&Face<S>; 2], depth: S) -> bool {
-        let (cosine, sine) = self.turn;
+        let (cosine, sine) = self.rotation;
         // The distance inside the edge at which the cylinder touches a face.
         let within = [
             self.along.dot(m.moment) + m.outward.dot(self.moment),

@@ -149,13 +149,13 @@ impl<S: Scalar> SkewCylinder<S> {
         let level = |s: S| (S::ONE - s * s).max(S::ZERO).sqrt() * other.radius;
         let (c_from, c_to) = (level(from), level(to));
         let over_top = from < S::ZERO && to > S::ZERO;
-        let most = S::select(over_top, other.radius, c_from.max(c_to));
+        let largest = S::select(over_top, other.radius, c_from.max(c_to));
         let least = c_from.min(c_to);
         let slope = -cosine * ends[0] * other.radius;
         let (y_from, y_to) = (y + slope * from, y + slope * to);
         let ys = (y_from.min(y_to), y_from.max(y_to));
         let inner = (self.radius - depth).max(S::ZERO);
-        [(x + least, x + most), (x - most, x - least)]
+        [(x + least, x + largest), (x - largest, x - least)]
             .into_iter()
             .any(|xs| {
                 let (x, y) = (distances(xs), distances(ys));

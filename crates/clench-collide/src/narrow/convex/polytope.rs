@@ -223,8 +223,8 @@ impl<S: Scalar> Polytope<S> {
     fn remove_from(&mut self, entered: HalfEdge, w: &Vec3<S>) {
         let across = self.faces[entered.face as usize].across;
         self.remove(entered.face as usize);
-        for turn in 1..3 {
-            self.find_horizon(across[(entered.side as usize + turn) % 3], *w);
+        for offset in 1..3 {
+            self.find_horizon(across[(entered.side as usize + offset) % 3], *w);
         }
     }
 

@@ -75,10 +75,14 @@ impl<S: Scalar> Prism<S> {
 
     /// Returns the radius of a sphere about the origin that encloses the prism, m.
     pub(super) fn bounding_radius(&self) -> S {
-        let most = |along: [S; 4]| along.into_iter().fold(S::ZERO, |most, x| most.max(x.abs()));
+        let largest = |along: [S; 4]| {
+            along
+                .into_iter()
+                .fold(S::ZERO, |largest, x| largest.max(x.abs()))
+        };
         let [p, q, r, below, ..] = self.corners;
-        let [x, y] = [[p.x, q.x, r.x, p.x], [p.y, q.y, r.y, p.y]].map(most);
-        Vec3::new(x, y, most([p.z, q.z, r.z, below.z])).norm()
+        let [x, y] = [[p.x, q.x, r.x, p.x], [p.y, q.y, r.y, p.y]].map(largest);
+        Vec3::new(x, y, largest([p.z, q.z, r.z, below.z])).norm()
     }
 
     /// Returns the index of the corner that is furthest along `d`.

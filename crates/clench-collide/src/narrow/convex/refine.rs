@@ -22,9 +22,9 @@ const MAX_STEPS: usize = 12;
 /// The maximum number of halvings of a step that decreases the gap.
 const MAX_HALVINGS: usize = 3;
 /// The maximum rotation of a step, rad.
-const MAX_TURN: f64 = 0.3;
+const MAX_ROTATION: f64 = 0.3;
 /// The rotation of the last step, in double precision; the next one's would be of the order of its square.
-const CONVERGED_TURN: f64 = 2e-6;
+const CONVERGED_ROTATION: f64 = 2e-6;
 
 /// The orthonormal directions of the touching edges: none, one edge, or two that span a face (or cross).
 pub(super) struct ActiveEdges<S> {
@@ -143,7 +143,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
     for (k, (body, axis)) in caps.into_iter().enumerate() {
         let Some(radius) = body.cap() else { continue };
         let cosine = axis.dot(n);
-        if cosine.abs() < S::new(MAX_TURN.cos()) {
+        if cosine.abs() < S::new(MAX_ROTATION.cos()) {
             continue;
         }
         let axis = axis * S::ONE.copysign(cosine);
@@ -167,9 +167,9 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
             // Beside the axis, since on it no point of the circle is distinguished.
             let start = axis + toward * S::EPSILON.sqrt();
             let [bend] = pair.curvature(start, [(toward, toward)]);
-            let turn = (distance - radius) / (bend + gap).max(pair.tolerance);
-            let turn = turn.clamp(S::EPSILON.sqrt(), S::new(MAX_TURN));
-            Cap::Passes((axis + toward * turn).normalize().0)
+            let rotation = (distance - radius) / (bend + gap).max(pair.tolerance);
+            let rotation = rotation.clamp(S::EPSILON.sqrt(), S::new(MAX_ROTATION));
+            Cap::Passes((axis + toward * rotation).normalize().0)
         } else {
             Cap::Touches(Gap {
                 normal: axis,
@@ -183,7 +183,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
 
 /// Runs Newton's iteration; a step that decreases the gap is halved.
 fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> Gap<S> {
-    let last = S::new(CONVERGED_TURN).max(S::EPSILON * S::new(256.0));
+    let last = S::new(CONVERGED_ROTATION).max(S::EPSILON * S::new(256.0));
     let mut w = pair.vertex(start).w;
     let mut best = Gap {
         normal: start,
@@ -191,17 +191,17 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
         settled: false,
     };
     for _ in 0..MAX_STEPS {
-        let Some((mut turn, down)) = step(pair, &best, w, active) else {
+        let Some((mut rotation, down)) = step(pair, &best, w, active) else {
             return best;
         };
-        let size = turn.norm();
-        if size > S::new(MAX_TURN) {
-            turn = turn * (S::new(MAX_TURN) / size);
+        let size = rotation.norm();
+        if size > S::new(MAX_ROTATION) {
+            rotation = rotation * (S::new(MAX_ROTATION) / size);
         }
         let mut halvings = 0;
         let before = best.gap;
         loop {
-            let (tried, _) = (best.normal + turn).normalize();
+            let (tried, _) = (best.normal + rotation).normalize();
             w = pair.vertex(tried).w;
             let gap = tried.dot(w);
             if gap >= best.gap - pair.tolerance * S::new(1e-3) {
@@ -212,7 +212,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
                 return best;
             }
             halvings += 1;
-            turn = turn * S::new(0.5);
+            rotation = rotation * S::new(0.5);
         }
         // If a cap's circle touches, next to the axis, even the smallest rotation changes the gap.
         if size <= last && best.gap - before <= pair.tolerance {
@@ -242,16 +242,16 @@ fn step<S: Scalar>(
     let half = S::new(0.5);
     let mean = (ee + ff) * half + gap;
     let spread = (((ee - ff) * half).squared() + ef * ef).sqrt();
-    let (least, most) = (mean - spread, mean + spread);
-    if most <= S::ZERO {
+    let (least, largest) = (mean - spread, mean + spread);
+    if largest <= S::ZERO {
         return None;
     }
     // Around an axis that both bodies share the gap is constant; on a saddle, increase the distance from it.
-    let floor = most * S::new(1e-6);
+    let floor = largest * S::new(1e-6);
     let shift = (floor - least).max(S::ZERO);
     let (ee, ff) = (ee + gap + shift, ff + gap + shift);
     let inverse = S::ONE / (ee * ff - ef * ef);
     let (we, wf) = (e.dot(w), f.dot(w));
-    let turn = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
-    Some((turn, least > -floor))
+    let rotation = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
+    Some((rotation, least > -floor))
 }

@@ -46,7 +46,7 @@ pub fn deepest(contacts: &Contacts<f64>) -> f64 {
 
 /// Returns flat, gentle and steep fields that live as long as the tests: some huge, some tiny, some a thousand times as
 /// high as wide.
-pub fn troubled() -> &'static [HeightField] {
+pub fn degenerate() -> &'static [HeightField] {
     static FIELDS: OnceLock<Vec<HeightField>> = OnceLock::new();
     FIELDS.get_or_init(|| {
         let mut random = Random(79);

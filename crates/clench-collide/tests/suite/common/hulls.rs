@@ -67,7 +67,7 @@ fn some_of_all(low: f64, high: f64) -> Vec<&'static Hull> {
 }
 
 /// Returns hulls that are huge, tiny, or as thin as a needle or a leaf.
-pub fn troubled() -> &'static [&'static Hull] {
+pub fn degenerate() -> &'static [&'static Hull] {
     static HULLS: OnceLock<Vec<&Hull>> = OnceLock::new();
     HULLS.get_or_init(|| {
         let mut random = Random(78);

@@ -101,7 +101,7 @@ pub fn placed(random: &mut Random, kinds: (ShapeKind, ShapeKind), placement: Pla
 
 /// Returns degenerate shapes and poses of every kind: of zero size, tiny, huge, thin, concentric, aligned, touching
 /// exactly, far away.
-pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
+pub fn degenerate_scene(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
     let length = |random: &mut Random| match (random.unit() * 8.0) as usize {
         0 => 0.0,
         1 => 1e-6,
@@ -111,10 +111,10 @@ pub fn trouble(random: &mut Random, kinds: (ShapeKind, ShapeKind)) -> Scene {
         _ => random.range(0.05, 0.5),
     };
     let shape = |random: &mut Random, kind| match kind {
-        ShapeKind::Mesh if random.unit() < 0.7 => Shape::mesh(random.pick(hulls::troubled())),
+        ShapeKind::Mesh if random.unit() < 0.7 => Shape::mesh(random.pick(hulls::degenerate())),
         ShapeKind::Mesh => Shape::mesh(random.pick(hulls::wide())),
         ShapeKind::HeightField => {
-            let fields = fields::troubled();
+            let fields = fields::degenerate();
             Shape::height_field(&fields[(random.unit() * fields.len() as f64) as usize])
         }
         _ => Shape::new(

@@ -29,9 +29,9 @@ impl<'a> File<'a> {
     pub(super) fn source(&self, input: Node<'a, 'a>) -> Result<Node<'a, 'a>, String> {
         let written = input.attribute("source").unwrap_or_default();
         let mesh = input.ancestors().nth(2);
-        let mut beside = mesh.into_iter().flat_map(|mesh| mesh.children());
+        let mut mesh_folder = mesh.into_iter().flat_map(|mesh| mesh.children());
         let is_meant = |other: &Node| other.attribute("id") == written.strip_prefix('#');
-        match beside.find(|other| other.is_element() && is_meant(other)) {
+        match mesh_folder.find(|other| other.is_element() && is_meant(other)) {
             Some(found) => Ok(found),
             None => self.by_id(input, "source"),
         }

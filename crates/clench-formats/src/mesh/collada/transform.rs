@@ -36,8 +36,8 @@ fn rotation([x, y, z, degrees]: [f64; 4]) -> Transform {
     if length == 0.0 {
         return Transform::IDENTITY;
     }
-    let turn = Quat::from_axis_angle(axis * (1.0 / length), degrees.to_radians());
-    Transform::rotation(turn)
+    let rotation = Quat::from_axis_angle(axis * (1.0 / length), degrees.to_radians());
+    Transform::rotation(rotation)
 }
 
 /// Parses the numbers of an element with exactly `N`.

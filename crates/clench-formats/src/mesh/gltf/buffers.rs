@@ -2,7 +2,7 @@
 
 use super::json::{Accessor, Primitive, Root};
 use crate::base64;
-use crate::mesh::Beside;
+use crate::mesh::MeshFolder;
 use clench_math::Vec3;
 use std::borrow::Cow;
 
@@ -24,13 +24,13 @@ impl<'a> Buffers<'a> {
     pub(super) fn new(
         root: &'a Root,
         binary: Option<&'a [u8]>,
-        beside: &mut Beside,
+        mesh_folder: &mut MeshFolder,
     ) -> Result<Self, String> {
         let mut bytes = Vec::with_capacity(root.buffers.len());
         for (number, buffer) in root.buffers.iter().enumerate() {
             let about = |error: String| format!("buffer {number}: {error}");
             bytes.push(match (&buffer.uri, binary) {
-                (Some(uri), _) => Cow::Owned(fetch(uri, beside).map_err(about)?),
+                (Some(uri), _) => Cow::Owned(fetch(uri, mesh_folder).map_err(about)?),
                 (None, Some(binary)) if number == 0 => Cow::Borrowed(binary),
                 (None, _) => return Err(about("has no data".to_owned())),
             });
@@ -129,9 +129,9 @@ impl<'a> Buffers<'a> {
 }
 
 /// Returns the bytes of a URI: embedded in it or in the file that it names.
-fn fetch(uri: &str, beside: &mut Beside) -> Result<Vec<u8>, String> {
+fn fetch(uri: &str, mesh_folder: &mut MeshFolder) -> Result<Vec<u8>, String> {
     let Some(data) = uri.strip_prefix("data:") else {
-        return beside.read(&percent_decoded(uri));
+        return mesh_folder.read(&percent_decoded(uri));
     };
     let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
     let encoded = encoded.ok_or("a data URI that is not in base64")?;

@@ -7,7 +7,7 @@ mod buffers;
 mod json;
 mod scene;
 
-use super::Beside;
+use super::MeshFolder;
 use super::affine::{Transform, to_single};
 use super::triangles::Triangles;
 use buffers::Buffers;
@@ -32,7 +32,7 @@ const ONLY_SEEN: [&str; 4] = [
     "EXT_texture_",
 ];
 
-pub(super) fn read(bytes: &[u8], beside: &mut Beside) -> Result<Triangles, String> {
+pub(super) fn read(bytes: &[u8], mesh_folder: &mut MeshFolder) -> Result<Triangles, String> {
     let (text, binary) = match bytes.starts_with(MAGIC) {
         true => chunks(bytes)?,
         false => (bytes, None),
@@ -44,7 +44,7 @@ pub(super) fn read(bytes: &[u8], beside: &mut Beside) -> Result<Triangles, Strin
     let root: Root =
         serde_json::from_slice(text).map_err(|error| format!("not a glTF file: {error}"))?;
     check(&root)?;
-    let buffers = Buffers::new(&root, binary, beside)?;
+    let buffers = Buffers::new(&root, binary, mesh_folder)?;
     let (mut found, mut size) = (Triangles::default(), 0);
     for Instance { mesh, transform } in scene::instances(&root)? {
         for primitive in &mesh.primitives {

@@ -91,8 +91,8 @@ fn own(node: &Node) -> Transform {
         );
     }
     let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-    let turn = Quat::from_f64([w, x, y, z]).normalize();
+    let rotation = Quat::from_f64([w, x, y, z]).normalize();
     Transform::translation(node.translation.unwrap_or_default())
-        * Transform::rotation(turn)
+        * Transform::rotation(rotation)
         * Transform::scaling(node.scale.unwrap_or([1.0; 3]))
 }

@@ -57,12 +57,12 @@ impl Composer<'_, '_> {
     ) -> Result<Element, LoadError> {
         self.merge_options(element, &part.settings)?;
         let model = &part.root;
-        let mut frame = Element::in_place_of(model, "frame");
+        let mut frame = Element::with_location_of(model, "frame");
         let class = match wanted {
             None => {
                 let worlds = sections(model, "worldbody").flat_map(|world| &world.children);
                 for part in worlds {
-                    self.shared.charge(element, part)?;
+                    self.shared.consume(element, part)?;
                     frame.children.push(part.clone());
                 }
                 None
@@ -76,7 +76,7 @@ impl Composer<'_, '_> {
                     let message = format!("there is no {tag} \"{name}\" in the attached model");
                     element.error(message)
                 })?;
-                self.shared.charge(element, part)?;
+                self.shared.consume(element, part)?;
                 frame.children.push(part.clone());
                 class
             }
@@ -121,7 +121,7 @@ impl Composer<'_, '_> {
                 .iter()
                 .filter(|asset| asset.tag != "model" && asset.tag != "skin")
             {
-                self.shared.charge(at, asset)?;
+                self.shared.consume(at, asset)?;
                 let mut copy = asset.clone();
                 namespace.rename_asset(&mut copy);
                 self.list(tag).push(copy);
@@ -177,8 +177,8 @@ impl Composer<'_, '_> {
             element.error("either model, or a body or frame of this model must be given")
         })?;
         let (part, class) = self.find_own(element, tag, name, open)?;
-        self.shared.charge(element, &part)?;
-        let mut frame = Element::in_place_of(element, "frame");
+        self.shared.consume(element, &part)?;
+        let mut frame = Element::with_location_of(element, "frame");
         frame.children.push(part);
         self.finish(element, &mut frame, class.as_deref(), namespace, open.len())?;
         for section in FOLLOWING {

@@ -98,7 +98,7 @@ impl Composer<'_, '_> {
             let Some(copy) = relations::copy(section, element, namespace, &self.names) else {
                 continue;
             };
-            self.shared.charge(at, &copy)?;
+            self.shared.consume(at, &copy)?;
             self.names.add(section, &copy);
             let list = self.list(section);
             copied.push(list.len());

@@ -227,8 +227,8 @@ impl Composer<'_, '_> {
                 copy.spec.name = namespace.apply(&copy.spec.name);
             }
             let bytes = copy.parts.len() * size_of::<Fragment>();
-            let charged = self.shared.spending.bytes(bytes as u64);
-            charged.map_err(|excess| element.error(excess))?;
+            let consumed = self.shared.spending.bytes(bytes as u64);
+            consumed.map_err(|excess| element.error(excess))?;
             self.keyframes.push(copy);
         }
         Ok(())

@@ -136,7 +136,7 @@ fn take_lists(root: &mut Element) -> Vec<Element> {
     let kinds = relations::FOLLOWING.iter().chain(&["asset", "keyframe"]);
     let mut lists = Vec::new();
     for &kind in kinds {
-        let mut list = Element::in_place_of(root, kind);
+        let mut list = Element::with_location_of(root, kind);
         let (own, others) = std::mem::take(&mut root.children)
             .into_iter()
             .partition(|section| section.tag == kind);

@@ -36,7 +36,7 @@ impl Composer<'_, '_> {
                 suffix: &suffix,
                 foreign: false,
             };
-            self.shared.charge(&element, &element)?;
+            self.shared.consume(&element, &element)?;
             let suffixes = suffix.len() * self.count_names(&element);
             let taken = self.shared.spending.bytes(suffixes as u64);
             taken.map_err(|excess| element.error(excess))?;
@@ -49,7 +49,7 @@ impl Composer<'_, '_> {
             frames.push(frame);
             self.follow(&element, &mut following, &namespace)?;
         }
-        self.forget(&element);
+        self.discard(&element);
         Ok(frames)
     }
 
@@ -146,7 +146,7 @@ impl Composer<'_, '_> {
     }
 
     /// Removes the names of the replicated part, and the elements that referred to it.
-    fn forget(&mut self, element: &Element) {
+    fn discard(&mut self, element: &Element) {
         let mut lost = Vec::new();
         for section in FOLLOWING {
             let names = &self.names;
@@ -184,7 +184,7 @@ fn name_of(section: &str, element: &Element) -> Option<(Kind, String)> {
 
 /// Creates a frame at the location of an element, with its class.
 fn frame_of(element: &Element, place: &Pose) -> Element {
-    let mut frame = Element::in_place_of(element, "frame");
+    let mut frame = Element::with_location_of(element, "frame");
     let words = |numbers: &[f64]| {
         let words: Vec<String> = numbers.iter().map(f64::to_string).collect();
         words.join(" ")

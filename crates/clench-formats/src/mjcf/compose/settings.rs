@@ -140,10 +140,10 @@ impl Settings {
         let names: Vec<String> = (option.iter().chain(&sizes).chain(&flags))
             .map(|(name, _)| name.clone())
             .collect();
-        let mut section = Element::in_place_of(place, "option");
+        let mut section = Element::with_location_of(place, "option");
         section.attributes = option;
         if !flags.is_empty() {
-            let mut flag = Element::in_place_of(place, "flag");
+            let mut flag = Element::with_location_of(place, "flag");
             flag.attributes = flags;
             section.children.push(flag);
         }
@@ -151,7 +151,7 @@ impl Settings {
             self.0.push(section);
         }
         if !sizes.is_empty() {
-            let mut section = Element::in_place_of(place, "size");
+            let mut section = Element::with_location_of(place, "size");
             section.attributes = sizes;
             self.0.push(section);
         }

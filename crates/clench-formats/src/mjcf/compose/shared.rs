@@ -39,7 +39,7 @@ impl Shared<'_> {
     }
 
     /// Counts copies of an element and its descendants against the budget.
-    pub(super) fn charge(&mut self, at: &Element, what: &Element) -> Result<(), LoadError> {
+    pub(super) fn consume(&mut self, at: &Element, what: &Element) -> Result<(), LoadError> {
         let (mut count, mut bytes, mut pending) = (0, 0, vec![what]);
         while let Some(element) = pending.pop() {
             let texts = element

@@ -63,12 +63,12 @@ impl Frames {
             }
             TransmissionSpec::Body(body) => (self.of_body(body), false),
         };
-        let [x, y, z, turns @ ..] = &mut actuator.gear;
+        let [x, y, z, rotational @ ..] = &mut actuator.gear;
         let pulls = [x, y, z].into_iter().any(|gear| *gear != 0.0);
         match (free, pulls) {
             (true, false) => scale.along(Coordinate::Angle),
             (true, true) => {
-                turns.iter_mut().for_each(|gear| *gear *= scale.length);
+                rotational.iter_mut().for_each(|gear| *gear *= scale.length);
                 scale.along(Coordinate::Length)
             }
             (false, _) => {

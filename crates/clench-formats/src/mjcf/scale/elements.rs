@@ -2,7 +2,7 @@
 //! the frame.
 
 use super::{Coordinate, Scale};
-use crate::mjcf::stretch::{Deformation, Stretch, nearly_equal};
+use crate::mjcf::linear_map::{Deformation, LinearMap, nearly_equal};
 use clench_builder::{
     CameraLens, CameraSpec, GeomMass, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,
     SiteSpec,
@@ -26,18 +26,18 @@ impl Scale {
     /// Scales a joint; returns the factor of lengths along its axis. As in MuJoCo, a free joint is unchanged.
     ///
     /// # Errors
-    /// Returns an error if `stretch`, the frame's map in the axes of the body, rotates the joint axis.
+    /// Returns an error if `linear_map`, the frame's map in the axes of the body, rotates the joint axis.
     pub(in crate::mjcf) fn joint(
         self,
         joint: &mut JointSpec,
-        stretch: Stretch,
+        linear_map: LinearMap,
     ) -> Result<f64, &'static str> {
         let Some(coordinate) = Coordinate::of_joint(joint.kind) else {
             return Ok(1.0);
         };
         let length = match joint.kind {
             JointKind::Ball => Some(self.length),
-            _ => stretch.factor_along(joint.axis),
+            _ => linear_map.factor_along(joint.axis),
         };
         let length = length.ok_or("its axis is not aligned with the axes of the scale")?;
         let along = self.along_direction(coordinate, length);
@@ -65,12 +65,12 @@ impl Scale {
         geom: &mut GeomSpec,
         deformation: Deformation,
     ) -> Result<(), &'static str> {
-        let stretch = deformation.stretch;
-        geom.size = match stretch {
-            Stretch::Uniform(_) => geom.size * self.length,
+        let linear_map = deformation.linear_map;
+        geom.size = match linear_map {
+            LinearMap::Uniform(_) => geom.size * self.length,
             // A shape fitted to a mesh gets its size from the mesh.
-            Stretch::General(_) if !geom.mesh.is_empty() => geom.size,
-            Stretch::General(_) => self.shape(geom.kind, geom.size, deformation)?,
+            LinearMap::General(_) if !geom.mesh.is_empty() => geom.size,
+            LinearMap::General(_) => self.shape(geom.kind, geom.size, deformation)?,
         };
         geom.mass = match geom.mass {
             GeomMass::Mass(mass) => GeomMass::Mass(mass * self.mass),
@@ -86,7 +86,7 @@ impl Scale {
         geom.solimp[2] *= self.length;
         geom.adhesion *= self.force(1);
         let [x, y, z, ..] = &mut geom.surfacevel;
-        let linear = stretch.apply(Vec3::new(*x, *y, *z));
+        let linear = linear_map.apply(Vec3::new(*x, *y, *z));
         [*x, *y, *z] = linear.to_array();
         Ok(())
     }
@@ -98,8 +98,8 @@ impl Scale {
         size: Vec3<f64>,
         deformation: Deformation,
     ) -> Result<Vec3<f64>, &'static str> {
-        let stretch = deformation.stretch;
-        let [x, y, z] = stretch.factors().to_array();
+        let linear_map = deformation.linear_map;
+        let [x, y, z] = linear_map.factors().to_array();
         let factors = match kind {
             ShapeKind::Sphere => [(x * y * z).cbrt(), 1.0, 1.0],
             // The third number of a plane is not part of its shape.
@@ -123,7 +123,7 @@ impl Scale {
                 _ => "its shape can only have the same scale in all directions across its axis",
             });
         }
-        if !stretch.keeps_axes(axes) {
+        if !linear_map.keeps_axes(axes) {
             return Err("its shape is not aligned with the axes of the scale");
         }
         Ok(size.scale_by(Vec3::from_array(factors)))
@@ -160,11 +160,11 @@ impl Scale {
         *quadratic /= self.length * self.length;
     }
 
-    /// Scales the inertia of a body; `stretch` is the frame's map in its axes.
-    pub(in crate::mjcf) fn inertial(self, inertial: &mut InertialSpec, stretch: Stretch) {
+    /// Scales the inertia of a body; `linear_map` is the frame's map in its axes.
+    pub(in crate::mjcf) fn inertial(self, inertial: &mut InertialSpec, linear_map: LinearMap) {
         inertial.mass *= self.mass;
         if self.by_axis {
-            inertial.inertia = self.stretched(inertial, stretch);
+            inertial.inertia = self.stretched(inertial, linear_map);
             return;
         }
         let moments = self.mass * self.length * self.length;
@@ -176,7 +176,7 @@ impl Scale {
 
     /// Returns the inertia after a map A: the second moments of mass Σ = ½ tr(I) − I become A Σ Aᵀ, times the mass
     /// factor.
-    fn stretched(self, inertial: &InertialSpec, stretch: Stretch) -> InertiaSpec {
+    fn stretched(self, inertial: &InertialSpec, linear_map: LinearMap) -> InertiaSpec {
         let inertia = match inertial.inertia {
             InertiaSpec::Diagonal(moments) => {
                 let axes = inertial.quat.normalize().to_matrix();
@@ -194,7 +194,7 @@ impl Scale {
             let rows = Mat3::diagonal(Vec3::new(trace, trace, trace)).rows;
             Mat3::from_rows(rows[0] - a, rows[1] - b, rows[2] - c)
         };
-        let map = stretch.to_matrix();
+        let map = linear_map.to_matrix();
         let moments = map * (from_trace(inertia, 0.5) * map.transpose());
         let [a, b, c] = from_trace(moments, 1.0).rows;
         InertiaSpec::Full([a.x, b.y, c.z, a.y, a.z, b.z].map(|i| i * self.mass))
@@ -203,10 +203,10 @@ impl Scale {
 
 /// Returns the factors of the sizes of a shape with one axis or three.
 fn along_and_across(kind: ShapeKind, deformation: Deformation) -> [f64; 3] {
-    let [x, y, z] = deformation.stretch.factors().to_array();
-    let across = match deformation.stretch {
-        Stretch::Uniform(factor) => factor,
-        Stretch::General(_) => (x * y).sqrt(),
+    let [x, y, z] = deformation.linear_map.factors().to_array();
+    let across = match deformation.linear_map {
+        LinearMap::Uniform(factor) => factor,
+        LinearMap::General(_) => (x * y).sqrt(),
     };
     match (kind, deformation.segment) {
         (ShapeKind::Capsule | ShapeKind::Cylinder, false) => [across, z, 1.0],

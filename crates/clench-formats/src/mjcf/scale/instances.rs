@@ -2,7 +2,7 @@
 
 use super::{FrameId, Frames, located};
 use crate::LoadError;
-use crate::mjcf::stretch::Stretch;
+use crate::mjcf::linear_map::LinearMap;
 use crate::spending::Spending;
 use clench_builder::{GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder};
 use clench_collide::ShapeKind;
@@ -12,14 +12,14 @@ use std::collections::{HashMap, HashSet};
 impl Frames {
     /// Assigns the name of a mesh or height field in the shape given by a frame's map: its own for the first shape,
     /// with a number appended for each other.
-    pub(in crate::mjcf) fn instance(&mut self, asset: &mut String, stretch: Stretch) {
+    pub(in crate::mjcf) fn instance(&mut self, asset: &mut String, linear_map: LinearMap) {
         if asset.is_empty() {
             return;
         }
         let shapes = self.instances.entry(asset.clone()).or_default();
-        let known = shapes.iter().position(|&other| other == stretch);
+        let known = shapes.iter().position(|&other| other == linear_map);
         let number = known.unwrap_or_else(|| {
-            shapes.push(stretch);
+            shapes.push(linear_map);
             let number = shapes.len() - 1;
             if number > 0 {
                 self.made.push((asset.clone(), number));
@@ -84,7 +84,7 @@ impl Frames {
                     name: instance_name(name, *number),
                     ..mesh.clone()
                 };
-                stretch_mesh(&mut copy, shape);
+                scale_mesh(&mut copy, shape);
                 builder.meshes.push(copy);
             }
             if let Some(&place) = fields.get(name) {
@@ -95,16 +95,16 @@ impl Frames {
                     name: instance_name(name, *number),
                     ..field.clone()
                 };
-                stretch_field(&mut copy, shape);
+                scale_field(&mut copy, shape);
                 builder.height_fields.push(copy);
             }
         }
         for (name, shapes) in &self.instances {
             if let Some(&place) = meshes.get(name) {
-                stretch_mesh(&mut builder.meshes[place], shapes[0]);
+                scale_mesh(&mut builder.meshes[place], shapes[0]);
             }
             if let Some(&place) = fields.get(name) {
-                stretch_field(&mut builder.height_fields[place], shapes[0]);
+                scale_field(&mut builder.height_fields[place], shapes[0]);
             }
         }
         Ok(())
@@ -120,17 +120,17 @@ fn numbered<'a>(
 }
 
 /// Scales a height field by a map.
-fn stretch_field(field: &mut HeightFieldSpec, stretch: Stretch) {
-    let [x, y, z] = stretch.factors().to_array();
+fn scale_field(field: &mut HeightFieldSpec, linear_map: LinearMap) {
+    let [x, y, z] = linear_map.factors().to_array();
     let [half_x, half_y, top, base] = field.size;
     field.size = [half_x * x, half_y * y, top * z, base * z];
 }
 
 /// Deforms a mesh by a map.
-fn stretch_mesh(mesh: &mut MeshSpec, stretch: Stretch) {
-    let along_axes = Stretch::along_axes(stretch.factors());
-    if stretch == along_axes {
-        mesh.scale = mesh.scale.scale_by(stretch.factors());
+fn scale_mesh(mesh: &mut MeshSpec, linear_map: LinearMap) {
+    let along_axes = LinearMap::along_axes(linear_map.factors());
+    if linear_map == along_axes {
+        mesh.scale = mesh.scale.scale_by(linear_map.factors());
         return;
     }
     // The vertices are final except for the signs of a mirroring scale, which also flips the triangles.
@@ -138,12 +138,12 @@ fn stretch_mesh(mesh: &mut MeshSpec, stretch: Stretch) {
     let signs = Vec3::from_array(mesh.scale.to_array().map(|x| 1.0_f64.copysign(x)));
     for vertex in &mut mesh.vertices {
         let placed = back.rotate(*vertex - mesh.refpos).scale_by(mesh.scale);
-        *vertex = stretch.apply(placed).scale_by(signs);
+        *vertex = linear_map.apply(placed).scale_by(signs);
     }
     let inverse = Vec3::from_array(mesh.scale.to_array().map(|x| 1.0 / x));
     for tangent in mesh.tangents.iter_mut().flatten() {
         let placed = back.rotate(*tangent).scale_by(inverse);
-        *tangent = stretch.normal(placed).scale_by(signs);
+        *tangent = linear_map.normal(placed).scale_by(signs);
     }
     mesh.refpos = Vec3::ZERO;
     mesh.refquat = Quat::IDENTITY;

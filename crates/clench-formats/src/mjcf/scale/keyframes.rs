@@ -3,7 +3,7 @@
 
 use super::actuators::States;
 use super::{FrameId, Frames, PlacedJoint};
-use crate::mjcf::stretch::Stretch;
+use crate::mjcf::linear_map::LinearMap;
 use clench_builder::{KeyframeElement, KeyframePart, KeyframeSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;
 use clench_math::Vec3;
@@ -44,7 +44,7 @@ impl Frames {
         let (mut qpos, mut qvel) = (numbers(kind.nq()), numbers(kind.nv()));
         if kind == JointKind::Free {
             qpos.splice(..3, [self.moved(frame)]);
-            qvel.splice(..3, [Map::Point(self.list[frame].stretch, Vec3::ZERO)]);
+            qvel.splice(..3, [Map::Point(self.list[frame].linear_map, Vec3::ZERO)]);
         }
         OfJoint {
             qpos,
@@ -69,8 +69,8 @@ impl Frames {
     /// to it.
     fn moved(&self, frame: FrameId) -> Map {
         let frame = &self.list[frame];
-        let offset = frame.position - frame.stretch.apply(frame.unscaled);
-        Map::Point(frame.stretch, offset)
+        let offset = frame.position - frame.linear_map.apply(frame.unscaled);
+        Map::Point(frame.linear_map, offset)
     }
 }
 
@@ -141,7 +141,7 @@ enum Map {
     /// Multiplies one number by this factor.
     Number(f64),
     /// Applies the map to three numbers, a point, and adds the offset.
-    Point(Stretch, Vec3<f64>),
+    Point(LinearMap, Vec3<f64>),
 }
 
 impl Map {
@@ -156,9 +156,9 @@ impl Map {
                 }
                 [] => numbers,
             },
-            Map::Point(stretch, offset) => match numbers {
+            Map::Point(linear_map, offset) => match numbers {
                 [x, y, z, rest @ ..] => {
-                    let point = stretch.apply(Vec3::new(*x, *y, *z)) + offset;
+                    let point = linear_map.apply(Vec3::new(*x, *y, *z)) + offset;
                     [*x, *y, *z] = point.to_array();
                     rest
                 }

@@ -17,9 +17,9 @@ mod keyframes;
 mod relations;
 
 use super::document::Element;
+use super::linear_map::LinearMap;
 use super::orientation::Pose;
 use super::shortcut::Shortcut;
-use super::stretch::Stretch;
 use crate::LoadError;
 use crate::spending::Spending;
 use clench_builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origin};
@@ -52,7 +52,7 @@ impl Scale {
     };
 
     /// Reads the scale of a frame, and its linear map of positions.
-    fn read(element: &Element) -> Result<(Scale, Stretch), LoadError> {
+    fn read(element: &Element) -> Result<(Scale, LinearMap), LoadError> {
         let axes = match element.list("scale")?.unwrap_or_default()[..] {
             [] => [1.0; 3],
             [all] => [all; 3],
@@ -85,7 +85,7 @@ impl Scale {
             unit_mass,
             by_axis: differ,
         };
-        Ok((scale, Stretch::along_axes(Vec3::from_array(axes))))
+        Ok((scale, LinearMap::along_axes(Vec3::from_array(axes))))
     }
 
     /// Returns the scale of a frame in this one.
@@ -195,7 +195,7 @@ struct Frame {
     position: Vec3<f64>,
     unscaled: Vec3<f64>,
     /// The linear map of its positions, in the axes of the body.
-    stretch: Stretch,
+    linear_map: LinearMap,
 }
 
 impl Frame {
@@ -204,12 +204,12 @@ impl Frame {
         scale: Scale::ONE,
         position: Vec3::ZERO,
         unscaled: Vec3::ZERO,
-        stretch: Stretch::NONE,
+        linear_map: LinearMap::NONE,
     };
 
     /// Returns the position of a point of the frame without scales.
     fn unscaled(self, point: Vec3<f64>) -> Vec3<f64> {
-        self.unscaled + self.stretch.undo(point - self.position)
+        self.unscaled + self.linear_map.undo(point - self.position)
     }
 }
 
@@ -218,7 +218,7 @@ impl Frame {
 pub(super) struct Frames {
     list: Vec<Frame>,
     /// The frames of bodies, with the maps of positions in their axes.
-    bodies: BTreeMap<String, (FrameId, Stretch)>,
+    bodies: BTreeMap<String, (FrameId, LinearMap)>,
     joints: BTreeMap<String, PlacedJoint>,
     geoms: BTreeMap<String, FrameId>,
     sites: BTreeMap<String, FrameId>,
@@ -231,7 +231,7 @@ pub(super) struct Frames {
     /// The frames of mocap bodies.
     mocaps: Vec<FrameId>,
     /// The shapes of a mesh or height field, in the order of the elements that use them.
-    instances: BTreeMap<String, Vec<Stretch>>,
+    instances: BTreeMap<String, Vec<LinearMap>>,
     /// The shapes after the first ones, in the order of use.
     made: Vec<(String, usize)>,
     /// Scaled mesh geoms whose mass derives from a density: body, index in it, and scale of lengths.
@@ -286,18 +286,18 @@ impl Frames {
         outer: FrameId,
         pose: &mut Pose,
     ) -> Result<FrameId, LoadError> {
-        let (own, stretch) = Scale::read(element)?;
+        let (own, linear_map) = Scale::read(element)?;
         if own == Scale::ONE {
             return Ok(outer);
         }
-        pose.stretch = pose.stretch.after(stretch);
+        pose.linear_map = pose.linear_map.after(linear_map);
         let around = self.list[outer];
         self.list.push(Frame {
             outer,
             scale: around.scale.then(own),
             position: pose.pos,
             unscaled: around.unscaled(pose.pos),
-            stretch: pose.stretch.turned(pose.quat.conjugate()),
+            linear_map: pose.linear_map.rotated(pose.quat.conjugate()),
         });
         Ok(self.list.len() - 1)
     }
@@ -323,9 +323,9 @@ impl Frames {
     }
 
     /// Records a body in a frame, with the map of positions in its axes.
-    pub(super) fn add_body(&mut self, body: &BodySpec, frame: FrameId, stretch: Stretch) {
+    pub(super) fn add_body(&mut self, body: &BodySpec, frame: FrameId, linear_map: LinearMap) {
         if frame != 0 && !body.name.is_empty() {
-            self.bodies.insert(body.name.clone(), (frame, stretch));
+            self.bodies.insert(body.name.clone(), (frame, linear_map));
         }
         if body.mocap {
             self.mocaps.push(frame);
@@ -369,7 +369,7 @@ impl Frames {
     ///
     /// # Errors
     /// Returns an error if an equality, actuator or sensor cannot be scaled, or on excess memory.
-    pub(super) fn scale_rest(
+    pub(super) fn scale_remaining(
         mut self,
         shortcuts: &[Shortcut],
         builder: &mut ModelBuilder,

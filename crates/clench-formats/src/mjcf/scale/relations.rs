@@ -2,7 +2,7 @@
 
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::LoadError;
-use crate::mjcf::stretch::Stretch;
+use crate::mjcf::linear_map::LinearMap;
 use clench_builder::{
     ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
     SensorSpec, SensorSubject, TendonSpec, WrapSpec,
@@ -20,9 +20,9 @@ impl Frames {
     }
 
     /// Returns the map of positions in body axes.
-    fn in_body(&self, name: &str) -> Stretch {
+    fn in_body(&self, name: &str) -> LinearMap {
         let found = self.bodies.get(name);
-        found.map_or(Stretch::NONE, |&(_, stretch)| stretch)
+        found.map_or(LinearMap::NONE, |&(_, linear_map)| linear_map)
     }
 
     pub(super) fn of_site(&self, name: &str) -> Scale {

@@ -132,7 +132,7 @@ fn in_single_precision(point: &Vec3<f64>) -> bool {
 
 /// Only the vertices are rounded, to the 24 bits that a file stores.
 #[test]
-fn a_mesh_that_frames_stretch_comes_back_rounded() {
+fn a_mesh_deformed_by_frames_is_saved_rounded() {
     let model = load_str(
         "<mujoco><asset><mesh name='m' vertex='0 0 0  0.1 0 0  0 0.2 0  0 0 0.3'/></asset><worldbody>
            <frame scale='1 2 3' scaling='geometry'><body euler='0 0 30'><freejoint/><geom type='mesh' mesh='m'/></body></frame>
@@ -354,7 +354,7 @@ fn every_kind_of_sensor_is_written() {
 }
 
 #[test]
-fn what_is_saved_moves_as_before() {
+fn a_saved_model_moves_equally() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/humanoid.xml");
     let model = Loader::new().load(path).unwrap();
     let again = saved("humanoid", &model);
@@ -367,7 +367,7 @@ fn what_is_saved_moves_as_before() {
 }
 
 #[test]
-fn what_is_to_be_enclosed_comes_back_with_the_bounds_of_its_search() {
+fn enclosed_objects_are_saved_with_their_search_limits() {
     let text = "<mujoco><option ccd_iterations='7' ccd_tolerance='0.25'/>
       <worldbody><site name='room' size='1'/><body name='b'><freejoint/><geom size='0.1'/></body></worldbody>
       <sensor><insidesite site='room' objtype='body' objname='b' enclosed='true'/></sensor></mujoco>";
@@ -400,7 +400,7 @@ fn names_are_written_as_xml_wants_them() {
 }
 
 #[test]
-fn what_cannot_be_written_says_so() {
+fn elements_that_mjcf_lacks_are_errors() {
     let text = "<mujoco><worldbody><body><joint name='j' type='ball'/><geom size='1'/></body></worldbody></mujoco>";
     let mut model = load_str(text).unwrap();
     model.params.dof_damping[1] = 1.0;

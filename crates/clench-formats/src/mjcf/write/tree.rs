@@ -11,7 +11,7 @@ use clench_dynamics::model::{
 };
 use clench_math::{Quat, Vec3};
 
-const NO_TURN: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+const IDENTITY_QUAT: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 /// Writes all bodies, each in its parent.
 pub(super) fn write(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
@@ -78,7 +78,7 @@ fn write_body(model: &Model, b: usize, xml: &mut Xml) -> Result<(), SaveError> {
         let inertial = xml
             .tag("inertial")
             .numbers("pos", &p.body_ipos[b].to_array())
-            .numbers_unless("quat", &p.body_iquat[b].to_array(), &NO_TURN);
+            .numbers_unless("quat", &p.body_iquat[b].to_array(), &IDENTITY_QUAT);
         inertial
             .numbers("mass", &[p.body_mass[b]])
             .numbers("diaginertia", &p.body_inertia[b].to_array())
@@ -111,7 +111,7 @@ fn sleep_policy(policy: SleepPolicy) -> &'static str {
 /// Writes the pose of an element in its body.
 fn placed<'a>(tag: Tag<'a>, pos: Vec3<f64>, quat: Quat<f64>) -> Tag<'a> {
     tag.numbers_unless("pos", &pos.to_array(), &[0.0; 3])
-        .numbers_unless("quat", &quat.to_array(), &NO_TURN)
+        .numbers_unless("quat", &quat.to_array(), &IDENTITY_QUAT)
 }
 
 fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> {

@@ -108,7 +108,7 @@ fn a_class_lends_the_saturation_of_its_motor() {
 }
 
 #[test]
-fn an_input_only_says_what_it_is_where_the_gain_scales_it() {
+fn inputs_describe_the_controls_if_the_gain_scales_them() {
     assert_eq!(
         actuator("", "<general joint='j' input='pos'/>")
             .inputs

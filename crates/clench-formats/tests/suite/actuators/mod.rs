@@ -44,7 +44,7 @@ fn a_motor_passes_its_control_on() {
 }
 
 #[test]
-fn an_actuator_acts_on_what_its_element_names() {
+fn an_actuator_acts_on_its_target() {
     let tendon = actuator("", "<motor tendon='t'/>").transmission;
     assert_eq!(tendon, TransmissionSpec::Tendon("t".into()));
     let parent = actuator("", "<motor jointinparent='j'/>").transmission;
@@ -69,7 +69,7 @@ fn an_actuator_acts_on_what_its_element_names() {
 }
 
 #[test]
-fn what_names_no_target_or_two_is_refused() {
+fn an_actuator_needs_exactly_one_target() {
     for (element, message) in [
         ("<motor/>", "required"),
         ("<motor refsite='r'/>", "refsite needs site"),
@@ -234,7 +234,7 @@ fn parameters_are_looked_for_in_ancestor_classes() {
 }
 
 #[test]
-fn a_general_default_lends_its_parameters_where_the_gain_fits() {
+fn a_general_default_applies_if_the_gain_matches() {
     let stiff = "<general gainprm='400' biasprm='1 -400 -3' biastype='affine' dyntype='filter' dynprm='7'/>";
     let position = actuator(stiff, "<position joint='j'/>");
     assert_eq!(
@@ -308,7 +308,7 @@ fn an_orientation_servo_is_a_general_actuator() {
 /// A damping ratio applies if the bias is the negated gain, whatever its type. Otherwise the same parameter is a
 /// coefficient.
 #[test]
-fn a_damping_ratio_from_a_class_counts_where_the_bias_pulls_back_with_the_gain() {
+fn a_damping_ratio_of_a_class_applies_if_the_bias_opposes_the_gain() {
     let defaults = "<intvelocity kp='3' dampratio='0.6'/>";
     for gain in ["fixed", "affine"] {
         let element = format!("<general joint='j' gaintype='{gain}' inheritrange='1'/>");
@@ -336,7 +336,7 @@ fn a_filter_without_a_time_constant_in_a_class_filters_no_position() {
 
 /// MuJoCo ignores `actlimited` here: the activation is limited if and only if it has a range.
 #[test]
-fn an_integrated_velocity_is_limited_where_it_has_a_range() {
+fn an_integrated_velocity_with_a_range_is_limited() {
     for limited in ["false", "true", "auto"] {
         let element = format!("<intvelocity joint='j' actrange='-1 1' actlimited='{limited}'/>");
         assert_eq!(actuator("", &element).actlimited, None);

@@ -17,7 +17,7 @@ fn refused(parts: &[String], because: &str) {
 }
 
 #[test]
-fn the_base_gets_a_free_joint_and_keeps_what_it_is() {
+fn the_base_gets_a_free_joint_and_is_otherwise_unchanged() {
     let parts = [
         link("trunk", ""),
         link("imu", ""),
@@ -48,7 +48,7 @@ fn the_base_gets_a_free_joint_and_keeps_what_it_is() {
 }
 
 #[test]
-fn a_base_that_is_fixed_to_a_link_world_floats_where_it_stands() {
+fn a_base_fixed_to_a_link_world_floats_at_its_pose() {
     let model = floating(&[
         "<link name='world'/>".to_owned(),
         link("trunk", ""),
@@ -87,7 +87,7 @@ fn a_base_that_a_file_frees_stays_as_it_is_and_names_stay_unique() {
 }
 
 #[test]
-fn what_has_no_base_to_free_is_refused() {
+fn models_without_a_base_to_free_are_refused() {
     refused(
         &[link("a", ""), link("b", "")],
         "several are fixed to the world: a, b",

@@ -6,7 +6,7 @@ use clench_rigid::model::{EqualityTarget, JointKind};
 use std::sync::Arc;
 
 #[test]
-fn each_kind_of_joint_moves_as_it_says() {
+fn each_kind_of_joint_moves_along_its_dofs() {
     use JointKind::{Ball, Free, Hinge, Slide};
     let kinds = |kind: &str| -> Vec<JointKind> {
         let model = with_joint(kind, "<axis xyz='0 0 2'/>");
@@ -22,7 +22,7 @@ fn each_kind_of_joint_moves_as_it_says() {
 }
 
 #[test]
-fn a_planar_joint_slides_across_its_axis_and_turns_about_it() {
+fn a_planar_joint_slides_across_its_axis_and_rotates_about_it() {
     let model = with_joint(
         "planar",
         "<axis xyz='0 3 4'/><dynamics damping='2'/><limit lower='-1' upper='1'/>",
@@ -60,7 +60,7 @@ fn roll_pitch_and_yaw_turn_about_fixed_axes() {
 }
 
 #[test]
-fn limits_count_where_they_rise() {
+fn increasing_limits_apply() {
     let limit = |kind: &str, words: &str| {
         let model = with_joint(kind, &format!("<limit {words}/>"));
         (

@@ -93,7 +93,7 @@ fn shapes_have_the_sizes_that_are_written() {
 }
 
 #[test]
-fn what_is_only_seen_is_left_out_unless_the_file_wants_it() {
+fn visual_geoms_are_omitted_unless_the_file_keeps_them() {
     let visual = "<visual name='skin'><geometry><sphere radius='1'/></geometry>\
          <material name='glass'/></visual>\
          <collision name='core'><geometry><sphere radius='0.5'/></geometry></collision>";

@@ -4,7 +4,7 @@ use super::{joint, link, robot};
 use clench_formats::{LoadError, load_str};
 
 #[test]
-fn what_is_no_link_and_no_joint_is_ignored_and_mistakes_are_noted() {
+fn other_elements_are_ignored_and_mistakes_are_reported() {
     let text = "<robot name='r' xmlns:controller='http://example.org/c'>
       <gazebo reference='a'><controller:plugin controller:x='1' filename='x.so'/></gazebo>
       <transmission name='t'><joint name='j'/></transmission>

@@ -17,7 +17,7 @@ fn body_of(geom: u32) -> Body {
     let size = parameter3(GEOM_SIZE + 3u * geom);
     let hull = words[GEOM_HULL + geom];
     let least = min(size.x, min(size.y, size.z));
-    let most = max(size.x, max(size.y, size.z));
+    let largest = max(size.x, max(size.y, size.z));
     switch kind {
         case SPHERE: {
             return Body(kind, size, size.x, size.x, hull);
@@ -26,7 +26,7 @@ fn body_of(geom: u32) -> Body {
             return Body(kind, size, size.x, size.x + size.y, hull);
         }
         case ELLIPSOID: {
-            return Body(kind, size, least * (least / max(most, SMALLEST)), most, hull);
+            return Body(kind, size, least * (least / max(largest, SMALLEST)), largest, hull);
         }
         case CYLINDER: {
             return Body(kind, size, 0.0, length(size.xy), hull);

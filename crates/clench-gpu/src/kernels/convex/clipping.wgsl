@@ -47,7 +47,7 @@ fn height_of(f: Projected, p: vec2f) -> f32 {
     return origin.z + dot(f.slope, p - origin.xy);
 }
 
-fn turn_of(u: vec2f, v: vec2f) -> f32 {
+fn cross_2d(u: vec2f, v: vec2f) -> f32 {
     return u.x * v.y - u.y * v.x;
 }
 
@@ -94,17 +94,17 @@ fn crossing(a: Projected, b: Projected) -> vec3f {
     let q = feature_corners[b.place];
     let u = feature_corners[a.place + 1u] - p;
     let v = feature_corners[b.place + 1u] - q;
-    let inverse = 1.0 / turn_of(u.xy, v.xy);
-    let s = clamp(turn_of((q - p).xy, v.xy) * inverse, 0.0, 1.0);
-    let t = clamp(turn_of((q - p).xy, u.xy) * inverse, 0.0, 1.0);
+    let inverse = 1.0 / cross_2d(u.xy, v.xy);
+    let s = clamp(cross_2d((q - p).xy, v.xy) * inverse, 0.0, 1.0);
+    let t = clamp(cross_2d((q - p).xy, u.xy) * inverse, 0.0, 1.0);
     return (p + u * s + q + v * t) * 0.5;
 }
 
 fn is_parallel(a: Projected, b: Projected) -> bool {
     let u = (feature_corners[a.place + 1u] - feature_corners[a.place]).xy;
     let v = (feature_corners[b.place + 1u] - feature_corners[b.place]).xy;
-    let turn = turn_of(u, v);
-    return turn * turn <= dot(u, u) * dot(v, v) * PARALLEL * PARALLEL;
+    let area = cross_2d(u, v);
+    return area * area <= dot(u, u) * dot(v, v) * PARALLEL * PARALLEL;
 }
 
 // Returns the coordinates, in the plane of a cap and from its centre, of the point above or below a point of the
@@ -123,7 +123,7 @@ fn covers(f: Projected, p: vec2f, slack: f32) -> bool {
     for (var k = 0u; k < f.count; k++) {
         let start = corner_of_feature(f, k).xy;
         let side = corner_of_feature(f, k + 1u).xy - start;
-        if (turn_of(side, p - start) < -slack * length(side)) {
+        if (cross_2d(side, p - start) < -slack * length(side)) {
             return false;
         }
     }
@@ -137,7 +137,7 @@ fn chord(cap: Projected, p: vec2f, q: vec2f) -> vec2f {
     let along = in_cap_plane(cap, q) - start;
     let square = max(dot(along, along), SMALLEST);
     let nearest = -dot(start, along) / square;
-    let miss = turn_of(start, along);
+    let miss = cross_2d(start, along);
     let half = sqrt(max(cap.radius * cap.radius * square - miss * miss, 0.0)) / square;
     return vec2f(nearest - half, nearest + half);
 }
@@ -146,10 +146,10 @@ fn chord(cap: Projected, p: vec2f, q: vec2f) -> vec2f {
 fn clip_to_cap(cap: Projected, cut: Projected, slack: f32) {
     if (cut.count == 2u) {
         let p = feature_corners[cut.place];
-        let way = feature_corners[cut.place + 1u] - p;
-        let ends = clamp(chord(cap, p.xy, (p + way).xy), vec2f(0.0), vec2f(1.0));
-        push_corner(p + way * ends.x);
-        push_corner(p + way * ends.y);
+        let edge = feature_corners[cut.place + 1u] - p;
+        let ends = clamp(chord(cap, p.xy, (p + edge).xy), vec2f(0.0), vec2f(1.0));
+        push_corner(p + edge * ends.x);
+        push_corner(p + edge * ends.y);
         return;
     }
     for (var k = 0u; k < cut.count; k++) {
@@ -186,11 +186,11 @@ fn sort_around() {
     for (var k = 0u; k < polygon_count; k++) {
         let arm = polygon[k].xy - center;
         let along = dot(start, arm);
-        let aside = turn_of(start, arm);
+        let aside = cross_2d(start, arm);
         let size = max(abs(along) + abs(aside), SMALLEST);
-        let turn = 1.0 - along / size;
+        let pseudo_angle = 1.0 - along / size;
         // The key grows with the angle from the first corner, 0 to 4. Corners next to the first tie with it.
-        let corner = vec3f(polygon[k].xy, select(turn, 4.0 - turn, aside < -size * (EPSILON * 1e3)));
+        let corner = vec3f(polygon[k].xy, select(pseudo_angle, 4.0 - pseudo_angle, aside < -size * (EPSILON * 1e3)));
         var place = k;
         while (place > 0u && polygon[max(place, 1u) - 1u].z > corner.z) {
             polygon[place] = polygon[place - 1u];

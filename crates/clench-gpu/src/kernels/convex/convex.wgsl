@@ -81,31 +81,31 @@ fn convex(pair: u32, a: Placed, b: Placed, given_gap: bool, range: f32) {
     let first = body_of(geom);
     let second = body_of(words[PAIR_GEOM + 2u * pair + 1u]);
     let back = transpose(a.axes);
-    var turn = back * b.axes;
+    var rotation = back * b.axes;
     var offset = back * (b.center - a.center);
     if (first.kind == SPHERE) {
-        turn = b.axes;
+        rotation = b.axes;
         offset = b.center - a.center;
     }
-    begin_pair(first, second, turn, offset);
+    begin_pair(first, second, rotation, offset);
     var frame = a;
     var given = given_gap;
     on_terrain = ANY_TERRAIN && first.kind == HEIGHT_FIELD;
     if (on_terrain) {
         frame.axes = mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-        begin_terrain(geom, second, turn, offset, range);
+        begin_terrain(geom, second, rotation, offset, range);
     }
     for (var round = 0u; on_terrain || round < 1u; round++) {
-        var rest = SEARCH;
+        var remaining = SEARCH;
         if (on_terrain) {
             if (!find_round()) {
                 break;
             }
-            rest = begin_round(second, turn);
+            remaining = begin_round(second, rotation);
             frame.center = triangle_origin;
-            given = rest == SHARED;
+            given = remaining == SHARED;
         }
-        if (rest != NOTHING) {
+        if (remaining != NO_WORK) {
             var touches = find_touching(given, range);
             if (on_terrain) {
                 if (touches) {

@@ -31,7 +31,7 @@ struct Crease {
     edge: vec3f,
     moment: vec3f,
     faces: vec2u,
-    turn: vec2f,
+    rotation: vec2f,
 }
 
 // A polyhedron is a hull, or, if `hull` is NONE, the ground below a terrain triangle, which is the first body.
@@ -80,15 +80,15 @@ fn crease_of(hull: u32, k: u32) -> Crease {
         let start = prism[edge.x];
         let along = direction(prism[edge.y] - start).xyz;
         let cosine = dot(plane_of_prism(edge.z).xyz, plane_of_prism(edge.w).xyz);
-        let turn = vec2f(cosine, sqrt(max(1.0 - cosine * cosine, 0.0)));
-        return Crease(start, along, cross(start, along), edge.zw, turn);
+        let rotation = vec2f(cosine, sqrt(max(1.0 - cosine * cosine, 0.0)));
+        return Crease(start, along, cross(start, along), edge.zw, rotation);
     }
     let place = words[hull + HULL_CREASES] + 8u * k;
     let start = shape3(place);
     let along = shape3(place + 3u);
     let faces = words[hull + HULL_CREASE_FACES] + 2u * k;
-    let turn = vec2f(numbers[place + 6u], numbers[place + 7u]);
-    return Crease(start, along, cross(start, along), vec2u(words[faces], words[faces + 1u]), turn);
+    let rotation = vec2f(numbers[place + 6u], numbers[place + 7u]);
+    return Crease(start, along, cross(start, along), vec2u(words[faces], words[faces + 1u]), rotation);
 }
 
 fn has_creases(a: Body, b: Body) -> bool {
@@ -165,9 +165,9 @@ fn ellipse_normal(cosine: f32, sine: f32, p: vec2f) -> vec2f {
         if (fall <= 0.0) {
             return vec2f();
         }
-        let turn = at.x * at.x * cosine * cosine + at.y * at.y;
+        let rotation = at.x * at.x * cosine * cosine + at.y * at.y;
         at = vec2f(at.x * fall - at.y * value, at.y * fall + at.x * value);
-        if (value * value <= fall * fall * turn * EPSILON) {
+        if (value * value <= fall * fall * rotation * EPSILON) {
             break;
         }
     }
@@ -217,20 +217,20 @@ fn offer_edge(c: Cylinder, start: vec3f, edge: vec3f, m: vec3f, n: vec3f) {
 
 // Returns false if the gap through an edge cannot be the largest between its faces with a depth of at most `depth`: the
 // cylinder's contact with an adjacent face is too far within the edge.
-fn may_touch_edge(within: f32, crossed: Crossed, turn: vec2f, depth: f32) -> bool {
-    return within * turn.y <= depth - crossed.depth * turn.x;
+fn may_touch_edge(within: f32, crossed: Crossed, rotation: vec2f, depth: f32) -> bool {
+    return within * rotation.y <= depth - crossed.depth * rotation.x;
 }
 
 // Returns the largest gap of the pair's cylinder and polyhedron if it is not positive, else a positive one; any above
 // `limit` suffices.
 fn polyhedron_gap(limit: f32) -> Gap {
     var hull = body_b.hull;
-    let back = transpose(turn_b);
+    let back = transpose(rotation_b);
     var c = Cylinder(back * vec3f(0.0, 0.0, 1.0), -(back * offset_b), body_a.size);
     let ground = ANY_TERRAIN && body_a.kind == PRISM;
     if (ground) {
         hull = NONE;
-        c = Cylinder(turn_b[2], offset_b, body_b.size);
+        c = Cylinder(rotation_b[2], offset_b, body_b.size);
     }
     largest_gap = Gap(vec3f(0.0, 0.0, 1.0), -UNMOVABLE, false);
     bar = -UNMOVABLE;
@@ -250,7 +250,7 @@ fn polyhedron_gap(limit: f32) -> Gap {
             let within_m = dot(crease.edge, across_m.moment) + dot(m.xyz, crease.moment);
             let within_n = -dot(crease.edge, across_n.moment) - dot(n.xyz, crease.moment);
             let depth = max(-bar, 0.0);
-            if (may_touch_edge(within_m, across_m, crease.turn, depth) && may_touch_edge(within_n, across_n, crease.turn, depth)) {
+            if (may_touch_edge(within_m, across_m, crease.rotation, depth) && may_touch_edge(within_n, across_n, crease.rotation, depth)) {
                 offer_edge(c, crease.start, crease.edge, m.xyz, n.xyz);
             }
         }
@@ -258,5 +258,5 @@ fn polyhedron_gap(limit: f32) -> Gap {
     if (ground) {
         return Gap(-largest_gap.normal, largest_gap.gap, true);
     }
-    return Gap(turn_b * largest_gap.normal, largest_gap.gap, true);
+    return Gap(rotation_b * largest_gap.normal, largest_gap.gap, true);
 }

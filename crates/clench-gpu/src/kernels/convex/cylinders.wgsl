@@ -28,13 +28,13 @@ fn near_circle(own: Facing, other: Facing, ends: vec2f, cosine: f32, sine: f32, 
     }
     let at_low = sqrt(max(1.0 - low * low, 0.0)) * other.size.x;
     let at_high = sqrt(max(1.0 - high * high, 0.0)) * other.size.x;
-    let most = select(max(at_low, at_high), other.size.x, low < 0.0 && high > 0.0);
+    let largest = select(max(at_low, at_high), other.size.x, low < 0.0 && high > 0.0);
     let least = min(at_low, at_high);
     let slope = -cosine * ends.x * other.size.x;
     let inner = max(own.size.x - depth, 0.0);
     let from_axis = span_distances(min(y + slope * low, y + slope * high), max(y + slope * low, y + slope * high));
     for (var k = 0u; k < bound(2u); k++) {
-        let across_axis = span_distances(select(x - most, x + least, k == 0u), select(x - least, x + most, k == 0u));
+        let across_axis = span_distances(select(x - largest, x + least, k == 0u), select(x - least, x + largest, k == 0u));
         let nearest = vec2f(across_axis.x, from_axis.x);
         let furthest = vec2f(across_axis.y, from_axis.y);
         if (dot(nearest, nearest) <= own.size.x * own.size.x && dot(furthest, furthest) >= inner * inner) {
@@ -80,7 +80,7 @@ fn holds(size: vec3f, p: vec3f) -> bool {
 // two cap circles, or no common point is known; it is −UNMOVABLE if the axes are parallel.
 fn cylinders_gap() -> Gap {
     let own_axis = vec3f(0.0, 0.0, 1.0);
-    let axis = turn_b[2];
+    let axis = rotation_b[2];
     let cosine = axis.z;
     let sine = length(axis.xy);
     largest_gap = Gap(own_axis, -UNMOVABLE, false);
@@ -122,8 +122,8 @@ fn cylinders_gap() -> Gap {
         offer(dot(n, vertex.w), n);
     }
     let axes_pass = abs(a.offset.y) <= b.size.y * sine && abs(b.offset.y) <= a.size.y * sine;
-    let inside = holds(body_a.size, offset_b + turn_b * furthest.b)
-        || holds(body_b.size, transpose(turn_b) * (furthest.a - offset_b));
+    let inside = holds(body_a.size, offset_b + rotation_b * furthest.b)
+        || holds(body_b.size, transpose(rotation_b) * (furthest.a - offset_b));
     let depth = -largest_gap.gap;
     largest_gap.settled = depth < 0.0 || (!circles_cross(a, b, cosine, sine, depth) && (axes_pass || inside));
     return largest_gap;

@@ -42,14 +42,14 @@ fn enclose() -> bool {
     var normal = vec3f();
     for (var stage = 1u; stage < bound(4u); stage++) {
         var furthest = simplex[0];
-        var most: f32 = 0.0;
+        var max_reach: f32 = 0.0;
         var across_gap = Gap(vec3f(), -UNMOVABLE, false);
         let directions = 8u - 2u * stage;
         for (var k = 0u; k < simplex_count + directions; k++) {
             var vertex = simplex[min(k, 3u)];
             if (k >= simplex_count) {
                 // The simplex has a vertex far enough away.
-                if (most > smallest * FAR) {
+                if (max_reach > smallest * FAR) {
                     break;
                 }
                 let n = direction_of_stage(stage, k - simplex_count, along, normal);
@@ -60,12 +60,12 @@ fn enclose() -> bool {
                 }
             }
             let reach = reach_from(stage, vertex.w, along, normal);
-            if (reach > most) {
-                most = reach;
+            if (reach > max_reach) {
+                max_reach = reach;
                 furthest = vertex;
             }
         }
-        if (most <= largest * EPSILON * 16.0) {
+        if (max_reach <= largest * EPSILON * 16.0) {
             best = across_gap;
             return false;
         }
@@ -157,9 +157,9 @@ fn try_crossings() {
         if (k < 3u && has_face(body_a, k)) {
             n = own[k];
         } else if (k >= 3u && k < 6u && has_face(body_b, k - 3u)) {
-            n = turn_b[k - 3u];
+            n = rotation_b[k - 3u];
         } else if (k >= 6u && has_edge(body_a, (k - 6u) / 3u) && has_edge(body_b, (k - 6u) % 3u)) {
-            n = cross(own[(k - 6u) / 3u], turn_b[(k - 6u) % 3u]);
+            n = cross(own[(k - 6u) / 3u], rotation_b[(k - 6u) % 3u]);
         }
         let size = length(n);
         if (size > ROOT_OF_EPSILON) {

@@ -4,7 +4,7 @@
 var<private> body_a: Body;
 var<private> body_b: Body;
 // The axes of the second as columns, and its origin.
-var<private> turn_b: mat3x3f;
+var<private> rotation_b: mat3x3f;
 var<private> offset_b: vec3f;
 // The smaller of the bodies' sizes, a bound on all coordinates, and the tolerance of the gap.
 var<private> smallest: f32;
@@ -29,10 +29,10 @@ struct Gap {
 // The largest gap found so far.
 var<private> best: Gap;
 
-fn begin_pair(a: Body, b: Body, turn: mat3x3f, offset: vec3f) {
+fn begin_pair(a: Body, b: Body, rotation: mat3x3f, offset: vec3f) {
     body_a = a;
     body_b = b;
-    turn_b = turn;
+    rotation_b = rotation;
     offset_b = offset;
     smallest = min(a.reach, b.reach);
     largest = a.reach + b.reach + abs(offset.x) + abs(offset.y) + abs(offset.z);
@@ -42,7 +42,7 @@ fn begin_pair(a: Body, b: Body, turn: mat3x3f, offset: vec3f) {
 // Returns the direction between nearby points of the cores.
 fn start_direction() -> vec3f {
     let p = nearest_of_body(body_a, offset_b);
-    let q = offset_b + turn_b * nearest_of_body(body_b, transpose(turn_b) * (p - offset_b));
+    let q = offset_b + rotation_b * nearest_of_body(body_b, transpose(rotation_b) * (p - offset_b));
     let apart = direction(q - p);
     if (apart.w > 0.0) {
         return apart.xyz;
@@ -52,7 +52,7 @@ fn start_direction() -> vec3f {
 
 // Returns the vertex along `n`, a direction of any length; among ties, the one furthest against `side`.
 fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
-    let back = transpose(turn_b);
+    let back = transpose(rotation_b);
     var points = array<vec3f, 2>();
     // One call site, because the text of a support function is long with hulls.
     for (var k = 0u; k < bound(2u); k++) {
@@ -66,7 +66,7 @@ fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
         }
         points[k] = support(body, along, beside);
     }
-    return Vertex(offset_b + turn_b * points[1] - points[0], points[0], points[1]);
+    return Vertex(offset_b + rotation_b * points[1] - points[0], points[0], points[1]);
 }
 
 fn vertex_along(n: vec3f) -> Vertex {

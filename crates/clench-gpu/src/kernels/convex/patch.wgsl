@@ -42,7 +42,7 @@ fn witness(view: mat3x3f, n: vec3f) -> vec4f {
             on_b += simplex[k].b * weights[k];
         }
     }
-    let level = view * ((on_a + offset_b + turn_b * on_b) * 0.5);
+    let level = view * ((on_a + offset_b + rotation_b * on_b) * 0.5);
     return at_distance(vec4f(level.xy, level.z, level.z), best.gap);
 }
 
@@ -174,11 +174,11 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
     for (var k = 0u; 2u * k < of_b.count; k++) {
         let p = feature_corners[first_of_b + k];
         let q = feature_corners[last_of_b - k];
-        feature_corners[first_of_b + k] = view * (offset_b + turn_b * q);
-        feature_corners[last_of_b - k] = view * (offset_b + turn_b * p);
+        feature_corners[first_of_b + k] = view * (offset_b + rotation_b * q);
+        feature_corners[last_of_b - k] = view * (offset_b + rotation_b * p);
     }
     let first = project_feature(0u, of_a, view, vec3f());
-    let second = project_feature(FEATURE_CORNERS, of_b, view * turn_b, view * offset_b);
+    let second = project_feature(FEATURE_CORNERS, of_b, view * rotation_b, view * offset_b);
 
     let slack = max(smallest * MISSED, exactness);
     var least = UNMOVABLE;
@@ -242,13 +242,13 @@ fn add_contacts(pair: u32, a: Placed, range: f32) {
         var outward = n;
         if (k == 1u) {
             body = body_b;
-            outward = -(transpose(turn_b) * n);
+            outward = -(transpose(rotation_b) * n);
         }
         features[k] = feature_of(body, outward, FEATURE_CORNERS * k);
     }
     let of_a = features[0];
     let of_b = features[1];
-    let q = offset_b + turn_b * feature_corners[FEATURE_CORNERS];
+    let q = offset_b + rotation_b * feature_corners[FEATURE_CORNERS];
     var level = q - n * half;
     if (of_a.count == 1u) {
         level = feature_corners[0] + n * half;

@@ -4,10 +4,10 @@
 const NEWTON_STEPS: u32 = 12u;
 const NEWTON_HALVINGS: u32 = 3u;
 // The maximum rotation of a step, and its cosine.
-const MAX_TURN: f32 = 0.3;
-const MAX_TURN_COSINE: f32 = 0.955336489125606;
+const MAX_ROTATION: f32 = 0.3;
+const MAX_ROTATION_COSINE: f32 = 0.955336489125606;
 // The rotation of a converged step.
-const CONVERGED_TURN: f32 = max(2e-6, 256.0 * EPSILON);
+const CONVERGED_ROTATION: f32 = max(2e-6, 256.0 * EPSILON);
 
 // Orthonormal directions of the touching edges: none, one, or two that span a face (or cross).
 var<private> edges: array<vec3f, 2>;
@@ -36,7 +36,7 @@ fn find_edges() {
     let b = corner_of(body_b, simplex[0].b);
     for (var k = 1u; k < simplex_count; k++) {
         extend_edges(corner_of(body_a, simplex[k].a) - a);
-        extend_edges(turn_b * (corner_of(body_b, simplex[k].b) - b));
+        extend_edges(rotation_b * (corner_of(body_b, simplex[k].b) - b));
     }
 }
 
@@ -72,7 +72,7 @@ fn edge_holds(n: vec3f) -> bool {
 
 // Returns the step, and in w 0 if there is none, 1 if the gap curves up in one direction, 2 if down in both.
 fn newton_step(at: Gap, w: vec3f) -> vec4f {
-    let back = transpose(turn_b);
+    let back = transpose(rotation_b);
     let of_a = curvature_of(body_a, at.normal);
     let of_b = curvature_of(body_b, back * at.normal);
     if (edge_count == 1u) {
@@ -91,20 +91,20 @@ fn newton_step(at: Gap, w: vec3f) -> vec4f {
     var ff = between(of_a, f, f) + between(of_b, back * f, back * f);
     let mean = (ee + ff) * 0.5 + at.gap;
     let spread = sqrt((ee - ff) * (ee - ff) * 0.25 + ef * ef);
-    let most = mean + spread;
-    if (most <= 0.0) {
+    let largest = mean + spread;
+    if (largest <= 0.0) {
         return vec4f();
     }
     // Around an axis that both bodies share the gap is constant; on a saddle, away from it is up.
-    let least = most * 1e-6;
+    let least = largest * 1e-6;
     let shift = max(least - (mean - spread), 0.0);
     ee += at.gap + shift;
     ff += at.gap + shift;
     let inverse = 1.0 / (ee * ff - ef * ef);
     let we = dot(e, w);
     let wf = dot(f, w);
-    let turn = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
-    return vec4f(turn, select(f32(1.0), f32(2.0), mean - spread > -least));
+    let rotation = e * ((ff * we - ef * wf) * inverse) + f * ((ee * wf - ef * we) * inverse);
+    return vec4f(rotation, select(f32(1.0), f32(2.0), mean - spread > -least));
 }
 
 // Returns the best cap of a cylinder that roughly faces `n`, if the gap across it is larger than `gap`. It is settled
@@ -116,10 +116,10 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
         var axis = vec3f(0.0, 0.0, 1.0);
         if (side == 1u) {
             body = body_b;
-            axis = turn_b[2];
+            axis = rotation_b[2];
         }
         let cosine = dot(axis, n);
-        if (body.kind != CYLINDER || abs(cosine) < MAX_TURN_COSINE) {
+        if (body.kind != CYLINDER || abs(cosine) < MAX_ROTATION_COSINE) {
             continue;
         }
         axis = axis * signed(1.0, cosine);
@@ -129,7 +129,7 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
             continue;
         }
         // From the centre of the cap to the other body's point: if it is outside the disc, the gap grows towards it.
-        var to_middle = turn_b * (corner_of(body, vertex.b) - vertex.b);
+        var to_middle = rotation_b * (corner_of(body, vertex.b) - vertex.b);
         if (side == 0u) {
             to_middle = vertex.a - corner_of(body, vertex.a);
         }
@@ -141,12 +141,12 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
             continue;
         }
         // Next to the axis, because on the axis itself no point of the circle is distinguished.
-        let back = transpose(turn_b);
+        let back = transpose(rotation_b);
         let start = axis + toward.xyz * ROOT_OF_EPSILON;
         let bend = between(curvature_of(body_a, start), toward.xyz, toward.xyz)
             + between(curvature_of(body_b, back * start), back * toward.xyz, back * toward.xyz);
-        let turn = (toward.w - body.size.x) / max(bend + along, exactness);
-        found = Gap(direction(axis + toward.xyz * clamp(turn, ROOT_OF_EPSILON, MAX_TURN)).xyz, along, false);
+        let rotation = (toward.w - body.size.x) / max(bend + along, exactness);
+        found = Gap(direction(axis + toward.xyz * clamp(rotation, ROOT_OF_EPSILON, MAX_ROTATION)).xyz, along, false);
     }
     return found;
 }
@@ -190,7 +190,7 @@ fn refine(n: vec3f) -> Gap {
                 continue;
             }
         }
-        if (size <= CONVERGED_TURN && gap - before <= exactness) {
+        if (size <= CONVERGED_ROTATION && gap - before <= exactness) {
             at.settled = step.w == 2.0 && edge_holds(tried);
             return at;
         }
@@ -199,7 +199,7 @@ fn refine(n: vec3f) -> Gap {
             return at;
         }
         size = length(step.xyz);
-        step = vec4f(step.xyz * min(1.0, MAX_TURN / max(size, SMALLEST)), step.w);
+        step = vec4f(step.xyz * min(1.0, MAX_ROTATION / max(size, SMALLEST)), step.w);
         before = gap;
         halvings = 0u;
         steps++;

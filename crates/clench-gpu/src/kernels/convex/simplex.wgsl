@@ -137,11 +137,11 @@ fn add_vertex(vertex: Vertex) -> vec4f {
     if (!known) {
         return vec4f();
     }
-    keep_vertices(nearest);
+    store_vertices(nearest);
     return vec4f(nearest.point, 1.0);
 }
 
-fn keep_vertices(nearest: Nearest) {
+fn store_vertices(nearest: Nearest) {
     var all = array<f32, 4>(0.0, 0.0, 0.0, 0.0);
     for (var k = 0u; k < bound(3u); k++) {
         all[nearest.corners[k]] += nearest.weights[k];

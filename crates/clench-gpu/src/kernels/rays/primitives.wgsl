@@ -55,7 +55,7 @@ fn hit_plane(size: vec3f, line: Line) -> Hit {
 
 fn hit_solid(kind: u32, size: vec3f, line: Line) -> Hit {
     let t = within_shape(kind, size, line.origin, line.along);
-    if (!is_met(t)) {
+    if (!is_hit(t)) {
         return Hit(NOWHERE, vec3f());
     }
     let outside = t.x >= 0.0;

@@ -2,7 +2,7 @@
 // A sensor is a row of RAY_SIZE words.
 
 // Returns true if a ray may hit a ball within a distance: never false if it does, despite rounding.
-fn may_meet(line: Line, centre: vec3f, radius: f32, within: f32) -> bool {
+fn may_intersect(line: Line, centre: vec3f, radius: f32, within: f32) -> bool {
     let apart = centre - line.origin;
     let ahead = dot(apart, line.along);
     let beside = apart - line.along * ahead;
@@ -34,7 +34,7 @@ fn first_hit(line: Line, body: u32) -> Hit {
         let geom = words[RAY_GEOM + k];
         let centre = fetch3(GEOM_XPOS + 3u * geom);
         let is_plane = words[GEOM_KIND + geom] == PLANE;
-        let may_hit = is_plane || may_meet(line, centre, parameter(RAY_REACH + k), first.distance);
+        let may_hit = is_plane || may_intersect(line, centre, parameter(RAY_REACH + k), first.distance);
         if (words[GEOM_BODY + geom] == body || !may_hit) {
             continue;
         }
@@ -77,33 +77,33 @@ fn read_ray(s: u32, cutoff: f32, ray: u32) {
     var out = SENSORDATA + words[s + RAY_OFFSET] + words[s + RAY_WIDTH] * (ray - words[s + RAY_FIRST]);
     for (var k = words[s + RAY_FIELD_START]; k < words[s + RAY_FIELD_END]; k++) {
         let field = words[RAY_FIELD + k];
-        var told = vec3f();
+        var reading = vec3f();
         switch field {
             case RAY_ORIGIN: {
-                told = line.origin;
+                reading = line.origin;
             }
             case RAY_DIST: {
-                told.x = select(-1.0, hit.distance, found);
+                reading.x = select(-1.0, hit.distance, found);
             }
             case RAY_DEPTH: {
-                told.x = select(-1.0, hit.distance * dot(line.along, axis_of(s)), found);
+                reading.x = select(-1.0, hit.distance * dot(line.along, axis_of(s)), found);
             }
             case RAY_DIR: {
-                told = select(vec3f(), line.along, found);
+                reading = select(vec3f(), line.along, found);
             }
             case RAY_POINT: {
-                told = select(vec3f(), line.origin + line.along * hit.distance, found);
+                reading = select(vec3f(), line.origin + line.along * hit.distance, found);
             }
             case RAY_NORMAL, default: {
-                told = select(vec3f(), hit.normal, found);
+                reading = select(vec3f(), hit.normal, found);
             }
         }
-        told = clamp(told, vec3f(-cutoff), vec3f(cutoff));
-        put(out, told.x);
+        reading = clamp(reading, vec3f(-cutoff), vec3f(cutoff));
+        put(out, reading.x);
         out += 1u;
         if (field != RAY_DIST && field != RAY_DEPTH) {
-            put(out, told.y);
-            put(out + 1u, told.z);
+            put(out, reading.y);
+            put(out + 1u, reading.z);
             out += 2u;
         }
     }
@@ -119,5 +119,5 @@ fn rays(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
         let sensor = words[RAY_SENSOR + ray];
         read_ray(RAY_SENSORS + RAY_SIZE * sensor, parameter(RAY_CUTOFF + sensor), ray);
     }
-    note_end();
+    check_loops();
 }

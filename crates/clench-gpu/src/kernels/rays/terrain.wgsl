@@ -95,7 +95,7 @@ fn hit_terrain(field: u32, line: Line) -> Hit {
     var half = vec3f(grid.half, 0.5 * (high - low));
     var centre = vec3f(0.0, 0.0, 0.5 * (high + low));
     var t = within_box(line.origin - centre, line.along, half);
-    if (!is_met(t)) {
+    if (!is_hit(t)) {
         return Hit(NOWHERE, vec3f());
     }
     let start = max(t.x, 0.0);

@@ -37,21 +37,21 @@ impl Bounds {
             let point = *rotation * body.support(local, local) + offset;
             (point, ((point.dot(d) + around) * length).to_f64())
         };
-        let most = |d: Vec3<f64>| furthest(d).1;
-        let extent = |d: Vec3<f64>| (-most(-d), most(d));
+        let largest = |d: Vec3<f64>| furthest(d).1;
+        let extent = |d: Vec3<f64>| (-largest(-d), largest(d));
         let [dx, dy] = grid.step;
         let (x, y) = (
             extent(Vec3::new(1.0, 0.0, 0.0)),
             extent(Vec3::new(0.0, 1.0, 0.0)),
         );
         let (lowest, bottom) = furthest(Vec3::new(0.0, 0.0, -1.0));
-        let top = most(Vec3::new(0.0, 0.0, 1.0));
+        let top = largest(Vec3::new(0.0, 0.0, 1.0));
         let slopes = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
         Some(Bounds {
             low: Vec3::new(x.0, y.0, -bottom),
             high: Vec3::new(x.1, y.1, top),
             diagonals: [Vec3::new(dy, -dx, 0.0), Vec3::new(dy, dx, 0.0)].map(extent),
-            slopes: slopes.map(|(x, y)| -most(Vec3::new(x, y, -1.0))),
+            slopes: slopes.map(|(x, y)| -largest(Vec3::new(x, y, -1.0))),
             lowest: Vec3::from_array(lowest.to_array().map(S::to_f64)),
         })
     }

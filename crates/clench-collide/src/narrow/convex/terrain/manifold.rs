@@ -159,8 +159,8 @@ impl<S: Scalar> Manifold<S> {
         let mut nearest = (S::INFINITY, 0, 1);
         for (i, p) in points.iter().enumerate() {
             for (j, q) in points.iter().enumerate().skip(i + 1) {
-                let turn = (p.normal - q.normal).norm_squared() * self.size * self.size;
-                let apart = (p.position - q.position).norm_squared() + turn;
+                let rotation = (p.normal - q.normal).norm_squared() * self.size * self.size;
+                let apart = (p.position - q.position).norm_squared() + rotation;
                 if apart < nearest.0 {
                     nearest = (apart, i, j);
                 }
@@ -194,8 +194,8 @@ fn half_hull<S: Scalar>(
         while let [.., p, q] = &chain[..] {
             let ((px, py), (qx, qy), (x, y)) = (at(p), at(q), at(&point));
             let (dx, dy) = (x - px, y - py);
-            let turn = (qx - px) * dy - (qy - py) * dx;
-            if turn > same * (dx * dx + dy * dy).sqrt() {
+            let area = (qx - px) * dy - (qy - py) * dx;
+            if area > same * (dx * dx + dy * dy).sqrt() {
                 break;
             }
             chain.pop();

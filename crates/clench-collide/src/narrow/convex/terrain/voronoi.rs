@@ -23,12 +23,12 @@ impl<S: Scalar> Triangle<'_, S> {
         let flat = n.z < -same_direction::<S>();
         let corners = self.corners.map(|corner| level(corner, flat));
         let reach = corners.map(|v| v.dot(n));
-        let most = reach[0].max(reach[1]).max(reach[2]);
+        let largest = reach[0].max(reach[1]).max(reach[2]);
         let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
         VoronoiFeature {
             gap,
             nodes: self.nodes,
-            touches: reach.map(|r| r >= most - size * same_direction()),
+            touches: reach.map(|r| r >= largest - size * same_direction()),
         }
     }
 

@@ -40,11 +40,11 @@ fn direction_of_bound(k: u32) -> vec3f {
 
 // Finds the bounds of the second body, centred at `offset`, and the window of cells that they reach. Returns false if
 // they are off the field.
-fn begin_bounds(body: Body, turn: mat3x3f, offset: vec3f, around: f32) -> bool {
+fn begin_bounds(body: Body, rotation: mat3x3f, offset: vec3f, around: f32) -> bool {
     for (var k = 0u; k < bound(BOUND_DIRECTIONS); k++) {
         let d = direction(direction_of_bound(k));
-        let local = d.xyz * turn;
-        let point = turn * support(body, local, local) + offset;
+        let local = d.xyz * rotation;
+        let point = rotation * support(body, local, local) + offset;
         bounds[k] = (dot(point, d.xyz) + around) * d.w;
         if (k == 0u) {
             lowest_point = point;

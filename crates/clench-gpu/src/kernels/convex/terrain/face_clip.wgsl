@@ -54,11 +54,11 @@ fn find_face_contacts(range: f32) {
     face_list_count = 0u;
     face_touches = false;
     let first = FEATURE_CORNERS;
-    let feature = feature_of(body_b, -(triangle_normal * turn_b), first);
+    let feature = feature_of(body_b, -(triangle_normal * rotation_b), first);
     // The minimum distance of all corners beyond each side.
     var beyond = vec3f(UNMOVABLE);
     for (var k = 0u; k < feature.count; k++) {
-        let place = offset_b + turn_b * feature_corners[first + k];
+        let place = offset_b + rotation_b * feature_corners[first + k];
         feature_corners[first + k] = place;
         for (var side = 0u; side < bound(3u); side++) {
             let line = side_of_triangle(side);

@@ -48,7 +48,7 @@ fn place_of_node(node: vec2i) -> vec3f {
 fn triangle_surrounds(point: vec3f, distance: f32) -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         let side = (triangle[(k + 1u) % 3u] - triangle[k]).xy;
-        if (turn_of(side, (point - triangle[k]).xy) < distance * length(side)) {
+        if (cross_2d(side, (point - triangle[k]).xy) < distance * length(side)) {
             return false;
         }
     }
@@ -128,9 +128,9 @@ fn admits_normal(feature: TerrainFeature) -> bool {
         // The six nodes that share an edge with it.
         for (var around = 0u; around < bound(6u); around++) {
             let turned = around % 3u;
-            var way = vec2i(select(1, 0, turned == 0u), select(1, 0, turned == 2u));
-            way = select(way, -way, around >= 3u);
-            if (!falls_to(n, triangle[k], triangle_nodes[k] + way)) {
+            var step = vec2i(select(1, 0, turned == 0u), select(1, 0, turned == 2u));
+            step = select(step, -step, around >= 3u);
+            if (!falls_to(n, triangle[k], triangle_nodes[k] + step)) {
                 return false;
             }
         }

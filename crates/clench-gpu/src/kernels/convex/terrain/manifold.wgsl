@@ -63,9 +63,9 @@ fn ground_of(point: TerrainPoint) -> vec3f {
 }
 
 fn is_on_plane(p: TerrainPoint, point: TerrainPoint) -> bool {
-    let turn = p.normal - point.normal;
+    let rotation = p.normal - point.normal;
     let apart = abs(dot(ground_of(p) - ground_of(point), point.normal));
-    return dot(turn, turn) <= SAME_DIRECTION * SAME_DIRECTION && apart <= terrain_size * SAME_POINT;
+    return dot(rotation, rotation) <= SAME_DIRECTION * SAME_DIRECTION && apart <= terrain_size * SAME_POINT;
 }
 
 fn is_same_point(p: TerrainPoint, q: TerrainPoint) -> bool {
@@ -88,8 +88,8 @@ fn is_redundant(point: TerrainPoint) -> bool {
         }
         let side = other.position - start;
         let size = max(abs(side.x), max(abs(side.y), abs(side.z)));
-        let turn = dot(cross(side, point.position - start), other.normal);
-        within = within && turn >= -terrain_size * SAME_POINT * size;
+        let rotation = dot(cross(side, point.position - start), other.normal);
+        within = within && rotation >= -terrain_size * SAME_POINT * size;
         start = other.position;
     }
     if (point.distance < least - terrain_tolerance) {
@@ -160,13 +160,13 @@ fn find_corners_of_facet() {
     }
     sort_facet();
     let lowest = deepest_of_facet();
-    for (var way = 0u; way < bound(2u); way++) {
+    for (var pass_index = 0u; pass_index < bound(2u); pass_index++) {
         let begin = facet_hull_count;
         for (var k = 0u; k < facet_count; k++) {
-            extend_hull(begin, select(k, facet_count - 1u - k, way == 1u));
+            extend_hull(begin, select(k, facet_count - 1u - k, pass_index == 1u));
         }
         // The last point begins the second chain, whose last began the first.
-        facet_hull_count = max(facet_hull_count - 1u, begin + way);
+        facet_hull_count = max(facet_hull_count - 1u, begin + pass_index);
     }
     var has_deepest = false;
     for (var k = 0u; k < facet_hull_count; k++) {
@@ -217,7 +217,7 @@ fn extend_hull(begin: u32, k: u32) {
     while (facet_hull_count >= begin + 2u) {
         let p = facet_at[facet_hull[facet_hull_count - 2u]];
         let q = facet_at[facet_hull[facet_hull_count - 1u]];
-        if (turn_of(q - p, at - p) > terrain_size * SAME_POINT * length(at - p)) {
+        if (cross_2d(q - p, at - p) > terrain_size * SAME_POINT * length(at - p)) {
             break;
         }
         facet_hull_count--;
@@ -250,7 +250,7 @@ fn remove_least_corner() {
         let p = facet_at[facet_hull[select(k, facet_hull_count, k == 0u) - 1u]];
         let q = facet_at[facet_hull[k]];
         let r = facet_at[facet_hull[select(k + 1u, 0u, k + 1u == facet_hull_count)]];
-        let area = abs(turn_of(q - p, r - p));
+        let area = abs(cross_2d(q - p, r - p));
         if (k != lowest && area < least) {
             least = area;
             removed = k;
@@ -274,9 +274,9 @@ fn thin_out(manifold: u32) {
         middle_of_all += p.position;
         for (var j = i + 1u; j < count; j++) {
             let q = terrain_point(manifold_point(manifold, j));
-            let turn = (p.normal - q.normal) * terrain_size;
+            let rotation = (p.normal - q.normal) * terrain_size;
             let apart = p.position - q.position;
-            let distance = dot(apart, apart) + dot(turn, turn);
+            let distance = dot(apart, apart) + dot(rotation, rotation);
             if (distance < nearest) {
                 nearest = distance;
                 pair = vec2u(i, j);

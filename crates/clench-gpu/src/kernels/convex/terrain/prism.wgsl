@@ -76,11 +76,11 @@ fn neighbor_in_prism(corner: u32, k: u32) -> u32 {
 
 // Returns the radius of a sphere about the first corner that encloses the prism.
 fn reach_of_prism() -> f32 {
-    var most = vec3f();
+    var largest = vec3f();
     for (var k = 0u; k < bound(6u); k++) {
-        most = max(most, abs(prism[k]));
+        largest = max(largest, abs(prism[k]));
     }
-    return length(most);
+    return length(largest);
 }
 
 // Stores the face that lies against the plane across the unit direction `d`, else the edge, else the corner.

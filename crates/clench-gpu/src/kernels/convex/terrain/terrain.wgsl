@@ -16,7 +16,7 @@ const MAX_FEATURES: u32 = 4u;
 const CLOSING_ROUNDS: u32 = 3u;
 
 // The work for a triangle: none, find its gap, or take the gap of a feature that it shares.
-const NOTHING: u32 = 0u;
+const NO_WORK: u32 = 0u;
 const SEARCH: u32 = 1u;
 const SHARED: u32 = 2u;
 
@@ -55,7 +55,7 @@ var<private> added_to: u32;
 var<private> added_least: f32;
 
 // Begins with a body at `offset` in the field's frame.
-fn begin_terrain(geom: u32, body: Body, turn: mat3x3f, offset: vec3f, range: f32) {
+fn begin_terrain(geom: u32, body: Body, rotation: mat3x3f, offset: vec3f, range: f32) {
     begin_grid(words[GEOM_HULL + geom]);
     terrain_size = body.reach;
     terrain_tolerance = max((body.reach + length(offset)) * EPSILON * 64.0, body.reach * 1e-9);
@@ -71,7 +71,7 @@ fn begin_terrain(geom: u32, body: Body, turn: mat3x3f, offset: vec3f, range: f32
     any_is_near = false;
     next_half = 0u;
     half_count = 0u;
-    if (begin_bounds(body, turn, offset, body.radius + range + terrain_tolerance)) {
+    if (begin_bounds(body, rotation, offset, body.radius + range + terrain_tolerance)) {
         // The cell below the lowest point comes first: the deepest contact saves much of the remaining work.
         half_count = 2u * (1u + u32(window_size.x * window_size.y));
     }
@@ -153,48 +153,48 @@ fn ball_on_triangle() -> bool {
 
 // Makes the triangle of a round the first body, and does the work that does not need the gap between the two. Returns
 // the remaining work.
-fn begin_round(second: Body, turn: mat3x3f) -> u32 {
+fn begin_round(second: Body, rotation: mat3x3f) -> u32 {
     added_count = 0u;
     patch_count = 0u;
     patch_is = ALONG_NORMAL;
     if (next_half > half_count) {
         close(next_half - half_count);
-        return NOTHING;
+        return NO_WORK;
     }
-    begin_pair(Body(PRISM, vec3f(), 0.0, reach_of_prism(), NONE), second, turn, terrain_offset - triangle_origin);
+    begin_pair(Body(PRISM, vec3f(), 0.0, reach_of_prism(), NONE), second, rotation, terrain_offset - triangle_origin);
     if (second.kind == SPHERE && ball_on_triangle()) {
-        return NOTHING;
+        return NO_WORK;
     }
     // Candidate separating directions, with the normal second, and the points of the body furthest against them.
-    var ways = array<vec3f, 3>(offset_b - (triangle[0] + triangle[1] + triangle[2]) / 3.0, triangle_normal, apart_along);
+    var directions = array<vec3f, 3>(offset_b - (triangle[0] + triangle[1] + triangle[2]) / 3.0, triangle_normal, apart_along);
     var nearest = array<vec3f, 3>();
     for (var k = 0u; k < bound(3u); k++) {
-        let local = -(ways[k] * turn_b);
-        nearest[k] = turn_b * support(body_b, local, local) + offset_b;
+        let local = -(directions[k] * rotation_b);
+        nearest[k] = rotation_b * support(body_b, local, local) + offset_b;
     }
-    if (separates(ways[0], nearest[0])) {
-        return NOTHING;
+    if (separates(directions[0], nearest[0])) {
+        return NO_WORK;
     }
     let lowest = nearest[1];
     let height = dot(triangle_normal, lowest);
     face_distance = height - body_b.radius;
     if (face_distance > terrain_range) {
-        return NOTHING;
+        return NO_WORK;
     }
     find_face_contacts(terrain_range);
     // No deeper than the deepest contact so far: only the face itself or a convex feature can add contacts.
     if (face_distance >= deepest.distance - terrain_tolerance && (face_touches || is_hollow())) {
         add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
-        return NOTHING;
+        return NO_WORK;
     }
-    if (separates(ways[2], nearest[2])) {
-        return NOTHING;
+    if (separates(directions[2], nearest[2])) {
+        return NO_WORK;
     }
     // Deep within its walls: no depth of the prism is smaller than through its face.
     if (triangle_surrounds(lowest - triangle_normal * max(height, 0.0), max(-height, 0.0))) {
         deepest = deeper(deepest, contact_below(lowest));
         add_list(thread_field(TERRAIN_FACE), face_list_count, COUNTED, -UNMOVABLE);
-        return NOTHING;
+        return NO_WORK;
     }
     // A convex edge or vertex touches along the same normal in all adjacent prisms.
     for (var k = 0u; k < feature_count; k++) {
