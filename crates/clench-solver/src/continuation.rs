@@ -6,7 +6,7 @@
 //! MuJoCo's impedances (R = A (1 − d)/d with d ≤ 0.9999), R starts at no less than a fraction of A and decreases in
 //! stages to its own value. Only the last stage, the original problem, can end a solve.
 
-use crate::jacobian::BlockIndex;
+use crate::block_index::BlockIndex;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, kernel};
 

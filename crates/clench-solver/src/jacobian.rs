@@ -2,35 +2,11 @@
 //!
 //! The solver needs nothing else, so rows need not be stored if another form is cheaper.
 
+use crate::Tree;
+use crate::block_index::BlockIndex;
 use crate::costs::{Form, MAX_DIM, Weight};
-use crate::{Cost, Tree};
 use clench_math::{Real, array, kernel};
 use std::ops::Range;
-
-/// The location of a block in the pools.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BlockIndex {
-    pub cost: Cost,
-    pub dim: usize,
-    pub ndof: usize,
-    /// The first row, first dof entry, first Jacobian value and first entry of the active set.
-    pub row: usize,
-    pub dof: usize,
-    pub value: usize,
-    pub active_start: usize,
-}
-
-impl BlockIndex {
-    #[inline(always)]
-    pub(crate) fn rows(&self) -> Range<usize> {
-        self.row..self.row + self.dim
-    }
-    /// Returns its entries of the active set.
-    #[inline(always)]
-    pub(crate) fn active_range(&self) -> Range<usize> {
-        self.active_start..self.active_start + crate::costs::active_len(self.cost, self.dim)
-    }
-}
 
 /// The operations on J that the solver needs.
 pub(crate) trait Jacobian<T: Real> {

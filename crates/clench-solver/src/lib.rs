@@ -12,6 +12,7 @@
 // Kernels traverse several arrays by the same row or column; an index is clearer than a chain of zips.
 #![allow(clippy::needless_range_loop)]
 
+mod block_index;
 mod cg;
 mod check;
 mod continuation;

@@ -9,9 +9,10 @@
 //! at the start plus the rise of each part above its own tangent. Both are sums of terms of one sign, which do not
 //! cancel.
 
+use crate::block_index::BlockIndex;
 use crate::costs::{BlockCost, Slope, with_cost};
 use crate::iterate::{Iterate, add_scaled, dot};
-use crate::jacobian::{BlockIndex, Jacobian};
+use crate::jacobian::Jacobian;
 use crate::ray::Ray;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, Scalar, kernel};

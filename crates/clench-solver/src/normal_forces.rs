@@ -13,7 +13,7 @@
 //! A fixed point exists, because f is continuous and bounded: at a large λ all contacts stick. It may not be unique
 //! where friction jams; the iteration from the start selects one.
 
-use crate::jacobian::BlockIndex;
+use crate::block_index::BlockIndex;
 use crate::{Cost, Problem};
 use clench_math::{Real, kernel};
 
@@ -21,10 +21,10 @@ use clench_math::{Real, kernel};
 /// leads to an attracting one. A very negative γ extrapolates too far from two iterates that are close.
 const MIXING: (f64, f64) = (-10.0, 1.0);
 
-/// The number of predictions, and of updates, after which λ is no longer predicted. Newton's method on pieces can cycle,
+/// The numbers of predictions and of updates after which λ is no longer predicted. Newton's method on pieces can cycle,
 /// and where friction jams it can move away from the solution.
 const MAX_PREDICTIONS: f64 = 30.0;
-const MAX_PREDICTED: f64 = 3.0;
+const MAX_ROUNDS: f64 = 3.0;
 /// The number of predictions after which every third one moves λ only half of the way, which leaves most cycles.
 const MAX_FULL: f64 = 8.0;
 const CYCLE: f64 = 3.0;
@@ -69,7 +69,7 @@ impl<T: Real> NormalForces<T> {
     /// Returns the lanes in which a Newton step first predicts λ.
     #[inline(always)]
     pub(crate) fn predicts(&self) -> T::Mask {
-        self.rounds.lt(T::new(MAX_PREDICTED)) & self.predictions.lt(T::new(MAX_PREDICTIONS))
+        self.rounds.lt(T::new(MAX_ROUNDS)) & self.predictions.lt(T::new(MAX_PREDICTIONS))
     }
 
     /// Returns true if the problem has Coulomb blocks.

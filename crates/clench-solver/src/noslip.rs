@@ -15,9 +15,10 @@
 //! The acceleration is then a_unc + M'⁻¹Jᵀf during the sweeps, and the effect of the forces in the whole metric is
 //! computed after them.
 
+use crate::block_index::BlockIndex;
 use crate::costs::MAX_DIM;
 use crate::iterate::{Iterate, dot};
-use crate::jacobian::{BlockIndex, Jacobian};
+use crate::jacobian::Jacobian;
 use crate::metric_terms::MetricTerms;
 use crate::{Cost, Problem, Settings, SolveStats};
 use clench_math::{Mask, Real, Scalar, kernel};

@@ -13,9 +13,9 @@
 //! step that follows is Newton's for the convex problem with the friction limits λ + δ, along which the line search
 //! decreases the cost; near the solution it is the step d.
 
+use crate::block_index::BlockIndex;
 use crate::hessian::Hessian;
 use crate::iterate::{Iterate, dot};
-use crate::jacobian::BlockIndex;
 use crate::{Cost, Problem};
 use clench_math::{Mask, Real, kernel};
 

@@ -1,7 +1,8 @@
 //! The problem: the data that stay constant during a solve.
 
+use crate::block_index::BlockIndex;
 use crate::costs::{Cost, MAX_DIM, Rows};
-use crate::jacobian::{BlockIndex, StoredRows};
+use crate::jacobian::StoredRows;
 use crate::runs::runs;
 use crate::transfer::Transfer;
 use crate::{Tree, TreeFactor, TreeMatrix, costs};

@@ -1,8 +1,9 @@
 //! The Hessian stored as the entries that elimination fills.
 
 use super::rank_one::each_of_change;
+use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
-use crate::jacobian::{BlockIndex, Jacobian};
+use crate::jacobian::Jacobian;
 use crate::sparse::{SparseFactor, SparsePattern, Window};
 use crate::{Problem, SolveClock, SolvePart, Threads, Tree};
 use clench_math::{Mask, Real, kernel};

@@ -11,8 +11,9 @@ mod filled;
 mod paths;
 mod rank_one;
 
+use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
-use crate::jacobian::{BlockIndex, StoredRows};
+use crate::jacobian::StoredRows;
 use crate::{Problem, SolveClock, Threads, Tree};
 use clench_math::Real;
 use filled::FilledForm;

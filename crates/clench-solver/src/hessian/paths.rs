@@ -1,8 +1,9 @@
 //! The Hessian stored as whole paths of its elimination tree.
 
 use super::rank_one::each_of_change;
+use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
-use crate::jacobian::{BlockIndex, Jacobian};
+use crate::jacobian::Jacobian;
 use crate::tree::CouplingScratch;
 use crate::{Problem, SolveClock, SolvePart, Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, kernel};
