@@ -38,7 +38,11 @@ fn unsupported_features_are_refused_by_name() {
                 "<sensor><insidesite name='in' site='s' objtype='geom' objname='ball' enclosed='true' nsample='3' delay='0.1'/></sensor></mujoco>",
             )
             .replace("<worldbody>", "<worldbody><site name='s'/>"),
-            "insidesite sensor \"in\": a sensor of this kind is not read yet",
+            "insidesite sensor \"in\": a sensor of this kind is not supported yet",
+        ),
+        (
+            model("<custom><text name='clench.contact_model' data='coulomb'/></custom>"),
+            "option contact_model: only the convex contact model",
         ),
         (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
