@@ -33,7 +33,7 @@ pub trait Viewed {
     /// Calls a function with each environment of a range in order.
     ///
     /// # Errors
-    /// See [`query`](Self::ask).
+    /// See [`query`](Self::query).
     fn query_each(
         &mut self,
         envs: Range<usize>,
