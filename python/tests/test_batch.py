@@ -162,7 +162,7 @@ def test_parameters_of_environments(field: str, precision: Any) -> None:
     try:
         batch.randomize(field, shared[None].repeat(2, axis=0), [3, 1])
     except ValueError as error:
-        assert "follows" in str(error) or "derived" in str(error)
+        assert "is computed from" in str(error)
         np.testing.assert_array_equal(batch.param(field), values)
         return
     # Unit vectors are normalized again.

@@ -125,7 +125,7 @@ def test_a_model_is_attached_with_a_prefix_as_often_as_wanted() -> None:
     assert model.names("body") == ["world", "palm", "left_base", "left_tip", "right_base", "right_tip"]
     assert model.names("actuator") == ["left_bend", "right_bend"] and "right_bend" in model.names("sensor")
     np.testing.assert_allclose(model.body("right_base").pos, [0.08, 0, 0.02])
-    with pytest.raises(ValueError, match="prefix 'left_' already"):
+    with pytest.raises(ValueError, match="already attached with the prefix 'left_'"):
         palm.attach(finger, prefix="left_")
     assert ends(clench.Model.from_xml(model.to_xml())).qpos.shape == (2,)
 

@@ -312,7 +312,7 @@ def test_bytes_take_no_more_memory_than_they_are() -> None:
         for name in old.namelist():
             claimed = np.lib.format.magic(1, 0) + b"\x76\x00" + header(10**10)
             file.writestr(name, claimed if name == "qpos.npy" else old.read(name))
-    with pytest.raises(ValueError, match="qpos.npy claims 80000000000 bytes"):
+    with pytest.raises(ValueError, match="qpos.npy declares 80000000000 bytes"):
         clench.State.from_bytes(stream.getvalue())
 
 
