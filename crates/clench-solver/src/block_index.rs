@@ -1,4 +1,4 @@
-//! Where the data of a block lie.
+//! The location of a block's data.
 
 use crate::Cost;
 use std::ops::Range;

@@ -6,8 +6,8 @@
 //! minimise over the friction forces f:  ½ fᵀ A f + fᵀ b,    A = J M⁻¹ Jᵀ,    A f + b = J a(f) − aref
 //! ```
 //!
-//! by Gauss–Seidel sweeps, block by block: dry friction within ±η; elliptic and Coulomb friction within its ellipse; in a pyramid,
-//! each pair of opposing edges with its sum σ fixed, so that friction along one row is free within ±μ σ. The
+//! by Gauss–Seidel sweeps, block by block: dry friction within ±η; elliptic and Coulomb friction within its ellipse; in
+//! a pyramid, each pair of opposing edges with its sum σ fixed, so that friction along one row is free within ±μ σ. The
 //! acceleration a is updated along the way, so an update costs one row of J and one of M⁻¹Jᵀ. As in MuJoCo, the dropped
 //! regularization cost counts towards the first sweep's improvement.
 //!

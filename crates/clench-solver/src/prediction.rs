@@ -42,8 +42,8 @@ pub(crate) struct Prediction<T> {
 }
 
 impl<T: Real> Prediction<T> {
-    /// Moves λ to the prediction in the lanes of `mask` in which a contact slides, and returns them; `hessian` is factored
-    /// at the iterate. Where all contacts stick, their limits have no effect.
+    /// Moves λ to the prediction in the lanes of `mask` in which a contact slides, and returns them; `hessian` is
+    /// factored at the iterate. If all contacts stick, their limits have no effect.
     #[kernel]
     pub fn run(
         &mut self,

@@ -2,8 +2,8 @@
 //! `diagexact`).
 //!
 //! R = A (1 − d) / d, with A = J M⁻¹ Jᵀ of the row in place of A₀. One row determines R of a cone: the normal of an
-//! elliptic or Coulomb one, the first edge of a pyramid, J = J_n + μ₁ J_1. The others keep their ratio to it, which preserves the
-//! shape of the cone.
+//! elliptic or Coulomb one, the first edge of a pyramid, J = J_n + μ₁ J_1. The others keep their ratio to it, which
+//! preserves the shape of the cone.
 
 use super::row::Row;
 use super::softness::inverse_weight;
