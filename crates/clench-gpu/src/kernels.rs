@@ -298,13 +298,13 @@ mod tests {
 
     /// Codes that no kernel compares with.
     const UNNAMED: [&str; 4] = [
-        // What is not `RUNNING` is excluded.
+        // Kernels compare with `RUNNING` alone.
         "EXCLUDED",
         // Only the processor refuses large problems.
         "SOLVE_TOO_LARGE",
-        // What is not another law is affine.
+        // The affine law is the default case of each switch.
         "LAW_AFFINE",
-        // What no other method finds is of convex shapes.
+        // The method for convex shapes is the last choice, taken without a comparison.
         "CONVEX",
     ];
 

@@ -100,27 +100,22 @@ fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
         if block.cost == Cost::Pyramid && (1..block.dim).any(|j| at(block.d, j) != at(block.d, 0)) {
             return Err("the rows of a pyramid need the same D");
         }
+        // Returns true if the friction rows have D_j = scale μ_j².
+        let consistent = |scale: f64| {
+            let expected = |j| scale * at(block.shape, j).powi(2);
+            (1..block.dim).all(|j| (at(block.d, j) / expected(j) - 1.0).abs() < CONSISTENT)
+        };
         if block.cost == Cost::Elliptic {
             let mu = at(block.shape, 0);
             if mu <= 0.0 {
                 return Err("the regularized friction coefficient is not positive");
             }
-            let scale = at(block.d, 0) / (mu * mu);
-            let consistent = |j| {
-                (at(block.d, j) / (scale * at(block.shape, j).powi(2)) - 1.0).abs() < CONSISTENT
-            };
-            if !(1..block.dim).all(consistent) {
+            if !consistent(at(block.d, 0) / (mu * mu)) {
                 return Err("the rows of an elliptic cone need D_j = D_0 (mu_j / mu)²");
             }
         }
-        if block.cost == Cost::Coulomb {
-            let scale = at(block.d, 1) / at(block.shape, 1).powi(2);
-            let consistent = |j| {
-                (at(block.d, j) / (scale * at(block.shape, j).powi(2)) - 1.0).abs() < CONSISTENT
-            };
-            if !(1..block.dim).all(consistent) {
-                return Err("the friction rows of a Coulomb contact need D_j = D_1 (mu_j / mu_1)²");
-            }
+        if block.cost == Cost::Coulomb && !consistent(at(block.d, 1) / at(block.shape, 1).powi(2)) {
+            return Err("the friction rows of a Coulomb contact need D_j = D_1 (mu_j / mu_1)²");
         }
     }
     Ok(())

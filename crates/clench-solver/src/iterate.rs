@@ -3,7 +3,7 @@
 use crate::Problem;
 use crate::block_index::BlockIndex;
 use crate::continuation::Continuation;
-use crate::costs::{BlockCost, Coulomb, MAX_DIM, Rows, Totals, with_cost};
+use crate::costs::{BlockCost, Rows, Totals, with_cost};
 use crate::jacobian::Jacobian;
 use crate::normal_forces::NormalForces;
 use crate::ray::Ray;
@@ -134,12 +134,6 @@ impl<T: Real> Iterate<T> {
             given: self.normal_forces.of(b),
             ..problem.rows(b)
         }
-    }
-
-    /// Returns μ_j u_j of the friction rows of a Coulomb block; see [`slip`](crate::costs).
-    #[inline(always)]
-    pub(crate) fn slip_direction(&self, problem: &Problem<T>, b: &BlockIndex) -> [T; MAX_DIM] {
-        Coulomb::slip_direction(problem.rows(b), &self.residual[b.rows()])
     }
 
     /// Evaluates every block at the residual: forces, the active set, and the cost of the constraints.

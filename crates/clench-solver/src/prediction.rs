@@ -14,6 +14,7 @@
 //! decreases the cost; near the solution it is the step d.
 
 use crate::block_index::BlockIndex;
+use crate::costs::Coulomb;
 use crate::hessian::Hessian;
 use crate::iterate::{Iterate, dot};
 use crate::{Cost, Problem};
@@ -110,7 +111,7 @@ impl<T: Real> Prediction<T> {
             self.weights
                 .push(T::select(presses, problem.d[b.row], T::ZERO));
             sliding |= slides;
-            let direction = iterate.slip_direction(problem, b);
+            let direction = Coulomb::slip_direction(problem.rows(b), &iterate.residual[b.rows()]);
             for j in 1..b.dim {
                 self.friction[b.row + j] = T::select(slides, direction[j], T::ZERO);
             }

@@ -136,22 +136,29 @@ impl<T: Real> BlockCost<T> for Coulomb {
     #[inline(always)]
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
         add_edge_slope(rows.d[0], y[0], dy[0], alpha, slope);
-        let (disc, path, after, turn) = along(rows, y, dy, alpha);
+        let Path {
+            disc,
+            after,
+            slip,
+            huber,
+            ..
+        } = Path::new(rows, y, dy, alpha);
         // The slope is K c u·U' with c = min(T, λ / K).
         let end = after.t.min(disc.bound);
-        slope.growth += disc.k * (turn.change * path.along + end * path.turn);
-        let u = path.along + path.turn;
-        let across = (path.squares - u * u).max(T::ZERO);
+        slope.growth += disc.k * (huber.change * slip.along + end * slip.turn);
+        let u = slip.along + slip.turn;
+        let across = (slip.squares - u * u).max(T::ZERO);
         let sliding = disc.radius * after.inverse * across;
         let slides = disc.slides(&after);
-        slope.second += T::select(slides, sliding, disc.k * path.squares);
+        slope.second += T::select(slides, sliding, disc.k * slip.squares);
     }
 
     #[inline(always)]
     fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
-        let (disc, path, _, turn) = along(rows, y, dy, alpha);
-        let start = Slip::new(rows.shape, |j| y[j]).t.min(disc.bound);
-        let friction = disc.k * (turn.change * turn.beyond + start * path.bend);
+        let path = Path::new(rows, y, dy, alpha);
+        let start = path.before.t.min(path.disc.bound);
+        let huber = path.huber.change * path.huber.beyond;
+        let friction = path.disc.k * (huber + start * path.slip.bend);
         edge_divergence(rows.d[0], y[0], alpha * dy[0]) + friction
     }
 }
@@ -168,19 +175,30 @@ impl Coulomb {
     }
 }
 
-/// Returns the disc, the path of the slip, the slip at its end, and the change of the Huber cost of T.
-#[inline(always)]
-fn along<T: Real>(
-    rows: Rows<T>,
-    y: &[T],
-    dy: &[T],
-    alpha: T,
-) -> (Disc<T>, SlipPath<T>, Slip<T>, Turn<T>) {
-    let disc = Disc::new(rows);
-    let before = Slip::new(rows.shape, |j| y[j]);
-    let after = Slip::new(rows.shape, |j| y[j] + alpha * dy[j]);
-    let path = SlipPath::new(rows.shape, dy, alpha, [&before, &after]);
-    let step = alpha * path.along + path.bend;
-    let turn = Turn::new(disc.bound, before.t, step);
-    (disc, path, after, turn)
+/// A block moving from y to y + α dy.
+struct Path<T: Real> {
+    disc: Disc<T>,
+    before: Slip<T>,
+    after: Slip<T>,
+    slip: SlipPath<T>,
+    /// The change of the Huber cost of T.
+    huber: Turn<T>,
+}
+
+impl<T: Real> Path<T> {
+    #[inline(always)]
+    fn new(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> Self {
+        let disc = Disc::new(rows);
+        let before = Slip::new(rows.shape, |j| y[j]);
+        let after = Slip::new(rows.shape, |j| y[j] + alpha * dy[j]);
+        let slip = SlipPath::new(rows.shape, dy, alpha, [&before, &after]);
+        let step = alpha * slip.along + slip.bend;
+        Path {
+            huber: Turn::new(disc.bound, before.t, step),
+            disc,
+            before,
+            after,
+            slip,
+        }
+    }
 }
