@@ -103,6 +103,7 @@ impl ModelBuilder {
             sensors: Vec::new(),
             equalities: Vec::new(),
             max_dynamic_constraints: DEFAULT_DYNAMIC_CONSTRAINTS,
+            max_stick_pairs: None,
             pairs: Vec::new(),
             excludes: HashSet::new(),
             keyframes: Vec::new(),

@@ -272,7 +272,7 @@ pub fn result_fault<S: Real, T: Real>(
     }
     let excess = ws.collision.excess.lane(lane).to_f64();
     if excess > 0.0 || ws.solver.stats().status(lane) == Status::TooLarge {
-        let (what, limit) = Excess::from_code(excess).describe(&model.budget);
+        let (what, limit) = Excess::from_code(excess).describe(model);
         return Fault::OverBudget { time, what, limit };
     }
     let mut found = None;

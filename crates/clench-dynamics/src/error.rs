@@ -138,6 +138,9 @@ pub enum SimError {
         /// The geom.
         geom: usize,
     },
+    /// An option cannot change once a simulation exists.
+    #[error("the option {0} can only be chosen when a simulation is created")]
+    FixedOption(&'static str),
     /// Discrete inverse dynamics are undefined for an integrator whose steps have no single acceleration.
     #[error(
         "the integrator RK4 has no discrete acceleration: it combines those of four states (choose Euler, implicit or implicitfast)"

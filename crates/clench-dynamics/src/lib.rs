@@ -34,6 +34,7 @@ pub mod sleep;
 pub mod stages;
 pub mod state;
 pub mod step;
+pub mod stiction;
 pub mod workspace;
 
 pub use budget::Budget;

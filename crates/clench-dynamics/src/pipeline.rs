@@ -27,6 +27,7 @@ use crate::settings::StepSettings;
 use crate::sleep;
 use crate::stages::Positions;
 use crate::state::State;
+use crate::stiction::drag;
 use crate::workspace::{EnergyScratch, Workspace};
 use clench_math::Real;
 use clench_solver::TreeMatrix;
@@ -276,6 +277,9 @@ pub fn step_from_forces<T: Real>(
     from_forces(model, params, settings, state, ws);
     sensors(model, params, settings, state, ws);
     ws.clock.lap(Stage::Sensors as usize);
+    if settings.stiction {
+        drag(model, params, state, ws);
+    }
     if settings.flags.sleep {
         sleep::fall_asleep(model, params, settings, state, ws);
     }

@@ -13,6 +13,7 @@ use crate::readings::SensorReadings;
 use crate::sleep::Sleep;
 use crate::stages::filled;
 pub use crate::stages::{Forces, Positions, Velocities};
+use crate::stiction::Stiction;
 use clench_math::{Force, Mask, Motion, Real};
 use clench_solver::{Problem, Solver, Threads, TreeFactor, TreeMatrix};
 
@@ -33,6 +34,8 @@ pub struct Workspace<T: Real> {
     pub problem: Problem<T>,
     /// The origin of each block and row of the problem.
     pub record: ConstraintRecord<T>,
+    /// The displacements of friction that sticks.
+    pub stiction: Stiction<T>,
     /// The solver of the problem, and the solution.
     pub solver: Solver<T>,
     /// Acceleration (nv).
@@ -98,6 +101,7 @@ impl<T: Real> Workspace<T> {
             collision: Collision::new(model),
             problem: Problem::new(model.tree.clone()),
             record: ConstraintRecord::default(),
+            stiction: Stiction::default(),
             solver: Solver::compiled(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),

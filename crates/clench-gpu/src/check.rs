@@ -40,6 +40,7 @@ rules! {
         let coulomb = s.settings.contact_model == ContactModel::Coulomb;
         coulomb.then(|| "option contact_model".to_owned())
     };
+    "stiction is not supported yet": |s| s.settings.stiction.then(|| "option stiction".to_owned());
     "sleep is not supported yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
     "a sensor of this kind is not supported yet, so it cannot have a delay": |s| {
         let late = |(_, sensor): &(usize, &Sensor)| sensor.history.is_some();

@@ -81,6 +81,7 @@ impl<T: Precision> Sim<T> {
             return Err(SimError::Instructions(T::ALONE));
         }
         let settings = StepSettings::supported::<T>(&model, options)?;
+        let model = model.with_stick_references(&settings);
         let initial = State::new(&model);
         Ok(Sim {
             state: initial.clone(),

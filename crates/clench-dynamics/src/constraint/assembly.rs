@@ -116,6 +116,8 @@ pub(super) struct Assembly<'a, T: Real> {
     pub exact: Option<ExactDiagonal<'a, T>>,
     /// Evaluates rows at the end of the step, with the integrator `discrete`.
     pub implicit: Option<ImplicitRows<'a, T>>,
+    /// Receives the change of aref per displacement of each row, with the option `stiction`.
+    pub slopes: Option<&'a mut Vec<T>>,
 }
 
 impl<T: Real> Assembly<'_, T> {
@@ -197,6 +199,12 @@ impl<T: Real> Assembly<'_, T> {
             target.shape[i] = row.shape;
             pos.push(row.pos);
             vel.push(velocity);
+            if let Some(slopes) = &mut self.slopes {
+                slopes.push(match &self.implicit {
+                    Some(implicit) => implicit.slope(row),
+                    None => row.stiffness,
+                });
+            }
         }
     }
 }

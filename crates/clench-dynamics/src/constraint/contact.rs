@@ -3,6 +3,7 @@
 //! ```text
 //! rows of J:  (∂p₂ − ∂p₁) along n, t₁, t₂;  (∂ω₂ − ∂ω₁) along n (spin), t₁, t₂ (roll)        condim 1, 3, 4, 6 take the first
 //! normal:     r = dist − includemargin, aref = −b v − k d r         friction:  r = 0, aref = −b v
+//!                                                   with `stiction`:  r = φ, aref = −b v − k d φ,  φ from the module `stiction`
 //! ```
 //!
 //! A contact is active if dist < includemargin. A frictionless contact is one one-sided row with R = A₀ (1 − d) / d,
@@ -66,7 +67,13 @@ pub(super) fn push<T: Real>(
     let resolved = context.resolved(soft, contact.solref);
     let weight = |body: usize| context.params.body_invweight0[body][0];
     let a0 = weight(bodies[0]) + weight(bodies[1]);
-    let (cost, rows) = rows(context, contact, [&soft, &resolved], a0);
+    let (cost, mut rows) = rows(context, contact, [&soft, &resolved], a0);
+    if let Some(stiction) = context.stiction {
+        let displacement = stiction.displacement(index);
+        for (row, phi) in rows[1..contact.dim].iter_mut().zip(displacement) {
+            (row.pos, row.aref) = (phi, -row.stiffness * phi);
+        }
+    }
     let block = BlockRecord {
         source: ConstraintSource::Contact(index),
         active,
@@ -119,13 +126,14 @@ fn rows<T: Real>(
         return (Cost::Pyramid, rows);
     }
     let r1 = normal.r / impratio;
-    let damping = soft.friction_damping(
+    let sticks = context.stiction.is_some();
+    let (stiffness, damping) = if sticks { resolved } else { soft }.friction_spring(
         contact.solreffriction,
         contact.solimp,
         context.min_timeconst,
     );
     for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {
-        row.stiffness = T::ZERO;
+        row.stiffness = if sticks { stiffness } else { T::ZERO };
         row.damping = damping;
         row.r = r1 * mu[0] * mu[0] / (mu_j * mu_j);
         row.shape = mu_j;

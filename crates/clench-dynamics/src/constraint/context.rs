@@ -6,6 +6,7 @@ use crate::settings::StepSettings;
 use crate::sleep::Sleep;
 use crate::stages::{Positions, Velocities};
 use crate::state::State;
+use crate::stiction::Stiction;
 use clench_math::Real;
 
 /// The inputs of all kinds of constraint.
@@ -17,6 +18,8 @@ pub(super) struct ConstraintContext<'a, T: Real> {
     pub(super) position: &'a Positions<T>,
     pub(super) velocity: &'a Velocities<T>,
     pub(super) sleep: &'a Sleep<T>,
+    /// The displacements of friction, with the option `stiction`.
+    pub(super) stiction: Option<&'a Stiction<T>>,
     /// The minimum time constant, s.
     pub(super) min_timeconst: T,
     /// The ratio of friction to normal impedance.

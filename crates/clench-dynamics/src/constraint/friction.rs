@@ -4,8 +4,9 @@
 //! r = 0        J = ∂q_i/∂q  or  ∂length/∂q        aref = −b v        cost: Huber of loss η
 //! ```
 //!
-//! The slope R applies at small accelerations, so sticking friction creeps. The impedance is that at zero violation; A₀
-//! is the inverse weight of the dof or tendon.
+//! The slope R applies at small accelerations, so sticking friction creeps. With the option `stiction`, r is the
+//! displacement since it stuck, and aref = −b v − k d r: see the module `stiction`. The impedance is that at zero
+//! violation; A₀ is the inverse weight of the dof or tendon.
 
 use super::Softness;
 use super::assembly::{Assembly, BlockRecord, ConstraintSource};
@@ -28,6 +29,7 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
         dofs.push(i as u32);
         let friction = Friction {
             source: ConstraintSource::DofFriction(i),
+            index: i,
             awake: context.sleep.is_awake(model.tree.tree_of(i)),
             loss: params.dof_frictionloss[i],
             solref: params.dof_solref[i],
@@ -46,6 +48,7 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
         coordinate.insert_dofs(context, dofs);
         let friction = Friction {
             source: ConstraintSource::TendonFriction(i),
+            index: model.nv + i,
             awake: context.awake([coordinate]),
             loss: params.tendon_frictionloss[i],
             solref: params.tendon_solref_fri[i],
@@ -60,6 +63,8 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
 
 struct Friction<T: Real> {
     source: ConstraintSource,
+    /// The index in `State::stick_friction`.
+    index: usize,
     /// The lanes in which any object that it brakes is awake.
     awake: T::Mask,
     loss: T,
@@ -81,11 +86,20 @@ impl<T: Real> Friction<T> {
             return;
         }
         let soft = Softness::new(self.solref, self.solimp, T::ZERO, context.min_timeconst);
-        let row = Row {
+        let mut row = Row {
             shape: self.loss,
             stiffness: T::ZERO,
             ..Row::new(&soft, T::ZERO, T::ZERO, self.a0)
         };
+        if context.stiction.is_some() {
+            let displacement = context.state.stick_friction[self.index];
+            row = Row {
+                pos: displacement,
+                aref: -soft.stiffness * displacement,
+                stiffness: soft.stiffness,
+                ..row
+            };
+        }
         let block = BlockRecord {
             source: self.source,
             active,

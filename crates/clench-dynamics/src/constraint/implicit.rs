@@ -28,6 +28,12 @@ impl<T: Real> ImplicitRows<'_, T> {
         (row.aref - rate * velocity) / self.beta(row)
     }
 
+    /// Returns the change of that acceleration per change of the row's position, with the sign reversed.
+    #[inline(always)]
+    pub(super) fn slope(&self, row: &Row<T>) -> T {
+        row.stiffness / self.beta(row)
+    }
+
     /// Computes 1 + h b + h² k d.
     #[inline(always)]
     fn beta(&self, row: &Row<T>) -> T {

@@ -87,9 +87,17 @@ pub fn assemble<T: Real>(
 ) {
     ws.problem.clear_constraints();
     ws.record.clear();
+    ws.stiction.clear();
     if !settings.flags.constraint {
         return;
     }
+    // Rows are appended to the problem while these are read.
+    let mut stiction = std::mem::take(&mut ws.stiction);
+    let sticks = settings.stiction && model.max_stick_pairs.is_some();
+    if sticks {
+        stiction.find(model, state, &ws.position, &ws.contacts);
+    }
+    let mut slopes = std::mem::take(&mut stiction.slopes);
     let context = ConstraintContext {
         model,
         params,
@@ -98,11 +106,11 @@ pub fn assemble<T: Real>(
         position: &ws.position,
         velocity: &ws.velocity,
         sleep: &ws.sleep,
+        stiction: sticks.then_some(&stiction),
         min_timeconst: min_timeconst(params, settings, ws.metric.acts()),
         impratio: T::new(settings.impratio),
         metric: ws.metric.acts().then_some(&ws.metric),
     };
-    // Rows are appended to the problem while the factor of its mass is read.
     let factor = std::mem::take(&mut ws.problem.mass_factor);
     let exact = settings.flags.diagexact.then(|| ExactDiagonal {
         tree: &model.tree,
@@ -122,6 +130,7 @@ pub fn assemble<T: Real>(
             timestep: params.timestep,
             impratio: context.impratio,
         }),
+        slopes: sticks.then_some(&mut slopes),
     };
     if settings.flags.equality {
         push_equalities(&context, &mut out);
@@ -140,6 +149,8 @@ pub fn assemble<T: Real>(
         push_contacts(&context, &mut out, &mut ws.contacts);
     }
     ws.problem.mass_factor = factor;
+    stiction.slopes = slopes;
+    ws.stiction = stiction;
 }
 
 #[inline(always)]

@@ -6,7 +6,7 @@ use clench_math::Real;
 /// One row of a block without its Jacobian.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row<T> {
-    /// The position.
+    /// The position; of friction that sticks, the displacement.
     pub pos: T,
     /// The part of the reference acceleration that does not depend on the row's velocity.
     pub aref: T,

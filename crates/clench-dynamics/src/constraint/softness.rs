@@ -68,15 +68,23 @@ impl<T: Real> Softness<T> {
         }
     }
 
-    /// Returns the damping of friction dimensions with their own solref; that of `self` if it is zero or mixed.
+    /// Returns k d and b of friction dimensions with their own solref; those of `self` if it is zero or mixed.
     #[inline(always)]
-    pub(crate) fn friction_damping(&self, solref: [T; 2], solimp: [T; 5], min_timeconst: T) -> T {
+    pub(crate) fn friction_spring(
+        &self,
+        solref: [T; 2],
+        solimp: [T; 5],
+        min_timeconst: T,
+    ) -> (T, T) {
         let given = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
         if !given.any() {
-            return self.damping;
+            return (self.stiffness, self.damping);
         }
-        let (_, damping) = spring_damper(solref, solimp[1], min_timeconst);
-        T::select(given, damping, self.damping)
+        let (k, damping) = spring_damper(solref, solimp[1], min_timeconst);
+        (
+            T::select(given, k * self.impedance, self.stiffness),
+            T::select(given, damping, self.damping),
+        )
     }
 
     /// Returns the softness for a step of length `timestep` that evaluates the spring at its end. A spring of time

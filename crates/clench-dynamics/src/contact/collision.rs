@@ -24,18 +24,26 @@ pub enum Excess {
     Jacobian,
     /// Numbers in the factor of an island's Hessian, or in the matrix of `noslip`.
     Factor,
+    /// Pairs of geoms with a stick reference.
+    StickPairs,
 }
 
 impl Excess {
     /// Returns the excess of a code; `Factor` for an unknown code.
     pub fn from_code(code: f64) -> Excess {
-        let others = [Excess::Pairs, Excess::Contacts, Excess::Jacobian];
+        let others = [
+            Excess::Pairs,
+            Excess::Contacts,
+            Excess::Jacobian,
+            Excess::StickPairs,
+        ];
         let found = others.into_iter().find(|&one| f64::from(one as u8) == code);
         found.unwrap_or(Excess::Factor)
     }
 
     /// Returns a description of the quantity and its limit.
-    pub fn describe(self, budget: &Budget) -> (&'static str, u64) {
+    pub fn describe(self, model: &Model) -> (&'static str, u64) {
+        let budget = &model.budget;
         match self {
             Excess::Pairs => ("pairs of geoms whose bounds overlap", budget.pairs()),
             Excess::Contacts => ("contacts", budget.contacts),
@@ -43,6 +51,10 @@ impl Excess {
             Excess::Factor => (
                 "numbers in the factor of the Hessian of an island",
                 budget.matrix,
+            ),
+            Excess::StickPairs => (
+                "pairs of geoms that stick (the option max_stick_pairs)",
+                model.max_stick_pairs.unwrap_or(0) as u64,
             ),
         }
     }
@@ -134,7 +146,7 @@ impl<T: Real> Collision<T> {
 
     /// Records the excess of some lanes.
     #[inline(always)]
-    pub(super) fn record_excess(&mut self, lanes: T::Mask, excess: Excess) {
+    pub(crate) fn record_excess(&mut self, lanes: T::Mask, excess: Excess) {
         self.excess = T::select(lanes, T::new(f64::from(excess as u8)), self.excess);
     }
 }

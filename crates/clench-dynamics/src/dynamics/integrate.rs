@@ -9,6 +9,7 @@ use crate::dynamics::plastic::{Lengths, yield_springs};
 use crate::model::{GainKind, JointKind, Model, Params};
 use crate::stages::{Positions, Velocities};
 use crate::state::State;
+use crate::stiction::advance_friction;
 use crate::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Tree;
@@ -162,6 +163,13 @@ pub(crate) fn advance_semi_implicit<T: Real>(
         Lengths::of(&ws.position),
         motion,
         &mut state.plastic,
+    );
+    advance_friction(
+        model,
+        params,
+        Lengths::of(&ws.position),
+        &state.qvel,
+        &mut state.stick_friction,
     );
     advance_time(model, params, &ws.sensors.measured, state);
 }

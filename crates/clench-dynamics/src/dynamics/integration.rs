@@ -73,7 +73,7 @@ impl<T: Real> Integration<T> {
             offset: T::ZERO,
             start: Rates::new(model, model.nq),
             actuator_velocity: vec![T::ZERO; model.nout()],
-            tendons: match has_yielding_tendons(model) {
+            tendons: match has_yielding_tendons(model) || model.max_stick_pairs.is_some() {
                 true => [model.tendons.len(), model.tendon_dofs.len()].map(|n| vec![T::ZERO; n]),
                 false => Default::default(),
             },

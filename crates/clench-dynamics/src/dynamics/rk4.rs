@@ -17,6 +17,7 @@ use crate::dynamics::plastic::{Lengths, yield_springs};
 use crate::model::{JointKind, Model, Params};
 use crate::profile::Stage;
 use crate::state::State;
+use crate::stiction::advance_friction;
 use crate::workspace::Workspace;
 use clench_math::{Real, Vec3, kernel};
 use std::mem::swap;
@@ -83,6 +84,7 @@ pub fn rk4<T: Real>(
         (&state.qpos[..], &mean.position[..]),
     );
     yield_springs(model, params, &ws.sleep, start, motion, &mut state.plastic);
+    advance_friction(model, params, start, motion.1, &mut state.stick_friction);
     advance_time(model, params, &ws.sensors.measured, state);
 }
 

@@ -82,10 +82,12 @@ impl<T: Precision> Sim<T> {
     /// Replaces the options that the user set, for subsequent steps.
     ///
     /// # Errors
-    /// Returns an error if an option is out of range, or if a possible collision is not supported. The options are then
-    /// unchanged.
+    /// Returns an error if an option is out of range or belongs to the creation of the simulation, or if a possible
+    /// collision is not supported. The options are then unchanged.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
-        self.settings = StepSettings::supported::<T>(&self.model, options)?;
+        let settings = StepSettings::supported::<T>(&self.model, options)?;
+        self.model.check_stick_references(&settings)?;
+        self.settings = settings;
         self.options = options;
         self.invalidate();
         Ok(())

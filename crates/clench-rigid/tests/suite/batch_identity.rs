@@ -76,6 +76,22 @@ fn coulombs_law_moves_environments_as_alone() {
 }
 
 #[test]
+fn what_sticks_moves_as_alone() {
+    for (law, cone) in [
+        (ContactModel::Convex, FrictionCone::Pyramidal),
+        (ContactModel::Convex, FrictionCone::Elliptic),
+        (ContactModel::Coulomb, FrictionCone::Elliptic),
+    ] {
+        let options = options(ConstraintSolver::Newton, cone)
+            .contact_model(law)
+            .stiction(true);
+        assert!(compare::<f64>(&loose_parts(), options, 300) > 3.0);
+        assert!(compare::<f32>(&loose_parts(), options, 300) > 3.0);
+        assert!(compare::<f64>(&walker(), options, 300) > 1.0);
+    }
+}
+
+#[test]
 fn conjugate_gradients_with_pyramids_move_environments_as_alone() {
     let options = options(ConstraintSolver::Cg, FrictionCone::Pyramidal);
     assert!(compare::<f64>(&loose_parts(), options, 1000) > 3.0);
@@ -190,6 +206,8 @@ fn every_kind_of_constraint_moves_as_alone_with_every_integrator() {
         builder.physics.integrator = integrator;
         assert_eq!(acting(&builder, 100), kinds.into(), "{integrator:?}");
         assert!(compare::<f64>(&builder, RigidOptions::new(), 100) > 0.5);
+        let sticking = RigidOptions::new().stiction(true);
+        assert!(compare::<f64>(&builder, sticking, 100) > 0.5);
     }
 }
 

@@ -175,6 +175,16 @@ pub fn assert_state<S: Precision>(
             &expected.qacc_warmstart,
         ),
         ("pose_asleep", &rows.pose_asleep, &expected.pose_asleep),
+        (
+            "stick_references",
+            &rows.stick_references,
+            &expected.stick_references,
+        ),
+        (
+            "stick_friction",
+            &rows.stick_friction,
+            &expected.stick_friction,
+        ),
     ] {
         let what = || format!("{}, row {row}: {field}", what());
         assert_bits(found.row(row), expected, &what);

@@ -1,0 +1,254 @@
+//! The return mapping: after a solve, stick references are dragged along by contacts that slide or roll.
+//!
+//! With s = k d, the spring of a contact with the displacement φ asks for friction of the size
+//!
+//! ```text
+//! elliptic, Coulomb:  e = ‖ s φ_j / (R_j μ_j) ‖        pyramid:  e = Σ_j μ_j s |φ_j| / R        in units of normal force
+//! ```
+//!
+//! and the contact carries at most e = f_n. (At the limit, a pyramid has a single loaded edge, whose force is s μ_j φ_j / R.) With the stiffness κ of its first slide, f_n / κ is the displacement that it
+//! can store. The contacts of a pair store at most the largest of these, so that a pair sticks while any of its
+//! contacts does: those with less load slide at zero velocity, and the others carry what remains of the load.
+//!
+//! The reduced displacements φ' and the velocities of the surfaces themselves (`surfacevel`) change the reference by
+//! the rigid motion that fits φ' − φ best, weighted by normal forces. A reference that has rotated by more than
+//! [`MAX_ROTATION`] is replaced by the present pose with displacements φ' alone: a contact that rolls moves no material
+//! point, but over a finite angle, slides computed from poses differ from zero by R θ³ / 6.
+
+use super::displacement::present_pose;
+use super::{RelativePose, StickPair, Stiction};
+use crate::contact::collision::Excess;
+use crate::model::{Model, Params};
+use crate::stages::Positions;
+use crate::state::State;
+use crate::workspace::Workspace;
+use clench_math::{Mask, Mat3, Quat, Real, Vec3, kernel};
+use clench_solver::Cost;
+
+/// The rotation from which a reference is replaced, rad.
+const MAX_ROTATION: f64 = 0.01;
+/// The minimum of squared lengths that determine a rotation, m².
+const MIN_SQUARED_ARM: f64 = 1e-12;
+
+/// A contact that carries a load in some lanes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LoadedContact<T> {
+    /// The normal force, N; zero in the other lanes.
+    force: T,
+    /// e, N.
+    demand: T,
+    /// κ, N/m.
+    stiffness: T,
+    displacement: [T; 5],
+    dim: usize,
+    point: Vec3<T>,
+    frame: Mat3<T>,
+    /// The squared ratio of spin to slide friction, m².
+    squared_arm: T,
+    /// The displacement of the surfaces themselves in a step.
+    drift: [T; 3],
+}
+
+/// A rigid motion: displacement at a centre, and rotation, in world axes.
+struct Twist<T> {
+    centre: Vec3<T>,
+    translation: Vec3<T>,
+    rotation: Vec3<T>,
+}
+
+/// Drags the stick references and the displacements of dry friction along, after a solve.
+#[kernel]
+pub(crate) fn drag<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+) {
+    let mut stiction = std::mem::take(&mut ws.stiction);
+    let Stiction {
+        pairs,
+        slopes,
+        loaded,
+        ..
+    } = &mut stiction;
+    for pair in pairs {
+        loaded.clear();
+        pair.active = T::Mask::splat(false);
+        for i in pair.contacts() {
+            if let Some(contact) = LoadedContact::new(params, ws, slopes, i) {
+                pair.active |= contact.force.gt(T::ZERO);
+                loaded.push(contact);
+            }
+        }
+        pair.map(&ws.position, loaded);
+    }
+    let full = stiction.store(model, &ws.sleep, &mut state.stick_references);
+    ws.collision.record_excess(full, Excess::StickPairs);
+    stiction.drag_friction(model, ws, &mut state.stick_friction);
+    ws.stiction = stiction;
+}
+
+impl<T: Real> LoadedContact<T> {
+    /// Reads the solution of the `index`-th contact of the workspace. `None` if it has no friction.
+    #[inline(always)]
+    fn new(params: &Params<T>, ws: &Workspace<T>, slopes: &[T], index: usize) -> Option<Self> {
+        let contact = &ws.contacts[index];
+        let block_index = contact.block.filter(|_| contact.dim > 1)?;
+        let block = ws.problem.block(block_index);
+        let first = block.rows().start;
+        let active = ws.record.blocks[block_index].active;
+        let force = ws.solver.force()[first];
+        let pyramid = block.cost == Cost::Pyramid;
+        let mut displacement = [T::ZERO; 5];
+        let mut demand = T::ZERO;
+        let mut stiffness = T::ZERO;
+        for j in 1..contact.dim {
+            let mu = contact.friction[j - 1];
+            let per_row = slopes[first + j] / block.r[j];
+            let stiff = match pyramid {
+                true => mu * per_row,
+                false => per_row / mu,
+            };
+            let phi = ws.record.pos[first + j];
+            let e = stiff * phi;
+            demand += if pyramid { e.abs() } else { e * e };
+            displacement[j - 1] = phi;
+            if j == 1 {
+                stiffness = stiff;
+            }
+        }
+        let arm = contact.friction[2] / contact.friction[0];
+        Some(LoadedContact {
+            force: T::select(active, force.max(T::ZERO), T::ZERO),
+            demand: if pyramid { demand } else { demand.sqrt() },
+            stiffness,
+            displacement,
+            dim: contact.dim,
+            point: contact.pos,
+            frame: contact.frame,
+            squared_arm: arm * arm,
+            drift: contact.surfacevel.map(|v| v * params.timestep),
+        })
+    }
+
+    /// Returns the factor of the displacements of a pair whose contacts store at most `limit`, m.
+    #[inline(always)]
+    fn factor(&self, limit: T) -> T {
+        let most = limit * self.stiffness;
+        let beyond = self.demand.gt(most) & self.force.gt(T::ZERO);
+        T::select(
+            beyond,
+            most / T::select(beyond, self.demand, T::ONE),
+            T::ONE,
+        )
+    }
+}
+
+impl<T: Real> StickPair<T> {
+    /// Changes the reference so that no contact stores more than it can carry.
+    #[inline(always)]
+    fn map(&mut self, pos: &Positions<T>, loaded: &[LoadedContact<T>]) {
+        let mut limit = T::ZERO;
+        for contact in loaded {
+            let stiff = contact.stiffness.gt(T::ZERO);
+            let stores = contact.force / T::select(stiff, contact.stiffness, T::ONE);
+            limit = limit.max(T::select(stiff, stores, T::ZERO));
+        }
+        let too_far = T::new(MAX_ROTATION * MAX_ROTATION);
+        let rolls = self.rotation.norm_squared().gt(too_far);
+        let mut moves = rolls;
+        for contact in loaded {
+            moves |= contact.factor(limit).lt(T::ONE);
+            for drift in contact.drift {
+                moves |= !drift.eq(T::ZERO);
+            }
+        }
+        if !(moves & self.active).any() {
+            return;
+        }
+        let twist = fit(
+            loaded,
+            #[inline(always)]
+            |contact| {
+                let factor = contact.factor(limit);
+                let mut change = contact.displacement;
+                for (j, phi) in change.iter_mut().enumerate() {
+                    *phi = *phi * factor - T::select(rolls, T::ZERO, *phi);
+                    if let Some(&drift) = contact.drift.get(j) {
+                        *phi += drift;
+                    }
+                }
+                change
+            },
+        );
+        let start = RelativePose::select(rolls, present_pose(pos, self.bodies), self.reference);
+        let moved = start.displaced(pos, self.bodies[0], &twist);
+        self.reference = RelativePose::select(moves, moved, self.reference);
+    }
+}
+
+/// Returns the rigid motion that fits the displacements of loaded contacts best.
+#[inline(always)]
+fn fit<T: Real>(
+    loaded: &[LoadedContact<T>],
+    displacement: impl Fn(&LoadedContact<T>) -> [T; 5],
+) -> Twist<T> {
+    let mut weight = T::ZERO;
+    let mut sums = [Vec3::ZERO; 4];
+    for contact in loaded {
+        let [normal, t1, t2] = contact.frame.rows;
+        let phi = displacement(contact);
+        let slide = t1 * phi[0] + t2 * phi[1];
+        let roll = match contact.dim {
+            6 => t1 * phi[3] + t2 * phi[4],
+            _ => Vec3::ZERO,
+        };
+        weight += contact.force;
+        for (sum, x) in sums.iter_mut().zip([contact.point, normal, slide, roll]) {
+            *sum += x * contact.force;
+        }
+    }
+    let inverse = T::ONE / T::select(weight.gt(T::ZERO), weight, T::ONE);
+    let [centre, normal, translation, rolls] = sums.map(|sum| sum * inverse);
+    let (normal, _) = normal.normalize();
+    let (mut moment, mut squared) = (T::ZERO, T::ZERO);
+    for contact in loaded {
+        let [_, t1, t2] = contact.frame.rows;
+        let phi = displacement(contact);
+        let arm = contact.point - centre;
+        let arm = arm - normal * normal.dot(arm);
+        let slide = t1 * phi[0] + t2 * phi[1] - translation;
+        moment += contact.force * normal.dot(arm.cross(slide));
+        squared += contact.force * arm.norm_squared();
+        if contact.dim >= 4 {
+            moment += contact.force * contact.squared_arm * phi[2];
+            squared += contact.force * contact.squared_arm;
+        }
+    }
+    let determined = squared.gt(weight * T::new(MIN_SQUARED_ARM));
+    let spin = T::select(
+        determined,
+        moment / T::select(determined, squared, T::ONE),
+        T::ZERO,
+    );
+    Twist {
+        centre,
+        translation,
+        rotation: normal * spin + rolls,
+    }
+}
+
+impl<T: Real> RelativePose<T> {
+    /// Returns the reference whose displacements are larger by those of a twist, small in world axes.
+    #[inline(always)]
+    fn displaced(&self, pos: &Positions<T>, first: usize, twist: &Twist<T>) -> Self {
+        let frame = &pos.xmat[first];
+        let local = |v: Vec3<T>| frame.transpose_mul(v);
+        let back = Quat::from_rotation_vector(local(twist.rotation) * -T::ONE);
+        let centre = local(twist.centre - pos.xpos[first]);
+        RelativePose {
+            position: centre + back.rotate(self.position - centre) - local(twist.translation),
+            rotation: (back * self.rotation).normalize(),
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! Motions of whole models whose outcome mechanics predicts.
+
+mod heaps;
+mod sticking;
