@@ -18,6 +18,8 @@ pub struct SensorReadings<T> {
 
 impl<T: Real> SensorReadings<T> {
     /// Returns zero readings.
+    #[cold]
+    #[inline(never)]
     pub fn new(model: &Model) -> Self {
         SensorReadings {
             wanted: false,
@@ -49,6 +51,8 @@ pub struct BodyForces<T> {
 
 impl<T: Real> BodyForces<T> {
     /// Allocates the arrays if the model has sensors that read them; else they are empty.
+    #[cold]
+    #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let mut bodies = BodyForces::default();
         if model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {

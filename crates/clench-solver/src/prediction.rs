@@ -60,7 +60,7 @@ impl<T: Real> Prediction<T> {
         let count = self.blocks.len();
         self.dofs.clear();
         self.dofs.extend_from_slice(&iterate.gradient);
-        hessian.solve(&mut self.dofs);
+        self.solve(hessian);
         self.residual.clear();
         for (k, b) in self.blocks.iter().enumerate() {
             let growth = self.weights[k] * normal_product(problem, b, &self.dofs);
@@ -92,6 +92,12 @@ impl<T: Real> Prediction<T> {
         }
         (iterate.normal_forces).move_by(&self.blocks, &self.delta, &iterate.force, mask);
         mask
+    }
+
+    /// Computes `dofs ← H⁻¹ dofs`. Not inlined in its two callers: it is long.
+    #[inline(never)]
+    fn solve(&mut self, hessian: &mut Hessian<T>) {
+        hessian.solve(&mut self.dofs);
     }
 
     /// Lists the blocks with B and D; both are zero outside the lanes of `mask`. Returns the lanes in which one slides.
@@ -129,7 +135,7 @@ impl<T: Real> Prediction<T> {
         }
         self.dofs.fill(T::ZERO);
         (problem.jacobian).add_transposed_of(&self.blocks, &self.rows, &mut self.dofs);
-        hessian.solve(&mut self.dofs);
+        self.solve(hessian);
         self.directions.extend_from_slice(&self.residual);
         for (k, b) in self.blocks.iter().enumerate() {
             let product = self.weights[k] * normal_product(problem, b, &self.dofs);

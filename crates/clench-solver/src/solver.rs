@@ -42,6 +42,8 @@ impl<T: Real> Solver<T> {
         Self::with_kernels(tree, SolverKernels::of_this_crate())
     }
 
+    #[cold]
+    #[inline(never)]
     fn with_kernels(tree: &Tree, kernels: SolverKernels<T>) -> Self {
         let zeros = vec![T::ZERO; tree.nv()];
         Solver {

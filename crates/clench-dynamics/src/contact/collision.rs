@@ -92,6 +92,8 @@ pub struct Collision<T: Real> {
 
 impl<T: Real> Collision<T> {
     /// Prepares detection for a model.
+    #[cold]
+    #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let listed = listed_candidates(model);
         let broad_phase = listed

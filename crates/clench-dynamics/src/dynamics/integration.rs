@@ -56,6 +56,8 @@ impl<T: Real> Rates<T> {
 
 impl<T: Real> Integration<T> {
     /// Allocates memory for the integrators of a model.
+    #[cold]
+    #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let (full, coriolis) = match model.integrator {
             Integrator::Implicit => (TreeLu::zeros(&model.tree), Coriolis::new(model)),

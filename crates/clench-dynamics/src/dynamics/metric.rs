@@ -81,6 +81,8 @@ pub struct Metric<T: Real> {
 
 impl<T: Real> Metric<T> {
     /// Allocates memory for the metric of a model.
+    #[cold]
+    #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let acts = model.integrator == Integrator::Discrete;
         let numbers = if acts { model.nv } else { 0 };

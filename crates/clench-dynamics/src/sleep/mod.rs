@@ -55,6 +55,8 @@ pub struct Sleep<T: Real> {
 
 impl<T: Real> Sleep<T> {
     /// Creates the record with everything awake.
+    #[cold]
+    #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let enabled = model.may_sleep();
         let numbers = |of_model: usize| if enabled { of_model } else { 0 };

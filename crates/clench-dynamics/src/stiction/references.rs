@@ -27,6 +27,7 @@ impl<S: Scalar> Slots<&mut [S]> {
 
 impl<T: Real> StickPair<T> {
     /// Reads the reference from the pool, in the lanes where the pair touches and has one.
+    #[inline(never)]
     pub(super) fn read_reference(&mut self, pool: &[T]) {
         let slots = pool.len() / STICK_NUMBERS;
         let pool = T::as_scalars(pool);

@@ -142,14 +142,26 @@ impl<T: Real> LoadedContact<T> {
             T::ONE,
         )
     }
+
+    /// Replaces the displacements by their change, or in the lanes of `anew` by their new values.
+    #[inline(always)]
+    fn change(&mut self, limit: T, anew: T::Mask) {
+        let factor = self.factor(limit) - T::select(anew, T::ZERO, T::ONE);
+        for (j, phi) in self.displacement.iter_mut().enumerate() {
+            *phi *= factor;
+            if let Some(&drift) = self.drift.get(j) {
+                *phi += drift;
+            }
+        }
+    }
 }
 
 impl<T: Real> StickPair<T> {
     /// Changes the reference so that no contact stores more than it can carry.
     #[inline(always)]
-    fn map(&mut self, pos: &Positions<T>, loaded: &[LoadedContact<T>]) {
+    fn map(&mut self, pos: &Positions<T>, loaded: &mut [LoadedContact<T>]) {
         let mut limit = T::ZERO;
-        for contact in loaded {
+        for contact in &*loaded {
             let stiff = contact.stiffness.gt(T::ZERO);
             let stores = contact.force / T::select(stiff, contact.stiffness, T::ONE);
             limit = limit.max(T::select(stiff, stores, T::ZERO));
@@ -157,7 +169,7 @@ impl<T: Real> StickPair<T> {
         let too_far = T::new(MAX_ROTATION * MAX_ROTATION);
         let rolls = self.rotation.norm_squared().gt(too_far);
         let mut moves = rolls;
-        for contact in loaded {
+        for contact in &*loaded {
             moves |= contact.factor(limit).lt(T::ONE);
             for drift in contact.drift {
                 moves |= !drift.eq(T::ZERO);
@@ -166,21 +178,10 @@ impl<T: Real> StickPair<T> {
         if !(moves & self.active).any() {
             return;
         }
-        let twist = fit(
-            loaded,
-            #[inline(always)]
-            |contact| {
-                let factor = contact.factor(limit);
-                let mut change = contact.displacement;
-                for (j, phi) in change.iter_mut().enumerate() {
-                    *phi = *phi * factor - T::select(rolls, T::ZERO, *phi);
-                    if let Some(&drift) = contact.drift.get(j) {
-                        *phi += drift;
-                    }
-                }
-                change
-            },
-        );
+        for contact in &mut *loaded {
+            contact.change(limit, rolls);
+        }
+        let twist = fit(loaded);
         let start = RelativePose::select(rolls, present_pose(pos, self.bodies), self.reference);
         let moved = start.displaced(pos, self.bodies[0], &twist);
         self.reference = RelativePose::select(moves, moved, self.reference);
@@ -189,15 +190,12 @@ impl<T: Real> StickPair<T> {
 
 /// Returns the rigid motion that fits the displacements of loaded contacts best.
 #[inline(always)]
-fn fit<T: Real>(
-    loaded: &[LoadedContact<T>],
-    displacement: impl Fn(&LoadedContact<T>) -> [T; 5],
-) -> Twist<T> {
+fn fit<T: Real>(loaded: &[LoadedContact<T>]) -> Twist<T> {
     let mut weight = T::ZERO;
     let mut sums = [Vec3::ZERO; 4];
     for contact in loaded {
         let [normal, t1, t2] = contact.frame.rows;
-        let phi = displacement(contact);
+        let phi = &contact.displacement;
         let slide = t1 * phi[0] + t2 * phi[1];
         let roll = match contact.dim {
             6 => t1 * phi[3] + t2 * phi[4],
@@ -214,7 +212,7 @@ fn fit<T: Real>(
     let (mut moment, mut squared) = (T::ZERO, T::ZERO);
     for contact in loaded {
         let [_, t1, t2] = contact.frame.rows;
-        let phi = displacement(contact);
+        let phi = &contact.displacement;
         let arm = contact.point - centre;
         let arm = arm - normal * normal.dot(arm);
         let slide = t1 * phi[0] + t2 * phi[1] - translation;
@@ -239,12 +237,14 @@ fn fit<T: Real>(
 }
 
 impl<T: Real> RelativePose<T> {
-    /// Returns the reference whose displacements are larger by those of a twist, small in world axes.
+    /// Returns the reference whose displacements are larger by those of a twist. The quaternion of its small rotation is
+    /// exact to second order.
     #[inline(always)]
     fn displaced(&self, pos: &Positions<T>, first: usize, twist: &Twist<T>) -> Self {
         let frame = &pos.xmat[first];
         let local = |v: Vec3<T>| frame.transpose_mul(v);
-        let back = Quat::from_rotation_vector(local(twist.rotation) * -T::ONE);
+        let half = local(twist.rotation) * T::new(-0.5);
+        let back = Quat::new(T::ONE, half.x, half.y, half.z).normalize();
         let centre = local(twist.centre - pos.xpos[first]);
         RelativePose {
             position: centre + back.rotate(self.position - centre) - local(twist.translation),

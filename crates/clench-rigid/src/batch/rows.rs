@@ -41,6 +41,25 @@ impl<E: Copy> Rows<E> {
         })
     }
 
+    /// Does the same, but returns no rows and sets `error` if memory is insufficient, so that a struct of many tables
+    /// has one way out.
+    #[inline(never)]
+    pub(super) fn new_or(
+        (count, width): (usize, usize),
+        value: E,
+        error: &mut Option<SimError>,
+    ) -> Self {
+        Rows::new(count, width, value).unwrap_or_else(|failed| {
+            *error = Some(failed);
+            Rows {
+                buffer: Vec::new(),
+                start: 0,
+                count: 0,
+                width: 0,
+            }
+        })
+    }
+
     /// Creates `count` copies of `row`; `filler` may have any value.
     pub(crate) fn repeat(count: usize, row: &[E], filler: E) -> Result<Self, SimError> {
         let mut rows = Rows::new(count, row.len(), filler)?;

@@ -49,12 +49,26 @@ macro_rules! declare_rows {
                 try_reserve(count, Self::row_bytes(model))?;
                 let mut widths = FIELDS.iter().map(|field| field.numbers(model));
                 let mut width = || widths.next().unwrap_or(0);
-                Ok(StateRows {
-                    time: Rows::new(count, 1, 0.0)?,
-                    $($moving: Rows::new(count, width(), kind::$moving_kind::zero_cell::<S>())?,)*
-                    $($input: Rows::new(count, width(), kind::$input_kind::zero_cell::<S>())?,)*
-                    $($occasional: Rows::new(count, width(), kind::$occasional_kind::zero_cell::<S>())?,)*
-                })
+                let mut error = None;
+                let rows = StateRows {
+                    time: Rows::new_or((count, 1), 0.0, &mut error),
+                    $($moving: Rows::new_or(
+                        (count, width()),
+                        kind::$moving_kind::zero_cell::<S>(),
+                        &mut error,
+                    ),)*
+                    $($input: Rows::new_or(
+                        (count, width()),
+                        kind::$input_kind::zero_cell::<S>(),
+                        &mut error,
+                    ),)*
+                    $($occasional: Rows::new_or(
+                        (count, width()),
+                        kind::$occasional_kind::zero_cell::<S>(),
+                        &mut error,
+                    ),)*
+                };
+                error.map_or(Ok(rows), Err)
             }
 
             /// Returns the size of a state in bytes.
