@@ -19,8 +19,8 @@ __all__ = ["State"]
 
 # The version of the byte format; readers reject newer versions. Before version 2, times had the precision of all other
 # numbers; before version 3, there were no delays and no sleeping; before version 4, no constraints were added at run
-# time; before version 5, there were no plastic springs.
-_VERSION = 5
+# time; before version 5, there were no plastic springs; before version 6, nothing stuck.
+_VERSION = 6
 # The fields that were added in version 4, with the number of values per element.
 _SINCE_4 = {
     "dynamic_kind": (),
@@ -201,6 +201,9 @@ class State(_StateArrays):
                 arrays[name] = np.zeros((*arrays["qpos"].shape[:-1], 0, *width), dtype)
         if version < 5 and "qpos" in arrays:
             arrays["plastic"] = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
+        if version < 6 and "qpos" in arrays:
+            arrays["stick_references"] = np.zeros((*arrays["qpos"].shape[:-1], 0, 9), arrays["qpos"].dtype)
+            arrays["stick_friction"] = np.zeros((*arrays["qpos"].shape[:-1], 0), arrays["qpos"].dtype)
         try:
             return State(**arrays)
         except TypeError as error:

@@ -49,6 +49,7 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::StaleConstraint
         | SimError::CannotHold { .. }
         | SimError::NoHeightField { .. }
+        | SimError::FixedOption(_)
         | SimError::NoDiscreteInverse
         | SimError::Contact { .. } => PyValueError::new_err(text),
     }

@@ -188,7 +188,7 @@ def foreign() -> dict[str, bytes]:
         "a pickle": pickle.dumps([1, 2, 3]),
         "an archive": archive.getvalue(),
         "an array larger than memory": huge.getvalue(),
-        "later": repacked(data, version=np.int64(6)),
+        "later": repacked(data, version=np.int64(7)),
         "much later": repacked(data, version=np.float64(1e300)),
         "never": repacked(data, version=np.float64(np.nan)),
         "without version": repacked(data, version=None),
@@ -217,7 +217,7 @@ def test_bytes_of_something_else(name: str) -> None:
 
 
 def test_later_versions_say_so() -> None:
-    with pytest.raises(ValueError, match="version 6"):
+    with pytest.raises(ValueError, match="version 7"):
         clench.State.from_bytes(foreign()["later"])
 
 
@@ -252,6 +252,32 @@ def test_no_spring_yielded_before_the_fifth_version(kind: str) -> None:
     state = moving(kind).state
     old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(4), plastic=None))
     assert old == state and old.plastic.shape == (*state.qpos.shape[:-1], 0)
+
+
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_nothing_stuck_before_the_sixth_version(kind: str) -> None:
+    state = moving(kind).state
+    old = clench.State.from_bytes(repacked(state.to_bytes(), version=np.int64(5), stick_references=None, stick_friction=None))
+    assert old == state and old.stick_references.shape == (*state.qpos.shape[:-1], 0, 9)
+
+
+def test_what_sticks_is_part_of_the_state() -> None:
+    model = example("pinch")
+    options = clench.RigidOptions(stiction=True, max_stick_pairs=5)
+    sim, other = clench.Sim(model, options), clench.Sim(model, options)
+    sim.step(100)
+    assert sim.stick_references.shape == (5, 9) and (sim.stick_references[:, 0] > 0).sum() == 2
+    assert sim.stick_friction.shape == (model.nv + model.ntendon,)
+    other.state = clench.State.from_bytes(sim.state.to_bytes())
+    sim.step(100)
+    other.step(100)
+    assert sim.state == other.state
+    batch = clench.Batch(model, 3, options)
+    batch.step(200)
+    assert batch.stick_references.shape == (3, 5, 9)
+    assert (batch.stick_references == sim.stick_references).all() and (batch.qpos == sim.qpos).all()
+    with pytest.raises(ValueError, match="stiction can only be chosen"):
+        sim.options = clench.RigidOptions()
 
 
 @pytest.mark.parametrize("bad", [None, 3, "text", [1], pathlib.Path("state")])

@@ -6,7 +6,7 @@ use clench::math::{Force, Mat3, Quat, Vec3};
 use clench::rigid::contact::Contact;
 use clench::rigid::readout::{self, ConstraintRow};
 use clench::rigid::state::State;
-use clench::rigid::state::kind::{self, Kind};
+use clench::rigid::state::kind::{self, Kind, StickReference};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +47,18 @@ impl Written for kind::Wrench {
     type Json = [f64; 6];
     fn read([fx, fy, fz, tx, ty, tz]: [f64; 6]) -> Force<f64> {
         Force::new(Vec3::new(tx, ty, tz), Vec3::new(fx, fy, fz))
+    }
+}
+/// The geoms, each plus one, then position and orientation.
+impl Written for kind::Reference {
+    type Json = [f64; 9];
+    fn read([first, second, x, y, z, quat @ ..]: [f64; 9]) -> StickReference<f64> {
+        StickReference {
+            first,
+            second,
+            position: Vec3::new(x, y, z),
+            rotation: Quat::from_f64(quat),
+        }
     }
 }
 impl Written for kind::Truth {

@@ -78,6 +78,8 @@ fn cluster(model: &Model, geom: usize) -> usize {
 }
 
 impl<T: Real> DynamicBroadPhase<T> {
+    #[cold]
+    #[inline(never)]
     pub(super) fn new(model: &Model) -> Self {
         let roles = model.geoms.iter().zip(match_any(model));
         let roles = Vec::from_iter(roles.map(|(geom, meets)| match meets {

@@ -1,5 +1,6 @@
 //! The element types of the fields of a state: numbers, vectors, quaternions, wrenches, truth values.
 
+pub use crate::stiction::StickReference;
 use clench_math::{Force, Mask, Quat, Real, Scalar, Vec3};
 use std::array::from_mut;
 use std::fmt::Debug;
@@ -12,6 +13,8 @@ pub trait Kind {
     type Cell<S>;
     /// The number of cells of an element.
     const WIDTH: usize;
+    /// True for the elements of a list, whose first cell is not zero. Copies and checks stop at its end.
+    const LISTED: bool = false;
 
     /// Returns zero, or false.
     fn zero<T: Real>() -> Self::Of<T>;
@@ -137,7 +140,7 @@ impl Kind for Integer {
 
 /// Implements kinds of several numbers, by the order of their parts.
 macro_rules! compound {
-    ($($(#[$doc:meta])* $name:ident: $of:ident, $zero:expr, [$($($part:ident).+),*];)*) => {$(
+    ($($(#[$doc:meta])* $name:ident: $of:ident, $listed:literal, $zero:expr, [$($($part:ident).+),*];)*) => {$(
         $(#[$doc])*
         #[derive(Debug)]
         pub enum $name {}
@@ -146,6 +149,7 @@ macro_rules! compound {
             type Of<T: Real> = $of<T>;
             type Cell<S> = S;
             const WIDTH: usize = [$(stringify!($($part).+)),*].len();
+            const LISTED: bool = $listed;
 
             fn zero<T: Real>() -> $of<T> {
                 $zero
@@ -176,7 +180,11 @@ macro_rules! compound {
             #[inline(always)]
             fn numbers<T: Real>(elements: &[$of<T>], mut visit: impl FnMut(usize, &[T])) {
                 for (i, element) in elements.iter().enumerate() {
-                    visit(i * Self::WIDTH, &[$(element.$($part).+),*]);
+                    let numbers = [$(element.$($part).+),*];
+                    if Self::LISTED && numbers[0].eq(T::ZERO).all() {
+                        break;
+                    }
+                    visit(i * Self::WIDTH, &numbers);
                 }
             }
             #[inline(always)]
@@ -193,11 +201,14 @@ macro_rules! compound {
 }
 compound! {
     /// Three numbers.
-    Vector: Vec3, Vec3::ZERO, [x, y, z];
+    Vector: Vec3, false, Vec3::ZERO, [x, y, z];
     /// Four numbers, w first.
-    Quaternion: Quat, Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO), [w, x, y, z];
+    Quaternion: Quat, false, Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO), [w, x, y, z];
     /// A force and a torque, the force first.
-    Wrench: Force, Force::ZERO, [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
+    Wrench: Force, false, Force::ZERO, [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
+    /// A stick reference.
+    Reference: StickReference, true, StickReference::EMPTY,
+        [first, second, position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z];
 }
 
 /// A truth value per lane; a byte in rows. Any nonzero byte means true, because programs that write rows by address may

@@ -4,7 +4,6 @@ pub mod kind;
 mod table;
 
 use crate::model::{ControlInput, Joint, Keyframe, Model};
-use crate::stiction::STICK_NUMBERS;
 use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast, kernel};
 use kind::Kind;
 use std::ops::Range;
@@ -45,7 +44,7 @@ impl Size {
             Size::DynamicConstraints => "max_dynamic_constraints",
             Size::Trees => "ntree where trees may sleep, else 0",
             Size::AsleepPose => "nq + 7 nmocap where trees may sleep, else 0",
-            Size::StickReferences => "9 max_stick_pairs with the option stiction, else 0",
+            Size::StickReferences => "max_stick_pairs with the option stiction, else 0",
             Size::StickFriction => "nv + ntendon with the option stiction, else 0",
         }
     }
@@ -65,7 +64,7 @@ impl Size {
             Size::Trees => model.tree_asleep0.len(),
             Size::AsleepPose if model.may_sleep() => model.nq + 7 * model.nmocap,
             Size::AsleepPose => 0,
-            Size::StickReferences => STICK_NUMBERS * model.max_stick_pairs.unwrap_or(0),
+            Size::StickReferences => model.max_stick_pairs.unwrap_or(0),
             Size::StickFriction => match model.max_stick_pairs {
                 Some(_) => model.nv + model.tendons.len(),
                 None => 0,

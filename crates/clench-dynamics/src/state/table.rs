@@ -39,10 +39,10 @@ macro_rules! state_fields {
                 /// Positions of sleeping trees (nq), then position and orientation of each mocap body after the last
                 /// step. A tree that is elsewhere wakes. None without the flag ``sleep``.
                 pose_asleep set_pose_asleep: Number, AsleepPose, Finite;
-                /// Stick references of pairs of geoms (9 max_stick_pairs with the option ``stiction``, else none): both
+                /// Stick references of pairs of geoms (max_stick_pairs with the option ``stiction``, else none): both
                 /// geoms, each plus one (0 in empty slots, which follow the others), then position, m, and orientation
                 /// (unit quaternion, w first) of the second geom's body in the frame of the first one's.
-                stick_references set_stick_references: Number, StickReferences, Finite;
+                stick_references set_stick_references: Reference, StickReferences, Finite;
                 /// Displacements of dry friction from where it stuck: dofs, then tendons (nv + ntendon with the option
                 /// ``stiction``, else none), m or rad.
                 stick_friction set_stick_friction: Number, StickFriction, Finite;

@@ -27,9 +27,28 @@ use clench_math::{Quat, Real, Vec3};
 use return_mapping::LoadedContact;
 use std::ops::Range;
 
-/// The numbers of a stick reference in [`State::stick_references`](crate::State::stick_references): the geoms, each plus
-/// one, and the pose of the second geom's body in the frame of the first one's.
-pub const STICK_NUMBERS: usize = 9;
+/// A stick reference as it is stored in [`State::stick_references`](crate::State::stick_references).
+#[derive(Clone, Copy, Debug)]
+pub struct StickReference<T> {
+    /// The first geom, plus one; 0 in empty slots.
+    pub first: T,
+    /// The second geom, plus one.
+    pub second: T,
+    /// Position of the second geom's body in the frame of the first one's, m.
+    pub position: Vec3<T>,
+    /// Its orientation there.
+    pub rotation: Quat<T>,
+}
+
+impl<T: Real> StickReference<T> {
+    /// An empty slot.
+    pub const EMPTY: Self = StickReference {
+        first: T::ZERO,
+        second: T::ZERO,
+        position: Vec3::ZERO,
+        rotation: Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO),
+    };
+}
 
 /// The stick references of a step and the displacements from them.
 #[derive(Clone, Debug, Default)]
@@ -88,6 +107,11 @@ struct RelativePose<T> {
 }
 
 impl<T: Real> RelativePose<T> {
+    const IDENTITY: Self = RelativePose {
+        position: Vec3::ZERO,
+        rotation: Quat::IDENTITY,
+    };
+
     #[inline(always)]
     fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         RelativePose {

@@ -1,147 +1,121 @@
-//! The stick references of a state: a pool of pairs of geoms, separate for each lane.
-//!
-//! References occupy the first slots. The first number of an empty slot is 0.
+//! The stick references of a state: a list of pairs of geoms, separate for each lane.
 
-use super::{RelativePose, STICK_NUMBERS, StickPair, Stiction};
+use super::{RelativePose, StickPair, StickReference, Stiction};
 use crate::model::Model;
 use crate::sleep::Sleep;
-use clench_math::{Mask, Quat, Real, Scalar, Vec3};
+use crate::state::kind::{Kind, Reference};
+use clench_math::{Mask, Real, Scalar};
 
-/// The number that identifies a geom; 0 is none.
+/// Returns the number that identifies a geom; 0 is none.
 fn tag<S: Scalar>(geom: usize) -> S {
     S::new((geom + 1) as f64)
 }
 
-/// The numbers of a pool in one lane.
-struct Slots<P> {
-    pool: P,
-    lanes: usize,
-    lane: usize,
+/// Returns the tags of a reference in one lane.
+fn tags<T: Real>(reference: &StickReference<T>, lane: usize) -> [T::Scalar; 2] {
+    [reference.first.lane(lane), reference.second.lane(lane)]
 }
 
-impl<S: Scalar> Slots<&mut [S]> {
-    fn number(&mut self, slot: usize, number: usize) -> &mut S {
-        &mut self.pool[(slot * STICK_NUMBERS + number) * self.lanes + self.lane]
+/// Copies one lane of a reference.
+fn copy_lane<T: Real>(from: &StickReference<T>, to: &mut StickReference<T>, lane: usize) {
+    for part in 0..Reference::WIDTH {
+        Reference::set_cell::<T>(to, part, lane, Reference::cell::<T>(from, part, lane));
     }
 }
 
 impl<T: Real> StickPair<T> {
-    /// Reads the reference from the pool, in the lanes where the pair touches and has one.
+    /// Reads the reference from the list, in the lanes where the pair touches and has one.
     #[inline(never)]
-    pub(super) fn read_reference(&mut self, pool: &[T]) {
-        let slots = pool.len() / STICK_NUMBERS;
-        let pool = T::as_scalars(pool);
-        let tags = self.geoms.map(tag::<T::Scalar>);
+    pub(super) fn read_reference(&mut self, list: &[StickReference<T>]) {
+        let wanted = self.geoms.map(tag::<T::Scalar>);
+        let mut own = self.stored();
         for lane in (0..T::LANES).filter(|&lane| self.active.lane(lane)) {
-            let number = |slot: usize, i: usize| pool[(slot * STICK_NUMBERS + i) * T::LANES + lane];
-            for slot in 0..slots {
-                let found = [number(slot, 0), number(slot, 1)];
-                if found[0] == T::Scalar::ZERO {
-                    break;
-                }
-                if found == tags {
-                    self.reference.write(lane, |i| number(slot, 2 + i));
-                    break;
-                }
+            let mut listed = (list.iter()).take_while(|one| tags(one, lane)[0] != T::Scalar::ZERO);
+            if let Some(found) = listed.find(|one| tags(one, lane) == wanted) {
+                copy_lane(found, &mut own, lane);
             }
         }
-    }
-}
-
-impl<T: Real> RelativePose<T> {
-    pub(super) const IDENTITY: Self = RelativePose {
-        position: Vec3::ZERO,
-        rotation: Quat::IDENTITY,
-    };
-
-    fn parts(&mut self) -> [&mut T; 7] {
-        let RelativePose {
-            position: p,
-            rotation: q,
-        } = self;
-        [
-            &mut p.x, &mut p.y, &mut p.z, &mut q.w, &mut q.x, &mut q.y, &mut q.z,
-        ]
+        self.reference = RelativePose {
+            position: own.position,
+            rotation: own.rotation,
+        };
     }
 
-    fn write(&mut self, lane: usize, number: impl Fn(usize) -> T::Scalar) {
-        for (i, part) in self.parts().into_iter().enumerate() {
-            part.set_lane(lane, number(i));
+    /// Returns the reference as it is stored.
+    fn stored(&self) -> StickReference<T> {
+        let [first, second] = self.geoms.map(|geom| T::splat(tag(geom)));
+        StickReference {
+            first,
+            second,
+            position: self.reference.position,
+            rotation: self.reference.rotation,
         }
     }
 }
 
 impl<T: Real> Stiction<T> {
-    /// Replaces the pool by the references of the pairs that carry a load, and of those that sleep. Returns the lanes
-    /// in which the pool is too small.
-    pub(super) fn store(&mut self, model: &Model, sleep: &Sleep<T>, pool: &mut [T]) -> T::Mask {
-        let slots = pool.len() / STICK_NUMBERS;
+    /// Replaces the list by the references of the pairs that carry a load, and of those that sleep. Returns the lanes
+    /// in which the list is too short.
+    pub(super) fn store(
+        &self,
+        model: &Model,
+        sleep: &Sleep<T>,
+        list: &mut [StickReference<T>],
+    ) -> T::Mask {
         let mut overflow = T::Mask::splat(false);
-        for lane in 0..T::LANES {
-            let mut pool = Slots {
-                pool: T::as_scalars_mut(pool),
-                lanes: T::LANES,
-                lane,
-            };
-            let mut used = keep_sleeping::<T>(model, sleep, &mut pool, slots);
-            for pair in self.pairs.iter_mut() {
-                if !pair.active.lane(lane) {
-                    continue;
+        let mut used = keep_sleeping(model, sleep, list);
+        for pair in &self.pairs {
+            let stored = pair.stored();
+            for lane in (0..T::LANES).filter(|&lane| pair.active.lane(lane)) {
+                match list.get_mut(used[lane]) {
+                    Some(slot) => copy_lane(&stored, slot, lane),
+                    None => overflow.set_lane(lane, true),
                 }
-                if used == slots {
-                    overflow.set_lane(lane, true);
-                    break;
-                }
-                for (i, geom) in pair.geoms.into_iter().enumerate() {
-                    *pool.number(used, i) = tag(geom);
-                }
-                for (i, part) in pair.reference.parts().into_iter().enumerate() {
-                    *pool.number(used, 2 + i) = part.lane(lane);
-                }
-                used += 1;
+                used[lane] += 1;
             }
-            while used < slots && *pool.number(used, 0) != T::Scalar::ZERO {
-                for i in 0..STICK_NUMBERS {
-                    *pool.number(used, i) = T::Scalar::ZERO;
-                }
-                used += 1;
+        }
+        let empty = Reference::zero::<T>();
+        for (lane, used) in used.into_iter().enumerate().take(T::LANES) {
+            let rest = list.iter_mut().skip(used);
+            for slot in rest.take_while(|slot| tags(slot, lane)[0] != T::Scalar::ZERO) {
+                copy_lane(&empty, slot, lane);
             }
         }
         overflow
     }
 }
 
-/// Moves the references of pairs that sleep to the first slots. Returns their number.
+/// The maximum number of lanes of a number type.
+const MAX_LANES: usize = 16;
+
+/// Moves the references of pairs that sleep to the front. Returns their number in each lane.
 fn keep_sleeping<T: Real>(
     model: &Model,
     sleep: &Sleep<T>,
-    pool: &mut Slots<&mut [T::Scalar]>,
-    slots: usize,
-) -> usize {
+    list: &mut [StickReference<T>],
+) -> [usize; MAX_LANES] {
+    const { assert!(T::LANES <= MAX_LANES) };
+    let mut kept = [0; MAX_LANES];
     if !model.may_sleep() {
-        return 0;
+        return kept;
     }
-    let mut kept = 0;
-    for slot in 0..slots {
-        let tags = [*pool.number(slot, 0), *pool.number(slot, 1)];
-        if tags[0] == T::Scalar::ZERO {
-            break;
+    // Users may write any number.
+    let geom = |tag: T::Scalar| model.geoms.get((tag.to_f64() as usize).wrapping_sub(1));
+    for lane in 0..T::LANES {
+        for slot in 0..list.len() {
+            let reference = list[slot];
+            let [first, second] = tags(&reference, lane);
+            if first == T::Scalar::ZERO {
+                break;
+            }
+            let (Some(first), Some(second)) = (geom(first), geom(second)) else {
+                continue;
+            };
+            if !sleep.is_either_awake([first.body, second.body]).lane(lane) {
+                copy_lane(&reference, &mut list[kept[lane]], lane);
+                kept[lane] += 1;
+            }
         }
-        // Users may write any number.
-        let geom = |tag: T::Scalar| model.geoms.get((tag.to_f64() as usize).wrapping_sub(1));
-        let (Some(first), Some(second)) = (geom(tags[0]), geom(tags[1])) else {
-            continue;
-        };
-        if sleep
-            .is_either_awake([first.body, second.body])
-            .lane(pool.lane)
-        {
-            continue;
-        }
-        for i in 0..STICK_NUMBERS {
-            *pool.number(kept, i) = *pool.number(slot, i);
-        }
-        kept += 1;
     }
     kept
 }

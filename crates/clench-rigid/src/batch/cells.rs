@@ -79,6 +79,10 @@ impl<C: Shared> Cells<'_, C> {
         out: &mut [K::Of<T>],
     ) {
         for (element, cells) in out.iter_mut().zip(self.row(env).chunks_exact(K::WIDTH)) {
+            let is_zero = |cell: C| K::number::<T::Scalar>(cell) == T::Scalar::ZERO;
+            if K::LISTED && is_zero(C::load(&cells[0])) && is_zero(K::cell(element, 0, lane)) {
+                break;
+            }
             for (part, cell) in cells.iter().enumerate() {
                 K::set_cell(element, part, lane, C::load(cell));
             }
@@ -94,6 +98,10 @@ impl<C: Shared> Cells<'_, C> {
         elements: &[K::Of<T>],
     ) {
         for (element, cells) in elements.iter().zip(self.row(env).chunks_exact(K::WIDTH)) {
+            let is_zero = |cell: C| K::number::<T::Scalar>(cell) == T::Scalar::ZERO;
+            if K::LISTED && is_zero(C::load(&cells[0])) && is_zero(K::cell(element, 0, lane)) {
+                break;
+            }
             for (part, cell) in cells.iter().enumerate() {
                 C::store(cell, K::cell(element, part, lane));
             }
