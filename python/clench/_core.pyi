@@ -604,6 +604,8 @@ class RigidOptions:
         max_contacts: SupportsIndex | Literal["auto"] | None = None,
         friction_cone: Literal["pyramidal", "elliptic"] | None = None,
         contact_model: Literal["convex", "coulomb"] | None = None,
+        stiction: bool | np.bool_ | None = None,
+        max_stick_pairs: SupportsIndex | None = None,
         impratio: SupportsFloat | None = None,
         ccd_iterations: SupportsIndex | None = None,
         ccd_tolerance: SupportsFloat | None = None,
@@ -643,6 +645,10 @@ class RigidOptions:
     def friction_cone(self) -> Literal["pyramidal", "elliptic"] | None: ...
     @property
     def contact_model(self) -> Literal["convex", "coulomb"] | None: ...
+    @property
+    def stiction(self) -> bool | None: ...
+    @property
+    def max_stick_pairs(self) -> int | None: ...
     @property
     def impratio(self) -> float | None: ...
     @property
@@ -694,6 +700,14 @@ class StateViews:
     def pose_asleep(self) -> NDArray[Any]: ...  # (nq + 7 nmocap where trees may sleep, else 0,)
     @pose_asleep.setter
     def pose_asleep(self, values: ArrayLike) -> None: ...
+    @property
+    def stick_references(self) -> NDArray[Any]: ...  # (max_stick_pairs with the option stiction, else 0, 9)
+    @stick_references.setter
+    def stick_references(self, values: ArrayLike) -> None: ...
+    @property
+    def stick_friction(self) -> NDArray[Any]: ...  # (nv + ntendon with the option stiction, else 0,)
+    @stick_friction.setter
+    def stick_friction(self, values: ArrayLike) -> None: ...
     @property
     def ctrl(self) -> NDArray[Any]: ...  # (nu,)
     @ctrl.setter
@@ -760,6 +774,8 @@ class _StateArrays:
     qacc_warmstart: NDArray[Any]
     tree_asleep: NDArray[np.int32]
     pose_asleep: NDArray[Any]
+    stick_references: NDArray[Any]
+    stick_friction: NDArray[Any]
     ctrl: NDArray[Any]
     qfrc_applied: NDArray[Any]
     mocap_pos: NDArray[Any]

@@ -272,7 +272,7 @@ def test_what_sticks_is_part_of_the_state() -> None:
     sim.step(100)
     other.step(100)
     assert sim.state == other.state
-    batch = clench.Batch(model, 3, options)
+    batch = clench.Batch(model, 3, options=options)
     batch.step(200)
     assert batch.stick_references.shape == (3, 5, 9)
     assert (batch.stick_references == sim.stick_references).all() and (batch.qpos == sim.qpos).all()

@@ -33,7 +33,15 @@ def test_sections_of_stub_are_as_the_tables_in_rust() -> None:
 
 def test_shapes_of_the_state_are_true() -> None:
     sim = clench.Sim(puppet())
-    sizes = {"ntree where trees may sleep, else 0": 0, "nq + 7 nmocap where trees may sleep, else 0": 0}
+    sizes = dict.fromkeys(
+        (
+            "ntree where trees may sleep, else 0",
+            "nq + 7 nmocap where trees may sleep, else 0",
+            "max_stick_pairs with the option stiction, else 0",
+            "nv + ntendon with the option stiction, else 0",
+        ),
+        0,
+    )
     for name, _, shape, _ in clench._core._STATE_FIELDS:
         first, *width = shape.strip("()").rsplit(", ", 1) if shape[-2] != "," else [shape.strip("(),")]
         size = sizes[first] if first in sizes else getattr(sim.model, first)

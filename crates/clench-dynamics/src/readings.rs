@@ -18,7 +18,7 @@ pub struct SensorReadings<T> {
 
 impl<T: Real> SensorReadings<T> {
     /// Returns zero readings.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         SensorReadings {
@@ -51,7 +51,7 @@ pub struct BodyForces<T> {
 
 impl<T: Real> BodyForces<T> {
     /// Allocates the arrays if the model has sensors that read them; else they are empty.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let mut bodies = BodyForces::default();

@@ -69,7 +69,7 @@ pub struct Workspace<T: Real> {
 
 impl<T: Real> Workspace<T> {
     /// Allocates everything that the model needs.
-    #[cold]
+    #[cold] // Compiled for size.
     pub fn new(model: &Model) -> Self {
         let (nbody, nv, nout) = (model.nbody(), model.nv, model.nout());
         let zeros = |n: usize| filled(T::ZERO, n);

@@ -42,7 +42,7 @@ impl<T: Real> Solver<T> {
         Self::with_kernels(tree, SolverKernels::of_this_crate())
     }
 
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     fn with_kernels(tree: &Tree, kernels: SolverKernels<T>) -> Self {
         let zeros = vec![T::ZERO; tree.nv()];

@@ -41,7 +41,7 @@ pub(super) struct BodyPairs<T> {
 
 impl<T: Real> BodyPairs<T> {
     /// Groups a list in canonical order, in which candidates of the same bodies are consecutive.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub(super) fn new(model: &Model, candidates: &[Candidate]) -> Self {
         let mut geoms = Vec::from_iter(candidates.iter().flat_map(|c| c.geoms.map(|g| g as usize)));

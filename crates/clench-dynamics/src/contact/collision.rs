@@ -92,7 +92,7 @@ pub struct Collision<T: Real> {
 
 impl<T: Real> Collision<T> {
     /// Prepares detection for a model.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let listed = listed_candidates(model);

@@ -78,7 +78,7 @@ fn cluster(model: &Model, geom: usize) -> usize {
 }
 
 impl<T: Real> DynamicBroadPhase<T> {
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub(super) fn new(model: &Model) -> Self {
         let roles = model.geoms.iter().zip(match_any(model));

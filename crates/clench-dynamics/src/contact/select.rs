@@ -41,7 +41,7 @@ const MAX_LISTED_STATICS: usize = 128;
 const MAX_COUNTED_GEOMS: usize = 1 << 10;
 
 /// Returns all candidates of a model if comparing a list of them in each step is the fastest method.
-#[cold]
+#[cold] // Compiled for size.
 #[inline(never)]
 pub(super) fn listed_candidates(model: &Model) -> Option<Vec<Candidate>> {
     let stands = |geom: &Geom| model.bodies[model.bodies[geom.body].weld].dofs.is_empty();

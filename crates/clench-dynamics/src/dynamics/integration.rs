@@ -56,7 +56,7 @@ impl<T: Real> Rates<T> {
 
 impl<T: Real> Integration<T> {
     /// Allocates memory for the integrators of a model.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let (full, coriolis) = match model.integrator {

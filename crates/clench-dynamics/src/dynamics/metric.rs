@@ -81,7 +81,7 @@ pub struct Metric<T: Real> {
 
 impl<T: Real> Metric<T> {
     /// Allocates memory for the metric of a model.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let acts = model.integrator == Integrator::Discrete;

@@ -55,7 +55,7 @@ pub struct Sleep<T: Real> {
 
 impl<T: Real> Sleep<T> {
     /// Creates the record with everything awake.
-    #[cold]
+    #[cold] // Compiled for size.
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let enabled = model.may_sleep();

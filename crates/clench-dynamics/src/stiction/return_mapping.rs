@@ -6,9 +6,10 @@
 //! elliptic, Coulomb:  e = ‖ s φ_j / (R_j μ_j) ‖        pyramid:  e = Σ_j μ_j s |φ_j| / R        in units of normal force
 //! ```
 //!
-//! and the contact carries at most e = f_n. (At the limit, a pyramid has a single loaded edge, whose force is s μ_j φ_j / R.) With the stiffness κ of its first slide, f_n / κ is the displacement that it
-//! can store. The contacts of a pair store at most the largest of these, so that a pair sticks while any of its
-//! contacts does: those with less load slide at zero velocity, and the others carry what remains of the load.
+//! and the contact carries at most e = f_n. (At the limit, a pyramid has a single loaded edge, whose force is
+//! μ_j s φ_j / R.) With the stiffness κ of its first slide, f_n / κ is the displacement that it can store. The contacts
+//! of a pair store at most the largest of these, so that a pair sticks while any of its contacts does: those with less
+//! load slide at zero velocity, and the others carry what remains of the load.
 //!
 //! The reduced displacements φ' and the velocities of the surfaces themselves (`surfacevel`) change the reference by
 //! the rigid motion that fits φ' − φ best, weighted by normal forces. A reference that has rotated by more than

@@ -50,13 +50,16 @@ fn assert_close(sim: &Sim, found: &[f64], expected: &[f64], tolerance: f64, what
 
 #[test]
 fn inverse_dynamics_find_the_forces_that_forward_dynamics_were_given() {
-    for (cone, law) in [
-        (FrictionCone::Pyramidal, ContactModel::Convex),
-        (FrictionCone::Elliptic, ContactModel::Convex),
-        (FrictionCone::Elliptic, ContactModel::Coulomb),
+    for (cone, law, stiction) in [
+        (FrictionCone::Pyramidal, ContactModel::Convex, false),
+        (FrictionCone::Elliptic, ContactModel::Convex, true),
+        (FrictionCone::Elliptic, ContactModel::Coulomb, false),
     ] {
         for (seed, builder) in [everything(), humanoid()].iter().enumerate() {
-            let options = RigidOptions::new().friction_cone(cone).contact_model(law);
+            let options = RigidOptions::new()
+                .friction_cone(cone)
+                .contact_model(law)
+                .stiction(stiction);
             let mut sim = shaken(builder, options, seed as u64 + 2);
             // Both begin with a free joint. Lower them until they touch the floor.
             sim.forward().unwrap();
@@ -65,6 +68,11 @@ fn inverse_dynamics_find_the_forces_that_forward_dynamics_were_given() {
                 sim.forward().unwrap();
             }
             assert!(!sim.contacts().is_empty());
+            if stiction {
+                sim.step().unwrap();
+                sim.forward().unwrap();
+                assert!(sim.state.stick_references[0].first > 0.0);
+            }
             let qacc = sim.workspace().qacc.clone();
             let mut found = vec![f64::NAN; qacc.len()];
             (sim.inverse(&qacc, Acceleration::Continuous, &mut found)).unwrap();

@@ -382,11 +382,12 @@ fn enclosed_objects_are_saved_with_their_search_limits() {
 
 #[test]
 fn an_option_that_mujoco_lacks_comes_back() {
-    let text =
-        "<mujoco><custom><text name='clench.contact_model' data='coulomb'/></custom></mujoco>";
+    let text = "<mujoco><custom><text name='clench.contact_model' data='coulomb'/>
+        <text name='clench.stiction' data='true'/></custom></mujoco>";
     let model = load_str(text).unwrap();
     let again = saved("coulomb", &model);
     assert_eq!(again.options.contact_model, Some(ContactModel::Coulomb));
+    assert_eq!(again.options.stiction, Some(true));
     assert_eq!(again.options, model.options);
 }
 
