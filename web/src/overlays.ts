@@ -23,6 +23,11 @@ export interface Layers {
   inertia: boolean;
 }
 
+/** The number of numbers of a contact. */
+export const CONTACT = 22;
+/** The exaggeration of the displacement of a contact since it stuck: a tenth of a millimetre is shown as 3 cm. */
+const EXAGGERATION = 300;
+const STUCK = new THREE.Color(0x8a5cd6);
 /** The number of shown contacts if only the largest are. */
 export const LARGEST = 50;
 /** The number of contacts above which their marks become smaller and thinner, down to a limit. */
@@ -123,7 +128,7 @@ export class Overlays {
     const { scene, layers } = this;
     const marks = 3 * (scene.bodies.length + scene.joints.length);
     // A torque has two heads.
-    const arrows = 2 * contacts.count + 3 * pushes.count + marks + 3;
+    const arrows = 3 * contacts.count + 3 * pushes.count + marks + 3;
     this.discs.begin(contacts.count);
     this.cones.begin(contacts.count);
     this.shafts.begin(arrows);
@@ -150,7 +155,7 @@ export class Overlays {
   }
 
   private contacts(data: Float32Array, count: number, eye: THREE.Vector3): void {
-    let rows = Array.from({ length: count }, (_, row) => data.subarray(20 * row, 20 * row + 20));
+    let rows = Array.from({ length: count }, (_, row) => data.subarray(CONTACT * row, CONTACT * (row + 1)));
     const neighbours = this.neighbours(rows);
     if (this.layers.largest) rows = rows.sort((a, b) => b[12] - a[12]).slice(0, LARGEST);
     this.thin = Math.max(THINNEST, Math.min(1, Math.sqrt(CROWD / rows.length)));
@@ -206,6 +211,11 @@ export class Overlays {
     const radius = 0.018 * this.size * this.thin;
     if (this.layers.contacts) {
       this.discs.add(stretched(place, normal, radius, radius), pressure > 0 ? colour : new THREE.Color(0x9a9aa2), fade);
+    }
+    if (this.layers.contacts) {
+      // How far the body that is drawn on has moved along the other since it stuck.
+      const moved = first.clone().multiplyScalar(row[20]).addScaledVector(second, row[21]).multiplyScalar(EXAGGERATION);
+      this.arrow(place.clone().sub(moved), moved, STUCK, fade);
     }
     if (pressure > 0 && this.layers.forces) {
       this.arrow(place, normal.clone().multiplyScalar(pressure * this.forceScale), NORMAL, fade);

@@ -222,7 +222,7 @@ test("arrows are as long as contact forces are strong", { skip }, async () => {
     const { drawn, forces } = await page.evaluate(() => {
       const { stage, frame } = window.clench;
       const { data, count } = frame.rows.contacts;
-      const forces = Array.from({ length: count }, (_, row) => data[20 * row + 12]);
+      const forces = Array.from({ length: count }, (_, row) => data[22 * row + 12]);
       const length = ([from, to]: [number[], number[]]) => Math.hypot(...to.map((x, k) => x - from[k]));
       const drawn = stage.overlays.arrows().map((arrow) => length(arrow) / stage.overlays.forceScale);
       return { drawn, forces };
@@ -230,6 +230,26 @@ test("arrows are as long as contact forces are strong", { skip }, async () => {
     const strongest = Math.max(...forces);
     assert.ok(strongest > 0);
     assert.ok(Math.abs(Math.max(...drawn) / strongest - 1) < 1e-4, `${drawn} ${forces}`);
+    await page.close();
+  } finally {
+    await program.end();
+  }
+});
+
+test("a contact that sticks shows how far it has moved", { skip }, async () => {
+  const program = await view("models/pinch.xml", "--stiction");
+  try {
+    const page = await open(browser, program.url);
+    await until(page, () => {
+      const { frame, stage } = window.clench;
+      const { data, count, width } = frame.rows.contacts;
+      if (frame.time < 1 || count === 0) return false;
+      // The block hangs from its fingers by less than a millimetre.
+      const moved = Array.from({ length: count }, (_, row) => Math.hypot(data[width * row + 20], data[width * row + 21]));
+      const longest = 300 * Math.max(...moved);
+      const lengths = stage.overlays.arrows().map(([from, to]: number[][]) => Math.hypot(...to.map((x, k) => x - from[k])));
+      return longest > 1e-4 && longest < 0.3 && lengths.some((length: number) => Math.abs(length / longest - 1) < 1e-3);
+    });
     await page.close();
   } finally {
     await program.end();

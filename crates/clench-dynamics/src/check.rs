@@ -272,8 +272,13 @@ pub fn result_fault<S: Real, T: Real>(
     }
     let excess = ws.collision.excess.lane(lane).to_f64();
     if excess > 0.0 || ws.solver.stats().status(lane) == Status::TooLarge {
-        let (what, limit) = Excess::from_code(excess).describe(model);
-        return Fault::OverBudget { time, what, limit };
+        let (what, limit, remedy) = Excess::from_code(excess).describe(model);
+        return Fault::OverBudget {
+            time,
+            what,
+            limit,
+            remedy,
+        };
     }
     let mut found = None;
     let mut note = |field, first: Option<(usize, f64)>| {

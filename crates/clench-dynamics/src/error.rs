@@ -1,6 +1,5 @@
 //! The errors of a simulation.
 
-use crate::budget::RAISE;
 use crate::contact::UnsupportedPair;
 use crate::dynamics::discrete_limits::NotDiscrete;
 use crate::options::OptionError;
@@ -235,8 +234,8 @@ pub enum Fault {
         /// The maximum number of contacts.
         limit: usize,
     },
-    /// A quantity exceeds the model's [`Budget`](crate::Budget).
-    #[error("in the step from t = {time} s there are more than {limit} {what}; {RAISE}")]
+    /// A quantity exceeds the model's [`Budget`](crate::Budget), or the pairs that stick exceed their slots.
+    #[error("in the step from t = {time} s there are more than {limit} {what}; {remedy}")]
     OverBudget {
         /// Time of the last good state, s.
         time: f64,
@@ -244,6 +243,8 @@ pub enum Fault {
         what: &'static str,
         /// Its maximum.
         limit: u64,
+        /// The way to raise it.
+        remedy: &'static str,
     },
     /// A device terminated a step early, as Mesa's software device does after 65,535 iterations of loops.
     #[error(

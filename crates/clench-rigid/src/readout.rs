@@ -150,6 +150,9 @@ pub struct ContactRow {
     pub surfacevel: [f64; 3],
     /// Two slides, spin, two rolls.
     pub friction: [f64; 5],
+    /// The displacement since it stuck, with the option `stiction`: two slides along the tangents, m; spin and two
+    /// rolls, rad.
+    pub displacement: [f64; 5],
     /// See [`contact_force`].
     pub force: [f64; 6],
     /// The same force in world axes: force (N), torque about `pos` (N m).
@@ -174,6 +177,7 @@ pub fn contact_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<ContactRow> 
             adhesion: number(contact.adhesion),
             surfacevel: contact.surfacevel.map(number),
             friction: contact.friction.map(number),
+            displacement: ws.stiction.displacement(index).map(number),
             force,
             wrench: from_fn(|i| turned(&force[i / 3 * 3..], i % 3)),
         }

@@ -114,8 +114,8 @@ sections! {
     /// Position and orientation of each body.
     bodies: 7 => bodies(s.sim.workspace(), out);
     /// Contacts: position, normal and two tangents, force along these, distance, sliding friction, both geoms,
-    /// dimensions.
-    contacts: 20 => contact_rows(s.sim.workspace(), 0).iter().for_each(|row| contact(row, out));
+    /// dimensions, displacement along both tangents since it stuck.
+    contacts: 22 => contact_rows(s.sim.workspace(), 0).iter().for_each(|row| contact(row, out));
     /// Constraints except contacts: kind (0 equality, 1 joint limit, 2 tendon limit, 3 dry friction), element, norm of
     /// the force.
     constraints: 3 => constraints(s.sim.workspace(), out);
@@ -217,6 +217,7 @@ fn contact(row: &ContactRow, out: &mut Vec<f32>) {
         .map(|&x| x as f32);
     out.extend(numbers);
     out.extend([row.geoms[0] as f32, row.geoms[1] as f32, row.dim as f32]);
+    out.extend(row.displacement[..2].iter().map(|&x| x as f32));
 }
 
 /// Returns the kind of a constraint in a frame; `None` for contacts.

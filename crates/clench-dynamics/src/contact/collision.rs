@@ -9,9 +9,13 @@ use super::pair_finder::PairFinder;
 use super::select::listed_candidates;
 use super::separating_axes::SeparatingAxes;
 use crate::Budget;
+use crate::budget::RAISE;
 use crate::model::Model;
 use crate::options::MaxContacts;
 use clench_math::{Mask, Real};
+
+/// The advice in errors about pairs that stick.
+const RAISE_STICK_PAIRS: &str = "set the option max_stick_pairs";
 
 /// A quantity of a step that can exceed the model's budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,10 +45,10 @@ impl Excess {
         found.unwrap_or(Excess::Factor)
     }
 
-    /// Returns a description of the quantity and its limit.
-    pub fn describe(self, model: &Model) -> (&'static str, u64) {
+    /// Returns a description of the quantity, its limit, and the way to raise it.
+    pub fn describe(self, model: &Model) -> (&'static str, u64, &'static str) {
         let budget = &model.budget;
-        match self {
+        let (what, limit) = match self {
             Excess::Pairs => ("pairs of geoms whose bounds overlap", budget.pairs()),
             Excess::Contacts => ("contacts", budget.contacts),
             Excess::Jacobian => ("numbers in the Jacobian of the contacts", budget.matrix),
@@ -52,11 +56,12 @@ impl Excess {
                 "numbers in the factor of the Hessian of an island",
                 budget.matrix,
             ),
-            Excess::StickPairs => (
-                "pairs of geoms that stick (the option max_stick_pairs)",
-                model.max_stick_pairs.unwrap_or(0) as u64,
-            ),
-        }
+            Excess::StickPairs => {
+                let limit = model.max_stick_pairs.unwrap_or(0) as u64;
+                return ("pairs of geoms that stick", limit, RAISE_STICK_PAIRS);
+            }
+        };
+        (what, limit, RAISE)
     }
 }
 

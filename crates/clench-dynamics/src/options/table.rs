@@ -31,11 +31,11 @@ macro_rules! rigid_options {
                 /// and the option `friction_cone` has no effect.
                 contact_model: ContactModel = ContactModel::Convex, Any, Given("contact-model"),
                     Text("clench.contact_model");
-                /// Friction that sticks: contacts, dofs and tendons remember where they stuck, so that a steady load does
-                /// not make them creep; false. Chosen when a simulation is created.
+                /// Friction that sticks: contacts, dofs and tendons remember where they stuck, so that a steady load makes
+                /// nothing creep; false. Chosen when a simulation is created.
                 stiction: bool = false, Any, Sets("stiction", Truth(true)), Text("clench.stiction");
-                /// Maximum number of pairs of geoms that stick at a time, beyond which a step fails; 0, which chooses it
-                /// by the model. Chosen when a simulation is created.
+                /// Maximum number of pairs of geoms that stick at a time, beyond which a step fails; 0, which means one
+                /// that suits the model. Chosen when a simulation is created.
                 max_stick_pairs: usize = 0, Any, Given("max-stick-pairs"), Nowhere;
                 /// Ratio of friction to normal impedance in elliptic and Coulomb contacts; 1.
                 impratio: f64 = 1.0, Positive, Given("impratio"), Attribute("impratio");

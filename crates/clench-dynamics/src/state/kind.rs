@@ -1,6 +1,5 @@
 //! The element types of the fields of a state: numbers, vectors, quaternions, wrenches, truth values.
 
-pub use crate::stiction::StickReference;
 use clench_math::{Force, Mask, Quat, Real, Scalar, Vec3};
 use std::array::from_mut;
 use std::fmt::Debug;
@@ -209,6 +208,29 @@ compound! {
     /// A stick reference.
     Reference: StickReference, true, StickReference::EMPTY,
         [first, second, position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z];
+}
+
+/// A stick reference as it is stored in [`State::stick_references`](crate::State::stick_references).
+#[derive(Clone, Copy, Debug)]
+pub struct StickReference<T> {
+    /// The first geom, plus one; 0 in empty slots.
+    pub first: T,
+    /// The second geom, plus one.
+    pub second: T,
+    /// Position of the second geom's body in the frame of the first one's, m.
+    pub position: Vec3<T>,
+    /// Its orientation there.
+    pub rotation: Quat<T>,
+}
+
+impl<T: Real> StickReference<T> {
+    /// An empty slot.
+    pub const EMPTY: Self = StickReference {
+        first: T::ZERO,
+        second: T::ZERO,
+        position: Vec3::ZERO,
+        rotation: Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO),
+    };
 }
 
 /// A truth value per lane; a byte in rows. Any nonzero byte means true, because programs that write rows by address may

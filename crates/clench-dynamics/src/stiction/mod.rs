@@ -7,11 +7,12 @@
 //! aref = −b v − k d φ        at rest the displacement φ = R f / (k d) carries the load f
 //! ```
 //!
-//! φ is how far the material points of a contact have moved apart in the tangent plane since they stuck (`displacement`).
-//! The relative pose at that time is the *stick reference* of a pair of geoms, one for all its contacts, so that φ does
-//! not depend on which points detection returns. Dry friction of a dof or tendon has a displacement of its own
-//! (`friction`). After a solve, `return_mapping` drags a reference so far that no contact stores more than it can
-//! carry. All of these are state (`references`) and constant within a step, so the problem remains convex.
+//! φ is how far the material points of a contact have moved apart in the tangent plane since they stuck
+//! (`displacement`). The relative pose at that time is the *stick reference* of a pair of geoms, one for all its
+//! contacts, so that φ does not depend on which points detection returns. Dry friction of a dof or tendon has a
+//! displacement of its own (`friction`). After a solve, `return_mapping` drags a reference so far that no contact stores
+//! more than it can carry. All of these are state (`references`) and constant within a step, so the problem remains
+//! convex.
 //!
 //! `docs/contact.md` shows the effects, `docs/mathematics.md` derives steady state and stored energy.
 
@@ -23,32 +24,10 @@ mod return_mapping;
 pub(crate) use friction::advance_friction;
 pub(crate) use return_mapping::drag;
 
+use crate::state::kind::StickReference;
 use clench_math::{Quat, Real, Vec3};
 use return_mapping::LoadedContact;
 use std::ops::Range;
-
-/// A stick reference as it is stored in [`State::stick_references`](crate::State::stick_references).
-#[derive(Clone, Copy, Debug)]
-pub struct StickReference<T> {
-    /// The first geom, plus one; 0 in empty slots.
-    pub first: T,
-    /// The second geom, plus one.
-    pub second: T,
-    /// Position of the second geom's body in the frame of the first one's, m.
-    pub position: Vec3<T>,
-    /// Its orientation there.
-    pub rotation: Quat<T>,
-}
-
-impl<T: Real> StickReference<T> {
-    /// An empty slot.
-    pub const EMPTY: Self = StickReference {
-        first: T::ZERO,
-        second: T::ZERO,
-        position: Vec3::ZERO,
-        rotation: Quat::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO),
-    };
-}
 
 /// The stick references of a step and the displacements from them.
 #[derive(Clone, Debug, Default)]
@@ -71,10 +50,12 @@ impl<T: Real> Stiction<T> {
         self.slopes.clear();
     }
 
-    /// Returns the displacements of a contact of the workspace.
+    /// Returns the displacements of a contact of the workspace along its friction rows: two slides, m; spin and two
+    /// rolls, rad. Zero without the option `stiction`.
     #[inline(always)]
-    pub(crate) fn displacement(&self, contact: usize) -> [T; 5] {
-        self.displacements[contact]
+    pub fn displacement(&self, contact: usize) -> [T; 5] {
+        let found = self.displacements.get(contact);
+        found.copied().unwrap_or([T::ZERO; 5])
     }
 }
 

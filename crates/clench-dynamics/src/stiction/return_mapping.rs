@@ -238,7 +238,7 @@ fn fit<T: Real>(loaded: &[LoadedContact<T>]) -> Twist<T> {
 }
 
 impl<T: Real> RelativePose<T> {
-    /// Returns the reference whose displacements are larger by those of a twist. The quaternion of its small rotation is
+    /// Returns the reference whose displacements are larger by those of a twist. The quaternion of the small rotation is
     /// exact to second order.
     #[inline(always)]
     fn displaced(&self, pos: &Positions<T>, first: usize, twist: &Twist<T>) -> Self {

@@ -133,8 +133,8 @@ impl<S: Precision> Batch<S> {
     /// Replaces the options that override those of the model, for subsequent steps.
     ///
     /// # Errors
-    /// Returns an error if an option is out of range or belongs to the creation of the batch, or if a possible collision is
-    /// not supported. The options are then unchanged.
+    /// Returns an error if an option is out of range or belongs to the creation of the batch, or if a possible collision
+    /// is not supported. The options are then unchanged.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
         self.check_changeable("the options")?;
         let settings = StepSettings::supported::<S>(&self.model, options)?;
