@@ -1,4 +1,5 @@
 //! Motions of whole models whose outcome mechanics predicts.
 
 mod heaps;
+mod sliding;
 mod sticking;
