@@ -242,10 +242,10 @@ test("a contact that sticks shows how far it has moved", { skip }, async () => {
     const page = await open(browser, program.url);
     await until(page, () => {
       const { frame, stage } = window.clench;
-      const { data, count, width } = frame.rows.contacts;
+      const { data, count } = frame.rows.contacts;
       if (frame.time < 1 || count === 0) return false;
       // The block hangs from its fingers by less than a millimetre.
-      const moved = Array.from({ length: count }, (_, row) => Math.hypot(data[width * row + 20], data[width * row + 21]));
+      const moved = Array.from({ length: count }, (_, row) => Math.hypot(data[22 * row + 20], data[22 * row + 21]));
       const longest = 300 * Math.max(...moved);
       const lengths = stage.overlays.arrows().map(([from, to]: number[][]) => Math.hypot(...to.map((x, k) => x - from[k])));
       return longest > 1e-4 && longest < 0.3 && lengths.some((length: number) => Math.abs(length / longest - 1) < 1e-3);
