@@ -152,6 +152,15 @@ impl Hull {
     /// the direction.
     #[inline]
     pub fn support(&self, direction: Vec3<f64>) -> usize {
+        let [x, y, z] = direction.to_array();
+        self.furthest_along(x, y, z)
+    }
+
+    /// Returns [`support`](Self::support). The direction is passed in registers: a vector in memory is read in other
+    /// pieces than those written, which stalls the processor.
+    #[inline(never)]
+    fn furthest_along(&self, x: f64, y: f64, z: f64) -> usize {
+        let direction = Vec3::new(x, y, z);
         let candidates = self.sectors.candidates(direction);
         let (fours, rest) = candidates.as_chunks::<4>();
         // Selections instead of branches, which would be unpredictable.
