@@ -34,7 +34,7 @@ const FAR: f64 = 0.05;
 
 /// Returns the largest gap of overlapping cores, which is negative. The simplex must contain the origin, and becomes
 /// the face of the difference that the gap belongs to.
-pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, simplex: &mut Simplex<S>) -> Gap<S> {
+pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Gap<S>, simplex: &mut Simplex<S>) -> Gap<S> {
     let mut polytope = Polytope::empty(pair);
     match enclose(pair, simplex.vertices()) {
         Ok(vertices) => polytope.begin(&vertices),
@@ -108,11 +108,11 @@ fn furthest<S: Scalar>(
 /// Expands the polytope until the depth is known.
 fn expand<S: Scalar>(
     pair: &Pair<S>,
-    start: Vec3<S>,
+    start: Gap<S>,
     polytope: &mut Polytope<S>,
     simplex: &mut Simplex<S>,
 ) -> Gap<S> {
-    let mut best = pair.gap(start);
+    let mut best = start;
     let mut touching = polytope.corners(0);
     // True if Newton's method has refined the best direction.
     let mut refined = false;

@@ -16,7 +16,7 @@ use super::{
     refine::{ActiveEdges, refine},
     simplex::Simplex,
 };
-use clench_math::{Scalar, Vec3};
+use clench_math::Scalar;
 
 /// The maximum number of iterations. Five to ten are usual.
 const MAX_ITERATIONS: usize = 64;
@@ -45,15 +45,11 @@ pub(super) enum Cores<S> {
 /// bounds: if it contradicts them, another search starts from the best known direction, without Newton's method.
 pub(super) fn gjk<S: Scalar>(
     pair: &Pair<S>,
-    start: Vec3<S>,
+    start: Gap<S>,
     limit: S,
     simplex: &mut Simplex<S>,
 ) -> Cores<S> {
-    let mut best = Gap {
-        normal: start,
-        gap: start.dot(simplex.vertices()[0].w),
-        settled: false,
-    };
+    let mut best = start;
     let mut end = search(pair, limit, pair.curved, simplex, &mut best);
     let contradicted = match end {
         End::Beyond => false,

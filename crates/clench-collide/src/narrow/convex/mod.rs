@@ -92,18 +92,24 @@ pub(super) fn points<S: Scalar>(
     Ok(())
 }
 
-/// Returns a start direction and the vertex along it.
+/// Returns a start direction with its gap, and the vertex along it.
 #[inline(always)]
-fn begin<S: Scalar>(pair: &Pair<S>) -> (Vec3<S>, Simplex<S>) {
-    let start = pair.start();
-    (start, Simplex::new(pair.vertex(start)))
+fn begin<S: Scalar>(pair: &Pair<S>) -> (Gap<S>, Simplex<S>) {
+    let normal = pair.start();
+    let vertex = pair.vertex(normal);
+    let start = Gap {
+        normal,
+        gap: normal.dot(vertex.w),
+        settled: false,
+    };
+    (start, Simplex::new(vertex))
 }
 
 /// Returns the largest gap between two cores, or as an error a separating one if the bodies are more than `margin`
 /// apart. The simplex must be the vertex along `start` and becomes the vertices of the nearest points.
 fn nearest<S: Scalar>(
     pair: &Pair<S>,
-    start: Vec3<S>,
+    start: Gap<S>,
     margin: S,
     simplex: &mut Simplex<S>,
 ) -> Result<Gap<S>, Gap<S>> {

@@ -82,11 +82,13 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         }
     }
 
-    /// Returns the points of the patch that are at most `reach` apart; `simplex` yields the nearest points of the cores
-    /// if the features do not.
-    pub(super) fn points(&self, simplex: &Simplex<S>, reach: S) -> PatchPoints<S> {
-        let (polygon, mut found) = self.corners();
-        let lowest = deepest(&found, self.pair.tolerance);
+    /// Adds the points of the patch that are at most `reach` apart to `found`, which is empty; `simplex` yields the
+    /// nearest points of the cores if the features do not. The output is large, so it is not returned, which would copy
+    /// it.
+    pub(super) fn points(&self, simplex: &Simplex<S>, reach: S, found: &mut PatchPoints<S>) {
+        let mut polygon = Polygon::empty();
+        self.corners(&mut polygon, found);
+        let lowest = deepest(found, self.pair.tolerance);
         let lowest = match lowest.filter(|point| point.distance() <= self.gap + self.slack) {
             Some(lowest) => lowest,
             None => {
@@ -100,11 +102,10 @@ impl<'a, S: Scalar> Overlap<'a, S> {
             found.clear();
             found.push(lowest.at_distance(self.gap));
         } else if found.len() > PATCH_POINTS {
-            found = self.sample(&Outline::around(polygon.corners(), same), lowest);
+            *found = self.sample(&Outline::around(polygon.corners(), same), lowest);
         }
         found.retain(|point| point.distance() <= reach);
-        merge(&mut found, same);
-        found
+        merge(found, same);
     }
 
     /// Transforms a point of the projection to the first body's frame.
@@ -125,21 +126,19 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         }
     }
 
-    /// Returns the overlap, and the points at its corners.
-    fn corners(&self) -> (Polygon<S>, PatchPoints<S>) {
+    /// Computes the overlap, and the points at its corners.
+    fn corners(&self, polygon: &mut Polygon<S>, found: &mut PatchPoints<S>) {
         let [a, b] = &self.features;
-        let (mut polygon, mut found) = (Polygon::empty(), PatchPoints::new());
         // Rounding may miss an edge that touches the border of a face.
         for beyond in [S::ZERO, self.pair.tolerance, self.slack] {
             found.clear();
-            a.overlap(b, beyond, &mut polygon);
+            a.overlap(b, beyond, polygon);
             found.extend(polygon.corners().iter().map(|place| self.at(place)));
             let touches = |point: &PatchPoint<S>| point.distance() <= self.gap + self.slack;
             if found.iter().any(touches) {
                 break;
             }
         }
-        (polygon, found)
     }
 
     /// Returns the nearest points of the cores: the support points along the normal if they face each other, else those

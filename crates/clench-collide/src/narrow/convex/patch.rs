@@ -1,6 +1,6 @@
 //! The contact points: one where a corner or a curved body touches, else those of the overlap of two features.
 
-use super::overlap::Overlap;
+use super::overlap::{Overlap, PatchPoints};
 use super::pair::{Gap, Pair};
 use super::simplex::Simplex;
 use crate::narrow::per_lane::{Point, Points};
@@ -61,7 +61,9 @@ pub(super) fn patch<S: Scalar>(
         return add_one(middle);
     }
     let overlap = Overlap::new(pair, [&feature_a, &feature_b], n, best.gap);
-    for point in overlap.points(simplex, margin + radii.0 + radii.1) {
+    let mut found = PatchPoints::new();
+    overlap.points(simplex, margin + radii.0 + radii.1, &mut found);
+    for point in &found {
         let (from, to) = (point.heights.0 + radii.0, point.heights.1 - radii.1);
         let middle = Vec3::new(point.x, point.y, (from + to) * S::new(0.5));
         points.push(Point {
