@@ -181,8 +181,8 @@ impl TreeLists {
             self.dofs.push_front(tree.tree_of(dof) as u32, dof as u32);
         }
         self.blocks.clear(tree.ntree());
-        for k in (0..problem.nblock()).rev() {
-            if let Some(&dof) = problem.block(k).dofs.first() {
+        for (k, b) in problem.jacobian.blocks.iter().enumerate().rev() {
+            if let Some(&dof) = problem.jacobian.dofs(b).first() {
                 (self.blocks).push_front(tree.tree_of(dof as usize) as u32, k as u32);
             }
         }

@@ -67,25 +67,21 @@ impl Part {
 impl Pattern for Tree {
     #[inline(always)]
     fn each_part(&self, dofs: &[u32], mut act: impl FnMut(&Part)) {
-        for (row, &dof) in dofs.iter().enumerate() {
-            let start = self.row_start(dof as usize);
-            let whole = self.depth(dof as usize) == row;
-            let mut first = 0;
-            while first <= row {
-                let place = self.depth(dofs[first] as usize);
-                let follows = |&k: &usize| self.depth(dofs[k] as usize) == place + k - first;
-                let end = match whole {
-                    true => row + 1,
-                    false => (first..=row).take_while(follows).count() + first,
-                };
+        // Runs of dofs that are neighbours in their path, hence in every row that contains them.
+        let mut rest = 0..dofs.len();
+        while let Some(first) = rest.next() {
+            let place = self.depth(dofs[first] as usize);
+            let follows = |&k: &usize| self.depth(dofs[k] as usize) == place + k - first;
+            let end = first + 1 + rest.clone().take_while(follows).count();
+            rest.start = end;
+            for row in first..dofs.len() {
                 act(&Part {
                     rows: row..row + 1,
-                    columns: first..end,
+                    columns: first..end.min(row + 1),
                     triangle: false,
-                    place: start + place,
+                    place: self.row_start(dofs[row] as usize) + place,
                     stride: 0,
                 });
-                first = end;
             }
         }
     }

@@ -143,14 +143,15 @@ impl<T: Real> Partition<T> {
         self.couplings.clear();
         self.constrained.clear();
         self.constrained.resize(tree.ntree(), nowhere);
-        for block in problem.blocks() {
-            let lanes = (block.d.iter()).fold(nowhere, |lanes, d| lanes | d.gt(T::ZERO));
+        for b in &problem.jacobian.blocks {
+            let d = &problem.d[b.rows()];
+            let lanes = d.iter().fold(nowhere, |lanes, d| lanes | d.gt(T::ZERO));
             self.acting.push(lanes);
             if !lanes.any() {
                 continue;
             }
             self.members.clear();
-            for &dof in block.dofs {
+            for &dof in problem.jacobian.dofs(b) {
                 let one = tree.tree_of(dof as usize) as u32;
                 if self.members.contains(&one) {
                     continue;
