@@ -143,6 +143,10 @@ impl<T: Real> StoredRows<T> {
         });
         self.dofs.extend(dofs);
         let dofs = &mut self.dofs[dof..];
+        if dofs.is_sorted() {
+            self.values.extend(values.iter().map(|&j| number(j)));
+            return;
+        }
         // Two trees may have the opposite order here.
         let descends = |pair: &[u32]| pair[0] > pair[1];
         let first = dofs.windows(2).position(descends).map_or(0, |k| k + 1);

@@ -182,7 +182,9 @@ impl<T: Real> Problem<T> {
             dofs,
         );
         self.nactive += costs::active_len(cost, dim);
+        // A constant number of stores first: a resize that grows by an unknown number calls the system's library.
         for pool in [&mut self.aref, &mut self.r, &mut self.d, &mut self.shape] {
+            pool.extend_from_slice(&[T::ZERO; MAX_DIM]);
             pool.resize(row + dim, T::ZERO);
         }
         self.last_block_mut()
