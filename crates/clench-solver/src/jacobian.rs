@@ -159,8 +159,11 @@ impl<T: Real> StoredRows<T> {
             .zip(rows)
         {
             let (before, after) = row.split_at(first);
-            for (to, &j) in to.iter_mut().zip(after.iter().chain(before)) {
-                *to = number(j);
+            let (start, end) = to.split_at_mut(after.len());
+            for (to, from) in [(start, after), (end, before)] {
+                for (to, &j) in to.iter_mut().zip(from) {
+                    *to = number(j);
+                }
             }
         }
         if !ascend {

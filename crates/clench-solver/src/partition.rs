@@ -153,7 +153,8 @@ impl<T: Real> Partition<T> {
             self.members.clear();
             for &dof in problem.jacobian.dofs(b) {
                 let one = tree.tree_of(dof as usize) as u32;
-                if self.members.contains(&one) {
+                // Most dofs are in the tree of the dof before.
+                if self.members.last() == Some(&one) || self.members.contains(&one) {
                     continue;
                 }
                 self.constrained[one as usize] |= lanes;
