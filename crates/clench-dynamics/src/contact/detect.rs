@@ -134,7 +134,7 @@ fn find_points<T: Real>(
     collision: &mut Collision<T>,
 ) {
     let (near, candidates, axes) = (&collision.near, &collision.candidates, &mut collision.axes);
-    axes.reserve(near.len());
+    axes.begin(near.len());
     let limit = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);
     let count = limit.unwrap_or(1).min(near.len() / MIN_PAIRS).max(1);
     let finders = &mut collision.finders;

@@ -7,7 +7,7 @@
 use clench_collide::SeparatingAxis;
 use clench_math::Real;
 
-/// The number of pairs in a bucket; a further one evicts another.
+/// The number of pairs in a bucket; a further one evicts the one that was checked least recently.
 const WAYS: usize = 4;
 /// The number of entries per near pair.
 const ENTRIES_PER_PAIR: usize = 4;
@@ -16,19 +16,32 @@ const ENTRIES_PER_PAIR: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeparatingAxes<T> {
     buckets: Vec<[Entry<T>; WAYS]>,
+    /// The number of the current check of pairs.
+    check: u32,
 }
 
 /// A pair of geoms and its axis.
-type Entry<T> = ([u32; 2], SeparatingAxis<T>);
+#[derive(Clone, Copy, Debug)]
+struct Entry<T> {
+    geoms: [u32; 2],
+    /// The number of the last check that used it.
+    used: u32,
+    axis: SeparatingAxis<T>,
+}
 
 impl<T: Real> SeparatingAxes<T> {
-    /// Reserves capacity for `pairs`. If the table grows, all axes are cleared.
-    pub(super) fn reserve(&mut self, pairs: usize) {
+    /// Starts a check of `pairs` and reserves capacity for them. If the table grows, all axes are cleared.
+    pub(super) fn begin(&mut self, pairs: usize) {
+        self.check = self.check.wrapping_add(1);
         let wanted = (pairs * ENTRIES_PER_PAIR)
             .div_ceil(WAYS)
             .next_power_of_two();
         if self.buckets.len() < wanted {
-            let none = ([u32::MAX; 2], SeparatingAxis::default());
+            let none = Entry {
+                geoms: [u32::MAX; 2],
+                used: self.check.wrapping_sub(1),
+                axis: SeparatingAxis::default(),
+            };
             self.buckets.clear();
             self.buckets.resize(wanted, [none; WAYS]);
         }
@@ -40,19 +53,22 @@ impl<T: Real> SeparatingAxes<T> {
         let mixed = geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B);
         let mixed = mixed ^ (mixed >> 15);
         let bucket = mixed as usize & (self.buckets.len() - 1);
-        let places = &mut self.buckets[bucket];
-        let known = places.iter().position(|(owner, _)| *owner == geoms);
-        let way = known.unwrap_or((mixed >> 24) as usize % WAYS);
-        let (owner, axis) = &mut places[way];
-        if known.is_none() {
-            (*owner, *axis) = (geoms, SeparatingAxis::default());
-        }
+        let (places, check) = (&mut self.buckets[bucket], self.check);
+        let known = places.iter().position(|entry| entry.geoms == geoms);
+        let way = known.unwrap_or_else(|| {
+            let age = |way: &usize| check.wrapping_sub(places[*way].used);
+            let oldest = (0..WAYS).max_by_key(age).unwrap_or(0);
+            places[oldest].geoms = geoms;
+            places[oldest].axis = SeparatingAxis::default();
+            oldest
+        });
+        places[way].used = check;
         bucket * WAYS + way
     }
 
     /// Returns the axis at an index.
     #[inline(always)]
     pub(super) fn at(&mut self, index: usize) -> &mut SeparatingAxis<T> {
-        &mut self.buckets[index / WAYS][index % WAYS].1
+        &mut self.buckets[index / WAYS][index % WAYS].axis
     }
 }
