@@ -1,5 +1,6 @@
 //! Finds the contacts of a configuration: bounding spheres, then the narrow phase, in slots that all lanes share.
 
+use super::bounding_box::{boxes_may_touch, pays};
 use super::bounding_sphere::{self, may_touch};
 use super::collision::{Collision, Excess};
 use super::pair_finder::PairFinder;
@@ -68,14 +69,14 @@ pub fn detect<T: Real>(
         let too_many = broad_phase.find(model, &mut collision.candidates);
         collision.record_excess(too_many, Excess::Pairs);
         let all = 0..collision.candidates.len();
-        find_near(params, pos, &awake, all, collision);
+        find_near(params, pos, &awake, all, false, collision);
     } else {
         let body_pairs = &mut collision.body_pairs;
         bounding_sphere::update(model, params, pos, body_pairs.geoms(), spheres);
         body_pairs.update(spheres);
         for run in 0..body_pairs.len() {
             if let Some(candidates) = collision.body_pairs.near(run) {
-                find_near(params, pos, &awake, candidates, collision);
+                find_near(params, pos, &awake, candidates, true, collision);
             }
         }
     }
@@ -101,13 +102,15 @@ pub fn detect<T: Real>(
     ws.clock.lap(Stage::NarrowPhase as usize);
 }
 
-/// Appends the candidates that may touch in any lane to the near pairs.
+/// Appends the candidates that may touch in any lane to the near pairs. With `boxes` their boxes are compared, unless
+/// that has been done.
 #[inline(always)]
 fn find_near<T: Real>(
     params: &Params<T>,
     pos: &Positions<T>,
     awake: &Awake<T>,
     candidates: Range<usize>,
+    boxes: bool,
     collision: &mut Collision<T>,
 ) {
     for index in candidates {
@@ -117,8 +120,11 @@ fn find_near<T: Real>(
             continue;
         }
         let range = || contact_range(awake.model, params, candidate).1;
-        let near = may_touch(candidate, &collision.spheres, pos, range);
-        if (awake_in & near).any() {
+        let mut near = awake_in & may_touch(candidate, &collision.spheres, pos, range);
+        if near.any() && boxes && pays(candidate) {
+            near &= boxes_may_touch(awake.model, params, pos, candidate, range());
+        }
+        if near.any() {
             collision.near.push(index as u32);
         }
     }

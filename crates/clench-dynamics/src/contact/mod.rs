@@ -2,6 +2,7 @@
 //! turns contacts into constraints.
 
 mod body_pairs;
+mod bounding_box;
 mod bounding_sphere;
 pub(crate) mod collision;
 mod detect;
