@@ -4,10 +4,15 @@ use crate::Model;
 use crate::contact::check_supported;
 use crate::dynamics::discrete_limits::check_discrete;
 use crate::error::SimError;
-use crate::model::Flags;
+use crate::model::{Flags, Geom};
 use crate::options::{ContactModel, FrictionCone, MaxContacts, OptionError, RigidOptions};
 use clench_math::Real;
 use clench_solver::{Settings, Switch};
+use std::sync::Arc;
+
+/// The stick references that a state has room for by default: some, and more for each geom that moves.
+const MIN_STICK_PAIRS: usize = 16;
+const STICK_PAIRS_PER_GEOM: usize = 3;
 
 macro_rules! declare_settings {
     (
@@ -84,5 +89,41 @@ impl StepSettings {
             check_supported(model)?;
         }
         Ok(settings)
+    }
+
+    /// Returns the model with the slots for stick references that the settings ask for.
+    #[must_use]
+    pub fn adapt(&self, model: Arc<Model>) -> Arc<Model> {
+        let wanted = self.stick_pairs(&model);
+        if model.max_stick_pairs == wanted {
+            return model;
+        }
+        let mut model = Arc::unwrap_or_clone(model);
+        model.max_stick_pairs = wanted;
+        Arc::new(model)
+    }
+
+    /// Checks that the model has the slots for stick references that the settings ask for.
+    ///
+    /// # Errors
+    /// Returns an error if it does not.
+    pub fn check_stick_references(&self, model: &Model) -> Result<(), SimError> {
+        match self.stick_pairs(model) == model.max_stick_pairs {
+            true => Ok(()),
+            false if self.stiction == model.max_stick_pairs.is_some() => {
+                Err(SimError::FixedOption("max_stick_pairs"))
+            }
+            false => Err(SimError::FixedOption("stiction")),
+        }
+    }
+
+    /// Returns the number of slots for stick references that the settings ask for.
+    fn stick_pairs(&self, model: &Model) -> Option<usize> {
+        let collides = |geom: &&Geom| geom.contype != 0 || geom.conaffinity != 0;
+        let moves = |geom: &&Geom| collides(geom) && !model.is_fixed(geom.body);
+        self.stiction.then(|| match self.max_stick_pairs {
+            0 => MIN_STICK_PAIRS + STICK_PAIRS_PER_GEOM * model.geoms.iter().filter(moves).count(),
+            given => given,
+        })
     }
 }

@@ -81,7 +81,7 @@ impl<T: Precision> Sim<T> {
             return Err(SimError::Instructions(T::ALONE));
         }
         let settings = StepSettings::supported::<T>(&model, options)?;
-        let model = model.with_stick_references(&settings);
+        let model = settings.adapt(model);
         let initial = State::new(&model);
         Ok(Sim {
             state: initial.clone(),

@@ -33,17 +33,11 @@ pub use structure::{
 };
 
 use crate::Budget;
-use crate::error::SimError;
 use crate::options::RigidOptions;
-use crate::settings::StepSettings;
 use clench_solver::Tree;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// The stick references that a state has room for by default: some, and more for each geom that moves.
-const MIN_STICK_PAIRS: usize = 16;
-const STICK_PAIRS_PER_GEOM: usize = 3;
 
 /// A model: immutable while stepping, shared by `Arc` between simulations.
 ///
@@ -79,7 +73,7 @@ pub struct Model {
     /// Maximum number of constraints added at run time: the slots of every state.
     pub max_dynamic_constraints: usize,
     /// Maximum number of pairs of geoms with a stick reference: the slots of every state. `None` without the option
-    /// `stiction`. Simulations and batches set it, see [`with_stick_references`](Self::with_stick_references).
+    /// `stiction`. Simulations and batches set it, see [`StepSettings::adapt`](crate::StepSettings::adapt).
     pub max_stick_pairs: Option<usize>,
     /// Explicit geom pairs.
     pub pairs: Vec<Pair>,
@@ -153,39 +147,6 @@ impl Model {
             [ref first, .., ref last] => first.joints.start..last.joints.end,
             [ref only] => only.joints.clone(),
             [] => 0..0,
-        }
-    }
-    /// Returns the model with the slots for stick references that the settings ask for.
-    #[must_use]
-    pub fn with_stick_references(self: Arc<Self>, settings: &StepSettings) -> Arc<Self> {
-        let wanted = self.stick_pairs(settings);
-        if self.max_stick_pairs == wanted {
-            return self;
-        }
-        let mut model = Arc::unwrap_or_clone(self);
-        model.max_stick_pairs = wanted;
-        Arc::new(model)
-    }
-    /// Returns the number of slots for stick references that the settings ask for.
-    fn stick_pairs(&self, settings: &StepSettings) -> Option<usize> {
-        let collides = |geom: &&Geom| geom.contype != 0 || geom.conaffinity != 0;
-        let moves = |geom: &&Geom| collides(geom) && !self.is_fixed(geom.body);
-        settings.stiction.then(|| match settings.max_stick_pairs {
-            0 => MIN_STICK_PAIRS + STICK_PAIRS_PER_GEOM * self.geoms.iter().filter(moves).count(),
-            given => given,
-        })
-    }
-    /// Checks that the settings ask for the slots for stick references that the model has.
-    ///
-    /// # Errors
-    /// Returns an error if they do not.
-    pub fn check_stick_references(&self, settings: &StepSettings) -> Result<(), SimError> {
-        match self.stick_pairs(settings) == self.max_stick_pairs {
-            true => Ok(()),
-            false if settings.stiction == self.max_stick_pairs.is_some() => {
-                Err(SimError::FixedOption("max_stick_pairs"))
-            }
-            false => Err(SimError::FixedOption("stiction")),
         }
     }
     /// Returns true if any tree can sleep.

@@ -31,8 +31,8 @@ macro_rules! rigid_options {
                 /// and the option `friction_cone` has no effect.
                 contact_model: ContactModel = ContactModel::Convex, Any, Given("contact-model"),
                     Text("clench.contact_model");
-                /// Friction that sticks: contacts, dofs and tendons remember where they stuck, so that a steady load makes
-                /// nothing creep; false. Chosen when a simulation is created.
+                /// Friction that sticks: contacts, dofs and tendons remember where they stuck, so that nothing creeps
+                /// under a steady load; false. Chosen when a simulation is created.
                 stiction: bool = false, Any, Sets("stiction", Truth(true)), Text("clench.stiction");
                 /// Maximum number of pairs of geoms that stick at a time, beyond which a step fails; 0, which means one
                 /// that suits the model. Chosen when a simulation is created.

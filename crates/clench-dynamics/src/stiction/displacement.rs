@@ -7,7 +7,7 @@
 //! slides:  φ_i = t_i · (p − X⁰ X⁻¹ p)        spin, rolls:  φ = n · θ, t_i · θ,   exp(θ) = R R⁰ᵀ
 //! ```
 
-use super::{RelativePose, StickPair, Stiction};
+use super::pairs::{RelativePose, StickPair, Stiction};
 use crate::contact::Contact;
 use crate::model::Model;
 use crate::stages::Positions;

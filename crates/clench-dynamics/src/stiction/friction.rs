@@ -3,7 +3,7 @@
 //! A row of loss η carries at most the displacement η R / (k d). After a solve its displacement is limited to that, and
 //! then follows the motion of the dof or tendon in the step, by the gradient at its start.
 
-use super::Stiction;
+use super::pairs::Stiction;
 use crate::constraint::ConstraintSource;
 use crate::dynamics::plastic::Lengths;
 use crate::model::{Model, Params};

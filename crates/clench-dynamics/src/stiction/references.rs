@@ -1,8 +1,9 @@
 //! The stick references of a state: a list of pairs of geoms, separate for each lane.
 
-use super::{RelativePose, StickPair, StickReference, Stiction};
+use super::pairs::{RelativePose, StickPair, Stiction};
 use crate::model::Model;
 use crate::sleep::Sleep;
+use crate::state::kind::StickReference;
 use crate::state::kind::{Kind, Reference};
 use clench_math::{Mask, Real, Scalar};
 

@@ -17,38 +17,19 @@
 //! point, but over a finite angle, slides computed from poses differ from zero by R θ³ / 6.
 
 use super::displacement::present_pose;
-use super::{RelativePose, StickPair, Stiction};
+use super::pairs::{LoadedContact, RelativePose, StickPair, Stiction};
 use crate::contact::collision::Excess;
 use crate::model::{Model, Params};
 use crate::stages::Positions;
 use crate::state::State;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Mat3, Quat, Real, Vec3, kernel};
+use clench_math::{Mask, Quat, Real, Vec3, kernel};
 use clench_solver::Cost;
 
 /// The rotation from which a reference is replaced, rad.
 const MAX_ROTATION: f64 = 0.01;
 /// The minimum of squared lengths that determine a rotation, m².
 const MIN_SQUARED_ARM: f64 = 1e-12;
-
-/// A contact that carries a load in some lanes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LoadedContact<T> {
-    /// The normal force, N; zero in the other lanes.
-    force: T,
-    /// e, N.
-    demand: T,
-    /// κ, N/m.
-    stiffness: T,
-    displacement: [T; 5],
-    dim: usize,
-    point: Vec3<T>,
-    frame: Mat3<T>,
-    /// The squared ratio of spin to slide friction, m².
-    squared_arm: T,
-    /// The displacement of the surfaces themselves in a step.
-    drift: [T; 3],
-}
 
 /// A rigid motion: displacement at a centre, and rotation, in world axes.
 struct Twist<T> {
@@ -238,8 +219,8 @@ fn fit<T: Real>(loaded: &[LoadedContact<T>]) -> Twist<T> {
 }
 
 impl<T: Real> RelativePose<T> {
-    /// Returns the reference whose displacements are larger by those of a twist. The quaternion of the small rotation is
-    /// exact to second order.
+    /// Returns the reference whose displacements are larger by those of a twist. The quaternion of the rotation, which
+    /// is small, is exact to second order.
     #[inline(always)]
     fn displaced(&self, pos: &Positions<T>, first: usize, twist: &Twist<T>) -> Self {
         let frame = &pos.xmat[first];

@@ -143,7 +143,7 @@ impl<S: Precision> Batch<S> {
         options: BatchOptions,
     ) -> Result<Self, SimError> {
         let settings = StepSettings::supported::<S>(&model, options.options)?;
-        let model = model.with_stick_references(&settings);
+        let model = settings.adapt(model);
         if u32::try_from(count).is_err() {
             return Err(SimError::OutOfRange {
                 field: "number of environments",

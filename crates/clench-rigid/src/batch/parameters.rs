@@ -133,12 +133,12 @@ impl<S: Precision> Batch<S> {
     /// Replaces the options that override those of the model, for subsequent steps.
     ///
     /// # Errors
-    /// Returns an error if an option is out of range or belongs to the creation of the batch, or if a possible collision
-    /// is not supported. The options are then unchanged.
+    /// Returns an error if an option is out of range or belongs to the creation of the batch, or if a collision that is
+    /// possible is not supported. The options are then unchanged.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
         self.check_changeable("the options")?;
         let settings = StepSettings::supported::<S>(&self.model, options)?;
-        self.model.check_stick_references(&settings)?;
+        settings.check_stick_references(&self.model)?;
         self.settings = settings;
         self.options.options = options;
         if let Some(recorded) = &mut self.recorded {

@@ -86,7 +86,7 @@ impl<T: Precision> Sim<T> {
     /// collision is not supported. The options are then unchanged.
     pub fn set_options(&mut self, options: RigidOptions) -> Result<(), SimError> {
         let settings = StepSettings::supported::<T>(&self.model, options)?;
-        self.model.check_stick_references(&settings)?;
+        settings.check_stick_references(&self.model)?;
         self.settings = settings;
         self.options = options;
         self.invalidate();
