@@ -12,6 +12,9 @@ use clench_math::{Mat3, Scalar, Vec3};
 /// The angle below which edges are parallel; others cross.
 const PARALLEL: f64 = 1e-3;
 
+/// The distance beyond an end of an edge, relative to its length, at which a crossing is still on the edge.
+const BEYOND_END: f64 = 1e-5;
+
 /// A projected edge or face: x and y across the normal, z along it.
 pub(super) struct ProjectedFeature<S> {
     corners: ArrayVec<Vec3<S>, MAX_CORNERS>,
@@ -216,11 +219,21 @@ fn parallel<S: Scalar>(u: Vec3<S>, v: Vec3<S>) -> bool {
     cross_2d(u, v).squared() <= lengths * S::new(PARALLEL * PARALLEL)
 }
 
-/// Returns the crossing of two segments in the projection, or the nearest approximation.
+/// Returns the crossing of two segments in the projection, or the middle between their nearest points.
 fn crossing<S: Scalar>((p, p_end): (Vec3<S>, Vec3<S>), (q, q_end): (Vec3<S>, Vec3<S>)) -> Vec3<S> {
     let (u, v, offset) = (p_end - p, q_end - q, q - p);
     let inverse = S::ONE / cross_2d(u, v);
-    let s = (cross_2d(offset, v) * inverse).clamp(S::ZERO, S::ONE);
-    let t = (cross_2d(offset, u) * inverse).clamp(S::ZERO, S::ONE);
+    let (on_p, on_q) = (cross_2d(offset, v) * inverse, cross_2d(offset, u) * inverse);
+    let (mut s, mut t) = (on_p.clamp(S::ZERO, S::ONE), on_q.clamp(S::ZERO, S::ONE));
+    let beyond = (on_p - s).abs().max((on_q - t).abs());
+    if beyond > S::new(BEYOND_END) {
+        // The lines of nearly parallel segments may cross far beyond the end at which the segments are nearest.
+        let nearest = |along: Vec3<S>, to: Vec3<S>| {
+            let square = along.x * along.x + along.y * along.y;
+            ((along.x * to.x + along.y * to.y) / square).clamp(S::ZERO, S::ONE)
+        };
+        t = nearest(v, p + u * s - q);
+        s = nearest(u, q + v * t - p);
+    }
     (p + u * s + q + v * t) * S::new(0.5)
 }

@@ -87,7 +87,7 @@ pub(super) fn points<S: Scalar>(
     let best = nearest(&pair, start, margin, &mut simplex).map_err(|apart| apart.normal)?;
     match known.filter(|known| known.gap > best.gap + pair.tolerance) {
         Some(known) => patch_along(&pair, a, known, margin, points),
-        None => patch(&pair, a, best, &simplex, margin, points),
+        None => patch(&pair, a, best, Some(&simplex), margin, points),
     }
     Ok(())
 }
@@ -149,6 +149,5 @@ fn patch_along<S: Scalar>(
     margin: S,
     points: &mut Points<S>,
 ) {
-    let simplex = Simplex::new(pair.vertex(known.normal));
-    patch(pair, a, known, &simplex, margin, points);
+    patch(pair, a, known, None, margin, points);
 }

@@ -17,6 +17,10 @@ use clench_math::{Mat3, Scalar, Vec3};
 const SAME_POINT: f64 = 1e-5;
 /// The error of the patch's depth, relative to the smaller body.
 const MAX_MISS: f64 = 1e-6;
+/// The ratio by which the extension of features that miss each other grows until they touch.
+const EXTENSION: f64 = 1.25;
+/// The extension, relative to the smaller body, from which on it is enough that the features overlap.
+const MAX_EXTENSION: f64 = 1e-3;
 
 /// A point of the patch, projected along the normal.
 #[derive(Clone, Copy)]
@@ -83,17 +87,27 @@ impl<'a, S: Scalar> Overlap<'a, S> {
     }
 
     /// Adds the points of the patch that are at most `reach` apart to `found`, which is empty; `simplex` yields the
-    /// nearest points of the cores if the features do not. The output is large, so it is not returned, which would copy
-    /// it.
-    pub(super) fn points(&self, simplex: &Simplex<S>, reach: S, found: &mut PatchPoints<S>) {
+    /// nearest points of the cores where the features do not. The output is large, so it is not returned, which would
+    /// copy it.
+    pub(super) fn points(
+        &self,
+        simplex: Option<&Simplex<S>>,
+        reach: S,
+        found: &mut PatchPoints<S>,
+    ) {
         let mut polygon = Polygon::empty();
         self.corners(&mut polygon, found);
         let lowest = deepest(found, self.pair.tolerance);
         let lowest = match lowest.filter(|point| point.distance() <= self.gap + self.slack) {
             Some(lowest) => lowest,
             None => {
-                found.insert(0, self.witness(simplex));
-                found[0]
+                let witness = match (self.facing(), simplex) {
+                    (Some(facing), _) => facing,
+                    (None, Some(simplex)) => self.witness(simplex.nearest()),
+                    (None, None) => self.nearly_touching(&mut polygon, found),
+                };
+                found.insert(0, witness);
+                witness
             }
         };
         let same = self.pair.smallest * S::new(SAME_POINT);
@@ -134,24 +148,57 @@ impl<'a, S: Scalar> Overlap<'a, S> {
             found.clear();
             a.overlap(b, beyond, polygon);
             found.extend(polygon.corners().iter().map(|place| self.at(place)));
-            let touches = |point: &PatchPoint<S>| point.distance() <= self.gap + self.slack;
-            if found.iter().any(touches) {
+            if self.touch(found) {
                 break;
             }
         }
     }
 
-    /// Returns the nearest points of the cores: the support points along the normal if they face each other, else those
-    /// of the simplex.
-    fn witness(&self, simplex: &Simplex<S>) -> PatchPoint<S> {
-        let pair = self.pair;
+    /// Returns true if any of some points is as deep as the bodies.
+    fn touch(&self, found: &PatchPoints<S>) -> bool {
+        let deepest = self.gap + self.slack;
+        found.iter().any(|point| point.distance() <= deepest)
+    }
+
+    /// Returns the support points along the normal if they face each other: then they are the nearest of the cores.
+    fn facing(&self) -> Option<PatchPoint<S>> {
         let n = self.projection.rows[2];
-        let Vertex { w, a, b } = pair.vertex(n);
-        let (mut on_a, mut on_b) = (a, b);
-        if (w - n * self.gap).norm() > pair.smallest * S::new(MAX_MISS) {
-            (on_a, on_b) = simplex.nearest();
+        let Vertex { w, a, b } = self.pair.vertex(n);
+        let miss = (w - n * self.gap).norm();
+        (miss <= self.pair.smallest * S::new(MAX_MISS)).then(|| self.witness((a, b)))
+    }
+
+    /// Returns the deepest point of the overlap of the features, extended until they touch: a normal whose gap is
+    /// the largest up to the tolerance may be that of features which miss each other by the root of the tolerance.
+    fn nearly_touching(
+        &self,
+        polygon: &mut Polygon<S>,
+        found: &mut PatchPoints<S>,
+    ) -> PatchPoint<S> {
+        let [a, b] = &self.features;
+        let far = self.pair.smallest * S::new(MAX_EXTENSION);
+        let mut beyond = self.slack;
+        while beyond < far || (found.is_empty() && beyond < self.pair.largest) {
+            beyond *= S::new(EXTENSION);
+            a.overlap(b, beyond, polygon);
+            found.clear();
+            found.extend(polygon.corners().iter().map(|place| self.at(place)));
+            if self.touch(found) {
+                break;
+            }
         }
-        let on_b = pair.offset + pair.rotation * on_b;
+        match deepest(found, self.pair.tolerance) {
+            Some(lowest) => lowest.at_distance(self.gap),
+            None => self.witness({
+                let Vertex { a, b, .. } = self.pair.vertex(self.projection.rows[2]);
+                (a, b)
+            }),
+        }
+    }
+
+    /// Returns the point between two points of the cores, each in its body's frame.
+    fn witness(&self, (on_a, on_b): (Vec3<S>, Vec3<S>)) -> PatchPoint<S> {
+        let on_b = self.pair.offset + self.pair.rotation * on_b;
         let middle = self.projection * ((on_a + on_b) * S::new(0.5));
         let witness = PatchPoint {
             x: middle.x,

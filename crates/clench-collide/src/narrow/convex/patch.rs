@@ -7,13 +7,13 @@ use crate::narrow::per_lane::{Point, Points};
 use crate::narrow::placed::AnyPlaced;
 use clench_math::{Scalar, Vec3};
 
-/// Adds the contacts of a pair with known largest gap; `simplex` yields the nearest points of the cores if the features
-/// do not.
+/// Adds the contacts of a pair with known largest gap; `simplex`, if the search had one, yields the nearest points of
+/// the cores where the features do not.
 pub(super) fn patch<S: Scalar>(
     pair: &Pair<S>,
     a: AnyPlaced<S>,
     best: Gap<S>,
-    simplex: &Simplex<S>,
+    simplex: Option<&Simplex<S>>,
     margin: S,
     points: &mut Points<S>,
 ) {

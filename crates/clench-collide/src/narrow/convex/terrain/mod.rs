@@ -126,6 +126,9 @@ struct Search<S> {
     apart: Vec3<S>,
 }
 
+/// The largest gap, and the simplex of the search by support functions, if there was one.
+type Largest<S> = (Gap<S>, Option<Simplex<S>>);
+
 /// Keeps the deeper of two points.
 fn keep_deeper<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
     if deepest.is_none_or(|old| point.distance < old.distance) {
@@ -199,24 +202,19 @@ impl<S: Scalar> Search<S> {
         let pair = Pair::between(Body::of_prism(&prism), body.clone(), rotation, offset);
         // A convex edge or vertex touches all of the prisms around it along one normal.
         if let Some(feature) = self.features.iter().find(|feature| triangle.has(feature)) {
-            let simplex = Simplex::new(pair.vertex(feature.gap.normal));
-            let touching = self.patch(&clip, &pair, feature.gap, &simplex);
+            let touching = self.patch(&clip, &pair, feature.gap, None);
             touching.iter().for_each(|p| self.found.add(*p));
             return;
         }
         match self.largest_gap(&pair, &prism) {
-            Ok((best, simplex)) => self.classify(&clip, &pair, distance, best, &simplex),
+            Ok((best, simplex)) => self.classify(&clip, &pair, distance, best, simplex.as_ref()),
             Err(gap) => self.apart = gap.normal,
         }
     }
 
     /// Returns the largest gap of a body and the ground below a triangle, or as an error a separating one beyond the
     /// margin.
-    fn largest_gap(
-        &self,
-        pair: &Pair<S>,
-        prism: &Prism<S>,
-    ) -> Result<(Gap<S>, Simplex<S>), Gap<S>> {
+    fn largest_gap(&self, pair: &Pair<S>, prism: &Prism<S>) -> Result<Largest<S>, Gap<S>> {
         if let Some(cylinder) = pair.b.as_cylinder() {
             let known = prism_gap(pair, prism, cylinder, self.margin);
             if known.gap > self.margin {
@@ -224,11 +222,11 @@ impl<S: Scalar> Search<S> {
             }
             // If the bodies are apart, this gap is not always the distance.
             if known.gap <= S::ZERO && Real::is_finite(known.gap) {
-                return Ok((known, Simplex::new(pair.vertex(known.normal))));
+                return Ok((known, None));
             }
         }
         let (start, mut simplex) = begin(pair);
-        nearest(pair, start, self.margin, &mut simplex).map(|best| (best, simplex))
+        nearest(pair, start, self.margin, &mut simplex).map(|best| (best, Some(simplex)))
     }
 
     /// Returns true if a direction separates a body from the ground below a triangle.
@@ -263,21 +261,25 @@ impl<S: Scalar> Search<S> {
         pair: &Pair<S>,
         distance: S,
         best: Gap<S>,
-        simplex: &Simplex<S>,
+        simplex: Option<&Simplex<S>>,
     ) {
         let depth = best.gap - pair.b.radius;
         let level =
             (best.normal - clip.normal).norm() <= S::new(FACE_NORMAL_RATIO) * same_direction();
         let feature = clip.triangle.feature(best);
-        if level || clip.triangle.admits_normal(&feature) {
+        let admitted = clip.triangle.admits_normal(&feature);
+        if level || admitted {
             let touching = self.patch(clip, pair, best, simplex);
             touching
                 .iter()
                 .for_each(|p| keep_deeper(&mut self.deepest, *p));
             if !level || !clip.touch(self.margin, &mut self.found) {
                 touching.iter().for_each(|p| self.found.add(*p));
-                // If the capacity is exceeded, the feature is found again with the next triangle around it.
-                let _ = self.features.try_push(feature);
+                // Beside a level face the field may rise above the feature. If the capacity is exceeded, the feature is
+                // found again with the next triangle around it.
+                if admitted {
+                    let _ = self.features.try_push(feature);
+                }
             }
         } else {
             if self.rejected.is_none_or(|old| depth < old.distance) {
@@ -298,7 +300,7 @@ impl<S: Scalar> Search<S> {
         clip: &FaceClip<S>,
         pair: &Pair<S>,
         best: Gap<S>,
-        simplex: &Simplex<S>,
+        simplex: Option<&Simplex<S>>,
     ) -> Points<S> {
         let pose = Pose {
             position: clip.triangle.origin,
