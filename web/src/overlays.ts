@@ -1,7 +1,7 @@
 // Overlays: contacts, forces, friction cones, tendons, frames, joint axes, centres of mass.
 
 import * as THREE from "three";
-import type { Frame } from "./frame.ts";
+import type { Frame, Rows } from "./frame.ts";
 import { Instances, standing, stretched, UP } from "./instances.ts";
 import { Marks } from "./marks.ts";
 import { poseOf } from "./poses.ts";
@@ -23,8 +23,6 @@ export interface Layers {
   inertia: boolean;
 }
 
-/** The number of numbers of a contact. */
-export const CONTACT = 22;
 /** The exaggeration of the displacement of a contact since it stuck: a tenth of a millimetre is shown as 3 cm. */
 const EXAGGERATION = 300;
 const STUCK = new THREE.Color(0x8a5cd6);
@@ -136,7 +134,7 @@ export class Overlays {
     this.strings.begin(spans.count);
     this.balls.begin(scene.bodies.length + 1);
     this.boxes.begin(scene.bodies.length);
-    this.contacts(contacts.data, contacts.count, eye);
+    this.contacts(contacts, eye);
     this.thin = 1;
     if (layers.constraints) {
       for (let row = 0; row < pushes.count; row++) this.push(pushes.data.subarray(12 * row, 12 * row + 12));
@@ -154,8 +152,8 @@ export class Overlays {
     for (const many of this.all()) many.end();
   }
 
-  private contacts(data: Float32Array, count: number, eye: THREE.Vector3): void {
-    let rows = Array.from({ length: count }, (_, row) => data.subarray(CONTACT * row, CONTACT * (row + 1)));
+  private contacts({ data, count, width }: Rows, eye: THREE.Vector3): void {
+    let rows = Array.from({ length: count }, (_, row) => data.subarray(width * row, width * (row + 1)));
     const neighbours = this.neighbours(rows);
     if (this.layers.largest) rows = rows.sort((a, b) => b[12] - a[12]).slice(0, LARGEST);
     this.thin = Math.max(THINNEST, Math.min(1, Math.sqrt(CROWD / rows.length)));
@@ -213,7 +211,7 @@ export class Overlays {
       this.discs.add(stretched(place, normal, radius, radius), pressure > 0 ? colour : new THREE.Color(0x9a9aa2), fade);
     }
     if (this.layers.contacts) {
-      // How far the body that is drawn on has moved along the other since it stuck.
+      // The arrow shows the displacement of the body that is drawn on, relative to the other, since they stuck.
       const moved = first.clone().multiplyScalar(row[20]).addScaledVector(second, row[21]).multiplyScalar(EXAGGERATION);
       this.arrow(place.clone().sub(moved), moved, STUCK, fade);
     }

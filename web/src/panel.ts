@@ -1,6 +1,6 @@
 // The controls next to the picture.
 
-import { CONTACT, LARGEST, type Layers } from "./overlays.ts";
+import { LARGEST, type Layers } from "./overlays.ts";
 import type { Sight } from "./bodies.ts";
 import { brief, button, check, choice, element, fold, paint, shortened, slider, type Slider } from "./elements.ts";
 import type { Frame } from "./frame.ts";
@@ -382,10 +382,10 @@ export class Panel {
 
   /** Returns the sum of the norms of the contact forces on a body, N. */
   private pushOn(body: number, frame: Frame): number {
-    const { data, count } = frame.rows.contacts;
+    const { data, count, width } = frame.rows.contacts;
     let sum = 0;
     for (let row = 0; row < count; row++) {
-      const contact = data.subarray(CONTACT * row, CONTACT * (row + 1));
+      const contact = data.subarray(width * row, width * (row + 1));
       const touches = [contact[17], contact[18]].some((geom) => this.scene.geoms[geom]?.body === body);
       if (touches) sum += Math.hypot(contact[12], contact[13], contact[14]);
     }

@@ -83,16 +83,14 @@ impl<T: Precision> Sim<T> {
         let settings = StepSettings::supported::<T>(&model, options)?;
         let model = settings.adapt(model);
         let initial = State::new(&model);
+        let mut ws = T::workspace(&model);
+        ws.sensors.wanted = true;
         Ok(Sim {
             state: initial.clone(),
             params: T::params(&model),
             options,
             settings,
-            ws: {
-                let mut ws = T::workspace(&model);
-                ws.sensors.wanted = true;
-                ws
-            },
+            ws,
             last_good: initial.clone(),
             validity: Validity::new(),
             halfway: false,

@@ -4,6 +4,7 @@ mod accuracy;
 mod broad_phase;
 mod closed_forms;
 mod common;
+mod cylinder_edges;
 mod distance;
 mod hulls;
 mod invariance;

@@ -91,7 +91,7 @@ pub fn assemble<T: Real>(
     if !settings.flags.constraint {
         return;
     }
-    // Rows are appended to the problem while these are read.
+    // Rows are appended to the problem while the displacements and the factor of its mass are read.
     let mut stiction = std::mem::take(&mut ws.stiction);
     let sticks = settings.stiction && model.max_stick_pairs.is_some();
     if sticks {

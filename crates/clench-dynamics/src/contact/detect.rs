@@ -102,8 +102,8 @@ pub fn detect<T: Real>(
     ws.clock.lap(Stage::NarrowPhase as usize);
 }
 
-/// Appends the candidates that may touch in any lane to the near pairs. With `boxes` their boxes are compared, unless
-/// that has been done.
+/// Appends the candidates that may touch in any lane to the near pairs. With `boxes` it also compares their boxes; a
+/// broad phase has done so for its own candidates.
 #[inline(always)]
 fn find_near<T: Real>(
     params: &Params<T>,

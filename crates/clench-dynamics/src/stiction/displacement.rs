@@ -26,13 +26,12 @@ impl<T: Real> Stiction<T> {
         contacts: &[Contact<T>],
     ) {
         self.find_pairs(model, contacts);
-        for pair in &mut self.pairs {
-            pair.reference = present_pose(pos, pair.bodies);
-            pair.read_reference(&state.stick_references);
-        }
         self.displacements.resize(contacts.len(), [T::ZERO; 5]);
         for pair in &mut self.pairs {
-            pair.displace(pos, contacts, &mut self.displacements);
+            let present = present_pose(pos, pair.bodies);
+            pair.reference = present;
+            pair.read_reference(&state.stick_references);
+            pair.displace(pos, &present, contacts, &mut self.displacements);
         }
     }
 
@@ -77,14 +76,14 @@ impl<T: Real> StickPair<T> {
     fn displace(
         &mut self,
         pos: &Positions<T>,
+        present: &RelativePose<T>,
         contacts: &[Contact<T>],
         displacements: &mut [[T; 5]],
     ) {
         let [first, second] = self.bodies;
         let (frame, reference) = (&pos.xmat[first], &self.reference);
-        let present = pos.xquat[first].conjugate() * pos.xquat[second];
-        let since = present * reference.rotation.conjugate();
-        // The sine of the angle: rotations between two steps are small, those that roll are dragged along.
+        let since = present.rotation * reference.rotation.conjugate();
+        // Twice the sine of half the angle. It is small, because references that roll are replaced.
         self.rotation = since.imaginary() * T::new(2.0).copysign(since.w);
         let rotation = *frame * self.rotation;
         for i in self.contacts() {

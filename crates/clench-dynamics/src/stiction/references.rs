@@ -3,8 +3,7 @@
 use super::pairs::{RelativePose, StickPair, Stiction};
 use crate::model::Model;
 use crate::sleep::Sleep;
-use crate::state::kind::StickReference;
-use crate::state::kind::{Kind, Reference};
+use crate::state::kind::{Kind, Reference, StickReference};
 use clench_math::{Mask, Real, Scalar};
 
 /// Returns the number that identifies a geom; 0 is none.
@@ -64,19 +63,16 @@ impl<T: Real> Stiction<T> {
         list: &mut [StickReference<T>],
     ) -> T::Mask {
         let mut overflow = T::Mask::splat(false);
-        let mut used = keep_sleeping(model, sleep, list);
-        for pair in &self.pairs {
-            let stored = pair.stored();
-            for lane in (0..T::LANES).filter(|&lane| pair.active.lane(lane)) {
-                match list.get_mut(used[lane]) {
-                    Some(slot) => copy_lane(&stored, slot, lane),
+        let empty = Reference::zero::<T>();
+        for lane in 0..T::LANES {
+            let mut used = keep_sleeping(model, sleep, list, lane);
+            for pair in self.pairs.iter().filter(|pair| pair.active.lane(lane)) {
+                match list.get_mut(used) {
+                    Some(slot) => copy_lane(&pair.stored(), slot, lane),
                     None => overflow.set_lane(lane, true),
                 }
-                used[lane] += 1;
+                used += 1;
             }
-        }
-        let empty = Reference::zero::<T>();
-        for (lane, used) in used.into_iter().enumerate().take(T::LANES) {
             let rest = list.iter_mut().skip(used);
             for slot in rest.take_while(|slot| tags(slot, lane)[0] != T::Scalar::ZERO) {
                 copy_lane(&empty, slot, lane);
@@ -86,36 +82,31 @@ impl<T: Real> Stiction<T> {
     }
 }
 
-/// The maximum number of lanes of a number type.
-const MAX_LANES: usize = 16;
-
-/// Moves the references of pairs that sleep to the front. Returns their number in each lane.
+/// Moves the references of pairs that sleep in a lane to the front. Returns their number.
 fn keep_sleeping<T: Real>(
     model: &Model,
     sleep: &Sleep<T>,
     list: &mut [StickReference<T>],
-) -> [usize; MAX_LANES] {
-    const { assert!(T::LANES <= MAX_LANES) };
-    let mut kept = [0; MAX_LANES];
+    lane: usize,
+) -> usize {
     if !model.may_sleep() {
-        return kept;
+        return 0;
     }
     // Users may write any number.
     let geom = |tag: T::Scalar| model.geoms.get((tag.to_f64() as usize).wrapping_sub(1));
-    for lane in 0..T::LANES {
-        for slot in 0..list.len() {
-            let reference = list[slot];
-            let [first, second] = tags(&reference, lane);
-            if first == T::Scalar::ZERO {
-                break;
-            }
-            let (Some(first), Some(second)) = (geom(first), geom(second)) else {
-                continue;
-            };
-            if !sleep.is_either_awake([first.body, second.body]).lane(lane) {
-                copy_lane(&reference, &mut list[kept[lane]], lane);
-                kept[lane] += 1;
-            }
+    let mut kept = 0;
+    for slot in 0..list.len() {
+        let reference = list[slot];
+        let [first, second] = tags(&reference, lane);
+        if first == T::Scalar::ZERO {
+            break;
+        }
+        let (Some(first), Some(second)) = (geom(first), geom(second)) else {
+            continue;
+        };
+        if !sleep.is_either_awake([first.body, second.body]).lane(lane) {
+            copy_lane(&reference, &mut list[kept], lane);
+            kept += 1;
         }
     }
     kept

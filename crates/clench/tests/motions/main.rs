@@ -2,4 +2,5 @@
 
 mod heaps;
 mod sliding;
+mod stick_references;
 mod sticking;

@@ -1,7 +1,6 @@
 //! The option `stiction`: bodies that should stick do not move, and those that slide or roll are not held back.
 
 use clench::prelude::*;
-use clench::rigid::{Fault, SimError};
 use std::sync::Arc;
 
 const G: f64 = 9.81;
@@ -12,25 +11,25 @@ const LAWS: [(ContactModel, FrictionCone); 2] = [
     (ContactModel::Coulomb, FrictionCone::Elliptic),
 ];
 
-fn sticking() -> RigidOptions {
+pub fn sticking() -> RigidOptions {
     RigidOptions::new()
         .stiction(true)
         .friction_cone(FrictionCone::Elliptic)
 }
 
 /// Returns a model with bodies in a world, stepped by `timestep`.
-fn scene(timestep: f64, option: &str, world: &str, rest: &str) -> String {
+pub fn scene(timestep: f64, option: &str, world: &str, rest: &str) -> String {
     format!(
         "<mujoco><option timestep='{timestep}' {option}/><worldbody>{world}</worldbody>{rest}</mujoco>"
     )
 }
 
-fn start(text: &str, options: RigidOptions) -> Sim {
+pub fn start(text: &str, options: RigidOptions) -> Sim {
     let model = clench::load_str(text).expect("a valid file");
     Sim::with_options(Arc::new(model), options).expect("supported")
 }
 
-fn run(sim: &mut Sim, seconds: f64) {
+pub fn run(sim: &mut Sim, seconds: f64) {
     let steps = (seconds / sim.params().timestep).round() as usize;
     for _ in 0..steps {
         sim.step().expect("finite");
@@ -46,7 +45,7 @@ fn drift(sim: &mut Sim, seconds: f64) -> f64 {
 }
 
 /// A slope with a body on it at the height `z`, both with friction `mu`.
-fn slope(timestep: f64, option: &str, angle: f64, mu: f64, z: f64, geom: &str) -> String {
+pub fn slope(timestep: f64, option: &str, angle: f64, mu: f64, z: f64, geom: &str) -> String {
     let (x, z, degrees) = (angle.sin() * z, angle.cos() * z, angle.to_degrees());
     let world = format!(
         "<geom type='plane' size='5 5 .1' euler='0 {degrees} 0' friction='{mu}'/>
@@ -55,8 +54,8 @@ fn slope(timestep: f64, option: &str, angle: f64, mu: f64, z: f64, geom: &str) -
     scene(timestep, option, &world, "")
 }
 
-const BOX: &str = "type='box' size='.05 .05 .05'";
-const ANGLE: f64 = 0.35;
+pub const BOX: &str = "type='box' size='.05 .05 .05'";
+pub const ANGLE: f64 = 0.35;
 
 #[test]
 fn a_box_on_a_slope_stays_below_the_friction_angle_and_slides_above() {
@@ -397,73 +396,4 @@ fn a_tumbling_box_gains_no_energy() {
         let weight = 1000.0 * 0.001 * G;
         assert!((energy(&mut sim) / (weight * 0.05) - 1.0).abs() < 0.01);
     }
-}
-
-#[test]
-fn references_are_state() {
-    let text = slope(0.002, "", ANGLE, ANGLE.tan() / 0.9, 0.05, BOX);
-    let mut sim = start(&text, sticking());
-    run(&mut sim, 1.0);
-    let references = &sim.state.stick_references;
-    let (plane, cube) = (references[0].first, references[0].second);
-    assert_eq!((plane, cube), (1.0, 2.0));
-    let mut other = start(&text, sticking());
-    other.state.copy_from(&sim.state);
-    run(&mut sim, 0.5);
-    run(&mut other, 0.5);
-    assert!(sim.state == other.state, "a restored state moves alike");
-    // Contacts that break forget.
-    sim.state.qpos[2] += 1.0;
-    sim.step().expect("finite");
-    assert!(sim.state.stick_references.iter().all(|r| r.first == 0.0));
-    other.reset();
-    assert!(other.state.stick_references.iter().all(|r| r.first == 0.0));
-}
-
-#[test]
-fn sleep_keeps_the_references() {
-    let text = slope(0.002, "", ANGLE, ANGLE.tan() / 0.9, 0.05, BOX).replace(
-        "<worldbody>",
-        "<option><flag sleep='enable'/></option><worldbody>",
-    );
-    let mut sim = start(&text, sticking());
-    run(&mut sim, 3.0);
-    assert!(sim.state.tree_asleep[0] >= 0.0, "it sleeps");
-    let asleep = format!("{:?}", sim.state.stick_references);
-    run(&mut sim, 1.0);
-    assert_eq!(format!("{:?}", sim.state.stick_references), asleep);
-    let mut forgetful = start(&text, sticking());
-    forgetful.state.copy_from(&sim.state);
-    forgetful.state.stick_references[0].first = 0.0;
-    // A force wakes both. The box tilts a little further, for it fell asleep while it still did.
-    let slips = [&mut sim, &mut forgetful].map(|sim| {
-        let before = sim.state.qpos[0];
-        sim.state.xfrc_applied[1].linear = Vec3::new(0.0, 0.0, -1e-3);
-        run(sim, 1.0);
-        assert!(sim.state.tree_asleep[0] < 0.0, "it is awake");
-        (sim.state.qpos[0] - before).abs()
-    });
-    assert!(slips[0] < 1e-5 && slips[1] > 3e-5, "{slips:?} m");
-}
-
-#[test]
-fn too_few_slots_are_an_error_that_names_the_option() {
-    let foot = "<freejoint/><geom type='box' size='.05 .05 .05'/>";
-    let world = format!(
-        "<geom type='plane' size='5 5 .1'/><body pos='0 0 .05'>{foot}</body><body pos='1 0 .05'>{foot}</body>"
-    );
-    let text = scene(0.002, "", &world, "");
-    let mut sim = start(&text, sticking().max_stick_pairs(1));
-    let error = (0..100).find_map(|_| sim.step().err()).expect("overflows");
-    assert!(
-        matches!(error, SimError::Fault(Fault::OverBudget { .. })),
-        "{error}"
-    );
-    assert!(error.to_string().contains("max_stick_pairs"), "{error}");
-    let mut sim = start(&text, sticking().max_stick_pairs(2));
-    run(&mut sim, 1.0);
-    let error = sim.set_options(RigidOptions::new()).expect_err("too late");
-    assert_eq!(error, SimError::FixedOption("stiction"));
-    sim.set_options(sticking().max_stick_pairs(2).iterations(7))
-        .expect("other options may change");
 }
