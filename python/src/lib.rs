@@ -26,6 +26,7 @@ mod ik;
 mod ik_targets;
 mod inertia_queries;
 mod kind;
+mod linearize;
 mod model;
 mod motion_queries;
 mod named;
@@ -82,6 +83,8 @@ mod _core {
     use crate::ik::IkResult;
     #[pymodule_export]
     use crate::ik_targets::{ComTarget, FrameTarget, PostureTarget};
+    #[pymodule_export]
+    use crate::linearize::Linearization;
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]

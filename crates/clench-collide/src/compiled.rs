@@ -1,12 +1,9 @@
 //! Collision of two shapes, compiled once in this crate and not again in its callers.
 
-use crate::{Contacts, Pose, SeparatingAxis, Shape, collide_again};
+use crate::differentiated::collide_differentiated;
+use crate::narrow::{Collide, collide_again};
 use clench_math::{CompiledKernels, KernelTable, Real};
 use std::sync::LazyLock;
-
-/// A pointer to [`collide_again`].
-pub type Collide<T> =
-    fn(&Shape<T>, &Pose<T>, &Shape<T>, &Pose<T>, T, &mut SeparatingAxis<T>, &mut Contacts<T>);
 
 /// Returns [`collide_again`] as compiled in this crate, for a number type that
 /// [`Scalar::in_lanes`](clench_math::Scalar::in_lanes) passes to tasks.
@@ -29,6 +26,13 @@ struct CollideTable;
 impl KernelTable for CollideTable {
     type Of<T: Real> = Collide<T>;
     fn of<T: Real>() -> Collide<T> {
-        collide_again
+        if T::IS_DUAL {
+            |a, pose_a, b, pose_b, margin, axis, out| {
+                let pair = ([a, b], [pose_a, pose_b]);
+                collide_differentiated(compiled_collide(), pair, margin, axis, out);
+            }
+        } else {
+            collide_again
+        }
     }
 }

@@ -27,6 +27,7 @@
 mod broad;
 mod compiled;
 mod contact;
+mod differentiated;
 mod distance;
 mod frame;
 mod height_field;
@@ -38,13 +39,13 @@ mod ray;
 mod shape;
 
 pub use broad::{Bound, BroadPhase, Mobility, allowance, near};
-pub use compiled::{Collide, compiled_collide};
+pub use compiled::compiled_collide;
 pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
 pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
-pub use narrow::{SeparatingAxis, collide, collide_again, multiccd_matters, supported};
+pub use narrow::{Collide, SeparatingAxis, collide, collide_again, multiccd_matters, supported};
 pub use pose::Pose;
 pub use protrusion::{Ascent, protrusion, protrusion_of_points};
 pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, TriangleNode, UnitRay, ray};

@@ -47,6 +47,7 @@ extern crate self as clench_math;
 mod array;
 mod cast;
 mod compiled;
+mod dual;
 mod eigen;
 mod elementary;
 #[allow(unsafe_code, reason = "registers, and code for one instruction set")]
@@ -75,6 +76,7 @@ pub use cast::{broadcast, cast, read_lane, write_lane};
 ///
 pub use clench_kernel::kernel;
 pub use compiled::{CompiledKernels, KernelTable};
+pub use dual::Dual;
 pub use eigen::{principal_axes, rough_principal_axes};
 pub use lanes::{Instructions, LaneMask, LaneTask, Lanes, Portable};
 pub use matrix::Mat3;

@@ -3,6 +3,9 @@
 use crate::{Mat3, Real, Vec3, kernel};
 use std::ops::Mul;
 
+/// The length below which a vector has no axis.
+const TINY: f64 = 1e-15;
+
 /// A quaternion. As a rotation it maps local coordinates to the outer frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quat<T> {
@@ -176,7 +179,13 @@ impl<T: Real> Quat<T> {
         let mut angle = T::new(2.0) * sine.atan2(self.w);
         let pi = T::new(std::f64::consts::PI);
         angle = T::select(angle.gt(pi), angle - pi - pi, angle);
-        axis * angle
+        let vector = axis * angle;
+        if T::IS_DUAL {
+            // No axis, but derivatives: the vector is ±2 times the imaginary part.
+            let small = self.imaginary() * T::new(2.0).copysign(self.w);
+            return Vec3::select(sine.lt(T::new(TINY)), small, vector);
+        }
+        vector
     }
     /// Returns the local rotation vector from `other` to `self`: `other · exp(difference) = self` (MuJoCo's
     /// `mju_subQuat`).
@@ -188,12 +197,23 @@ impl<T: Real> Quat<T> {
     #[inline(always)]
     pub fn from_rotation_vector(v: Vec3<T>) -> Self {
         let (axis, angle) = v.normalize();
-        Quat::from_axis_angle(axis, angle)
+        let rotation = Quat::from_axis_angle(axis, angle);
+        if T::IS_DUAL {
+            // No axis, but derivatives: the imaginary part is half the vector.
+            let half = v * T::new(0.5);
+            let small = Quat::new(T::ONE, half.x, half.y, half.z);
+            return Quat::select(angle.lt(T::new(TINY)), small, rotation);
+        }
+        rotation
     }
     /// Integrates a constant local angular velocity (rad/s) from `self` for `time` seconds.
     #[inline(always)]
     pub fn integrate(self, angular_velocity: Vec3<T>, time: T) -> Self {
         let (axis, speed) = angular_velocity.normalize();
+        if T::IS_DUAL {
+            let rotation = Quat::from_rotation_vector(angular_velocity * time);
+            return (self * rotation).normalize();
+        }
         (self * Quat::from_axis_angle(axis, speed * time)).normalize()
     }
 }

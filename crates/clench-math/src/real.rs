@@ -76,6 +76,8 @@ pub trait Real:
 {
     /// The type of one lane: `f64` or `f32`.
     type Scalar: Scalar;
+    /// The number without derivatives: the number itself, except for [`Dual`](crate::Dual) numbers.
+    type Value: Real<Mask = Self::Mask, Clock = Self::Clock, Value = Self::Value>;
     /// One truth value per lane.
     type Mask: Mask;
     /// One time per lane.
@@ -86,6 +88,8 @@ pub trait Real:
     const ZERO: Self;
     /// One.
     const ONE: Self;
+    /// True if the number carries derivatives.
+    const IS_DUAL: bool = false;
 
     /// Runs a closure compiled for the instructions of these lanes; [`kernel`](crate::kernel) does so for whole
     /// functions.
@@ -95,6 +99,30 @@ pub trait Real:
     /// processor even if a number is a scalar. Results do not depend on the choice: nothing is fused or summed in
     /// another order.
     fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R;
+
+    /// Returns the number without its derivatives.
+    fn value(self) -> Self::Value;
+    /// Sets the value and keeps the derivatives.
+    fn set_value(&mut self, value: Self::Value);
+    /// Creates a number without derivatives.
+    #[inline(always)]
+    fn from_value(value: Self::Value) -> Self {
+        let mut number = Self::ZERO;
+        number.set_value(value);
+        number
+    }
+    /// Applies a linear map to the derivatives of `x` along each direction. Does nothing for numbers without any.
+    fn map_tangents(
+        x: &mut [Self],
+        scratch: &mut Vec<Self::Value>,
+        map: impl FnMut(&mut [Self::Value]),
+    );
+
+    /// Multiplies by a constant.
+    #[inline(always)]
+    fn scale(self, constant: f64) -> Self {
+        self * Self::new(constant)
+    }
 
     /// Creates the same constant in every lane, rounded to the lane's precision.
     fn new(value: f64) -> Self;

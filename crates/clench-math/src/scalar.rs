@@ -30,11 +30,23 @@ macro_rules! scalar {
 
             impl Real for $t {
                 type Scalar = $t;
+                type Value = $t;
                 type Mask = bool;
                 type Clock = f64;
                 const LANES: usize = 1;
                 const ZERO: $t = 0.0;
                 const ONE: $t = 1.0;
+
+                #[inline(always)]
+                fn value(self) -> Self {
+                    self
+                }
+                #[inline(always)]
+                fn set_value(&mut self, value: Self) {
+                    *self = value;
+                }
+                #[inline(always)]
+                fn map_tangents(_: &mut [Self], _: &mut Vec<Self>, _: impl FnMut(&mut [Self])) {}
 
                 #[inline(always)]
                 fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {

@@ -30,7 +30,11 @@ pub use clench_dynamics::{
 };
 pub use ik::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask};
 pub use output::Output;
+#[doc(hidden)]
+pub use output::Source as OutputSource;
 pub use query::Anchor;
+#[doc(hidden)]
+pub use sensor::evaluate as evaluate_sensors;
 pub use sim::{DynamicConstraint, Sim};
 // Macro tables for other crates.
 #[doc(hidden)]

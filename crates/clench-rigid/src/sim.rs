@@ -143,7 +143,7 @@ impl<T: Precision> Sim<T> {
             self.ws.clock.lap(Stage::Rows as usize);
             return Ok(());
         }
-        self.check_present()?;
+        self.check_state()?;
         self.last_good.copy_moving_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
         self.on_threads(T::step);
@@ -165,7 +165,7 @@ impl<T: Precision> Sim<T> {
     }
 
     fn try_forward(&mut self) -> Result<(), SimError> {
-        self.check_present()?;
+        self.check_state()?;
         self.on_threads(|model, params, settings, state, ws| {
             T::forward(model, params, settings, state, ws);
         });
@@ -219,7 +219,7 @@ impl<T: Precision> Sim<T> {
         if wanted == Computed::Everything {
             return self.try_forward();
         }
-        self.check_present()?;
+        self.check_state()?;
         self.halfway = false;
         self.ws.clock.start();
         self.ws.forget_poses();
@@ -231,7 +231,11 @@ impl<T: Precision> Sim<T> {
         Ok(())
     }
 
-    pub(crate) fn check_present(&self) -> Result<(), SimError> {
+    /// Checks that a step can start from the state.
+    ///
+    /// # Errors
+    /// Returns an error if the state has wrong lengths or values.
+    pub fn check_state(&self) -> Result<(), SimError> {
         self.check_threads()?;
         check::check_lengths(&self.model, &self.state)?;
         if T::good_inputs(&self.state) {
@@ -358,7 +362,7 @@ impl<T: Precision> Sim<T> {
             let energy = self.energy()?;
             return Ok(vec![energy.potential, energy.kinetic]);
         }
-        self.check_present()?;
+        self.check_state()?;
         self.require(output.extent())?;
         let mut values = Vec::new();
         self.read(|source| T::read(output, source, &mut values));
@@ -404,7 +408,7 @@ impl<T: Precision> Sim<T> {
         given: Acceleration,
         qfrc_inverse: &mut [T],
     ) -> Result<(), SimError> {
-        self.check_present()?;
+        self.check_state()?;
         let (model, state) = (&self.model, &self.state);
         let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(T::workspace(model)));
         let splat = |numbers: &[T]| numbers.iter().copied().map(T::Alone::splat).collect();
@@ -435,7 +439,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`step`](Self::step).
     pub fn energy(&mut self) -> Result<Energy<T>, SimError> {
-        self.check_present()?;
+        self.check_state()?;
         let (model, params) = (&self.model, &self.params);
         let scratch = self.ws.energy_scratch(model);
         let energy = computed_state::read(&self.state, &mut self.lane_copy, |state| {

@@ -4,7 +4,7 @@ use crate::Cost;
 use std::ops::Range;
 
 /// The location of a block in the pools.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BlockIndex {
     pub cost: Cost,
     pub dim: usize,

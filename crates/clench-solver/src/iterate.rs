@@ -70,6 +70,18 @@ impl<T: Real> Iterate<T> {
         self.evaluate(problem)
     }
 
+    /// Evaluates everything at `qacc`, gradient included.
+    #[kernel]
+    pub fn evaluate_at_qacc(&mut self, problem: &Problem<T>) {
+        let qacc = std::mem::take(&mut self.qacc);
+        self.place(problem, &qacc);
+        let displacement = &mut self.gradient;
+        displacement.copy_from_slice(&qacc);
+        subtract(displacement, &problem.qacc_smooth);
+        (problem.mass).mul(problem.tree(), displacement, &mut self.inertial);
+        self.differentiate(problem);
+    }
+
     /// Moves to `warm` in the lanes in which it costs less than the current point, whose totals are `totals`. Returns
     /// the totals.
     #[kernel]

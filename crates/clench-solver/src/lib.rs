@@ -20,6 +20,7 @@ mod costs;
 mod descent;
 mod error;
 mod hessian;
+mod implicit;
 mod islands;
 mod iterate;
 mod jacobian;

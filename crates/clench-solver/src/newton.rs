@@ -8,7 +8,7 @@ use crate::descent::{Convergence, Direction, SolverState};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
 use crate::prediction::Prediction;
-use crate::{Problem, Settings, SolvePart, SolveStats, Switch};
+use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Switch, Threads};
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// Newton's method, with the factored Hessian.
@@ -93,18 +93,7 @@ impl<T: Real> Direction<T> for Newton<T> {
         );
         let rebuild = stale & !updated;
         if rebuild.any() {
-            self.hessian.factor(
-                problem,
-                rebuild,
-                threads,
-                clock,
-                #[inline(always)]
-                |b, weight| {
-                    let y = &iterate.residual[b.rows()];
-                    let active_set = &iterate.active_set[b.active_range()];
-                    with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, active_set, weight))
-                },
-            );
+            self.factor(problem, iterate, rebuild, threads, clock);
             stats.factorizations += T::select(rebuild, T::ONE, T::ZERO);
         }
         if stale.any() {
@@ -130,6 +119,35 @@ impl<T: Real> Direction<T> for Newton<T> {
 }
 
 impl<T: Real> Newton<T> {
+    /// Factors the Hessian at the iterate in the lanes of `mask`.
+    #[inline(always)]
+    pub(crate) fn factor(
+        &mut self,
+        problem: &Problem<T>,
+        iterate: &Iterate<T>,
+        mask: T::Mask,
+        threads: &Threads,
+        clock: &mut SolveClock,
+    ) {
+        self.hessian.factor(
+            problem,
+            mask,
+            threads,
+            clock,
+            #[inline(always)]
+            |b, weight| {
+                let y = &iterate.residual[b.rows()];
+                let active_set = &iterate.active_set[b.active_range()];
+                with_cost!(b.cost, C => C::hessian(iterate.rows(problem, b), y, active_set, weight))
+            },
+        );
+    }
+
+    /// Computes `x ← H⁻¹ x` with the factor.
+    pub(crate) fn solve(&mut self, x: &mut [T]) {
+        self.hessian.solve(x);
+    }
+
     /// Updates the factor in the lanes of `mask` in which few pieces changed; returns the lanes in which that
     /// succeeded.
     #[kernel]

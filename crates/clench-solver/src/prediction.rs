@@ -14,7 +14,7 @@
 //! decreases the cost; near the solution it is the step d.
 
 use crate::block_index::BlockIndex;
-use crate::costs::Coulomb;
+use crate::costs::{Coulomb, MAX_DIM};
 use crate::hessian::Hessian;
 use crate::iterate::{Iterate, dot};
 use crate::{Cost, Problem};
@@ -40,6 +40,29 @@ pub(crate) struct Prediction<T> {
     /// Forces of rows, and a vector over dofs.
     rows: Vec<T>,
     dofs: Vec<T>,
+}
+
+/// The entries of a block in B and D.
+pub(crate) struct Friction<T: Real> {
+    /// The lanes in which it slides.
+    pub slides: T::Mask,
+    /// D where the contact presses, else 0.
+    pub weight: T,
+    /// μ_j u_j where it slides; row 0 is zero.
+    pub rows: [T; MAX_DIM],
+}
+
+impl<T: Real> Friction<T> {
+    /// Reads a Coulomb block at the iterate.
+    #[inline(always)]
+    pub(crate) fn new(problem: &Problem<T>, iterate: &Iterate<T>, b: &BlockIndex) -> Self {
+        let presses = iterate.active_set[b.active_start].gt(T::ZERO);
+        Friction {
+            slides: iterate.active_set[b.active_start + 1].gt(T::ZERO),
+            weight: T::select(presses, problem.d[b.row], T::ZERO),
+            rows: Coulomb::slip_direction(problem.rows(b), &iterate.residual[b.rows()]),
+        }
+    }
 }
 
 impl<T: Real> Prediction<T> {
@@ -112,14 +135,12 @@ impl<T: Real> Prediction<T> {
         let blocks = problem.jacobian.blocks.iter();
         for b in blocks.filter(|b| b.cost == Cost::Coulomb) {
             self.blocks.push(*b);
-            let presses = iterate.active_set[b.active_start].gt(T::ZERO) & mask;
-            let slides = iterate.active_set[b.active_start + 1].gt(T::ZERO) & mask;
-            self.weights
-                .push(T::select(presses, problem.d[b.row], T::ZERO));
+            let friction = Friction::new(problem, iterate, b);
+            let slides = friction.slides & mask;
+            self.weights.push(T::select(mask, friction.weight, T::ZERO));
             sliding |= slides;
-            let direction = Coulomb::slip_direction(problem.rows(b), &iterate.residual[b.rows()]);
             for j in 1..b.dim {
-                self.friction[b.row + j] = T::select(slides, direction[j], T::ZERO);
+                self.friction[b.row + j] = T::select(slides, friction.rows[j], T::ZERO);
             }
         }
         sliding
@@ -163,7 +184,7 @@ impl<T: Real> Prediction<T> {
 
 /// Computes J_n x of a block.
 #[inline(always)]
-fn normal_product<T: Real>(problem: &Problem<T>, b: &BlockIndex, x: &[T]) -> T {
+pub(crate) fn normal_product<T: Real>(problem: &Problem<T>, b: &BlockIndex, x: &[T]) -> T {
     let mut sum = T::ZERO;
     let dofs = problem.jacobian.dofs(b).iter();
     for (&dof, &j) in dofs.zip(problem.jacobian.values(b)) {

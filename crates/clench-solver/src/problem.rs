@@ -6,7 +6,7 @@ use crate::jacobian::StoredRows;
 use crate::runs::runs;
 use crate::transfer::Transfer;
 use crate::{Tree, TreeFactor, TreeMatrix, costs};
-use clench_math::{Real, kernel};
+use clench_math::{Mask, Real, kernel};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -242,6 +242,23 @@ impl<T: Real> Problem<T> {
             softer: T::ZERO,
             given: T::ZERO,
         }
+    }
+
+    /// Returns true if another problem has the same tree, blocks and numbers.
+    pub(crate) fn equals(&self, other: &Self) -> bool {
+        let same =
+            |a: &[T], b: &[T]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.eq(*b).all());
+        self.tree.parents() == other.tree.parents()
+            && self.nconstraint == other.nconstraint
+            && self.jacobian.blocks == other.jacobian.blocks
+            && self.jacobian.dofs == other.jacobian.dofs
+            && same(&self.jacobian.values, &other.jacobian.values)
+            && same(&self.mass.values, &other.mass.values)
+            && same(&self.qacc_smooth, &other.qacc_smooth)
+            && same(&self.aref, &other.aref)
+            && same(&self.r, &other.r)
+            && same(&self.d, &other.d)
+            && same(&self.shape, &other.shape)
     }
 
     /// Copies a part of `whole` into this problem.

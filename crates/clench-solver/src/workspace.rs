@@ -3,6 +3,7 @@
 use crate::cg::Cg;
 use crate::costs::Pyramid;
 use crate::descent::{SolverState, minimise, trace};
+use crate::implicit::Implicit;
 use crate::newton::Newton;
 use crate::noslip::Noslip;
 use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats, Status};
@@ -17,23 +18,19 @@ pub(crate) struct Workspace<T: Real> {
     newton: Newton<T>,
     cg: Cg<T>,
     noslip: Noslip<T>,
+    /// The solve of the values of dual numbers.
+    implicit: Option<Box<Implicit<T::Value>>>,
 }
 
 impl<T: Real> Workspace<T> {
     /// Minimises, then removes slip if the settings request it.
     #[kernel]
     pub fn run(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
-        let Workspace {
-            state, newton, cg, ..
-        } = self;
-        state.stats = SolveStats {
+        self.state.stats = SolveStats {
             islands: T::ONE,
             ..SolveStats::default()
         };
-        match settings.constraint_solver {
-            ConstraintSolver::Newton => minimise(problem, settings, warmstart, newton, state),
-            ConstraintSolver::Cg => minimise(problem, settings, warmstart, cg, state),
-        }
+        self.minimise(problem, settings, warmstart);
         self.find_edge_forces(problem);
         let SolverState { iterate, stats, .. } = &mut self.state;
         // Noslip stores a response of all dofs to each row.
@@ -44,6 +41,23 @@ impl<T: Real> Workspace<T> {
             let scale = T::ONE / trace(problem);
             self.noslip
                 .run(problem, settings, scale, iterate, &mut self.edges, stats);
+        }
+    }
+
+    #[inline(always)]
+    fn minimise(&mut self, problem: &Problem<T>, settings: &Settings, warmstart: Option<&[T]>) {
+        let Workspace {
+            state, newton, cg, ..
+        } = self;
+        if T::IS_DUAL {
+            let implicit = self.implicit.get_or_insert_default();
+            let SolverState { iterate, stats, .. } = state;
+            implicit.minimise(problem, settings, warmstart, iterate, stats);
+            return;
+        }
+        match settings.constraint_solver {
+            ConstraintSolver::Newton => minimise(problem, settings, warmstart, newton, state),
+            ConstraintSolver::Cg => minimise(problem, settings, warmstart, cg, state),
         }
     }
 

@@ -176,6 +176,8 @@
 //! | [`formats`] | model files |
 
 pub use clench_collide as collide;
+#[cfg(feature = "derivatives")]
+pub use clench_derivatives as derivatives;
 pub use clench_formats as formats;
 pub use clench_math as math;
 pub use clench_rigid as rigid;

@@ -17,6 +17,7 @@ use crate::state_views::StateViews;
 use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
 use clench::Output;
+use clench::derivatives::Linearizer;
 use clench::math::Scalar;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -66,6 +67,8 @@ pub(crate) struct Sim {
     inner: Arc<Mutex<AnySim>>,
     model: Py<Model>,
     precision: Bits,
+    /// The memory of derivatives, created on demand.
+    linearizer: Mutex<Option<Linearizer>>,
 }
 
 impl Sim {
@@ -77,6 +80,11 @@ impl Sim {
     /// Returns a shared reference to the simulation.
     pub(crate) fn shared(&self) -> &Arc<Mutex<AnySim>> {
         &self.inner
+    }
+
+    /// Returns the memory of derivatives.
+    pub(crate) fn linearizer(&self) -> &Mutex<Option<Linearizer>> {
+        &self.linearizer
     }
 
     /// Returns the Python object of the model.
@@ -106,6 +114,7 @@ impl Sim {
             inner,
             model,
             precision,
+            linearizer: Mutex::default(),
         }))
     }
 }

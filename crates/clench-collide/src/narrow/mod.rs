@@ -73,6 +73,10 @@ macro_rules! pairs {
     };
 }
 
+/// A pointer to [`collide_again`].
+pub type Collide<T> =
+    fn(&Shape<T>, &Pose<T>, &Shape<T>, &Pose<T>, T, &mut SeparatingAxis<T>, &mut Contacts<T>);
+
 #[derive(PartialEq)]
 enum Algorithm {
     Closed,

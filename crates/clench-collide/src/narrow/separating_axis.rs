@@ -31,6 +31,13 @@ impl<T: Real> Default for SeparatingAxis<T> {
 }
 
 impl<T: Real> SeparatingAxis<T> {
+    /// Converts the direction to another number type.
+    pub(crate) fn map<U: Real>(&self, f: impl Fn(T) -> U) -> SeparatingAxis<U> {
+        let Vec3 { x, y, z } = self.direction;
+        let direction = Vec3::new(f(x), f(y), f(z));
+        SeparatingAxis { direction }
+    }
+
     /// Returns the lanes with the shapes certainly more than `margin` apart; tests bounding boxes before hulls.
     #[inline(always)]
     pub(super) fn separates(&self, a: AnyPlaced<T>, b: AnyPlaced<T>, margin: T) -> T::Mask {

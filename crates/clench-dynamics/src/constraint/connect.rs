@@ -34,9 +34,15 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
         *row = Row::new(&soft, violation[i], T::ZERO, a0[0] + a0[1]);
         row.aref -= bias[i];
     }
-    out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
-        anchors.fill_translation(context, &chains, jacobian);
-    });
+    out.push(
+        Cost::Quadratic,
+        block,
+        &rows,
+        #[inline(always)]
+        |_, jacobian| {
+            anchors.fill_translation(context, &chains, jacobian);
+        },
+    );
 }
 
 /// The anchor points of a connect or weld.

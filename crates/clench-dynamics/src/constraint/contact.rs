@@ -81,9 +81,13 @@ pub(super) fn push<T: Real>(
         impedance: soft.impedance,
     };
     contact.block = Some(out.problem.nblock());
-    out.push(cost, block, &rows[..contact.dim], |_, jacobian| {
-        fill(context, contact, bodies, &chains, jacobian);
-    });
+    out.push(
+        cost,
+        block,
+        &rows[..contact.dim],
+        #[inline(always)]
+        |_, jacobian| fill(context, contact, bodies, &chains, jacobian),
+    );
 }
 
 /// Computes the rows of a contact from its softness before and after the limit of `resolved`. Friction of an elliptic

@@ -40,12 +40,18 @@ pub(super) fn push<T: Real>(
     let violation = error(follower) - target;
     let (soft, block) = context.equality(equality, violation);
     let row = Row::new(&soft, violation, T::ZERO, a0);
-    out.push(Cost::Quadratic, block, &[row], |dofs, jacobian| {
-        follower.add_gradient(context, dofs, T::ONE, jacobian);
-        if let Some(leader) = leader {
-            leader.add_gradient(context, dofs, -slope, jacobian);
-        }
-    });
+    out.push(
+        Cost::Quadratic,
+        block,
+        &[row],
+        #[inline(always)]
+        |dofs, jacobian| {
+            follower.add_gradient(context, dofs, T::ONE, jacobian);
+            if let Some(leader) = leader {
+                leader.add_gradient(context, dofs, -slope, jacobian);
+            }
+        },
+    );
 }
 
 /// Computes P′ of tendon equality `equality` at the leading tendon's length.

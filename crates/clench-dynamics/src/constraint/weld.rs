@@ -49,11 +49,17 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
         *row = Row::new(&soft, pos, T::ZERO, a0[0] + a0[1]);
         row.aref -= bias;
     }
-    out.push(Cost::Quadratic, block, &rows, |_, jacobian| {
-        let (upper, lower) = jacobian.split_at_mut(jacobian.len() / 2);
-        anchors.fill_translation(context, &chains, upper);
-        relative.fill(context, &chains, lower);
-    });
+    out.push(
+        Cost::Quadratic,
+        block,
+        &rows,
+        #[inline(always)]
+        |_, jacobian| {
+            let (upper, lower) = jacobian.split_at_mut(jacobian.len() / 2);
+            anchors.fill_translation(context, &chains, upper);
+            relative.fill(context, &chains, lower);
+        },
+    );
 }
 
 /// Computes the torque on the first body, in world axes, of the forces f of the last three rows: Jᵀ f = R₂ s Bᵀ f, with

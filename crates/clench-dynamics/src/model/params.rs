@@ -9,7 +9,7 @@ macro_rules! params {
         /// The numbers of a model, one array per field (the index is that of the element).
         ///
         /// Units are SI; `solref` and `solimp` as in MuJoCo.
-        #[derive(Clone, Debug, Default)]
+        #[derive(Clone, Debug, Default, PartialEq)]
         pub struct Params<T> {
             $($(#[$doc])* pub $name: $kind,)*
         }

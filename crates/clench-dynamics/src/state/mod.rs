@@ -119,6 +119,19 @@ fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
     }
 }
 
+/// Converts the elements of one environment, for every lane.
+fn set_values<T: Real, K: Kind>(from: &[K::Of<f64>], to: &mut [K::Of<T>]) {
+    for (from, to) in from.iter().zip(to) {
+        for part in 0..K::WIDTH {
+            for lane in 0..T::LANES {
+                let number = K::number::<f64>(K::cell::<f64>(from, part, 0));
+                let number = K::from_number::<T::Scalar>(T::Scalar::new(number));
+                K::set_cell::<T>(to, part, lane, number);
+            }
+        }
+    }
+}
+
 /// Copies the elements of the first lane.
 fn first_lane<T: Real, K: Kind>(from: &[K::Of<T>], to: &mut [K::Of<T::Scalar>]) {
     for (from, to) in from.iter().zip(to) {
@@ -195,6 +208,12 @@ macro_rules! declare_state {
             pub fn copy_from(&mut self, other: &Self) {
                 self.time = other.time;
                 $($(copy(&other.$name, &mut self.$name);)*)*
+            }
+
+            /// Copies the numbers of a state of the same model to every lane, without derivatives.
+            pub fn set_values(&mut self, other: &State<f64>) {
+                self.time = T::Clock::splat(other.time);
+                $($(set_values::<T, kind::$kind>(&other.$name, &mut self.$name);)*)*
             }
 
             /// Copies the state of one environment, of the same model, to every lane.

@@ -102,6 +102,15 @@ impl Instructions {
             .unwrap_or(Instructions::Scalar)
     }
 
+    /// Runs a task in the widest lanes of derivatives. As in single precision, there are no scalar ones if one
+    /// instruction set was compiled.
+    ///
+    /// # Errors
+    /// Returns that instruction set if this processor lacks it.
+    pub fn with_derivatives<K: LaneTask<f64>>(task: K) -> Result<K::Output, Instructions> {
+        derivatives(Self::widest(), task).ok_or(SINGLE)
+    }
+
     /// Returns the number of lanes of type `S`.
     pub fn lanes<S: Scalar>(self) -> usize {
         let bytes = match self {
@@ -159,10 +168,10 @@ pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
 }
 
 macro_rules! in_lanes {
-    ($(#[$has_scalar:meta])* $scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
+    ($(#[$has_scalar:meta])* $name:ident $scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
         /// Runs a task in lanes of these instructions; `None` if they are not available.
         #[inline(always)]
-        pub(crate) fn $scalar<K: LaneTask<$scalar>>(
+        pub(crate) fn $name<K: LaneTask<$scalar>>(
             instructions: Instructions,
             task: K,
         ) -> Option<K::Output> {
@@ -183,8 +192,12 @@ macro_rules! in_lanes {
         }
     };
 }
-in_lanes!(f64: 2 4 8);
+in_lanes!(f64 f64: 2 4 8);
 in_lanes!(
     #[cfg(single = "scalar")]
-    f32: 4 8 16
+    f32 f32: 4 8 16
+);
+in_lanes!(
+    #[cfg(single = "scalar")]
+    derivatives f64: 2 4 8
 );

@@ -141,11 +141,23 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Neg for Lanes<S, N, I> {
 
 impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
     type Scalar = S;
+    type Value = Self;
     type Mask = LaneMask<S, N, I>;
     type Clock = [f64; N];
     const LANES: usize = N;
     const ZERO: Self = Lanes(I::ZERO);
     const ONE: Self = Lanes(I::ONE);
+
+    #[inline(always)]
+    fn value(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn set_value(&mut self, value: Self) {
+        *self = value;
+    }
+    #[inline(always)]
+    fn map_tangents(_: &mut [Self], _: &mut Vec<Self>, _: impl FnMut(&mut [Self])) {}
 
     #[inline(always)]
     fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {

@@ -8,7 +8,8 @@ mod tendon_forces;
 
 use clench_dynamics::readings::BodyForces;
 pub(crate) use forces::{each_joint_of_bodies, of_contact};
-pub(crate) use source::Source;
+#[doc(hidden)]
+pub use source::Source;
 
 use crate::sensor::bodies::update as update_body_forces;
 use crate::validity::Computed;
@@ -52,7 +53,8 @@ macro_rules! outputs {
             }
 
             /// Appends its numbers to `out`.
-            pub(crate) fn read<T: Real>(self, $s: &mut Source<T>, $out: &mut Vec<T>) {
+            #[doc(hidden)]
+            pub fn read<T: Real>(self, $s: &mut Source<T>, $out: &mut Vec<T>) {
                 match self { $(Output::$name => $read,)* }
             }
         }

@@ -24,7 +24,7 @@ impl<T: Precision> Sim<T> {
         if let Some(start) = start {
             check_values("start", start, self.model().nq)?;
         }
-        self.check_present()?;
+        self.check_state()?;
         let mut search = Search::new(self.model(), ik);
         search.state.splat_from(&self.state);
         for lane in 0..T::Alone::LANES {

@@ -87,7 +87,7 @@ use kinds;
 
 /// Evaluates all sensors of the model if they are read now or later.
 #[kernel]
-pub(crate) fn evaluate<T: Real>(
+pub fn evaluate<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,

@@ -13,7 +13,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`step`](Self::step).
     pub fn step1(&mut self) -> Result<(), SimError> {
-        self.check_present()?;
+        self.check_state()?;
         self.on_threads(|model, params, settings, state, ws| {
             T::before_forces(model, params, settings, state, ws);
         });
@@ -34,7 +34,7 @@ impl<T: Precision> Sim<T> {
             return self.step();
         }
         self.halfway = false;
-        self.check_present()?;
+        self.check_state()?;
         self.last_good.copy_moving_from(&self.state);
         self.on_threads(T::step_from_forces);
         let result = self.check_result(self.last_good.time);

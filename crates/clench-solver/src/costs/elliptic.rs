@@ -103,6 +103,10 @@ impl<T: Real> BlockCost<T> for Elliptic {
         force[0] = normal;
         for j in 1..rows.d.len() {
             force[j] = slip * zone.slip.u[j] * rows.shape[j];
+            if T::IS_DUAL {
+                // Without slip there is no direction u, but friction has derivatives.
+                force[j] = T::select(zone.bottom, -(rows.d[j] * y[j]), force[j]);
+            }
         }
         totals.cost += zone.cost();
         totals.curved |= zone.middle;

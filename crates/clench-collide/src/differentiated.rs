@@ -1,0 +1,191 @@
+//! Contact points of shapes that move, in dual numbers.
+//!
+//! Contacts are found in plain numbers first, so pairs that do not touch cost no more than without derivatives. Those
+//! of a pair that touches are computed once more in dual numbers of fixed directions: the translation of one shape
+//! relative to the other, the rotation of each, and the sizes of both. The chain rule does the rest. Faces, edges and
+//! vertices of polyhedra are differentiated as the features that they are, curved surfaces with their curvature.
+
+use crate::{Collide, Contacts, Pose, SeparatingAxis, Shape, collide_again};
+use clench_math::{Dual, Mask, Mat3, Real, Scalar, Vec3, kernel};
+use std::cell::Cell;
+
+/// The number of directions, three of each kind.
+const DIRECTIONS: usize = 15;
+/// The first direction of each kind.
+const TRANSLATION: usize = 0;
+const ROTATIONS: [usize; 2] = [3, 6];
+const SIZES: [usize; 2] = [9, 12];
+
+/// A number with its derivatives by the poses and sizes of two shapes.
+type PairDual = Dual<f64, DIRECTIONS>;
+
+/// Computes the same as [`collide_again`] in dual numbers. `collide` is [`collide_again`] in plain numbers.
+#[kernel]
+pub(crate) fn collide_differentiated<T: Real>(
+    collide: Collide<f64>,
+    (shapes, poses): ([&Shape<T>; 2], [&Pose<T>; 2]),
+    margin: T,
+    axis: &mut SeparatingAxis<T>,
+    out: &mut Contacts<T>,
+) {
+    out.clear();
+    let margin = f64_of(margin);
+    let mut plain_axis = axis.map(f64_of);
+    let mut plain = Contacts::<f64>::new();
+    let [plain_a, plain_b] = shapes.map(|shape| shape.resized(map(shape.size(), f64_of)));
+    let [at_a, at_b] = poses.map(|pose| pose.map(f64_of));
+    collide(
+        &plain_a,
+        &at_a,
+        &plain_b,
+        &at_b,
+        margin,
+        &mut plain_axis,
+        &mut plain,
+    );
+    *axis = plain_axis.map(T::new);
+    if plain.as_slice().is_empty() {
+        return;
+    }
+    // The changes along the directions: numbers whose value is zero.
+    let change = |v: Vec3<T>| v - map(v, |x| T::from_value(x.value()));
+    let moved = change(poses[0].position);
+    let changes = [
+        change(poses[1].position) - moved,
+        turn(&poses[0].rotation),
+        turn(&poses[1].rotation),
+        change(shapes[0].size()),
+        change(shapes[1].size()),
+    ];
+    let changes: [T; DIRECTIONS] = std::array::from_fn(|k| changes[k / 3].to_array()[k % 3]);
+    let mut points = POINTS.take().unwrap_or_default();
+    find(&[plain_a, plain_b], &[at_a, at_b], margin, &mut points);
+    for point in points.as_slice() {
+        let slot = out.slot(out.as_slice().len());
+        let [normal, tangent, _] = point.frame.rows;
+        let [normal, tangent] = [chain(&changes, normal), chain(&changes, tangent)];
+        slot.position = chain(&changes, point.position) + moved;
+        slot.frame = Mat3::from_rows(normal, tangent, normal.cross(tangent));
+        slot.distance = chain_number(&changes, &point.distance);
+        slot.active = T::Mask::splat(point.active);
+    }
+    POINTS.set(Some(points));
+}
+
+/// Returns a vector that changes by the change of each direction.
+#[inline(always)]
+fn chain<T: Real>(changes: &[T; DIRECTIONS], v: Vec3<PairDual>) -> Vec3<T> {
+    Vec3 {
+        x: chain_number(changes, &v.x),
+        y: chain_number(changes, &v.y),
+        z: chain_number(changes, &v.z),
+    }
+}
+
+#[inline(always)]
+fn chain_number<T: Real>(changes: &[T; DIRECTIONS], x: &PairDual) -> T {
+    let mut number = T::new(x.value);
+    for (&change, &slope) in changes.iter().zip(&x.tangent) {
+        number += change.scale(slope);
+    }
+    number
+}
+
+thread_local! {
+    /// Too large to be created for each pair.
+    static POINTS: Cell<Option<Box<Contacts<PairDual>>>> = Cell::default();
+}
+
+/// Computes the contact points of two shapes with their derivatives.
+fn find(
+    shapes: &[Shape<f64>; 2],
+    poses: &[Pose<f64>; 2],
+    margin: f64,
+    points: &mut Contacts<PairDual>,
+) {
+    let [a, b] = [0, 1].map(|k| shapes[k].resized(seeded(shapes[k].size(), SIZES[k])));
+    let [pose_a, pose_b] = [0, 1].map(|k| {
+        let Pose { position, rotation } = &poses[k];
+        // Only the second shape translates.
+        let position = match k {
+            0 => map(*position, PairDual::new),
+            _ => seeded(*position, TRANSLATION),
+        };
+        Pose {
+            position,
+            rotation: turning(rotation, ROTATIONS[k]),
+        }
+    });
+    let mut axis = SeparatingAxis::default();
+    let margin = PairDual::new(margin);
+    collide_again(&a, &pose_a, &b, &pose_b, margin, &mut axis, points);
+}
+
+/// Returns the value of a number. (Dual numbers have one lane.)
+#[inline(always)]
+fn f64_of<T: Real>(x: T) -> f64 {
+    x.lane(0).to_f64()
+}
+
+#[inline(always)]
+fn map<T, U>(v: Vec3<T>, f: impl Fn(T) -> U) -> Vec3<U> {
+    Vec3 {
+        x: f(v.x),
+        y: f(v.y),
+        z: f(v.z),
+    }
+}
+
+impl<T: Real> Pose<T> {
+    fn map<U: Real>(&self, f: impl Fn(T) -> U + Copy) -> Pose<U> {
+        Pose {
+            position: map(self.position, f),
+            rotation: Mat3 {
+                rows: self.rotation.rows.map(|row| map(row, f)),
+            },
+        }
+    }
+}
+
+/// Returns numbers that change along three directions from `first` on.
+fn seeded(v: Vec3<f64>, first: usize) -> Vec3<PairDual> {
+    let mut v = map(v, PairDual::new);
+    v.x.tangent[first] = 1.0;
+    v.y.tangent[first + 1] = 1.0;
+    v.z.tangent[first + 2] = 1.0;
+    v
+}
+
+/// Returns a rotation that turns about the axes of the world, along three directions from `first` on.
+fn turning(rotation: &Mat3<f64>, first: usize) -> Mat3<PairDual> {
+    let mut rows = rotation.rows.map(|row| map(row, PairDual::new));
+    for column in 0..3 {
+        let axis = rotation.column(column);
+        for direction in 0..3 {
+            let mut unit = [0.0; 3];
+            unit[direction] = 1.0;
+            let rate = Vec3::from_array(unit).cross(axis).to_array();
+            for (row, rate) in rows.iter_mut().zip(rate) {
+                let entry = match column {
+                    0 => &mut row.x,
+                    1 => &mut row.y,
+                    _ => &mut row.z,
+                };
+                entry.tangent[first + direction] = rate;
+            }
+        }
+    }
+    Mat3 { rows }
+}
+
+/// Returns the rotation vector of the change of a rotation, with the value zero.
+#[inline(always)]
+fn turn<T: Real>(rotation: &Mat3<T>) -> Vec3<T> {
+    let mut sum = Vec3::ZERO;
+    for column in 0..3 {
+        let axis = rotation.column(column);
+        let fixed = map(axis, |x| T::from_value(x.value()));
+        sum = sum + fixed.cross(axis - fixed);
+    }
+    sum * T::new(0.5)
+}

@@ -1,0 +1,18 @@
+//! Exact derivatives of a step.
+//!
+//! A [`Linearizer`] runs the step in [dual numbers](clench_math::Dual), several directions at a time. Every kernel of
+//! the step is generic over its number type, so no physics is written here, and every feature of the step has
+//! derivatives. The solution of the convex problem is differentiated by the implicit function theorem, with the Hessian
+//! that Newton's method factors.
+//!
+//! The derivative of a constraint that switches (a contact that begins, a limit that is reached) is that of the active
+//! side.
+
+#![deny(unreachable_pub, unsafe_code)]
+
+mod direction;
+mod linearizer;
+mod pass;
+mod tangent;
+
+pub use linearizer::{Linearization, Linearizer, Matrix, Request};

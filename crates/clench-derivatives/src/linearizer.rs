@@ -1,0 +1,163 @@
+//! The matrices of a linearized step.
+
+use crate::direction::{self, Direction};
+use crate::pass::{CreatePass, Pass, Source};
+use clench_dynamics::model::{Model, ParamField, Params};
+use clench_math::Instructions;
+use clench_rigid::{Output, Sim, SimError};
+use std::fmt;
+
+/// Results to differentiate in addition to the next state and the sensors, and inputs to differentiate by in addition to
+/// state and controls.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// Outputs that follow the sensors in y.
+    pub outputs: Vec<Output>,
+    /// Numbers of parameters: a field, and the index in its numbers, element after element.
+    pub parameters: Vec<(ParamField, usize)>,
+}
+
+/// A row-major matrix.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Matrix {
+    /// The number of rows and of columns.
+    pub shape: [usize; 2],
+    /// The numbers, row after row.
+    pub values: Vec<f64>,
+}
+
+impl Matrix {
+    fn reset(&mut self, shape: [usize; 2]) {
+        self.shape = shape;
+        self.values.clear();
+        self.values.resize(shape[0] * shape[1], 0.0);
+    }
+}
+
+/// The linear model of a step about a state:
+///
+/// ```text
+/// dx⁺ = A dx + B du + E dp
+/// dy  = C dx + D du + F dp
+/// ```
+///
+/// x holds the motion of the positions along the dofs (nv; rotations about the axes of the child, rad), then the
+/// velocities (nv) and the activations (na). u holds the controls (nu), p the chosen parameters. y holds the sensors
+/// (nsensordata), then the chosen outputs, both of the state before the step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Linearization {
+    /// ∂x⁺/∂x.
+    pub a: Matrix,
+    /// ∂x⁺/∂u.
+    pub b: Matrix,
+    /// ∂y/∂x.
+    pub c: Matrix,
+    /// ∂y/∂u.
+    pub d: Matrix,
+    /// ∂x⁺/∂p.
+    pub e: Matrix,
+    /// ∂y/∂p.
+    pub f: Matrix,
+}
+
+/// Computes the derivatives of steps of a model, and reuses its memory.
+pub struct Linearizer {
+    pass: Box<dyn Pass>,
+    /// The parameters of the last passes.
+    params: Params<f64>,
+    directions: Vec<Direction>,
+    /// All derivatives, one row for each number of x⁺ and y, one column for each direction.
+    all: Vec<f64>,
+    result: Linearization,
+}
+
+impl fmt::Debug for Linearizer {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Linearizer").finish_non_exhaustive()
+    }
+}
+
+impl Linearizer {
+    /// Creates memory for the derivatives of a simulation.
+    ///
+    /// # Errors
+    /// Returns an error if the processor lacks the compiled instructions.
+    pub fn new(model: &Model) -> Result<Self, SimError> {
+        let pass = Instructions::with_derivatives(CreatePass { model });
+        Ok(Linearizer {
+            pass: pass.map_err(SimError::Instructions)?,
+            params: model.params.clone(),
+            directions: Vec::new(),
+            all: Vec::new(),
+            result: Linearization::default(),
+        })
+    }
+
+    /// Linearizes the next step of a simulation of the model, whose state does not change.
+    ///
+    /// # Errors
+    /// Returns an error if [`Sim::step`] would return one.
+    ///
+    /// # Panics
+    /// Panics if the simulation has another model, or if a parameter does not have a requested number.
+    pub fn linearize(
+        &mut self,
+        sim: &Sim<f64>,
+        request: &Request,
+    ) -> Result<&Linearization, SimError> {
+        sim.check_state()?;
+        if self.params != *sim.params() {
+            self.params.clone_from(sim.params());
+            self.pass.set_params(&self.params);
+        }
+        let source = Source {
+            model: sim.model(),
+            settings: sim.settings(),
+            state: &sim.state,
+            outputs: &request.outputs,
+        };
+        direction::list(source.model, &request.parameters, &mut self.directions);
+        let columns = self.directions.len();
+        let count = self.pass.directions();
+        self.all.clear();
+        for (pass, directions) in self.directions.chunks(count).enumerate() {
+            self.pass.run(source, directions, &mut |row, values| {
+                let start = row * columns + pass * count;
+                if self.all.len() < (row + 1) * columns {
+                    self.all.resize((row + 1) * columns, 0.0);
+                }
+                self.all[start..start + values.len()].copy_from_slice(values);
+            })?;
+        }
+        self.split(sim.model(), request.parameters.len());
+        Ok(&self.result)
+    }
+
+    /// Copies the derivatives into the matrices.
+    fn split(&mut self, model: &Model, np: usize) {
+        let (nx, nu) = (2 * model.nv + model.na, model.nu());
+        let columns = nx + nu + np;
+        let ny = self.all.len().checked_div(columns).unwrap_or(nx) - nx;
+        let Linearization { a, b, c, d, e, f } = &mut self.result;
+        let mut rows = self.all.chunks_exact(columns.max(1));
+        for (rows_of, matrices) in [(nx, [a, b, e]), (ny, [c, d, f])] {
+            let [by_state, by_control, by_parameter] = matrices;
+            by_state.reset([rows_of, nx]);
+            by_control.reset([rows_of, nu]);
+            by_parameter.reset([rows_of, np]);
+            for row in 0..rows_of {
+                let Some(values) = rows.next() else { break };
+                let (state, rest) = values.split_at(nx);
+                let (control, parameter) = rest.split_at(nu);
+                for (matrix, part) in [
+                    (&mut *by_state, state),
+                    (by_control, control),
+                    (by_parameter, parameter),
+                ] {
+                    let width = part.len();
+                    matrix.values[row * width..][..width].copy_from_slice(part);
+                }
+            }
+        }
+    }
+}

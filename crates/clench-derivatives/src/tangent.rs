@@ -1,0 +1,69 @@
+//! Derivatives of positions in the tangent space: one number a dof, with rotations about the axes of the child.
+
+use clench_dynamics::Model;
+use clench_dynamics::model::JointKind;
+use clench_math::{Dual, Quat, Real};
+
+/// Sets the derivative of `qpos` along a dof in one direction.
+pub(crate) fn move_along<L: Real<Scalar = f64>, const K: usize>(
+    model: &Model,
+    dof: usize,
+    direction: usize,
+    qpos: &mut [Dual<L, K>],
+) {
+    let joint = &model.joints[model.joints.partition_point(|joint| joint.dof <= dof) - 1];
+    let (q, k) = (joint.qpos, dof - joint.dof);
+    let (q, axis) = match joint.kind {
+        JointKind::Ball => (q, k),
+        JointKind::Free if k >= 3 => (q + 3, k - 3),
+        JointKind::Free | JointKind::Slide | JointKind::Hinge => {
+            qpos[q + k].set_derivative(direction, 1.0);
+            return;
+        }
+    };
+    // d/dε q exp(ε e / 2) = ½ q e.
+    let mut half = [0.0; 4];
+    half[1 + axis] = 0.5;
+    let rate = quaternion(&qpos[q..]) * Quat::from_f64(half);
+    for (x, rate) in qpos[q..].iter_mut().zip(rate.to_array()) {
+        x.set_derivative(direction, rate);
+    }
+}
+
+/// Passes the derivatives of each dof of the positions to `write`.
+pub(crate) fn each_motion<L: Real<Scalar = f64>, const K: usize>(
+    model: &Model,
+    qpos: &[Dual<L, K>],
+    mut write: impl FnMut(&[f64]),
+) {
+    for joint in &model.joints {
+        let (translation, rotation) = match joint.kind {
+            JointKind::Slide | JointKind::Hinge => (1, false),
+            JointKind::Ball => (0, true),
+            JointKind::Free => (3, true),
+        };
+        let (moved, turned) = qpos[joint.qpos..].split_at(translation);
+        for x in moved {
+            write(L::as_scalars(&x.tangent));
+        }
+        if rotation {
+            // 2 Im(q⁻¹ dq), linear in dq.
+            let inverse = quaternion(turned).conjugate();
+            for axis in 1..4 {
+                let mut motion = Dual::<L, K>::ZERO;
+                for (part, &x) in turned[..4].iter().enumerate() {
+                    let mut unit = [0.0; 4];
+                    unit[part] = 2.0;
+                    let slope = (inverse * Quat::from_f64(unit)).to_array()[axis];
+                    motion += x.scale(slope);
+                }
+                write(L::as_scalars(&motion.tangent));
+            }
+        }
+    }
+}
+
+/// Returns the values of a quaternion.
+fn quaternion<L: Real<Scalar = f64>, const K: usize>(q: &[Dual<L, K>]) -> Quat<f64> {
+    Quat::new(q[0].value, q[1].value, q[2].value, q[3].value)
+}
