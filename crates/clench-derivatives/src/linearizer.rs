@@ -7,8 +7,8 @@ use clench_math::Instructions;
 use clench_rigid::{Output, Sim, SimError};
 use std::fmt;
 
-/// Results to differentiate in addition to the next state and the sensors, and inputs to differentiate by in addition to
-/// state and controls.
+/// Results to differentiate besides the next state and the sensors, and inputs to differentiate by besides state and
+/// controls.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// Outputs that follow the sensors in y.

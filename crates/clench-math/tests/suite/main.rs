@@ -1,6 +1,7 @@
 //! Tests of numbers through the crate's public API, in one program so that their generic code is compiled once.
 
 mod chain;
+mod dual;
 mod elementary;
 mod geometry;
 mod kernel;

@@ -1,0 +1,323 @@
+//! Compares the derivatives of steps with central differences.
+
+use clench_derivatives::{Linearizer, Matrix, Request};
+use clench_dynamics::dynamics::integrate::{differentiate_positions, integrate_positions};
+use clench_dynamics::model::ParamField;
+use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
+use clench_rigid::{Model, Sim, State};
+use clench_solver::ConstraintSolver;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The largest difference from the exact derivative, relative to 1 + its magnitude.
+const TOLERANCE: f64 = 1e-6;
+/// The largest share of entries whose differences disagree, because a constraint switches within the interval.
+const SWITCHING: f64 = 0.05;
+
+/// Random numbers in [−1, 1].
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = (self.0)
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 33) as f64 / f64::from(1 << 30) - 1.0
+    }
+}
+
+/// A simulation and the differences of its steps.
+struct Differences {
+    sim: Sim<f64>,
+    from: State<f64>,
+}
+
+impl Differences {
+    /// Starts from a state after some steps under random controls.
+    fn new(model: Arc<Model>, options: RigidOptions, steps: usize) -> Self {
+        // The differences are as accurate as the solutions.
+        let options = options.tolerance(0.0).iterations(100);
+        let mut sim = Sim::with_options(model, options).expect("a simulation");
+        let mut random = Random(1);
+        for step in 0..steps {
+            if step % 10 == 0 {
+                for control in &mut sim.state.ctrl {
+                    *control = 0.5 * random.next();
+                }
+            }
+            sim.step().expect("a step");
+        }
+        let from = sim.state.clone();
+        Differences { sim, from }
+    }
+
+    /// Returns x⁺ and y, each position as the motion from that of the step without changes, `to`.
+    fn step(&mut self, to: &[f64], change: impl FnOnce(&mut Sim<f64>)) -> Vec<f64> {
+        self.sim.state.copy_from(&self.from);
+        change(&mut self.sim);
+        self.sim.step().expect("a step");
+        let (model, state) = (self.sim.model(), &self.sim.state);
+        let mut result = vec![0.0; model.nv];
+        differentiate_positions(model, to, &state.qpos, 1.0, &mut result);
+        result.extend(state.qvel.iter().chain(&state.act));
+        result.extend(&self.sim.workspace().sensors.data);
+        result
+    }
+
+    /// Returns the central difference of two steps, and its error as far as it is known: that of a wider interval.
+    fn column(&mut self, h: f64, change: impl Fn(&mut Sim<f64>, f64)) -> Vec<(f64, f64)> {
+        self.sim.state.copy_from(&self.from);
+        self.sim.step().expect("a step");
+        let to = self.sim.state.qpos.clone();
+        let mut central = |h: f64| -> Vec<f64> {
+            let ahead = self.step(&to, |sim| change(sim, h));
+            let behind = self.step(&to, |sim| change(sim, -h));
+            let pairs = ahead.iter().zip(&behind);
+            pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect()
+        };
+        let (wide, narrow) = (central(h), central(0.5 * h));
+        let pairs = wide.iter().zip(&narrow);
+        // Richardson's extrapolation.
+        pairs
+            .map(|(w, n)| ((4.0 * n - w) / 3.0, (w - n).abs()))
+            .collect()
+    }
+
+    /// Compares a column of two matrices, one over the other.
+    fn compare(
+        &mut self,
+        of: [&Matrix; 2],
+        column: usize,
+        change: impl Fn(&mut Sim<f64>, f64),
+    ) -> usize {
+        let exact = of.map(|matrix| {
+            let rows = matrix.values.chunks_exact(matrix.shape[1].max(1));
+            rows.map(|row| row[column]).collect::<Vec<_>>()
+        });
+        let exact = exact.concat();
+        let differences = self.column(1e-5, change);
+        assert_eq!(exact.len(), differences.len());
+        let mut switching = 0;
+        for (row, (&exact, (difference, error))) in exact.iter().zip(differences).enumerate() {
+            let scale = 1.0 + difference.abs();
+            if error > 1e-4 * scale {
+                switching += 1;
+                continue;
+            }
+            assert!(
+                (exact - difference).abs() <= TOLERANCE * scale + error,
+                "row {row}, column {column}: {exact} exactly, {difference} by differences (error {error:.1e})"
+            );
+        }
+        switching
+    }
+}
+
+/// Compares all derivatives by state and controls.
+fn check(model: Model, options: RigidOptions, steps: usize) {
+    let mut differences = Differences::new(Arc::new(model), options, steps);
+    let mut linearizer = Linearizer::new(differences.sim.model()).expect("lanes of this processor");
+    let request = Request::default();
+    let result = linearizer.linearize(&differences.sim, &request);
+    let result = result.expect("derivatives").clone();
+    let model = differences.sim.model().clone();
+    let (nv, na) = (model.nv, model.na);
+    let mut switching = 0;
+    for dof in 0..nv {
+        switching += differences.compare([&result.a, &result.c], dof, |sim, h| {
+            let mut velocity = vec![0.0; nv];
+            velocity[dof] = h;
+            integrate_positions(&model, &mut sim.state.qpos, &velocity, 1.0);
+        });
+        switching += differences.compare([&result.a, &result.c], nv + dof, |sim, h| {
+            sim.state.qvel[dof] += h;
+        });
+    }
+    for a in 0..na {
+        switching += differences.compare([&result.a, &result.c], 2 * nv + a, |sim, h| {
+            sim.state.act[a] += h;
+        });
+    }
+    for u in 0..model.nu() {
+        switching += differences.compare([&result.b, &result.d], u, |sim, h| {
+            sim.state.ctrl[u] += h;
+        });
+    }
+    let all = (result.a.values.len() + result.b.values.len()) as f64;
+    let limit = (SWITCHING * all) as usize;
+    assert!(switching <= limit, "{switching} of {all} entries switch");
+}
+
+fn load(name: &str) -> Model {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    clench_formats::load(models.join(name)).expect("a model of the repository")
+}
+
+fn elliptic() -> RigidOptions {
+    RigidOptions::new().friction_cone(FrictionCone::Elliptic)
+}
+
+#[test]
+fn robots_in_contact() {
+    check(load("humanoid.xml"), RigidOptions::new(), 100);
+    check(load("humanoid.xml"), elliptic(), 100);
+    check(load("quadruped.xml"), RigidOptions::new(), 100);
+    check(load("arm_and_box.xml"), RigidOptions::new(), 100);
+}
+
+#[test]
+fn coulomb_friction_sticks_and_slides() {
+    let coulomb = RigidOptions::new().contact_model(ContactModel::Coulomb);
+    check(load("humanoid.xml"), coulomb, 100);
+    check(load("rolling_sphere.xml"), coulomb, 100);
+    check(load("quadruped.xml"), coulomb.stiction(true), 100);
+}
+
+#[test]
+fn other_constraints() {
+    check(load("four_bar.xml"), RigidOptions::new(), 100);
+    check(load("geared_pair.xml"), RigidOptions::new(), 100);
+    check(load("toggled_weld.xml"), RigidOptions::new(), 50);
+    check(load("suction_gripper.xml"), RigidOptions::new(), 50);
+    check(load("rolling_sphere.xml"), RigidOptions::new(), 100);
+}
+
+#[test]
+fn other_solvers() {
+    let cg = RigidOptions::new().constraint_solver(ConstraintSolver::Cg);
+    check(load("quadruped.xml"), cg, 100);
+    check(
+        load("arm_and_box.xml"),
+        elliptic().noslip_iterations(3),
+        100,
+    );
+}
+
+/// Two links with a ball joint, springs, a tendon and several actuators, near a plane.
+fn mixed(integrator: &str) -> Model {
+    let text = format!(
+        r#"<mujoco>
+          <option integrator="{integrator}" timestep="0.004" density="1.2" viscosity="0.1"/>
+          <worldbody>
+            <geom type="plane" size="2 2 .1"/>
+            <body pos="0 0 .35">
+              <joint name="a" type="ball" damping=".1" stiffness=".2"/>
+              <geom type="capsule" fromto="0 0 0 .2 0 -.1" size=".03"/>
+              <site name="s" pos=".1 0 0"/>
+              <body pos=".2 0 -.1">
+                <joint name="b" axis="0 1 0" damping=".05" armature=".01" frictionloss=".02" range="-60 20"/>
+                <geom type="ellipsoid" pos=".1 0 -.1" size=".1 .05 .04"/>
+                <site name="t" pos=".1 0 .05"/>
+              </body>
+            </body>
+          </worldbody>
+          <tendon>
+            <spatial name="rope" stiffness="3" damping=".1"><site site="s"/><site site="t"/></spatial>
+          </tendon>
+          <actuator>
+            <position joint="b" kp="2" kv=".1"/>
+            <muscle tendon="rope" lengthrange=".05 .3"/>
+            <general tendon="rope" dyntype="filter" dynprm=".05" gainprm="2"/>
+          </actuator>
+          <sensor>
+            <framequat objtype="site" objname="t"/>
+            <accelerometer site="t"/>
+            <tendonvel tendon="rope"/>
+            <force site="t"/>
+          </sensor>
+        </mujoco>"#
+    );
+    clench_formats::load_str(&text).expect("a model")
+}
+
+#[test]
+fn integrators() {
+    for integrator in ["Euler", "implicitfast", "implicit", "RK4", "discrete"] {
+        check(mixed(integrator), RigidOptions::new(), 40);
+    }
+}
+
+/// Rotations have no axis at rest.
+#[test]
+fn joints_at_rest() {
+    let text = r#"<mujoco>
+      <worldbody>
+        <body pos="0 0 1">
+          <freejoint/>
+          <geom type="box" size=".1 .2 .3"/>
+          <body pos="0 0 -.3">
+            <joint type="ball" stiffness="2" damping=".1" pos="0 0 .1"/>
+            <geom type="capsule" fromto="0 0 0 0 0 -.3" size=".03"/>
+          </body>
+        </body>
+      </worldbody>
+    </mujoco>"#;
+    let model = clench_formats::load_str(text).expect("a model");
+    check(model, RigidOptions::new(), 0);
+}
+
+#[test]
+fn parameters() {
+    let fields = [
+        "body_mass",
+        "body_ipos",
+        "dof_damping",
+        "dof_frictionloss",
+        "geom_friction",
+        "geom_size",
+        "geom_solref",
+        "actuator_gainprm",
+        "gravity",
+    ];
+    let mut differences = Differences::new(Arc::new(load("quadruped.xml")), elliptic(), 100);
+    let sim = &differences.sim;
+    let mut parameters = Vec::new();
+    for name in fields {
+        let field = ParamField::find(name).expect("a parameter");
+        let count: usize = field.shape(sim.model()).iter().product();
+        let values = sim.param(name).expect("a parameter");
+        // A mass of zero could not decrease.
+        let numbers = (0..count)
+            .step_by(7)
+            .filter(|&number| values[number] != 0.0);
+        parameters.extend(numbers.map(|number| (field, number)));
+    }
+    let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
+    let request = Request {
+        parameters: parameters.clone(),
+        ..Request::default()
+    };
+    let result = linearizer
+        .linearize(sim, &request)
+        .expect("derivatives")
+        .clone();
+    for (column, (field, number)) in parameters.into_iter().enumerate() {
+        let base = differences.sim.param(field.name()).expect("a parameter");
+        differences.compare([&result.e, &result.f], column, |sim, h| {
+            let mut values = base.clone();
+            values[number] += h;
+            sim.set_param(field.name(), &values)
+                .expect("a valid parameter");
+        });
+        let reset = differences.sim.set_param(field.name(), &base);
+        reset.expect("a valid parameter");
+    }
+}
+
+#[test]
+fn derivatives_depend_on_the_state_alone() {
+    let mut differences =
+        Differences::new(Arc::new(load("humanoid.xml")), RigidOptions::new(), 100);
+    let sim = &mut differences.sim;
+    let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
+    let first = linearizer
+        .linearize(sim, &Request::default())
+        .expect("derivatives")
+        .clone();
+    // The state does not change, and the same state gives the same derivatives.
+    assert_eq!(sim.state, differences.from);
+    let again = linearizer
+        .linearize(sim, &Request::default())
+        .expect("derivatives");
+    assert_eq!(&first, again);
+}
