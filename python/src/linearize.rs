@@ -1,33 +1,37 @@
 //! Exact derivatives of a step.
 
+use crate::batch::{AnyBatch, Batch};
 use crate::busy::lock;
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
 use crate::sim::Sim;
 use clench::Output;
-use clench::derivatives::{Linearizer, Matrix, Request};
+use clench::derivatives::{self, BatchLinearizer, Linearizer, Matrix, Request};
 use clench::rigid::model::ParamField;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
+use std::ops::Range;
+use std::slice::from_ref;
 
 /// The linear model of a step about a state: x⁺ changes by A dx + B du, y by C dx + D du.
 ///
 /// x holds the motion of the positions along the dofs (nv; rotations about the axes of the child, rad), then the
 /// velocities (nv) and the activations (na). u holds the controls (nu). y holds the sensors (nsensordata), then the
-/// outputs that were asked for, row after row, of the state before the step.
+/// outputs that were asked for, row after row, of the state before the step. The matrices of a batch are stacked, (n,
+/// rows, columns).
 #[pyclass(frozen, get_all, module = "clench")]
 #[allow(non_snake_case)] // Named as in control theory.
 pub(crate) struct Linearization {
     /// numpy.ndarray : ∂x⁺/∂x.
-    A: Py<PyArray2<f64>>,
+    A: Py<PyArrayDyn<f64>>,
     /// numpy.ndarray : ∂x⁺/∂u.
-    B: Py<PyArray2<f64>>,
+    B: Py<PyArrayDyn<f64>>,
     /// numpy.ndarray : ∂y/∂x.
-    C: Py<PyArray2<f64>>,
+    C: Py<PyArrayDyn<f64>>,
     /// numpy.ndarray : ∂y/∂u.
-    D: Py<PyArray2<f64>>,
+    D: Py<PyArrayDyn<f64>>,
     /// dict[str, numpy.ndarray] : ∂x⁺/∂p by parameter, with a column for each of its numbers that was asked for.
     parameters: Py<PyDict>,
     /// dict[str, numpy.ndarray] : ∂y/∂p, likewise.
@@ -39,8 +43,8 @@ impl Sim {
     /// Computes the exact derivatives of the next step, like MuJoCo's ``mjd_transitionFD`` without finite differences.
     ///
     /// Every feature of a step has derivatives: contacts that move, all cones, equalities, actuators, fluids,
-    /// integrators, noslip. Where a constraint switches, the derivative is that of the active side. The state does not
-    /// change.
+    /// integrators, noslip. The derivative of a constraint that switches is that of the active side. Derivatives are
+    /// computed in double precision. The state does not change.
     ///
     /// Parameters
     /// ----------
@@ -59,7 +63,7 @@ impl Sim {
     /// Raises
     /// ------
     /// ValueError
-    ///     If a name is unknown, a parameter follows from another, or the simulation has single precision.
+    ///     If a name is unknown, or a parameter follows from another.
     /// IndexError
     ///     If a parameter does not have a number.
     /// SimulationError
@@ -74,100 +78,182 @@ impl Sim {
     /// ...     "<actuator><motor joint='x'/></actuator></mujoco>"))
     /// >>> sim.linearize().B.tolist()
     /// [[5e-05], [0.005]]
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None))]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None),
+           text_signature = "(outputs=(), parameters=None)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
-        let outputs = outputs.iter().map(|name| Output::find(name));
-        let outputs = outputs.collect::<Result<_, _>>().map_err(sim_error)?;
-        let fields = self.chosen_numbers(parameters)?;
-        let parameters = fields.iter().flat_map(|(field, numbers)| {
-            let field = *field;
-            numbers.iter().map(move |&number| (field, number))
-        });
-        let request = Request {
-            outputs,
-            parameters: parameters.collect(),
-        };
+        let chosen = Chosen::new(self.described(), &outputs, parameters)?;
         let mut linearizer = lock(self.linearizer(), "simulation")?;
-        let guard = lock(self.inner(), "simulation")?;
-        let AnySim::F64(own) = &*guard else {
+        let mut guard = lock(self.inner(), "simulation")?;
+        let (memory, sim, request) = (&mut *linearizer, &mut *guard, &chosen.request);
+        let result = py.detach(move || {
+            let double;
+            let sim = match sim {
+                AnySim::F64(own) => &*own.current()?,
+                AnySim::F32(own) => {
+                    double = own.current()?.in_double_precision()?;
+                    &double
+                }
+            };
+            let linearizer = match memory {
+                Some(linearizer) => linearizer,
+                empty => empty.insert(Linearizer::new(sim.model())?),
+            };
+            linearizer.linearize(sim, request)
+        });
+        chosen.export(py, from_ref(result.map_err(sim_error)?), &[])
+    }
+}
+
+#[pymethods]
+impl Batch {
+    /// Computes the exact derivatives of the next step of every environment; see `Sim.linearize`.
+    ///
+    /// Parameters
+    /// ----------
+    /// outputs : sequence of str
+    ///     Outputs that follow the sensors in y.
+    /// parameters : sequence of str, or mapping of str to sequence of int
+    ///     Parameters to differentiate by.
+    ///
+    /// Returns
+    /// -------
+    /// Linearization
+    ///     The matrices, stacked.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a name is unknown, a parameter follows from another, or the batch has single precision: derivatives are
+    ///     computed in double precision.
+    /// IndexError
+    ///     If a parameter does not have a number.
+    /// SimulationError
+    ///     If the step of an environment fails.
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None),
+           text_signature = "(outputs=(), parameters=None)")]
+    fn linearize(
+        &self,
+        py: Python<'_>,
+        outputs: Vec<String>,
+        parameters: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Linearization> {
+        let chosen = Chosen::new(self.described(), &outputs, parameters)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        let AnyBatch::F64(batch) = &mut *guard else {
             return Err(PyValueError::new_err(
-                "derivatives need a simulation in double precision: create it with precision=\"64\"",
+                "derivatives of a batch need double precision: create it with precision=\"64\"",
             ));
         };
-        let linearizer = match &mut *linearizer {
-            Some(linearizer) => linearizer,
-            empty => empty.insert(Linearizer::new(own.sim.model()).map_err(sim_error)?),
+        let count = batch.count();
+        let mut linearizer = BatchLinearizer::new(batch).map_err(sim_error)?;
+        let results = py.detach(|| linearizer.linearize(batch, &chosen.request));
+        let results = results.map_err(|(env, error)| {
+            let error = sim_error(error);
+            let text = format!("environment {env}: {}", error.value(py));
+            PyErr::from_type(error.get_type(py), text)
+        })?;
+        chosen.export(py, results, &[count])
+    }
+}
+
+/// The chosen outputs and parameters.
+struct Chosen {
+    request: Request,
+    fields: Vec<(ParamField, usize)>,
+}
+
+impl Chosen {
+    fn new(
+        model: &clench::Model,
+        outputs: &[String],
+        parameters: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let outputs = outputs.iter().map(|name| Output::find(name));
+        let mut chosen = Chosen {
+            request: Request {
+                outputs: outputs.collect::<Result<_, _>>().map_err(sim_error)?,
+                parameters: Vec::new(),
+            },
+            fields: Vec::new(),
         };
-        let result = py.detach(|| linearizer.linearize(&own.sim, &request));
-        let result = result.map_err(sim_error)?;
-        let matrix = |matrix: &Matrix| array(py, matrix, 0..matrix.shape[1]);
+        let Some(parameters) = parameters else {
+            return Ok(chosen);
+        };
+        if let Ok(mapping) = parameters.cast::<PyMapping>() {
+            for item in mapping.items()? {
+                let (name, numbers): (String, Vec<usize>) = item.extract()?;
+                chosen.add(model, &name, Some(numbers))?;
+            }
+        } else {
+            for name in parameters.extract::<Vec<String>>()? {
+                chosen.add(model, &name, None)?;
+            }
+        }
+        Ok(chosen)
+    }
+
+    /// Adds numbers of a parameter, by default all.
+    fn add(
+        &mut self,
+        model: &clench::Model,
+        name: &str,
+        numbers: Option<Vec<usize>>,
+    ) -> PyResult<()> {
+        let field = ParamField::settable(name).map_err(sim_error)?;
+        let count = field.shape(model).iter().product();
+        let numbers = numbers.unwrap_or_else(|| (0..count).collect());
+        if let Some(number) = numbers.iter().find(|&&number| number >= count) {
+            return Err(PyIndexError::new_err(format!(
+                "{name} has {count} numbers, not one at index {number}"
+            )));
+        }
+        self.fields.push((field, numbers.len()));
+        let numbers = numbers.into_iter().map(|number| (field, number));
+        self.request.parameters.extend(numbers);
+        Ok(())
+    }
+
+    /// Copies results to arrays, stacked in the shape `stack`.
+    fn export(
+        &self,
+        py: Python<'_>,
+        results: &[derivatives::Linearization],
+        stack: &[usize],
+    ) -> PyResult<Linearization> {
+        let array = |of: fn(&derivatives::Linearization) -> &Matrix,
+                     columns: Option<Range<usize>>| {
+            let shape = results.first().map_or([0, 0], |first| of(first).shape);
+            let columns = columns.unwrap_or(0..shape[1]);
+            let rows = results
+                .iter()
+                .flat_map(|result| of(result).values.chunks_exact(shape[1].max(1)));
+            let values = rows.flat_map(|row| &row[columns.clone()]).copied();
+            let shape = [stack, &[shape[0], columns.len()]].concat();
+            Ok::<_, PyErr>(PyArray1::from_iter(py, values).reshape(shape)?.unbind())
+        };
         let (by_state, by_output) = (PyDict::new(py), PyDict::new(py));
         let mut start = 0;
-        for (field, numbers) in &fields {
-            let columns = start..start + numbers.len();
-            by_state.set_item(field.name(), array(py, &result.e, columns.clone())?)?;
-            by_output.set_item(field.name(), array(py, &result.f, columns.clone())?)?;
-            start = columns.end;
+        for &(field, count) in &self.fields {
+            let columns = start..start + count;
+            by_state.set_item(
+                field.name(),
+                array(|result| &result.e, Some(columns.clone()))?,
+            )?;
+            by_output.set_item(field.name(), array(|result| &result.f, Some(columns))?)?;
+            start += count;
         }
         Ok(Linearization {
-            A: matrix(&result.a)?,
-            B: matrix(&result.b)?,
-            C: matrix(&result.c)?,
-            D: matrix(&result.d)?,
+            A: array(|result| &result.a, None)?,
+            B: array(|result| &result.b, None)?,
+            C: array(|result| &result.c, None)?,
+            D: array(|result| &result.d, None)?,
             parameters: by_state.unbind(),
             output_parameters: by_output.unbind(),
         })
     }
-}
-
-impl Sim {
-    /// Returns the parameters to differentiate by, and their numbers.
-    fn chosen_numbers(
-        &self,
-        parameters: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Vec<(ParamField, Vec<usize>)>> {
-        let Some(parameters) = parameters else {
-            return Ok(Vec::new());
-        };
-        let find = |name: &str| -> PyResult<(ParamField, usize)> {
-            let field = ParamField::settable(name).map_err(sim_error)?;
-            Ok((field, field.shape(self.described()).iter().product()))
-        };
-        let mut fields = Vec::new();
-        if let Ok(mapping) = parameters.cast::<PyMapping>() {
-            for item in mapping.items()? {
-                let (name, numbers): (String, Vec<usize>) = item.extract()?;
-                let (field, count) = find(&name)?;
-                if let Some(number) = numbers.iter().find(|&&number| number >= count) {
-                    return Err(PyIndexError::new_err(format!(
-                        "{name} has {count} numbers, not one at index {number}"
-                    )));
-                }
-                fields.push((field, numbers));
-            }
-        } else {
-            for name in parameters.extract::<Vec<String>>()? {
-                let (field, count) = find(&name)?;
-                fields.push((field, (0..count).collect()));
-            }
-        }
-        Ok(fields)
-    }
-}
-
-/// Copies columns of a matrix.
-fn array(
-    py: Python<'_>,
-    matrix: &Matrix,
-    columns: std::ops::Range<usize>,
-) -> PyResult<Py<PyArray2<f64>>> {
-    let rows = matrix.values.chunks_exact(matrix.shape[1].max(1));
-    let values = rows.flat_map(|row| &row[columns.clone()]).copied();
-    let array = PyArray1::from_iter(py, values);
-    Ok(array.reshape([matrix.shape[0], columns.len()])?.unbind())
 }

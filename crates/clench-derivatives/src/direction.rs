@@ -18,6 +18,16 @@ pub(crate) enum Direction {
     Parameter(ParamField, usize),
 }
 
+impl Direction {
+    /// Returns true if positions, or quantities that depend on them, change along the direction.
+    pub(crate) fn moves(self) -> bool {
+        match self {
+            Direction::Position(_) | Direction::Parameter(..) => true,
+            Direction::Velocity(_) | Direction::Activation(_) | Direction::Control(_) => false,
+        }
+    }
+}
+
 /// Lists the directions of the state, then of the controls, then of parameters.
 pub(crate) fn list(model: &Model, parameters: &[(ParamField, usize)], out: &mut Vec<Direction>) {
     out.clear();

@@ -10,9 +10,11 @@
 
 #![deny(unreachable_pub, unsafe_code)]
 
+mod batch;
 mod direction;
 mod linearizer;
 mod pass;
 mod tangent;
 
+pub use batch::BatchLinearizer;
 pub use linearizer::{Linearization, Linearizer, Matrix, Request};

@@ -2,7 +2,7 @@
 
 use crate::direction::{self, Direction};
 use crate::pass::{CreatePass, Pass, Source};
-use clench_dynamics::model::{Model, ParamField, Params};
+use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
 use clench_rigid::{Output, Sim, SimError};
 use std::fmt;
@@ -110,19 +110,27 @@ impl Linearizer {
             self.params.clone_from(sim.params());
             self.pass.set_params(&self.params);
         }
-        let source = Source {
+        let mut source = Source {
             model: sim.model(),
             settings: sim.settings(),
             state: &sim.state,
             outputs: &request.outputs,
+            same_positions: false,
         };
         direction::list(source.model, &request.parameters, &mut self.directions);
         let columns = self.directions.len();
-        let count = self.pass.directions();
         self.all.clear();
-        for (pass, directions) in self.directions.chunks(count).enumerate() {
+        let mut end = 0;
+        let mut still = false;
+        while end < columns {
+            let first = end;
+            end += self.pass_len(source, first);
+            let directions = &self.directions[first..end];
+            let moves = directions.iter().any(|direction| direction.moves());
+            source.same_positions = still && !moves;
+            still = !moves && keeps_positions(source);
             self.pass.run(source, directions, &mut |row, values| {
-                let start = row * columns + pass * count;
+                let start = row * columns + first;
                 if self.all.len() < (row + 1) * columns {
                     self.all.resize((row + 1) * columns, 0.0);
                 }
@@ -131,6 +139,20 @@ impl Linearizer {
         }
         self.split(sim.model(), request.parameters.len());
         Ok(&self.result)
+    }
+
+    /// Returns the number of directions of the pass that starts with direction `first`. The pass after the positions
+    /// starts anew if later passes then can reuse poses and contacts.
+    fn pass_len(&self, source: Source<'_>, first: usize) -> usize {
+        let most = self.pass.directions();
+        let count = most.min(self.directions.len() - first);
+        let moving = source.model.nv.saturating_sub(first);
+        let others = self.directions.len() - first - moving;
+        let pays = others > 2 * most && keeps_positions(source);
+        match pays && moving > 0 {
+            true => count.min(moving),
+            false => count,
+        }
     }
 
     /// Copies the derivatives into the matrices.
@@ -160,4 +182,9 @@ impl Linearizer {
             }
         }
     }
+}
+
+/// Returns true if the workspace holds the positions and contacts of the start of a step after it.
+fn keeps_positions(source: Source<'_>) -> bool {
+    source.model.integrator != Integrator::Rk4 && !source.settings.flags.sleep
 }

@@ -17,6 +17,8 @@ pub(crate) struct Source<'a> {
     pub settings: &'a StepSettings,
     pub state: &'a State<f64>,
     pub outputs: &'a [Output],
+    /// True if the last pass started from the same positions, without derivatives.
+    pub same_positions: bool,
 }
 
 /// A step in dual numbers of a type that is known only at run time.
@@ -129,8 +131,13 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             outputs,
         } = self;
         state.copy_from(before);
-        ws.forget_poses();
-        pipeline::step(model, params, settings, state, ws, evaluate_sensors);
+        let step = if source.same_positions {
+            pipeline::step_from_velocities
+        } else {
+            ws.forget_poses();
+            pipeline::step
+        };
+        step(model, params, settings, state, ws, evaluate_sensors);
         let good = check::good_results(state, ws);
         outputs.clear();
         if good {

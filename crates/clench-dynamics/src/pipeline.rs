@@ -265,6 +265,20 @@ pub fn rest<T: Real>(
     rests
 }
 
+/// Does the remainder of a step after positions and contacts: reuses those of the last pass, which was for the same
+/// positions. Trees must not sleep.
+pub fn step_from_velocities<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    velocity_stage(model, params, state, ws);
+    step_from_forces(model, params, settings, state, ws, sensors);
+}
+
 /// Does the remainder of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
 pub fn step_from_forces<T: Real>(
     model: &Model,

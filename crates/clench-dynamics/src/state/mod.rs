@@ -120,11 +120,11 @@ fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
 }
 
 /// Converts the elements of one environment, for every lane.
-fn set_values<T: Real, K: Kind>(from: &[K::Of<f64>], to: &mut [K::Of<T>]) {
+fn set_values<S: Scalar, T: Real, K: Kind>(from: &[K::Of<S>], to: &mut [K::Of<T>]) {
     for (from, to) in from.iter().zip(to) {
         for part in 0..K::WIDTH {
             for lane in 0..T::LANES {
-                let number = K::number::<f64>(K::cell::<f64>(from, part, 0));
+                let number = K::number::<S>(K::cell::<S>(from, part, 0)).to_f64();
                 let number = K::from_number::<T::Scalar>(T::Scalar::new(number));
                 K::set_cell::<T>(to, part, lane, number);
             }
@@ -211,9 +211,9 @@ macro_rules! declare_state {
             }
 
             /// Copies the numbers of a state of the same model to every lane, without derivatives.
-            pub fn set_values(&mut self, other: &State<f64>) {
+            pub fn set_values<S: Scalar>(&mut self, other: &State<S>) {
                 self.time = T::Clock::splat(other.time);
-                $($(set_values::<T, kind::$kind>(&other.$name, &mut self.$name);)*)*
+                $($(set_values::<S, T, kind::$kind>(&other.$name, &mut self.$name);)*)*
             }
 
             /// Copies the state of one environment, of the same model, to every lane.

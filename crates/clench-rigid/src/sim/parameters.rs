@@ -67,6 +67,21 @@ impl<T: Precision> Sim<T> {
         self.set_param("timestep", &[T::new(timestep)])
     }
 
+    /// Creates a simulation in double precision with the same model, options, parameters and state.
+    ///
+    /// # Errors
+    /// See [`with_options`](Sim::with_options).
+    pub fn in_double_precision(&self) -> Result<Sim<f64>, SimError> {
+        let mut sim = Sim::with_options(self.model.clone(), self.options)?;
+        sim.state.set_values(&self.state);
+        let params = sim.params_mut();
+        for &field in ParamField::ALL {
+            let row = self.params.read_lane(field, 0);
+            params.write_lane(field, 0, &Vec::from_iter(row.iter().map(|x| x.to_f64())));
+        }
+        Ok(sim)
+    }
+
     /// Returns the parameters of this simulation.
     pub fn params(&self) -> &Params<T::Alone> {
         &self.params
