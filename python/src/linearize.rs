@@ -11,7 +11,7 @@ use clench::rigid::model::ParamField;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping};
+use pyo3::types::{PyDict, PyList, PyMapping};
 use std::ops::Range;
 use std::slice::from_ref;
 
@@ -36,6 +36,10 @@ pub(crate) struct Linearization {
     parameters: Py<PyDict>,
     /// dict[str, numpy.ndarray] : ∂y/∂p, likewise.
     output_parameters: Py<PyDict>,
+    /// numpy.ndarray : The distance of each constraint row from a change of its state (a contact that begins to slip, a
+    /// limit that lets go), where its force has no derivative; m/s² or rad/s², infinite for rows that always act. Of a
+    /// batch, a list of arrays.
+    switching: Py<PyAny>,
 }
 
 #[pymethods]
@@ -247,6 +251,13 @@ impl Chosen {
             by_output.set_item(field.name(), array(|result| &result.f, Some(columns))?)?;
             start += count;
         }
+        let switching = results.iter();
+        let mut switching =
+            switching.map(|result| PyArray1::from_slice(py, &result.switching).into_any());
+        let switching = match stack {
+            [] => switching.next().unwrap_or_else(|| py.None().into_bound(py)),
+            _ => PyList::new(py, switching)?.into_any(),
+        };
         Ok(Linearization {
             A: array(|result| &result.a, None)?,
             B: array(|result| &result.b, None)?,
@@ -254,6 +265,7 @@ impl Chosen {
             D: array(|result| &result.d, None)?,
             parameters: by_state.unbind(),
             output_parameters: by_output.unbind(),
+            switching: switching.unbind(),
         })
     }
 }

@@ -58,6 +58,10 @@ pub struct Linearization {
     pub e: Matrix,
     /// ∂y/∂p.
     pub f: Matrix,
+    /// The distance of each constraint row from a change of its piece, where its force has no derivative: see
+    /// [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are those of the last
+    /// solve of the step.
+    pub switching: Vec<f64>,
 }
 
 /// Computes the derivatives of steps of a model, and reuses its memory.
@@ -137,6 +141,7 @@ impl Linearizer {
                 self.all[start..start + values.len()].copy_from_slice(values);
             })?;
         }
+        self.pass.switching(&mut self.result.switching);
         self.split(sim.model(), request.parameters.len());
         Ok(&self.result)
     }
@@ -160,7 +165,9 @@ impl Linearizer {
         let (nx, nu) = (2 * model.nv + model.na, model.nu());
         let columns = nx + nu + np;
         let ny = self.all.len().checked_div(columns).unwrap_or(nx) - nx;
-        let Linearization { a, b, c, d, e, f } = &mut self.result;
+        let Linearization {
+            a, b, c, d, e, f, ..
+        } = &mut self.result;
         let mut rows = self.all.chunks_exact(columns.max(1));
         for (rows_of, matrices) in [(nx, [a, b, e]), (ny, [c, d, f])] {
             let [by_state, by_control, by_parameter] = matrices;

@@ -25,6 +25,8 @@ pub(crate) struct Source<'a> {
 pub(crate) trait Pass: Send {
     /// Returns the maximum number of directions of a pass.
     fn directions(&self) -> usize;
+    /// Writes the distances of constraints from a change of their piece in the last pass.
+    fn switching(&self, out: &mut Vec<f64>);
     /// Prepares for passes with these parameters.
     fn set_params(&mut self, params: &Params<f64>);
     /// Runs the step along some directions. `write(row, values)` receives the derivatives of each number of the result:
@@ -106,6 +108,10 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
 impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
     fn directions(&self) -> usize {
         Number::<L>::DIRECTIONS
+    }
+
+    fn switching(&self, out: &mut Vec<f64>) {
+        self.ws.problem.switching_distances(&self.ws.qacc, out);
     }
 
     fn set_params(&mut self, params: &Params<f64>) {

@@ -304,6 +304,41 @@ fn parameters() {
     }
 }
 
+/// The distance is zero where the force of a contact vanishes.
+#[test]
+fn a_contact_that_lets_go_is_reported() {
+    let text = r#"<mujoco>
+      <worldbody>
+        <geom type="plane" size="1 1 .1" condim="1"/>
+        <body pos="0 0 .0999">
+          <freejoint/>
+          <geom size=".1" condim="1"/>
+        </body>
+      </worldbody>
+    </mujoco>"#;
+    let model = Arc::new(clench_formats::load_str(text).expect("a model"));
+    let mut sim = Sim::<f64>::new(model.clone()).expect("a simulation");
+    let mut linearizer = Linearizer::new(&model).expect("lanes of this processor");
+    let mut pressed = |velocity: f64| {
+        sim.state.qvel[2] = velocity;
+        let result = linearizer.linearize(&sim, &Request::default());
+        let distance = result.expect("derivatives").switching[0];
+        sim.forward().expect("a forward pass");
+        (sim.workspace().solver.force()[0] > 0.0, distance)
+    };
+    let (mut down, mut up) = (-1.0, 1.0);
+    assert!(pressed(down).0 && pressed(down).1 > 1.0);
+    assert!(!pressed(up).0 && pressed(up).1 > 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (down + up);
+        match pressed(middle).0 {
+            true => down = middle,
+            false => up = middle,
+        }
+    }
+    assert!(pressed(down).1 < 1e-9);
+}
+
 #[test]
 fn derivatives_depend_on_the_state_alone() {
     let mut differences =

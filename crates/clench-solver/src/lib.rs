@@ -43,6 +43,7 @@ mod solver;
 mod sparse;
 mod stats;
 mod stopwatch;
+mod switching;
 mod threads;
 mod transfer;
 mod tree;

@@ -3,7 +3,7 @@
 use crate::cg::Cg;
 use crate::costs::Pyramid;
 use crate::descent::{SolverState, minimise, trace};
-use crate::implicit::Implicit;
+use crate::implicit::{Implicit, Memory};
 use crate::newton::Newton;
 use crate::noslip::Noslip;
 use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats, Status};
@@ -19,7 +19,7 @@ pub(crate) struct Workspace<T: Real> {
     cg: Cg<T>,
     noslip: Noslip<T>,
     /// The solve of the values of dual numbers.
-    implicit: Option<Box<Implicit<T::Value>>>,
+    implicit: Memory,
 }
 
 impl<T: Real> Workspace<T> {
@@ -50,7 +50,7 @@ impl<T: Real> Workspace<T> {
             state, newton, cg, ..
         } = self;
         if T::IS_DUAL {
-            let implicit = self.implicit.get_or_insert_default();
+            let implicit: &mut Implicit<T::Value> = self.implicit.get();
             let SolverState { iterate, stats, .. } = state;
             implicit.minimise(problem, settings, warmstart, iterate, stats);
             return;

@@ -29,6 +29,7 @@ use crate::transfer::Transfer;
 use crate::{ConstraintSolver, Problem, Settings, SolveStats, Status, Tree};
 use clench_math::{Mask, Real, kernel};
 use coulomb::Sliding;
+use std::any::Any;
 use std::sync::Arc;
 
 /// The values of a problem in dual numbers, and their solve.
@@ -66,6 +67,25 @@ impl<V: Real> Default for Implicit<V> {
             acting: Vec::new(),
             scratch: Vec::new(),
         }
+    }
+}
+
+/// Memory of a type that the number type selects. Plain numbers need none, so it has no code for them.
+#[derive(Debug, Default)]
+pub(crate) struct Memory(Option<Box<dyn Any + Send + Sync>>);
+
+impl Memory {
+    /// Returns the memory, created on first use.
+    pub(crate) fn get<X: Any + Default + Send + Sync>(&mut self) -> &mut X {
+        let memory = self.0.get_or_insert_with(|| Box::<X>::default());
+        (memory.downcast_mut()).expect("one number type uses the memory")
+    }
+}
+
+impl Clone for Memory {
+    /// Creates empty memory.
+    fn clone(&self) -> Self {
+        Memory::default()
     }
 }
 
