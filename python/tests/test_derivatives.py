@@ -1,0 +1,311 @@
+"""Derivatives of a step, compared with central differences and formulas, and the parameters that they identify."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import clench
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scenes import ball, example, puppet
+
+Floats = NDArray[np.float64]
+
+EXACT = clench.RigidOptions(tolerance=0, iterations=200, ls_iterations=200, ls_tolerance=1e-10)
+STEP = 1e-6
+
+
+def moving(name: str, keyframe: str, steps: int) -> clench.Sim:
+    """Returns a simulation that is in contact, with controls."""
+    sim = clench.Sim(example(name), EXACT)
+    sim.reset(keyframe)
+    sim.step(steps)
+    sim.ctrl = np.random.default_rng(0).uniform(-0.2, 0.2, sim.model.nu)
+    sim.step(5)
+    assert len(sim.contacts) > 2
+    return sim
+
+
+def differences(
+    sim: clench.Sim, change: Callable[[clench.Sim, float], None], read: Callable[[], Floats] = lambda: np.empty(0)
+) -> tuple[Floats, Floats]:
+    """Returns the central differences of the next state and of what is read before the step."""
+    model, start = sim.model, sim.state
+    states, reads = [], []
+    for sign in (-1.0, 1.0):
+        sim.state = start
+        change(sim, sign * STEP)
+        sim.forward()
+        reads.append(read())
+        sim.step()
+        states.append(sim.state)
+    sim.state = start
+    change(sim, 0.0)
+    low, high = states
+    motion = model.differentiate_pos(low.qpos, high.qpos)
+    following = np.concatenate([motion, high.qvel - low.qvel, high.act - low.act])
+    return following / (2 * STEP), (reads[1] - reads[0]) / (2 * STEP)
+
+
+def change_state(column: int) -> Callable[[clench.Sim, float], None]:
+    def change(sim: clench.Sim, amount: float) -> None:
+        nv = sim.model.nv
+        if column < nv:
+            sim.qpos = sim.model.integrate_pos(sim.qpos, np.eye(nv)[column], amount)
+        elif column < 2 * nv:
+            sim.qvel[column - nv] += amount
+        else:
+            sim.act[column - 2 * nv] += amount
+
+    return change
+
+
+def change_control(column: int) -> Callable[[clench.Sim, float], None]:
+    def change(sim: clench.Sim, amount: float) -> None:
+        sim.ctrl[column] += amount
+
+    return change
+
+
+def change_parameter(sim: clench.Sim, field: str, index: int) -> Callable[[clench.Sim, float], None]:
+    values = np.array(sim.param(field))
+
+    def change(sim: clench.Sim, amount: float) -> None:
+        changed = values.copy()
+        changed.ravel()[index : index + 1] += amount
+        sim.set_param(field, changed)
+
+    return change
+
+
+def assert_near(found: Floats, expected: Floats, scale: float) -> None:
+    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6 * scale)
+
+
+@pytest.mark.parametrize(
+    ("name", "keyframe", "steps"), [("humanoid", "standing", 195), ("quadruped", "crouching", 300)]
+)
+def test_states_and_controls_match_differences(name: str, keyframe: str, steps: int) -> None:
+    sim = moving(name, keyframe, steps)
+    linear, rng = sim.linearize(), np.random.default_rng(1)
+    size = 2 * sim.model.nv + sim.model.na
+    assert linear.A.shape == (size, size) and linear.B.shape == (size, sim.model.nu)
+    scale = float(np.abs(linear.A).max())
+    assert scale > 10.0  # Contacts are stiff.
+    for column in rng.choice(size, 12, replace=False):
+        expected, _ = differences(sim, change_state(column))
+        assert_near(linear.A[:, column], expected, scale)
+    for column in rng.choice(sim.model.nu, 4, replace=False):
+        expected, _ = differences(sim, change_control(column))
+        assert_near(linear.B[:, column], expected, 1.0)
+
+
+def test_activations_tendons_and_equalities_match_differences() -> None:
+    sim = clench.Sim(puppet(), EXACT)
+    sim.reset("bent")
+    sim.step(20)
+    linear = sim.linearize()
+    for column in range(2 * sim.model.nv + sim.model.na):
+        expected, _ = differences(sim, change_state(column))
+        assert_near(linear.A[:, column], expected, float(np.abs(linear.A).max()))
+
+
+@pytest.mark.parametrize(
+    ("field", "index"),
+    [
+        ("body_mass", 1),
+        ("body_inertia", 4),
+        ("geom_friction", 3 * 6),
+        ("geom_size", 3 * 6),
+        ("dof_damping", 8),
+        ("dof_armature", 8),
+        ("actuator_gainprm", 0),
+        ("gravity", 2),
+        ("timestep", 0),
+    ],
+)
+def test_parameters_match_differences(field: str, index: int) -> None:
+    sim = moving("quadruped", "crouching", 300)
+    linear = sim.linearize(parameters={field: [index], "dof_frictionloss": [0, 1]})
+    assert linear.parameters["dof_frictionloss"].shape == (2 * sim.model.nv, 2)
+    expected, _ = differences(sim, change_parameter(sim, field, index))
+    found = linear.parameters[field][:, 0]
+    assert_near(found, expected, max(1.0, float(np.abs(found).max())))
+
+
+def test_all_numbers_of_a_parameter() -> None:
+    sim = moving("quadruped", "crouching", 300)
+    every = sim.linearize(parameters=["geom_friction"]).parameters["geom_friction"]
+    assert every.shape == (2 * sim.model.nv, 3 * sim.model.ngeom)
+    some = sim.linearize(parameters={"geom_friction": [18, 3]}).parameters["geom_friction"]
+    np.testing.assert_array_equal(some, every[:, [18, 3]])
+
+
+def test_sensors_and_outputs_match_differences() -> None:
+    model = clench.Model.from_xml(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body name='b' pos='0 0 0.0995'><freejoint/>"
+        "<geom type='box' size='0.1 0.1 0.1'/><site name='s' pos='0.1 0 0' size='0.2'/></body></worldbody>"
+        "<actuator><motor name='m' site='s' gear='1 0 2 0 0 1'/></actuator>"
+        "<sensor><accelerometer site='s'/><touch site='s'/><framequat objtype='site' objname='s'/></sensor></mujoco>"
+    )
+    sim = clench.Sim(model, EXACT)
+    sim.step(10)
+    sim.ctrl = [0.3]
+    names = ["xipos", "qfrc_constraint"]
+    linear = sim.linearize(names, {"body_mass": [1]})
+
+    def read() -> Floats:
+        return np.concatenate([np.ravel(sim.output(name)) for name in ["sensordata", *names]])
+
+    scale = float(np.abs(linear.C).max())
+    assert linear.C.shape == (model.nsensordata + 6 + 6, 12)
+    for column in range(12):
+        assert_near(linear.C[:, column], differences(sim, change_state(column), read)[1], scale)
+    assert_near(linear.D[:, 0], differences(sim, change_control(0), read)[1], 1.0)
+    by_mass = differences(sim, change_parameter(sim, "body_mass", 1), read)[1]
+    assert_near(linear.output_parameters["body_mass"][:, 0], by_mass, float(np.abs(by_mass).max()))
+
+
+def test_a_driven_mass() -> None:
+    sim = clench.Sim(
+        clench.Model.from_xml(
+            "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/>"
+            "<geom size='0.1' mass='2'/></body></worldbody><actuator><motor joint='x'/></actuator></mujoco>"
+        )
+    )
+    sim.ctrl = [3.0]
+    linear = sim.linearize(parameters=["body_mass"])
+    # v⁺ = v + h u / m, q⁺ = q + h v⁺.
+    np.testing.assert_allclose(linear.A, [[1.0, 0.01], [0.0, 1.0]])
+    np.testing.assert_allclose(linear.B, [[5e-5], [0.005]])
+    np.testing.assert_allclose(linear.parameters["body_mass"][:, 1], [-0.01 * 0.01 * 3.0 / 4.0, -0.01 * 3.0 / 4.0])
+
+
+def test_only_a_contact_that_touches_has_derivatives() -> None:
+    sim = clench.Sim(ball())
+    for height, touches in ((0.1001, False), (0.0999, True)):
+        sim.reset()
+        sim.qpos[2] = height
+        assert (sim.linearize().A[sim.model.nv + 2, 2] != 0.0) == touches
+
+
+def test_the_state_that_was_written_is_linearized_and_stays() -> None:
+    sim, other = moving("quadruped", "crouching", 300), clench.Sim(example("quadruped"), EXACT)
+    before = sim.state
+    expected = sim.linearize()
+    assert sim.state == before
+    other.state = before
+    found = other.linearize()
+    np.testing.assert_array_equal(found.A, expected.A)
+    np.testing.assert_array_equal(found.B, expected.B)
+
+
+def test_invalid_requests() -> None:
+    sim = clench.Sim(ball())
+    with pytest.raises(ValueError, match="body_mass"):
+        sim.linearize(parameters=["body_mas"])
+    with pytest.raises(ValueError, match="body_subtreemass"):
+        sim.linearize(parameters=["body_subtreemass"])
+    with pytest.raises(ValueError, match="xpos"):
+        sim.linearize(["xposs"])
+    with pytest.raises(IndexError, match="body_mass has 2 numbers"):
+        sim.linearize(parameters={"body_mass": [2]})
+    with pytest.raises(ValueError, match="double precision"):
+        clench.Sim(ball(), precision="32").linearize()
+    sim.qvel[0] = np.nan
+    with pytest.raises(clench.SimulationError):
+        sim.linearize()
+
+
+def recorded(sim: clench.Sim, steps: int, **true: Any) -> dict[str, Any]:
+    """Returns the motion of a simulation from its state, with other values of some parameters."""
+    recording: dict[str, Any] = {"initial": sim.state, "ctrl": np.tile(sim.ctrl, (steps, 1))}
+    batch = clench.Batch(sim.model, 1, options=EXACT)
+    for name, values in true.items():
+        batch.randomize(name, np.asarray(values)[np.newaxis])
+    rows = batch.rollout(sim.state, recording["ctrl"], record=["qpos", "qvel", "sensordata"])
+    return recording | {name: row[0] for name, row in rows.items()}
+
+
+def test_damping_and_dry_friction_are_identified() -> None:
+    pytest.importorskip("scipy")
+    sim = clench.Sim(example("pendulum"))
+    recordings = []
+    for start in (-1.5, -0.5):
+        sim.reset()
+        sim.qpos, sim.ctrl = [start], [1.5]
+        recordings.append(recorded(sim, 150, dof_damping=[0.1], dof_frictionloss=[0.4]))
+    found = clench.identify(sim.model, recordings, ["dof_damping", "dof_frictionloss"], options=EXACT)
+    np.testing.assert_allclose(found.estimates, [0.1, 0.4], rtol=1e-5)
+    np.testing.assert_allclose(found.parameters["dof_frictionloss"], [0.4], rtol=1e-5)
+    assert found.covariance.shape == (2, 2) and found.residual < 1e-6
+    assert found.result.nfev < 20
+
+
+def test_inertia_is_identified_from_orientations_and_sensors() -> None:
+    pytest.importorskip("scipy")
+    model = clench.Model.from_xml(
+        "<mujoco><option timestep='0.01' gravity='0 0 0'/><worldbody><body><freejoint/>"
+        "<geom type='box' size='0.1 0.2 0.3' mass='2'/><site name='s' pos='0.1 0 0'/></body></worldbody>"
+        "<sensor><gyro site='s'/></sensor></mujoco>"
+    )
+    sim = clench.Sim(model)
+    sim.qvel[3:] = [1, 2, 3]
+    true = np.array(model.body_inertia)
+    true[1, :2] *= [1.4, 0.9]
+    whole = recorded(sim, 100, body_inertia=true)
+    # The opposite quaternion is the same orientation. Numbers that are missing do not count.
+    whole["qpos"][::2, 3:] *= -1.0
+    whole["qpos"][5:10, 4] = np.nan
+    whole["sensordata"][::3] = np.nan
+    for measured in ({"qpos"}, {"sensordata"}, {"qpos", "qvel"}):
+        recording = {name: whole[name] for name in measured | {"initial"}}
+        found = clench.identify(model, [recording], {"body_inertia": [3, 4]})
+        np.testing.assert_allclose(found.parameters["body_inertia"], true, rtol=1e-5)
+
+
+def test_uncertainty_is_that_of_the_noise() -> None:
+    pytest.importorskip("scipy")
+    sim, rng = clench.Sim(example("pendulum")), np.random.default_rng(0)
+    sim.qpos = [-1.5]
+    clean = recorded(sim, 150, dof_damping=[0.1])
+    errors = []
+    for _ in range(10):
+        noisy = {**clean, "qpos": clean["qpos"] + 1e-3 * rng.normal(size=clean["qpos"].shape)}
+        del noisy["qvel"], noisy["sensordata"]
+        settings: Any = {"scale": {"qpos": 1e-3}, "bounds": {"dof_damping": (0, 1)}}
+        found = clench.identify(sim.model, [noisy], ["dof_damping"], **settings)
+        assert found.residual == pytest.approx(1.0, abs=0.25)
+        errors.append((found.estimates[0] - 0.1) / np.sqrt(found.covariance[0, 0]))
+    assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.8
+    # The margin of a geom that touches nothing cannot be seen.
+    found = clench.identify(sim.model, [clean], {"dof_damping": [0], "geom_margin": [0]})
+    assert np.isinf(found.covariance).all()
+
+
+def test_identify_refuses() -> None:
+    pytest.importorskip("scipy")
+    sim = clench.Sim(example("pendulum"))
+    clean = recorded(sim, 10)
+
+    def fails(error: type[Exception], match: str, recording: Any, parameters: Any, **settings: Any) -> None:
+        with pytest.raises(error, match=match):
+            clench.identify(sim.model, [recording], parameters, **settings)
+
+    fails(ValueError, "dof_damping", clean, ["dof_dampin"])
+    fails(IndexError, "has 1 numbers", clean, {"dof_damping": [1]})
+    fails(ValueError, "no parameters", clean, [])
+    fails(ValueError, "no measured numbers", {"ctrl": clean["ctrl"]}, ["dof_damping"])
+    fails(ValueError, "velocity", {**clean, "velocity": clean["qvel"]}, ["dof_damping"])
+    fails(ValueError, r"shape \(9, 1\)", {**clean, "qvel": clean["qvel"][1:]}, ["dof_damping"])
+    fails(ValueError, "bounds of body_mass", clean, ["dof_damping"], bounds={"body_mass": (0, 1)})
+    fails(ValueError, "scale", clean, ["dof_damping"], scale={"xpos": 1.0})
+
+
+def test_identify_names_the_missing_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    with pytest.raises(ModuleNotFoundError, match="pip install scipy"):
+        clench.identify(ball(), [], ["body_mass"])
