@@ -113,6 +113,25 @@ def test_activations_tendons_and_equalities_match_differences() -> None:
         assert_near(linear.A[:, column], expected, float(np.abs(linear.A).max()))
 
 
+@pytest.mark.parametrize("options", ["", "integrator='RK4'", "integrator='implicit'", "integrator='discrete'"])
+@pytest.mark.parametrize("model", [{}, {"contact_model": "coulomb"}, {"stiction": True}])
+def test_integrators_and_contact_models_match_differences(options: str, model: dict[str, Any]) -> None:
+    text = (
+        f"<mujoco><option cone='elliptic' {options}/><worldbody><geom type='plane' size='1 1 1' euler='0 9 0'/>"
+        "<body pos='0 0 0.102' euler='0 9 0'><freejoint/><geom type='box' size='0.1 0.1 0.1'/></body>"
+        "<body pos='0.5 0 0.1'><joint type='ball' damping='0.1'/><geom type='capsule' fromto='0 0 0 0.2 0 0' "
+        "size='0.03'/></body></worldbody></mujoco>"
+    )
+    precise: dict[str, Any] = {"tolerance": 0, "iterations": 200, "ls_iterations": 200, "ls_tolerance": 1e-10}
+    sim = clench.Sim(clench.Model.from_xml(text), clench.RigidOptions(**precise, **model))
+    sim.step(40)
+    assert len(sim.contacts) > 2
+    linear = sim.linearize()
+    for column in range(2 * sim.model.nv):
+        expected, _ = differences(sim, change_state(column))
+        assert_near(linear.A[:, column], expected, float(np.abs(linear.A).max()))
+
+
 @pytest.mark.parametrize(
     ("field", "index"),
     [
