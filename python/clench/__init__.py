@@ -37,6 +37,7 @@ from clench._core import (
     FrameTarget,
     FreeCamera,
     IkResult,
+    Linearization,
     Model,
     PostureTarget,
     RayHit,
@@ -54,6 +55,7 @@ from clench._core import (
     solve,
 )
 from clench._descriptions import load_description
+from clench._identify import Identification, identify
 from clench._named import (
     ActuatorView,
     BodyView,
@@ -93,9 +95,11 @@ __all__ = [
     "FrameTarget",
     "FreeCamera",
     "GeomView",
+    "Identification",
     "IkResult",
     "IkStatus",
     "JointView",
+    "Linearization",
     "LoadError",
     "Model",
     "ModelSpec",
@@ -118,6 +122,7 @@ __all__ = [
     "Viewer",
     "__version__",
     "devices",
+    "identify",
     "load_description",
     "solve",
     "view",

@@ -35,6 +35,7 @@ __all__ = [
     "FrameTarget",
     "FreeCamera",
     "IkResult",
+    "Linearization",
     "Model",
     "PostureTarget",
     "RayHit",
@@ -901,6 +902,9 @@ class Sim(_Outputs):
     def resets(self) -> int: ...
     @property
     def contact_overflow(self) -> bool: ...
+    def linearize(
+        self, outputs: Sequence[str] = ..., parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
+    ) -> Linearization: ...
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
     def render(
         self,
@@ -1377,6 +1381,21 @@ class IkResult:
     def status(self) -> Any: ...  # int, a code of clench.IkStatus
     @property
     def reached(self) -> Any: ...  # bool
+
+@final
+class Linearization:
+    @property
+    def A(self) -> _Floats: ...  # (2 nv + na, 2 nv + na)
+    @property
+    def B(self) -> _Floats: ...  # (2 nv + na, nu)
+    @property
+    def C(self) -> _Floats: ...  # (nsensordata + outputs, 2 nv + na)
+    @property
+    def D(self) -> _Floats: ...  # (nsensordata + outputs, nu)
+    @property
+    def parameters(self) -> dict[str, _Floats]: ...  # (2 nv + na, numbers) each
+    @property
+    def output_parameters(self) -> dict[str, _Floats]: ...  # (nsensordata + outputs, numbers) each
 
 @final
 class Separation:

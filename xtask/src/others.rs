@@ -27,6 +27,7 @@ const GROUPS: [Group; 2] = [
         list: "others-learning.txt",
         folder: ".venv/learning",
         tests: &[
+            "python/tests/test_torch.py",
             "python/tests/gymnasium/test_stable_baselines3.py",
             "python/tests/gymnasium/test_torchrl.py",
         ],

@@ -1,0 +1,238 @@
+"""Derivatives of a step, compared with central differences and formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import clench
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scenes import ball, example, puppet
+
+Floats = NDArray[np.float64]
+
+EXACT = clench.RigidOptions(tolerance=0, iterations=200, ls_iterations=200, ls_tolerance=1e-10)
+STEP = 1e-6
+
+
+def moving(name: str, keyframe: str, steps: int) -> clench.Sim:
+    """Returns a simulation that is in contact, with controls."""
+    sim = clench.Sim(example(name), EXACT)
+    sim.reset(keyframe)
+    sim.step(steps)
+    sim.ctrl = np.random.default_rng(0).uniform(-0.2, 0.2, sim.model.nu)
+    sim.step(5)
+    assert len(sim.contacts) > 2
+    return sim
+
+
+def differences(
+    sim: clench.Sim, change: Callable[[clench.Sim, float], None], read: Callable[[], Floats] = lambda: np.empty(0)
+) -> tuple[Floats, Floats]:
+    """Returns the central differences of the next state and of what is read before the step."""
+    model, start = sim.model, sim.state
+    states, reads = [], []
+    for sign in (-1.0, 1.0):
+        sim.state = start
+        change(sim, sign * STEP)
+        sim.forward()
+        reads.append(read())
+        sim.step()
+        states.append(sim.state)
+    sim.state = start
+    change(sim, 0.0)
+    low, high = states
+    motion = model.differentiate_pos(low.qpos, high.qpos)
+    following = np.concatenate([motion, high.qvel - low.qvel, high.act - low.act])
+    return following / (2 * STEP), (reads[1] - reads[0]) / (2 * STEP)
+
+
+def change_state(column: int) -> Callable[[clench.Sim, float], None]:
+    def change(sim: clench.Sim, amount: float) -> None:
+        nv = sim.model.nv
+        if column < nv:
+            sim.qpos = sim.model.integrate_pos(sim.qpos, np.eye(nv)[column], amount)
+        elif column < 2 * nv:
+            sim.qvel[column - nv] += amount
+        else:
+            sim.act[column - 2 * nv] += amount
+
+    return change
+
+
+def change_control(column: int) -> Callable[[clench.Sim, float], None]:
+    def change(sim: clench.Sim, amount: float) -> None:
+        sim.ctrl[column] += amount
+
+    return change
+
+
+def change_parameter(sim: clench.Sim, field: str, index: int) -> Callable[[clench.Sim, float], None]:
+    values = np.array(sim.param(field))
+
+    def change(sim: clench.Sim, amount: float) -> None:
+        changed = values.copy()
+        changed.ravel()[index : index + 1] += amount
+        sim.set_param(field, changed)
+
+    return change
+
+
+def assert_near(found: Floats, expected: Floats, scale: float) -> None:
+    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6 * scale)
+
+
+@pytest.mark.parametrize(
+    ("name", "keyframe", "steps"), [("humanoid", "standing", 195), ("quadruped", "crouching", 300)]
+)
+def test_states_and_controls_match_differences(name: str, keyframe: str, steps: int) -> None:
+    sim = moving(name, keyframe, steps)
+    linear, rng = sim.linearize(), np.random.default_rng(1)
+    size = 2 * sim.model.nv + sim.model.na
+    assert linear.A.shape == (size, size) and linear.B.shape == (size, sim.model.nu)
+    scale = float(np.abs(linear.A).max())
+    assert scale > 10.0  # Contacts are stiff.
+    for column in rng.choice(size, 12, replace=False):
+        expected, _ = differences(sim, change_state(column))
+        assert_near(linear.A[:, column], expected, scale)
+    for column in rng.choice(sim.model.nu, 4, replace=False):
+        expected, _ = differences(sim, change_control(column))
+        assert_near(linear.B[:, column], expected, 1.0)
+
+
+def test_activations_tendons_and_equalities_match_differences() -> None:
+    sim = clench.Sim(puppet(), EXACT)
+    sim.reset("bent")
+    sim.step(20)
+    linear = sim.linearize()
+    for column in range(2 * sim.model.nv + sim.model.na):
+        expected, _ = differences(sim, change_state(column))
+        assert_near(linear.A[:, column], expected, float(np.abs(linear.A).max()))
+
+
+@pytest.mark.parametrize("options", ["", "integrator='RK4'", "integrator='implicit'", "integrator='discrete'"])
+@pytest.mark.parametrize("model", [{}, {"contact_model": "coulomb"}, {"stiction": True}])
+def test_integrators_and_contact_models_match_differences(options: str, model: dict[str, Any]) -> None:
+    text = (
+        f"<mujoco><option cone='elliptic' {options}/><worldbody><geom type='plane' size='1 1 1' euler='0 9 0'/>"
+        "<body pos='0 0 0.102' euler='0 9 0'><freejoint/><geom type='box' size='0.1 0.1 0.1'/></body>"
+        "<body pos='0.5 0 0.1'><joint type='ball' damping='0.1'/><geom type='capsule' fromto='0 0 0 0.2 0 0' "
+        "size='0.03'/></body></worldbody></mujoco>"
+    )
+    precise: dict[str, Any] = {"tolerance": 0, "iterations": 200, "ls_iterations": 200, "ls_tolerance": 1e-10}
+    sim = clench.Sim(clench.Model.from_xml(text), clench.RigidOptions(**precise, **model))
+    sim.step(40)
+    assert len(sim.contacts) > 2
+    linear = sim.linearize()
+    for column in range(2 * sim.model.nv):
+        expected, _ = differences(sim, change_state(column))
+        assert_near(linear.A[:, column], expected, float(np.abs(linear.A).max()))
+
+
+@pytest.mark.parametrize(
+    ("field", "index"),
+    [
+        ("body_mass", 1),
+        ("body_inertia", 4),
+        ("geom_friction", 3 * 6),
+        ("geom_size", 3 * 6),
+        ("dof_damping", 8),
+        ("dof_armature", 8),
+        ("actuator_gainprm", 0),
+        ("gravity", 2),
+        ("timestep", 0),
+    ],
+)
+def test_parameters_match_differences(field: str, index: int) -> None:
+    sim = moving("quadruped", "crouching", 300)
+    linear = sim.linearize(parameters={field: [index], "dof_frictionloss": [0, 1]})
+    assert linear.parameters["dof_frictionloss"].shape == (2 * sim.model.nv, 2)
+    expected, _ = differences(sim, change_parameter(sim, field, index))
+    found = linear.parameters[field][:, 0]
+    assert_near(found, expected, max(1.0, float(np.abs(found).max())))
+
+
+def test_all_numbers_of_a_parameter() -> None:
+    sim = moving("quadruped", "crouching", 300)
+    every = sim.linearize(parameters=["geom_friction"]).parameters["geom_friction"]
+    assert every.shape == (2 * sim.model.nv, 3 * sim.model.ngeom)
+    some = sim.linearize(parameters={"geom_friction": [18, 3]}).parameters["geom_friction"]
+    np.testing.assert_array_equal(some, every[:, [18, 3]])
+
+
+def test_sensors_and_outputs_match_differences() -> None:
+    model = clench.Model.from_xml(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body name='b' pos='0 0 0.0995'><freejoint/>"
+        "<geom type='box' size='0.1 0.1 0.1'/><site name='s' pos='0.1 0 0' size='0.2'/></body></worldbody>"
+        "<actuator><motor name='m' site='s' gear='1 0 2 0 0 1'/></actuator>"
+        "<sensor><accelerometer site='s'/><touch site='s'/><framequat objtype='site' objname='s'/></sensor></mujoco>"
+    )
+    sim = clench.Sim(model, EXACT)
+    sim.step(10)
+    sim.ctrl = [0.3]
+    names = ["xipos", "qfrc_constraint"]
+    linear = sim.linearize(names, {"body_mass": [1]})
+
+    def read() -> Floats:
+        return np.concatenate([np.ravel(sim.output(name)) for name in ["sensordata", *names]])
+
+    scale = float(np.abs(linear.C).max())
+    assert linear.C.shape == (model.nsensordata + 6 + 6, 12)
+    for column in range(12):
+        assert_near(linear.C[:, column], differences(sim, change_state(column), read)[1], scale)
+    assert_near(linear.D[:, 0], differences(sim, change_control(0), read)[1], 1.0)
+    by_mass = differences(sim, change_parameter(sim, "body_mass", 1), read)[1]
+    assert_near(linear.output_parameters["body_mass"][:, 0], by_mass, float(np.abs(by_mass).max()))
+
+
+def test_a_driven_mass() -> None:
+    sim = clench.Sim(
+        clench.Model.from_xml(
+            "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/>"
+            "<geom size='0.1' mass='2'/></body></worldbody><actuator><motor joint='x'/></actuator></mujoco>"
+        )
+    )
+    sim.ctrl = [3.0]
+    linear = sim.linearize(parameters=["body_mass"])
+    # v⁺ = v + h u / m, q⁺ = q + h v⁺.
+    np.testing.assert_allclose(linear.A, [[1.0, 0.01], [0.0, 1.0]])
+    np.testing.assert_allclose(linear.B, [[5e-5], [0.005]])
+    np.testing.assert_allclose(linear.parameters["body_mass"][:, 1], [-0.01 * 0.01 * 3.0 / 4.0, -0.01 * 3.0 / 4.0])
+
+
+def test_only_a_contact_that_touches_has_derivatives() -> None:
+    sim = clench.Sim(ball())
+    for height, touches in ((0.1001, False), (0.0999, True)):
+        sim.reset()
+        sim.qpos[2] = height
+        assert (sim.linearize().A[sim.model.nv + 2, 2] != 0.0) == touches
+
+
+def test_the_state_that_was_written_is_linearized_and_stays() -> None:
+    sim, other = moving("quadruped", "crouching", 300), clench.Sim(example("quadruped"), EXACT)
+    before = sim.state
+    expected = sim.linearize()
+    assert sim.state == before
+    other.state = before
+    found = other.linearize()
+    np.testing.assert_array_equal(found.A, expected.A)
+    np.testing.assert_array_equal(found.B, expected.B)
+
+
+def test_invalid_requests() -> None:
+    sim = clench.Sim(ball())
+    with pytest.raises(ValueError, match="body_mass"):
+        sim.linearize(parameters=["body_mas"])
+    with pytest.raises(ValueError, match="body_subtreemass"):
+        sim.linearize(parameters=["body_subtreemass"])
+    with pytest.raises(ValueError, match="xpos"):
+        sim.linearize(["xposs"])
+    with pytest.raises(IndexError, match="body_mass has 2 numbers"):
+        sim.linearize(parameters={"body_mass": [2]})
+    with pytest.raises(ValueError, match="double precision"):
+        clench.Sim(ball(), precision="32").linearize()
+    sim.qvel[0] = np.nan
+    with pytest.raises(clench.SimulationError):
+        sim.linearize()
