@@ -1087,6 +1087,9 @@ class Batch(_Outputs):
     ) -> None: ...
     def set_constants(self, mask: ArrayLike | None = None) -> None: ...
     def param(self, field: str) -> NDArray[Any]: ...  # (n, ...)
+    def linearize(
+        self, outputs: Sequence[str] = ..., parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
+    ) -> Linearization: ...
     def record(self, *names: str) -> None: ...
     @property
     def outputs(self) -> tuple[str, ...]: ...
@@ -1396,6 +1399,8 @@ class Linearization:
     def parameters(self) -> dict[str, _Floats]: ...  # (2 nv + na, numbers) each
     @property
     def output_parameters(self) -> dict[str, _Floats]: ...  # (nsensordata + outputs, numbers) each
+    @property
+    def switching(self) -> Any: ...  # an array, or a list of arrays of a batch
 
 @final
 class Separation:

@@ -221,6 +221,25 @@ def test_the_state_that_was_written_is_linearized_and_stays() -> None:
     np.testing.assert_array_equal(found.B, expected.B)
 
 
+def test_environments_of_a_batch() -> None:
+    batch = clench.Batch(example("quadruped"), 3, threads=2)
+    batch.qvel[:] = np.random.default_rng(0).normal(size=batch.qvel.shape)
+    stacked = batch.linearize(["subtree_com"], {"body_mass": [1]})
+    assert len(stacked.switching) == 3
+    for env in range(3):
+        alone = batch.sim(env).linearize(["subtree_com"], {"body_mass": [1]})
+        for name in "ABCD":
+            np.testing.assert_array_equal(getattr(stacked, name)[env], getattr(alone, name))
+        np.testing.assert_array_equal(stacked.parameters["body_mass"][env], alone.parameters["body_mass"])
+
+
+def test_single_precision() -> None:
+    single, double = (clench.Sim(ball(), precision=bits) for bits in ("32", "64"))
+    np.testing.assert_array_equal(single.linearize().A, double.linearize().A)
+    with pytest.raises(ValueError, match="double precision"):
+        clench.Batch(ball(), 2, precision="32").linearize()
+
+
 def test_invalid_requests() -> None:
     sim = clench.Sim(ball())
     with pytest.raises(ValueError, match="body_mass"):
@@ -231,8 +250,6 @@ def test_invalid_requests() -> None:
         sim.linearize(["xposs"])
     with pytest.raises(IndexError, match="body_mass has 2 numbers"):
         sim.linearize(parameters={"body_mass": [2]})
-    with pytest.raises(ValueError, match="double precision"):
-        clench.Sim(ball(), precision="32").linearize()
     sim.qvel[0] = np.nan
     with pytest.raises(clench.SimulationError):
         sim.linearize()
