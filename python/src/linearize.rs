@@ -36,9 +36,9 @@ pub(crate) struct Linearization {
     parameters: Py<PyDict>,
     /// dict[str, numpy.ndarray] : ∂y/∂p, likewise.
     output_parameters: Py<PyDict>,
-    /// numpy.ndarray : The distance of each constraint row from a change of its state (a contact that begins to slip, a
-    /// limit that lets go), where its force has no derivative; m/s² or rad/s², infinite for rows that always act. Of a
-    /// batch, a list of arrays.
+    /// numpy.ndarray : The distance of each constraint row, in the order of `Sim.constraints`, from a change of its state
+    /// (a contact that begins to slip, a limit that lets go), where its force has no derivative; m/s² or rad/s²,
+    /// infinite for rows that always act. Of a batch, a list of arrays.
     switching: Py<PyAny>,
 }
 

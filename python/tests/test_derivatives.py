@@ -233,9 +233,17 @@ def test_environments_of_a_batch() -> None:
         np.testing.assert_array_equal(stacked.parameters["body_mass"][env], alone.parameters["body_mass"])
 
 
+def test_each_constraint_row_has_its_distance_from_a_switch() -> None:
+    sim = moving("quadruped", "crouching", 300)
+    switching = sim.linearize().switching
+    sim.forward()
+    assert switching.shape == (len(sim.constraints),)
+    assert (switching >= 0.0).all()
+
+
 def test_single_precision() -> None:
     single, double = (clench.Sim(ball(), precision=bits) for bits in ("32", "64"))
-    np.testing.assert_array_equal(single.linearize().A, double.linearize().A)
+    np.testing.assert_allclose(single.linearize().A, double.linearize().A, rtol=1e-6)
     with pytest.raises(ValueError, match="double precision"):
         clench.Batch(ball(), 2, precision="32").linearize()
 

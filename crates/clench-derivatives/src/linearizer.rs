@@ -58,9 +58,9 @@ pub struct Linearization {
     pub e: Matrix,
     /// ∂y/∂p.
     pub f: Matrix,
-    /// The distance of each constraint row from a change of its piece, where its force has no derivative: see
-    /// [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are those of the last
-    /// solve of the step.
+    /// The distance of each constraint row, or edge of a pyramid, from a change of its piece, where its force has no
+    /// derivative: see [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are those
+    /// of the last solve of the step.
     pub switching: Vec<f64>,
 }
 

@@ -7,9 +7,9 @@ use crate::{Cost, Problem};
 use clench_math::{Real, Scalar};
 
 impl<T: Real> Problem<T> {
-    /// Writes for each row the distance of J a − aref from the nearest point at which the cost of its block changes
-    /// piece, in the units of the row or of the first row of a contact (m/s², rad/s²); infinite if none changes. Only
-    /// the first lane is read.
+    /// Writes for each row, or edge of a pyramid, the distance of J a − aref from the nearest point at which the cost of
+    /// its block changes piece, in the units of the row or of the first row of a contact (m/s², rad/s²); infinite if
+    /// none changes. Only the first lane is read.
     ///
     /// # Panics
     /// Panics if `qacc` has another length than nv.
@@ -34,7 +34,6 @@ impl<T: Real> Problem<T> {
     /// Appends the distances of the rows of a block.
     fn push_distances(&self, b: &BlockIndex, y: &[f64], out: &mut Vec<f64>) {
         let Rows { d, r, shape, .. } = self.rows(b);
-        let exists = number(d[0]) > 0.0;
         let shape = shape.iter().map(|&x| number(x)).collect::<Vec<_>>();
         // T, the slip in coordinates in which the cone is circular.
         let scaled: [f64; MAX_DIM] = std::array::from_fn(|i| match i {
@@ -50,14 +49,9 @@ impl<T: Real> Problem<T> {
                 let rows = y.iter().zip(r).zip(&shape);
                 out.extend(rows.map(|((y, &r), eta)| (y.abs() - number(r) * eta).abs()));
             }
-            Cost::Pyramid | Cost::Elliptic | Cost::Coulomb if !exists => {
-                out.extend(y.iter().map(|_| f64::INFINITY));
-            }
             Cost::Pyramid => {
-                let edges =
-                    (1..y.len()).flat_map(|i| [y[0] + shape[i] * y[i], y[0] - shape[i] * y[i]]);
-                let nearest = edges.fold(f64::INFINITY, |least, edge| least.min(edge.abs()));
-                out.extend(y.iter().map(|_| nearest));
+                let edges = (1..y.len()).flat_map(|i| [shape[i] * y[i], -shape[i] * y[i]]);
+                out.extend(edges.map(|friction| (y[0] + friction).abs()));
             }
             Cost::Elliptic => {
                 // N = μT and μN + T = 0 bound the zones.
