@@ -93,17 +93,18 @@ impl Sim {
             parameters: parameters.collect(),
         };
         let mut linearizer = lock(self.linearizer(), "simulation")?;
-        let guard = lock(self.inner(), "simulation")?;
-        let AnySim::F64(own) = &*guard else {
+        let mut guard = lock(self.inner(), "simulation")?;
+        let AnySim::F64(own) = &mut *guard else {
             return Err(PyValueError::new_err(
                 "derivatives need a simulation in double precision: create it with precision=\"64\"",
             ));
         };
+        let sim = own.current().map_err(sim_error)?;
         let linearizer = match &mut *linearizer {
             Some(linearizer) => linearizer,
-            empty => empty.insert(Linearizer::new(own.sim.model()).map_err(sim_error)?),
+            empty => empty.insert(Linearizer::new(sim.model()).map_err(sim_error)?),
         };
-        let result = py.detach(|| linearizer.linearize(&own.sim, &request));
+        let result = py.detach(|| linearizer.linearize(sim, &request));
         let result = result.map_err(sim_error)?;
         let matrix = |matrix: &Matrix| array(py, matrix, 0..matrix.shape[1]);
         let (by_state, by_output) = (PyDict::new(py), PyDict::new(py));
