@@ -1,7 +1,8 @@
 //! The signed distance of two shapes.
 
-use crate::{Contacts, Pose, Shape, Terrain, collide, supported};
-use clench_math::{Mat3, Scalar, Vec3};
+use crate::narrow::{Collide, SeparatingAxis, collide_again};
+use crate::{Contacts, Pose, Shape, Terrain, compiled_collide, supported};
+use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// The shortest connection between two shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +44,10 @@ pub fn distance<S: Scalar>(
     pose_b: &Pose<S>,
     limit: S,
 ) -> Option<Separation<S>> {
-    let found = find(
+    if S::IS_DUAL {
+        return find(compiled_collide(), (a, pose_a), (b, pose_b), limit);
+    }
+    let found = find_in_double(
         &double_shape(a),
         &double_pose(pose_a),
         &double_shape(b),
@@ -74,15 +78,25 @@ fn double_pose<S: Scalar>(pose: &Pose<S>) -> Pose<f64> {
 }
 
 /// Searches in double precision; compiled once.
-fn find(
+fn find_in_double(
     a: &Shape<f64>,
     pose_a: &Pose<f64>,
     b: &Shape<f64>,
     pose_b: &Pose<f64>,
     limit: f64,
 ) -> Option<Separation<f64>> {
+    find(collide_again, (a, pose_a), (b, pose_b), limit)
+}
+
+/// Searches among the contacts that `collide` finds.
+fn find<S: Scalar>(
+    collide: Collide<S>,
+    (a, pose_a): (&Shape<S>, &Pose<S>),
+    (b, pose_b): (&Shape<S>, &Pose<S>),
+    limit: S,
+) -> Option<Separation<S>> {
     if a.kind() > b.kind() {
-        let found = find(b, pose_b, a, pose_a, limit)?;
+        let found = find(collide, (b, pose_b), (a, pose_a), limit)?;
         let [second, first] = found.points;
         return Some(Separation {
             normal: -found.normal,
@@ -94,27 +108,32 @@ fn find(
         return None;
     }
     let mut contacts = Contacts::new();
-    let mut reach = limit.max(0.0);
+    let search = |reach: S, contacts: &mut Contacts<S>| {
+        let mut axis = SeparatingAxis::default();
+        collide(a, pose_a, b, pose_b, reach, &mut axis, contacts);
+    };
+    let mut reach = Real::max(limit, S::ZERO);
     if let Shape::HeightField(Terrain {
         field: Some(field), ..
     }) = a
     {
         // Near cells first. No point of the field is further away than the sum.
         let size = b.bounding_radius();
-        let furthest = field.radius() + size + (pose_b.position - pose_a.position).norm();
-        let limit = reach.min(furthest);
-        reach = size.max(furthest * MIN_SEARCH_SHARE);
+        let radius = S::new(field.radius());
+        let furthest = radius + size + (pose_b.position - pose_a.position).norm();
+        let limit = Real::min(reach, furthest);
+        reach = Real::max(size, furthest * S::new(MIN_SEARCH_SHARE));
         while reach < limit {
-            collide(a, pose_a, b, pose_b, reach, &mut contacts);
+            search(reach, &mut contacts);
             if !contacts.as_slice().is_empty() {
                 break;
             }
-            reach *= 4.0;
+            reach *= S::new(4.0);
         }
         reach = limit;
     }
     if contacts.as_slice().is_empty() {
-        collide(a, pose_a, b, pose_b, reach, &mut contacts);
+        search(reach, &mut contacts);
     }
     let mut points = contacts.as_slice().iter();
     let mut best = points.next()?;
@@ -123,8 +142,8 @@ fn find(
             best = point;
         }
     }
-    let (normal, half) = (best.frame.rows[0], 0.5 * best.distance);
-    let finite = (best.position.norm_squared() + best.distance).is_finite();
+    let (normal, half) = (best.frame.rows[0], S::new(0.5) * best.distance);
+    let finite = Real::is_finite(best.position.norm_squared() + best.distance);
     (finite && best.distance <= limit).then(|| Separation {
         distance: best.distance,
         normal,

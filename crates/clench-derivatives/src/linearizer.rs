@@ -6,6 +6,7 @@ use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
 use clench_rigid::{Output, Sim, SimError};
 use std::fmt;
+use std::sync::Arc;
 
 /// Results to differentiate besides the next state and the sensors, and inputs to differentiate by besides state and
 /// controls.
@@ -64,6 +65,24 @@ pub struct Linearization {
     pub switching: Vec<f64>,
 }
 
+/// Returns the model for a step that skips no parameter to differentiate by because it is zero or trivial.
+fn general(
+    model: &Arc<Model>,
+    params: &Params<f64>,
+    parameters: &[(ParamField, usize)],
+) -> Arc<Model> {
+    let mut model = Arc::clone(model);
+    for chosen in parameters.chunk_by(|(field, _), (next, _)| field == next) {
+        let field = chosen[0].0;
+        let mut row = params.read_lane(field, 0);
+        for &(_, number) in chosen {
+            row[number] = f64::NAN;
+        }
+        Model::clear_structural_guarantees(&mut model, field, &row);
+    }
+    model
+}
+
 /// Computes the derivatives of steps of a model, and reuses its memory.
 pub struct Linearizer {
     pass: Box<dyn Pass>,
@@ -114,8 +133,9 @@ impl Linearizer {
             self.params.clone_from(sim.params());
             self.pass.set_params(&self.params);
         }
+        let model = general(sim.model(), sim.params(), &request.parameters);
         let mut source = Source {
-            model: sim.model(),
+            model: &model,
             settings: sim.settings(),
             state: &sim.state,
             outputs: &request.outputs,

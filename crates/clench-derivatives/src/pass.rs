@@ -83,6 +83,13 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
                 Direction::Parameter(field, index) => {
                     let mut row = self.params.read_lane(field, 0);
                     row[index].set_derivative(k, 1.0);
+                    if let Some(size) = field.direction_size() {
+                        // A direction is normalized when it is set.
+                        let part = row[index].value;
+                        for x in &mut row[index / size * size..][..size] {
+                            x.set_derivative(k, x.derivative(k) - part * x.value);
+                        }
+                    }
                     self.params.write_lane(field, 0, &row);
                     self.params.derive(model, field);
                 }

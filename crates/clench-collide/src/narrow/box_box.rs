@@ -21,6 +21,8 @@ const EDGE_BIAS: f64 = 1e-6;
 const ALIAS_COSINE: f64 = 1.0 - 3.8e-7;
 /// ... unless it is better by this fraction of the face's separation.
 const ALIAS_SHARE: f64 = 0.05;
+/// The angle up to which faces are level, rad.
+const LEVEL: f64 = 1e-8;
 
 /// Returns a rounding tolerance: MuJoCo's in double precision, at least `units` in the last place.
 #[inline]
@@ -171,12 +173,28 @@ impl<S: Scalar> BoxPair<S> {
                 if separation > self.reach {
                     return Err(self.face_normal(owner, axis));
                 }
-                if separation > best.1 {
+                if separation > best.1
+                    || (S::IS_DUAL && separation >= best.1 - self.slack && self.covers(owner, axis))
+                {
                     best = (TouchingFeature::Face { owner, axis }, separation);
                 }
             }
         }
         Ok(best)
+    }
+
+    /// Returns true if a face of the other box lies level in the faces of box `owner` across `axis`. Of two level faces,
+    /// the larger separation is that of the outer one if they turn.
+    fn covers(&self, owner: usize, axis: usize) -> bool {
+        let (size, other) = (self.size[owner], self.size[1 - owner]);
+        let rows = &self.rotation[owner].rows;
+        let level = (rows[axis].to_array().iter()).any(|x| x.abs() >= S::new(1.0 - LEVEL * LEVEL));
+        let inside = |i: usize| {
+            let row = rows[i];
+            let extent = row.x.abs() * other.x + row.y.abs() * other.y + row.z.abs() * other.z;
+            self.offset[owner][i].abs() + extent <= size[i] + self.slack
+        };
+        level && inside((axis + 1) % 3) && inside((axis + 2) % 3)
     }
 
     /// Returns the distance of the other box from the nearer face of box `owner` across `axis`.

@@ -52,9 +52,21 @@ impl<T: Real> Line<T> {
                 for axis in 0..3 {
                     normal[axis].set_lane(lane, T::Scalar::new(n[axis]));
                 }
+                if T::IS_DUAL && n.dot(line.along) != 0.0 {
+                    let point = line.at(found);
+                    distance += self.distance_to_plane(point, n) - T::new(found);
+                    distance.set_value(T::new(found).value());
+                }
             }
         }
         (distance, normal)
+    }
+
+    /// Returns the distance to the plane through a point across a normal. The facets of surfaces that are hit lane by
+    /// lane are flat, so it has the derivatives of the distance to the facet.
+    fn distance_to_plane(&self, point: Vec3<f64>, normal: Vec3<f64>) -> T {
+        let [point, normal] = [point, normal].map(|v| Vec3::from_f64(v.to_array()));
+        normal.dot(point - self.origin) / normal.dot(self.along)
     }
 }
 

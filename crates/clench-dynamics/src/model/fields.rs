@@ -58,6 +58,21 @@ impl ParamField {
         }
     }
 
+    /// Returns the number of numbers of each direction, if this field holds directions, which are normalized.
+    pub fn direction_size(self) -> Option<usize> {
+        match self.rule() {
+            Rule::Quaternion => Some(4),
+            Rule::Axis => Some(3),
+            Rule::Range
+            | Rule::Finite
+            | Rule::Positive
+            | Rule::NotNegative
+            | Rule::AsModel
+            | Rule::IfModel
+            | Rule::Follows(_) => None,
+        }
+    }
+
     /// Checks the numbers of this field for one environment, and normalizes quaternions and axes.
     ///
     /// # Errors
@@ -81,16 +96,11 @@ impl ParamField {
         if self == ParamField::geom_size {
             require_own_sizes(model, field, row)?;
         }
-        let size = match rule {
-            Rule::Quaternion => 4,
-            Rule::Axis => 3,
-            Rule::Range => return require_rising(field, row),
-            Rule::Finite
-            | Rule::Positive
-            | Rule::NotNegative
-            | Rule::AsModel
-            | Rule::IfModel
-            | Rule::Follows(_) => return Ok(()),
+        if rule == Rule::Range {
+            return require_rising(field, row);
+        }
+        let Some(size) = self.direction_size() else {
+            return Ok(());
         };
         (row.chunks_exact_mut(size).enumerate())
             .try_for_each(|(i, direction)| normalize(field, size * i, direction))

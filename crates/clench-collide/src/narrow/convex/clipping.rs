@@ -136,6 +136,14 @@ impl<S: Scalar> ProjectedFeature<S> {
         }
     }
 
+    /// Returns true if the corners of another feature lie in this face.
+    pub(super) fn contains(&self, other: &ProjectedFeature<S>, slack: S) -> bool {
+        other
+            .corners
+            .iter()
+            .all(|corner| self.covers(*corner, slack))
+    }
+
     /// Returns true if a point of the projection lies in this face.
     fn covers(&self, p: Vec3<S>, slack: S) -> bool {
         if let Some(disc) = &self.disc {

@@ -4,7 +4,7 @@
 //! replaced by a few points on the outline (see [`Outline`]) and the deepest point.
 
 use super::clipping::ProjectedFeature;
-use super::pair::{Pair, Vertex, across};
+use super::pair::{Gap, Pair, Vertex, across};
 use super::simplex::Simplex;
 use crate::PATCH_POINTS;
 use crate::narrow::outline::Outline;
@@ -21,6 +21,8 @@ const MAX_MISS: f64 = 1e-6;
 const EXTENSION: f64 = 1.25;
 /// The extension, relative to the smaller body, from which on it is enough that the features overlap.
 const MAX_EXTENSION: f64 = 1e-3;
+/// The angle up to which faces are level, rad.
+const LEVEL: f64 = 1e-9;
 
 /// A point of the patch, projected along the normal.
 #[derive(Clone, Copy)]
@@ -122,6 +124,37 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         merge(found, same);
     }
 
+    /// Returns the normal and its gap if the features are faces that lie level on each other.
+    ///
+    /// Both faces then have the same normal, but if they turn, the normal of the largest gap is that of the face which
+    /// contains the other: its plane is cut less deep. If none does, the normal has no derivative, and that of the
+    /// first face is used.
+    pub(super) fn level_faces(&self, features: [&Feature<S>; 2]) -> Option<Gap<S>> {
+        let [a, b] = features;
+        if a.corners.len() < 3 || b.corners.len() < 3 {
+            return None;
+        }
+        let n = self.projection.rows[2];
+        let (own, other) = (a.normal, -(self.pair.rotation * b.normal));
+        let level = S::new(LEVEL * LEVEL);
+        if (own - n).norm_squared() > level || (other - n).norm_squared() > level {
+            return None;
+        }
+        let [face_a, face_b] = &self.features;
+        let inner = face_b.contains(face_a, self.slack) && !face_a.contains(face_b, self.slack);
+        let mut normal = if inner { other } else { own };
+        let mut gap = normal.dot(self.pair.vertex(normal).w);
+        for axis in 0..3 {
+            normal[axis].set_value(n[axis].value());
+        }
+        gap.set_value(self.gap.value());
+        Some(Gap {
+            normal,
+            gap,
+            settled: true,
+        })
+    }
+
     /// Transforms a point of the projection to the first body's frame.
     pub(super) fn unproject(&self, place: Vec3<S>) -> Vec3<S> {
         self.projection.transpose_mul(place)
@@ -132,7 +165,14 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         let [a, b] = &self.features;
         let on_a = a.height(*place);
         // Just beyond a corner the features' planes continue, but the bodies do not.
-        let on_b = b.height(*place).max(on_a + self.gap);
+        let (plane, lowest) = (b.height(*place), on_a + self.gap);
+        let mut on_b = plane.max(lowest);
+        if S::IS_DUAL && lowest - plane <= self.pair.tolerance {
+            // Level faces touch at every corner, but each corner has a derivative of its own.
+            let height = on_b;
+            on_b = plane;
+            on_b.set_value(height.value());
+        }
         PatchPoint {
             x: place.x,
             y: place.y,
@@ -239,6 +279,9 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         }
         // The remaining difference is too small to move a point, but the contact gets the true depth.
         let least = least_distance(&found);
+        if S::IS_DUAL && least - lowest.distance() <= self.pair.tolerance {
+            return found;
+        }
         if let Some(point) = found.iter_mut().find(|s| s.distance() <= least) {
             *point = point.at_distance(least.min(lowest.distance()));
         }

@@ -60,7 +60,14 @@ pub(super) fn patch<S: Scalar>(
     if let Some(middle) = middle {
         return add_one(middle);
     }
-    let overlap = Overlap::new(pair, [&feature_a, &feature_b], n, best.gap);
+    let features = [&feature_a, &feature_b];
+    let (mut overlap, mut normal) = (Overlap::new(pair, features, n, best.gap), normal);
+    if S::IS_DUAL
+        && let Some(level) = overlap.level_faces(features)
+    {
+        overlap = Overlap::new(pair, features, level.normal, level.gap);
+        normal = a.pose.rotation * level.normal;
+    }
     let mut found = PatchPoints::new();
     overlap.points(simplex, margin + radii.0 + radii.1, &mut found);
     for point in &found {
