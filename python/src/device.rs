@@ -86,7 +86,7 @@ fn no_devices() -> PyErr {
 }
 
 /// Returns the error message for a part that was not compiled in.
-#[cfg(not(all(feature = "gpu", feature = "render")))]
+#[cfg(not(all(feature = "gpu", feature = "render", feature = "derivatives")))]
 pub(crate) fn without(part: &str, feature: &str) -> String {
     format!(
         "this package was built without {part}; wheels have them, and from source \

@@ -14,6 +14,8 @@ mod constraints;
 mod contact;
 mod contacts;
 mod count;
+#[cfg_attr(not(feature = "derivatives"), path = "no_derivatives.rs")]
+mod derivatives;
 mod device;
 #[cfg_attr(not(feature = "render"), path = "no_drawing.rs")]
 mod drawing;

@@ -47,7 +47,7 @@ pub(crate) fn build() -> Result<(), String> {
 /// Returns the external crates of the module.
 fn parts() -> Result<Vec<Part>, String> {
     let mut tree = cargo(&["tree", "--locked", "--package", "clench-python"]);
-    tree.args(["--features", "gpu,render"]);
+    tree.args(["--features", "gpu,render,derivatives"]);
     tree.args(["--edges", "normal,no-proc-macro", "--prefix", "none"]);
     tree.args(["--format", "{p}\t{l}"]);
     let done = tree.output().map_err(|e| format!("cargo tree: {e}"))?;

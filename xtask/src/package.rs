@@ -71,7 +71,7 @@ pub(crate) fn wheel() -> Result<(), String> {
 /// Sets the profile and the target folder of pip's build.
 fn compile_with(pip: &mut Command, profile: Profile) {
     pip.arg(format!(
-        "--config-settings=build-args=--profile={} --features=gpu,render",
+        "--config-settings=build-args=--profile={} --features=gpu,render,derivatives",
         profile.name()
     ));
     profile.choose_instructions(pip);

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The features that are off by default; checks and tests enable them.
-pub(crate) const ALL_FEATURES: &str =
-    "clench-cli/gpu,clench-cli/render,clench-python/gpu,clench-python/render";
+pub(crate) const ALL_FEATURES: &str = "clench-cli/gpu,clench-cli/render,clench-python/gpu,clench-python/render,clench-python/derivatives";
 
 /// The environment variable that selects instruction sets; see the build script of clench-math.
 const INSTRUCTIONS: &str = "CLENCH_INSTRUCTIONS";

@@ -50,7 +50,12 @@ fn folder() -> PathBuf {
 fn sanitize_python(args: &[String]) -> Result<(), String> {
     python::prepare()?;
     let mut build = instrumented("build")?;
-    build.args(["--package", "clench-python", "--features", "gpu,render"]);
+    build.args([
+        "--package",
+        "clench-python",
+        "--features",
+        "gpu,render,derivatives",
+    ]);
     run(build)?;
     let compiled = folder().join(host()?).join("debug/libclench_python.so");
     let package = folder().join("python/clench");

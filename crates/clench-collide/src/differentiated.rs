@@ -59,7 +59,7 @@ pub(crate) fn collide_differentiated<T: Real>(
     ];
     let changes: [T; DIRECTIONS] = std::array::from_fn(|k| changes[k / 3].to_array()[k % 3]);
     let mut points = POINTS.take().unwrap_or_default();
-    find(&[plain_a, plain_b], &[at_a, at_b], margin, &mut points);
+    find::<T>(&[plain_a, plain_b], &[at_a, at_b], margin, &mut points);
     for point in points.as_slice() {
         let slot = out.slot(out.as_slice().len());
         let [normal, tangent, _] = point.frame.rows;
@@ -96,8 +96,9 @@ thread_local! {
     static POINTS: Cell<Option<Box<Contacts<PairDual>>>> = Cell::default();
 }
 
-/// Computes the contact points of two shapes with their derivatives.
-fn find(
+/// Computes the contact points of two shapes with their derivatives. Generic, so that the crate that differentiates
+/// compiles it.
+fn find<T>(
     shapes: &[Shape<f64>; 2],
     poses: &[Pose<f64>; 2],
     margin: f64,

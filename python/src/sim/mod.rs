@@ -6,6 +6,7 @@ mod queries;
 
 use crate::busy::{in_portions, lock};
 use crate::count::Count;
+use crate::derivatives::Memory;
 use crate::error::sim_error;
 use crate::kind::Kind;
 use crate::model::Model;
@@ -17,7 +18,6 @@ use crate::state_views::StateViews;
 use crate::stats::SolverStats;
 use crate::view::{Keeper, read_only};
 use clench::Output;
-use clench::derivatives::Linearizer;
 use clench::math::Scalar;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -68,7 +68,7 @@ pub(crate) struct Sim {
     model: Py<Model>,
     precision: Bits,
     /// The memory of derivatives, created on demand.
-    linearizer: Mutex<Option<Linearizer>>,
+    linearizer: Mutex<Memory>,
 }
 
 impl Sim {
@@ -83,7 +83,11 @@ impl Sim {
     }
 
     /// Returns the memory of derivatives.
-    pub(crate) fn linearizer(&self) -> &Mutex<Option<Linearizer>> {
+    #[cfg_attr(
+        not(feature = "derivatives"),
+        expect(dead_code, reason = "nothing is differentiated")
+    )]
+    pub(crate) fn linearizer(&self) -> &Mutex<Memory> {
         &self.linearizer
     }
 
