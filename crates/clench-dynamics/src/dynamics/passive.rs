@@ -150,7 +150,8 @@ fn gravity_compensation<T: Real>(
 ) {
     let mut lifted = T::Mask::splat(false);
     for share in &params.body_gravcomp {
-        lifted |= share.gt(T::ZERO);
+        // A share of zero that has a derivative is one that may become positive.
+        lifted |= share.ge(T::ZERO) & !share.eq(T::ZERO);
     }
     if !model.flags.gravity || !lifted.any() {
         return;
