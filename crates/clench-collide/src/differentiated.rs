@@ -29,7 +29,6 @@ pub(crate) fn collide_differentiated<T: Real>(
     out: &mut Contacts<T>,
 ) {
     out.clear();
-    let margin = f64_of(margin);
     let mut plain_axis = axis.map(f64_of);
     let mut plain = Contacts::<f64>::new();
     let [plain_a, plain_b] = shapes.map(|shape| shape.resized(map(shape.size(), f64_of)));
@@ -39,7 +38,7 @@ pub(crate) fn collide_differentiated<T: Real>(
         &at_a,
         &plain_b,
         &at_b,
-        margin,
+        f64_of(margin),
         &mut plain_axis,
         &mut plain,
     );
@@ -59,7 +58,7 @@ pub(crate) fn collide_differentiated<T: Real>(
     ];
     let changes: [T; DIRECTIONS] = std::array::from_fn(|k| changes[k / 3].to_array()[k % 3]);
     let mut points = POINTS.take().unwrap_or_default();
-    find::<T>(&[plain_a, plain_b], &[at_a, at_b], margin, &mut points);
+    find(&[plain_a, plain_b], &[at_a, at_b], margin, &mut points);
     for point in points.as_slice() {
         let slot = out.slot(out.as_slice().len());
         let [normal, tangent, _] = point.frame.rows;
@@ -98,10 +97,10 @@ thread_local! {
 
 /// Computes the contact points of two shapes with their derivatives. Generic, so that the crate that differentiates
 /// compiles it.
-fn find<T>(
+fn find<T: Real>(
     shapes: &[Shape<f64>; 2],
     poses: &[Pose<f64>; 2],
-    margin: f64,
+    margin: T,
     points: &mut Contacts<PairDual>,
 ) {
     let [a, b] = [0, 1].map(|k| shapes[k].resized(seeded(shapes[k].size(), SIZES[k])));
@@ -118,7 +117,7 @@ fn find<T>(
         }
     });
     let mut axis = SeparatingAxis::default();
-    let margin = PairDual::new(margin);
+    let margin = PairDual::new(f64_of(margin));
     collide_again(&a, &pose_a, &b, &pose_b, margin, &mut axis, points);
 }
 
@@ -186,7 +185,7 @@ fn turn<T: Real>(rotation: &Mat3<T>) -> Vec3<T> {
     for column in 0..3 {
         let axis = rotation.column(column);
         let fixed = map(axis, |x| T::from_value(x.value()));
-        sum = sum + fixed.cross(axis - fixed);
+        sum += fixed.cross(axis - fixed);
     }
     sum * T::new(0.5)
 }
