@@ -167,16 +167,19 @@ impl<S: Scalar> BoxPair<S> {
         let (owner, axis) = (0, 0);
         let first = self.face_separation(owner, axis);
         let mut best = (TouchingFeature::Face { owner, axis }, first);
+        let mut chosen = (owner, axis);
         for owner in 0..2 {
             for axis in 0..3 {
                 let separation = self.face_separation(owner, axis);
                 if separation > self.reach {
                     return Err(self.face_normal(owner, axis));
                 }
+                let level = S::IS_DUAL && separation >= best.1 - self.slack;
                 if separation > best.1
-                    || (S::IS_DUAL && separation >= best.1 - self.slack && self.covers(owner, axis))
+                    || (level && self.covers(owner, axis) && !self.covers(chosen.0, chosen.1))
                 {
                     best = (TouchingFeature::Face { owner, axis }, separation);
+                    chosen = (owner, axis);
                 }
             }
         }

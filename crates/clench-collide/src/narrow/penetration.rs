@@ -123,7 +123,21 @@ fn direction_across_segment<T: Real>(
             T::select(rising, low.1, sine),
         );
     }
-    let n = a * high.0 + b * high.1;
+    let (mut cosine, mut sine) = high;
+    if T::IS_DUAL {
+        // Bisection has no derivatives. A step of Newton's method from the root has.
+        let [c, s] = [cosine, sine].map(|x| T::from_value(x.value()));
+        let round = (r2 * c * c + k2 * s * s).sqrt();
+        let slope = level * c + aside * s - (r2 - k2) * s * c / round;
+        let turn = (c * c - s * s) / round + (r2 - k2) * (s * c / round).squared() / round;
+        let bend = aside * c - level * s - (r2 - k2) * turn;
+        let is_root = slope.abs().lt(T::new(1e-9) * (radius + half_length))
+            & bend.gt(T::new(1e-9) * (radius + half_length));
+        let mut angle = T::select(is_root, -slope / bend, T::ZERO);
+        angle.set_value(T::ZERO.value());
+        (cosine, sine) = (c - s * angle, s + c * angle);
+    }
+    let n = a * cosine + b * sine;
     n * (T::ONE / n.norm())
 }
 

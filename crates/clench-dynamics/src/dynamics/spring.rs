@@ -88,6 +88,10 @@ pub fn tendon_elongation<T: Real>(
 /// Returns the signed distance of a length from a dead band.
 #[inline(always)]
 pub(crate) fn elongation_outside<T: Real>([low, high]: [T; 2], length: T) -> T {
-    let below = T::select(length.lt(low), length - low, T::ZERO);
+    let mut below = T::select(length.lt(low), length - low, T::ZERO);
+    if T::IS_DUAL {
+        // At a single rest length, a spring has the same derivative on both sides.
+        below = T::select(low.ge(high), length - low, below);
+    }
     T::select(length.gt(high), length - high, below)
 }
