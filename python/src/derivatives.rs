@@ -1,16 +1,13 @@
 //! The derivatives of a step, from Python.
 
-use crate::batch::{AnyBatch, Batch};
-use crate::busy::lock;
 use crate::error::sim_error;
-use crate::linearize::Linearization;
+use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
-use crate::sim::Sim;
 use clench::Output;
 use clench::derivatives::{self, BatchLinearizer, Linearizer, Matrix, Request};
 use clench::rigid::model::ParamField;
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyMapping};
 use std::ops::Range;
@@ -19,68 +16,14 @@ use std::slice::from_ref;
 /// The memory of a simulation's derivatives, created on demand.
 pub(crate) type Memory = Option<Linearizer>;
 
-/// Linearizes the next step of a simulation.
-pub(crate) fn of_sim(
-    py: Python<'_>,
-    sim: &Sim,
-    outputs: &[String],
-    parameters: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Linearization> {
-    let chosen = Chosen::new(sim.described(), outputs, parameters)?;
-    let mut linearizer = lock(sim.linearizer(), "simulation")?;
-    let mut guard = lock(sim.inner(), "simulation")?;
-    let (memory, any, request) = (&mut *linearizer, &mut *guard, &chosen.request);
-    let result = py.detach(move || {
-        let double;
-        let sim = match any {
-            AnySim::F64(own) => &*own.current()?,
-            AnySim::F32(own) => {
-                double = own.current()?.in_double_precision()?;
-                &double
-            }
-        };
-        let linearizer = match memory {
-            Some(linearizer) => linearizer,
-            empty => empty.insert(Linearizer::new(sim.model())?),
-        };
-        linearizer.linearize(sim, request)
-    });
-    chosen.export(py, from_ref(result.map_err(sim_error)?), &[])
-}
-
-/// Linearizes the next step of every environment of a batch.
-pub(crate) fn of_batch(
-    py: Python<'_>,
-    batch: &Batch,
-    outputs: &[String],
-    parameters: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Linearization> {
-    let chosen = Chosen::new(batch.described(), outputs, parameters)?;
-    let mut guard = lock(batch.inner(), "batch")?;
-    let AnyBatch::F64(batch) = &mut *guard else {
-        return Err(PyValueError::new_err(
-            "derivatives of a batch need double precision: create it with precision=\"64\"",
-        ));
-    };
-    let count = batch.count();
-    let mut linearizer = BatchLinearizer::new(batch).map_err(sim_error)?;
-    let results = py.detach(|| linearizer.linearize(batch, &chosen.request));
-    let results = results.map_err(|(env, error)| {
-        let error = sim_error(error);
-        let text = format!("environment {env}: {}", error.value(py));
-        PyErr::from_type(error.get_type(py), text)
-    })?;
-    chosen.export(py, results, &[count])
-}
-
 /// The chosen outputs and parameters.
-struct Chosen {
+pub(crate) struct Chosen {
     request: Request,
     fields: Vec<(ParamField, usize)>,
 }
 
 impl Chosen {
-    fn new(
+    pub(crate) fn new(
         model: &clench::Model,
         outputs: &[String],
         parameters: Option<&Bound<'_, PyAny>>,
@@ -128,6 +71,49 @@ impl Chosen {
         let numbers = numbers.into_iter().map(|number| (field, number));
         self.request.parameters.extend(numbers);
         Ok(())
+    }
+
+    /// Linearizes the next step of a simulation.
+    pub(crate) fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<Linearization> {
+        let request = &self.request;
+        let result = py.detach(move || {
+            let double;
+            let sim = match sim {
+                AnySim::F64(own) => &*own.current()?,
+                AnySim::F32(own) => {
+                    double = own.current()?.in_double_precision()?;
+                    &double
+                }
+            };
+            let linearizer = match memory {
+                Some(linearizer) => linearizer,
+                empty => empty.insert(Linearizer::new(sim.model())?),
+            };
+            linearizer.linearize(sim, request)
+        });
+        self.export(py, from_ref(result.map_err(sim_error)?), &[])
+    }
+
+    /// Linearizes the next step of every environment of a batch.
+    pub(crate) fn of_batch(
+        &self,
+        py: Python<'_>,
+        batch: &mut clench::Batch<f64>,
+    ) -> PyResult<Linearization> {
+        let count = batch.count();
+        let mut linearizer = BatchLinearizer::new(batch).map_err(sim_error)?;
+        let results = py.detach(|| linearizer.linearize(batch, &self.request));
+        let results = results.map_err(|(env, error)| {
+            let error = sim_error(error);
+            let text = format!("environment {env}: {}", error.value(py));
+            PyErr::from_type(error.get_type(py), text)
+        })?;
+        self.export(py, results, &[count])
     }
 
     /// Copies results to arrays, stacked in the shape `stack`.

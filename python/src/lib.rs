@@ -28,6 +28,7 @@ mod ik;
 mod ik_targets;
 mod inertia_queries;
 mod kind;
+mod linearization;
 mod linearize;
 mod model;
 mod motion_queries;
@@ -86,7 +87,7 @@ mod _core {
     #[pymodule_export]
     use crate::ik_targets::{ComTarget, FrameTarget, PostureTarget};
     #[pymodule_export]
-    use crate::linearize::Linearization;
+    use crate::linearization::Linearization;
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]

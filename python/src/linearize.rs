@@ -1,38 +1,12 @@
-//! Exact derivatives of a step: the class of results, and the methods that compute them.
+//! Exact derivatives of a step: methods of `Sim` and `Batch`.
 
-use crate::batch::Batch;
+use crate::batch::{AnyBatch, Batch};
+use crate::busy::lock;
 use crate::derivatives;
+use crate::linearization::Linearization;
 use crate::sim::Sim;
-use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-
-/// The linear model of a step about a state: x⁺ changes by A dx + B du, y by C dx + D du.
-///
-/// x holds the motion of the positions along the dofs (nv; rotations about the axes of the child, rad), then the
-/// velocities (nv) and the activations (na). u holds the controls (nu). y holds the sensors (nsensordata), then the
-/// outputs that were asked for, row after row, of the state before the step. The matrices of a batch are stacked, (n,
-/// rows, columns).
-#[pyclass(frozen, get_all, module = "clench")]
-#[allow(non_snake_case)] // Named as in control theory.
-pub(crate) struct Linearization {
-    /// numpy.ndarray : ∂x⁺/∂x.
-    pub(crate) A: Py<PyArrayDyn<f64>>,
-    /// numpy.ndarray : ∂x⁺/∂u.
-    pub(crate) B: Py<PyArrayDyn<f64>>,
-    /// numpy.ndarray : ∂y/∂x.
-    pub(crate) C: Py<PyArrayDyn<f64>>,
-    /// numpy.ndarray : ∂y/∂u.
-    pub(crate) D: Py<PyArrayDyn<f64>>,
-    /// dict[str, numpy.ndarray] : ∂x⁺/∂p by parameter, with a column for each of its numbers that was asked for.
-    pub(crate) parameters: Py<PyDict>,
-    /// dict[str, numpy.ndarray] : ∂y/∂p, likewise.
-    pub(crate) output_parameters: Py<PyDict>,
-    /// numpy.ndarray : The distance of each constraint row, in the order of `Sim.constraints`, from a change of its state
-    /// (a contact that begins to slip, a limit that lets go), where its force has no derivative; m/s² or rad/s²,
-    /// infinite for rows that always act. Of a batch, a list of arrays.
-    pub(crate) switching: Py<PyAny>,
-}
 
 #[pymethods]
 impl Sim {
@@ -82,7 +56,11 @@ impl Sim {
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
-        derivatives::of_sim(py, self, &outputs, parameters)
+        let model = self.described();
+        let chosen = derivatives::Chosen::new(model, &outputs, parameters)?;
+        let mut memory = lock(self.linearizer(), "simulation")?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        chosen.of_sim(py, &mut memory, &mut guard)
     }
 }
 
@@ -119,6 +97,14 @@ impl Batch {
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
-        derivatives::of_batch(py, self, &outputs, parameters)
+        let model = self.described();
+        let chosen = derivatives::Chosen::new(model, &outputs, parameters)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        match &mut *guard {
+            AnyBatch::F64(batch) => chosen.of_batch(py, batch),
+            AnyBatch::F32(_) => Err(PyValueError::new_err(
+                "derivatives of a batch need double precision: create it with precision=\"64\"",
+            )),
+        }
     }
 }

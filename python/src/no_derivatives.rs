@@ -1,34 +1,42 @@
 //! Replacement of `derivatives` in a package that is built without them.
 
-use crate::batch::Batch;
 use crate::error::classes::ClenchError;
-use crate::linearize::Linearization;
-use crate::sim::Sim;
+use crate::linearization::Linearization;
+use crate::row_sim::AnySim;
 use pyo3::prelude::*;
+use std::convert::Infallible;
 
 /// The memory of a simulation's derivatives: none.
 pub(crate) type Memory = ();
 
-/// Returns an error that says how to build a package with derivatives.
-pub(crate) fn of_sim(
-    _: Python<'_>,
-    _: &Sim,
-    _: &[String],
-    _: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Linearization> {
-    Err(missing())
-}
+/// The chosen outputs and parameters, which cannot exist.
+pub(crate) struct Chosen(Infallible);
 
-/// Returns the same error.
-pub(crate) fn of_batch(
-    _: Python<'_>,
-    _: &Batch,
-    _: &[String],
-    _: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Linearization> {
-    Err(missing())
-}
+impl Chosen {
+    /// Returns an error that says how to build a package with derivatives.
+    pub(crate) fn new(
+        _: &clench::Model,
+        _: &[String],
+        _: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let text = crate::device::without("derivatives", "derivatives");
+        Err(ClenchError::new_err(text))
+    }
 
-fn missing() -> PyErr {
-    ClenchError::new_err(crate::device::without("derivatives", "derivatives"))
+    pub(crate) fn of_sim(
+        &self,
+        _: Python<'_>,
+        (): &mut Memory,
+        _: &mut AnySim,
+    ) -> PyResult<Linearization> {
+        match self.0 {}
+    }
+
+    pub(crate) fn of_batch(
+        &self,
+        _: Python<'_>,
+        _: &mut clench::Batch<f64>,
+    ) -> PyResult<Linearization> {
+        match self.0 {}
+    }
 }

@@ -60,8 +60,8 @@ pub struct Linearization {
     /// ∂y/∂p.
     pub f: Matrix,
     /// The distance of each constraint row, or edge of a pyramid, from a change of its piece, where its force has no
-    /// derivative: see [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are those
-    /// of the last solve of the step.
+    /// derivative: see [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are
+    /// those of the last solve of the step.
     pub switching: Vec<f64>,
 }
 

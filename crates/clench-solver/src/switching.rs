@@ -7,9 +7,9 @@ use crate::{Cost, Problem};
 use clench_math::{Real, Scalar};
 
 impl<T: Real> Problem<T> {
-    /// Writes for each row, or edge of a pyramid, the distance of J a − aref from the nearest point at which the cost of
-    /// its block changes piece, in the units of the row or of the first row of a contact (m/s², rad/s²); infinite if
-    /// none changes. Only the first lane is read.
+    /// Writes for each row, or edge of a pyramid, the distance of J a − aref from the nearest point at which the cost
+    /// of its block changes piece, in the units of the row or of the first row of a contact (m/s², rad/s²); infinite
+    /// if none changes. Only the first lane is read.
     ///
     /// # Panics
     /// Panics if `qacc` has another length than nv.

@@ -83,10 +83,6 @@ impl Sim {
     }
 
     /// Returns the memory of derivatives.
-    #[cfg_attr(
-        not(feature = "derivatives"),
-        expect(dead_code, reason = "nothing is differentiated")
-    )]
     pub(crate) fn linearizer(&self) -> &Mutex<Memory> {
         &self.linearizer
     }

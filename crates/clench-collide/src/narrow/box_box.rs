@@ -186,8 +186,8 @@ impl<S: Scalar> BoxPair<S> {
         Ok(best)
     }
 
-    /// Returns true if a face of the other box lies level in the faces of box `owner` across `axis`. Of two level faces,
-    /// the larger separation is that of the outer one if they turn.
+    /// Returns true if a face of the other box lies level in the faces of box `owner` across `axis`. Of two level
+    /// faces, the larger separation is that of the outer one if they turn.
     fn covers(&self, owner: usize, axis: usize) -> bool {
         let (size, other) = (self.size[owner], self.size[1 - owner]);
         let rows = &self.rotation[owner].rows;
