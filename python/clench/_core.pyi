@@ -903,7 +903,7 @@ class Sim(_Outputs):
     @property
     def contact_overflow(self) -> bool: ...
     def linearize(
-        self, outputs: Sequence[str] = ..., parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
+        self, outputs: Sequence[str] = (), parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
     ) -> Linearization: ...
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
     def render(
@@ -1088,7 +1088,7 @@ class Batch(_Outputs):
     def set_constants(self, mask: ArrayLike | None = None) -> None: ...
     def param(self, field: str) -> NDArray[Any]: ...  # (n, ...)
     def linearize(
-        self, outputs: Sequence[str] = ..., parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
+        self, outputs: Sequence[str] = (), parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
     ) -> Linearization: ...
     def record(self, *names: str) -> None: ...
     @property

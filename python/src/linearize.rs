@@ -49,7 +49,7 @@ impl Sim {
     /// >>> sim.linearize().B.tolist()
     /// [[5e-05], [0.005]]
     #[pyo3(signature = (outputs = Vec::new(), parameters = None),
-           text_signature = "(outputs=(), parameters=None)")]
+           text_signature = "($self, outputs=(), parameters=None)")]
     fn linearize(
         &self,
         py: Python<'_>,
@@ -90,7 +90,7 @@ impl Batch {
     /// SimulationError
     ///     If the step of an environment fails.
     #[pyo3(signature = (outputs = Vec::new(), parameters = None),
-           text_signature = "(outputs=(), parameters=None)")]
+           text_signature = "($self, outputs=(), parameters=None)")]
     fn linearize(
         &self,
         py: Python<'_>,
