@@ -291,6 +291,8 @@ class Fuzz:
             initial = self.numbers(n, 1 + model.nq + model.nv + model.na) * 1.0 if self.junk.chance(0.3) else self.choose((None, self.choose(self.states)))
             ctrl = self.choose((None, self.numbers(steps, model.nu), self.numbers(n, steps, model.nu), lambda step: self.numbers(model.nu)))
             progress = self.maybe(lambda: self.choose((None, False, lambda done, steps: None)))
+            # A bar would be printed.
+            progress = None if isinstance(progress, (bool, np.bool_)) else progress
             return batch.rollout(initial, ctrl, self.names(), self.maybe(lambda: self.choose((None, steps))), progress=progress)
         return batch.status, batch.running, batch.outputs, batch.bytes_per_env
 
@@ -321,6 +323,7 @@ class Fuzz:
             "heights": lambda: owner.heights(name, self.numbers(2, 2), **thing),
             "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1])),
             "ik": lambda: owner.ik(self.maybe(lambda: [clench.FrameTarget(**thing, position=point), clench.ComTarget(point)])),
+            "linearize": lambda: owner.linearize(self.maybe(lambda: ["xpos"]), self.maybe(lambda: {"body_mass": [1]})),
             "step1": lambda: owner.step1(),
             "step2": lambda: owner.step2(),
             "add_weld": lambda: owner.add_weld(name, self.maybe(lambda: 0)),
