@@ -28,6 +28,7 @@ const GROUPS: [Group; 2] = [
         folder: ".venv/learning",
         tests: &[
             "python/tests/test_torch.py",
+            "python/tests/test_jax.py",
             "python/tests/gymnasium/test_stable_baselines3.py",
             "python/tests/gymnasium/test_torchrl.py",
         ],

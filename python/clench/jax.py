@@ -1,0 +1,113 @@
+"""Steps with gradients for JAX, which must be installed (``pip install jax``).
+
+::
+
+    import clench.jax
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    step = clench.jax.step(clench.Sim(model))
+    state = clench.jax.state(sim)
+
+    def height(ctrl):                            # (100, nu)
+        (qpos, qvel, act), _ = jax.lax.scan(lambda state, u: (step(state, u), None), state, ctrl)
+        return qpos[2]
+
+    jax.grad(height)(ctrl)
+
+Gradients are exact: they are products with the matrices of `clench.Sim.linearize`. Only reverse mode is supported, once.
+Steps run on the processor, in double precision.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import numpy as np
+
+from clench._core import Sim
+from clench._tangent import Tangent
+
+__all__ = ["state", "step"]
+
+_State = tuple[Any, Any, Any]
+
+
+def state(sim: Sim) -> _State:
+    """Returns copies of the positions (nq), velocities (nv) and activations (na) of a simulation.
+
+    Parameters
+    ----------
+    sim : Sim
+        The simulation.
+
+    Returns
+    -------
+    tuple of jax.Array
+    """
+    return jax.numpy.array(sim.qpos), jax.numpy.array(sim.qvel), jax.numpy.array(sim.act)
+
+
+def step(sim: Sim) -> Any:
+    """Returns a pure function that steps, with a gradient: ``step(state, ctrl)`` is the next state.
+
+    A state has positions (nq), velocities (nv) and activations (na). All else that a step depends on, such as
+    parameters, mocap poses and applied forces, is that of the simulation now. The function works in `jax.jit` and
+    `jax.lax.scan`; `jax.vmap` calls it one environment at a time. It uses the simulation, so that one thread at a time
+    may call it.
+
+    Parameters
+    ----------
+    sim : Sim
+        A simulation in double precision.
+
+    Returns
+    -------
+    callable
+
+    Raises
+    ------
+    ValueError
+        If the simulation has single precision, or JAX is not set to double precision.
+    """
+    if sim.precision != "64":
+        raise ValueError('gradients need a simulation in double precision: create it with precision="64"')
+    if not jax.config.jax_enable_x64:
+        raise ValueError('gradients need double precision: call jax.config.update("jax_enable_x64", True) first')
+    model, base, tangent = sim.model, sim.state, Tangent(sim.model)
+    sizes = model.nq, model.nv, model.na
+    parts = tuple(jax.ShapeDtypeStruct((size,), np.float64) for size in sizes)
+    controls = jax.ShapeDtypeStruct((model.nu,), np.float64)
+
+    def write(qpos: Any, qvel: Any, act: Any, ctrl: Any) -> None:
+        sim.state = base
+        sim.qpos, sim.qvel, sim.act, sim.ctrl = (np.asarray(part) for part in (qpos, qvel, act, ctrl))
+
+    def advance(*arguments: Any) -> tuple[Any, ...]:
+        write(*arguments)
+        sim.step()
+        return sim.qpos.copy(), sim.qvel.copy(), sim.act.copy()
+
+    def multiply(qpos: Any, qvel: Any, act: Any, ctrl: Any, *gradients: Any) -> tuple[Any, ...]:
+        write(qpos, qvel, act, ctrl)
+        linear = sim.linearize()
+        sim.step()
+        by_qpos, by_qvel, by_act = (np.asarray(gradient) for gradient in gradients)
+        by_next = np.concatenate([by_qpos @ tangent.basis(sim.qpos), by_qvel, by_act])
+        by_motion, by_qvel, by_act = np.split(by_next @ linear.A, [model.nv, 2 * model.nv])
+        return by_motion @ tangent.inverse(np.asarray(qpos)), by_qvel, by_act, by_next @ linear.B
+
+    def call(state: _State, ctrl: Any) -> Any:
+        return jax.pure_callback(advance, parts, *state, ctrl, vmap_method="sequential")
+
+    def forward(state: _State, ctrl: Any) -> tuple[Any, Any]:
+        return call(state, ctrl), (*state, ctrl)
+
+    def backward(saved: Any, gradients: Any) -> tuple[Any, Any]:
+        products = jax.pure_callback(multiply, (*parts, controls), *saved, *gradients, vmap_method="sequential")
+        return tuple(products[:3]), products[3]
+
+    function: Any = jax.custom_vjp(call)
+    function.defvjp(forward, backward)
+    return function
