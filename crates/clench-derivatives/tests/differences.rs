@@ -2,8 +2,9 @@
 
 use clench_derivatives::{Linearizer, Matrix, Request};
 use clench_dynamics::dynamics::integrate::{differentiate_positions, integrate_positions};
-use clench_dynamics::model::ParamField;
+use clench_dynamics::model::{Integrator, ParamField};
 use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
+use clench_rigid::readout::constraint_rows;
 use clench_rigid::{Model, Sim, State};
 use clench_solver::ConstraintSolver;
 use std::path::Path;
@@ -142,6 +143,12 @@ fn check(model: Model, options: RigidOptions, steps: usize) {
         switching += differences.compare([&result.b, &result.d], u, |sim, h| {
             sim.state.ctrl[u] += h;
         });
+    }
+    if model.integrator != Integrator::Rk4 {
+        differences.sim.state.copy_from(&differences.from);
+        differences.sim.forward().expect("a forward pass");
+        let rows = constraint_rows(differences.sim.workspace(), 0);
+        assert_eq!(result.switching.len(), rows.len());
     }
     let all = (result.a.values.len() + result.b.values.len()) as f64;
     let limit = (SWITCHING * all) as usize;

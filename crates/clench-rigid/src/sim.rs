@@ -1,5 +1,6 @@
 //! A simulation of one environment.
 
+mod checks;
 mod computed_state;
 mod dynamic;
 mod given_contacts;
@@ -229,27 +230,6 @@ impl<T: Precision> Sim<T> {
         });
         self.validity.record(Computed::Positions, &self.state);
         Ok(())
-    }
-
-    /// Checks that a step can start from the state.
-    ///
-    /// # Errors
-    /// Returns an error if the state has wrong lengths or values.
-    pub fn check_state(&self) -> Result<(), SimError> {
-        self.check_threads()?;
-        check::check_lengths(&self.model, &self.state)?;
-        if T::good_inputs(&self.state) {
-            return Ok(());
-        }
-        Err(check::input_fault(&self.model, &self.state, 0).into())
-    }
-
-    /// Returns the fault in the results of a step from `time`, if there is one.
-    fn check_result(&self, time: f64) -> Result<(), SimError> {
-        if T::good_results(&self.state, &self.ws) {
-            return Ok(());
-        }
-        Err(check::result_fault(&self.model, time, &self.state, &self.ws, 0).into())
     }
 
     /// Resets the state to the model's initial state.
