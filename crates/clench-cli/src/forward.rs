@@ -1,7 +1,8 @@
 //! `clench forward`: one JSON state a line in, one JSON result a line out.
 
 use crate::options::ModelArguments;
-use crate::protocol::{NextState, ResultLine, StateLine, forward};
+use crate::protocol::{NextState, ResultLine, forward};
+use crate::state_line;
 use anyhow::{Context, Result};
 use clap::Args;
 use std::io::{self, BufRead, BufWriter, Write};
@@ -38,8 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             continue;
         }
         sim.reset();
-        let state = StateLine::parse(&line).with_context(context)?;
-        let given = state.apply(&mut sim).with_context(context)?;
+        let given = state_line::apply(&line, &mut sim).with_context(context)?;
         let step = || NextState::after(&mut sim, given.as_deref());
         let next = (arguments.step.then(step).transpose()).with_context(context)?;
         forward(&mut sim, given.as_deref()).with_context(context)?;

@@ -28,6 +28,7 @@ pub mod protocol;
 mod render;
 mod replacement;
 mod simulate;
+pub mod state_line;
 mod table;
 mod view;
 mod zip;
