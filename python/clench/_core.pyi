@@ -1035,7 +1035,7 @@ class Sim(_Outputs):
 class Batch(_Outputs):
     def __new__(
         cls,
-        model: Model,
+        model: Model | Sequence[Model],
         n_envs: SupportsIndex,
         precision: _Precision | None = None,
         threads: SupportsIndex | None = None,
@@ -1043,9 +1043,15 @@ class Batch(_Outputs):
         options: RigidOptions | None = None,
         record: Sequence[str] = (),
         device: str = "cpu",  # or "gpu", "gpu:NAME"
+        env_model: ArrayLike | None = None,  # (n,)
     ) -> Self: ...
     @property
     def model(self) -> Model: ...
+    @property
+    def models(self) -> tuple[Model, ...]: ...
+    @property
+    def env_model(self) -> NDArray[np.int64]: ...  # (n,)
+    def geoms_of(self, model: SupportsIndex) -> NDArray[np.int64]: ...  # (ngeom of that model,)
     @property
     def options(self) -> RigidOptions: ...
     @options.setter
@@ -1073,7 +1079,13 @@ class Batch(_Outputs):
     def set_state(self, state: State, envs: ArrayLike | None = None) -> None: ...
     def step(self, n: SupportsIndex = 1) -> int: ...
     def forward(self, mask: ArrayLike | None = None) -> int: ...
-    def reset(self, mask: ArrayLike | None = None, keyframe: str | SupportsIndex | None = None) -> None: ...
+    def reset(
+        self,
+        mask: ArrayLike | None = None,
+        keyframe: str | SupportsIndex | None = None,
+        *,
+        env_model: ArrayLike | None = None,  # one for each environment of the mask
+    ) -> None: ...
     def revive(self, mask: ArrayLike | None = None) -> None: ...
     @property
     def status(self) -> NDArray[np.int8]: ...  # (n,), codes of clench.EnvStatus

@@ -57,9 +57,12 @@ def _model(method: str, arguments: dict[str, Any], checksum: int) -> Model:
 def _changed(own: Sim | Batch) -> dict[str, Any]:
     """Returns the parameters that differ from the model's."""
     changed = {}
+    several = isinstance(own, Batch) and len(own.models) > 1
+    plain = Batch(own.models, own.n_envs, own.precision, 1, env_model=own.env_model) if several else None
     for name in PARAMETERS:
         values = own.param(name)
-        if name not in _FOLLOWING and not (values == np.asarray(getattr(own.model, name)).astype(values.dtype)).all():
+        unchanged = np.asarray(getattr(own.model, name)) if plain is None else plain.param(name)
+        if name not in _FOLLOWING and not (values == unchanged.astype(values.dtype)).all():
             changed[name] = values
     return changed
 
@@ -79,13 +82,15 @@ def _sim(model: Model, options: RigidOptions, how: dict[str, Any], changed: dict
 
 
 def _reduce_batch(batch: Batch) -> tuple[Any, ...]:
-    how = (batch.n_envs, batch.precision, batch.threads, batch.options, batch.outputs, batch.device)
-    return _batch, (batch.model, how, _changed(batch), batch.state, batch._last_serials)
+    how = (batch.n_envs, batch.precision, batch.threads, batch.options, batch.outputs, batch.device, batch.env_model)
+    return _batch, (batch.models, how, _changed(batch), batch.state, batch._last_serials)
 
 
-def _batch(model: Model, how: tuple[Any, ...], changed: dict[str, Any], state: State, last_serials: list[int]) -> Batch:
-    n_envs, precision, threads, options, outputs, device = how
-    batch = Batch(model, n_envs, precision, threads, options=options, record=outputs, device=device)
+def _batch(
+    models: tuple[Model, ...], how: tuple[Any, ...], changed: dict[str, Any], state: State, last_serials: list[int]
+) -> Batch:
+    n_envs, precision, threads, options, outputs, device, env_model = how
+    batch = Batch(models, n_envs, precision, threads, options=options, record=outputs, device=device, env_model=env_model)
     for name, values in changed.items():
         batch.randomize(name, values)
     batch.state = state

@@ -58,6 +58,11 @@ mod graphics {
     }
 }
 
+#[cfg(not(feature = "gpu"))]
+pub(crate) use clench::Precision as DeviceReal;
+#[cfg(feature = "gpu")]
+pub(crate) use graphics::GpuReal as DeviceReal;
+
 /// Creates a batch on a GPU, with the precision of its numbers.
 #[cfg(feature = "gpu")]
 pub(crate) fn batch<S: graphics::GpuReal>(

@@ -50,6 +50,9 @@ pub(crate) fn sim_error(error: SimError) -> PyErr {
         | SimError::CannotHold { .. }
         | SimError::NoHeightField { .. }
         | SimError::FixedOption(_)
+        | SimError::NoModel
+        | SimError::OneModel(_)
+        | SimError::ModelsDiffer { .. }
         | SimError::NoDiscreteInverse
         | SimError::Contact { .. } => PyValueError::new_err(text),
     }

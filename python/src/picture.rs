@@ -1,6 +1,7 @@
 //! Pictures of simulations as arrays.
 
 use crate::batch::Batch;
+use crate::busy::lock;
 use crate::drawing::{Wanted, draw};
 use crate::sim::Sim;
 use crate::viewed::Target;
@@ -99,7 +100,11 @@ impl Batch {
             kind,
             groups,
         };
+        let model = {
+            let guard = lock(self.shared(), "batch")?;
+            self.model_of(&guard, env).clone_ref(py)
+        };
         let target = Target::Batch(Arc::clone(self.shared()));
-        draw(py, self.py_model().get(), (&target, env), wanted)
+        draw(py, model.get(), (&target, env), wanted)
     }
 }

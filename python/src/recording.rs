@@ -108,7 +108,7 @@ impl Recording {
         check_env(env, target.envs()?)?;
         let mut guard = lock(&self.inner, "recording")?;
         let appended = each_viewed!(&target, viewed => {
-            let contents = self.of(&mut guard, viewed.model())?;
+            let contents = self.of(&mut guard, viewed.model_of(env))?;
             viewed.query(env, |sim| contents.recording.append(sim, &mut Marks::default()))
         });
         appended.map_err(sim_error)?.map_err(|error| match error {

@@ -1,13 +1,13 @@
 //! The target of a viewer: a simulation, or one environment of a batch at a time.
 
-use crate::batch::{AnyBatch, Batch};
+use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
 use crate::row_sim::{AnySim, RowSim};
 use crate::sim::Sim;
 use clench::rigid::profile::Profile;
 use clench::{Model, Precision, RigidOptions, SimError};
 use clench_view::Viewed;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -113,6 +113,20 @@ impl Target {
         Err(PyTypeError::new_err(format!(
             "a viewer needs a Sim or a Batch, not {found}"
         )))
+    }
+
+    /// Returns an error if environments have different models: the page draws the geoms of one.
+    pub(crate) fn require_one_model(&self) -> PyResult<()> {
+        match self {
+            Target::Batch(batch)
+                if each!(&*lock(batch, "batch")?, batch => batch.models().len()) > 1 =>
+            {
+                Err(PyValueError::new_err(
+                    "a viewer needs a batch of one model: view batch.sim(env), or record environments with clench.Recording",
+                ))
+            }
+            Target::Batch(_) | Target::Sim(_) => Ok(()),
+        }
     }
 
     /// Returns the number of environments.

@@ -109,6 +109,7 @@ impl ModelBuilder {
             keyframes: Vec::new(),
             meshes: Vec::new(),
             height_fields: Vec::new(),
+            geom_assets: Vec::new(),
             nq: 0,
             nv: 0,
             na: 0,

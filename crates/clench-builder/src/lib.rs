@@ -63,6 +63,7 @@ mod resolve;
 mod sensor_specs;
 mod sensors;
 mod shapes;
+mod shared;
 mod sleep;
 mod solid;
 mod tendons;
@@ -95,3 +96,4 @@ pub use relations::{
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,
 };
+pub use shared::{ParamRange, SharedLayout};

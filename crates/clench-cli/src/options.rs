@@ -5,7 +5,7 @@ use crate::overrides::{HEADING, Overrides};
 use anyhow::{Result, ensure};
 use clap::Args;
 use clench::{Budget, Loader, Model, RigidOptions, Sim};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The model file and the options of reading it.
@@ -43,12 +43,17 @@ pub(crate) struct ModelArguments {
 impl ModelFile {
     /// Loads the model and prints the loader's notes to standard error.
     pub(crate) fn load(&self) -> Result<Model> {
+        self.load_as_well(&self.model)
+    }
+
+    /// Loads another model in the same way.
+    pub(crate) fn load_as_well(&self, path: &Path) -> Result<Model> {
         let loader = Loader::new()
             .budget(Budget::default().times(self.budget))
             .package_path(&self.package_path)
             .floating(self.floating)
             .ignore_unsupported(self.ignore_unsupported);
-        let model = loader.load(&self.model)?;
+        let model = loader.load(path)?;
         for note in &model.notes {
             print_message(format_args!("note: {note}"));
         }
@@ -62,7 +67,16 @@ impl ModelFile {
 impl ModelArguments {
     /// Loads the model with the user's time step.
     pub(crate) fn load(&self) -> Result<(Arc<Model>, RigidOptions)> {
-        let mut model = self.file.load()?;
+        Ok((self.timed(self.file.load()?)?, self.overrides.0))
+    }
+
+    /// Loads another model in the same way.
+    pub(crate) fn load_as_well(&self, path: &Path) -> Result<Arc<Model>> {
+        self.timed(self.file.load_as_well(path)?)
+    }
+
+    /// Gives a model the user's time step.
+    fn timed(&self, mut model: Model) -> Result<Arc<Model>> {
         if let Some(timestep) = self.timestep {
             ensure!(
                 timestep > 0.0 && timestep.is_finite(),
@@ -70,7 +84,7 @@ impl ModelArguments {
             );
             model.params.timestep = timestep;
         }
-        Ok((Arc::new(model), self.overrides.0))
+        Ok(Arc::new(model))
     }
 
     /// Creates a simulation of one environment.

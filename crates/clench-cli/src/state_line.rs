@@ -1,12 +1,13 @@
 //! The JSON that `forward` reads: states. Errors name the field and the index of a value.
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Error, Result, anyhow, bail, ensure};
 use clench::Sim;
 use clench::math::{Force, Mat3, Quat, Vec3};
 use clench::rigid::contact::Contact;
 use clench::rigid::state::State;
 use clench::rigid::state::kind::{self, Kind, StickReference};
 use serde_json::{Map, Value};
+use std::fmt::Display;
 
 /// Fields of a contact that MuJoCo derives from the others, and Clench's `force`: ignored, so that a whole mjContact or
 /// a contact of a result can be passed.
@@ -30,7 +31,7 @@ impl Fields<'_> {
         let object = value.as_object();
         object
             .map(Fields)
-            .with_context(|| format!("{what} is an object in braces"))
+            .ok_or_else(|| anyhow!("{what} is an object in braces"))
     }
 
     /// Returns an error if there is a field that is not in the list.
@@ -45,15 +46,20 @@ impl Fields<'_> {
     /// Reads a field that may be missing or null.
     fn read<T>(&self, name: &str, read: impl FnOnce(&Value) -> Result<T>) -> Result<Option<T>> {
         let value = self.0.get(name).filter(|value| !value.is_null());
-        let value = value.map(|value| read(value).with_context(|| name.to_owned()));
+        let value = value.map(|value| read(value).map_err(|error| at(name, error)));
         value.transpose()
     }
 
     /// Reads a field that must be there.
     fn require<T>(&self, name: &str, read: impl FnOnce(&Value) -> Result<T>) -> Result<T> {
         let value = self.read(name, read)?;
-        value.with_context(|| format!("the field {name} is missing"))
+        value.ok_or_else(|| anyhow!("the field {name} is missing"))
     }
+}
+
+/// Adds a place to an error.
+fn at(place: impl Display, error: Error) -> Error {
+    error.context(place.to_string())
 }
 
 fn number(value: &Value) -> Result<f64> {
@@ -72,7 +78,7 @@ fn integer(value: &Value) -> Result<i64> {
 fn list<T>(value: &Value, read: impl Fn(&Value) -> Result<T>) -> Result<Vec<T>> {
     let items = value.as_array();
     let items = items.ok_or_else(|| anyhow!("{value} is not a list"))?;
-    let read = |(i, item)| read(item).with_context(|| format!("item {i}"));
+    let read = |(i, item)| read(item).map_err(|error| at(format_args!("item {i}"), error));
     items.iter().enumerate().map(read).collect()
 }
 

@@ -93,6 +93,25 @@ impl<T: Real> Contacts<T> {
         self.points[0] = deepest;
         self.len = 1;
     }
+    /// Adds the points of some environments, after removing all points if `first`. Each environment keeps the order of
+    /// its points.
+    #[inline(never)]
+    pub fn merge(&mut self, other: &Contacts<T>, environments: T::Mask, first: bool) {
+        if first {
+            self.clear();
+        }
+        for (place, point) in other.as_slice().iter().enumerate() {
+            let (taken, slot) = (point.active & environments, self.slot(place));
+            for lane in (0..T::LANES).filter(|&lane| taken.lane(lane)) {
+                set_lane(&mut slot.position, lane, point.position.lane(lane));
+                for (row, new) in slot.frame.rows.iter_mut().zip(&point.frame.rows) {
+                    set_lane(row, lane, new.lane(lane));
+                }
+                slot.distance.set_lane(lane, point.distance.lane(lane));
+                slot.active.set_lane(lane, true);
+            }
+        }
+    }
     /// Returns the point at index `place`. At the end it first appends a point that exists in no environment.
     #[inline(always)]
     pub(crate) fn slot(&mut self, place: usize) -> &mut ContactPoint<T> {
@@ -118,4 +137,11 @@ impl<T: Real> Default for Contacts<T> {
     fn default() -> Self {
         Contacts::new()
     }
+}
+
+/// Replaces a lane of a vector.
+pub(crate) fn set_lane<T: Real>(v: &mut Vec3<T>, lane: usize, value: Vec3<T::Scalar>) {
+    v.x.set_lane(lane, value.x);
+    v.y.set_lane(lane, value.y);
+    v.z.set_lane(lane, value.z);
 }

@@ -86,6 +86,26 @@ pub enum SimError {
         /// The number of elements.
         count: usize,
     },
+    /// A batch has no model.
+    #[error("a batch needs a model")]
+    NoModel,
+    /// A feature needs a batch of one model.
+    #[error("{0} needs a batch of one model")]
+    OneModel(&'static str),
+    /// Models of one batch differ in more than geoms and numbers.
+    #[error(
+        "models 0 (\"{first}\") and {number} (\"{other}\") of a batch may differ in geoms and numbers alone, but differ in {difference}"
+    )]
+    ModelsDiffer {
+        /// The name of the first model.
+        first: String,
+        /// The number of the other model.
+        number: usize,
+        /// The name of the other model.
+        other: String,
+        /// The difference.
+        difference: String,
+    },
     /// The processor lacks the instructions, or this precision was not compiled for them.
     #[error(
         "this build has no kernels in this precision for {0:?} instructions on this processor; \

@@ -1,11 +1,11 @@
 //! The geoms at their current poses, for queries by ray or shape, in lanes. Contact detection has its own path,
 //! `contact`.
 
-use crate::contact::shape;
+use crate::contact::{ALL_LANES, AssetLanes, exists, mask_of, mesh_in, shape, shape_in};
 use crate::model::{Model, Params};
 use crate::stages::Positions;
 use clench_collide::{Hit, Mesh, Pose, Ray, Shape, ShapeKind, UnitRay, ray};
-use clench_math::{Mask, Real, Vec3, kernel};
+use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// The geoms of a configuration.
 #[derive(Clone, Copy)]
@@ -80,7 +80,7 @@ impl<'a, T: Real> Geoms<'a, T> {
     #[inline(always)]
     fn may_hit(&self, geom: usize, ray: &UnitRay<T>, within: T) -> T::Mask {
         if self.model.geoms[geom].kind == ShapeKind::Plane {
-            return T::Mask::splat(true);
+            return exists(self.params, geom);
         }
         let center = self.position.geom_xpos[geom];
         ray.may_intersect(center, self.params.geom_rbound[geom], within)
@@ -89,10 +89,23 @@ impl<'a, T: Real> Geoms<'a, T> {
     #[inline(always)]
     fn hit(&self, geom: usize, line: &Ray<T>) -> Hit<T> {
         let pose = self.pose(geom);
-        match self.model.geoms[geom].mesh {
-            Some(mesh) => self.model.meshes[mesh].triangles().ray(&pose, line),
-            None => ray(&shape(self.model, self.params, geom), &pose, line),
+        let mut hit = Hit {
+            distance: T::splat(T::Scalar::INFINITY),
+            normal: Vec3::ZERO,
+        };
+        for (lanes, lane) in AssetLanes::new(self.model, self.params, [geom, geom]) {
+            let own = match mesh_in(self.model, self.params, geom, lane) {
+                Some(mesh) => self.model.meshes[mesh].triangles().ray(&pose, line),
+                None => ray(&shape_in(self.model, self.params, geom, lane), &pose, line),
+            };
+            if lanes == ALL_LANES {
+                return own;
+            }
+            let lanes = mask_of::<T>(lanes);
+            hit.distance = T::select(lanes, own.distance, hit.distance);
+            hit.normal = Vec3::select(lanes, own.normal, hit.normal);
         }
+        hit
     }
 }
 

@@ -14,6 +14,12 @@ pub trait Viewed {
     /// Returns the model.
     fn model(&self) -> &Arc<Model>;
 
+    /// Returns the model of an environment, if they have different models.
+    fn model_of(&self, env: usize) -> &Arc<Model> {
+        let _ = env;
+        self.model()
+    }
+
     /// Returns the number of environments.
     fn envs(&self) -> usize;
 
@@ -168,6 +174,10 @@ impl<S: Precision> Viewed for Batch<S> {
 
     fn model(&self) -> &Arc<Model> {
         self.model()
+    }
+
+    fn model_of(&self, env: usize) -> &Arc<Model> {
+        &self.models()[self.env_model(env)]
     }
 
     fn envs(&self) -> usize {

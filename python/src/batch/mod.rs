@@ -3,7 +3,7 @@
 use crate::arrays::mask;
 use crate::busy::lock;
 use crate::count::Count;
-use crate::device::{self, Device};
+use crate::device::Device;
 use crate::error::sim_error;
 use crate::model::Model;
 use crate::names::{Names, no_attribute};
@@ -40,13 +40,16 @@ macro_rules! each {
 pub(crate) use each;
 
 mod dynamic;
+mod models;
 mod outputs;
 mod parameters;
 mod queries;
 mod run;
 mod status;
 
-/// Many environments of one model, stepped in parallel on all CPU cores.
+use models::Models;
+
+/// Many environments of one model or of several, stepped in parallel on all CPU cores.
 ///
 /// Environment i moves exactly as a single `Sim` would in the same precision, to the bit. An environment that fails
 /// keeps its last good state and reports the reason in `status` and `fault`; the others are not affected.
@@ -56,8 +59,10 @@ mod status;
 ///
 /// Parameters
 /// ----------
-/// model : Model
-///     The model of all environments.
+/// model : Model or sequence of Model
+///     The model of all environments, or several models. These have the same bodies, joints, sites, cameras, tendons,
+///     actuators, sensors and constraints, and the same names of joints, actuators and sensors; geoms, meshes, height
+///     fields and all numbers may differ. `Batch.model` is then their common layout, see `geoms_of`.
 /// n_envs : int
 ///     Number of environments.
 /// precision : {"64", "32"}, optional
@@ -73,6 +78,8 @@ mod status;
 ///     `devices` lists. A GPU computes the recorded outputs; many GPUs have slow double precision or none. Arrays are
 ///     copied to it before a call, and the states back after it; options do not change. The CPU computes queries, such
 ///     as Jacobians.
+/// env_model : array_like of int, optional
+///     The model of each environment (n), an index; by default environment i has model ``i % len(model)``.
 ///
 /// Raises
 /// ------
@@ -80,7 +87,8 @@ mod status;
 ///     If there is no GPU, or it cannot be used.
 /// ValueError
 ///     If the GPU cannot step the model yet or has no double precision, an option is out of range, shapes that can
-///     collide have no collision function, or no output has a name.
+///     collide have no collision function, no output has a name, or models differ in more than geoms and numbers. Of
+///     several models, if a GPU or the option `stiction` is wanted.
 /// MemoryError
 ///     If memory is insufficient for the environments.
 #[pyclass(frozen, extends = StateViews, module = "clench")]
@@ -88,7 +96,9 @@ pub(crate) struct Batch {
     inner: Arc<Mutex<AnyBatch>>,
     keeper: Py<Keeper>,
     recorded: Recorded,
+    /// The model, or the common layout of several.
     model: Py<Model>,
+    models: Vec<Py<Model>>,
     n_envs: usize,
     precision: Bits,
     threads: usize,
@@ -98,16 +108,18 @@ pub(crate) struct Batch {
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (model, n_envs, precision = None, threads = None, *, options = None, record = Names(Vec::new()), device = Device::Processor),
-           text_signature = "(model, n_envs, precision=None, threads=None, *, options=None, record=(), device='cpu')")]
+    #[pyo3(signature = (model, n_envs, precision = None, threads = None, *, options = None, record = Names(Vec::new()), device = Device::Processor, env_model = None),
+           text_signature = "(model, n_envs, precision=None, threads=None, *, options=None, record=(), device='cpu', env_model=None)")]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
     fn new(
-        model: &Bound<'_, Model>,
+        model: &Bound<'_, PyAny>,
         n_envs: Count,
         precision: Option<Bits>,
         threads: Option<Count>,
         options: Option<&RigidOptions>,
         record: Names,
         device: Device,
+        env_model: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let py = model.py();
         if let (Device::Processor, Some(advice)) = (&device, Instructions::advice()) {
@@ -121,24 +133,14 @@ impl Batch {
             threads: threads.map(|count| count.0),
             ..BatchOptions::default()
         };
-        let make = Arc::clone(model.get().inner());
+        let models = Models::of(model, n_envs.0, env_model)?;
         let precision = precision.unwrap_or(match device {
             Device::Processor => Bits::B64,
             Device::Graphics { .. } => Bits::B32,
         });
-        let inner = py.detach(|| match (device, precision) {
-            (Device::Graphics { name }, Bits::B64) => {
-                device::batch(make, n_envs.0, own, name).map(AnyBatch::F64)
-            }
-            (Device::Graphics { name }, Bits::B32) => {
-                device::batch(make, n_envs.0, own, name).map(AnyBatch::F32)
-            }
-            (_, Bits::B64) => clench::Batch::with_options(make, n_envs.0, own)
-                .map(AnyBatch::F64)
-                .map_err(sim_error),
-            (_, Bits::B32) => clench::Batch::with_options(make, n_envs.0, own)
-                .map(AnyBatch::F32)
-                .map_err(sim_error),
+        let inner = py.detach(|| match precision {
+            Bits::B64 => models.batch(device, own).map(AnyBatch::F64),
+            Bits::B32 => models.batch(device, own).map(AnyBatch::F32),
         });
         let inner = Arc::new(Mutex::new(inner?));
         let keeper = Keeper::new(py, inner.clone())?;
@@ -146,15 +148,16 @@ impl Batch {
             let mut guard = lock(&inner, "batch")?;
             each!(&mut *guard, batch => {
                 let views = StateViews::new(&keeper, &mut batch.state, false)?;
-                (views, batch.threads(), batch.lanes())
+                (views, batch.threads(), batch.lanes(), Arc::clone(batch.model()))
             })
         };
-        let (views, threads, lanes) = batch;
+        let (views, threads, lanes, layout) = batch;
         let batch = Batch {
             inner,
             keeper: keeper.unbind(),
             recorded: Recorded::default(),
-            model: model.clone().unbind(),
+            model: models.layout(py, &layout)?,
+            models: models.objects,
             n_envs: n_envs.0,
             precision,
             threads,
@@ -194,7 +197,7 @@ impl Batch {
     fn sim<'py>(&self, py: Python<'py>, env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Sim>> {
         let env = self.env(env)?;
         let guard = lock(&self.inner, "batch")?;
-        let model = self.model.clone_ref(py);
+        let model = self.model_of(&guard, env).clone_ref(py);
         let sim = match &*guard {
             AnyBatch::F64(batch) => batch.sim(env).and_then(AnySim::f64),
             AnyBatch::F32(batch) => batch.sim(env).and_then(AnySim::f32),
@@ -256,7 +259,9 @@ impl Batch {
         each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
     }
 
-    /// Model : The model, without the parameters that are set per environment.
+    /// Model : The model, without the parameters that are set per environment. Of several models it is the common
+    /// layout: on each body, in order, the geoms that any model needs there, with the numbers of the first model. Arrays
+    /// over geoms, such as outputs and parameters, are in this layout; `geoms_of` returns the geoms of one model.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<Model> {
         self.model.clone_ref(py)
@@ -342,11 +347,6 @@ impl Batch {
     /// Returns a shared reference to the batch.
     pub(crate) fn shared(&self) -> &Arc<Mutex<AnyBatch>> {
         &self.inner
-    }
-
-    /// Returns the Python object of the model.
-    pub(crate) fn py_model(&self) -> &Py<Model> {
-        &self.model
     }
 
     /// Returns the model, without the parameters that are set per environment.

@@ -1,16 +1,23 @@
 //! Steps, forward passes, resets and rollouts of a batch.
 
 use super::{AnyBatch, Batch};
+use crate::arrays::indices;
 use crate::busy::{in_portions, lock};
 use crate::count::Count;
 use crate::error::sim_error;
 use crate::kind::Kind;
+use crate::model::Model;
 use crate::names::Names;
 use crate::rollout::{self, Start};
 use crate::state_views::is_state;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+/// Returns the index of a keyframe of a model.
+fn find_key(model: &Py<Model>, which: &Bound<'_, PyAny>) -> PyResult<usize> {
+    Kind::Keyframe.find(model.get().inner(), which)
+}
 
 #[pymethods]
 impl Batch {
@@ -77,25 +84,57 @@ impl Batch {
     /// mask : array_like of bool, optional
     ///     Mask of environments (n); by default all.
     /// keyframe : str or int, optional
-    ///     A keyframe of the model, by name or index.
-    #[pyo3(signature = (mask = None, keyframe = None))]
+    ///     A keyframe, by name or index; of several models, each environment has those of its own.
+    /// env_model : array_like of int, optional
+    ///     Other models for the environments of the mask, an index of `models` for each of them. Their parameters
+    ///     become those of the models.
+    ///
+    /// Raises
+    /// ------
+    /// IndexError
+    ///     If there is no such model.
+    /// ValueError
+    ///     If a length is wrong, or a model has no such keyframe.
+    #[pyo3(signature = (mask = None, keyframe = None, *, env_model = None))]
     fn reset(
         &self,
         py: Python<'_>,
         mask: Option<&Bound<'_, PyAny>>,
         keyframe: Option<&Bound<'_, PyAny>>,
+        env_model: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let chosen = self.mask(mask)?;
-        let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
-        let key = keyframe.map(find).transpose()?;
+        let envs = Vec::from_iter((0..self.n_envs).filter(|&env| chosen[env]));
+        let count = self.models.len();
+        let other = env_model.map(|given| indices("env_model", given, count));
+        let other = other.transpose()?;
         let mut guard = lock(&self.inner, "batch")?;
         let any = &mut *guard;
-        let envs = (0..self.n_envs).filter(|&env| chosen[env]);
+        let keys = match (keyframe, &other) {
+            (None, _) => Vec::new(),
+            (Some(which), Some(other)) if other.len() == envs.len() => {
+                let models = other.iter().map(|&model| &self.models[model]);
+                models
+                    .map(|model| find_key(model, which))
+                    .collect::<PyResult<_>>()?
+            }
+            (Some(which), _) => {
+                let models = envs.iter().map(|&env| self.model_of(any, env));
+                models
+                    .map(|model| find_key(model, which))
+                    .collect::<PyResult<_>>()?
+            }
+        };
         let done = py.detach(|| {
-            each!(any, batch => envs.into_iter().try_for_each(|env| match key {
-                None => batch.reset(env),
-                Some(key) => batch.reset_to_keyframe(env, key),
-            }))
+            each!(any, batch => {
+                if let Some(other) = other {
+                    batch.reset_to_models(&envs, &other)?;
+                }
+                envs.iter().enumerate().try_for_each(|(k, &env)| match keys.get(k) {
+                    None => batch.reset(env),
+                    Some(&key) => batch.reset_to_keyframe(env, key),
+                })
+            })
         });
         done.map_err(sim_error)
     }

@@ -12,7 +12,7 @@ use crate::renderer::Renderer;
 use clench::SaveModel;
 use clench::rigid::model::{Integrator, ParamField};
 use numpy::PyArray1;
-use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::collections::HashMap;
@@ -32,7 +32,7 @@ use std::sync::{Arc, Mutex};
 /// >>> model.nv, model.body("torso").mass, model.geom_size.shape
 /// (27, 14.357497305925833, (19, 3))
 #[pyclass(frozen, module = "clench")]
-pub(crate) struct Model(Arc<clench::Model>, Source, Mutex<Option<Renderer>>);
+pub(crate) struct Model(Arc<clench::Model>, Option<Source>, Mutex<Option<Renderer>>);
 
 /// The source of a model and the arguments of its loading, which pickles store.
 struct Source {
@@ -51,7 +51,12 @@ impl Model {
             let message = CString::new(message.replace('\0', " "))?;
             PyErr::warn(py, &category, &message, 1)?;
         }
-        Ok(Model(Arc::new(model), source, Mutex::default()))
+        Ok(Model(Arc::new(model), Some(source), Mutex::default()))
+    }
+
+    /// Wraps the common layout of several models.
+    pub(crate) fn layout(model: &Arc<clench::Model>) -> Self {
+        Model(Arc::clone(model), None, Mutex::default())
     }
 
     /// Returns the model itself.
@@ -241,7 +246,11 @@ impl Model {
     /// Returns the data of a pickle: how the model was loaded, and a checksum of the result.
     fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = this.py();
-        let Source { method, arguments } = &this.get().1;
+        let Some(Source { method, arguments }) = &this.get().1 else {
+            return Err(PyTypeError::new_err(
+                "the common layout of several models cannot be pickled: pickle the batch or its models",
+            ));
+        };
         let module = py.import("clench._pickle")?;
         module
             .getattr("reduce_model")?

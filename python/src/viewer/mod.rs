@@ -102,6 +102,7 @@ impl Viewer {
     ) -> PyResult<Self> {
         let py = target.py();
         let target = Target::of(target)?;
+        target.require_one_model()?;
         let envs = target.envs()?;
         check_env(env, envs)?;
         let options = ServerOptions {

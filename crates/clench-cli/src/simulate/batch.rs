@@ -16,7 +16,6 @@ use clench::math::{Instructions, Scalar};
 use clench::rigid::batch::Recording;
 use clench::rigid::{EnvStatus, Precision};
 use clench::{Batch, RigidOptions};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The number of environment steps per call, after which signals are checked: about one second of work.
@@ -48,12 +47,17 @@ pub(crate) fn run<S: Precision>(
     }
     let mut heap = Heap::default();
     let options = arguments.batch.options(options);
-    let model = Arc::clone(&run.model);
-    let mut batch = heap.taken_by(|| Batch::<S>::with_options(model, envs as usize, options))?;
+    let of_env = Vec::from_iter((0..envs as usize).map(|env| env % run.models.len()));
+    let mut batch = heap.taken_by(|| Batch::<S>::of_models(&run.models, &of_env, options))?;
     run.starts.start_all(&mut batch)?;
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
-    let mut account = EnergyAccount::open(&run.model, energies.iter().copied());
+    // The energy of several models is not judged.
+    let is_alone = run.models.len() == 1;
+    let mut account = match is_alone {
+        true => EnergyAccount::open(&run.model, energies.iter().copied()),
+        false => None,
+    };
     let max_steps = (ENV_STEPS_A_CALL / batch.count()).max(MIN_STEPS_A_CALL);
     let rollout = Rollout::new(run, batch.count(), max_steps)?;
     let records = rollout.records();
@@ -88,7 +92,7 @@ pub(crate) fn run<S: Precision>(
     let whole = report.failure.is_none() && report.resets == 0;
     report.take_record(recorded_rows);
     let free = whole && batch.quality().constrained == 0;
-    if free && is_conservative(&run.model) {
+    if free && is_alone && is_conservative(&run.model) {
         report.energy_drift = drift(&energies, &self::energies(&mut batch, &mut heap)?);
     }
     let env_steps = batch.divergence().env_steps;

@@ -40,6 +40,9 @@ use std::sync::Arc;
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (model, options) = arguments.model.load()?;
     let envs = arguments.batch.envs;
+    let others = arguments.batch.other_model.iter();
+    let others = others.map(|path| arguments.model.load_as_well(path));
+    let models = [Ok(Arc::clone(&model))].into_iter().chain(others);
     let limit = arguments.memory.limit();
     if let Some(path) = &arguments.record {
         let inputs = [
@@ -58,6 +61,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         starts: (arguments.start).starts(&model, envs.unwrap_or(1) as usize, limit)?,
         steps,
         model: Arc::clone(&model),
+        models: models.collect::<Result<_>>()?,
         controls,
         record: arguments.record.as_ref().map(|path| RecordOptions {
             path,
@@ -68,6 +72,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         interrupt: Interrupt::listen()?,
     };
     if let (DeviceName::Gpu, Some(envs)) = (arguments.batch.device, envs) {
+        ensure!(
+            run.models.len() == 1,
+            "--other-model: a GPU steps one model"
+        );
         return on_device(arguments, &run, envs as usize, options);
     }
     let mut report = match (envs, arguments.precision.unwrap_or(Bits::Double)) {

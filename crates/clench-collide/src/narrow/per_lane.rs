@@ -1,6 +1,7 @@
 //! Pairs that branch too much for lanes: each lane is computed separately, in scalar code.
 
 use super::placed::Placed;
+use crate::contact::set_lane;
 use crate::shape::Solid;
 use crate::{ContactPoint, Contacts, MAX_POINTS, frame_from_normal};
 use arrayvec::ArrayVec;
@@ -87,10 +88,4 @@ fn set_point<T: Real>(
     }
     slot.distance.set_lane(lane, point.distance);
     slot.active.set_lane(lane, true);
-}
-
-fn set_lane<T: Real>(v: &mut Vec3<T>, lane: usize, value: Vec3<T::Scalar>) {
-    v.x.set_lane(lane, value.x);
-    v.y.set_lane(lane, value.y);
-    v.z.set_lane(lane, value.z);
 }

@@ -3,7 +3,7 @@
 use super::Candidate;
 use super::bounding_sphere::{self, BoundingSphere, own_margin};
 use super::placed_shape::{pose, shape};
-use super::select::{explicit, geoms_may_collide, match_any};
+use super::select::{explicit, geoms_may_collide, match_any, sort};
 use crate::model::{Geom, Model, Params};
 use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
@@ -153,7 +153,7 @@ impl<T: Real> DynamicBroadPhase<T> {
         let found =
             |&(g1, g2): &(u32, u32)| Candidate::new(model, [g1 as usize, g2 as usize], None);
         candidates.extend(hits.iter().map(found));
-        candidates.sort_unstable_by_key(|c| c.order(model));
+        sort(model, candidates);
         too_many
     }
 }

@@ -19,7 +19,8 @@ pub use collision::{Collision, Excess};
 pub use detect::detect;
 pub use mix::mixed_params;
 pub use mix::{ContactParams, contact_params, contact_range};
-pub use placed_shape::shape;
+pub(crate) use placed_shape::{ALL_LANES, AssetLanes, exists, mask_of, mesh_in, shape_in};
+pub use placed_shape::{heights_in, shape};
 pub use select::check_supported;
 pub use select::{Candidate, UnsupportedPair, candidates};
 

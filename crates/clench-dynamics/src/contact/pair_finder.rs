@@ -1,7 +1,7 @@
 //! The narrow phase over one thread's share of the near pairs.
 
 use super::pair_clock::PairClock;
-use super::placed_shape::{pose, shape};
+use super::placed_shape::{ALL_LANES, AssetLanes, exists, mask_of, pose, shape_in};
 use super::separating_axes::SeparatingAxes;
 use super::{Candidate, contact_range};
 use crate::model::{Model, Params};
@@ -9,7 +9,7 @@ use crate::stages::Positions;
 use clench_collide::{
     Collide, ContactPoint, Contacts, SeparatingAxis, compiled_collide, multiccd_matters,
 };
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 
 /// The pairs to check and the points found.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub(super) struct PairFinder<T: Real> {
     points: Vec<ContactPoint<T>>,
     /// The points of the current pair.
     scratch: Contacts<T>,
+    /// Those of lanes with the same meshes.
+    part: Contacts<T>,
     clock: PairClock,
     collide: Collide<T>,
 }
@@ -39,6 +41,7 @@ impl<T: Real> Default for PairFinder<T> {
             touching: Vec::new(),
             points: Vec::new(),
             scratch: Contacts::new(),
+            part: Contacts::new(),
             clock: PairClock::default(),
             collide: compiled_collide(),
         }
@@ -88,15 +91,26 @@ impl<T: Real> PairFinder<T> {
             let candidate = &candidates[pair.candidate as usize];
             let [a, b] = candidate.geoms.map(|geom| geom as usize);
             let (_, margin) = contact_range(model, params, candidate);
-            collide(
-                &shape(model, params, a),
-                &pose(pos, a),
-                &shape(model, params, b),
-                &pose(pos, b),
-                margin,
-                &mut pair.axis,
-                points,
-            );
+            let (pose_a, pose_b) = (pose(pos, a), pose(pos, b));
+            for (lanes, lane) in AssetLanes::new(model, params, [a, b]) {
+                let shape_a = shape_in(model, params, a, lane);
+                let shape_b = shape_in(model, params, b, lane);
+                // Lanes with other meshes, or without one of the geoms, make no contact at this margin.
+                let (taken, part, margin) = match lanes {
+                    ALL_LANES => (None, &mut *points, margin),
+                    lanes => {
+                        let exist = exists(params, a) & exists(params, b);
+                        let taken = mask_of::<T>(lanes) & exist;
+                        let none = T::splat(-T::Scalar::INFINITY);
+                        (Some(taken), &mut self.part, T::select(taken, margin, none))
+                    }
+                };
+                let axis = &mut pair.axis;
+                collide(&shape_a, &pose_a, &shape_b, &pose_b, margin, axis, part);
+                if let Some(taken) = taken {
+                    points.merge(&self.part, taken, lane == 0);
+                }
+            }
             self.clock.lap(candidate.kinds, T::LANES, || {
                 let none = T::Mask::splat(false);
                 let any = |lanes, point: &ContactPoint<T>| lanes | point.active;

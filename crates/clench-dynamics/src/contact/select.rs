@@ -84,8 +84,13 @@ fn candidates_up_to(model: &Model, limit: usize) -> Option<Vec<Candidate>> {
             }
         }
     }
-    found.sort_by_key(|c| c.order(model));
+    sort(model, &mut found);
     Some(found)
+}
+
+/// Brings candidates into canonical order, in which no two are equal.
+pub(super) fn sort(model: &Model, candidates: &mut [Candidate]) {
+    candidates.sort_unstable_by_key(|c| c.order(model));
 }
 
 /// Returns, for each geom, true if its type or affinity bits overlap those of any geom, including itself; false for
@@ -144,14 +149,12 @@ pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
 /// Finds two geoms that may collide, no explicit pair, of unsupported kinds. Such kinds are few, so few geoms are
 /// compared.
 fn find_unsupported(model: &Model) -> Option<Candidate> {
-    let mut kinds: Vec<(ShapeKind, Vec<usize>)> = Vec::new();
-    for (g, geom) in model.geoms.iter().enumerate() {
-        match kinds.iter_mut().find(|(kind, _)| *kind == geom.kind) {
-            Some((_, geoms)) => geoms.push(g),
-            None => kinds.push((geom.kind, vec![g])),
-        }
-    }
-    kinds.sort_by_key(|&(kind, _)| kind);
+    let of_kind = |kind: ShapeKind| {
+        let geoms = model.geoms.iter().enumerate();
+        let geoms = geoms.filter(|(_, geom)| geom.kind == kind);
+        (kind, Vec::from_iter(geoms.map(|(g, _)| g)))
+    };
+    let kinds = ShapeKind::ALL.map(of_kind);
     for (i, (kind1, geoms1)) in kinds.iter().enumerate() {
         for (kind2, geoms2) in &kinds[i..] {
             if supported(*kind1, *kind2) {

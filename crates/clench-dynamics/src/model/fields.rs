@@ -49,6 +49,19 @@ impl ParamField {
         }
     }
 
+    /// Returns true if its elements are geoms.
+    pub fn is_of_geoms(self) -> bool {
+        self.name().starts_with("geom_")
+    }
+
+    /// Returns the number of numbers per element, at least one.
+    pub fn element_width(self, model: &Model) -> usize {
+        match self.shape(model)[..] {
+            [elements, ref width @ ..] if elements > 0 => width.iter().product(),
+            _ => model.params.width(self).max(1),
+        }
+    }
+
     /// Returns the field that follows from this one, and changes with it.
     pub fn follower(self) -> Option<ParamField> {
         match self {
@@ -178,13 +191,14 @@ impl<T: Real> Params<T> {
                 }
             }
             ParamField::geom_size => {
-                self.geom_rbound.clear();
                 for (g, (geom, &size)) in model.geoms.iter().zip(&self.geom_size).enumerate() {
-                    self.geom_rbound.push(match geom.kind {
-                        ShapeKind::Plane => T::ZERO,
-                        kind if has_own_size(kind) => T::new(model.params.geom_rbound[g]),
-                        kind => Shape::new(kind, size).bounding_radius(),
-                    });
+                    if geom.kind == ShapeKind::Plane || has_own_size(geom.kind) {
+                        continue;
+                    }
+                    let radius = &mut self.geom_rbound[g];
+                    let exists = radius.ge(T::ZERO);
+                    let derived = Shape::new(geom.kind, size).bounding_radius();
+                    *radius = T::select(exists, derived, *radius);
                 }
             }
             _ => {}

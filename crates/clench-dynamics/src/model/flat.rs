@@ -75,12 +75,12 @@ impl<T: Real> Flat<'_, T> {
 }
 
 impl<T: Real> FlatMut<'_, T> {
-    /// Replaces the numbers of lane `lane`; `row` has the same length.
-    pub(super) fn write_lane(self, lane: usize, row: &[T::Scalar]) {
+    /// Replaces the numbers of lane `lane` from number `start` on, which is the first of a vector or quaternion.
+    pub(super) fn write_lane(self, lane: usize, start: usize, row: &[T::Scalar]) {
         match self {
-            FlatMut::Numbers(x) => write_lane(row, lane, x),
-            FlatMut::Vectors(v) => write_vectors(row, lane, v),
-            FlatMut::Quats(q) => write_quats(row, lane, q),
+            FlatMut::Numbers(x) => write_lane(row, lane, &mut x[start..][..row.len()]),
+            FlatMut::Vectors(v) => write_vectors(row, lane, &mut v[start / 3..]),
+            FlatMut::Quats(q) => write_quats(row, lane, &mut q[start / 4..]),
         }
     }
 }
@@ -113,10 +113,13 @@ pub(super) trait Numbers<T> {
     fn shape(&self) -> Vec<usize>;
     fn flat(&self) -> Flat<'_, T>;
     fn flat_mut(&mut self) -> FlatMut<'_, T>;
+    /// Changes the number of elements. New numbers are zero, and new quaternions the identity; a field without elements
+    /// does not change.
+    fn resize(&mut self, elements: usize);
 }
 
 macro_rules! numbers {
-    ($($kind:ident: $element:ty $(, $size:expr)?;)*) => {$(
+    ($($kind:ident: $element:ty, $zero:expr $(, $size:expr)?;)*) => {$(
         impl<T: Real> Numbers<T> for $element {
             fn shape(&self) -> Vec<usize> {
                 vec![$($size)?]
@@ -127,6 +130,7 @@ macro_rules! numbers {
             fn flat_mut(&mut self) -> FlatMut<'_, T> {
                 FlatMut::$kind(from_mut(self))
             }
+            fn resize(&mut self, _: usize) {}
         }
         impl<T: Real> Numbers<T> for Vec<$element> {
             fn shape(&self) -> Vec<usize> {
@@ -138,13 +142,16 @@ macro_rules! numbers {
             fn flat_mut(&mut self) -> FlatMut<'_, T> {
                 FlatMut::$kind(self)
             }
+            fn resize(&mut self, elements: usize) {
+                Vec::resize(self, elements, $zero);
+            }
         }
     )*};
 }
 numbers! {
-    Numbers: T;
-    Vectors: Vec3<T>, 3;
-    Quats: Quat<T>, 4;
+    Numbers: T, T::ZERO;
+    Vectors: Vec3<T>, Vec3::ZERO, 3;
+    Quats: Quat<T>, Quat::IDENTITY, 4;
 }
 
 impl<T: Real, const N: usize> Numbers<T> for [T; N] {
@@ -157,6 +164,7 @@ impl<T: Real, const N: usize> Numbers<T> for [T; N] {
     fn flat_mut(&mut self) -> FlatMut<'_, T> {
         FlatMut::Numbers(self)
     }
+    fn resize(&mut self, _: usize) {}
 }
 impl<T: Real, const N: usize> Numbers<T> for Vec<[T; N]> {
     fn shape(&self) -> Vec<usize> {
@@ -167,5 +175,8 @@ impl<T: Real, const N: usize> Numbers<T> for Vec<[T; N]> {
     }
     fn flat_mut(&mut self) -> FlatMut<'_, T> {
         FlatMut::Numbers(self.as_flattened_mut())
+    }
+    fn resize(&mut self, elements: usize) {
+        Vec::resize(self, elements, [T::ZERO; N]);
     }
 }

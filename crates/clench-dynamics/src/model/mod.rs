@@ -85,6 +85,9 @@ pub struct Model {
     pub meshes: Vec<Arc<Mesh>>,
     /// Height fields.
     pub height_fields: Vec<Arc<HeightField>>,
+    /// The mesh or height field of each geom in each of the models that share this layout; empty if this is
+    /// the layout of one.
+    pub geom_assets: Vec<Vec<Option<u32>>>,
     /// Position coordinates.
     pub nq: usize,
     /// Degrees of freedom.

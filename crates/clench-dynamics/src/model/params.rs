@@ -9,9 +9,12 @@ macro_rules! params {
         /// The numbers of a model, one array per field (the index is that of the element).
         ///
         /// Units are SI; `solref` and `solimp` as in MuJoCo.
-        #[derive(Clone, Debug, Default, PartialEq)]
+        #[derive(Debug, Default, PartialEq)]
         pub struct Params<T> {
             $($(#[$doc])* pub $name: $kind,)*
+            /// The model of each lane, an index in [`Model::geom_assets`](super::Model::geom_assets); empty if all
+            /// lanes have one model.
+            pub lane_models: Vec<u32>,
         }
 
         /// A field of [`Params`].
@@ -37,10 +40,24 @@ macro_rules! params {
             }
         }
 
+        impl<T: Clone> Clone for Params<T> {
+            #[inline(never)]
+            fn clone(&self) -> Self {
+                Params {
+                    $($name: copy(&self.$name),)*
+                    lane_models: copy(&self.lane_models),
+                }
+            }
+        }
+
         impl Params<f64> {
             /// Copies the numbers to every lane of `T`.
+            #[inline(never)]
             pub fn broadcast<T: Real>(&self) -> Params<T> {
-                Params { $($name: self.$name.broadcast(),)* }
+                Params {
+                    $($name: self.$name.broadcast(),)*
+                    lane_models: Vec::new(),
+                }
             }
         }
 
@@ -58,8 +75,18 @@ macro_rules! params {
             fn flat_mut(&mut self, field: ParamField) -> FlatMut<'_, T> {
                 match field { $(ParamField::$name => self.$name.flat_mut(),)* }
             }
+
+            /// Changes the number of elements of a field. New numbers are zero.
+            pub fn resize(&mut self, field: ParamField, elements: usize) {
+                match field { $(ParamField::$name => Numbers::<T>::resize(&mut self.$name, elements),)* }
+            }
         }
     };
+}
+
+#[inline(never)] // Every field calls it.
+fn copy<A: Clone>(field: &A) -> A {
+    field.clone()
 }
 
 impl<T: Real> Params<T> {
@@ -73,7 +100,11 @@ impl<T: Real> Params<T> {
     }
     /// Replaces the numbers of a field in lane `lane` by the same number of others.
     pub fn write_lane(&mut self, field: ParamField, lane: usize, row: &[T::Scalar]) {
-        self.flat_mut(field).write_lane(lane, row);
+        self.flat_mut(field).write_lane(lane, 0, row);
+    }
+    /// Replaces the numbers of a field in lane `lane` from number `start` on, which is the first of an element.
+    pub fn write_part(&mut self, field: ParamField, lane: usize, start: usize, row: &[T::Scalar]) {
+        self.flat_mut(field).write_lane(lane, start, row);
     }
     /// Replaces the numbers of a field by the same number of others, equal in every lane.
     pub fn write_lanes(&mut self, field: ParamField, row: &[T::Scalar]) {
@@ -176,7 +207,8 @@ params! {
     geom_quat: Vec<Quat<T>>, Quaternion;
     /// Sizes.
     geom_size: Vec<Vec3<T>>, AsModel;
-    /// Radius of the bounding sphere (infinite planes: 0).
+    /// Radius of the bounding sphere (infinite planes: 0). −∞ in environments without the geom, which touches nothing
+    /// there.
     geom_rbound: Vec<T>, Follows("geom_size");
     /// Slide, spin and roll friction.
     geom_friction: Vec<[T; 3]>, NotNegative;

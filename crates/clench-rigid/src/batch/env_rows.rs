@@ -1,6 +1,7 @@
 //! The user-visible data of environments, shared by the threads of a call.
 
 use super::Rows;
+use super::models::Models;
 use super::shared::Shared;
 use super::state_rows::{Inputs, MovingRows};
 use clench_dynamics::model::{ParamField, Params};
@@ -9,6 +10,8 @@ use clench_math::{Real, Scalar};
 pub struct EnvRows<'a, S: Scalar + Shared> {
     pub motion: MovingRows<'a, S>,
     pub inputs: Inputs<'a, S>,
+    /// The models of the environments.
+    pub models: &'a Models<S>,
     /// Parameters of individual environments.
     pub params: &'a [ParamRows<S>],
 }
@@ -29,9 +32,15 @@ impl<S: Scalar + Shared> ParamRows<S> {
         let row = self.rows.row(env).iter().map(|x| x.to_f64());
         params.write_lane(self.field, 0, &Vec::from_iter(row));
     }
-    /// Copies the row of an environment into every lane.
-    pub fn splat<T: Real<Scalar = S>>(&self, env: usize, params: &mut Params<T>) {
-        params.write_lanes(self.field, self.rows.row(env));
+    /// Replaces the row of an environment by the numbers of a model.
+    pub(super) fn set(&mut self, env: usize, params: &Params<f64>) {
+        let row = params.read_lane(self.field, 0);
+        let row = row.into_iter().map(S::new);
+        self.rows
+            .row_mut(env)
+            .iter_mut()
+            .zip(row)
+            .for_each(|(to, x)| *to = x);
     }
     /// Returns the size of a row in bytes.
     pub(crate) fn row_bytes(&self) -> usize {

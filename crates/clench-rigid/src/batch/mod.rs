@@ -1,4 +1,4 @@
-//! Many environments of one model, stepped in SIMD lanes on several threads.
+//! Many environments of one or several models, stepped in SIMD lanes on several threads.
 //!
 //! User-visible data is in tables with one row per environment ([`Rows`], [`StateRows`]). A call (`run.rs`) groups
 //! running environments with similar contacts. Each thread has a stepper (`stepper.rs`) with scratch memory in lanes,
@@ -15,6 +15,7 @@ mod env_rows;
 mod group;
 mod job;
 mod mirror;
+mod models;
 mod motion_queries;
 mod on_device;
 mod options;
@@ -40,6 +41,7 @@ pub use divergence::Divergence;
 use env_rows::ParamRows;
 use job::Stepper;
 use mirror::Mirror;
+use models::Models;
 pub use options::BatchOptions;
 pub use precision::Precision;
 pub(crate) use quality::StepResults;
@@ -78,7 +80,7 @@ pub enum EnvStatus {
     Failed(Fault),
 }
 
-/// Many environments of one model.
+/// Many environments of one model, or of [several](Self::of_models).
 ///
 /// Environment i moves exactly as a single [`Sim`](crate::Sim) in the same precision, bit for bit, independent of
 /// instructions, threads, neighbours and groups. An environment that fails keeps its last good state and reports the
@@ -86,7 +88,9 @@ pub enum EnvStatus {
 pub struct Batch<S: Precision = f64> {
     /// The states of all environments.
     pub state: StateRows<S>,
+    /// The model, or the common layout of several.
     model: Arc<Model>,
+    models: Models<S>,
     options: BatchOptions,
     settings: StepSettings,
     status: Vec<EnvStatus>,
@@ -96,7 +100,6 @@ pub struct Batch<S: Precision = f64> {
     params: Vec<ParamRows<S>>,
     outputs: Vec<OutputRows<S>>,
     recorded: Option<RecordedStates<S>>,
-    initial: State<S>,
     scratch: State<S>,
     /// The sort keys, which place environments with similar contacts next to each other.
     sort_keys: Vec<AtomicU64>,
@@ -158,10 +161,11 @@ impl<S: Precision> Batch<S> {
         let steppers = (0..threads.count())
             .map(|_| stepper())
             .collect::<Option<Vec<_>>>();
-        let initial = State::new(&model);
+        let models = Models::one(&model);
+        let initial = models.initial(0);
         let mut state = StateRows::new(&model, count)?;
         for env in 0..count {
-            state.write(env, &initial)?;
+            state.write(env, initial)?;
         }
         Ok(Batch {
             state,
@@ -173,7 +177,7 @@ impl<S: Precision> Batch<S> {
             outputs: Vec::new(),
             recorded: None,
             scratch: initial.clone(),
-            initial,
+            models,
             sort_keys: per_env(count, || AtomicU64::new(0))?,
             order: per_env(count, || 0)?,
             steppers: steppers.ok_or(SimError::Instructions(instructions))?,
@@ -232,7 +236,7 @@ impl<S: Precision> Batch<S> {
     pub fn count(&self) -> usize {
         self.status.len()
     }
-    /// Returns the model.
+    /// Returns the model, or the common layout of several.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }

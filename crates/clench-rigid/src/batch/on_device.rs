@@ -282,7 +282,7 @@ impl<S: Precision> Batch<S> {
         swap(&mut mirror.running, &mut mirror.restarted);
         for env in 0..others.len() {
             if mirror.running[env] {
-                self.state.write(env, &self.initial)?;
+                self.state.write(env, self.models.initial(env))?;
             }
         }
         self.upload(mirror, Pass::Step, false, summary)?;
@@ -336,9 +336,7 @@ impl<S: Precision> Batch<S> {
                 none => none.insert(Box::new(self.sim(env)?)),
             };
             self.state.read(env, &mut sim.state)?;
-            for own in &self.params {
-                own.splat(env, sim.params_mut());
-            }
+            self.copy_params(env, sim);
             let energy = sim.energy()?;
             mirror.numbers[2 * env..][..2].copy_from_slice(&[energy.potential, energy.kinetic]);
         }

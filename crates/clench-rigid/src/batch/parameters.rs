@@ -28,8 +28,11 @@ impl<S: Precision> Batch<S> {
         let width = self.model.params.width(field);
         check_length(field.name(), values.len(), width * envs.len())?;
         let mut values = values.to_vec();
-        let mut rows = values.chunks_mut(width.max(1));
-        rows.try_for_each(|row| field.check_row(&self.model, row))?;
+        for (&env, row) in envs.iter().zip(values.chunks_mut(width.max(1))) {
+            let mut own = self.models.own_row(env, field, row);
+            field.check_row(self.models.own(&self.model, env), &mut own)?;
+            self.models.layout_row(env, field, &own, row);
+        }
         self.assign(envs, &[(field, values)])
     }
 
@@ -68,6 +71,8 @@ impl<S: Precision> Batch<S> {
             Model::clear_structural_guarantees(&mut self.model, field, row);
             self.param_rows(field)?.row_mut(env).copy_from_slice(row);
             if let Some((follower, params)) = &mut follower {
+                let old = self.param_rows(*follower)?.row(env).to_vec();
+                params.write_lane(*follower, 0, &old);
                 params.write_lane(field, 0, row);
                 params.derive(&self.model, field);
                 let row = params.read_lane(*follower, 0);
@@ -89,11 +94,18 @@ impl<S: Precision> Batch<S> {
         let mut params = self.model.params.clone();
         let mut changes = CONSTANTS.map(|field| (field, Vec::new())).to_vec();
         for &env in envs {
-            for own in &self.params {
-                own.read_f64(env, &mut params);
+            // No constant belongs to a geom, so that those of the environment's own model fit the layout.
+            let model = self.models.own(&self.model, env);
+            if self.models.are_several() {
+                params.clone_from(&model.params);
             }
-            let rows = constants::<S>(&self.model, &mut params);
-            let rows = rows.map_err(|singular| singular.error(&self.model, Some(env)))?;
+            for own in &self.params {
+                let row = self.models.own_row(env, own.field, own.rows.row(env));
+                let row = Vec::from_iter(row.iter().map(|x| x.to_f64()));
+                params.write_lane(own.field, 0, &row);
+            }
+            let rows = constants::<S>(model, &mut params);
+            let rows = rows.map_err(|singular| singular.error(model, Some(env)))?;
             for ((_, values), row) in changes.iter_mut().zip(rows) {
                 values.extend(row);
             }
@@ -107,12 +119,11 @@ impl<S: Precision> Batch<S> {
 
     /// Returns true if environments have other values of a field.
     fn differs(&self, field: ParamField, envs: &[usize], values: &[S]) -> bool {
-        let of_model: Vec<S> = model_row(&self.model, field);
         let own = self.params.iter().find(|own| own.field == field);
         let mut rows = envs.iter().zip(rows_of(&self.model, field, values));
         rows.any(|(&env, row)| match own {
             Some(own) => own.rows.row(env) != row,
-            None => of_model != row,
+            None => self.model_row(env, field) != row,
         })
     }
 
@@ -126,7 +137,7 @@ impl<S: Precision> Batch<S> {
         let own = self.params.iter().find(|own| own.field == field);
         Ok(match own {
             Some(own) => own.rows.row(env).to_vec(),
-            None => model_row(&self.model, field),
+            None => self.model_row(env, field),
         })
     }
 
@@ -147,14 +158,29 @@ impl<S: Precision> Batch<S> {
         Ok(())
     }
 
+    /// Returns the values of a field of an environment's model.
+    fn model_row(&self, env: usize, field: ParamField) -> Vec<S> {
+        let numbers = match self.models.are_several() {
+            true => self.models.params(&self.model, env).read_lane(field, 0),
+            false => self.model.params.read_lane(field, 0),
+        };
+        numbers.into_iter().map(S::new).collect()
+    }
+
     /// Returns the rows of a field. New rows contain the model's values.
     fn param_rows(&mut self, field: ParamField) -> Result<&mut Rows<S>, SimError> {
         let index = match self.params.iter().position(|own| own.field == field) {
             Some(index) => index,
             None => {
-                let row = model_row(&self.model, field);
+                let row = self.model_row(0, field);
                 let rows = Rows::repeat(self.count(), &row, S::ZERO)?;
-                self.params.push(ParamRows { field, rows });
+                let mut own = ParamRows { field, rows };
+                if self.models.are_several() {
+                    for env in 0..self.count() {
+                        own.set(env, &self.models.params(&self.model, env));
+                    }
+                }
+                self.params.push(own);
                 self.params.len() - 1
             }
         };
@@ -165,10 +191,4 @@ impl<S: Precision> Batch<S> {
 /// Splits the values of a field into rows, one for each environment.
 fn rows_of<'a, S>(model: &Model, field: ParamField, values: &'a [S]) -> std::slice::Chunks<'a, S> {
     values.chunks(model.params.width(field).max(1))
-}
-
-/// Returns the model's values of a field.
-fn model_row<S: Precision>(model: &Model, field: ParamField) -> Vec<S> {
-    let numbers = model.params.read_lane(field, 0);
-    numbers.into_iter().map(S::new).collect()
 }

@@ -152,6 +152,7 @@ impl<S: Precision> Batch<S> {
             rows: EnvRows {
                 motion,
                 inputs,
+                models: &self.models,
                 params: &self.params,
             },
             query,

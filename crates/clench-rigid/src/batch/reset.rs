@@ -14,7 +14,7 @@ impl<S: Precision> Batch<S> {
     pub fn reset(&mut self, env: usize) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
-        self.state.write(env, &self.initial)?;
+        self.state.write(env, self.models.initial(env))?;
         self.status[env] = EnvStatus::Running;
         Ok(())
     }
@@ -26,10 +26,11 @@ impl<S: Precision> Batch<S> {
     pub fn reset_to_keyframe(&mut self, env: usize, key: usize) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
-        let Some(keyframe) = self.model.keyframes.get(key) else {
-            return Err(no_such("keyframe", key, self.model.keyframes.len()));
+        let keyframes = &self.models.own(&self.model, env).keyframes;
+        let Some(keyframe) = keyframes.get(key) else {
+            return Err(no_such("keyframe", key, keyframes.len()));
         };
-        self.scratch.copy_from(&self.initial);
+        self.scratch.copy_from(self.models.initial(env));
         self.scratch.set_keyframe(keyframe);
         self.state.write(env, &self.scratch)?;
         self.status[env] = EnvStatus::Running;
@@ -61,13 +62,23 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// See [`reset`](Self::reset).
     pub fn sim(&self, env: usize) -> Result<Sim<S>, SimError> {
-        let mut sim = Sim::with_options(Arc::clone(&self.model), self.options.options)?;
+        let model = self.models.own(&self.model, env);
+        let mut sim = Sim::with_options(Arc::clone(model), self.options.options)?;
         self.copy_to_sim(env, &mut sim)?;
         Ok(sim)
     }
 
+    /// Copies the parameters that environments have of their own to a simulation of the environment's model.
+    pub(super) fn copy_params(&self, env: usize, sim: &mut Sim<S>) {
+        for own in &self.params {
+            let row = self.models.own_row(env, own.field, own.rows.row(env));
+            sim.params_mut().write_lanes(own.field, &row);
+        }
+    }
+
     /// Copies the state and parameters of environment `env` to a simulation of the same model, so that one simulation
-    /// can serve many environments in turn.
+    /// can serve many environments in turn. In a batch of several models, the simulation is replaced if it has another
+    /// model than the environment.
     ///
     /// # Errors
     /// Returns an error as [`reset`](Self::reset) does, or if the simulation has another model.
@@ -76,10 +87,11 @@ impl<S: Precision> Batch<S> {
         self.check_state()?;
         let mut row = StateRows::new(&self.model, 1)?;
         row.copy_row(0, &self.state, env);
-        row.read(0, &mut sim.state)?;
-        for own in &self.params {
-            own.splat(env, sim.params_mut());
+        if let Some(other) = self.other_sim(env, sim)? {
+            *sim = other;
         }
+        row.read(0, &mut sim.state)?;
+        self.copy_params(env, sim);
         Ok(())
     }
 }

@@ -9,7 +9,7 @@ use super::{Batch, EnvStatus, Precision};
 use clench_dynamics::check::check_length;
 use clench_dynamics::error::SimError;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 /// The number of steps of a call after which environments are regrouped.
 const STEPS_A_GROUP: usize = 8;
@@ -116,6 +116,7 @@ impl<S: Precision> Batch<S> {
                 rows: EnvRows {
                     motion,
                     inputs,
+                    models: &self.models,
                     params: &self.params,
                 },
                 targets: targets(&mut self.outputs, trace),
@@ -146,8 +147,8 @@ impl<S: Precision> Batch<S> {
         let envs = 0..self.status.len() as u32;
         (self.order).extend(envs.filter(|env| running(env) && wanted(env)));
         if self.options.grouping {
-            let place = |env: &u32| self.sort_keys[*env as usize].load(Relaxed);
-            self.order.sort_unstable_by_key(place);
+            let groups = self.models.groups();
+            sort(&mut self.order, groups, &self.sort_keys);
         }
     }
 
@@ -156,7 +157,8 @@ impl<S: Precision> Batch<S> {
         for stepper in &mut self.steppers {
             let totals = stepper.totals();
             for env in totals.resets.drain(..) {
-                self.state.write_inputs(env as usize, &self.initial);
+                let initial = self.models.initial(env as usize);
+                self.state.write_inputs(env as usize, initial);
                 self.resets[env as usize] += 1;
                 summary.resets += 1;
             }
@@ -168,6 +170,14 @@ impl<S: Precision> Batch<S> {
             self.quality += std::mem::take(&mut totals.quality);
         }
     }
+}
+
+/// Sorts environments by their group, if they have one, and then by their sort key.
+fn sort(order: &mut [u32], groups: Option<&[u32]>, keys: &[AtomicU64]) {
+    order.sort_unstable_by_key(|&env| {
+        let group = groups.map_or(0, |groups| groups[env as usize]);
+        (group, keys[env as usize].load(Relaxed))
+    });
 }
 
 /// Runs a job for all environments in `order`. Groups are claimed one by one to balance the load of the threads.

@@ -35,8 +35,6 @@ impl<S: Scalar + Shared> LaneTask<S> for MakeStepper<'_> {
 pub(super) struct LaneStepper<T: Real> {
     compiled: Step<T>,
     state: State<T>,
-    /// The model's initial state.
-    initial: State<T>,
     params: Params<T>,
     ws: Workspace<T>,
     /// True if the state contains occasional inputs.
@@ -55,7 +53,7 @@ pub(super) struct LaneStepper<T: Real> {
 enum Start {
     /// The state in the rows.
     Rows,
-    /// The model's initial state.
+    /// The initial state of its only environment.
     Initial,
 }
 
@@ -68,7 +66,6 @@ where
         LaneStepper {
             compiled,
             state: State::new(model),
-            initial: State::new(model),
             params: model.params.broadcast(),
             ws: (compiled.workspace)(model),
             has_occasional: false,
@@ -85,11 +82,14 @@ where
         for (lane, env) in group.fill() {
             rows.motion.read(env, lane, &mut self.state);
             rows.inputs.read(env, lane, &mut self.state);
+            if rows.models.are_several() {
+                rows.models.read(env, lane, &mut self.params);
+            }
             for own in rows.params {
                 own.read(env, lane, &mut self.params);
             }
         }
-        if !rows.params.is_empty() {
+        if rows.models.are_several() || !rows.params.is_empty() {
             self.ws.forget_poses();
         }
         let has_occasional = (group.iter()).any(|(_, env)| rows.inputs.has_occasional(env));
@@ -115,7 +115,9 @@ where
             self.ws.clock.start();
             self.gather(&group, &job.rows);
             if start == Start::Initial {
-                self.state.copy_from(&self.initial);
+                // Such a group has one environment.
+                let (_, env) = group.fill().next().unwrap_or_default();
+                self.state.splat_from(job.rows.models.initial(env));
             }
             while step < job.end && group.len > 0 {
                 self.control(&group, step, job);

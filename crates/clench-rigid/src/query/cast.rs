@@ -1,6 +1,7 @@
 //! Ray casts and terrain heights for an environment in lanes.
 
 use clench_collide::Ray;
+use clench_dynamics::contact::heights_in;
 use clench_dynamics::dynamics::frames::Frames;
 use clench_dynamics::geometry::{Geoms, RayFilter};
 use clench_dynamics::model::FrameObject;
@@ -40,7 +41,8 @@ pub(crate) fn cast<T: Real>(
     }
 }
 
-/// Appends the world height of a height field's surface at each position (x, y). With a frame, these are relative to
+/// Appends the world height of a height field's surface at each position (x, y); not a number in environments of a
+/// shared layout without the field. With a frame, these are relative to
 /// its position, along its horizontally projected x axis.
 #[kernel]
 pub(crate) fn sample<T: Real>(
@@ -66,13 +68,11 @@ pub(crate) fn sample<T: Real>(
             pose.position.z,
         );
         let mut local = pose.rotation.transpose_mul(world - pose.position);
-        if let Some(field) = geoms.model.heights(geom) {
-            for lane in 0..T::LANES {
-                let (x, y) = (local.x.lane(lane).to_f64(), local.y.lane(lane).to_f64());
-                local
-                    .z
-                    .set_lane(lane, T::Scalar::new(field.height_at(x, y)));
-            }
+        for lane in 0..T::LANES {
+            let (x, y) = (local.x.lane(lane).to_f64(), local.y.lane(lane).to_f64());
+            let field = heights_in(geoms.model, geoms.params, geom, lane);
+            let height = field.map_or(f64::NAN, |field| field.height_at(x, y));
+            local.z.set_lane(lane, T::Scalar::new(height));
         }
         out.push((pose.position + pose.rotation * local).z);
     }

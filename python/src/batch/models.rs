@@ -1,0 +1,137 @@
+//! The models of a batch.
+
+use super::{AnyBatch, Batch};
+use crate::arrays::indices;
+use crate::busy::lock;
+use crate::device::{self, Device, DeviceReal};
+use crate::error::sim_error;
+use crate::model::Model;
+use clench::{BatchOptions, SimError};
+use numpy::PyArray1;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::sync::Arc;
+
+/// The models that a user gave, and the model of each environment.
+pub(super) struct Models {
+    pub(super) objects: Vec<Py<Model>>,
+    models: Vec<Arc<clench::Model>>,
+    of_env: Vec<usize>,
+}
+
+impl Models {
+    pub(super) fn of(
+        model: &Bound<'_, PyAny>,
+        n_envs: usize,
+        env_model: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let objects = match model.cast::<Model>() {
+            Ok(one) => vec![one.clone().unbind()],
+            Err(_) => model.extract::<Vec<Py<Model>>>().map_err(|_| {
+                let found = model.get_type();
+                PyTypeError::new_err(format!(
+                    "model must be a Model or a sequence of Model, not {found}"
+                ))
+            })?,
+        };
+        if objects.is_empty() {
+            return Err(sim_error(SimError::NoModel));
+        }
+        let of_env = match env_model {
+            None => (0..n_envs).map(|env| env % objects.len()).collect(),
+            Some(given) => indices("env_model", given, objects.len())?,
+        };
+        if of_env.len() != n_envs {
+            let found = of_env.len();
+            let text =
+                format!("env_model has {found} numbers, but there are {n_envs} environments");
+            return Err(PyValueError::new_err(text));
+        }
+        let models = objects.iter().map(|model| Arc::clone(model.get().inner()));
+        Ok(Models {
+            models: models.collect(),
+            objects,
+            of_env,
+        })
+    }
+
+    /// Creates the batch.
+    pub(super) fn batch<S: DeviceReal>(
+        &self,
+        device: Device,
+        options: BatchOptions,
+    ) -> PyResult<clench::Batch<S>> {
+        match (device, &self.models[..]) {
+            (Device::Graphics { name }, [model]) => {
+                device::batch(Arc::clone(model), self.of_env.len(), options, name)
+            }
+            (Device::Graphics { .. }, _) => Err(sim_error(SimError::OneModel("a GPU"))),
+            (Device::Processor, models) => {
+                clench::Batch::of_models(models, &self.of_env, options).map_err(sim_error)
+            }
+        }
+    }
+
+    /// Returns the object of the batch's model: the only one, or that of the common layout.
+    pub(super) fn layout(
+        &self,
+        py: Python<'_>,
+        layout: &Arc<clench::Model>,
+    ) -> PyResult<Py<Model>> {
+        match &self.objects[..] {
+            [model] => Ok(model.clone_ref(py)),
+            _ => Py::new(py, Model::layout(layout)),
+        }
+    }
+}
+
+impl Batch {
+    /// Returns the object of the model of an environment.
+    pub(crate) fn model_of(&self, batch: &AnyBatch, env: usize) -> &Py<Model> {
+        &self.models[each!(batch, batch => batch.env_model(env))]
+    }
+}
+
+#[pymethods]
+impl Batch {
+    /// tuple of Model : The models of the environments.
+    #[getter]
+    fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.models)
+    }
+
+    /// numpy.ndarray : The model of each environment (n), an index of `models`, int64. A copy: `reset` changes models.
+    #[getter]
+    fn env_model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let guard = lock(&self.inner, "batch")?;
+        let model = |env| each!(&*guard, batch => batch.env_model(env)) as i64;
+        Ok(PyArray1::from_iter(py, (0..self.n_envs).map(model)))
+    }
+
+    /// Returns the index in `Batch.model` of each geom of one of several models.
+    ///
+    /// Parameters
+    /// ----------
+    /// model : int
+    ///     The index of a model.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     One index per geom of ``models[model]``, ascending, int64. ``batch.geom_xpos[env, batch.geoms_of(m)]`` are
+    ///     the positions of the geoms of an environment with model ``m``.
+    ///
+    /// Raises
+    /// ------
+    /// IndexError
+    ///     If there is no such model.
+    fn geoms_of<'py>(&self, py: Python<'py>, model: usize) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let guard = lock(&self.inner, "batch")?;
+        let geoms = each!(&*guard, batch => batch.geoms_of(model)).map_err(sim_error)?;
+        Ok(PyArray1::from_iter(
+            py,
+            geoms.iter().map(|&geom| geom as i64),
+        ))
+    }
+}
