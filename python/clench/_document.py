@@ -80,6 +80,8 @@ class Document:
         self.root = root
         # The files of the family, stored by its first document.
         self.assets: dict[str, bytes] = {}
+        # The folders of those that were read from the disk.
+        self.folders: dict[str, Path] = {}
         # The attached documents by the names of their `model` elements, and the document that this one is attached to.
         self.attached: dict[str, Document] = {}
         self._outer: Document | None = None
@@ -147,7 +149,8 @@ class Document:
             if self.find(kind, taken) is not None:
                 raise ValueError(f'there is already a {kind} "{taken}"')
         self.first().add_files(own.assets)
-        own.assets, own._outer = {}, self
+        self.first().folders.update(own.folders)
+        own.assets, own.folders, own._outer = {}, {}, self
         self.attached[name] = own
         self.changed()
         return name
@@ -342,6 +345,7 @@ class Document:
                 continue
             place = Path(file) if node.tag == "model" else Path(places[node.tag]) / file
             self.add_files({file: _read(folder / place, str(folder / place))})
+            self.folders[Path(file.replace("\\", "/")).name] = (folder / place).parent
             if node.tag == "model":
                 other = Document.from_file(folder / place)
                 self.add_files(other.assets)

@@ -252,6 +252,54 @@ class ModelSpec:
             self._document.add_files({written(attributes["file"]): data})
         return self.section("asset").add(tag, **attributes)
 
+    def decompose(
+        self,
+        mesh: str,
+        *,
+        threshold: float = 0.05,
+        max_hulls: int | None = None,
+        group: int = 3,
+        cache: bool | str | PathLike[str] = True,
+        **options: Any,
+    ) -> list[SpecElement]:
+        """Decomposes a mesh into convex pieces, since a mesh collides as its convex hull: a cup would be filled.
+
+        Pieces without mass, with the attributes of the geom, collide instead of each geom of the mesh, which keeps its
+        mass, inertia and appearance. CoACD computes them (``pip install 'clench[decompose]'``).
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh.
+        threshold : float
+            Concavity that remains, 0.01 to 1, as a fraction of the size of the mesh: less gives more pieces.
+        max_hulls : int, optional
+            Greatest number of pieces; by default there is no limit.
+        group : int
+            Group of the pieces.
+        cache : bool, str or os.PathLike
+            Folder that stores the pieces under a hash of mesh and options. True is that of the mesh's file, if any.
+        **options : Any
+            Further arguments of ``coacd.run_coacd``, such as ``preprocess_resolution`` or ``seed``.
+
+        Returns
+        -------
+        list of SpecElement
+            The pieces, named ``cup_hull0`` and so on for a geom ``cup``, or the unchanged geoms of a convex mesh.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If CoACD is needed and not installed.
+        ValueError
+            If there is no such mesh, no geom of it collides, a name is taken, or a number is out of range.
+        LoadError
+            If the model cannot be built.
+        """
+        from clench.decompose import replace
+
+        return replace(self, mesh, threshold=threshold, max_hulls=max_hulls, group=group, cache=cache, **options)
+
     def names(self, kind: str) -> list[str]:
         """Returns the names of all elements of a kind, in the order of the document, without unnamed ones.
 
