@@ -29,6 +29,8 @@ const GROUPS: [Group; 2] = [
         tests: &[
             "python/tests/test_torch.py",
             "python/tests/test_jax.py",
+            "python/tests/test_dlpack.py",
+            "python/tests/test_unisim.py",
             "python/tests/gymnasium/test_stable_baselines3.py",
             "python/tests/gymnasium/test_torchrl.py",
         ],
