@@ -23,6 +23,8 @@ _JOINT_TRANSMISSIONS = (0, 1)  # Codes of `actuator_trntype`: a joint, and one i
 class ModelQueries(SimBackend):
     """The part of the contract that the model answers, without stepping.
 
+    The contract describes methods that have no docstring, here and in the derived classes.
+
     Attributes
     ----------
     nq, nv : int
