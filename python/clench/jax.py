@@ -130,7 +130,7 @@ def view(array: NDArray[Any]) -> Any:
 
     ``jax.dlpack.from_dlpack`` refuses outputs such as ``batch.xpos``, because they are read-only; this function takes
     them too. JAX does not expect that its arrays change: the values are those of the next step once it is made, also for
-    computations that JAX has not completed. Copy what you keep, and call ``block_until_ready`` before a step.
+    computations that JAX has not completed. Copy values that you store, and call ``block_until_ready`` before a step.
 
     Parameters
     ----------

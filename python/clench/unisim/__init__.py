@@ -16,7 +16,7 @@
 built-in engines, so tasks must be given this one. Meanings follow UniSim's adapter for MuJoCo: generalized coordinates,
 controls, sensors and reset terms have the same layouts and the same times.
 
-The modules are the model of a scene (`scene.py`), questions about it (`model_queries.py`), randomization and external
+The modules are the model of a scene (`scene.py`), queries of it (`model_queries.py`), randomization and external
 forces (`randomization.py`), the boundary to Torch (`tensors.py`), snapshots and pictures (`playback.py`), and their
 union (`backend.py`).
 """

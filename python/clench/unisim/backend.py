@@ -38,7 +38,8 @@ class ClenchBackend(Playback):
     push_body_name : str, optional
         The body of the interval term ``push``.
     body_state_required : bool
-        True to track poses and velocities of bodies. Every step then also computes sensors of its final state.
+        True to track poses and velocities of bodies. Every step then also computes sensors of its final state, which
+        takes about as long as a substep.
     tracked_body_names : sequence of str, optional
         The tracked bodies; by default all named ones.
     position_actuator_gains : mapping, optional

@@ -1,4 +1,4 @@
-"""Questions about the model: sizes, names, addresses and default values. Arrays are copies."""
+"""Queries of the model: sizes, names, addresses and default values. Arrays are copies."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from clench import FreeCamera
 from clench.unisim.model_queries import Array
 from clench.unisim.tensors import TensorLifecycle
 
-_NO_WINDOW = "clench opens no window here; record, or look at clench.view(backend.batch)"
+_NO_WINDOW = "clench opens no window here: record a video, or use clench.view(backend.batch)"
 
 
 class Playback(TensorLifecycle):
