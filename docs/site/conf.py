@@ -30,7 +30,7 @@ nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
-autodoc_mock_imports = ["torch", "jax"]  # Large, and not needed to read its docstrings.
+autodoc_mock_imports = ["torch", "jax", "unisim"]  # Large, and not needed to read its docstrings.
 napoleon_google_docstring = False
 # Links to code and folders lead to files that are not pages, and the highlighter does not know all syntax of Rust.
 suppress_warnings = ["myst.xref_missing", "misc.highlighting_failure"]

@@ -1,4 +1,4 @@
-"""Steps with gradients for JAX, which must be installed (``pip install jax``).
+"""Steps with gradients for JAX, and JAX arrays on a simulation's memory. JAX must be installed (``pip install jax``).
 
 ::
 
@@ -15,6 +15,8 @@
 
     jax.grad(height)(ctrl)
 
+`view` shares outputs with JAX without a copy: ``clench.jax.view(batch.xpos)``.
+
 Gradients are exact: they are products with the matrices of `clench.Sim.linearize`. Only reverse mode is supported, once.
 Steps run on the processor, in double precision.
 """
@@ -25,11 +27,12 @@ from typing import Any
 
 import jax
 import numpy as np
+from numpy.typing import NDArray
 
 from clench._core import Sim
 from clench._tangent import Tangent
 
-__all__ = ["state", "step"]
+__all__ = ["state", "step", "view"]
 
 _State = tuple[Any, Any, Any]
 
@@ -111,3 +114,48 @@ def step(sim: Sim) -> Any:
     function: Any = jax.custom_vjp(call)
     function.defvjp(forward, backward)
     return function
+
+
+class _Writable:
+    """The memory of a read-only array, for NumPy as if it could be written to. It keeps the array alive."""
+
+    def __init__(self, array: NDArray[Any]) -> None:
+        self.array = array
+        interface = array.__array_interface__
+        self.__array_interface__ = {**interface, "data": (interface["data"][0], False)}
+
+
+def view(array: NDArray[Any]) -> Any:
+    """Returns a JAX array on the memory of an array of a simulation or batch, without a copy.
+
+    ``jax.dlpack.from_dlpack`` refuses outputs such as ``batch.xpos``, because they are read-only; this function takes
+    them too. JAX does not expect that its arrays change: the values are those of the next step once it is made, also for
+    computations that JAX has not completed. Copy values that you store, and call ``block_until_ready`` before a step.
+
+    Parameters
+    ----------
+    array : numpy.ndarray
+        A part of the state, or an output of a batch. Outputs of a simulation are copies already; JAX takes them with
+        ``jax.numpy.asarray``.
+
+    Returns
+    -------
+    jax.Array
+
+    Raises
+    ------
+    TypeError
+        If it is no array.
+    ValueError
+        If JAX cannot share it: it is not contiguous, its start is no multiple of 64 bytes, or it has double precision
+        and JAX is not set to that.
+    """
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f"view takes an array of NumPy, not {type(array).__name__}")
+    if array.dtype == np.float64 and not jax.config.jax_enable_x64:
+        raise ValueError('JAX would copy doubles to floats: call jax.config.update("jax_enable_x64", True) first')
+    if not array.flags.c_contiguous:
+        raise ValueError("view takes a contiguous array")
+    # DLPack's first version, the one that JAX reads, has no read-only arrays. JAX itself writes to none.
+    writable = array if array.flags.writeable else np.asarray(_Writable(array))
+    return jax.dlpack.from_dlpack(writable, copy=False)

@@ -72,7 +72,8 @@ Commands:
   wheel             Build a Python wheel in target/wheels, for all processors of this kind, with the licences of its crates.
   others [NAME]     Test the Python package with large packages, which are installed below .venv:
                       ray       a batch on a cluster whose workers are killed (500 MB)
-                      learning  Stable-Baselines3 and TorchRL (5 GB)
+                      learning  Stable-Baselines3, TorchRL, PyTorch, JAX and UniSim (5 GB)
+                      lerobot   LeRobot, with Python 3.12 or later (5 GB)
   fuzz [--only TARGET] [--seconds N] [--address]
                     Fuzz the readers, an hour each, with libFuzzer; needs a C++ compiler. --address adds AddressSanitizer.
                     See docs/testing.md.

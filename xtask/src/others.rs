@@ -15,7 +15,7 @@ struct Group {
     tests: &'static [&'static str],
 }
 
-const GROUPS: [Group; 2] = [
+const GROUPS: [Group; 3] = [
     Group {
         name: "ray",
         list: "others-ray.txt",
@@ -29,9 +29,17 @@ const GROUPS: [Group; 2] = [
         tests: &[
             "python/tests/test_torch.py",
             "python/tests/test_jax.py",
+            "python/tests/test_dlpack.py",
+            "python/tests/test_unisim.py",
             "python/tests/gymnasium/test_stable_baselines3.py",
             "python/tests/gymnasium/test_torchrl.py",
         ],
+    },
+    Group {
+        name: "lerobot",
+        list: "others-lerobot.txt",
+        folder: ".venv/lerobot",
+        tests: &["python/tests/test_lerobot_env.py"],
     },
 ];
 

@@ -13,7 +13,12 @@ pub(crate) fn check(profile: Profile) -> Result<(), String> {
     install(profile)?;
     let mypy = ["-m", "mypy", "--config-file", "python/pyproject.toml"];
     let mut types = command(interpreter(), &mypy);
-    types.args(["python/clench", "python/examples", "python/tests"]);
+    types.args([
+        "python/clench",
+        "python/examples",
+        "python/tests",
+        "python/lerobot_env_clench/lerobot_env_clench",
+    ]);
     run(types)?;
     // Modules that need a package that is not installed here cannot be imported, and stubtest would report only that.
     let stubtest = [
