@@ -29,6 +29,7 @@ const GROUPS: [Group; 2] = [
         tests: &[
             "python/tests/test_torch.py",
             "python/tests/test_jax.py",
+            "python/tests/test_learning_examples.py",
             "python/tests/gymnasium/test_stable_baselines3.py",
             "python/tests/gymnasium/test_torchrl.py",
         ],
