@@ -33,14 +33,14 @@ class Trainer:
         torch.manual_seed(seed)
         self.envs, self.device = Walk(n), device
         self.policy = Policy(*self.envs.sizes, 256).to(device)
-        # The copy that acts stays on the processor: its batches are too small to be worth a journey at every step.
-        self.actor = deepcopy(self.policy).to("cpu")
         self.learner = Learner(self.policy)
         self.rollouts = [Rollout(24, n, *self.envs.sizes, device != "cpu") for _ in range(2)]
-        # The threads draw from generators of their own, so that the same seed gives the same curve.
+        # Threads that share no generator of random numbers give the same curve for the same seed.
         self.noise = torch.Generator().manual_seed(seed)
         self.observation = torch.from_numpy(self.envs.reset(seed=seed)[0])
         self.policy.watch(self.observation.to(device))
+        # The copy that acts stays on the processor: a transfer at every step would take longer than its small networks.
+        self.actor = deepcopy(self.policy).to("cpu")
         self.spans: Spans = {"stepping": [], "learning": []}
         self.curve: list[float] = []
 
@@ -70,11 +70,11 @@ class Trainer:
             filling = pool.submit(self.fill, self.rollouts[0])
             for k in range(iterations):
                 filling.result()
-                # The objective corrects for a policy that is one iteration older, for rollouts store its probabilities.
+                # The policy that acts is one iteration old; the objective corrects by the stored probabilities.
                 self.actor.load_state_dict(self.policy.state_dict())
-                filling = pool.submit(self.fill, self.rollouts[(k + 1) % 2])
+                if k + 1 < iterations:
+                    filling = pool.submit(self.fill, self.rollouts[(k + 1) % 2])
                 self.learn(self.rollouts[k % 2])
-            filling.result()
 
 
 def main() -> None:

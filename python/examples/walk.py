@@ -1,4 +1,4 @@
-"""A quadruped learns to walk in about a minute, on two processor cores.
+"""A quadruped learns to walk in about two minutes, on two processor cores.
 
 :class:`Walk` is the task, for all environments at once; ``ppo.py`` is the learner. The same seed gives the same curve::
 
@@ -247,13 +247,16 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--tensorboard", metavar="DIR", help="write the numbers of each iteration to DIR")
     parser.add_argument("--mujoco", action="store_true", help="step with MuJoCo instead: pip install mujoco")
     parser.add_argument("--beside", metavar="FILE", help="also plot the curve that --save wrote to FILE")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.record is not None and options.mujoco:
+        parser.error("--record needs the simulation in Clench: save the policy, and load it without --mujoco")
+    return options
 
 
 def main() -> None:
     """Run the example."""
     options = arguments()
-    # Networks this small gain little from more threads, and one gives the same bits on every machine.
+    # Networks this small gain little from more threads; with one, the number of cores does not change the curve.
     torch.set_num_threads(1)
     torch.manual_seed(options.seed)
     task: type[Walk] = Walk
@@ -274,18 +277,16 @@ def main() -> None:
         torch.save({**saved, "policy": policy.state_dict()}, options.save)
 
     gait = evaluate(task(20, max_episode_steps=-1), policy, options.speed, options.record)
-    print(
-        f"20 episodes of 10 s at {options.speed} m/s: {gait.upright:.0%} without a fall, {gait.speed:.2f} m/s forward,"
-    )
-    print(f"{gait.drift:.2f} m sideways at the end, {gait.tilt:.1f} degrees of tilt")
+    print(f"20 episodes of 10 s at {options.speed} m/s: {gait.upright:.0%} without a fall, ", end="")
+    print(f"{gait.speed:.2f} m/s forward, {gait.drift:.2f} m sideways at the end, {gait.tilt:.1f} degrees of tilt")
     if options.evaluate and not gait.walks(options.speed):
         raise SystemExit("the policy does not walk stably")
     curves = [saved] if options.beside is None else [saved, torch.load(options.beside)]
 
     def draw(axes: Axes) -> None:
         for curve in curves:
-            seconds, _, reward = zip(*curve["curve"])
-            axes.plot(seconds, reward, label=curve["engine"])
+            points = curve["curve"]
+            axes.plot([point[0] for point in points], [point[2] for point in points], label=curve["engine"])
         axes.set(xlabel="time of training, s", ylabel="reward per second", title="A quadruped learns to walk")
         axes.legend()
 
