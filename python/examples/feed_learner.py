@@ -2,7 +2,7 @@
 
 There are two rollouts in pinned memory. While one is filled by the policy of the iteration before, the learner copies
 the other to the GPU and learns from it. Stepping releases Python's lock, so neither waits for the other. Without a GPU
-the learner runs on the processor::
+the learner runs on the processor, and both share its cores::
 
     python python/examples/feed_learner.py
     python python/examples/feed_learner.py --plot feed_learner.png
@@ -66,6 +66,8 @@ class Trainer:
 
     def overlap(self, iterations: int) -> None:
         """Learn from one rollout while the next is filled."""
+        # Two changes of the policy lie between its rollout and the end of an update, so its KL divergence is larger.
+        self.learner.target_kl *= 2
         with ThreadPoolExecutor(1) as pool:
             filling = pool.submit(self.fill, self.rollouts[0])
             for k in range(iterations):
@@ -86,7 +88,7 @@ def main() -> None:
     print("the learner is on the GPU" if device == "cuda" else "no GPU for PyTorch: the learner is on the processor")
     torch.set_num_threads(1)
 
-    n, iterations = (64, 3) if options.quick else (1024, 20)
+    n, iterations = (64, 3) if options.quick else (512, 20)
     iterations = options.iterations or iterations
     spans: dict[str, Spans] = {}
     for name in ("alternate", "overlap"):
