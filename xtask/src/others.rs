@@ -31,6 +31,7 @@ const GROUPS: [Group; 3] = [
             "python/tests/test_jax.py",
             "python/tests/test_dlpack.py",
             "python/tests/test_unisim.py",
+            "python/tests/test_learning_examples.py",
             "python/tests/gymnasium/test_stable_baselines3.py",
             "python/tests/gymnasium/test_torchrl.py",
         ],
