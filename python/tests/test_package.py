@@ -102,7 +102,7 @@ def test_every_signature_can_be_read(cls: Any) -> None:
 
 def test_signatures_say_the_defaults() -> None:
     batch = inspect.signature(clench.Batch)
-    assert list(batch.parameters) == ["model", "n_envs", "precision", "threads", "options", "record", "device"]
+    assert list(batch.parameters) == ["model", "n_envs", "precision", "threads", "options", "record", "device", "env_model"]
     assert batch.parameters["precision"].default is None and batch.parameters["threads"].default is None
     assert batch.parameters["device"].default == "cpu"
     assert batch.parameters["options"].kind is inspect.Parameter.KEYWORD_ONLY

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
@@ -13,19 +12,19 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from clench import Batch, FreeCamera, Model, RigidOptions, SimulationError, State
+from clench import Batch, FreeCamera, RigidOptions, SimulationError, State
 from clench.gymnasium import infos as vector_infos
 from clench.gymnasium import observations
 from clench.gymnasium.checks import check_action_space, checked_action, checked_mask, checked_seeds, one_each, one_or_all, rows
 from clench.gymnasium.drawn import Drawn
-from clench.gymnasium.models import action_space, loaded
+from clench.gymnasium.models import Source, action_space, loaded
 from clench.gymnasium.task_methods import TaskMethods
 
 Array = NDArray[Any]
 
 
 class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignore[misc]  # One random generator per environment.
-    """Many environments of one model, stepped together.
+    """Many environments of one model or of several, stepped together.
 
     A task derives from this class, names a model, and defines over all environments at once the observation
     (:meth:`observe`), the reward (:meth:`reward`) and the end of an episode (:meth:`terminated`, :meth:`truncated`),
@@ -37,8 +36,9 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     ----------
     num_envs : int
         Number of environments.
-    model : clench.Model or str or os.PathLike
-        The model, the path of its file, or the text of an MJCF file.
+    model : clench.Model or str or os.PathLike, or a sequence of these
+        The model, the path of its file, or the text of an MJCF file. Several models are those of :class:`clench.Batch`;
+        environment ``i`` starts with model ``i % len(model)``, and :meth:`choose_models` can give it another.
     frame_skip : int
         Number of simulation steps per environment step.
     max_episode_steps : int, optional
@@ -77,7 +77,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     timestep, dt : float
         Duration of a simulation step, and of an environment step, s.
     init_qpos, init_qvel : ndarray
-        The initial state of the model, (nq,) and (nv,).
+        The initial state of the model, (nq,) and (nv,); of several models, that of the first.
     failure_reward : float
         The reward of a step in which the simulation of an environment fails.
 
@@ -91,7 +91,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     therefore independent of each other.
     """
 
-    model: Model | str | PathLike[str]
+    model: Source | Sequence[Source]
     frame_skip: int = 1
     max_episode_steps: int | None = None
     outputs: Sequence[str] = ()
@@ -106,7 +106,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         self,
         num_envs: int = 1,
         *,
-        model: Model | str | PathLike[str] | None = None,
+        model: Source | Sequence[Source] | None = None,
         frame_skip: int | None = None,
         max_episode_steps: int | None = None,
         outputs: Sequence[str] | None = None,
@@ -323,8 +323,8 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     def _restart(self, mask: Array) -> Mapping[str, Array]:
         """Starts an episode of the environments in ``mask``; returns the reset's infos over all environments."""
         batch, qpos, qvel = self.batch, self.batch.qpos, self.batch.qvel
-        batch.reset(mask)
         envs = np.flatnonzero(mask)
+        batch.reset(mask, env_model=self.choose_models(envs))
         start = self.initial_states(envs)
         if isinstance(start, State):
             batch.set_state(start, envs)

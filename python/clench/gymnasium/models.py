@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
@@ -12,8 +13,18 @@ from gymnasium.spaces import Box
 from clench import Model
 
 
-def loaded(model: Model | str | PathLike[str]) -> Model:
-    """Returns the model itself, or loads it from a path or from the text of an MJCF file, which begins with ``<``."""
+Source = Model | str | PathLike[str]
+
+
+def loaded(model: Source | Sequence[Source]) -> Model | list[Model]:
+    """Returns the model itself, or loads it from a path or from the text of an MJCF file, which begins with ``<``.
+    Several models become a list."""
+    if isinstance(model, Sequence) and not isinstance(model, str):
+        return [_loaded(one) for one in model]
+    return _loaded(model)
+
+
+def _loaded(model: Source) -> Model:
     if isinstance(model, Model):
         return model
     if isinstance(model, str) and model.lstrip().startswith("<"):

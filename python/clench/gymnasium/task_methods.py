@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from clench import State
 from clench.gymnasium.generators import Generators
@@ -79,6 +79,22 @@ class TaskMethods(Generators):
         """Called with the controls set, before the simulator steps. Override it to store values that the step will
         change."""
 
+    def choose_models(self, envs: NDArray[np.intp]) -> ArrayLike | None:
+        """Returns the model of each environment that is reset, for its next episode. By default it keeps its model.
+
+        Parameters
+        ----------
+        envs : ndarray
+            Integers (k,): the environments. Random numbers of environment ``i`` come from ``generator(i)``.
+
+        Returns
+        -------
+        array_like of int or None
+            Indices (k,) of ``batch.models``, or None to keep all. Parameters of an environment that gets another model
+            become those of the model.
+        """
+        return None
+
     def initial_state(self, rng: np.random.Generator) -> tuple[Array, Array] | State:
         """Returns the initial state of an episode of one environment. By default it is the initial state of the model.
 
@@ -111,6 +127,9 @@ class TaskMethods(Generators):
             Positions (k, nq) and velocities (k, nv); or (nq,) and (nv,), if all start from the same; or a `State`, of
             one or of k environments.
         """
+        if len(self.batch.models) > 1 and type(self).initial_state is TaskMethods.initial_state:
+            # The batch was reset: each environment is in the initial state of its own model.
+            return self.batch.qpos[envs], self.batch.qvel[envs]
         starts = [self.initial_state(self.generator(env)) for env in envs.tolist()]
         states = [start for start in starts if isinstance(start, State)]
         if states:

@@ -17,7 +17,9 @@ use std::sync::Arc;
 pub(super) struct Models {
     pub(super) objects: Vec<Py<Model>>,
     models: Vec<Arc<clench::Model>>,
-    of_env: Vec<usize>,
+    n_envs: usize,
+    /// None if environment i has the i-th model, in turn.
+    of_env: Option<Vec<usize>>,
 }
 
 impl Models {
@@ -38,12 +40,9 @@ impl Models {
         if objects.is_empty() {
             return Err(sim_error(SimError::NoModel));
         }
-        let of_env = match env_model {
-            None => (0..n_envs).map(|env| env % objects.len()).collect(),
-            Some(given) => indices("env_model", given, objects.len())?,
-        };
-        if of_env.len() != n_envs {
-            let found = of_env.len();
+        let of_env = env_model.map(|given| indices("env_model", given, objects.len()));
+        let of_env = of_env.transpose()?;
+        if let Some(found) = of_env.as_ref().map(Vec::len).filter(|&len| len != n_envs) {
             let text =
                 format!("env_model has {found} numbers, but there are {n_envs} environments");
             return Err(PyValueError::new_err(text));
@@ -52,6 +51,7 @@ impl Models {
         Ok(Models {
             models: models.collect(),
             objects,
+            n_envs,
             of_env,
         })
     }
@@ -64,11 +64,17 @@ impl Models {
     ) -> PyResult<clench::Batch<S>> {
         match (device, &self.models[..]) {
             (Device::Graphics { name }, [model]) => {
-                device::batch(Arc::clone(model), self.of_env.len(), options, name)
+                device::batch(Arc::clone(model), self.n_envs, options, name)
             }
             (Device::Graphics { .. }, _) => Err(sim_error(SimError::OneModel("a GPU"))),
+            (Device::Processor, [model]) => {
+                clench::Batch::with_options(Arc::clone(model), self.n_envs, options)
+                    .map_err(sim_error)
+            }
             (Device::Processor, models) => {
-                clench::Batch::of_models(models, &self.of_env, options).map_err(sim_error)
+                let in_turn = || (0..self.n_envs).map(|env| env % models.len()).collect();
+                let of_env = self.of_env.clone().unwrap_or_else(in_turn);
+                clench::Batch::of_models(models, &of_env, options).map_err(sim_error)
             }
         }
     }

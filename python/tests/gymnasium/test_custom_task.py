@@ -56,6 +56,30 @@ def test_ways_to_say_the_model(tmp_path: Path) -> None:
         Short(2)
 
 
+def test_models_change_from_episode_to_episode() -> None:
+    """Each environment starts in the initial state of its own model, which the task chooses."""
+    carts = [CART, CART.replace("<worldbody>", '<worldbody><geom type="box" size=".1 .1 .1" pos="9 0 0"/>', 1)]
+
+    class Varied(Short):
+        model = carts
+        max_episode_steps = 2
+
+        def choose_models(self, envs: NDArray[np.intp]) -> Any:
+            return [self.generator(env).integers(2) for env in envs.tolist()]
+
+    envs = Varied(40)
+    envs.reset(seed=0)
+    first = envs.batch.env_model
+    assert 5 < first.sum() < 35
+    for _ in range(3):
+        envs.step(np.zeros((40, 2)))
+    assert (envs.batch.env_model != first).any()
+    np.testing.assert_array_equal(envs.batch.sim(0).model.ngeom, envs.batch.models[envs.batch.env_model[0]].ngeom)
+    kept = Short(3, model=carts)
+    kept.reset(seed=0)
+    assert kept.batch.env_model.tolist() == [0, 1, 0]
+
+
 def test_action_space() -> None:
     """The action space has the ranges of the controls, and no bounds for controls without range."""
     space = Cart(2).single_action_space
