@@ -98,12 +98,13 @@ impl Passes {
 }
 
 fn scene_layout(device: &Device) -> BindGroupLayout {
+    // One buffer has the parameters of many pictures.
     let buffer = |binding, ty| BindGroupLayoutEntry {
         binding,
         visibility: ShaderStages::VERTEX_FRAGMENT,
         ty: BindingType::Buffer {
             ty,
-            has_dynamic_offset: false,
+            has_dynamic_offset: ty == BufferBindingType::Uniform,
             min_binding_size: None,
         },
         count: None,

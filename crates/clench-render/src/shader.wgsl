@@ -12,7 +12,8 @@ struct View {
     sky: vec4<f32>,
     // The distances between which items fade into the sky, and the normal offset of shadow lookups.
     fog: vec4<f32>,
-    // The ambient light of all lights, the headlight's diffuse light and its highlights.
+    // The ambient light of all lights, the headlight's diffuse light and its highlights. The w components of the first
+    // two are the number of lights and the index of the first.
     ambient: vec4<f32>,
     head: vec4<f32>,
     head_specular: vec4<f32>,
@@ -189,7 +190,7 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
     // For the one light that casts the shadow, computed once instead of in every iteration.
     let through = sunlight(place, normal);
     for (var k = 0u; k < u32(view.ambient.w); k++) {
-        let light = lights[k];
+        let light = lights[u32(view.head.w) + k];
         var to_light = -light.dir.xyz;
         var strength = 1.0;
         if (light.place.w != 1.0) {

@@ -3,7 +3,7 @@
 use crate::device::Gpu;
 use crate::passes::{PICTURE, Passes};
 use clench::Model;
-use clench::rigid::model::{Appearance, Pixels, TextureKind};
+use clench::rigid::model::{Pixels, TextureKind};
 use clench_view::surfaces;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{
@@ -63,10 +63,9 @@ impl Textures {
         }
     }
 
-    /// Returns the texture of an element.
-    pub(crate) fn of(&self, model: &Model, appearance: Appearance) -> &BindGroup {
-        let index = surfaces::texture(model, appearance);
-        let found = index.and_then(|index| self.of_model.get(index)?.as_ref());
+    /// Returns the texture of an element; `None` for none.
+    pub(crate) fn of(&self, texture: Option<usize>) -> &BindGroup {
+        let found = texture.and_then(|index| self.of_model.get(index)?.as_ref());
         found.unwrap_or(&self.nothing)
     }
 }
