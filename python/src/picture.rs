@@ -40,7 +40,7 @@ impl Envs {
 impl Sim {
     /// Renders a picture of the current state, without a window, on a GPU or, if there is none, with Mesa.
     ///
-    /// Geoms have the sizes of the model, regardless of `set_param`. Sites, skins and image textures are not drawn.
+    /// Geoms have the sizes of the model, regardless of `set_param`. Skins are not drawn.
     ///
     /// Parameters
     /// ----------

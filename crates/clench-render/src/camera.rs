@@ -145,14 +145,15 @@ impl FreeCamera {
 }
 
 impl Placed {
-    /// Returns the number of pixels of a metre in an image of a height, at a point or nearer to the camera by `nearer`:
-    /// infinite if that is behind the camera.
-    pub(crate) fn pixels(&self, point: [f32; 3], nearer: f32, height: u32) -> f32 {
+    /// Returns the distance of a point along the viewing direction, m.
+    pub(crate) fn distance(&self, point: [f32; 3]) -> f32 {
         let along = |k: usize| self.axes[2][k] * (self.eye[k] - point[k]);
-        let distance = match self.parallel {
-            true => 1.0,
-            false => (0..3).map(along).sum::<f32>() - nearer,
-        };
+        (0..3).map(along).sum()
+    }
+
+    /// Returns the number of pixels of a metre at a distance in an image of a height; infinite behind the camera.
+    pub(crate) fn pixels(&self, distance: f32, height: u32) -> f32 {
+        let distance = if self.parallel { 1.0 } else { distance };
         match distance > 0.0 {
             true => height as f32 / (2.0 * self.half * distance),
             false => f32::INFINITY,

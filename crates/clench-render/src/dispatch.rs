@@ -2,10 +2,10 @@
 
 use crate::camera::Placed;
 use crate::canvas::Form;
-use crate::items::{self, Item};
-use crate::light::{Lamp, Lighting, REACH, Uniforms};
+use crate::items::{self, Item, Surface};
+use crate::light::{Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
 use crate::renderer::Scene;
-use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE};
+use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE, Sight};
 use clench::collide::ShapeKind;
 use clench::rigid::readout::light_places;
 use clench::rigid::{Precision, Sim};
@@ -28,7 +28,10 @@ pub(crate) struct Parameters {
 pub(crate) struct Drawn {
     pub vertices: Range<u32>,
     pub items: Range<u32>,
+    pub surface: Surface,
     pub texture: Option<usize>,
+    /// True if the back sides of triangles are hidden.
+    pub culls: bool,
 }
 
 /// A picture.
@@ -102,13 +105,6 @@ impl Snapshot {
     }
 }
 
-/// A camera with the height of its image and the deviation that it allows, pixels.
-struct Sight<'a> {
-    camera: &'a Placed,
-    height: u32,
-    tolerance: f32,
-}
-
 impl Dispatch {
     /// Adds an environment; its pictures follow.
     pub(crate) fn enter(&mut self, scene: &Scene, shown: &Snapshot, form: &Form) {
@@ -117,6 +113,7 @@ impl Dispatch {
         let casting = (form.colors && shown.lighting.casts).then(|| {
             let sight = Sight {
                 camera: &shown.lighting.sun,
+                near: sun_planes(&shown.lighting.sun, scene.extent)[0],
                 height: form.shadow(),
                 tolerance: SHADOW_TOLERANCE,
             };
@@ -155,6 +152,7 @@ impl Dispatch {
         };
         let sight = |tolerance| Sight {
             camera,
+            near: NEAR * scene.extent,
             height,
             tolerance,
         };
@@ -185,11 +183,14 @@ impl Dispatch {
     /// Returns the draw call of an item of the last environment.
     fn draw(&self, scene: &Scene, shown: &Snapshot, k: usize, sight: &Sight) -> Drawn {
         let [x, y, z, _] = shown.items[k].pose[3];
-        let view = (sight.camera, sight.height);
+        let (vertices, hidden) = scene.shapes.at(k, [x, y, z], sight);
         Drawn {
-            vertices: (scene.shapes).at(k, [x, y, z], view, sight.tolerance),
+            vertices,
             items: self.of_last(shown, k..k + 1),
+            surface: scene.surface_of[k],
             texture: scene.texture_of[k],
+            // The back sides of transparent items are seen through their fronts.
+            culls: hidden && shown.items[k].color[3] >= 1.0,
         }
     }
 
@@ -198,13 +199,16 @@ impl Dispatch {
         let pixels = |item: &Item| {
             let [side, _, along, [x, y, z, _]] = item.pose;
             let length = |v: [f32; 4]| v.iter().map(|x| x * x).sum::<f32>().sqrt();
-            length(side) * (sight.camera).pixels([x, y, z], length(along), sight.height)
+            let nearest = sight.camera.distance([x, y, z]) - length(along);
+            length(side) * sight.camera.pixels(nearest, sight.height)
         };
         let most = segments.iter().map(pixels).fold(0.0, f32::max);
         (!segments.is_empty()).then(|| Drawn {
             vertices: scene.shapes.string(most, sight.tolerance),
             items: self.of_last(shown, shown.strings.clone()),
+            surface: Surface::Plain,
             texture: None,
+            culls: false,
         })
     }
 

@@ -8,7 +8,7 @@ use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Text
 use zerocopy::IntoBytes;
 
 /// The distance of the near plane over the size of the model.
-const NEAR: f32 = 0.003;
+pub(crate) const NEAR: f32 = 0.003;
 /// The size of an infinite plane over the size of the model.
 pub(crate) const FAR: f32 = 300.0;
 /// The radius of the shadowed region over the size of the model.
@@ -144,16 +144,13 @@ impl Uniforms {
         lighting: &Lighting,
         (shadow, lamps): (u32, usize),
     ) -> Self {
-        let far = FAR * extent;
+        let [near, far] = sun_planes(&lighting.sun, extent);
         let ahead = camera.axes[2].map(|x| -x);
         let reach = REACH * extent;
         let texel = 1.0 / shadow as f32;
         Uniforms {
-            camera: camera.matrix(aspect, NEAR * extent, far),
-            sun: match lighting.sun.parallel {
-                true => lighting.sun.matrix(1.0, 0.1 * reach, 6.0 * reach),
-                false => lighting.sun.matrix(1.0, NEAR * extent, far),
-            },
+            camera: camera.matrix(aspect, NEAR * extent, FAR * extent),
+            sun: lighting.sun.matrix(1.0, near, far),
             eye: with(camera.eye, 1.0),
             ahead: with(ahead, f32::from(u8::from(camera.parallel))),
             to_sun: with(TO_SUN, texel),
@@ -163,6 +160,14 @@ impl Uniforms {
             head: with(lighting.head[1], lamps as f32),
             head_specular: with(lighting.head[2], 0.0),
         }
+    }
+}
+
+/// Returns the distances of the near and far planes of the view that casts the shadow, m.
+pub(crate) fn sun_planes(sun: &Placed, extent: f32) -> [f32; 2] {
+    match sun.parallel {
+        true => [0.1 * REACH * extent, 6.0 * REACH * extent],
+        false => [NEAR * extent, FAR * extent],
     }
 }
 

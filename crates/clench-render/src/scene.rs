@@ -3,7 +3,7 @@
 use crate::camera::{FreeCamera, Placed};
 use crate::device::{Gpu, RenderError};
 use crate::dispatch::Snapshot;
-use crate::items::{self, Item};
+use crate::items::{self, Item, Surface};
 use crate::passes::Passes;
 use crate::shapes::Shapes;
 use crate::textures::Textures;
@@ -22,6 +22,7 @@ pub(crate) struct Scene {
     pub groups: Vec<usize>,
     /// The texture of each item.
     pub texture_of: Vec<Option<usize>>,
+    pub surface_of: Vec<Surface>,
     pub textures: Textures,
     /// The initial size of the movable geoms, m.
     pub extent: f32,
@@ -39,6 +40,8 @@ impl Scene {
         let marks = visuals.geoms.iter().chain(&visuals.sites);
         let mut texture_of = Vec::from_iter(marks.map(|&mark| surfaces::texture(model, mark)));
         texture_of.resize(items.len(), None);
+        let both = items.iter().zip(&texture_of);
+        let surface_of = both.map(|(item, &texture)| Surface::new(model, item, texture));
         let groups = model.geoms.iter().map(|geom| geom.group);
         let groups = groups.chain(model.sites.iter().map(|site| site.group));
         Ok(Scene {
@@ -46,6 +49,7 @@ impl Scene {
             textures: Textures::new(gpu, passes, model),
             groups: groups.map(|group| group as usize).collect(),
             model: Arc::clone(model),
+            surface_of: surface_of.collect(),
             items,
             texture_of,
             extent,

@@ -13,7 +13,7 @@ use wgpu::{Buffer, BufferUsages};
 use zerocopy::IntoBytes;
 
 /// The number of segments of a circle at each level of detail.
-const AROUND: [usize; 4] = [12, 20, 36, 72];
+const AROUND: [usize; 5] = [8, 12, 20, 36, 72];
 /// The largest deviation of colours from the exact shape, pixels.
 pub(crate) const COLOR_TOLERANCE: f32 = 1.0 / 8.0;
 /// The largest deviation of the shadow map, which is blurred, pixels.
@@ -28,12 +28,25 @@ pub(crate) struct Shapes {
     all: Vec<Shape>,
 }
 
+/// A camera with what its image requires of shapes.
+pub(crate) struct Sight<'a> {
+    pub camera: &'a Placed,
+    /// The distance of the near plane, m.
+    pub near: f32,
+    /// The height of the image, pixels.
+    pub height: u32,
+    /// The largest deviation from the exact shapes, pixels.
+    pub tolerance: f32,
+}
+
 /// A shape in several levels of detail.
 struct Shape {
     /// The vertices and the deviation from the exact shape, m; the coarsest level is the first.
     levels: Vec<(Range<u32>, f32)>,
     /// The radius of a sphere around the origin that contains the shape, m.
     bound: f32,
+    /// True if the triangles enclose a volume and are wound counterclockwise as seen from outside.
+    closed: bool,
 }
 
 impl Shapes {
@@ -44,19 +57,21 @@ impl Shapes {
         let mut all = Vec::new();
         let params = &model.params;
         for (g, geom) in model.geoms.iter().enumerate() {
-            let radius = curvature(geom.kind, params.geom_size[g].to_array());
+            let round = Round::new(geom.kind, params.geom_size[g].to_array());
             let of = |around| triangles::of_geom(model, params, g, far, around);
-            all.push(Shape::new(&mut corners, radius, of));
+            all.push(Shape::new(&mut corners, round, of));
         }
         for (s, site) in model.sites.iter().enumerate() {
-            let radius = curvature(site.kind, params.site_size[s].to_array());
+            let round = Round::new(site.kind, params.site_size[s].to_array());
             let of = |around| triangles::of_site(model, params, s, around);
-            all.push(Shape::new(&mut corners, radius, of));
+            all.push(Shape::new(&mut corners, round, of));
         }
         if ground {
-            all.push(Shape::new(&mut corners, 0.0, |_| triangles::ground(far)));
+            let plane = Round::new(ShapeKind::Plane, [0.0; 3]);
+            all.push(Shape::new(&mut corners, plane, |_| triangles::ground(far)));
         }
-        all.push(Shape::new(&mut corners, 1.0, triangles::string));
+        let string = Round::new(ShapeKind::Cylinder, [1.0; 3]);
+        all.push(Shape::new(&mut corners, string, triangles::string));
         let corners = gpu.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("corners"),
             contents: corners.as_bytes(),
@@ -65,17 +80,15 @@ impl Shapes {
         Shapes { corners, all }
     }
 
-    /// Returns the vertices of a shape at a place, for an image of a height that may deviate by `tolerance` pixels.
-    pub(crate) fn at(
-        &self,
-        shape: usize,
-        place: [f32; 3],
-        (camera, height): (&Placed, u32),
-        tolerance: f32,
-    ) -> Range<u32> {
+    /// Returns the vertices of a shape at a place, as they are drawn for a camera. The back sides of their triangles are
+    /// hidden if the second value is true.
+    pub(crate) fn at(&self, shape: usize, place: [f32; 3], sight: &Sight) -> (Range<u32>, bool) {
         let shape = &self.all[shape];
-        let pixels = camera.pixels(place, shape.bound, height);
-        shape.level(tolerance / pixels)
+        let nearest = sight.camera.distance(place) - shape.bound;
+        let pixels = sight.camera.pixels(nearest, sight.height);
+        // A camera in a shape, or cut off by the near plane, shows its inside.
+        let hidden = shape.closed && nearest > sight.near;
+        (shape.level(sight.tolerance / pixels), hidden)
     }
 
     /// Returns the vertices of tendon segments whose largest radius is so many pixels.
@@ -84,18 +97,32 @@ impl Shapes {
     }
 }
 
-/// Returns the largest radius of the circles that segments replace, m.
-fn curvature(kind: ShapeKind, size: [f64; 3]) -> f32 {
-    match kind {
-        ShapeKind::Sphere | ShapeKind::Capsule | ShapeKind::Cylinder => size[0] as f32,
-        ShapeKind::Ellipsoid => size.into_iter().fold(0.0, f64::max) as f32,
-        ShapeKind::Plane | ShapeKind::Box | ShapeKind::Mesh | ShapeKind::HeightField => 0.0,
+/// The properties of a kind of shape that decide how it is drawn.
+struct Round {
+    /// The largest radius of the circles that segments replace, m.
+    radius: f32,
+    closed: bool,
+}
+
+impl Round {
+    fn new(kind: ShapeKind, size: [f64; 3]) -> Self {
+        let (radius, closed) = match kind {
+            ShapeKind::Sphere | ShapeKind::Capsule | ShapeKind::Cylinder => (size[0], true),
+            ShapeKind::Ellipsoid => (size.into_iter().fold(0.0, f64::max), true),
+            ShapeKind::Box => (0.0, true),
+            // The triangles of mesh files may have any order.
+            ShapeKind::Plane | ShapeKind::Mesh | ShapeKind::HeightField => (0.0, false),
+        };
+        Round {
+            radius: radius as f32,
+            closed,
+        }
     }
 }
 
 impl Shape {
-    /// Appends the vertices of a shape with circles of a radius, which is 0 without.
-    fn new(corners: &mut Vec<Vertex>, radius: f32, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
+    /// Appends the vertices of a shape; `of` creates them with circles of so many segments.
+    fn new(corners: &mut Vec<Vertex>, round: Round, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
         let mut bound = 0.0f32;
         let mut level = |around: usize| {
             let start = corners.len() as u32;
@@ -103,14 +130,18 @@ impl Shape {
             let squares = (shape.iter()).map(|vertex| vertex.place.iter().map(|x| x * x).sum());
             bound = squares.fold(bound, |bound, square: f32| bound.max(square.sqrt()));
             corners.extend(shape);
-            let deviation = radius * (1.0 - (PI / around as f32).cos());
+            let deviation = round.radius * (1.0 - (PI / around as f32).cos());
             (start..corners.len() as u32, deviation)
         };
-        let levels = match radius > 0.0 {
+        let levels = match round.radius > 0.0 {
             true => AROUND.into_iter().map(&mut level).collect(),
             false => vec![level(AROUND[0])],
         };
-        Shape { levels, bound }
+        Shape {
+            levels,
+            bound,
+            closed: round.closed,
+        }
     }
 
     /// Returns the coarsest level that deviates by at most `tolerance`, m, or else the finest.

@@ -3,7 +3,9 @@
 use super::Renderer;
 use crate::canvas::{Canvas, Colors, Facts};
 use crate::dispatch::{Dispatch, Drawn, STRIDE, Shot};
+use crate::items::Surface;
 use crate::light::{SKY, Uniforms};
+use crate::passes::Task;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, BufferBinding, BufferSize,
@@ -52,8 +54,7 @@ impl Renderer {
             ..RenderPassDescriptor::default()
         });
         self.begin(&mut pass, content);
-        pass.set_pipeline(&self.passes.shadow);
-        draw(&mut pass, casting);
+        self.draw_items(&mut pass, casting, |_| Task::Shadow);
     }
 
     /// Draws the colours of a picture.
@@ -64,7 +65,7 @@ impl Renderer {
         shot: &Shot,
         colors: &Colors,
     ) {
-        let [r, g, b] = SKY.map(|x| f64::from(x).powf(2.2));
+        let [r, g, b] = SKY.map(f64::from);
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(RenderPassColorAttachment {
@@ -84,10 +85,8 @@ impl Renderer {
         });
         self.begin(&mut pass, (content, index));
         pass.set_bind_group(1, &colors.lights[shot.environment], &[]);
-        pass.set_pipeline(&self.passes.opaque);
-        self.draw_textured(&mut pass, &shot.opaque);
-        pass.set_pipeline(&self.passes.transparent);
-        self.draw_textured(&mut pass, &shot.transparent);
+        self.draw_items(&mut pass, &shot.opaque, Task::Opaque);
+        self.draw_items(&mut pass, &shot.transparent, Task::Transparent);
     }
 
     /// Draws the distances and geom indices of a picture.
@@ -122,8 +121,7 @@ impl Renderer {
             ..RenderPassDescriptor::default()
         });
         self.begin(&mut pass, (content, index));
-        pass.set_pipeline(&self.passes.facts);
-        draw(&mut pass, &shot.facts);
+        self.draw_items(&mut pass, &shot.facts, |_| Task::Facts);
     }
 
     /// Selects the parameters of a picture.
@@ -132,11 +130,20 @@ impl Renderer {
         pass.set_vertex_buffer(0, self.scene.shapes.corners.slice(..));
     }
 
-    fn draw_textured(&self, pass: &mut RenderPass, all: &[Drawn]) {
-        for same in all.chunk_by(|a, b| a.texture == b.texture) {
-            let texture = same.first().and_then(|drawn| drawn.texture);
-            pass.set_bind_group(2, self.scene.textures.of(texture), &[]);
-            draw(pass, same);
+    /// Draws items; `task` selects the pipeline of a surface.
+    fn draw_items(&self, pass: &mut RenderPass, all: &[Drawn], task: impl Fn(Surface) -> Task) {
+        let state = |drawn: &Drawn| (task(drawn.surface), drawn.culls, drawn.texture);
+        for same in all.chunk_by(|a, b| state(a) == state(b)) {
+            let Some((task, culls, texture)) = same.first().map(state) else {
+                continue;
+            };
+            pass.set_pipeline(self.passes.pipeline(&self.gpu.device, task, culls));
+            if matches!(task, Task::Opaque(_) | Task::Transparent(_)) {
+                pass.set_bind_group(2, self.scene.textures.of(texture), &[]);
+            }
+            for drawn in same {
+                pass.draw(drawn.vertices.clone(), drawn.items.clone());
+            }
         }
     }
 
@@ -174,12 +181,6 @@ impl Renderer {
             layout: &self.passes.scene,
             entries: &entries,
         })
-    }
-}
-
-fn draw(pass: &mut RenderPass, all: &[Drawn]) {
-    for drawn in all {
-        pass.draw(drawn.vertices.clone(), drawn.items.clone());
     }
 }
 
