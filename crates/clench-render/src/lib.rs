@@ -19,6 +19,7 @@ mod passes;
 mod renderer;
 mod scene;
 mod shapes;
+mod simplify;
 mod textures;
 mod triangles;
 

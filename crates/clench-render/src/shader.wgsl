@@ -123,7 +123,8 @@ fn painted(at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
     return vec3(1.0);
 }
 
-// The color and opacity of grid lines below a model without a ground, and the share of color that lines on a floor take.
+// The color and opacity of grid lines below a model without a ground, and the share of color that lines on a floor
+// take.
 const GRID = vec4(0.596, 0.635, 0.682, 0.42);
 const LINE_SHADE = 0.15;
 

@@ -3,6 +3,7 @@
 use crate::camera::Placed;
 use crate::device::Gpu;
 use crate::light::FAR;
+use crate::simplify::{bounds, closed, simplified};
 use crate::triangles::{self, Vertex};
 use clench::Model;
 use clench::collide::ShapeKind;
@@ -14,6 +15,10 @@ use zerocopy::IntoBytes;
 
 /// The number of segments of a circle at each level of detail.
 const AROUND: [usize; 5] = [8, 12, 20, 36, 72];
+/// The number of cells of the longest side of a mesh at each level of detail but the last, which is the mesh itself.
+const CELLS: [usize; 5] = [4, 8, 16, 32, 64];
+/// The deviation of a mesh whose cells are of size 1: its surface moves by much less than a cell.
+const CELL_DEVIATION: f32 = 1.0 / 8.0;
 /// The largest deviation of colours from the exact shape, pixels.
 pub(crate) const COLOR_TOLERANCE: f32 = 1.0 / 8.0;
 /// The largest deviation of the shadow map, which is blurred, pixels.
@@ -59,7 +64,12 @@ impl Shapes {
         for (g, geom) in model.geoms.iter().enumerate() {
             let round = Round::new(geom.kind, params.geom_size[g].to_array());
             let of = |around| triangles::of_geom(model, params, g, far, around);
-            all.push(Shape::new(&mut corners, round, of));
+            // The mean of texture coordinates of a file can be anywhere in the texture.
+            let simple = geom.kind == ShapeKind::Mesh && !triangles::has_own_texcoords(model, g);
+            all.push(match simple {
+                true => Shape::of_mesh(&mut corners, &of(0)),
+                false => Shape::new(&mut corners, round, of),
+            });
         }
         for (s, site) in model.sites.iter().enumerate() {
             let round = Round::new(site.kind, params.site_size[s].to_array());
@@ -80,8 +90,8 @@ impl Shapes {
         Shapes { corners, all }
     }
 
-    /// Returns the vertices of a shape at a place, as they are drawn for a camera. The back sides of their triangles are
-    /// hidden if the second value is true.
+    /// Returns the vertices of a shape at a place, as they are drawn for a camera. The back sides of their triangles
+    /// are hidden if the second value is true.
     pub(crate) fn at(&self, shape: usize, place: [f32; 3], sight: &Sight) -> (Range<u32>, bool) {
         let shape = &self.all[shape];
         let nearest = sight.camera.distance(place) - shape.bound;
@@ -121,27 +131,52 @@ impl Round {
 }
 
 impl Shape {
+    fn empty(closed: bool) -> Self {
+        Shape {
+            levels: Vec::new(),
+            bound: 0.0,
+            closed,
+        }
+    }
+
     /// Appends the vertices of a shape; `of` creates them with circles of so many segments.
     fn new(corners: &mut Vec<Vertex>, round: Round, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
-        let mut bound = 0.0f32;
-        let mut level = |around: usize| {
-            let start = corners.len() as u32;
-            let shape = of(around);
-            let squares = (shape.iter()).map(|vertex| vertex.place.iter().map(|x| x * x).sum());
-            bound = squares.fold(bound, |bound, square: f32| bound.max(square.sqrt()));
-            corners.extend(shape);
-            let deviation = round.radius * (1.0 - (PI / around as f32).cos());
-            (start..corners.len() as u32, deviation)
-        };
+        let mut shape = Shape::empty(round.closed);
         let levels = match round.radius > 0.0 {
-            true => AROUND.into_iter().map(&mut level).collect(),
-            false => vec![level(AROUND[0])],
+            true => &AROUND[..],
+            false => &AROUND[..1],
         };
-        Shape {
-            levels,
-            bound,
-            closed: round.closed,
+        for &around in levels {
+            let deviation = round.radius * (1.0 - (PI / around as f32).cos());
+            shape.add(corners, &of(around), deviation);
         }
+        shape
+    }
+
+    /// Appends the vertices of a mesh.
+    fn of_mesh(corners: &mut Vec<Vertex>, mesh: &[Vertex]) -> Self {
+        let mut shape = Shape::empty(closed(mesh));
+        let (_, side) = bounds(mesh);
+        // A flat or empty mesh has no volume to divide into cells.
+        for cells in CELLS.into_iter().filter(|_| side > 0.0) {
+            let level = simplified(mesh, cells);
+            if 2 * level.len() < mesh.len() {
+                shape.add(corners, &level, CELL_DEVIATION * side / cells as f32);
+            }
+        }
+        shape.add(corners, mesh, 0.0);
+        shape
+    }
+
+    /// Appends the vertices of a level of detail.
+    fn add(&mut self, corners: &mut Vec<Vertex>, level: &[Vertex], deviation: f32) {
+        for vertex in level {
+            let square: f32 = vertex.place.iter().map(|x| x * x).sum();
+            self.bound = self.bound.max(square.sqrt());
+        }
+        let start = corners.len() as u32;
+        corners.extend(level);
+        self.levels.push((start..corners.len() as u32, deviation));
     }
 
     /// Returns the coarsest level that deviates by at most `tolerance`, m, or else the finest.

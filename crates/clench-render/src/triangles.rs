@@ -52,14 +52,20 @@ pub(crate) fn of_geom(
             .unwrap_or_default(),
         kind => primitive(kind, size.to_array().map(|x| x as f32), far, around),
     };
-    let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
-    let mesh = described.mesh.and_then(|m| model.meshes.get(m));
-    let brought = mesh.is_some_and(|mesh| !mesh.texcoords.is_empty());
-    if texture != Some(TextureKind::Plane) || !brought {
+    if !has_own_texcoords(model, geom) {
+        let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
         let scale = texture_scale(model, appearance, described.kind, size);
         cover(&mut shape, scale.map(|x| x as f32), texture);
     }
     shape
+}
+
+/// Returns true if a mesh file defines the texture coordinates of a geom.
+pub(crate) fn has_own_texcoords(model: &Model, geom: usize) -> bool {
+    let texture = texture(model, model.visuals.geoms[geom]);
+    let planar = texture.is_some_and(|t| model.visuals.textures[t].kind == TextureKind::Plane);
+    let mesh = model.geoms[geom].mesh.and_then(|m| model.meshes.get(m));
+    planar && mesh.is_some_and(|mesh| !mesh.texcoords.is_empty())
 }
 
 /// Returns the triangles of a plane of size `far`.
@@ -127,7 +133,7 @@ fn flat_quad(out: &mut Vec<Vertex>, places: [[f32; 3]; 4]) {
     quad(out, places.map(|place| Vertex::new(place, normal)));
 }
 
-fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
+pub(crate) fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
     let (u, v) = (
         [0, 1, 2].map(|k| b[k] - a[k]),
         [0, 1, 2].map(|k| c[k] - a[k]),
