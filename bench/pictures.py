@@ -1,8 +1,8 @@
 """Measures pictures a second: one call for many environments, a call for each, and MuJoCo's renderer.
 
-All draw the same states by MuJoCo's default free camera, with their own lights, shadows and samples. MuJoCo needs PyOpenGL,
-and the environment variable MUJOCO_GL, which `cargo xtask bench` sets to "egl" on Linux. Without a graphics device both draw by
-Mesa on the processor.
+All draw the same states by MuJoCo's default free camera, with their own lights, shadows and samples. MuJoCo needs
+PyOpenGL and the environment variable MUJOCO_GL, which `cargo xtask bench` sets to "egl" on Linux. Without a graphics
+device both draw by Mesa on the processor.
 """
 
 import os
@@ -40,14 +40,16 @@ def row(path, model, camera, case, args):
     """Times one case; prints it and returns it."""
     kind, size, count = case
     states = perturbed_states(model, count, args.noise)
-    engines = {"all": Clench(path, model, camera, states, case, True), "each": Clench(path, model, camera, states, case, False)}
+    own = {"all": True, "each": False}
+    engines = {name: Clench(path, model, camera, states, case, together) for name, together in own.items()}
     if "MUJOCO_GL" in os.environ:
         engines["mujoco"] = Mujoco(model, camera, states, case)
     seconds = alternate(engines, args.repeat)
     if "mujoco" in engines:
         engines["mujoco"].renderer.close()
     rates = {name: count / statistics.median(times) for name, times in seconds.items()}
-    result = {"model": path.stem, "engine": "clench pictures", "kind": kind, "side": size, "number": count, "rates": rates}
+    result = {"model": path.stem, "engine": "clench pictures", "kind": kind, "side": size, "number": count}
+    result["rates"] = rates
     result["ratio"] = ratio(seconds["mujoco"], seconds["all"]) if "mujoco" in engines else float("nan")
     print(
         f"  {kind:<7}{size:>5}{count:>8}{rates['all']:>10.0f}{rates['each']:>13.0f}"

@@ -8,8 +8,8 @@ Newton, which Clench uses, and with one environment also with PGS. Further compa
 calls (calls.py), vector environments and gymnasium's (vector.py), heaps of bodies (heaps.py), collision of pairs of
 shapes (pairs.py), and the frames of the viewer (view.py).
 `--only public` times all models of the public packages (public_models.py), `--only families` scenes of manipulation and
-of many bodies (families.py), `--only gpu` a GPU (gpu.py), and `--only pictures` pictures (pictures.py). The whole run omits
-these: they take long or need a graphics device.
+of many bodies (families.py), `--only gpu` a GPU (gpu.py), and `--only pictures` pictures (pictures.py). The whole run
+omits these: they take long or need a graphics device.
 """
 
 import argparse

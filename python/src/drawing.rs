@@ -3,11 +3,11 @@
 use crate::arrays::require_shape;
 use crate::batch::AnyBatch;
 use crate::busy::lock;
+use crate::envs::Envs;
 use crate::error::{classes::ClenchError, sim_error};
 use crate::free_camera::FreeCamera;
 use crate::kind::Kind;
 use crate::model::Model;
-use crate::picture::Envs;
 use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
 use clench::Precision;

@@ -1,8 +1,8 @@
 //! Replacement of `drawing` in a package that is built without rendering.
 
+use crate::envs::Envs;
 use crate::error::classes::ClenchError;
 use crate::model::Model;
-use crate::picture::Envs;
 use crate::viewed::Target;
 use pyo3::prelude::*;
 

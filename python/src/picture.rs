@@ -2,39 +2,11 @@
 
 use crate::batch::Batch;
 use crate::drawing::{Wanted, draw};
+use crate::envs::Envs;
 use crate::sim::Sim;
 use crate::viewed::Target;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
-
-/// The environments that a call is about, and whether they are a list.
-#[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing draws"))]
-pub(crate) struct Envs {
-    pub(crate) of: Vec<usize>,
-    pub(crate) list: bool,
-}
-
-impl Envs {
-    /// Reads an argument: an index, several, or none for all.
-    fn new(batch: &Batch, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        if let Some(envs) = envs {
-            match batch.env(envs) {
-                Err(error) if error.is_instance_of::<PyTypeError>(envs.py()) => {}
-                env => {
-                    return Ok(Envs {
-                        of: vec![env?],
-                        list: false,
-                    });
-                }
-            }
-        }
-        Ok(Envs {
-            of: batch.chosen(envs)?,
-            list: true,
-        })
-    }
-}
 
 #[pymethods]
 impl Sim {

@@ -94,7 +94,7 @@ def test_pictures_of_all_are_those_of_each(kind: Kind, precision: Literal["64", 
 @pytest.mark.parametrize("kind", ["rgb", "depth", "geom"])
 def test_chosen_environments_and_several_cameras_are_axes(kind: Kind) -> None:
     batch = spread(9)
-    cameras = ["track", 1, clench.FreeCamera([0, 0, 1], 3), None]
+    cameras: list[str | int | clench.FreeCamera | None] = ["track", 1, clench.FreeCamera([0, 0, 1], 3), None]
     envs = np.array([7, 2, 7])
     pictures = batch.render(envs, 24, 16, camera=cameras, kind=kind)
     assert pictures.shape[:4] == (3, 4, 16, 24)

@@ -4,7 +4,7 @@ use crate::camera::Placed;
 use crate::canvas::Form;
 use crate::items::{self, Item, Surface};
 use crate::light::{Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
-use crate::renderer::Scene;
+use crate::scene::Scene;
 use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE, Sight};
 use clench::collide::ShapeKind;
 use clench::rigid::readout::light_places;
@@ -141,7 +141,7 @@ impl Dispatch {
         form: &Form,
         slot: usize,
     ) {
-        let transparent = scene.sorted(shown, camera, &shown.transparent);
+        let transparent = scene.sorted(&shown.items, &shown.transparent, camera);
         let [width, height] = form.size;
         let mut shot = Shot {
             environment: self.shadows.len() - 1,

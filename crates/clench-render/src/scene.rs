@@ -2,7 +2,6 @@
 
 use crate::camera::{FreeCamera, Placed};
 use crate::device::{Gpu, RenderError};
-use crate::dispatch::Snapshot;
 use crate::items::{self, Item, Surface};
 use crate::passes::Passes;
 use crate::shapes::Shapes;
@@ -60,12 +59,12 @@ impl Scene {
     /// cover them.
     pub(crate) fn sorted(
         &self,
-        shown: &Snapshot,
-        camera: &Placed,
+        items: &[Item],
         transparent: &[usize],
+        camera: &Placed,
     ) -> Vec<usize> {
         let distance = |&k: &usize| {
-            let place = shown.items[k].pose[3];
+            let place = items[k].pose[3];
             (0..3)
                 .map(|k| camera.axes[2][k] * (place[k] - camera.eye[k]))
                 .sum::<f32>()

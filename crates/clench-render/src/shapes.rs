@@ -101,7 +101,7 @@ impl Shapes {
         (shape.level(sight.tolerance / pixels), hidden)
     }
 
-    /// Returns the vertices of tendon segments whose largest radius is so many pixels.
+    /// Returns the vertices of tendon segments; their largest radius has `pixels` pixels.
     pub(crate) fn string(&self, pixels: f32, tolerance: f32) -> Range<u32> {
         (self.all.last()).map_or(0..0, |shape| shape.level(tolerance / pixels))
     }
@@ -139,7 +139,7 @@ impl Shape {
         }
     }
 
-    /// Appends the vertices of a shape; `of` creates them with circles of so many segments.
+    /// Appends the vertices of a shape; `of` creates them for a number of segments of a circle.
     fn new(corners: &mut Vec<Vertex>, round: Round, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
         let mut shape = Shape::empty(round.closed);
         let levels = match round.radius > 0.0 {

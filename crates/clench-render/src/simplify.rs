@@ -5,7 +5,7 @@ use crate::triangles::{Vertex, normal_of};
 use std::collections::{HashMap, HashSet};
 
 /// Returns the triangles that are left if the vertices of each cell of a grid become one, their mean. The longest side
-/// of the mesh has so many cells.
+/// of the mesh has `cells` cells.
 pub(crate) fn simplified(triangles: &[Vertex], cells: usize) -> Vec<Vertex> {
     let (low, side) = bounds(triangles);
     let along = |x: f32, low: f32| ((x - low) / side * cells as f32) as usize;

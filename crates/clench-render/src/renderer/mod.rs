@@ -8,7 +8,7 @@ use crate::canvas::{Canvas, Form};
 use crate::device::{Gpu, RenderError};
 use crate::image::{Image, Planes};
 use crate::passes::Passes;
-pub(crate) use crate::scene::Scene;
+use crate::scene::Scene;
 use clench::Model;
 use clench::rigid::{Precision, Sim};
 pub use pictures::Pictures;
