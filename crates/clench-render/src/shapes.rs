@@ -14,9 +14,9 @@ use wgpu::{Buffer, BufferUsages};
 use zerocopy::IntoBytes;
 
 /// The number of segments of a circle at each level of detail.
-const AROUND: [usize; 5] = [8, 12, 20, 36, 72];
+const AROUND: [usize; 8] = [8, 12, 16, 20, 28, 36, 52, 72];
 /// The number of cells of the longest side of a mesh at each level of detail but the last, which is the mesh itself.
-const CELLS: [usize; 5] = [4, 8, 16, 32, 64];
+const CELLS: [usize; 9] = [4, 6, 8, 12, 16, 24, 32, 48, 64];
 /// The deviation of a mesh whose cells are of size 1: its surface moves by much less than a cell.
 const CELL_DEVIATION: f32 = 1.0 / 8.0;
 /// The largest deviation of colours from the exact shape, pixels.
