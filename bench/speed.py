@@ -8,7 +8,8 @@ Newton, which Clench uses, and with one environment also with PGS. Further compa
 calls (calls.py), vector environments and gymnasium's (vector.py), heaps of bodies (heaps.py), collision of pairs of
 shapes (pairs.py), and the frames of the viewer (view.py).
 `--only public` times all models of the public packages (public_models.py), `--only families` scenes of manipulation and
-of many bodies (families.py), and `--only gpu` a GPU (gpu.py). The whole run omits these: they take long or need a GPU.
+of many bodies (families.py), `--only gpu` a GPU (gpu.py), and `--only pictures` pictures (pictures.py). The whole run
+omits these: they take long or need a graphics device.
 """
 
 import argparse
@@ -24,6 +25,7 @@ import families
 import gpu
 import heaps
 import pairs
+import pictures
 import public_models
 import vector
 import view
@@ -31,7 +33,7 @@ from scene import Unmeasured, find
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
 # Comparisons that run only on request.
-ALONE = ["families", "gpu", "public"]
+ALONE = ["families", "gpu", "pictures", "public"]
 DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
 
 
@@ -52,6 +54,7 @@ def main():
         "view": (view.compare, ["the viewer"]),
         "families": (families.compare, ["all scenes"]),
         "gpu": (gpu.compare, models),
+        "pictures": (pictures.compare, models),
         "public": (public_models.compare, ["all models"]),
     }.items():
         if name == args.only or (args.only is None and name not in ALONE):
@@ -71,7 +74,7 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "families", "gpu", "public"], help="one of the comparisons")
+    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "families", "gpu", "pictures", "public"], help="one of the comparisons")
     parser.add_argument("--filter", default="", metavar="TEXT", help="public models, or scenes of the families, whose name contains this")
     parser.add_argument("--docs", action="store_true", help="rewrite docs/families.md and its plots")
     parser.add_argument("--steps", type=int, default=5000, help="steps per run of one environment (default: %(default)s)")

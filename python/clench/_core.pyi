@@ -54,6 +54,8 @@ __all__ = [
 ]
 
 _Precision: TypeAlias = Literal["64", "32"]
+_Camera: TypeAlias = str | SupportsIndex | FreeCamera | None
+_Cameras: TypeAlias = _Camera | Sequence[_Camera]
 _Kind: TypeAlias = Literal[
     "body",
     "joint",
@@ -911,10 +913,11 @@ class Sim(_Outputs):
         width: SupportsIndex = 640,
         height: SupportsIndex = 480,
         *,
-        camera: str | SupportsIndex | FreeCamera | None = None,
+        camera: _Cameras = None,
         kind: Literal["rgb", "depth", "geom"] = "rgb",
         groups: Sequence[int] | None = None,
-    ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3)
+        out: NDArray[Any] | None = None,
+    ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3); (cameras, ...) for a sequence of cameras
     def ray(
         self,
         origin: ArrayLike,  # (3,)
@@ -1120,14 +1123,15 @@ class Batch(_Outputs):
     def constraints(self, env: SupportsIndex) -> Constraints: ...
     def render(
         self,
-        env: SupportsIndex,
+        env: ArrayLike | None = None,  # an index, several, or None for all
         width: SupportsIndex = 640,
         height: SupportsIndex = 480,
         *,
-        camera: str | SupportsIndex | FreeCamera | None = None,
+        camera: _Cameras = None,
         kind: Literal["rgb", "depth", "geom"] = "rgb",
         groups: Sequence[int] | None = None,
-    ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3)
+        out: NDArray[Any] | None = None,
+    ) -> NDArray[Any]: ...  # as for Sim.render; (n, ...) unless env is an index
     def mass_matrix(self) -> _Floats: ...  # (n, nv, nv)
     def ray(
         self,

@@ -20,6 +20,7 @@ mod device;
 #[cfg_attr(not(feature = "render"), path = "no_drawing.rs")]
 mod drawing;
 mod element;
+mod envs;
 mod error;
 mod field;
 mod fields;

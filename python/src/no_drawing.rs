@@ -1,24 +1,25 @@
 //! Replacement of `drawing` in a package that is built without rendering.
 
+use crate::envs::{Envs, Scenes};
 use crate::error::classes::ClenchError;
-use crate::model::Model;
 use crate::viewed::Target;
 use pyo3::prelude::*;
 
-/// The picture that a user requests.
+/// The pictures that a user requests.
 #[expect(dead_code, reason = "nothing draws")]
 pub(crate) struct Wanted<'a, 'py> {
     pub(crate) size: (u32, u32),
     pub(crate) camera: Option<&'a Bound<'py, PyAny>>,
     pub(crate) kind: &'a str,
     pub(crate) groups: Option<Vec<usize>>,
+    pub(crate) out: Option<&'a Bound<'py, PyAny>>,
 }
 
 /// Returns an error that says how to build a package that draws.
 pub(crate) fn draw<'py>(
     _: Python<'py>,
-    _: &Model,
-    _: (&Target, usize),
+    _: &Scenes,
+    _: (&Target, &Envs),
     _: Wanted<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let text = crate::device::without("pictures", "render");

@@ -3,9 +3,10 @@
 use crate::batch::Batch;
 use crate::busy::lock;
 use crate::drawing::{Wanted, draw};
+use crate::envs::{Envs, Scenes};
+use crate::model::Model;
 use crate::sim::Sim;
 use crate::viewed::Target;
-use crate::viewer::check_env;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -13,24 +14,28 @@ use std::sync::Arc;
 impl Sim {
     /// Renders a picture of the current state, without a window, on a GPU or, if there is none, with Mesa.
     ///
-    /// Geoms have the sizes of the model, regardless of `set_param`. Sites, skins and image textures are not drawn.
+    /// Geoms have the sizes of the model, regardless of `set_param`. Skins are not drawn.
     ///
     /// Parameters
     /// ----------
     /// width, height : int
     ///     Pixels.
-    /// camera : str, int or FreeCamera, optional
-    ///     A camera of the model by name or index, or a free one; by default everything that moves is in view.
+    /// camera : str, int or FreeCamera, or a sequence of these, optional
+    ///     A camera of the model by name or index, or a free one; by default everything that moves is in view. Several
+    ///     give an array with an axis of cameras in front.
     /// kind : {"rgb", "depth", "geom"}
     ///     The quantity of each pixel.
     /// groups : sequence of int, optional
     ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
+    /// out : numpy.ndarray, optional
+    ///     The contiguous array to write to.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     "rgb": colours (height, width, 3), uint8. "depth": distances along the viewing direction (height, width), m,
-    ///     float32, infinite where there is no geom. "geom": indices of geoms (height, width), int32, -1 for none.
+    ///     `out`, or a new array. "rgb": colours (height, width, 3), uint8. "depth": distances along the viewing
+    ///     direction (height, width), m, float32, infinite where there is no geom. "geom": indices of geoms
+    ///     (height, width), int32, -1 for none.
     ///
     /// Raises
     /// ------
@@ -38,8 +43,11 @@ impl Sim {
     ///     If no device can draw; the message says what to install. Also if the package was built without rendering;
     ///     the message says how to build it with that.
     /// ValueError
-    ///     If the size is invalid, or no camera has the name.
-    #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None))]
+    ///     If the size is invalid, no camera has the name, or `out` has another shape.
+    /// TypeError
+    ///     If `out` has another dtype.
+    #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None, out = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
         py: Python<'py>,
@@ -48,63 +56,98 @@ impl Sim {
         camera: Option<&Bound<'py, PyAny>>,
         kind: &str,
         groups: Option<Vec<usize>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let wanted = Wanted {
             size: (width, height),
             camera,
             kind,
             groups,
+            out,
         };
         let target = Target::Sim(Arc::clone(self.shared()));
-        draw(py, self.py_model().get(), (&target, 0), wanted)
+        let own = Envs {
+            of: vec![0],
+            list: false,
+        };
+        let scenes = vec![(self.py_model().clone_ref(py), vec![0])];
+        draw(py, &scenes, (&target, &own), wanted)
+    }
+}
+
+impl Batch {
+    /// Returns the models of some environments, each with the places of its environments among them.
+    fn scenes(&self, py: Python<'_>, envs: &Envs) -> PyResult<Scenes> {
+        let guard = lock(self.shared(), "batch")?;
+        let of = Vec::from_iter(envs.of.iter().map(|&env| self.model_of(&guard, env)));
+        let place = |model: &Py<Model>| {
+            let own = of.iter().enumerate().filter(|(_, of)| of.is(model));
+            (
+                model.clone_ref(py),
+                Vec::from_iter(own.map(|(place, _)| place)),
+            )
+        };
+        let mut scenes = Vec::from_iter(self.objects().iter().map(place));
+        // Without environments, the first model still checks the arguments.
+        let first = scenes.first().map(|(model, _)| model.clone_ref(py));
+        scenes.retain(|(_, places)| !places.is_empty());
+        if let Some(first) = first.filter(|_| scenes.is_empty()) {
+            scenes.push((first, Vec::new()));
+        }
+        Ok(scenes)
     }
 }
 
 #[pymethods]
 impl Batch {
-    /// Renders a picture of one environment in its current state; see `Sim.render`.
+    /// Renders environments in their current states, many at a time; see `Sim.render`.
+    ///
+    /// Each picture has the bits of one that is rendered alone.
     ///
     /// Parameters
     /// ----------
-    /// env : int
-    ///     The index of the environment.
+    /// env : int or array_like of int, optional
+    ///     The index of the environment, or of several; by default all.
     /// width, height : int
     ///     Pixels.
-    /// camera : str, int or FreeCamera, optional
+    /// camera : str, int or FreeCamera, or a sequence of these, optional
     ///     A camera of the model by name or index, or a free one; by default everything that moves is in view.
     /// kind : {"rgb", "depth", "geom"}
     ///     The quantity of each pixel.
     /// groups : sequence of int, optional
     ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
+    /// out : numpy.ndarray, optional
+    ///     The contiguous array to write to.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     As for `Sim.render`.
-    #[pyo3(signature = (env, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None))]
+    ///     As for `Sim.render`, with an axis of environments in front unless `env` is an int. With several cameras the
+    ///     next axis is theirs: (n, cameras, height, width, 3).
+    #[pyo3(signature = (env = None, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None,
+                        out = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
         py: Python<'py>,
-        env: usize,
+        env: Option<&Bound<'py, PyAny>>,
         width: u32,
         height: u32,
         camera: Option<&Bound<'py, PyAny>>,
         kind: &str,
         groups: Option<Vec<usize>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check_env(env, self.count())?;
+        let envs = Envs::new(self, env)?;
         let wanted = Wanted {
             size: (width, height),
             camera,
             kind,
             groups,
+            out,
         };
-        let model = {
-            let guard = lock(self.shared(), "batch")?;
-            self.model_of(&guard, env).clone_ref(py)
-        };
+        let scenes = self.scenes(py, &envs)?;
         let target = Target::Batch(Arc::clone(self.shared()));
-        draw(py, model.get(), (&target, env), wanted)
+        draw(py, &scenes, (&target, &envs), wanted)
     }
 }

@@ -143,6 +143,8 @@ def test_pictures_show_the_own_model(models):
         except clench.ClenchError as error:
             pytest.skip(str(error))
         np.testing.assert_array_equal(batch.render(env, 64, 48, camera="front", kind="geom"), expected)
+    singly = [batch.render(env, 64, 48, camera="front") for env in (3, 0, 2)]
+    np.testing.assert_array_equal(batch.render([3, 0, 2], 64, 48, camera="front"), np.stack(singly))
 
 
 def test_mistakes_name_the_models_and_the_element(models):

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+from typing import Literal, TypeAlias
+
 import clench
 import numpy as np
 import pytest
-from scenes import ball, example
+from scenes import ROOT, ball, example
+
+Kind: TypeAlias = Literal["rgb", "depth", "geom"]
 
 
 @pytest.fixture(autouse=True)
@@ -50,6 +55,128 @@ def test_environment_looks_as_a_simulation_alone(precision: str) -> None:
     alone = batch.sim(1).render(40, 30, camera=camera)
     np.testing.assert_array_equal(batch.render(1, 40, 30, camera=camera), alone)
     assert (batch.render(0, 40, 30, camera=camera) != alone).any()
+
+
+KINDS = {"rgb": (np.uint8, (3,)), "depth": (np.float32, ()), "geom": (np.int32, ())}
+
+
+def watched() -> clench.Model:
+    """Returns the humanoid with two cameras and a light."""
+    spec = clench.ModelSpec.from_file(ROOT / "models/humanoid.xml")
+    spec.world.add_camera(name="side", pos=[3, -2, 1.2], xyaxes=[0.6, 0.8, 0, -0.25, 0.19, 0.95])
+    spec.body("torso").add_camera(name="track", mode="trackcom", pos=[0, -3, 0], xyaxes=[1, 0, 0, 0, 0, 1])
+    spec.world.add("light", pos=[1, 1, 3], dir=[0, 0, -1])
+    return spec.build()
+
+
+def spread(n_envs: int, precision: Literal["64", "32"] = "64") -> clench.Batch:
+    """Returns humanoids in different poses."""
+    batch = clench.Batch(watched(), n_envs, precision)
+    rng = np.random.default_rng(0)
+    batch.qpos[:] = batch.model.integrate_pos(batch.qpos, rng.normal(0, 0.2, (n_envs, batch.model.nv)))
+    return batch
+
+
+@pytest.mark.parametrize("kind", ["rgb", "depth", "geom"])
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_pictures_of_all_are_those_of_each(kind: Kind, precision: Literal["64", "32"]) -> None:
+    # More than one dispatch, and a width whose rows are padded on the device.
+    batch = spread(70, precision)
+    dtype, channels = KINDS[kind]
+    pictures = batch.render(None, 50, 36, kind=kind)
+    assert pictures.shape == (70, 36, 50, *channels) and pictures.dtype == dtype
+    for env in range(0, 70, 3):
+        np.testing.assert_array_equal(pictures[env], batch.render(env, 50, 36, kind=kind))
+    assert (pictures[0] != pictures[1]).any()
+    np.testing.assert_array_equal(pictures[69], batch.sim(69).render(50, 36, kind=kind))
+
+
+@pytest.mark.parametrize("kind", ["rgb", "depth", "geom"])
+def test_chosen_environments_and_several_cameras_are_axes(kind: Kind) -> None:
+    batch = spread(9)
+    cameras: list[str | int | clench.FreeCamera | None] = ["track", 1, clench.FreeCamera([0, 0, 1], 3), None]
+    envs = np.array([7, 2, 7])
+    pictures = batch.render(envs, 24, 16, camera=cameras, kind=kind)
+    assert pictures.shape[:4] == (3, 4, 16, 24)
+    for row, env in zip(pictures, envs, strict=True):
+        for picture, camera in zip(row, cameras, strict=True):
+            np.testing.assert_array_equal(picture, batch.render(env, 24, 16, camera=camera, kind=kind))
+    np.testing.assert_array_equal(batch.render([7], 24, 16, camera="track", kind=kind), pictures[:1, 0])
+    np.testing.assert_array_equal(batch.render(7, 24, 16, camera=["track"], kind=kind), pictures[0, :1])
+    np.testing.assert_array_equal(batch.sim(2).render(24, 16, camera=cameras, kind=kind), pictures[1])
+    assert batch.render([], 24, 16, kind=kind).shape[:3] == (0, 16, 24)
+    assert batch.render(None, 24, 16, camera=[], kind=kind).shape[:4] == (9, 0, 16, 24)
+
+
+def test_environments_have_their_own_parameters() -> None:
+    batch = clench.Batch(watched(), 3)
+    poses = batch.param("cam_pos")
+    poses[1] += [0.3, 0, 0]
+    batch.randomize("cam_pos", poses)
+    pictures = batch.render(None, 32, 32, camera=0)
+    assert (pictures[0] == pictures[2]).all() and (pictures[0] != pictures[1]).any()
+    np.testing.assert_array_equal(pictures[1], batch.render(1, 32, 32, camera=0))
+
+
+@pytest.mark.parametrize("kind", ["rgb", "depth", "geom"])
+def test_pictures_are_written_to_given_memory(kind: Kind) -> None:
+    batch = spread(5)
+    dtype, channels = KINDS[kind]
+    memory = np.full((7, 12, 20, *channels), 77, dtype)
+    assert batch.render(None, 20, 12, kind=kind, out=memory[1:6]) is not None
+    np.testing.assert_array_equal(memory[1:6], batch.render(None, 20, 12, kind=kind))
+    assert (memory[[0, 6]] == 77).all()
+    np.testing.assert_array_equal(batch.render(3, 20, 12, kind=kind, out=memory[0]), memory[4])
+    np.testing.assert_array_equal(memory[0], memory[4])
+
+
+def test_unusable_memory_is_an_error() -> None:
+    batch = spread(2)
+    for wrong in (np.zeros((2, 8, 9, 3), np.uint8), np.zeros((8, 8, 3), np.uint8)):
+        with pytest.raises(ValueError, match="out has shape"):
+            batch.render(None, 8, 8, out=wrong)
+    with pytest.raises(TypeError, match="uint8"):
+        batch.render(None, 8, 8, out=np.zeros((2, 8, 8, 3), np.float32))
+    with pytest.raises(TypeError, match="float32"):
+        batch.render(None, 8, 8, kind="depth", out=[0.0])  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="contiguous"):
+        batch.render(None, 8, 8, out=np.zeros((2, 8, 8, 6), np.uint8)[..., ::2])
+    with pytest.raises(ValueError, match="contiguous"):
+        batch.render(None, 8, 8, kind="depth", out=np.zeros((2, 8, 8), np.float32, "F"))
+    fixed = np.zeros((2, 8, 8, 3), np.uint8)
+    fixed.flags.writeable = False
+    with pytest.raises(TypeError, match="writ"):
+        batch.render(None, 8, 8, out=fixed)
+    # An error leaves a renderer that works.
+    assert batch.render(None, 8, 8).shape == (2, 8, 8, 3)
+
+
+def test_environments_that_do_not_exist_are_errors() -> None:
+    batch = spread(2)
+    for wrong in (2, -1, [0, 2], [-1], 1 << 70):
+        with pytest.raises(IndexError):
+            batch.render(wrong, 8, 8)
+    for unusable in ("0", [0.5], [[0], [1]]):
+        with pytest.raises((TypeError, ValueError)):
+            batch.render(unusable, 8, 8)
+    with pytest.raises(ValueError, match="camera"):
+        batch.render(None, 8, 8, camera=["track", "none"])
+    with pytest.raises(ValueError, match="pixels"):
+        batch.render(None, 1 << 20, 1 << 20)
+
+
+def test_threads_draw_at_once() -> None:
+    # Of one model, whose renderer they take in turn, and of two.
+    batches = [spread(8), spread(8), clench.Batch(ball(), 8)]
+    batches[1] = clench.Batch(batches[0].model, 8)
+    expected = [batch.render(None, 24, 24) for batch in batches]
+
+    def draw(index: int) -> None:
+        for _ in range(5):
+            np.testing.assert_array_equal(batches[index].render(None, 24, 24), expected[index])
+
+    with ThreadPoolExecutor(3) as pool:
+        list(pool.map(draw, range(3)))
 
 
 def test_bad_arguments_are_named() -> None:

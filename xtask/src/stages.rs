@@ -253,6 +253,10 @@ pub(crate) fn bench(args: &[String]) -> Result<(), String> {
     script.env("PAIRS", profile.program("examples/pairs"));
     script.env("FRAMES", profile.program("examples/frames"));
     script.env("SPEED", profile.program("examples/speed"));
+    // MuJoCo chooses a windowless renderer on Linux only if it is told to.
+    if cfg!(target_os = "linux") && std::env::var_os("MUJOCO_GL").is_none() {
+        script.env("MUJOCO_GL", "egl");
+    }
     run(script)
 }
 

@@ -65,6 +65,8 @@ pub enum View {
     Camera(usize),
     /// A free camera.
     Free(FreeCamera),
+    /// A free camera that shows all movable geoms.
+    All,
 }
 
 /// A camera with its pose.
@@ -105,6 +107,7 @@ impl View {
                 })
             }
             View::Free(free) => Ok(free.place()),
+            View::All => Ok(FreeCamera::of_all(sim)?.place()),
         }
     }
 }
@@ -142,6 +145,21 @@ impl FreeCamera {
 }
 
 impl Placed {
+    /// Returns the distance of a point along the viewing direction, m.
+    pub(crate) fn distance(&self, point: [f32; 3]) -> f32 {
+        let along = |k: usize| self.axes[2][k] * (self.eye[k] - point[k]);
+        (0..3).map(along).sum()
+    }
+
+    /// Returns the number of pixels of a metre at a distance in an image of a height; infinite behind the camera.
+    pub(crate) fn pixels(&self, distance: f32, height: u32) -> f32 {
+        let distance = if self.parallel { 1.0 } else { distance };
+        match distance > 0.0 {
+            true => height as f32 / (2.0 * self.half * distance),
+            false => f32::INFINITY,
+        }
+    }
+
     /// Returns the column-major matrix from the world to the image. Depth is 1 at the distance `near` and falls to 0 at
     /// infinity (for an orthographic camera at `far`), which distributes single precision evenly.
     pub(crate) fn matrix(&self, aspect: f32, near: f32, far: f32) -> [[f32; 4]; 4] {

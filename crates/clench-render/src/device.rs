@@ -29,7 +29,7 @@ pub enum RenderError {
 }
 
 /// A device with its queue, and its name for messages.
-pub struct Gpu {
+pub(crate) struct Gpu {
     pub device: Device,
     pub queue: Queue,
     pub name: String,
@@ -40,7 +40,7 @@ impl Gpu {
     ///
     /// # Errors
     /// Returns an error if there is none, or it does not start.
-    pub fn open() -> Result<Self, RenderError> {
+    pub(crate) fn open() -> Result<Self, RenderError> {
         let instance = Instance::new(InstanceDescriptor {
             backends: Backends::PRIMARY,
             ..InstanceDescriptor::new_without_display_handle()

@@ -14,7 +14,35 @@ pub(crate) struct Item {
     pub pose: [[f32; 4]; 4],
     pub color: [f32; 4],
     pub surface: [f32; 4],
-    pub texture: [f32; 4],
+    pub lines: [f32; 4],
+}
+
+/// The surface of an item, for which the shader is specialized; see there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Surface {
+    Plain,
+    Lines,
+    Plane,
+    Cube,
+}
+
+impl Surface {
+    pub(crate) const COUNT: usize = 4;
+
+    /// Returns the surface of an item with a texture or without.
+    pub(crate) fn new(model: &Model, item: &Item, texture: Option<usize>) -> Self {
+        match texture.map(|texture| model.visuals.textures[texture].kind) {
+            Some(TextureKind::Plane) => Surface::Plane,
+            Some(TextureKind::Cube) => Surface::Cube,
+            _ if item.lines[0] > 0.0 => Surface::Lines,
+            _ => Surface::Plain,
+        }
+    }
+}
+
+/// Converts a colour of a screen to linear values.
+fn linear([r, g, b]: [f32; 3]) -> [f32; 3] {
+    [r, g, b].map(|x| x.powf(2.2))
 }
 
 /// Returns the items of every geom of a model and then of every site, without poses.
@@ -51,8 +79,8 @@ pub(crate) fn add_ground(
     let floors = (0..model.geoms.len())
         .filter(|&g| kind_of(g) == ShapeKind::Plane && model.geoms[g].body == 0);
     if let Some(floor) = floors.min_by(|&a, &b| height(a).total_cmp(&height(b))) {
-        if items[floor].texture[0] == 0.0 {
-            items[floor].texture[1] = cell;
+        if texture(model, model.visuals.geoms[floor]).is_none() {
+            items[floor].lines[0] = cell;
         }
         return None;
     }
@@ -64,7 +92,7 @@ pub(crate) fn add_ground(
         pose: [column(0), column(1), column(2), [0.0, 0.0, lowest, 1.0]],
         color: [0.0; 4],
         surface: [0.0, 0.0, 0.0, -1.0],
-        texture: [0.0, cell, 1.0, 0.0],
+        lines: [cell, 1.0, 0.0, 0.0],
     })
 }
 
@@ -92,18 +120,19 @@ pub(crate) fn lowest<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimE
 fn item_of(model: &Model, appearance: Appearance) -> Item {
     let visuals = &model.visuals;
     let material = appearance.material.and_then(|m| visuals.materials.get(m));
-    let kind = match texture(model, appearance).map(|t| visuals.textures[t].kind) {
-        Some(TextureKind::Plane) => 1.0,
-        Some(TextureKind::Cube) => 2.0,
-        _ => 0.0,
+    let [r, g, b, opacity] = visuals.rgba(appearance);
+    // Daylight is added in linear values, the light of a file in those of a screen.
+    let [r, g, b] = match visuals.lights.is_empty() {
+        true => linear([r, g, b]),
+        false => [r, g, b],
     };
     Item {
         pose: [[0.0; 4]; 4],
-        color: visuals.rgba(appearance),
+        color: [r, g, b, opacity],
         surface: material.map_or([0.5, 0.5, 0.0, -1.0], |m| {
             [m.specular, m.shininess, m.emission, -1.0]
         }),
-        texture: [kind, 0.0, 0.0, 0.0],
+        lines: [0.0; 4],
     }
 }
 
@@ -152,8 +181,6 @@ pub(crate) fn of_tendons<T: Precision>(sim: &mut Sim<T>) -> Result<Vec<Item>, cl
     let item = |TendonLine { tendon, ends }| {
         let [from, to] = ends;
         let mut item = item_of(model, model.visuals.tendons[tendon]);
-        // Textures do not apply to tendons.
-        item.texture = [0.0; 4];
         let radius = model.visuals.tendon_width[tendon] as f32;
         let along = [0, 1, 2].map(|k| 0.5 * (to[k] - from[k]));
         let half = along.iter().map(|x| x * x).sum::<f32>().sqrt();

@@ -1,8 +1,8 @@
 //! Images of simulations, drawn without a window: on any GPU, or by Mesa on the CPU.
 //!
 //! A [`Renderer`] stores the shapes of a model on the device and draws an [`Image`] of a simulation from a [`View`]:
-//! colours, and optionally distances and the visible geoms. The module `triangles` creates the shapes of geoms,
-//! [`camera`] the views.
+//! colours, and optionally distances and the visible geoms. [`Pictures`] draws many simulations, several in a dispatch.
+//! The module `triangles` creates the shapes of geoms, [`camera`] the views.
 //!
 //! This crate contains no physics and writes no files.
 
@@ -11,15 +11,19 @@
 pub mod camera;
 mod canvas;
 mod device;
+mod dispatch;
 mod image;
 mod items;
 mod light;
 mod passes;
 mod renderer;
+mod scene;
+mod shapes;
+mod simplify;
 mod textures;
 mod triangles;
 
 pub use camera::{FreeCamera, View};
 pub use device::RenderError;
-pub use image::Image;
-pub use renderer::{Picture, Renderer};
+pub use image::{Image, Planes};
+pub use renderer::{Picture, Pictures, Renderer};

@@ -7,10 +7,8 @@ use clench::rigid::model::{Light, LightKind, Visuals};
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, TextureView};
 use zerocopy::IntoBytes;
 
-/// The number of pixels of a side of the shadow map.
-pub(crate) const SHADOW: u32 = 2048;
 /// The distance of the near plane over the size of the model.
-const NEAR: f32 = 0.003;
+pub(crate) const NEAR: f32 = 0.003;
 /// The size of an infinite plane over the size of the model.
 pub(crate) const FAR: f32 = 300.0;
 /// The radius of the shadowed region over the size of the model.
@@ -48,11 +46,13 @@ pub(crate) struct Lamp {
     attenuation: [f32; 4],
 }
 
-/// The lighting of an image.
+/// The lighting of an environment.
 pub(crate) struct Lighting {
     pub lamps: Vec<Lamp>,
-    /// The view of the model's light that casts the shadow, if there is one.
-    shadow: Option<Placed>,
+    /// The view of the sun, or of the model's light that casts the shadow.
+    pub sun: Placed,
+    /// True if there is a shadow.
+    pub casts: bool,
     /// The sum of ambient light, the headlight's diffuse light and its highlights.
     head: [[f32; 3]; 3],
 }
@@ -74,11 +74,13 @@ impl Lighting {
         let head = &visuals.headlight;
         let head = [head.ambient, head.diffuse, head.specular]
             .map(|color| if head.active { color } else { [0.0; 3] });
+        let sight = casting.map(|index| sight(active[index].0, active[index].1, centre, reach));
         Lighting {
+            casts: sight.is_some() || visuals.lights.is_empty(),
+            sun: sight.unwrap_or_else(|| far_away(centre, TO_SUN, reach)),
             lamps: (active.iter().enumerate())
                 .map(|(index, &(light, place))| lamp(light, place, casting == Some(index)))
                 .collect(),
-            shadow: casting.map(|index| sight(active[index].0, active[index].1, centre, reach)),
             head: head.map(narrow),
         }
     }
@@ -133,46 +135,39 @@ fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> 
 }
 
 impl Uniforms {
-    /// Creates the parameters of an image of a region around a centre with a size, m.
+    /// Creates the parameters of an image of a region of a size, m. The shadow map has `shadow` pixels a side, and the
+    /// lights of the environment begin at the index `lamps`.
     pub(crate) fn new(
         camera: &Placed,
         aspect: f32,
         extent: f32,
-        centre: [f32; 3],
         lighting: &Lighting,
+        (shadow, lamps): (u32, usize),
     ) -> Self {
-        let far = FAR * extent;
+        let [near, far] = sun_planes(&lighting.sun, extent);
         let ahead = camera.axes[2].map(|x| -x);
         let reach = REACH * extent;
+        let texel = 1.0 / shadow as f32;
         Uniforms {
-            camera: camera.matrix(aspect, NEAR * extent, far),
-            sun: match &lighting.shadow {
-                Some(sight) if !sight.parallel => sight.matrix(1.0, NEAR * extent, far),
-                sight => (sight.unwrap_or_else(|| far_away(centre, TO_SUN, reach))).matrix(
-                    1.0,
-                    0.1 * reach,
-                    6.0 * reach,
-                ),
-            },
-            eye: [camera.eye[0], camera.eye[1], camera.eye[2], 1.0],
-            ahead: [
-                ahead[0],
-                ahead[1],
-                ahead[2],
-                f32::from(u8::from(camera.parallel)),
-            ],
-            to_sun: [TO_SUN[0], TO_SUN[1], TO_SUN[2], 1.0 / SHADOW as f32],
-            sky: [SKY[0], SKY[1], SKY[2], 1.0],
-            fog: [
-                9.0 * extent,
-                60.0 * extent,
-                3.0 * reach / SHADOW as f32,
-                0.0,
-            ],
+            camera: camera.matrix(aspect, NEAR * extent, FAR * extent),
+            sun: lighting.sun.matrix(1.0, near, far),
+            eye: with(camera.eye, 1.0),
+            ahead: with(ahead, f32::from(u8::from(camera.parallel))),
+            to_sun: with(TO_SUN, texel),
+            sky: with(SKY, 1.0),
+            fog: [9.0 * extent, 60.0 * extent, 3.0 * reach * texel, 0.0],
             ambient: with(lighting.head[0], lighting.lamps.len() as f32),
-            head: with(lighting.head[1], 0.0),
+            head: with(lighting.head[1], lamps as f32),
             head_specular: with(lighting.head[2], 0.0),
         }
+    }
+}
+
+/// Returns the distances of the near and far planes of the view that casts the shadow, m.
+pub(crate) fn sun_planes(sun: &Placed, extent: f32) -> [f32; 2] {
+    match sun.parallel {
+        true => [0.1 * REACH * extent, 6.0 * REACH * extent],
+        false => [NEAR * extent, FAR * extent],
     }
 }
 

@@ -1,31 +1,56 @@
 //! The three passes: the shadow map, the colours, and the distances with geom indices.
 
+use crate::items::Surface;
 use crate::triangles::Vertex;
+use std::sync::OnceLock;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
     BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device,
-    FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor,
+    Face, FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayoutDescriptor,
     PrimitiveState, RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderModule,
     ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexBufferLayout,
     VertexState, VertexStepMode,
 };
 
-pub(crate) const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// The colours of a screen. The shader converts linear values once a pixel; a device would do it for every sample.
+pub(crate) const PICTURE: TextureFormat = TextureFormat::Rgba8Unorm;
 pub(crate) const GEOMS: TextureFormat = TextureFormat::R32Sint;
 pub(crate) const DISTANCES: TextureFormat = TextureFormat::R32Float;
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// The number of samples of a pixel.
 pub(crate) const SAMPLES: u32 = 4;
 
-/// The pipelines and their layouts.
+/// The pipelines and their layouts. Pipelines are created when they are needed first: most models need few.
 pub(crate) struct Passes {
     pub scene: BindGroupLayout,
     pub light: BindGroupLayout,
     pub texture: BindGroupLayout,
-    pub shadow: RenderPipeline,
-    pub opaque: RenderPipeline,
-    pub transparent: RenderPipeline,
-    pub facts: RenderPipeline,
+    module: ShaderModule,
+    own_lights: bool,
+    /// Those of each task, without and with culling.
+    made: [[OnceLock<RenderPipeline>; 2]; Task::COUNT],
+}
+
+/// The task of a pipeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Task {
+    Shadow,
+    Facts,
+    Opaque(Surface),
+    Transparent(Surface),
+}
+
+impl Task {
+    const COUNT: usize = 2 + 2 * Surface::COUNT;
+
+    fn index(self) -> usize {
+        match self {
+            Task::Shadow => 0,
+            Task::Facts => 1,
+            Task::Opaque(surface) => 2 + surface as usize,
+            Task::Transparent(surface) => 2 + Surface::COUNT + surface as usize,
+        }
+    }
 }
 
 /// The settings that differ between pipelines.
@@ -36,74 +61,90 @@ struct PipelineOptions<'a> {
     layouts: &'a [Option<&'a BindGroupLayout>],
     samples: u32,
     writes_depth: bool,
+    culls: bool,
     constants: &'a [(&'a str, f64)],
 }
 
 impl Passes {
-    /// Creates the pipelines for models with their own lights, or for daylight.
+    /// Creates the layouts for models with their own lights, or for daylight.
     pub(crate) fn new(device: &Device, own_lights: bool) -> Self {
-        let constants = [("own_lights", f64::from(u8::from(own_lights)))];
-        let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
-        let scene = scene_layout(device);
-        let light = light_layout(device);
-        let target = |format, blend| {
-            Some(ColorTargetState {
-                format,
-                blend,
-                write_mask: ColorWrites::ALL,
-            })
-        };
-        let texture = texture_layout(device);
-        let all = [Some(&scene), Some(&light), Some(&texture)];
-        let picture = |blend, writes_depth| {
-            let options = PipelineOptions {
-                vertex: "corner",
-                fragment: Some("picture"),
-                targets: &[target(PICTURE, blend)],
-                layouts: &all,
-                samples: SAMPLES,
-                writes_depth,
-                constants: &constants,
-            };
-            pipeline(device, &module, &options)
-        };
-        let facts = PipelineOptions {
-            vertex: "corner",
-            fragment: Some("facts"),
-            targets: &[target(GEOMS, None), target(DISTANCES, None)],
-            layouts: &all[..1],
-            samples: 1,
-            writes_depth: true,
-            constants: &[],
-        };
-        let shadow = PipelineOptions {
-            vertex: "shadow_corner",
-            fragment: None,
-            targets: &[],
-            layouts: &all[..1],
-            samples: 1,
-            writes_depth: true,
-            constants: &[],
-        };
         Passes {
-            shadow: pipeline(device, &module, &shadow),
-            opaque: picture(None, true),
-            transparent: picture(Some(BlendState::ALPHA_BLENDING), false),
-            facts: pipeline(device, &module, &facts),
-            scene,
-            light,
-            texture,
+            scene: scene_layout(device),
+            light: light_layout(device),
+            texture: texture_layout(device),
+            module: device.create_shader_module(wgpu::include_wgsl!("shader.wgsl")),
+            own_lights,
+            made: Default::default(),
         }
+    }
+
+    /// Returns the pipeline of a task, which omits the back sides of triangles if `culls`.
+    pub(crate) fn pipeline(&self, device: &Device, task: Task, culls: bool) -> &RenderPipeline {
+        self.made[task.index()][usize::from(culls)].get_or_init(|| match task {
+            Task::Shadow => self.make_facts(device, culls, None),
+            Task::Facts => self.make_facts(device, culls, Some("facts")),
+            Task::Opaque(surface) => self.make_picture(device, culls, surface, None),
+            Task::Transparent(surface) => {
+                self.make_picture(device, culls, surface, Some(BlendState::ALPHA_BLENDING))
+            }
+        })
+    }
+
+    fn make_facts(&self, device: &Device, culls: bool, fragment: Option<&str>) -> RenderPipeline {
+        let targets = [target(GEOMS, None), target(DISTANCES, None)];
+        let options = PipelineOptions {
+            vertex: fragment.map_or("shadow_corner", |_| "corner"),
+            fragment,
+            targets: fragment.map_or(&[], |_| &targets),
+            layouts: &[Some(&self.scene)],
+            samples: 1,
+            writes_depth: true,
+            culls,
+            constants: &[],
+        };
+        make(device, &self.module, &options)
+    }
+
+    fn make_picture(
+        &self,
+        device: &Device,
+        culls: bool,
+        surface: Surface,
+        blend: Option<BlendState>,
+    ) -> RenderPipeline {
+        let options = PipelineOptions {
+            vertex: "corner",
+            fragment: Some("picture"),
+            targets: &[target(PICTURE, blend)],
+            layouts: &[Some(&self.scene), Some(&self.light), Some(&self.texture)],
+            samples: SAMPLES,
+            writes_depth: blend.is_none(),
+            culls,
+            constants: &[
+                ("own_lights", f64::from(u8::from(self.own_lights))),
+                ("kind", f64::from(surface as u8)),
+            ],
+        };
+        make(device, &self.module, &options)
     }
 }
 
+fn target(format: TextureFormat, blend: Option<BlendState>) -> Option<ColorTargetState> {
+    Some(ColorTargetState {
+        format,
+        blend,
+        write_mask: ColorWrites::ALL,
+    })
+}
+
 fn scene_layout(device: &Device) -> BindGroupLayout {
+    // One buffer has the parameters of many pictures.
     let buffer = |binding, ty| BindGroupLayoutEntry {
         binding,
         visibility: ShaderStages::VERTEX_FRAGMENT,
         ty: BindingType::Buffer {
             ty,
-            has_dynamic_offset: false,
+            has_dynamic_offset: ty == BufferBindingType::Uniform,
             min_binding_size: None,
         },
         count: None,
@@ -163,7 +204,7 @@ fn texture_layout(device: &Device) -> BindGroupLayout {
     })
 }
 
-fn pipeline(device: &Device, module: &ShaderModule, options: &PipelineOptions) -> RenderPipeline {
+fn make(device: &Device, module: &ShaderModule, options: &PipelineOptions) -> RenderPipeline {
     let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: options.layouts,
@@ -182,8 +223,10 @@ fn pipeline(device: &Device, module: &ShaderModule, options: &PipelineOptions) -
                 attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3],
             })],
         },
-        // The vertices of mesh files have an arbitrary order, so both sides are drawn.
-        primitive: PrimitiveState::default(),
+        primitive: PrimitiveState {
+            cull_mode: options.culls.then_some(Face::Back),
+            ..PrimitiveState::default()
+        },
         depth_stencil: Some(DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(options.writes_depth),

@@ -12,7 +12,8 @@ struct View {
     sky: vec4<f32>,
     // The distances between which items fade into the sky, and the normal offset of shadow lookups.
     fog: vec4<f32>,
-    // The ambient light of all lights, the headlight's diffuse light and its highlights.
+    // The ambient light of all lights, the headlight's diffuse light and its highlights. The w components of the first
+    // two are the number of lights and the index of the first.
     ambient: vec4<f32>,
     head: vec4<f32>,
     head_specular: vec4<f32>,
@@ -33,11 +34,12 @@ struct Light {
 
 struct Item {
     pose: mat4x4<f32>,
+    // In linear values in a model without lights.
     color: vec4<f32>,
     // Strength and sharpness of highlights, emission, index of the geom.
     surface: vec4<f32>,
-    // The texture kind: 0 none, 1 plane, 2 cube. The spacing of its grid lines, m, or 0; 1 if only the lines are drawn.
-    texture: vec4<f32>,
+    // The spacing of grid lines, m; 1 if only the lines are drawn.
+    lines: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -49,8 +51,11 @@ struct Item {
 @group(2) @binding(1) var cube: texture_cube<f32>;
 @group(2) @binding(2) var picture_sampler: sampler;
 
-// True if the model has lights. An override constant lets a device that evaluates both sides of a condition skip one.
+// Software devices evaluate both sides of a condition; with override constants they skip one.
+// True if the model has lights.
 override own_lights: bool;
+// The surface of the items of a draw call: 0 a colour, 1 a colour with grid lines, 2 a plane texture, 3 a cube texture.
+override kind: u32;
 // The maximum number of parts of a pixel in a plane texture.
 const MAX_PARTS = 8.0;
 
@@ -84,11 +89,7 @@ fn shadow_corner(@location(0) place: vec3<f32>, @builtin(instance_index) item: u
     return view.sun * items[item].pose * vec4(place, 1.0);
 }
 
-// Screens show sRGB; light is added in linear values.
-fn linear(color: vec3<f32>) -> vec3<f32> {
-    return pow(color, vec3(2.2));
-}
-
+// Screens show sRGB; daylight is added in linear values.
 fn shown(color: vec3<f32>) -> vec3<f32> {
     return pow(color, vec3(1.0 / 2.2));
 }
@@ -112,29 +113,31 @@ fn plane_color(at: vec2<f32>, across: vec2<f32>, down: vec2<f32>) -> vec3<f32> {
 }
 
 // The color of a texture, in linear values.
-fn painted(kind: f32, at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
-    if (kind == 1.0) {
+fn painted(at: vec3<f32>, across: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
+    if (kind == 2u) {
         return plane_color(at.xy, across.xy, down.xy);
     }
-    if (kind == 2.0) {
+    if (kind == 3u) {
         return textureSampleGrad(cube, picture_sampler, at, across, down).rgb;
     }
     return vec3(1.0);
 }
 
-// The color and opacity of grid lines below a model without a ground, and the share of light that lines on a floor take.
+// The color and opacity of grid lines below a model without a ground, and the share of color that lines on a floor
+// take.
 const GRID = vec4(0.596, 0.635, 0.682, 0.42);
-const LINE_SHADE = 0.3;
+const LINE_SHADE = 0.15;
 
 // The share of a pixel that grid lines cover: they are one pixel wide, and vanish where they are close to each other.
 fn grid_cover(place: vec2<f32>, cell: f32) -> f32 {
-    let at = place / max(cell, 1e-6);
+    let at = place / cell;
     let wide = fwidth(at);
     let lines = saturate(1.0 - abs(fract(at - 0.5) - 0.5) / max(wide, vec2(1e-6))) * saturate(1.0 - 2.0 * wide);
-    return select(0.0, max(lines.x, lines.y), cell > 0.0);
+    return max(lines.x, lines.y);
 }
 
-// The unshadowed share of the light that casts the shadow, from nine adjacent samples.
+// The unshadowed share of the light that casts the shadow: the mean of nine adjacent samples, each interpolated between
+// four texels. They read sixteen texels together.
 fn sunlight(place: vec3<f32>, normal: vec3<f32>) -> f32 {
     let texel = view.to_sun.w;
     let seen = view.sun * vec4(place + normal * view.fog.z, 1.0);
@@ -143,14 +146,23 @@ fn sunlight(place: vec3<f32>, normal: vec3<f32>) -> f32 {
     if (any(uv < vec2(0.0)) || any(uv > vec2(1.0)) || at.z < 0.0 || seen.w <= 0.0) {
         return 1.0;
     }
-    var sum = 0.0;
-    for (var x = -1; x <= 1; x++) {
-        for (var y = -1; y <= 1; y++) {
-            let beside = uv + vec2(f32(x), f32(y)) * texel;
-            sum += textureSampleCompareLevel(shadow, shadow_sampler, beside, at.z);
-        }
-    }
-    return sum / 9.0;
+    let place_in_map = uv / texel - 0.5;
+    let part = fract(place_in_map);
+    // The corner between the four texels of the middle sample.
+    let middle = (floor(place_in_map) + 1.0) * texel;
+    let left = textureGatherCompare(shadow, shadow_sampler, middle - texel, at.z);
+    let right = textureGatherCompare(shadow, shadow_sampler, middle + vec2(texel, -texel), at.z);
+    let left_below = textureGatherCompare(shadow, shadow_sampler, middle + vec2(-texel, texel), at.z);
+    let right_below = textureGatherCompare(shadow, shadow_sampler, middle + texel, at.z);
+    // The texels of a gather are those at the lower left, lower right, upper right and upper left.
+    let rows = mat4x4(
+        vec4(left.wz, right.wz),
+        vec4(left.xy, right.xy),
+        vec4(left_below.wz, right_below.wz),
+        vec4(left_below.xy, right_below.xy),
+    );
+    let weights = vec4(1.0 - part.y, 1.0, 1.0, part.y);
+    return dot(rows * weights, vec4(1.0 - part.x, 1.0, 1.0, part.x)) / 9.0;
 }
 
 // The lighting of a model without lights: a sun, a sky and a little light from the camera.
@@ -189,7 +201,7 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
     // For the one light that casts the shadow, computed once instead of in every iteration.
     let through = sunlight(place, normal);
     for (var k = 0u; k < u32(view.ambient.w); k++) {
-        let light = lights[k];
+        let light = lights[u32(view.head.w) + k];
         var to_light = -light.dir.xyz;
         var strength = 1.0;
         if (light.place.w != 1.0) {
@@ -211,14 +223,13 @@ fn lit(color: vec3<f32>, surface: vec4<f32>, place: vec3<f32>, normal: vec3<f32>
             shine += strength * light.specular.rgb * highlight(surface, normal, to_light, to_eye);
         }
     }
-    return linear(saturate(color * matte + shine));
+    return saturate(color * matte + shine);
 }
 
 @fragment
 fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let item = items[in.item];
-    let texel = painted(item.texture.x, in.texcoord, dpdx(in.texcoord), dpdy(in.texcoord));
-    let lines = grid_cover(in.place.xy, item.texture.y);
+    let texel = painted(in.texcoord, dpdx(in.texcoord), dpdy(in.texcoord));
     var to_eye = view.eye.xyz - in.place;
     let distance = length(to_eye);
     to_eye = select(to_eye / distance, -view.ahead.xyz, view.ahead.w > 0.0);
@@ -229,14 +240,17 @@ fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
     if (own_lights) {
         light = lit(item.color.rgb * shown(texel), item.surface, in.place, normal, to_eye);
     } else {
-        light = daylight(linear(item.color.rgb) * texel, item.surface, in.place, normal, to_eye);
+        light = shown(daylight(item.color.rgb * texel, item.surface, in.place, normal, to_eye));
     }
     let fog = smoothstep(view.fog.x, view.fog.y, distance);
-    if (item.texture.z > 0.0) {
-        return vec4(linear(GRID.rgb), GRID.a * lines * (1.0 - fog));
+    if (kind == 1u) {
+        let lines = grid_cover(in.place.xy, item.lines.x);
+        if (item.lines.y > 0.0) {
+            return vec4(GRID.rgb, GRID.a * lines * (1.0 - fog));
+        }
+        light *= 1.0 - LINE_SHADE * lines;
     }
-    light *= 1.0 - LINE_SHADE * lines;
-    return vec4(mix(light, linear(view.sky.rgb), fog), item.color.a);
+    return vec4(mix(light, view.sky.rgb, fog), item.color.a);
 }
 
 struct Facts {

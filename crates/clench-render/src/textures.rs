@@ -1,15 +1,15 @@
 //! The textures of a model on the GPU, with mipmaps.
 
 use crate::device::Gpu;
-use crate::passes::{PICTURE, Passes};
+use crate::passes::Passes;
 use clench::Model;
-use clench::rigid::model::{Appearance, Pixels, TextureKind};
+use clench::rigid::model::{Pixels, TextureKind};
 use clench_view::surfaces;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Extent3d, Sampler,
-    TextureDescriptor, TextureDimension, TextureUsages, TextureView, TextureViewDescriptor,
-    TextureViewDimension,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor, TextureViewDimension,
 };
 
 /// The number of sides of a cube.
@@ -63,10 +63,9 @@ impl Textures {
         }
     }
 
-    /// Returns the texture of an element.
-    pub(crate) fn of(&self, model: &Model, appearance: Appearance) -> &BindGroup {
-        let index = surfaces::texture(model, appearance);
-        let found = index.and_then(|index| self.of_model.get(index)?.as_ref());
+    /// Returns the texture of an element; `None` for none.
+    pub(crate) fn of(&self, texture: Option<usize>) -> &BindGroup {
+        let found = texture.and_then(|index| self.of_model.get(index)?.as_ref());
         found.unwrap_or(&self.nothing)
     }
 }
@@ -137,7 +136,7 @@ fn upload(gpu: &Gpu, size: [usize; 2], layers: &[&[u8]]) -> TextureView {
         mip_level_count: width.max(height).ilog2() + 1,
         sample_count: 1,
         dimension: TextureDimension::D2,
-        format: PICTURE,
+        format: TextureFormat::Rgba8UnormSrgb,
         usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
         view_formats: &[],
     };

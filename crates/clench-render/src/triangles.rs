@@ -6,10 +6,8 @@ use clench::rigid::model::{Mesh, Params, TextureKind};
 use clench_view::surfaces::{texture, texture_scale};
 use std::f32::consts::PI;
 
-/// The number of segments of a circle.
-const AROUND: usize = 72;
-/// The number of segments from the equator to a pole.
-const UPWARDS: usize = 18;
+/// The number of segments of a circle over that from the equator to a pole.
+const QUARTER: usize = 4;
 
 /// A vertex of a triangle.
 #[repr(C)]
@@ -32,8 +30,15 @@ impl Vertex {
     }
 }
 
-/// Returns the triangles of a geom; `far` is the size of an infinite plane.
-pub(crate) fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32) -> Vec<Vertex> {
+/// Returns the triangles of a geom; `far` is the size of an infinite plane, `around` the number of segments of a
+/// circle.
+pub(crate) fn of_geom(
+    model: &Model,
+    params: &Params<f64>,
+    geom: usize,
+    far: f32,
+    around: usize,
+) -> Vec<Vertex> {
     let described = &model.geoms[geom];
     let size = params.geom_size[geom];
     let appearance = model.visuals.geoms[geom];
@@ -45,28 +50,39 @@ pub(crate) fn of_geom(model: &Model, params: &Params<f64>, geom: usize, far: f32
             .and_then(|f| model.height_fields.get(f))
             .map(|field| terrain(&field.shape))
             .unwrap_or_default(),
-        kind => primitive(kind, size.to_array().map(|x| x as f32), far),
+        kind => primitive(kind, size.to_array().map(|x| x as f32), far, around),
     };
-    let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
-    let mesh = described.mesh.and_then(|m| model.meshes.get(m));
-    let brought = mesh.is_some_and(|mesh| !mesh.texcoords.is_empty());
-    if texture != Some(TextureKind::Plane) || !brought {
+    if !has_own_texcoords(model, geom) {
+        let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
         let scale = texture_scale(model, appearance, described.kind, size);
         cover(&mut shape, scale.map(|x| x as f32), texture);
     }
     shape
 }
 
+/// Returns true if a mesh file defines the texture coordinates of a geom.
+pub(crate) fn has_own_texcoords(model: &Model, geom: usize) -> bool {
+    let texture = texture(model, model.visuals.geoms[geom]);
+    let planar = texture.is_some_and(|t| model.visuals.textures[t].kind == TextureKind::Plane);
+    let mesh = model.geoms[geom].mesh.and_then(|m| model.meshes.get(m));
+    planar && mesh.is_some_and(|mesh| !mesh.texcoords.is_empty())
+}
+
 /// Returns the triangles of a plane of size `far`.
 pub(crate) fn ground(far: f32) -> Vec<Vertex> {
-    primitive(ShapeKind::Plane, [0.0; 3], far)
+    plane([0.0; 3], far)
 }
 
 /// Returns the triangles of a site.
-pub(crate) fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<Vertex> {
+pub(crate) fn of_site(
+    model: &Model,
+    params: &Params<f64>,
+    site: usize,
+    around: usize,
+) -> Vec<Vertex> {
     let (kind, size) = (model.sites[site].kind, params.site_size[site]);
     let appearance = model.visuals.sites[site];
-    let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0);
+    let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0, around);
     let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
     let scale = texture_scale(model, appearance, kind, size);
     cover(&mut shape, scale.map(|x| x as f32), texture);
@@ -74,13 +90,13 @@ pub(crate) fn of_site(model: &Model, params: &Params<f64>, site: usize) -> Vec<V
 }
 
 /// Returns the triangles of a shape without an asset; `far` is the size of an infinite plane.
-fn primitive(kind: ShapeKind, size: [f32; 3], far: f32) -> Vec<Vertex> {
+fn primitive(kind: ShapeKind, size: [f32; 3], far: f32, around: usize) -> Vec<Vertex> {
     match kind {
         ShapeKind::Plane => plane(size, far),
-        ShapeKind::Sphere => round([size[0]; 3], 0.0),
-        ShapeKind::Ellipsoid => round(size, 0.0),
-        ShapeKind::Capsule => round([size[0]; 3], size[1]),
-        ShapeKind::Cylinder => cylinder(size[0], size[1]),
+        ShapeKind::Sphere => round([size[0]; 3], 0.0, around),
+        ShapeKind::Ellipsoid => round(size, 0.0, around),
+        ShapeKind::Capsule => round([size[0]; 3], size[1], around),
+        ShapeKind::Cylinder => cylinder(size[0], size[1], around),
         ShapeKind::Box => block(size),
         ShapeKind::Mesh | ShapeKind::HeightField => Vec::new(),
     }
@@ -98,14 +114,18 @@ fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
 }
 
 /// Returns a cylinder along z of radius 1 and half length 1, for tendon segments.
-pub(crate) fn string() -> Vec<Vertex> {
-    cylinder(1.0, 1.0)
+pub(crate) fn string(around: usize) -> Vec<Vertex> {
+    cylinder(1.0, 1.0, around)
 }
 
-/// Appends four vertices, counterclockwise from outside, as two triangles.
+/// Appends four vertices, counterclockwise from outside, as two triangles. At a pole one of them has no area.
 fn quad(out: &mut Vec<Vertex>, corners: [Vertex; 4]) {
     let [a, b, c, d] = corners;
-    out.extend([a, b, c, a, c, d]);
+    for [a, b, c] in [[a, b, c], [a, c, d]] {
+        if a.place != b.place && b.place != c.place && c.place != a.place {
+            out.extend([a, b, c]);
+        }
+    }
 }
 
 fn flat_quad(out: &mut Vec<Vertex>, places: [[f32; 3]; 4]) {
@@ -113,7 +133,7 @@ fn flat_quad(out: &mut Vec<Vertex>, places: [[f32; 3]; 4]) {
     quad(out, places.map(|place| Vertex::new(place, normal)));
 }
 
-fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
+pub(crate) fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
     let (u, v) = (
         [0, 1, 2].map(|k| b[k] - a[k]),
         [0, 1, 2].map(|k| c[k] - a[k]),
@@ -145,17 +165,23 @@ fn plane(size: [f32; 3], far: f32) -> Vec<Vertex> {
 }
 
 /// Returns an ellipsoid of these half axes, whose halves are shifted by `half` along z and joined by a cylinder.
-fn round(axes: [f32; 3], half: f32) -> Vec<Vertex> {
-    // Latitudes from pole to pole; the equator occurs twice, at both ends of the cylinder.
-    let rows: Vec<(f32, f32)> = (0..=UPWARDS)
-        .map(|k| (-half, 0.5 * PI * (k as f32 / UPWARDS as f32 - 1.0)))
-        .chain((0..=UPWARDS).map(|k| (half, 0.5 * PI * k as f32 / UPWARDS as f32)))
+fn round(axes: [f32; 3], half: f32, around: usize) -> Vec<Vertex> {
+    let upwards = around / QUARTER;
+    // Latitudes from pole to pole; the equator occurs twice, at both ends of the cylinder. Poles are exact, so that
+    // their triangles have equal corners.
+    let rows: Vec<(f32, f32)> = (0..=upwards)
+        .map(|k| (-half, 0.5 * PI * (k as f32 / upwards as f32 - 1.0)))
+        .chain((0..=upwards).map(|k| (half, 0.5 * PI * k as f32 / upwards as f32)))
         .collect();
     let corner = |&(shift, latitude): &(f32, f32), k: usize| {
-        let longitude = 2.0 * PI * (k % AROUND) as f32 / AROUND as f32;
+        let longitude = 2.0 * PI * (k % around) as f32 / around as f32;
+        let across = match latitude.abs() < 0.499 * PI {
+            true => latitude.cos(),
+            false => 0.0,
+        };
         let on = [
-            latitude.cos() * longitude.cos(),
-            latitude.cos() * longitude.sin(),
+            across * longitude.cos(),
+            across * longitude.sin(),
             latitude.sin(),
         ];
         let place = [axes[0] * on[0], axes[1] * on[1], axes[2] * on[2] + shift];
@@ -164,7 +190,7 @@ fn round(axes: [f32; 3], half: f32) -> Vec<Vertex> {
     };
     let mut out = Vec::new();
     for pair in rows.windows(2) {
-        for k in 0..AROUND {
+        for k in 0..around {
             let corners = [
                 corner(&pair[0], k),
                 corner(&pair[0], k + 1),
@@ -177,13 +203,13 @@ fn round(axes: [f32; 3], half: f32) -> Vec<Vertex> {
     out
 }
 
-fn cylinder(radius: f32, half: f32) -> Vec<Vertex> {
+fn cylinder(radius: f32, half: f32, around: usize) -> Vec<Vertex> {
     let mut out = Vec::new();
     let on = |k: usize| {
-        let angle = 2.0 * PI * (k % AROUND) as f32 / AROUND as f32;
+        let angle = 2.0 * PI * (k % around) as f32 / around as f32;
         (angle.cos(), angle.sin())
     };
-    for k in 0..AROUND {
+    for k in 0..around {
         let (a, b) = (on(k), on(k + 1));
         let side =
             |(x, y): (f32, f32), z: f32| Vertex::new([radius * x, radius * y, z], [x, y, 0.0]);

@@ -57,12 +57,10 @@ fn agreement(
 ) -> Option<[f64; 2]> {
     let mut renderer = renderer(sim)?;
     let picture = Picture {
-        view: Some(view),
-        colors: false,
-        facts: true,
+        views: vec![view],
         ..Picture::new(WIDTH as u32, HEIGHT as u32)
     };
-    let image = renderer.draw(sim, &picture).unwrap();
+    let image = renderer.draw_facts(sim, &picture).unwrap();
     let mut agreeing = [0, 0];
     for row in 0..HEIGHT {
         for column in 0..WIDTH {
@@ -130,11 +128,10 @@ fn a_free_camera_looks_at_its_point() {
         return;
     };
     let picture = Picture {
-        view: Some(View::Free(free)),
-        facts: true,
+        views: vec![View::Free(free)],
         ..Picture::new(101, 101)
     };
-    let image = renderer.draw(&mut sim, &picture).unwrap();
+    let image = renderer.draw_facts(&mut sim, &picture).unwrap();
     let middle = 50 * 101 + 50;
     assert_eq!(image.geoms[middle], 2);
     assert!(
@@ -144,12 +141,12 @@ fn a_free_camera_looks_at_its_point() {
     );
     assert_eq!(image.rgb.len(), 3 * 101 * 101);
     // The same picture again is identical to the byte. Then the whole scene, without a view.
-    assert!(renderer.draw(&mut sim, &picture).unwrap() == image);
+    assert!(renderer.draw_facts(&mut sim, &picture).unwrap() == image);
     let all = renderer
-        .draw(
+        .draw_facts(
             &mut sim,
             &Picture {
-                view: None,
+                views: vec![View::All],
                 ..picture
             },
         )
@@ -165,14 +162,14 @@ fn impossible_images_are_errors() {
         return;
     };
     for (width, height, view) in [
-        (0, 5, None),
-        (5, 1 << 20, None),
-        (5, 5, Some(View::Camera(2))),
+        (0, 5, View::All),
+        (5, 1 << 20, View::All),
+        (5, 5, View::Camera(2)),
     ] {
         let picture = Picture {
-            view,
+            views: vec![view],
             ..Picture::new(width, height)
         };
-        assert!(renderer.draw(&mut sim, &picture).is_err());
+        assert!(renderer.draw_facts(&mut sim, &picture).is_err());
     }
 }

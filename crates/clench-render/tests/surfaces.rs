@@ -46,7 +46,7 @@ fn drawn(text: &str, view: Option<View>) -> Option<Image> {
         fovy: 45.0,
     };
     let picture = Picture {
-        view: view.or(Some(View::Free(above))),
+        views: vec![view.unwrap_or(View::Free(above))],
         ..Picture::new(100, 100)
     };
     Some(renderer.draw(&mut sim, &picture).unwrap())

@@ -3,7 +3,6 @@
 use clench::rigid::profile::Profile;
 use clench::rigid::{Precision, Sim};
 use clench::{Batch, EnvStatus, Model, RigidOptions, SimError, State};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// A simulation or batch that can be viewed and modified.
@@ -36,13 +35,13 @@ pub trait Viewed {
         query: impl FnOnce(&mut Sim<Self::Scalar>) -> R,
     ) -> Result<R, SimError>;
 
-    /// Calls a function with each environment of a range in order.
+    /// Calls a function with each of some environments in order.
     ///
     /// # Errors
     /// See [`query`](Self::query).
     fn query_each(
         &mut self,
-        envs: Range<usize>,
+        envs: impl IntoIterator<Item = usize>,
         mut query: impl FnMut(usize, &mut Sim<Self::Scalar>),
     ) -> Result<(), SimError> {
         envs.into_iter()
@@ -198,15 +197,17 @@ impl<S: Precision> Viewed for Batch<S> {
 
     fn query_each(
         &mut self,
-        envs: Range<usize>,
+        envs: impl IntoIterator<Item = usize>,
         mut query: impl FnMut(usize, &mut Sim<S>),
     ) -> Result<(), SimError> {
-        let Some(first) = envs.clone().next() else {
+        let mut envs = envs.into_iter();
+        let Some(first) = envs.next() else {
             return Ok(());
         };
         // One simulation is reused for all environments.
         let mut sim = self.sim(first)?;
-        envs.into_iter().try_for_each(|env| {
+        query(first, &mut sim);
+        envs.try_for_each(|env| {
             self.copy_to_sim(env, &mut sim)?;
             query(env, &mut sim);
             Ok(())

@@ -35,4 +35,4 @@ class Drawn:
         if camera is None and "track" in self.batch.model.names("camera"):
             camera = "track"
         width, height = self.render_size
-        return tuple(self.batch.render(env, width, height, camera=camera) for env in range(self.num_envs))
+        return tuple(self.batch.render(None, width, height, camera=camera))

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 impl Batch {
     /// Returns the given environment indices, or all if there are none.
-    pub(super) fn chosen(&self, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
+    pub(crate) fn chosen(&self, envs: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         match envs {
             Some(envs) => indices("envs", envs, self.n_envs),
             None => Ok(Vec::from_iter(0..self.n_envs)),

@@ -373,7 +373,7 @@ impl Batch {
     }
 
     /// Converts an index to that of an environment.
-    fn env(&self, index: &Bound<'_, PyAny>) -> PyResult<usize> {
+    pub(crate) fn env(&self, index: &Bound<'_, PyAny>) -> PyResult<usize> {
         let found = match index.extract::<usize>() {
             Err(error) if !error.is_instance_of::<PyOverflowError>(index.py()) => {
                 return Err(error);

@@ -72,8 +72,15 @@ impl Models {
                     .map_err(sim_error)
             }
             (Device::Processor, models) => {
-                let in_turn = || (0..self.n_envs).map(|env| env % models.len()).collect();
-                let of_env = self.of_env.clone().unwrap_or_else(in_turn);
+                let mut of_env = Vec::new();
+                let (count, bytes) = (self.n_envs, size_of::<usize>());
+                if of_env.try_reserve_exact(count).is_err() {
+                    return Err(sim_error(SimError::OutOfMemory { count, bytes }));
+                }
+                match &self.of_env {
+                    Some(given) => of_env.extend_from_slice(given),
+                    None => of_env.extend((0..count).map(|env| env % models.len())),
+                }
                 clench::Batch::of_models(models, &of_env, options).map_err(sim_error)
             }
         }
@@ -93,6 +100,11 @@ impl Models {
 }
 
 impl Batch {
+    /// Returns the objects of the models.
+    pub(crate) fn objects(&self) -> &[Py<Model>] {
+        &self.models
+    }
+
     /// Returns the object of the model of an environment.
     pub(crate) fn model_of(&self, batch: &AnyBatch, env: usize) -> &Py<Model> {
         &self.models[each!(batch, batch => batch.env_model(env))]

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         .as_ref()
         .map(|key| find_camera(&model, key));
     let picture = Picture {
-        view: camera.transpose()?.map(View::Camera),
+        views: vec![camera.transpose()?.map_or(View::All, View::Camera)],
         ..Picture::new(arguments.width, arguments.height)
     };
     let form = match arguments.out.extension().and_then(|end| end.to_str()) {

@@ -1,69 +1,102 @@
-//! The passes of an image.
+//! The passes of a dispatch.
 
-use super::{Draw, Renderer};
-use crate::canvas::Canvas;
-use crate::light::SKY;
-use clench::rigid::model::Appearance;
+use super::Renderer;
+use crate::canvas::{Canvas, Colors, Facts};
+use crate::dispatch::{Dispatch, Drawn, STRIDE, Shot};
+use crate::items::Surface;
+use crate::light::{SKY, Uniforms};
+use crate::passes::Task;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
-    BindGroup, Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, BufferBinding, BufferSize,
+    BufferUsages, Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureView,
 };
+use zerocopy::IntoBytes;
 
 impl Renderer {
-    /// Draws the shadow map from the sun or from the model's light that casts the shadow.
-    pub fn shade(&self, encoder: &mut CommandEncoder, draw: &Draw) {
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("shadow"),
-            depth_stencil_attachment: Some(depth_attachment(&self.shadow)),
-            ..RenderPassDescriptor::default()
-        });
-        self.begin(&mut pass, draw);
-        pass.set_pipeline(&self.passes.shadow);
-        // Planes are excluded: they shade nothing visible and would shade themselves. So are sites, which are marks.
-        let plane = clench::collide::ShapeKind::Plane;
-        let casts = |&&k: &&usize| (self.model.geoms.get(k)).is_some_and(|geom| geom.kind != plane);
-        let casting = draw.opaque.iter().filter(casts);
-        casting.for_each(|&g| self.draw_one(&mut pass, g));
-        self.draw_strings(&mut pass, draw);
+    /// Encodes all passes: first all shadow maps and then all pictures, so that the device waits between them once.
+    pub(super) fn encode(
+        &self,
+        encoder: &mut CommandEncoder,
+        dispatch: &Dispatch,
+        canvas: &Canvas,
+    ) {
+        let content = self.bind(dispatch);
+        if let Some(colors) = &canvas.colors {
+            for (shadow, map) in dispatch.shadows.iter().zip(&colors.shadows) {
+                if let Some(casting) = &shadow.casting {
+                    self.shade(encoder, (&content, shadow.shot), casting, map);
+                }
+            }
+            for (index, shot) in dispatch.shots.iter().enumerate() {
+                self.paint(encoder, (&content, index), shot, colors);
+            }
+        }
+        if let Some(facts) = &canvas.facts {
+            for (index, shot) in dispatch.shots.iter().enumerate() {
+                self.measure(encoder, (&content, index), shot, facts);
+            }
+        }
     }
 
-    /// Draws the colours.
-    pub fn paint(&self, encoder: &mut CommandEncoder, draw: &Draw, canvas: &Canvas) {
-        let [r, g, b] = SKY.map(|x| f64::from(x).powf(2.2));
-        let resolved = canvas.picture.create_view(&Default::default());
+    /// Draws the shadow map from the sun or from the model's light that casts the shadow.
+    fn shade(
+        &self,
+        encoder: &mut CommandEncoder,
+        content: (&BindGroup, usize),
+        casting: &[Drawn],
+        map: &TextureView,
+    ) {
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(depth_attachment(map, StoreOp::Store)),
+            ..RenderPassDescriptor::default()
+        });
+        self.begin(&mut pass, content);
+        self.draw_items(&mut pass, casting, |_| Task::Shadow);
+    }
+
+    /// Draws the colours of a picture.
+    fn paint(
+        &self,
+        encoder: &mut CommandEncoder,
+        (content, index): (&BindGroup, usize),
+        shot: &Shot,
+        colors: &Colors,
+    ) {
+        let [r, g, b] = SKY.map(f64::from);
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(RenderPassColorAttachment {
-                view: &canvas.samples,
+                view: &colors.samples,
                 depth_slice: None,
-                resolve_target: Some(&resolved),
+                resolve_target: Some(&colors.pictures[index].view),
                 ops: Operations {
                     load: LoadOp::Clear(Color { r, g, b, a: 1.0 }),
                     store: StoreOp::Discard,
                 },
             })],
-            depth_stencil_attachment: Some(depth_attachment(&canvas.samples_depth)),
+            depth_stencil_attachment: Some(depth_attachment(
+                &colors.samples_depth,
+                StoreOp::Discard,
+            )),
             ..RenderPassDescriptor::default()
         });
-        self.begin(&mut pass, draw);
-        pass.set_bind_group(1, &self.light, &[]);
-        pass.set_pipeline(&self.passes.opaque);
-        for &k in draw.opaque {
-            pass.set_bind_group(2, self.texture_of(k), &[]);
-            self.draw_one(&mut pass, k);
-        }
-        pass.set_bind_group(2, self.textures.of(&self.model, Appearance::default()), &[]);
-        self.draw_strings(&mut pass, draw);
-        pass.set_pipeline(&self.passes.transparent);
-        for &k in draw.transparent {
-            pass.set_bind_group(2, self.texture_of(k), &[]);
-            self.draw_one(&mut pass, k);
-        }
+        self.begin(&mut pass, (content, index));
+        pass.set_bind_group(1, &colors.lights[shot.environment], &[]);
+        self.draw_items(&mut pass, &shot.opaque, Task::Opaque);
+        self.draw_items(&mut pass, &shot.transparent, Task::Transparent);
     }
 
-    /// Draws distances and geom indices.
-    pub fn measure(&self, encoder: &mut CommandEncoder, draw: &Draw, canvas: &Canvas) {
-        let views = [&canvas.geoms, &canvas.distances].map(|t| t.create_view(&Default::default()));
+    /// Draws the distances and geom indices of a picture.
+    fn measure(
+        &self,
+        encoder: &mut CommandEncoder,
+        (content, index): (&BindGroup, usize),
+        shot: &Shot,
+        facts: &Facts,
+    ) {
         let attachment = |view, nothing| {
             Some(RenderPassColorAttachment {
                 view,
@@ -81,51 +114,82 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("facts"),
             color_attachments: &[
-                attachment(&views[0], -1.0),
-                attachment(&views[1], f64::INFINITY),
+                attachment(&facts.geoms[index].view, -1.0),
+                attachment(&facts.distances[index].view, f64::INFINITY),
             ],
-            depth_stencil_attachment: Some(depth_attachment(&canvas.depth)),
+            depth_stencil_attachment: Some(depth_attachment(&facts.depth, StoreOp::Discard)),
             ..RenderPassDescriptor::default()
         });
-        self.begin(&mut pass, draw);
-        pass.set_pipeline(&self.passes.facts);
-        let all = draw.opaque.iter().chain(draw.transparent);
-        let geoms = all.filter(|&&k| k < self.model.geoms.len());
-        geoms.for_each(|&g| self.draw_one(&mut pass, g));
-        self.draw_strings(&mut pass, draw);
+        self.begin(&mut pass, (content, index));
+        self.draw_items(&mut pass, &shot.facts, |_| Task::Facts);
     }
 
-    fn begin(&self, pass: &mut RenderPass, draw: &Draw) {
-        pass.set_bind_group(0, draw.scene, &[]);
-        pass.set_vertex_buffer(0, self.corners.slice(..));
+    /// Selects the parameters of a picture.
+    fn begin(&self, pass: &mut RenderPass, (content, shot): (&BindGroup, usize)) {
+        pass.set_bind_group(0, content, &[(shot * STRIDE) as u32]);
+        pass.set_vertex_buffer(0, self.scene.shapes.corners.slice(..));
     }
 
-    /// Draws a geom or, with an index after those of geoms, a site.
-    fn draw_one(&self, pass: &mut RenderPass, item: usize) {
-        pass.draw(self.shapes[item].clone(), item as u32..item as u32 + 1);
-    }
-
-    fn texture_of(&self, item: usize) -> &BindGroup {
-        let visuals = &self.model.visuals;
-        let all = visuals.geoms.iter().chain(&visuals.sites);
-        let appearance = all.copied().nth(item).unwrap_or_default();
-        self.textures.of(&self.model, appearance)
-    }
-
-    fn draw_strings(&self, pass: &mut RenderPass, draw: &Draw) {
-        let strings = draw.strings.start as u32..draw.strings.end as u32;
-        if let Some(shape) = self.shapes.last().filter(|_| !strings.is_empty()) {
-            pass.draw(shape.clone(), strings);
+    /// Draws items; `task` selects the pipeline of a surface.
+    fn draw_items(&self, pass: &mut RenderPass, all: &[Drawn], task: impl Fn(Surface) -> Task) {
+        let state = |drawn: &Drawn| (task(drawn.surface), drawn.culls, drawn.texture);
+        for same in all.chunk_by(|a, b| state(a) == state(b)) {
+            let Some((task, culls, texture)) = same.first().map(state) else {
+                continue;
+            };
+            pass.set_pipeline(self.passes.pipeline(&self.gpu.device, task, culls));
+            if matches!(task, Task::Opaque(_) | Task::Transparent(_)) {
+                pass.set_bind_group(2, self.scene.textures.of(texture), &[]);
+            }
+            for drawn in same {
+                pass.draw(drawn.vertices.clone(), drawn.items.clone());
+            }
         }
+    }
+
+    /// Uploads the parameters of a dispatch, its items and its lights.
+    fn bind(&self, dispatch: &Dispatch) -> BindGroup {
+        let device = &self.gpu.device;
+        // An empty buffer cannot be bound.
+        let nothing = [0; 256];
+        let buffer = |contents: &[u8], usage| {
+            device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("scene"),
+                contents: if contents.is_empty() {
+                    &nothing
+                } else {
+                    contents
+                },
+                usage,
+            })
+        };
+        let parameters = buffer(dispatch.parameters.as_bytes(), BufferUsages::UNIFORM);
+        let items = buffer(dispatch.items.as_bytes(), BufferUsages::STORAGE);
+        let lamps = buffer(dispatch.lamps.as_bytes(), BufferUsages::STORAGE);
+        let one = BindingResource::Buffer(BufferBinding {
+            buffer: &parameters,
+            offset: 0,
+            size: BufferSize::new(size_of::<Uniforms>() as u64),
+        });
+        let resources = [one, items.as_entire_binding(), lamps.as_entire_binding()];
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| BindGroupEntry { binding, resource })
+            .collect();
+        device.create_bind_group(&BindGroupDescriptor {
+            label: Some("scene"),
+            layout: &self.passes.scene,
+            entries: &entries,
+        })
     }
 }
 
-fn depth_attachment(view: &TextureView) -> RenderPassDepthStencilAttachment<'_> {
+fn depth_attachment(view: &TextureView, store: StoreOp) -> RenderPassDepthStencilAttachment<'_> {
     RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(Operations {
             load: LoadOp::Clear(0.0),
-            store: StoreOp::Store,
+            store,
         }),
         stencil_ops: None,
     }

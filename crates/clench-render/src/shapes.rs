@@ -1,0 +1,188 @@
+//! The shapes of geoms, sites and tendons on the device, in several levels of detail.
+
+use crate::camera::Placed;
+use crate::device::Gpu;
+use crate::light::FAR;
+use crate::simplify::{bounds, closed, simplified};
+use crate::triangles::{self, Vertex};
+use clench::Model;
+use clench::collide::ShapeKind;
+use std::f32::consts::PI;
+use std::ops::Range;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{Buffer, BufferUsages};
+use zerocopy::IntoBytes;
+
+/// The number of segments of a circle at each level of detail.
+const AROUND: [usize; 8] = [8, 12, 16, 20, 28, 36, 52, 72];
+/// The number of cells of the longest side of a mesh at each level of detail but the last, which is the mesh itself.
+const CELLS: [usize; 9] = [4, 6, 8, 12, 16, 24, 32, 48, 64];
+/// The deviation of a mesh whose cells are of size 1: its surface moves by much less than a cell.
+const CELL_DEVIATION: f32 = 1.0 / 8.0;
+/// The largest deviation of colours from the exact shape, pixels.
+pub(crate) const COLOR_TOLERANCE: f32 = 1.0 / 8.0;
+/// The largest deviation of the shadow map, which is blurred, pixels.
+pub(crate) const SHADOW_TOLERANCE: f32 = 1.0 / 2.0;
+/// The largest deviation of distances and geom indices from the exact shape, pixels.
+pub(crate) const FACT_TOLERANCE: f32 = 1.0 / 32.0;
+
+/// The shapes of a model.
+pub(crate) struct Shapes {
+    pub corners: Buffer,
+    /// Those of each geom, of each site, of the ground if the model has none, and of a tendon segment.
+    all: Vec<Shape>,
+}
+
+/// A camera with what its image requires of shapes.
+pub(crate) struct Sight<'a> {
+    pub camera: &'a Placed,
+    /// The distance of the near plane, m.
+    pub near: f32,
+    /// The height of the image, pixels.
+    pub height: u32,
+    /// The largest deviation from the exact shapes, pixels.
+    pub tolerance: f32,
+}
+
+/// A shape in several levels of detail.
+struct Shape {
+    /// The vertices and the deviation from the exact shape, m; the coarsest level is the first.
+    levels: Vec<(Range<u32>, f32)>,
+    /// The radius of a sphere around the origin that contains the shape, m.
+    bound: f32,
+    /// True if the triangles enclose a volume and are wound counterclockwise as seen from outside.
+    closed: bool,
+}
+
+impl Shapes {
+    /// Uploads the shapes of a model of a size, m; with a ground if the model has none.
+    pub(crate) fn new(gpu: &Gpu, model: &Model, extent: f32, ground: bool) -> Self {
+        let far = FAR * extent;
+        let mut corners: Vec<Vertex> = Vec::new();
+        let mut all = Vec::new();
+        let params = &model.params;
+        for (g, geom) in model.geoms.iter().enumerate() {
+            let round = Round::new(geom.kind, params.geom_size[g].to_array());
+            let of = |around| triangles::of_geom(model, params, g, far, around);
+            // The mean of texture coordinates of a file can be anywhere in the texture.
+            let simple = geom.kind == ShapeKind::Mesh && !triangles::has_own_texcoords(model, g);
+            all.push(match simple {
+                true => Shape::of_mesh(&mut corners, &of(0)),
+                false => Shape::new(&mut corners, round, of),
+            });
+        }
+        for (s, site) in model.sites.iter().enumerate() {
+            let round = Round::new(site.kind, params.site_size[s].to_array());
+            let of = |around| triangles::of_site(model, params, s, around);
+            all.push(Shape::new(&mut corners, round, of));
+        }
+        if ground {
+            let plane = Round::new(ShapeKind::Plane, [0.0; 3]);
+            all.push(Shape::new(&mut corners, plane, |_| triangles::ground(far)));
+        }
+        let string = Round::new(ShapeKind::Cylinder, [1.0; 3]);
+        all.push(Shape::new(&mut corners, string, triangles::string));
+        let corners = gpu.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("corners"),
+            contents: corners.as_bytes(),
+            usage: BufferUsages::VERTEX,
+        });
+        Shapes { corners, all }
+    }
+
+    /// Returns the vertices of a shape at a place, as they are drawn for a camera. The back sides of their triangles
+    /// are hidden if the second value is true.
+    pub(crate) fn at(&self, shape: usize, place: [f32; 3], sight: &Sight) -> (Range<u32>, bool) {
+        let shape = &self.all[shape];
+        let nearest = sight.camera.distance(place) - shape.bound;
+        let pixels = sight.camera.pixels(nearest, sight.height);
+        // A camera in a shape, or cut off by the near plane, shows its inside.
+        let hidden = shape.closed && nearest > sight.near;
+        (shape.level(sight.tolerance / pixels), hidden)
+    }
+
+    /// Returns the vertices of tendon segments; their largest radius has `pixels` pixels.
+    pub(crate) fn string(&self, pixels: f32, tolerance: f32) -> Range<u32> {
+        (self.all.last()).map_or(0..0, |shape| shape.level(tolerance / pixels))
+    }
+}
+
+/// The properties of a kind of shape that decide how it is drawn.
+struct Round {
+    /// The largest radius of the circles that segments replace, m.
+    radius: f32,
+    closed: bool,
+}
+
+impl Round {
+    fn new(kind: ShapeKind, size: [f64; 3]) -> Self {
+        let (radius, closed) = match kind {
+            ShapeKind::Sphere | ShapeKind::Capsule | ShapeKind::Cylinder => (size[0], true),
+            ShapeKind::Ellipsoid => (size.into_iter().fold(0.0, f64::max), true),
+            ShapeKind::Box => (0.0, true),
+            // The triangles of mesh files may have any order.
+            ShapeKind::Plane | ShapeKind::Mesh | ShapeKind::HeightField => (0.0, false),
+        };
+        Round {
+            radius: radius as f32,
+            closed,
+        }
+    }
+}
+
+impl Shape {
+    fn empty(closed: bool) -> Self {
+        Shape {
+            levels: Vec::new(),
+            bound: 0.0,
+            closed,
+        }
+    }
+
+    /// Appends the vertices of a shape; `of` creates them for a number of segments of a circle.
+    fn new(corners: &mut Vec<Vertex>, round: Round, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
+        let mut shape = Shape::empty(round.closed);
+        let levels = match round.radius > 0.0 {
+            true => &AROUND[..],
+            false => &AROUND[..1],
+        };
+        for &around in levels {
+            let deviation = round.radius * (1.0 - (PI / around as f32).cos());
+            shape.add(corners, &of(around), deviation);
+        }
+        shape
+    }
+
+    /// Appends the vertices of a mesh.
+    fn of_mesh(corners: &mut Vec<Vertex>, mesh: &[Vertex]) -> Self {
+        let mut shape = Shape::empty(closed(mesh));
+        let (_, side) = bounds(mesh);
+        // A flat or empty mesh has no volume to divide into cells.
+        for cells in CELLS.into_iter().filter(|_| side > 0.0) {
+            let level = simplified(mesh, cells);
+            if 2 * level.len() < mesh.len() {
+                shape.add(corners, &level, CELL_DEVIATION * side / cells as f32);
+            }
+        }
+        shape.add(corners, mesh, 0.0);
+        shape
+    }
+
+    /// Appends the vertices of a level of detail.
+    fn add(&mut self, corners: &mut Vec<Vertex>, level: &[Vertex], deviation: f32) {
+        for vertex in level {
+            let square: f32 = vertex.place.iter().map(|x| x * x).sum();
+            self.bound = self.bound.max(square.sqrt());
+        }
+        let start = corners.len() as u32;
+        corners.extend(level);
+        self.levels.push((start..corners.len() as u32, deviation));
+    }
+
+    /// Returns the coarsest level that deviates by at most `tolerance`, m, or else the finest.
+    fn level(&self, tolerance: f32) -> Range<u32> {
+        let fine = |(_, deviation): &&(Range<u32>, f32)| *deviation <= tolerance;
+        let found = self.levels.iter().find(fine).or(self.levels.last());
+        found.map_or(0..0, |(vertices, _)| vertices.clone())
+    }
+}
