@@ -260,8 +260,9 @@ impl Batch {
     }
 
     /// Model : The model, without the parameters that are set per environment. Of several models it is the common
-    /// layout: on each body, in order, the geoms that any model needs there, with the numbers of the first model. Arrays
-    /// over geoms, such as outputs and parameters, are in this layout; `geoms_of` returns the geoms of one model.
+    /// layout: on each body, in order, the geoms that any model needs there, with the numbers of the first model.
+    /// Arrays over geoms, such as outputs and parameters, are in this layout; `geoms_of` returns the geoms of one
+    /// model.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<Model> {
         self.model.clone_ref(py)

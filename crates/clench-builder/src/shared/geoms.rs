@@ -6,7 +6,7 @@
 //! by model, the longest common subsequence with the layout so far is shared, where geoms of equal names count more,
 //! and the rest is inserted.
 
-use super::differ;
+use super::difference::differ;
 use clench_collide::ShapeKind;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{

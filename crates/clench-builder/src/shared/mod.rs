@@ -1,19 +1,21 @@
 //! Models with the same joints, actuators and sensors in one layout, so that environments of all share lanes.
 //!
 //! A step branches by structure, which lanes have in common, and computes with parameters, of which each lane has its
-//! own. A shared layout has the structure of all models: each body carries as many geoms of each class as the model with
-//! the most of them ([`geoms`]). A model without one of these geoms gives it an infinitely negative bounding radius, so
-//! that nothing finds it near. The mesh or height field of a geom may differ between models: see
+//! own. A shared layout has the structure of all models: each body carries as many geoms of each class as the model
+//! with the most of them ([`geoms`]). A model without one of these geoms gives it an infinitely negative bounding
+//! radius, so that nothing finds it near. The mesh or height field of a geom may differ between models: see
 //! [`Model::geom_assets`].
 
 mod assets;
 mod compare;
+mod difference;
 mod geoms;
 
 use assets::Assets;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField, Params};
 use clench_math::Scalar;
+use difference::differ;
 use geoms::{Alignment, check_measured, rename_geoms};
 use std::ops::Range;
 use std::sync::Arc;
@@ -25,16 +27,6 @@ pub struct SharedLayout {
     models: Vec<Arc<Model>>,
     /// For each model, the index in the layout of each of its geoms.
     geoms: Vec<Vec<usize>>,
-}
-
-/// Returns the error for models of which one differs from the first.
-fn differ(models: &[Arc<Model>], other: usize, difference: String) -> SimError {
-    SimError::ModelsDiffer {
-        first: models[0].name.clone(),
-        number: other,
-        other: models[other].name.clone(),
-        difference,
-    }
 }
 
 /// Consecutive numbers of a parameter field.

@@ -102,8 +102,8 @@ pub(crate) struct BatchArguments {
     /// Step N environments as a batch
     #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
     pub envs: Option<u32>,
-    /// Another model for some environments: with the same bodies, joints, actuators and sensors, and geoms and numbers of
-    /// its own. Environment i has the i-th of all models, in turn; repeat the flag for more
+    /// Another model for some environments: with the same bodies, joints, actuators and sensors, and geoms and numbers
+    /// of its own. Environment i has the i-th of all models, in turn; repeat the flag for more
     #[arg(long, value_name = "FILE", requires = "envs")]
     pub(super) other_model: Vec<PathBuf>,
     /// Threads of a batch [default: the number of processors], or of each step of a single environment [default: 1]
