@@ -25,6 +25,7 @@ mod error;
 mod field;
 mod fields;
 mod free_camera;
+mod given_models;
 mod ik;
 mod ik_targets;
 mod inertia_queries;

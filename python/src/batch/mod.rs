@@ -5,6 +5,7 @@ use crate::busy::lock;
 use crate::count::Count;
 use crate::device::Device;
 use crate::error::sim_error;
+use crate::given_models::Models;
 use crate::model::Model;
 use crate::names::{Names, no_attribute};
 use crate::options::RigidOptions;
@@ -46,8 +47,6 @@ mod parameters;
 mod queries;
 mod run;
 mod status;
-
-use models::Models;
 
 /// Many environments of one model or of several, stepped in parallel on all CPU cores.
 ///

@@ -1,103 +1,12 @@
 //! The models of a batch.
 
 use super::{AnyBatch, Batch};
-use crate::arrays::indices;
 use crate::busy::lock;
-use crate::device::{self, Device, DeviceReal};
 use crate::error::sim_error;
 use crate::model::Model;
-use clench::{BatchOptions, SimError};
 use numpy::PyArray1;
-use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::sync::Arc;
-
-/// The models that a user gave, and the model of each environment.
-pub(super) struct Models {
-    pub(super) objects: Vec<Py<Model>>,
-    models: Vec<Arc<clench::Model>>,
-    n_envs: usize,
-    /// None if environment i has the i-th model, in turn.
-    of_env: Option<Vec<usize>>,
-}
-
-impl Models {
-    pub(super) fn of(
-        model: &Bound<'_, PyAny>,
-        n_envs: usize,
-        env_model: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let objects = match model.cast::<Model>() {
-            Ok(one) => vec![one.clone().unbind()],
-            Err(_) => model.extract::<Vec<Py<Model>>>().map_err(|_| {
-                let found = model.get_type();
-                PyTypeError::new_err(format!(
-                    "model must be a Model or a sequence of Model, not {found}"
-                ))
-            })?,
-        };
-        if objects.is_empty() {
-            return Err(sim_error(SimError::NoModel));
-        }
-        let of_env = env_model.map(|given| indices("env_model", given, objects.len()));
-        let of_env = of_env.transpose()?;
-        if let Some(found) = of_env.as_ref().map(Vec::len).filter(|&len| len != n_envs) {
-            let text =
-                format!("env_model has {found} numbers, but there are {n_envs} environments");
-            return Err(PyValueError::new_err(text));
-        }
-        let models = objects.iter().map(|model| Arc::clone(model.get().inner()));
-        Ok(Models {
-            models: models.collect(),
-            objects,
-            n_envs,
-            of_env,
-        })
-    }
-
-    /// Creates the batch.
-    pub(super) fn batch<S: DeviceReal>(
-        &self,
-        device: Device,
-        options: BatchOptions,
-    ) -> PyResult<clench::Batch<S>> {
-        match (device, &self.models[..]) {
-            (Device::Graphics { name }, [model]) => {
-                device::batch(Arc::clone(model), self.n_envs, options, name)
-            }
-            (Device::Graphics { .. }, _) => Err(sim_error(SimError::OneModel("a GPU"))),
-            (Device::Processor, [model]) => {
-                clench::Batch::with_options(Arc::clone(model), self.n_envs, options)
-                    .map_err(sim_error)
-            }
-            (Device::Processor, models) => {
-                let mut of_env = Vec::new();
-                let (count, bytes) = (self.n_envs, size_of::<usize>());
-                if of_env.try_reserve_exact(count).is_err() {
-                    return Err(sim_error(SimError::OutOfMemory { count, bytes }));
-                }
-                match &self.of_env {
-                    Some(given) => of_env.extend_from_slice(given),
-                    None => of_env.extend((0..count).map(|env| env % models.len())),
-                }
-                clench::Batch::of_models(models, &of_env, options).map_err(sim_error)
-            }
-        }
-    }
-
-    /// Returns the object of the batch's model: the only one, or that of the common layout.
-    pub(super) fn layout(
-        &self,
-        py: Python<'_>,
-        layout: &Arc<clench::Model>,
-    ) -> PyResult<Py<Model>> {
-        match &self.objects[..] {
-            [model] => Ok(model.clone_ref(py)),
-            _ => Py::new(py, Model::layout(layout)),
-        }
-    }
-}
 
 impl Batch {
     /// Returns the objects of the models.

@@ -28,6 +28,7 @@ mod recorded_states;
 mod reset;
 mod rows;
 mod run;
+mod several_models;
 mod shared;
 mod snapshot;
 mod state_rows;

@@ -1,14 +1,9 @@
 //! The models of a batch, and the model of each environment.
 
-use super::{Batch, BatchOptions, Precision};
-use crate::sim::Sim;
 use clench_builder::{ParamRange, SharedLayout};
-use clench_dynamics::check::check_length;
-use clench_dynamics::error::{SimError, no_such};
 use clench_dynamics::model::{Model, ParamField, Params};
 use clench_dynamics::state::State;
 use clench_math::{Real, Scalar};
-use std::slice::from_ref;
 use std::sync::Arc;
 
 /// The models of a batch.
@@ -41,7 +36,7 @@ impl<S: Scalar> Models<S> {
     }
 
     /// Creates the table of several models.
-    fn several(shared: SharedLayout, of_env: Vec<u32>) -> Self {
+    pub(super) fn several(shared: SharedLayout, of_env: Vec<u32>) -> Self {
         let (ranges, rows) = shared.differences();
         let rows = rows.into_iter();
         let models = shared.models().iter();
@@ -66,6 +61,16 @@ impl<S: Scalar> Models<S> {
     /// Returns the numbers by which environments are grouped before their contacts.
     pub(super) fn groups(&self) -> Option<&[u32]> {
         self.differ_in_meshes.then_some(&self.of_env)
+    }
+
+    /// Returns the common layout of several models.
+    pub(super) fn shared(&self) -> Option<&SharedLayout> {
+        self.shared.as_ref()
+    }
+
+    /// Gives an environment one of several models.
+    pub(super) fn set(&mut self, env: usize, model: usize) {
+        self.of_env[env] = model as u32;
     }
 
     /// Returns true if environments have different models.
@@ -121,111 +126,5 @@ impl<S: Scalar> Models<S> {
             Some(shared) => shared.write_own_row(self.of(env), field, own, row),
             None => row.copy_from_slice(own),
         }
-    }
-}
-
-impl<S: Precision> Batch<S> {
-    /// Creates environments of several models; environment i has model `env_model[i]`.
-    ///
-    /// The models have the same bodies, joints, sites, cameras, tendons, actuators, sensors and constraints, with the
-    /// same names of joints, actuators and sensors. Their geoms, meshes and height fields differ as they like, and so
-    /// do all numbers. Environments of all models share lanes. Each moves exactly as a [`Sim`] of its own model.
-    ///
-    /// [`model`](Self::model) is the common layout: each body has the geoms that any model needs there, and
-    /// [`geoms_of`](Self::geoms_of) returns those of one model. Parameters and outputs of geoms are in this layout;
-    /// [`sim`](Self::sim) returns a simulation of the environment's own model.
-    ///
-    /// # Errors
-    /// Returns an error as [`with_options`](Self::with_options) does, or if an environment has no model, or if models
-    /// differ in anything else; it names both models and the element. The option `stiction` needs a single model.
-    pub fn of_models(
-        models: &[Arc<Model>],
-        env_model: &[usize],
-        options: BatchOptions,
-    ) -> Result<Self, SimError> {
-        check_models(env_model, models.len())?;
-        if let [model] = models {
-            return Batch::with_options(Arc::clone(model), env_model.len(), options);
-        }
-        let shared = SharedLayout::new(models)?;
-        let layout = Arc::clone(shared.layout());
-        let mut batch = Batch::with_options(layout, env_model.len(), options)?;
-        if batch.settings.stiction {
-            return Err(SimError::OneModel("the option stiction"));
-        }
-        let of_env = env_model.iter().map(|&model| model as u32);
-        batch.models = Models::several(shared, of_env.collect());
-        (0..batch.count()).try_for_each(|env| batch.reset(env))?;
-        Ok(batch)
-    }
-
-    /// Returns the models of the environments.
-    pub fn models(&self) -> &[Arc<Model>] {
-        match &self.models.shared {
-            Some(shared) => shared.models(),
-            None => from_ref(&self.model),
-        }
-    }
-
-    /// Returns the number of the model of environment `env`, an index in [`models`](Self::models).
-    pub fn env_model(&self, env: usize) -> usize {
-        self.models.of(env)
-    }
-
-    /// Returns the index in [`model`](Self::model) of each geom of model `model`.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such model.
-    pub fn geoms_of(&self, model: usize) -> Result<Vec<usize>, SimError> {
-        check_models(&[model], self.models().len())?;
-        Ok(match &self.models.shared {
-            Some(shared) => shared.geoms(model).to_vec(),
-            None => (0..self.model.geoms.len()).collect(),
-        })
-    }
-
-    /// Gives environments other models, and resets them: `models[k]` to environment `envs[k]`. Parameters of their own
-    /// become those of the models.
-    ///
-    /// # Errors
-    /// Returns an error if the lengths differ, or if there is no such environment or model. Nothing changes then.
-    pub fn reset_to_models(&mut self, envs: &[usize], models: &[usize]) -> Result<(), SimError> {
-        check_length("models", models.len(), envs.len())?;
-        check_models(models, self.models().len())?;
-        self.check_envs(envs)?;
-        self.check_state()?;
-        for (&env, &model) in envs.iter().zip(models) {
-            let changes = self.models.of(env) != model;
-            if changes {
-                self.models.of_env[env] = model as u32;
-                let (shared, rows) = (&self.models, &mut self.params);
-                for own in rows {
-                    let params = shared.params(&self.model, env);
-                    own.set(env, &params);
-                }
-                if let Some(recorded) = &mut self.recorded {
-                    recorded.invalidate(env);
-                }
-            }
-            self.reset(env)?;
-        }
-        Ok(())
-    }
-
-    /// Returns a simulation of the model of environment `env`, if `sim` has another one.
-    pub(super) fn other_sim(&self, env: usize, sim: &Sim<S>) -> Result<Option<Sim<S>>, SimError> {
-        let own = self.models.own(&self.model, env);
-        if !self.models.are_several() || Arc::ptr_eq(own, sim.model()) {
-            return Ok(None);
-        }
-        Sim::with_options(Arc::clone(own), self.options.options).map(Some)
-    }
-}
-
-/// Checks numbers of models.
-fn check_models(numbers: &[usize], count: usize) -> Result<(), SimError> {
-    match numbers.iter().find(|&&number| number >= count) {
-        Some(&number) => Err(no_such("model", number, count)),
-        None => Ok(()),
     }
 }
