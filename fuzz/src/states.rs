@@ -1,7 +1,8 @@
 //! JSON states, as `clench forward` reads them.
 
 use crate::trial::{check_result, machine};
-use clench_cli::protocol::{StateLine, forward};
+use clench_cli::protocol::forward;
+use clench_cli::state_line;
 use std::sync::LazyLock;
 
 /// Reads a state and computes with it.
@@ -9,13 +10,9 @@ pub fn states(data: &[u8]) -> bool {
     let Ok(line) = std::str::from_utf8(data) else {
         return false;
     };
-    let Ok(state) = StateLine::parse(line) else {
-        return false;
-    };
     static MACHINE: LazyLock<std::sync::Arc<clench::Model>> = LazyLock::new(machine);
     let mut sim = clench::Sim::<f64>::new(MACHINE.clone()).expect("our own model");
-    let done = state
-        .apply(&mut sim)
+    let done = state_line::apply(line, &mut sim)
         .and_then(|contacts| forward(&mut sim, contacts.as_deref()));
     let accepted = done.is_ok();
     if accepted {

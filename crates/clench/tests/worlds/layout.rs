@@ -11,7 +11,7 @@ fn load(text: &str) -> Arc<Model> {
 fn error(first: &str, second: &str) -> String {
     let models = [load(first), load(second)];
     let batch = Batch::<f64>::of_models(&models, &[0, 1], BatchOptions::default());
-    batch.err().expect("models that differ").to_string()
+    batch.expect_err("models that differ").to_string()
 }
 
 #[test]

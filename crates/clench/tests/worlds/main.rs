@@ -168,10 +168,10 @@ fn rays_and_heights_are_those_of_the_own_model() {
     let filter = clench::RayFilter::default();
     let found = batch.rays(clench::rigid::batch::Given::Shared(&rays), None, &filter);
     let found = found.expect("finite");
-    for env in 0..batch.count() {
+    for (env, &model) in of_env.iter().enumerate() {
         let mut sim = batch.sim(env).expect("exists");
         let expected = sim.rays(&rays, None, &filter).expect("finite");
-        let geoms = batch.geoms_of(of_env[env]).expect("a model");
+        let geoms = batch.geoms_of(model).expect("a model");
         for (k, expected) in expected.iter().enumerate() {
             let hit = &found.row(env)[5 * k..][..5];
             match expected {
