@@ -113,8 +113,8 @@
 //!
 //! A [`Batch`] steps many environments of one model in parallel, on all processors. States and outputs are plain rows,
 //! one per environment. Each environment moves exactly as in a single `Sim`, to the bit, and can have its own
-//! parameters. An environment that fails keeps its last good state and reports the reason until it is reset; the others
-//! are not affected.
+//! parameters, or a model with other geoms ([`Batch::of_models`]). An environment that fails keeps its last good state
+//! and reports the reason until it is reset; the others are not affected.
 //!
 //! ```
 //! # use clench::prelude::*;
