@@ -106,7 +106,7 @@ impl Chosen {
         batch: &mut clench::Batch<f64>,
     ) -> PyResult<Linearization> {
         let count = batch.count();
-        let mut linearizer = BatchLinearizer::new(batch).map_err(sim_error)?;
+        let mut linearizer = BatchLinearizer::new(batch);
         let results = py.detach(|| linearizer.linearize(batch, &self.request));
         let results = results.map_err(|(env, error)| {
             let error = sim_error(error);

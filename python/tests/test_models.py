@@ -133,6 +133,43 @@ def test_a_pickle_keeps_the_models(models):
     np.testing.assert_array_equal(copy.qpos, batch.qpos)
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_queries_are_those_of_the_own_model(models, threads):
+    batch = clench.Batch(models, 7, threads=threads)
+    batch.step(150)
+    masses = batch.mass_matrix()
+    distances, geoms = batch.ray([0, 0, 3], [0, 0, -1])
+    batch.record("energy")
+    gaps = batch.distance("tool", "ball")
+    assert (gaps == [batch.sim(e).distance("tool", "ball").distance if e % 4 == 0 else np.inf for e in range(7)]).all()
+    for env in range(7):
+        sim = batch.sim(env)
+        np.testing.assert_array_equal(masses[env], sim.mass_matrix())
+        np.testing.assert_array_equal(batch.output("energy")[env], sim.energy)
+        hit = sim.ray([0, 0, 3], [0, 0, -1])
+        assert geoms[env] == batch.geoms_of(batch.env_model[env])[hit.geom]
+        assert distances[env] == hit.distance
+        assert len(batch.constraints(env).force) == len(sim.constraints.force)
+
+
+def test_derivatives_are_those_of_the_own_model(models):
+    batch = clench.Batch(models, 6, threads=2)
+    batch.step(150)
+    try:
+        found = batch.linearize(outputs=["xpos"], parameters=["body_mass"])
+    except clench.ClenchError as error:
+        pytest.skip(str(error))
+    for env in range(6):
+        own = batch.sim(env).linearize(outputs=["xpos"], parameters=["body_mass"])
+        for name in ("A", "B", "C", "D"):
+            np.testing.assert_array_equal(getattr(found, name)[env], getattr(own, name))
+        np.testing.assert_array_equal(found.parameters["body_mass"][env], own.parameters["body_mass"])
+    with pytest.raises(ValueError, match="a parameter of geoms needs a batch of one model"):
+        batch.linearize(parameters=["geom_friction"])
+    with pytest.raises(ValueError, match="an output of geoms needs a batch of one model"):
+        batch.linearize(outputs=["geom_xpos"])
+
+
 def test_pictures_show_the_own_model(models):
     batch = clench.Batch(models, 4)
     for env, model in enumerate(models):

@@ -1,7 +1,7 @@
 //! The derivatives of every environment of a batch.
 
 use crate::{Linearization, Linearizer, Request};
-use clench_rigid::{Batch, Sim, SimError};
+use clench_rigid::{Batch, Model, Output, Sim, SimError};
 use std::fmt;
 use std::sync::Mutex;
 
@@ -11,10 +11,9 @@ pub struct BatchLinearizer {
     results: Vec<Linearization>,
 }
 
-/// The memory of a thread, which serves its environments in turn.
+/// The memory of a thread, which serves its environments in turn: for each model of the batch, once it is needed.
 struct Worker {
-    sim: Sim<f64>,
-    linearizer: Linearizer,
+    own: Vec<Option<(Sim<f64>, Linearizer)>>,
 }
 
 impl fmt::Debug for BatchLinearizer {
@@ -25,31 +24,29 @@ impl fmt::Debug for BatchLinearizer {
 
 impl BatchLinearizer {
     /// Creates memory for a batch.
-    ///
-    /// # Errors
-    /// Returns an error if the processor lacks the compiled instructions.
-    pub fn new(batch: &Batch<f64>) -> Result<Self, SimError> {
+    pub fn new(batch: &Batch<f64>) -> Self {
         let threads = batch.threads().clamp(1, batch.count().max(1));
-        let workers = (0..threads).map(|_| {
-            let sim = Sim::with_options(batch.model().clone(), batch.options().options)?;
-            let linearizer = Linearizer::new(sim.model())?;
-            Ok(Worker { sim, linearizer })
+        let workers = (0..threads).map(|_| Worker {
+            own: batch.models().iter().map(|_| None).collect(),
         });
-        Ok(BatchLinearizer {
-            workers: workers.collect::<Result<_, SimError>>()?,
+        BatchLinearizer {
+            workers: workers.collect(),
             results: vec![Linearization::default(); batch.count()],
-        })
+        }
     }
 
     /// Linearizes the next step of every environment of the batch, whose state does not change.
     ///
     /// # Errors
-    /// Returns the error of the first environment that has one, with its index.
+    /// Returns the error of the first environment that has one, with its index. A batch of several models has no
+    /// derivatives by parameters of geoms, and none of outputs whose number differs between models; nor are there any
+    /// if the processor lacks the compiled instructions.
     pub fn linearize(
         &mut self,
         batch: &mut Batch<f64>,
         request: &Request,
     ) -> Result<&[Linearization], (usize, SimError)> {
+        check_alike(batch, request).map_err(|error| (0, error))?;
         let batch = &Mutex::new(batch);
         let share = self.results.len().div_ceil(self.workers.len()).max(1);
         let parts = self.workers.iter_mut().zip(self.results.chunks_mut(share));
@@ -83,13 +80,54 @@ impl Worker {
     ) -> Result<(), (usize, SimError)> {
         for (env, result) in (first..).zip(results) {
             let copied = match batch.lock() {
-                Ok(batch) => batch.copy_to_sim(env, &mut self.sim),
+                Ok(batch) => self.copy(&batch, env),
                 // Another thread panicked, which ends the call.
                 Err(_) => return Ok(()),
             };
-            let linearized = copied.and_then(|()| self.linearizer.linearize(&self.sim, request));
+            let linearized =
+                copied.and_then(|(sim, linearizer)| linearizer.linearize(sim, request));
             result.clone_from(linearized.map_err(|error| (env, error))?);
         }
         Ok(())
+    }
+
+    /// Copies an environment. Returns its simulation and the memory for its derivatives.
+    fn copy(
+        &mut self,
+        batch: &Batch<f64>,
+        env: usize,
+    ) -> Result<(&Sim<f64>, &mut Linearizer), SimError> {
+        let own = &mut self.own[batch.env_model(env)];
+        let (sim, linearizer) = match own {
+            Some(own) => own,
+            None => {
+                let sim = batch.sim(env)?;
+                let linearizer = Linearizer::new(sim.model())?;
+                own.insert((sim, linearizer))
+            }
+        };
+        batch.copy_to_sim(env, sim)?;
+        Ok((sim, linearizer))
+    }
+}
+
+/// Checks that the derivatives of environments of different models are matrices of one shape.
+fn check_alike(batch: &Batch<f64>, request: &Request) -> Result<(), SimError> {
+    let [first, others @ ..] = batch.models() else {
+        return Ok(());
+    };
+    if others.is_empty() {
+        return Ok(());
+    }
+    if (request.parameters.iter()).any(|(field, _)| field.is_of_geoms()) {
+        return Err(SimError::OneModel("a derivative by a parameter of geoms"));
+    }
+    let differs = |output: &Output| {
+        let width = |model: &Model| output.width(model);
+        others.iter().any(|other| width(other) != width(first))
+    };
+    match request.outputs.iter().any(differs) {
+        true => Err(SimError::OneModel("a derivative of an output of geoms")),
+        false => Ok(()),
     }
 }

@@ -57,6 +57,7 @@ impl Batch {
     /// Returns
     /// -------
     /// Contacts
+    ///     With the geoms of the environment's own model.
     ///
     /// Raises
     /// ------
@@ -165,11 +166,16 @@ impl Batch {
         let mut guard = lock(&self.inner, "batch")?;
         let any = &mut *guard;
         let hits = py.detach(|| {
-            each!(any, batch => query_all(batch, |env, sim| {
+            each!(any, batch => {
+                let geoms = (0..batch.models().len()).map(|model| batch.geoms_of(model));
+                let geoms = geoms.collect::<Result<Vec<_>, _>>()?;
+                query_all(batch, |env, sim| {
                 let (origin, direction) = (Vec3::from_f64(origins[env]), Vec3::from_f64(directions[env]));
                 let hit = sim.ray(origin, direction, &filter)?;
-                Ok(hit.map(|hit| (hit.distance.to_f64(), hit.geom as i64)))
-            }))
+                let geom = |own: usize| geoms[batch.env_model(env)][own] as i64;
+                Ok(hit.map(|hit| (hit.distance.to_f64(), geom(hit.geom))))
+                })
+            })
         });
         let hits = hits.map_err(sim_error)?;
         let hits = || hits.iter().map(|hit| hit.unwrap_or((f64::INFINITY, -1)));
@@ -192,8 +198,8 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Signed distances (n), m, float64; infinite beyond the limit and if the distance is not defined, as for two
-    ///     planes.
+    ///     Signed distances (n), m, float64; infinite beyond the limit, if the distance is not defined, as for two
+    ///     planes, and in environments whose model has not both geoms.
     #[pyo3(signature = (geom1, geom2, limit = None))]
     fn distance<'py>(
         &self,
@@ -212,7 +218,11 @@ impl Batch {
         let mut guard = lock(&self.inner, "batch")?;
         let any = &mut *guard;
         let found = py.detach(|| {
-            each!(any, batch => query_all(batch, |_, sim| {
+            each!(any, batch => query_all(batch, |env, sim| {
+                let own = |geom| batch.own_geom(env, geom);
+                let Some((geom1, geom2)) = own(geom1).zip(own(geom2)) else {
+                    return Ok(f64::INFINITY);
+                };
                 let found = sim.distance(geom1, geom2, Real::new(limit))?;
                 Ok(found.map_or(f64::INFINITY, |found| found.distance.to_f64()))
             }))

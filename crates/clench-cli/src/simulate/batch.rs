@@ -87,7 +87,7 @@ pub(crate) fn run<S: Precision>(
         }
         Ok(recording.summary.running)
     })?;
-    let verdict = verdict(&run.model, &batch.quality(), account.as_ref());
+    let verdict = verdict(batch.model(), &batch.quality(), account.as_ref());
     let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
     let whole = report.failure.is_none() && report.resets == 0;
     report.take_record(recorded_rows);

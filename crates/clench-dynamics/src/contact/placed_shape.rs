@@ -6,7 +6,7 @@ use clench_collide::{HeightField, Mesh, Pose, Shape, ShapeKind, Terrain};
 use clench_math::{Mask, Real};
 
 /// Returns the shape of a geom. In a shared layout its mesh or height field is that of the first lane; see
-/// [`AssetLanes`].
+/// `AssetLanes`.
 #[inline(always)]
 pub fn shape<'a, T: Real>(model: &'a Model, params: &Params<T>, geom: usize) -> Shape<'a, T> {
     shape_in(model, params, geom, 0)

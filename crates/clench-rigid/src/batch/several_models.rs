@@ -70,6 +70,18 @@ impl<S: Precision> Batch<S> {
         })
     }
 
+    /// Returns the index in the model of environment `env` of a geom of [`model`](Self::model); `None` if the
+    /// environment does not have it.
+    pub fn own_geom(&self, env: usize, geom: usize) -> Option<usize> {
+        match self.models.shared() {
+            Some(shared) => {
+                let mut own = shared.geoms(self.env_model(env)).iter();
+                own.position(|&place| place == geom)
+            }
+            None => (geom < self.model.geoms.len()).then_some(geom),
+        }
+    }
+
     /// Gives environments other models, and resets them: `models[k]` to environment `envs[k]`. Parameters of their own
     /// become those of the models.
     ///
