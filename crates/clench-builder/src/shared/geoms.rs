@@ -3,7 +3,7 @@
 //! A geom of the layout stands for at most one geom of each model, of the same class: what a step reads of a geom's
 //! structure. The geoms of a body keep their order in every model, so that the contacts of an environment have the same
 //! order as in its own model. The geoms of each body are therefore a common supersequence of those of all models: model
-//! by model, the longest common subsequence with the layout so far is shared, where geoms of equal names count more,
+//! by model, the longest common subsequence with the layout so far is shared, where geoms of equal names count more
 //! and the rest is inserted.
 
 use super::difference::differ;
@@ -16,8 +16,10 @@ use std::sync::Arc;
 
 /// The value of two geoms of one class that share a place.
 const MATCH: u32 = 2;
-/// The additional value if they have the same name.
+/// The additional value if they have the same name, or none.
 const SAME_NAME: u32 = 3;
+/// The maximum size of the table of values of a body's geoms; longer lists share the first places.
+const MAX_TABLE: usize = 1 << 20;
 
 /// The structure of a geom that lanes must have in common.
 #[derive(Clone, Copy, PartialEq)]
@@ -130,11 +132,57 @@ impl Alignment {
 
 /// Merges the geoms of a body of a further model into those of the layout. Returns the number of the slot of each.
 fn merge(merged: &mut Vec<Slot>, own: Vec<Slot>, count: &mut usize) -> Vec<usize> {
-    let value = |a: &Slot, b: &Slot| {
-        let named = !a.geom.name.is_empty() && a.geom.name == b.geom.name;
-        let matches = Class::of(&a.geom) == Class::of(&b.geom);
-        matches.then_some(MATCH + if named { SAME_NAME } else { 0 })
+    let (mut all, mut numbers) = (Vec::new(), Vec::new());
+    let mut next = 0;
+    for (slot, place) in own.iter().zip(places(merged, &own)) {
+        let end = place.unwrap_or(next);
+        all.extend_from_slice(&merged[next..end]);
+        next = end;
+        match place {
+            Some(place) => {
+                all.push(merged[place].clone());
+                next += 1;
+            }
+            None => {
+                all.push(Slot {
+                    number: *count,
+                    ..slot.clone()
+                });
+                *count += 1;
+            }
+        }
+        numbers.extend(all.last().map(|slot| slot.number));
+    }
+    all.extend_from_slice(&merged[next..]);
+    *merged = all;
+    numbers
+}
+
+/// Returns the place in `merged` that each geom of a further model shares, in ascending order; `None` for a new geom.
+fn places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
+    // Most models agree in most geoms.
+    let alike = |(a, b): &(&Slot, &Slot)| value(a, b) == Some(MATCH + SAME_NAME);
+    let start = merged.iter().zip(own).take_while(alike).count();
+    let (merged_rest, own_rest) = (&merged[start..], &own[start..]);
+    let rest = match merged_rest.len().saturating_mul(own_rest.len()) {
+        0..=MAX_TABLE => best_places(merged_rest, own_rest),
+        _ => first_places(merged_rest, own_rest),
     };
+    let rest = rest
+        .into_iter()
+        .map(|place| place.map(|place| start + place));
+    (0..start).map(Some).chain(rest).collect()
+}
+
+/// Returns the value of two geoms that share a place, if they can.
+fn value(a: &Slot, b: &Slot) -> Option<u32> {
+    let matches = Class::of(&a.geom) == Class::of(&b.geom);
+    let named = a.geom.name == b.geom.name;
+    matches.then_some(MATCH + if named { SAME_NAME } else { 0 })
+}
+
+/// Returns the places of greatest total value, by dynamic programming.
+fn best_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     // The greatest value of the geoms from i and j on.
     let mut best = vec![vec![0; own.len() + 1]; merged.len() + 1];
     for i in (0..merged.len()).rev() {
@@ -143,33 +191,30 @@ fn merge(merged: &mut Vec<Slot>, own: Vec<Slot>, count: &mut usize) -> Vec<usize
             best[i][j] = shared.max(best[i + 1][j]).max(best[i][j + 1]);
         }
     }
-    let (mut i, mut j, mut numbers) = (0, 0, Vec::new());
-    let mut all = Vec::new();
-    while i < merged.len() || j < own.len() {
-        let both = i < merged.len() && j < own.len();
-        let shared = both && {
-            let value = value(&merged[i], &own[j]);
-            value.is_some_and(|value| value + best[i + 1][j + 1] == best[i][j])
-        };
-        if shared {
-            numbers.push(merged[i].number);
-            all.push(merged[i].clone());
-            (i, j) = (i + 1, j + 1);
-        } else if j == own.len() || (both && best[i + 1][j] == best[i][j]) {
-            all.push(merged[i].clone());
+    let mut i = 0;
+    let place = |j: usize| {
+        while i < merged.len() && best[i][j] > best[i][j + 1] {
             i += 1;
-        } else {
-            numbers.push(*count);
-            all.push(Slot {
-                number: *count,
-                ..own[j].clone()
-            });
-            *count += 1;
-            j += 1;
+            let shared = value(&merged[i - 1], &own[j]).map(|value| value + best[i][j + 1]);
+            if shared == Some(best[i - 1][j]) {
+                return Some(i - 1);
+            }
         }
-    }
-    *merged = all;
-    numbers
+        None
+    };
+    (0..own.len()).map(place).collect()
+}
+
+/// Returns for each geom the first place of its class after the place of the geom before it.
+fn first_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
+    let mut next = 0;
+    let place = |slot: &Slot| {
+        let mut rest = merged[next..].iter();
+        let found = rest.position(|other| value(other, slot).is_some())?;
+        next += found + 1;
+        Some(next - 1)
+    };
+    own.iter().map(place).collect()
 }
 
 /// Replaces the indices of geoms in a model's references by those in the layout.

@@ -133,7 +133,9 @@ impl SharedLayout {
     pub fn params(&self, model: usize) -> Params<f64> {
         let (own, geoms) = (&self.models[model], &self.geoms[model]);
         let mut params = self.layout.params.clone();
-        for absent in (0..self.layout.geoms.len()).filter(|slot| !geoms.contains(slot)) {
+        let mut present = vec![false; self.layout.geoms.len()];
+        geoms.iter().for_each(|&slot| present[slot] = true);
+        for absent in (0..present.len()).filter(|&slot| !present[slot]) {
             params.geom_rbound[absent] = f64::NEG_INFINITY;
             params.geom_fluidcoef[absent] = [0.0; 5];
             params.geom_virtualmass[absent] = [0.0; 3];
@@ -185,39 +187,47 @@ impl SharedLayout {
 
     /// Returns the numbers in which some models differ, and these numbers of each model.
     pub fn differences(&self) -> (Vec<ParamRange>, Vec<Vec<f64>>) {
-        let mut rows = vec![Vec::new(); self.models.len()];
-        let all = Vec::from_iter((0..self.models.len()).map(|model| self.params(model)));
-        let mut ranges = Vec::new();
-        for &field in ParamField::ALL {
-            let fields = Vec::from_iter(all.iter().map(|params| params.read_lane(field, 0)));
+        let first = self.params(0);
+        let first = Vec::from_iter(
+            ParamField::ALL
+                .iter()
+                .map(|&field| first.read_lane(field, 0)),
+        );
+        let mut differ = Vec::from_iter(first.iter().map(|row| vec![false; row.len()]));
+        for model in 1..self.models.len() {
+            let params = self.params(model);
+            for ((&field, first), differ) in ParamField::ALL.iter().zip(&first).zip(&mut differ) {
+                let row = params.read_lane(field, 0);
+                for ((differ, a), b) in differ.iter_mut().zip(first).zip(&row) {
+                    *differ |= a.to_bits() != b.to_bits();
+                }
+            }
+        }
+        let mut ranges: Vec<ParamRange> = Vec::new();
+        for (&field, differ) in ParamField::ALL.iter().zip(&differ) {
             let width = field.element_width(&self.layout);
-            let same = |element: &Range<usize>| {
-                let bits = |row: &Vec<f64>| element.clone().map(|i| row[i].to_bits()).collect();
-                let first: Vec<u64> = bits(&fields[0]);
-                fields.iter().all(|row| bits(row) == first)
-            };
-            let elements = (0..fields[0].len()).step_by(width);
-            for element in elements.map(|start| start..start + width) {
-                if same(&element) {
-                    continue;
-                }
-                for (row, field) in rows.iter_mut().zip(&fields) {
-                    row.extend_from_slice(&field[element.clone()]);
-                }
+            let elements = differ.chunks(width).enumerate();
+            for (element, _) in elements.filter(|(_, differ)| differ.contains(&true)) {
+                let (start, end) = (width * element, width * (element + 1));
                 match ranges.last_mut() {
-                    Some(ParamRange {
-                        field: last,
-                        numbers,
-                    }) if *last == field && numbers.end == element.start => {
-                        numbers.end = element.end;
+                    Some(last) if last.field == field && last.numbers.end == start => {
+                        last.numbers.end = end;
                     }
                     _ => ranges.push(ParamRange {
                         field,
-                        numbers: element,
+                        numbers: start..end,
                     }),
                 }
             }
         }
+        let row = |model: usize| {
+            let params = self.params(model);
+            let part = |range: &ParamRange| {
+                params.read_lane(range.field, 0)[range.numbers.clone()].to_vec()
+            };
+            ranges.iter().flat_map(part).collect()
+        };
+        let rows = (0..self.models.len()).map(row).collect();
         (ranges, rows)
     }
 }
