@@ -29,6 +29,10 @@ pub struct SharedLayout {
     geoms: Vec<Vec<usize>>,
 }
 
+/// The number of different geoms of the world from which on bounds of the world are not computed for each group of
+/// lanes anew.
+const MANY_STATICS: usize = 32;
+
 /// Consecutive numbers of a parameter field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParamRange {
@@ -95,8 +99,28 @@ impl SharedLayout {
         &self.geoms[model]
     }
 
+    /// Returns true if environments of one model are faster together: a geom has different meshes or height fields in
+    /// two models, or many geoms of the world differ in some of the numbers of [`differences`](Self::differences).
+    pub fn prefers_groups(&self, differences: &[ParamRange]) -> bool {
+        let mut moved = vec![false; self.layout.geoms.len()];
+        for ParamRange { field, numbers } in differences {
+            let width = match field {
+                ParamField::geom_pos => 3,
+                ParamField::geom_rbound => 1,
+                _ => continue,
+            };
+            moved[numbers.start / width..numbers.end / width].fill(true);
+        }
+        let of_world = |body: usize| self.layout.bodies[body].weld == 0;
+        let statics = self.layout.geoms.iter().map(|geom| of_world(geom.body));
+        let differ = statics
+            .zip(moved)
+            .filter(|&(is_static, moved)| is_static && moved);
+        differ.count() > MANY_STATICS || self.differ_in_assets()
+    }
+
     /// Returns true if a geom has different meshes or height fields in two models.
-    pub fn differ_in_assets(&self) -> bool {
+    fn differ_in_assets(&self) -> bool {
         let models = &self.layout.geom_assets;
         (0..self.layout.geoms.len()).any(|geom| {
             let mut own = models.iter().filter_map(|assets| assets[geom]);

@@ -17,9 +17,8 @@ pub struct Models<S: Scalar> {
     initial: Vec<State<S>>,
     /// The model of each environment; empty if there is one model.
     of_env: Vec<u32>,
-    /// True if models have different meshes, which are searched one after the other: environments of one model are then
-    /// grouped.
-    differ_in_meshes: bool,
+    /// True if environments of one model are grouped.
+    grouped: bool,
 }
 
 impl<S: Scalar> Models<S> {
@@ -31,7 +30,7 @@ impl<S: Scalar> Models<S> {
             rows: Vec::new(),
             initial: vec![State::new(model)],
             of_env: Vec::new(),
-            differ_in_meshes: false,
+            grouped: false,
         }
     }
 
@@ -39,6 +38,7 @@ impl<S: Scalar> Models<S> {
     pub(super) fn several(shared: SharedLayout, of_env: Vec<u32>) -> Self {
         let (ranges, rows) = shared.differences();
         let rows = rows.into_iter();
+        let grouped = shared.prefers_groups(&ranges);
         let models = shared.models().iter();
         Models {
             ranges,
@@ -47,7 +47,7 @@ impl<S: Scalar> Models<S> {
                 .collect(),
             initial: models.map(|model| State::new(model)).collect(),
             of_env,
-            differ_in_meshes: shared.differ_in_assets(),
+            grouped,
             shared: Some(shared),
         }
     }
@@ -60,7 +60,7 @@ impl<S: Scalar> Models<S> {
 
     /// Returns the numbers by which environments are grouped before their contacts.
     pub(super) fn groups(&self) -> Option<&[u32]> {
-        self.differ_in_meshes.then_some(&self.of_env)
+        self.grouped.then_some(&self.of_env)
     }
 
     /// Returns the common layout of several models.
