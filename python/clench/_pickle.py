@@ -57,8 +57,9 @@ def _model(method: str, arguments: dict[str, Any], checksum: int) -> Model:
 def _changed(own: Sim | Batch) -> dict[str, Any]:
     """Returns the parameters that differ from the model's."""
     changed = {}
-    several = isinstance(own, Batch) and len(own.models) > 1
-    plain = Batch(own.models, own.n_envs, own.precision, 1, env_model=own.env_model) if several else None
+    plain = None
+    if isinstance(own, Batch) and len(own.models) > 1:
+        plain = Batch(own.models, own.n_envs, own.precision, 1, env_model=own.env_model)
     for name in PARAMETERS:
         values = own.param(name)
         unchanged = np.asarray(getattr(own.model, name)) if plain is None else plain.param(name)

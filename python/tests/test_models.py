@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from typing import Literal
 
 import clench
 import numpy as np
@@ -54,7 +55,7 @@ def models() -> list[clench.Model]:
 
 
 @pytest.mark.parametrize("precision", ["64", "32"])
-def test_environments_equal_simulations_of_their_models(models, precision):
+def test_environments_equal_simulations_of_their_models(models: list[clench.Model], precision: Literal["64", "32"]) -> None:
     env_model = [2, 0, 1, 3, 3, 1, 0, 2, 2, 0]
     batch = clench.Batch(models, 10, precision, 1, env_model=env_model, record=["sensordata", "geom_xpos"])
     assert batch.models == tuple(models)
@@ -81,14 +82,14 @@ def test_environments_equal_simulations_of_their_models(models, precision):
         np.testing.assert_array_equal(batch.output("geom_xpos")[env, batch.geoms_of(env_model[env])], sim.geom_xpos)
 
 
-def test_models_take_turns_by_default(models):
+def test_models_take_turns_by_default(models: list[clench.Model]) -> None:
     batch = clench.Batch(models, 6)
     assert batch.env_model.tolist() == [0, 1, 2, 3, 0, 1]
     assert clench.Batch(models[:1], 3).model is models[0]
     assert clench.Batch(models[0], 3).models == (models[0],)
 
 
-def test_reset_gives_environments_other_models(models):
+def test_reset_gives_environments_other_models(models: list[clench.Model]) -> None:
     batch = clench.Batch(models, 5, env_model=[0] * 5, threads=1)
     batch.step(50)
     mask = np.array([False, True, False, True, True])
@@ -106,7 +107,7 @@ def test_reset_gives_environments_other_models(models):
     np.testing.assert_allclose(batch.qpos[:, 2], [1.1, 1.1, 1.2, 1.2, 1.3])
 
 
-def test_parameters_are_those_of_the_own_model(models):
+def test_parameters_are_those_of_the_own_model(models: list[clench.Model]) -> None:
     batch = clench.Batch(models, 8, threads=1)
     object_ = models[0].body("object").id
     masses = [float(model.body_mass[object_]) for model in models]
@@ -120,7 +121,7 @@ def test_parameters_are_those_of_the_own_model(models):
     np.testing.assert_array_equal(batch.sim(5).param("body_mass"), models[0].body_mass)
 
 
-def test_a_pickle_keeps_the_models(models):
+def test_a_pickle_keeps_the_models(models: list[clench.Model]) -> None:
     batch = clench.Batch(models, 7, threads=1)
     mass = batch.param("body_mass")
     mass[2] *= 1.5
@@ -134,7 +135,7 @@ def test_a_pickle_keeps_the_models(models):
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_queries_are_those_of_the_own_model(models, threads):
+def test_queries_are_those_of_the_own_model(models: list[clench.Model], threads: int) -> None:
     batch = clench.Batch(models, 7, threads=threads)
     batch.step(150)
     masses = batch.mass_matrix()
@@ -147,14 +148,16 @@ def test_queries_are_those_of_the_own_model(models, threads):
         np.testing.assert_array_equal(masses[env], sim.mass_matrix())
         np.testing.assert_array_equal(batch.output("energy")[env], sim.energy)
         hit = sim.ray([0, 0, 3], [0, 0, -1])
+        assert hit is not None
         assert geoms[env] == batch.geoms_of(batch.env_model[env])[hit.geom]
         assert distances[env] == hit.distance
         own = batch.geoms_of(batch.env_model[env]).tolist()
-        assert gaps[env] == (sim.distance("tool", own.index(ball)).distance if ball in own else np.inf)
+        found = sim.distance("tool", own.index(ball)) if ball in own else None
+        assert gaps[env] == (np.inf if found is None else found.distance)
         assert len(batch.constraints(env).force) == len(sim.constraints.force)
 
 
-def test_derivatives_are_those_of_the_own_model(models):
+def test_derivatives_are_those_of_the_own_model(models: list[clench.Model]) -> None:
     batch = clench.Batch(models, 6, threads=2)
     batch.step(150)
     try:
@@ -172,7 +175,7 @@ def test_derivatives_are_those_of_the_own_model(models):
         batch.linearize(outputs=["geom_xpos"])
 
 
-def test_pictures_show_the_own_model(models):
+def test_pictures_show_the_own_model(models: list[clench.Model]) -> None:
     batch = clench.Batch(models, 4)
     for env, model in enumerate(models):
         sim = clench.Sim(model)
@@ -186,7 +189,7 @@ def test_pictures_show_the_own_model(models):
     np.testing.assert_array_equal(batch.render([3, 0, 2], 64, 48, camera="front"), np.stack(singly))
 
 
-def test_mistakes_name_the_models_and_the_element(models):
+def test_mistakes_name_the_models_and_the_element(models: list[clench.Model]) -> None:
     changed = clench.Model.from_xml(scene("box").replace('name="push" joint', 'name="pull" joint'))
     with pytest.raises(ValueError, match='models 0 ."ball".*1 ."box".* name of actuator 0, "push" in one'):
         clench.Batch([models[0], changed], 4)

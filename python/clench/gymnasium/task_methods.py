@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from clench import State
+from clench import Batch, State
 from clench.gymnasium.generators import Generators
 from clench.gymnasium.observations import Observation
 
@@ -18,6 +18,7 @@ Array = NDArray[Any]
 class TaskMethods(Generators):
     """The methods that a task defines, with their defaults."""
 
+    batch: Batch
     init_qpos: Array
     init_qvel: Array
 
