@@ -175,7 +175,9 @@ class Fuzz:
             made: Any = clench.Sim(model, options, precision=precision)
         else:
             threads = self.maybe(lambda: self.choose((None, 1, 2, 3)))
-            made = clench.Batch(model, self.count(), precision, threads, options=options, record=self.names())
+            # Two models of one file have one layout.
+            models = self.maybe(lambda: self.choose((model, [model], [model, model])))
+            made = clench.Batch(models, self.count(), precision, threads, options=options, record=self.names())
         self.owners[int(self.rng.integers(len(self.owners)))] = made
         return made
 
@@ -264,9 +266,13 @@ class Fuzz:
         batch = self.choose([owner for owner in self.owners if isinstance(owner, clench.Batch)] or [clench.Batch(ball(), 2)])
         n, model = batch.n_envs, batch.model
         changes = ("reset", "revive", "forward", "randomize", "set_constants", "record", "rollout", "set_state")
-        what = self.choose((*changes, "fault", "sim", "status"))
+        what = self.choose((*changes, "fault", "sim", "status", "geoms_of"))
         if what == "reset":
-            return batch.reset(self.choose((None, self.subset(n))), self.key())
+            mask = self.choose((None, self.subset(n)))
+            others = self.rng.integers(0, len(batch.models) + 1, self.rng.integers(0, n + 1))
+            return batch.reset(mask, self.key(), env_model=self.maybe(lambda: self.choose((None, others))))
+        if what == "geoms_of":
+            return batch.env_model, batch.geoms_of(self.count())
         if what in ("revive", "forward", "set_constants"):
             return getattr(batch, what)(self.subset(n))
         if what in ("fault", "sim"):
