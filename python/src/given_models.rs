@@ -63,22 +63,11 @@ impl Models {
                 device::batch(Arc::clone(model), self.n_envs, options, name)
             }
             (Device::Graphics { .. }, _) => Err(sim_error(SimError::OneModel("a GPU"))),
-            (Device::Processor, [model]) => {
-                clench::Batch::with_options(Arc::clone(model), self.n_envs, options)
-                    .map_err(sim_error)
+            (Device::Processor, models) => match &self.of_env {
+                Some(of_env) => clench::Batch::of_models(models, of_env, options),
+                None => clench::Batch::of_models_in_turn(models, self.n_envs, options),
             }
-            (Device::Processor, models) => {
-                let mut of_env = Vec::new();
-                let (count, bytes) = (self.n_envs, size_of::<usize>());
-                if of_env.try_reserve_exact(count).is_err() {
-                    return Err(sim_error(SimError::OutOfMemory { count, bytes }));
-                }
-                match &self.of_env {
-                    Some(given) => of_env.extend_from_slice(given),
-                    None => of_env.extend((0..count).map(|env| env % models.len())),
-                }
-                clench::Batch::of_models(models, &of_env, options).map_err(sim_error)
-            }
+            .map_err(sim_error),
         }
     }
 

@@ -47,8 +47,8 @@ pub(crate) fn run<S: Precision>(
     }
     let mut heap = Heap::default();
     let options = arguments.batch.options(options);
-    let of_env = Vec::from_iter((0..envs as usize).map(|env| env % run.models.len()));
-    let mut batch = heap.taken_by(|| Batch::<S>::of_models(&run.models, &of_env, options))?;
+    let mut batch =
+        heap.taken_by(|| Batch::<S>::of_models_in_turn(&run.models, envs as usize, options))?;
     run.starts.start_all(&mut batch)?;
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;

@@ -1,6 +1,7 @@
 //! Batches of several models.
 
 use super::models::Models;
+use super::rows::per_env;
 use super::{Batch, BatchOptions, Precision};
 use crate::sim::Sim;
 use clench_builder::SharedLayout;
@@ -43,6 +44,27 @@ impl<S: Precision> Batch<S> {
         batch.models = Models::several(shared, of_env.collect());
         (0..batch.count()).try_for_each(|env| batch.reset(env))?;
         Ok(batch)
+    }
+
+    /// Creates `count` environments of models that take turns: environment i has model i modulo their number.
+    ///
+    /// # Errors
+    /// Returns an error as [`of_models`](Self::of_models) does.
+    pub fn of_models_in_turn(
+        models: &[Arc<Model>],
+        count: usize,
+        options: BatchOptions,
+    ) -> Result<Self, SimError> {
+        if let [model] = models {
+            return Batch::with_options(Arc::clone(model), count, options);
+        }
+        let mut env_model = per_env(count, || 0)?;
+        let turns = (0..models.len()).cycle();
+        env_model
+            .iter_mut()
+            .zip(turns)
+            .for_each(|(own, turn)| *own = turn);
+        Batch::of_models(models, &env_model, options)
     }
 
     /// Returns the models of the environments.
