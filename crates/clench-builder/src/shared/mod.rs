@@ -29,8 +29,8 @@ pub struct SharedLayout {
     geoms: Vec<Vec<usize>>,
 }
 
-/// The number of different geoms of the world from which on bounds of the world are not computed for each group of
-/// lanes anew.
+/// Environments of one model are grouped if more geoms of the world than this differ: a step in lanes of other models
+/// computes the bounds of the world anew.
 const MANY_STATICS: usize = 32;
 
 /// Consecutive numbers of a parameter field.
@@ -134,11 +134,11 @@ impl SharedLayout {
         let layout = Arc::make_mut(&mut self.layout);
         for &field in ParamField::ALL.iter().filter(|field| field.is_of_geoms()) {
             layout.params.resize(field, layout.geoms.len());
+            let rows = self.models.iter();
+            let rows = Vec::from_iter(rows.map(|model| model.params.read_lane(field, 0)));
             for (slot, &(model, geom)) in owners.iter().enumerate() {
-                let owner = &self.models[model];
-                let row = owner.params.read_lane(field, 0);
-                let width = row.len() / owner.geoms.len();
-                let row = &row[width * geom..][..width];
+                let width = rows[model].len() / self.models[model].geoms.len();
+                let row = &rows[model][width * geom..][..width];
                 layout.params.write_part(field, 0, width * slot, row);
             }
         }
