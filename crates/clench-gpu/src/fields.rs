@@ -206,6 +206,8 @@ fields! {
     r: c.rows;
     d: c.rows;
     shape: c.rows;
+    /// The inverse inertia of an elliptic cone, at its first row.
+    cone_inertia: c.rows;
     /// J a − aref; during assembly, the inverse inertia of each row.
     residual: c.rows;
     force: c.rows;
@@ -250,8 +252,9 @@ fields! {
     ncon: 1;
     nblock: 1;
     nrow: 1;
-    /// Iterations of the last solve, and the bits of its duality gap.
+    /// Iterations of the last solve, evaluations of its line searches, and the bits of its duality gap.
     niter: 1;
+    ls_evaluations: 1;
     solve_gap: 1;
     /// The solve status, as the codes of `clench_solver::Status`.
     solve_status: 1;

@@ -96,7 +96,8 @@ kernels! {
     /// Computes their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
     /// Solves the convex problem.
-    SOLVE = "solve", Workgroup: "group", "mass", "costs", "elliptic", "hessian", "tiles", "cholesky", "iterate", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
+    SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/elliptic", "costs/costs", "costs/hessian",
+        "continuation", "tiles", "cholesky", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
     /// Computes the duality gap of the solve, on request.
     GAP = "gap", Team: "team", "tree", "substitution", "articulated", "mass_factor", "gap";
     /// Computes camera poses, on request.
@@ -215,6 +216,10 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     <Status as Code>::ALL
         .iter()
         .for_each(|x| declare(x.constant(), x.code()));
+    for (name, value) in clench_solver::METHOD_CONSTANTS {
+        // Without a type, so that it suits both precisions.
+        let _ = writeln!(text, "const {name} = {value:?};");
+    }
     let mut layout = tables.layout.clone();
     layout.count("STATE", memory.state.size);
     layout.count("ROWS", memory.rows.size);
@@ -297,9 +302,11 @@ mod tests {
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     /// Codes that no kernel compares with.
-    const UNNAMED: [&str; 4] = [
+    const UNNAMED: [&str; 5] = [
         // Kernels compare with `RUNNING` alone.
         "EXCLUDED",
+        // Refused before a batch is made.
+        "COST_COULOMB",
         // Only the processor refuses large problems.
         "SOLVE_TOO_LARGE",
         // The affine law is the default case of each switch.
@@ -358,7 +365,7 @@ mod tests {
         let constants = preface
             .constants
             .lines()
-            .filter(|line| line.contains(": u32"));
+            .filter(|line| !line.contains(": bool"));
         let names = constants.filter_map(|line| words(line).nth(1));
         let unnamed = names.filter(|name| !ALL.iter().any(|kernel| kernel.names(name)));
         // The host may need a size alone, and `soften` reads solimp after solref.

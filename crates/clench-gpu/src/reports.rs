@@ -15,6 +15,8 @@ pub struct GpuSolve {
     pub status: Status,
     /// The iterations of Newton's method or of conjugate gradients.
     pub iterations: usize,
+    /// The evaluations of the derivatives in line searches.
+    pub ls_evaluations: usize,
     /// Duality gap ½ gᵀM⁻¹g: an upper bound of cost − minimum, in the units of the cost.
     pub gap: f32,
     /// The number of contacts.
@@ -74,12 +76,14 @@ impl<S: GpuReal> GpuBatch<S> {
         })?;
         // No kernel writes another code: its memory is corrupt.
         let status = |code: u32| Status::of(code).unwrap_or(Status::NonFinite);
-        let [ended, niter, gap, ncon, nrow] =
-            ["solve_status", "niter", "solve_gap", "ncon", "nrow"].map(|name| self.report(name));
-        let (ended, niter, gap, ncon, nrow) = (ended?, niter?, gap?, ncon?, nrow?);
+        let ended = self.report("solve_status")?;
+        let [niter, evaluations] = [self.report("niter")?, self.report("ls_evaluations")?];
+        let [gap, ncon, nrow] = ["solve_gap", "ncon", "nrow"].map(|name| self.report(name));
+        let (gap, ncon, nrow) = (gap?, ncon?, nrow?);
         let solve = |env: usize| GpuSolve {
             status: status(ended[env]),
             iterations: niter[env] as usize,
+            ls_evaluations: evaluations[env] as usize,
             gap: f32::from_bits(gap[env]),
             contacts: ncon[env] as usize,
             rows: nrow[env] as usize,

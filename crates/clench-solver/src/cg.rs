@@ -16,7 +16,7 @@ use crate::{Problem, Settings};
 use clench_math::{Real, kernel};
 
 /// Powell's limit: consecutive gradients whose overlap is this fraction of the new one are far from orthogonal.
-const OVERLAP: f64 = 0.2;
+pub(crate) const OVERLAP: f64 = 0.2;
 
 /// The last two gradients, and their images under M⁻¹.
 #[derive(Clone, Debug, Default)]

@@ -11,12 +11,12 @@ use crate::{Cost, Problem};
 use clench_math::{Mask, Real, kernel};
 
 /// The value of A D above which a cone is very stiff.
-const STIFF: f64 = 2e4;
+pub(crate) const STIFF: f64 = 2e4;
 /// A D of the first stage, and its growth factor from one stage to the next.
-const FIRST: f64 = 10.0;
-const STAGE: f64 = 10.0;
+pub(crate) const FIRST: f64 = 10.0;
+pub(crate) const STAGE: f64 = 10.0;
 /// A stage ends when an improvement falls below this fraction of the cost.
-const SETTLED: f64 = 1e-9;
+pub(crate) const SETTLED: f64 = 1e-9;
 
 /// The current softening of the cones.
 #[derive(Clone, Debug)]

@@ -60,9 +60,9 @@ pub(crate) struct Convergence<T: Real> {
 }
 
 /// An improvement below this many times the rounding error of the cost is negligible.
-const NEGLIGIBLE: f64 = 4.0;
+pub(crate) const NEGLIGIBLE: f64 = 4.0;
 /// A gradient counts as progress if it is below this fraction of the best so far.
-const NOTICEABLE: f64 = 0.7;
+pub(crate) const NOTICEABLE: f64 = 0.7;
 /// CG solves for given limits of friction until the duality gap is this fraction of the one that new limits left.
 const INNER: f64 = 0.1;
 

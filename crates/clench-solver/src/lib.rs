@@ -15,6 +15,7 @@
 mod block_index;
 mod cg;
 mod check;
+mod constants;
 mod continuation;
 mod costs;
 mod descent;
@@ -49,6 +50,8 @@ mod transfer;
 mod tree;
 mod workspace;
 
+#[doc(hidden)]
+pub use constants::METHOD_CONSTANTS;
 pub use costs::Cost;
 pub use error::ProblemError;
 pub use options::{ConstraintSolver, Settings, SolverOptions, Switch};

@@ -42,11 +42,11 @@ pub(crate) struct Precision<T> {
 /// The precision to which a root is computed regardless of the tolerance, over the square root of the working
 /// precision: a slope relative to the slope at 0, or a step relative to α. The next iteration corrects the remaining
 /// error.
-const RESOLUTION: f64 = 0.01;
+pub(crate) const RESOLUTION: f64 = 0.01;
 /// The limits of what a tolerance may accept (Wolfe's conditions; Nocedal & Wright 2006, §3.1): a slope of at most this
 /// fraction of the slope at 0, and a decrease of at least this fraction of the one that the slope at 0 predicts.
-const CURVATURE: f64 = 0.1;
-const DECREASE: f64 = 1e-4;
+pub(crate) const CURVATURE: f64 = 0.1;
+pub(crate) const DECREASE: f64 = 1e-4;
 
 impl<T: Real> Ray<T> {
     /// Computes M p, J p and the second derivative of the parts that are quadratic everywhere, for the current

@@ -1,9 +1,6 @@
 // Conjugate gradients, preconditioned by the mass matrix. CPU counterpart: `clench-solver/src/cg.rs`, which explains
 // the restarts.
 
-// Powell's restart threshold: the overlap of consecutive gradients relative to the new one.
-const OVERLAP: f32 = 0.2;
-
 // Computes the next direction, conjugate to the last one; or, on a restart, M⁻¹ times the negative gradient.
 fn direct_conjugate(started: bool) {
     var products = vec4f();
@@ -16,7 +13,7 @@ fn direct_conjugate(started: bool) {
     let before = sums.x;
     let overlap = sums.y;
     let now = sums.z;
-    let conjugate = started && abs(overlap) < OVERLAP * now && before > 0.0;
+    let conjugate = started && abs(overlap) < CG_OVERLAP * now && before > 0.0;
     for (var i = lane; i < bound(NV); i += GROUP) {
         let preconditioned = vector(PRECONDITIONED_AT + i);
         var ray = -preconditioned;

@@ -10,12 +10,13 @@ var<private> writes: bool;
 // The impedance of the current block.
 var<private> block_impedance: f32;
 
-// Begins a block of a kind; its Jacobian is computed from the source.
-fn begin_block(kind: u32, dim: u32, source: u32, impedance: f32) {
+// Begins a block of a kind, with a cost; its Jacobian is computed from the source.
+fn begin_block(kind: u32, cost: u32, dim: u32, source: u32, impedance: f32) {
     block_impedance = impedance;
     let place = BLOCKS + BLOCK_SIZE * nblock;
     if (writes) {
         put_row(place + BLOCK_KIND, f32(kind));
+        put_row(place + BLOCK_COST, f32(cost));
         put_row(place + BLOCK_DIM, f32(dim));
         put_row(place + BLOCK_ROW, f32(nrow));
         put_row(place + BLOCK_SOURCE, f32(source));
@@ -45,7 +46,7 @@ fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
 fn push_friction(k: u32) {
     let prm = FRICTION_PRM + FRICTION_SIZE * k;
     let soft = soften(prm + FRICTION_SOLREF, 0.0);
-    begin_block(DRY_FRICTION, 1u, words[FRICTION_SOURCE + k], soft.impedance);
+    begin_block(DRY_FRICTION, COST_HUBER, 1u, words[FRICTION_SOURCE + k], soft.impedance);
     let r = regularization(soft.impedance, parameter(prm + FRICTION_INVWEIGHT));
     add_row(0.0, 0.0, soft.damping, r, parameter(prm + FRICTION_LOSS));
 }
@@ -57,7 +58,7 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
         return;
     }
     let soft = soften(prm + LIMIT_SOLREF, distance - margin);
-    begin_block(LIMIT, 1u, source, soft.impedance);
+    begin_block(LIMIT, COST_ONE_SIDED, 1u, source, soft.impedance);
     let aref = -soft.stiffness * (distance - margin);
     add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + LIMIT_INVWEIGHT)), 0.0);
 }
@@ -147,13 +148,13 @@ fn push_contact(contact: u32) {
     let dim = select(1u, words[PAIR_DIM + pair], touches);
     let plain = regularization(soft.impedance, a0);
     if (dim == 1u) {
-        begin_block(CONTACT_NORMAL, 1u, contact, soft.impedance);
+        begin_block(CONTACT_NORMAL, COST_ONE_SIDED, 1u, contact, soft.impedance);
         push_normal(distance, aref, soft.damping, plain, 0.0, adhesion);
         return;
     }
     let mu = parameter(friction);
     if (ELLIPTIC_CONES) {
-        begin_block(CONTACT_ELLIPTIC, dim, contact, soft.impedance);
+        begin_block(CONTACT_ELLIPTIC, COST_ELLIPTIC, dim, contact, soft.impedance);
         push_normal(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
         var damping = soft.damping;
         let solref = vec2f(parameter(prm + PAIR_SOLREFFRICTION), parameter(prm + PAIR_SOLREFFRICTION + 1u));
@@ -165,7 +166,7 @@ fn push_contact(contact: u32) {
     }
     let edge = regularization(soft.impedance, a0 + mu * mu * a0);
     let r = 2.0 * (mu * mu / IMPRATIO) * edge;
-    begin_block(CONTACT_PYRAMID, dim, contact, soft.impedance);
+    begin_block(CONTACT_PYRAMID, COST_PYRAMID, dim, contact, soft.impedance);
     // The edges share the adhesion.
     push_normal(distance, aref, soft.damping, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
     push_tangents(contact, dim, friction, r, soft.damping, soft.damping);

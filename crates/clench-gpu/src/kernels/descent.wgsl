@@ -11,10 +11,12 @@ const REFRESH: u32 = 4u;
 // Newton's method checks the duality gap before its first step, CG always. `gap.wgsl` computes the final gap on
 // request.
 const PROVE: u32 = 5u;
-const DONE: u32 = 6u;
+// Evaluates a new stage of continuation; at the end of a solve the original problem.
+const SOFTEN: u32 = 6u;
+const DONE: u32 = 7u;
 
 // The maximum number of iterations without noticeable progress.
-const PATIENCE: u32 = select(20u, 2u, NEWTON);
+const PATIENCE = select(CG_PATIENCE, NEWTON_PATIENCE, NEWTON);
 
 // The state of a solve.
 struct Convergence {
@@ -33,9 +35,12 @@ struct Convergence {
     started: bool,
     // The smallest gradient norm so far, and the iterations since it fell noticeably.
     best: f32,
-    idle: u32,
+    idle: f32,
     iterations: u32,
+    evaluations: u32,
     status: u32,
+    // True once the status is final.
+    ended: bool,
 }
 
 // Sets the iterate of a round: the unconstrained acceleration, that of the last step, or the current one.
@@ -54,44 +59,62 @@ fn place(round: u32) {
     join_vectors();
 }
 
-// Ends the solve. Returns the next round.
+// Ends the solve. Returns the next round: results are those of the original problem.
 fn end(c: ptr<function, Convergence>, status: u32) -> u32 {
     (*c).status = status;
+    (*c).ended = true;
+    if (level > 0.0) {
+        level = 0.0;
+        return SOFTEN;
+    }
     return DONE;
 }
 
-// Returns the round after the choice of the start. Newton's forces are trusted as well: the gap alone, a bound in cost,
-// would tolerate errors in stiff ones.
-fn after_start(c: ptr<function, Convergence>) -> u32 {
-    if (NEWTON && (*c).scale * (*c).norm <= TOLERANCE) {
-        return PROVE;
-    }
-    return after_proof(c);
-}
-
-// Returns the round after the duality gap at the start is known, if it counts.
-fn after_proof(c: ptr<function, Convergence>) -> u32 {
-    let gap_counts = !NEWTON || (*c).scale * (*c).norm <= TOLERANCE;
-    if (gap_counts && (*c).scale * (*c).gap <= TOLERANCE) {
-        (*c).status = SOLVE_PROVEN;
-        return DONE;
-    }
-    if (ITERATIONS == 0u) {
+// Returns the next round of a solve that has not converged.
+fn go_on(c: ptr<function, Convergence>) -> u32 {
+    if ((*c).iterations >= ITERATIONS) {
         return end(c, SOLVE_ITERATION_LIMIT);
     }
     return DESCEND;
 }
 
-// Returns the round after the iterate was set.
+// Returns the round after the choice of the start. Newton's forces are trusted as well: the gap alone, a bound in cost,
+// would tolerate errors in stiff ones.
+fn after_start(c: ptr<function, Convergence>, nblock: u32) -> u32 {
+    if (is_wild((*c).norm)) {
+        return end(c, SOLVE_NON_FINITE);
+    }
+    if (NEWTON && (*c).scale * (*c).norm <= TOLERANCE) {
+        return PROVE;
+    }
+    return after_proof(c, nblock);
+}
+
+// Returns the round after the duality gap at the start is known, if it counts.
+fn after_proof(c: ptr<function, Convergence>, nblock: u32) -> u32 {
+    let gap_counts = !NEWTON || (*c).scale * (*c).norm <= TOLERANCE;
+    if (gap_counts && (*c).scale * (*c).gap <= TOLERANCE) {
+        return end(c, SOLVE_PROVEN);
+    }
+    if (NEWTON && ELLIPTIC_CONES && start_continuation(nblock)) {
+        return SOFTEN;
+    }
+    return go_on(c);
+}
+
+// Returns the round after the iterate or the problem was changed by more than a step.
 fn after_placing(c: ptr<function, Convergence>, round: u32, totals: vec4f, nblock: u32) -> u32 {
     (*c).curved = totals.z > 0.0;
     (*c).same_hessian = false;
     (*c).started = false;
-    if (round == REFRESH) {
+    if (round == REFRESH || round == SOFTEN) {
         (*c).best = (*c).norm;
-        (*c).idle = 0u;
-        (*c).refreshed = true;
-        return DESCEND;
+        (*c).idle = 0.0;
+        (*c).refreshed = (*c).refreshed || round == REFRESH;
+        if ((*c).ended) {
+            return DONE;
+        }
+        return go_on(c);
     }
     if (round == AT_SMOOTH && nblock == 0u) {
         (*c).status = SOLVE_UNCONSTRAINED;
@@ -105,11 +128,11 @@ fn after_placing(c: ptr<function, Convergence>, round: u32, totals: vec4f, nbloc
     if (round == AT_WARMSTART && !(totals.x + totals.w < (*c).cold)) {
         return BACK_AT_SMOOTH;
     }
-    return after_start(c);
+    return after_start(c, nblock);
 }
 
 // Returns the round after a step. A stalled solve is refreshed once, without accumulated rounding.
-fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f) -> u32 {
+fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f, nrow: u32) -> u32 {
     let curved = totals.z > 0.0;
     // A full Newton step over a quadratic interval ends at the minimum: the size of that step is irrelevant.
     let exact = NEWTON && totals.y == 0.0 && !curved && !(*c).curved;
@@ -117,41 +140,60 @@ fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f) -> u32 {
     (*c).curved = curved;
     (*c).started = true;
     (*c).iterations++;
+    (*c).evaluations += step.evaluations;
     if (is_wild((*c).norm)) {
         return end(c, SOLVE_NON_FINITE);
+    }
+    let cost = totals.x + totals.w;
+    if (level > 0.0) {
+        if (advance_continuation(step.improvement, cost)) {
+            return SOFTEN;
+        }
+        record_progress(c, step, cost, exact);
+        return go_on(c);
     }
     let small = select((*c).gap, (*c).norm, NEWTON);
     let settled = !NEWTON || (*c).scale * step.improvement <= TOLERANCE || exact;
     if ((*c).scale * small <= TOLERANCE && settled) {
         return end(c, SOLVE_CONVERGED);
     }
-    let negligible = step.improvement <= 4.0 * EPSILON * (totals.x + totals.w) || exact;
-    let fell = (*c).norm < 0.7 * (*c).best;
-    if (fell) {
-        (*c).best = (*c).norm;
+    // At this minimum, a gradient that rounding of its terms explains is zero to working precision.
+    if (exact && (*c).norm <= rounding(nrow)) {
+        return end(c, SOLVE_NO_PROGRESS);
     }
-    (*c).idle = select((*c).idle + 1u, 0u, fell || !negligible);
+    record_progress(c, step, cost, exact);
     let stuck = step.alpha == 0.0 || (*c).idle >= PATIENCE;
     if (stuck && (*c).refreshed) {
         return end(c, select(SOLVE_NO_PROGRESS, SOLVE_ITERATION_LIMIT, step.cut && step.alpha == 0.0));
     }
-    if ((*c).iterations >= ITERATIONS) {
-        return end(c, SOLVE_ITERATION_LIMIT);
+    if (stuck) {
+        return REFRESH;
     }
-    return select(DESCEND, REFRESH, stuck);
+    return go_on(c);
+}
+
+// Counts the iterations since the gradient fell noticeably or the cost improved.
+fn record_progress(c: ptr<function, Convergence>, step: Step, cost: f32, exact: bool) {
+    let negligible = step.improvement <= NEGLIGIBLE_ROUNDINGS * EPSILON * cost || exact;
+    let fell = (*c).norm < NOTICEABLE_FALL * (*c).best;
+    if (fell) {
+        (*c).best = (*c).norm;
+    }
+    (*c).idle = select((*c).idle + 1.0, 0.0, fell || !negligible);
 }
 
 fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
     var c = Convergence();
     c.scale = 1.0 / inertia;
     c.best = UNBOUNDED;
+    level = 0.0;
     var next = AT_SMOOTH;
     loop {
         let round = agreed(next);
         if (round == DONE) {
             break;
         }
-        var step = Step(0.0, 0.0, false);
+        var step = Step(0.0, 0.0, 0u, false);
         var totals = vec4f();
         if (round == DESCEND) {
             if (NEWTON) {
@@ -159,8 +201,8 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
             } else {
                 direct_conjugate(c.started);
             }
-            prepare_ray(nrow);
-            step = search(nblock, TOLERANCE * LS_TOLERANCE * inertia);
+            let products = prepare_ray(nrow, nblock);
+            step = search(nblock, products, TOLERANCE * LS_TOLERANCE * inertia);
             advance_iterate(step.alpha, nrow);
         } else if (round < DESCEND || round == REFRESH) {
             place(round);
@@ -178,10 +220,10 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
         }
         switch round {
             case DESCEND: {
-                next = after_step(&c, step, totals);
+                next = after_step(&c, step, totals, nrow);
             }
             case PROVE: {
-                next = after_proof(&c);
+                next = after_proof(&c, nblock);
             }
             default: {
                 next = after_placing(&c, round, totals, nblock);
@@ -211,6 +253,7 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     }
     if (lane == 0u) {
         reports[NITER * envs + env] = c.iterations;
+        reports[LS_EVALUATIONS * envs + env] = c.evaluations;
         reports[SOLVE_STATUS * envs + env] = c.status;
     }
     check_loops();

@@ -16,7 +16,7 @@ fn push_coupling(equality: u32, prm: u32) {
     }
     let violation = coordinate_value(follower) - parameter(prm + COUPLING_INITIAL) - value;
     let soft = soften(prm + COUPLING_SOLREF, violation);
-    begin_block(COUPLING, 1u, equality, soft.impedance);
+    begin_block(COUPLING, COST_QUADRATIC, 1u, equality, soft.impedance);
     // The slope is stored as the cost's shape, which this cost does not use.
     let r = regularization(soft.impedance, parameter(prm + COUPLING_INVWEIGHT));
     add_row(violation, -soft.stiffness * violation, soft.damping, r, slope);
@@ -53,7 +53,7 @@ fn push_held(equality: u32, prm: u32, is_weld: bool) {
         turned = relative_quat(equality).yzw * torquescale(equality);
     }
     let soft = soften(prm + HELD_SOLREF, sqrt(dot(apart, apart) + dot(turned, turned)));
-    begin_block(HELD, words[EQ_ROWS + equality], equality, soft.impedance);
+    begin_block(HELD, COST_QUADRATIC, words[EQ_ROWS + equality], equality, soft.impedance);
     add_held_rows(apart, first.linear - second.linear, soft, parameter(prm + HELD_INVWEIGHT));
     if (is_weld) {
         add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + HELD_INVWEIGHT + 1u));

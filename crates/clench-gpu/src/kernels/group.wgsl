@@ -53,6 +53,18 @@ fn total(x: vec4f) -> vec4f {
     return ((parts[0] + parts[1]) + (parts[2] + parts[3])) + ((parts[4] + parts[5]) + (parts[6] + parts[7]));
 }
 
+// Returns the largest number of all 64 threads.
+fn greatest(x: f32) -> f32 {
+    scratch[lane].x = x;
+    workgroupBarrier();
+    var largest = scratch[0].x;
+    for (var k = 1u; k < bound(GROUP); k++) {
+        largest = max(largest, scratch[k].x);
+    }
+    workgroupBarrier();
+    return largest;
+}
+
 struct Sums {
     before: vec4f,
     all: vec4f,

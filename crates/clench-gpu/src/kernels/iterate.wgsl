@@ -99,6 +99,19 @@ fn differentiate(nrow: u32) -> f32 {
     return sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
 }
 
+// Returns the norm of the rounding errors of the gradient, in which opposing forces cancel.
+fn rounding(nrow: u32) -> f32 {
+    var square: f32 = 0.0;
+    for (var i = lane; i < bound(NV); i += GROUP) {
+        var size = abs(vector(INERTIAL_AT + i));
+        for (var a = 0u; a < nrow; a++) {
+            size += abs(row(JACOBIAN + a * NV + i) * row(FORCE + a));
+        }
+        square += size * size;
+    }
+    return EPSILON * sqrt(total(vec4f(square, 0.0, 0.0, 0.0)).x);
+}
+
 // Recomputes M (a − a_unc) and J a − aref, without accumulated rounding.
 fn refresh(nrow: u32, at_smooth: bool) {
     if (at_smooth) {

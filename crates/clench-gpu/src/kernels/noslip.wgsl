@@ -14,14 +14,14 @@ const SLIP_AT: u32 = MAX_FRICTIONS * MAX_FRICTIONS;
 // Returns the first friction row of a block; NONE if it has none.
 fn first_friction(b: u32) -> u32 {
     let first = block(b, BLOCK_ROW);
-    switch block(b, BLOCK_KIND) {
-        case DRY_FRICTION: {
+    switch block(b, BLOCK_COST) {
+        case COST_HUBER: {
             return first;
         }
-        case CONTACT_PYRAMID, CONTACT_ELLIPTIC: {
+        case COST_PYRAMID, COST_ELLIPTIC: {
             return first + 1u;
         }
-        case HELD, COUPLING, LIMIT, CONTACT_NORMAL, default: {
+        case COST_QUADRATIC, COST_ONE_SIDED, default: {
             return NONE;
         }
     }
@@ -54,7 +54,7 @@ fn respond(a: u32) {
 fn prepare_block(b: u32) -> f32 {
     let first = block(b, BLOCK_ROW);
     let end = first + block(b, BLOCK_DIM);
-    let is_pyramid = block(b, BLOCK_KIND) == CONTACT_PYRAMID;
+    let is_pyramid = block(b, BLOCK_COST) == COST_PYRAMID;
     let start = first_friction(b);
     var cost: f32 = 0.0;
     for (var a = first; a < end; a++) {
@@ -204,13 +204,13 @@ fn change_ellipse(start: u32, count: u32) -> array<f32, MAX_FRICTIONS> {
 // Improves the friction of a block, from row `start` on; returns the decrease of the objective.
 fn improve_friction(b: u32, start: u32) -> f32 {
     let count = block(b, BLOCK_ROW) + block(b, BLOCK_DIM) - start;
-    let kind = block(b, BLOCK_KIND);
+    let cost = block(b, BLOCK_COST);
     fill_friction(start, count);
     var change = array<f32, MAX_FRICTIONS>();
-    if (ELLIPTIC_CONES && kind == CONTACT_ELLIPTIC) {
+    if (ELLIPTIC_CONES && cost == COST_ELLIPTIC) {
         change = change_ellipse(start, count);
     } else {
-        change = change_rows(start, count, kind == CONTACT_PYRAMID);
+        change = change_rows(start, count, cost == COST_PYRAMID);
     }
     var fall: f32 = 0.0;
     for (var j = 0u; j < count; j++) {
@@ -247,7 +247,7 @@ fn noslip(nrow: u32, nblock: u32, scale: f32) {
         for (var k = 0u; k < 2u * nblock; k++) {
             let b = k % nblock;
             let start = first_friction(b);
-            let is_dry = block(b, BLOCK_KIND) == DRY_FRICTION;
+            let is_dry = block(b, BLOCK_COST) == COST_HUBER;
             if (start != NONE && is_dry == (k < nblock)) {
                 improvement += improve_friction(b, start);
             }

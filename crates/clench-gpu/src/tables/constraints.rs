@@ -4,6 +4,7 @@ use super::{Capacity, Tables};
 use crate::codes::{Code, codes, row};
 use clench_rigid::model::{JointKind, Model};
 use clench_rigid::settings::StepSettings;
+use clench_solver::Cost;
 
 codes! {
     /// The kinds of block of the convex problem; those of contacts come last.
@@ -18,9 +19,20 @@ codes! {
     }
 }
 codes! {
+    of Cost {
+        Quadratic = "COST_QUADRATIC",
+        OneSided = "COST_ONE_SIDED",
+        Huber = "COST_HUBER",
+        Pyramid = "COST_PYRAMID",
+        Elliptic = "COST_ELLIPTIC",
+        Coulomb = "COST_COULOMB",
+    }
+}
+codes! {
     /// The fields of a block.
     enum BlockField {
         Kind = "BLOCK_KIND",
+        Cost = "BLOCK_COST",
         Dim = "BLOCK_DIM",
         Row = "BLOCK_ROW",
         Source = "BLOCK_SOURCE",
@@ -53,6 +65,7 @@ row! {
 impl Tables {
     pub(super) fn friction(&mut self, m: &Model, s: &StepSettings, capacity: &mut Capacity) {
         self.codes::<BlockKind>();
+        self.codes::<Cost>();
         self.codes::<BlockField>();
         self.constant("BLOCK_SIZE", BLOCK_SIZE);
         self.row::<FrictionNumbers>();

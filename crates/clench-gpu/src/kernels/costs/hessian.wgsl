@@ -4,38 +4,20 @@ fn weigh_edge(a: u32, i: u32, weight: f32) {
     put_row(WEIGHED + a * NV + i, weight * row(JACOBIAN + a * NV + i));
 }
 
-fn weigh_pyramid(b: u32, first: u32, dim: u32, i: u32) {
-    let active_set = u32(row(ACTIVE_SET + b));
-    let d = row(D + first);
-    let normal = row(JACOBIAN + first * NV + i);
-    var sum = d * f32(countOneBits(active_set)) * normal;
-    for (var k = 1u; k < dim; k++) {
-        let a = first + k;
-        let plus = f32((active_set >> (2u * k - 2u)) & 1u);
-        let minus = f32((active_set >> (2u * k - 1u)) & 1u);
-        let mu = row(SHAPE + a);
-        let mixed = d * mu * (plus - minus);
-        let j = row(JACOBIAN + a * NV + i);
-        sum += mixed * j;
-        put_row(WEIGHED + a * NV + i, mixed * normal + d * mu * mu * (plus + minus) * j);
-    }
-    put_row(WEIGHED + first * NV + i, sum);
-}
-
 // Writes column `i` of W J of block `b`.
 fn weigh(b: u32, i: u32) {
     let first = block(b, BLOCK_ROW);
-    let kind = block(b, BLOCK_KIND);
-    if (ELLIPTIC_CONES && kind == CONTACT_ELLIPTIC) {
+    let cost = block(b, BLOCK_COST);
+    if (ELLIPTIC_CONES && cost == COST_ELLIPTIC) {
         weigh_elliptic(first, block(b, BLOCK_DIM), i);
         return;
     }
-    switch kind {
-        case CONTACT_PYRAMID: {
+    switch cost {
+        case COST_PYRAMID: {
             weigh_pyramid(b, first, block(b, BLOCK_DIM), i);
         }
-        // Piece 1 has curvature in quadratic costs, dry friction and one-sided costs.
-        case HELD, COUPLING, DRY_FRICTION, LIMIT, CONTACT_NORMAL, default: {
+        // Piece 1 has curvature in these costs.
+        case COST_QUADRATIC, COST_HUBER, COST_ONE_SIDED, default: {
             let stiff = row(ACTIVE_SET + b) == 1.0;
             for (var a = first; a < first + block(b, BLOCK_DIM); a++) {
                 weigh_edge(a, i, select(0.0, row(D + a), stiff));
@@ -47,7 +29,7 @@ fn weigh(b: u32, i: u32) {
 // Returns true if a block is on a piece with curvature.
 fn is_stiff(b: u32) -> bool {
     let active_set = row(ACTIVE_SET + b);
-    if (block(b, BLOCK_KIND) == DRY_FRICTION) {
+    if (block(b, BLOCK_COST) == COST_HUBER) {
         return active_set == 1.0;
     }
     return active_set != 0.0;
