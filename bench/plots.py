@@ -1,4 +1,4 @@
-"""Writes docs/families.md and its plots from the figures of families.py."""
+"""Writes docs/families.md and its plots from the figures of families.py, and the plot of public_models.py."""
 
 import matplotlib
 
@@ -116,6 +116,25 @@ def growth(rows, path):
         axis.set_xscale("log")
         axis.set_yscale("log")
         axis.legend(frameon=False)
+    save(figure, path)
+
+
+def public(rows, columns, path):
+    """Draws MuJoCo's time over Clench's by the time of a step, a dot a model, coloured by package; a plot a column."""
+    figure, axes = plt.subplots(1, len(columns), figsize=(8, 3), sharey=True)
+    packages = sorted({row["model"].split("/")[0] for row in rows})
+    for axis, (column, title) in zip(axes, columns.items(), strict=True):
+        for package in packages:
+            of_package = [row for row in rows if row["model"].startswith(f"{package}/")]
+            axis.plot([row[f"{column}_microseconds"] for row in of_package], [row[column] for row in of_package], "o", markersize=3, label=package)
+        axis.axhline(1, color="#888888", linewidth=0.8)
+        axis.set_title(title)
+        axis.set_xlabel("µs a step of Clench")
+        axis.set_xscale("log")
+        axis.set_yscale("log")
+        axis.yaxis.set_major_formatter("{x:g}")
+    axes[0].set_ylabel("MuJoCo's time over Clench's")
+    axes[-1].legend(frameon=False)
     save(figure, path)
 
 

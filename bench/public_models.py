@@ -2,16 +2,19 @@
 
 Each model has a line with MuJoCo's time over ours; the last lines give the geometric mean, the lowest decile and the
 minimum. A run takes MuJoCo a fixed time, so that small models are timed over more steps. Models whose motion diverges
-under these controls in either engine are not measured but listed.
+under these controls in either engine are not measured but listed. `--docs` also writes docs/public-models.svg and the figures
+of docs/performance.md.
 """
 
 import math
 import pathlib
+import re
 import sys
 import time
 
 import mujoco
 
+import plots
 from single import Rollout
 from batch import Batch
 from program import Clench
@@ -24,13 +27,15 @@ import public
 MIN_NV = 3
 ENVS = 64
 SECONDS = 0.15  # MuJoCo's time in a run
-COLUMNS = ["alone", "f64", "f32"]
+COLUMNS = {"alone": "one environment", "f64": f"batch of {ENVS}, f64", "f32": f"batch of {ENVS}, f32"}
 
 
 def compare(_, args):
     """Prints the table and returns a row per model."""
     print(f"\npublic models with nv of {MIN_NV} or more: MuJoCo's time over Clench's; alone, and {ENVS} environments in either precision")
     print(f"  {'model':<52}{'nv':>5}{'contacts':>9}{'µs alone':>10}{'µs f64':>9}" + "".join(f"{name:>8}" for name in COLUMNS))
+    if args.docs and args.filter:
+        sys.exit("--docs needs all models: omit --filter")
     chosen = [name for name in public.compared() if args.filter in name]
     results, left_out = [], []
     for name in chosen:
@@ -49,8 +54,10 @@ def compare(_, args):
             f"{row['f64_microseconds']:>9.2f}" + "".join(f"{row[column]:>8.2f}" for column in COLUMNS),
             flush=True,
         )
-    for column in COLUMNS:
-        summarize(column, sorted((row[column], row["model"]) for row in results))
+    summaries = {label: summarize(column, sorted((row[column], row["model"]) for row in results)) for column, label in COLUMNS.items()}
+    if args.docs:
+        plots.public(results, COLUMNS, ROOT / "docs" / "public-models.svg")
+        rewrite(ROOT / "docs" / "performance.md", summaries)
     print("not measured:", *(left_out or ["none"]), sep="\n  ")
     return [row | {"engine": "clench", "ratio": row["alone"]} for row in results]
 
@@ -85,9 +92,18 @@ def affordable(model, envs, limit):
 
 
 def summarize(column, ratios):
-    """Prints the geometric mean, the lowest decile and the minimum."""
+    """Prints the geometric mean, the lowest decile and the minimum, and returns them as a line of a table."""
     if not ratios:
-        return
+        return ""
     mean = math.exp(sum(math.log(value) for value, _ in ratios) / len(ratios))
     tenth, (least, slowest) = ratios[len(ratios) // 10][0], ratios[0]
     print(f"  {column:<6} geometric mean {mean:.2f}, a tenth below {tenth:.2f}, least {least:.2f} ({pathlib.Path(slowest).stem})")
+    return f"{mean:.2f} | {tenth:.2f} | {least:.2f} ({pathlib.Path(slowest).stem})"
+
+
+def rewrite(page, summaries):
+    """Replaces the lines of a page's table that begin with a summary's label."""
+    text = page.read_text()
+    for label, summary in summaries.items():
+        text = re.sub(rf"^\| {label} \|.*$", f"| {label} | {summary} |", text, flags=re.MULTILINE)
+    page.write_text(text)

@@ -76,7 +76,7 @@ def arguments():
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
     parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "families", "gpu", "pictures", "public"], help="one of the comparisons")
     parser.add_argument("--filter", default="", metavar="TEXT", help="public models, or scenes of the families, whose name contains this")
-    parser.add_argument("--docs", action="store_true", help="rewrite docs/families.md and its plots")
+    parser.add_argument("--docs", action="store_true", help="rewrite the figures and plots in docs/ of families or of public models")
     parser.add_argument("--steps", type=int, default=5000, help="steps per run of one environment (default: %(default)s)")
     parser.add_argument("--envs", type=int, default=256, help="environments of the batch (default: %(default)s)")
     parser.add_argument("--batch-steps", type=int, default=500, help="steps per run of the batch (default: %(default)s)")
