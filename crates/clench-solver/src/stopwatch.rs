@@ -64,8 +64,12 @@ impl<const N: usize> Stopwatch<N> {
         }
     }
 
-    /// Moves the time that `other` has measured into this one.
+    /// Moves the time that `other`, if it runs, has measured into this one.
+    #[inline]
     pub fn absorb(&mut self, other: &mut Self) {
+        if !other.running {
+            return;
+        }
         for (spent, other) in self.spent.iter_mut().zip(&mut other.spent) {
             *spent += std::mem::take(other);
         }

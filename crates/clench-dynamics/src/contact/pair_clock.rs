@@ -37,8 +37,12 @@ impl PairClock {
         self.clock.run_as(&other.clock);
     }
 
-    /// Moves the counts and times of `other` into this clock.
+    /// Moves the counts and times of `other`, if it runs, into this clock.
+    #[inline]
     pub(super) fn absorb(&mut self, other: &mut Self) {
+        if !other.clock.is_running() {
+            return;
+        }
         self.clock.absorb(&mut other.clock);
         for (mine, theirs) in [
             (&mut self.near, &mut other.near),

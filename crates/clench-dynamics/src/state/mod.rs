@@ -49,6 +49,7 @@ impl Size {
         }
     }
 
+    #[inline(always)]
     fn of(self, model: &Model) -> usize {
         match self {
             Size::Positions => model.nq,
