@@ -45,6 +45,8 @@ pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
+#[doc(hidden)]
+pub use narrow::{CONVEX_CONSTANTS, CONVEX_COUNTS, SHAPE_CONSTANTS};
 pub use narrow::{Collide, SeparatingAxis, collide, collide_again, multiccd_matters, supported};
 pub use pose::Pose;
 pub use protrusion::{Ascent, protrusion, protrusion_of_points};

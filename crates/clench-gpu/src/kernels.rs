@@ -216,7 +216,15 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     <Status as Code>::ALL
         .iter()
         .for_each(|x| declare(x.constant(), x.code()));
-    for (name, value) in clench_solver::METHOD_CONSTANTS {
+    for &(name, value) in clench_collide::CONVEX_COUNTS {
+        declare(name, value);
+    }
+    let constants = [
+        clench_solver::METHOD_CONSTANTS,
+        clench_collide::SHAPE_CONSTANTS,
+        clench_collide::CONVEX_CONSTANTS,
+    ];
+    for (name, value) in constants.concat() {
         // Without a type, so that it suits both precisions.
         let _ = writeln!(text, "const {name} = {value:?};");
     }

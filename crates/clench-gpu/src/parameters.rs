@@ -4,6 +4,7 @@ use crate::batch::GpuBatch;
 use crate::error::GpuError;
 use crate::precision::GpuReal;
 use crate::tables::{OWN_PARAMETERS, Tables};
+use clench_collide::ShapeKind;
 use clench_rigid::model::Model;
 use std::iter::repeat_n;
 use zerocopy::IntoBytes;
@@ -21,8 +22,11 @@ impl<S: GpuReal> GpuBatch<S> {
             self.base.general_kernels,
         );
         let base = &self.base;
-        // Hulls are built from sizes only once.
-        let resized = model.params.geom_size != self.model().params.geom_size;
+        // Environments share meshes and height fields.
+        let resized = model.geoms.iter().enumerate().any(|(g, geom)| {
+            let is_shared = matches!(geom.kind, ShapeKind::Mesh | ShapeKind::HeightField);
+            is_shared && model.params.geom_size[g] != self.model().params.geom_size[g]
+        });
         let alike = tables.constants == base.constants && tables.layout == base.layout;
         if resized || !alike || tables.words != base.words {
             return Err(GpuError::Structure);

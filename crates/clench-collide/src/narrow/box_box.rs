@@ -16,11 +16,11 @@ use crate::{Contacts, Cuboid, Pose};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// The margin by which an edge pair must beat the best face, relative to its own separation, to break a tie.
-const EDGE_BIAS: f64 = 1e-6;
+pub(crate) const EDGE_BIAS: f64 = 1e-6;
 /// The cosine (0.05°) from which an edge axis counts as the best face axis, since stacks rest on faces ...
-const ALIAS_COSINE: f64 = 1.0 - 3.8e-7;
+pub(crate) const ALIAS_COSINE: f64 = 1.0 - 3.8e-7;
 /// ... unless it is better by this fraction of the face's separation.
-const ALIAS_SHARE: f64 = 0.05;
+pub(crate) const ALIAS_SHARE: f64 = 0.05;
 /// The angle up to which faces are level, rad.
 const LEVEL: f64 = 1e-8;
 

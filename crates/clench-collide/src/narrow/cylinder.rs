@@ -11,7 +11,7 @@ use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 /// rounding.
 const STEPS: usize = 54;
 /// The sine of the tilt (5°) below which a capsule lies along a cap or a side.
-const LEVEL_SINE: f64 = 0.087;
+pub(crate) const LEVEL_SINE: f64 = 0.087;
 
 /// A cylinder in its own frame.
 #[derive(Clone, Copy)]

@@ -8,6 +8,7 @@ mod box_manifold;
 mod box_round;
 mod boxes;
 mod capsule;
+mod constants;
 mod convex;
 mod cylinder;
 mod outline;
@@ -22,6 +23,8 @@ mod separating_axis;
 
 use crate::{Contacts, Pose, Shape, ShapeKind};
 use clench_math::{Real, kernel};
+pub use constants::SHAPE_CONSTANTS;
+pub use convex::{CONVEX_CONSTANTS, CONVEX_COUNTS};
 use placed::Placed;
 pub use separating_axis::SeparatingAxis;
 

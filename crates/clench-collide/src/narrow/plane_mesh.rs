@@ -15,8 +15,8 @@ use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Relative to the hull: the distance below which face corners are merged, and the allowed error of the outline's
 /// depth.
-const SAME: f64 = 1e-5;
-const MISSED: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-5;
+pub(super) const MISSED: f64 = 1e-6;
 
 #[kernel]
 pub(super) fn plane_mesh<T: Real>(

@@ -10,7 +10,7 @@ use clench_math::{Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// The tilt below which a cap is level to rounding: all its corners are equally deep.
-const TILT: f64 = 5e-6;
+pub(crate) const TILT: f64 = 5e-6;
 
 /// A cylinder about the local z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

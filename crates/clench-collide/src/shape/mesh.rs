@@ -9,9 +9,9 @@ use crate::ray::line::Line;
 use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// The distance beyond the sampled corners, relative to the size, from which another corner is included.
-const NOTICEABLE: f64 = 1e-7;
+pub(crate) const NOTICEABLE: f64 = 1e-7;
 /// The tilt below which a face is level.
-const LEVEL: f64 = 2e-3;
+pub(crate) const LEVEL: f64 = 2e-3;
 
 /// The convex hull of a mesh, the same in every environment.
 #[derive(Clone, Copy, Debug, PartialEq)]

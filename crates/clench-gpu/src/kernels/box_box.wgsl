@@ -2,10 +2,6 @@
 // counterparts: `clench-collide/src/narrow/box_box.rs` and `box_manifold.rs`, which explain the rules and their
 // constants.
 
-const EDGE_BIAS: f32 = 1e-6;
-const ALIAS_COSINE: f32 = 1.0 - 3.8e-7;
-const ALIAS_SHARE: f32 = 0.05;
-
 // The remaining work for a pair: none, contacts along `best`, or the general convex method.
 const FOUND: u32 = 0u;
 const ALONG_BEST: u32 = 1u;
@@ -68,7 +64,7 @@ fn best_edges(face: Separation, rotation: mat3x3f, offset: vec3f, a: vec3f, b: v
         if (distance > reach) {
             return Separation(3u, 0u, 0u, distance);
         }
-        if (distance - EDGE_BIAS * abs(distance) > largest.distance && distance > face.distance) {
+        if (distance - BOX_EDGE_BIAS * abs(distance) > largest.distance && distance > face.distance) {
             largest = Separation(2u, i, j, distance);
         }
     }
@@ -160,8 +156,8 @@ fn box_box(pair: u32, a: Placed, b: Placed, range: f32) -> u32 {
         if (face.owner == 1u) {
             along_face = abs(dot(rotation[face.axis], n));
         }
-        let share = ALIAS_SHARE * abs(face.distance) + 1e-15;
-        if (along_face > ALIAS_COSINE && largest.distance < face.distance + share) {
+        let share = BOX_ALIAS_SHARE * abs(face.distance) + 1e-15;
+        if (along_face > BOX_ALIAS_COSINE && largest.distance < face.distance + share) {
             largest = face;
         } else {
             best = Gap(n * signed(1.0, dot(n, offset)), largest.distance, true);

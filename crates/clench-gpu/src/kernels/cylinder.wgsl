@@ -3,8 +3,6 @@
 
 // The maximum steps to the nearest point of a segment.
 const SEGMENT_STEPS: u32 = 40u;
-// The sine of the tilt (5°) up to which a capsule lies along a cap or a side.
-const LEVEL_SINE: f32 = 0.087;
 
 // The middle line of a capsule.
 struct Segment {
@@ -132,7 +130,7 @@ fn segment_overlap(s: Segment, nearest: f32, size: vec3f, spare: vec3f) -> vec2f
         reach = size.y / abs(slope);
         tilt = dot(u.xy, u.xy);
     }
-    if (tilt > LEVEL_SINE * LEVEL_SINE) {
+    if (tilt > CAPSULE_LEVEL_SINE * CAPSULE_LEVEL_SINE) {
         return vec2f(nearest);
     }
     let low = min(max(middle - reach, -s.half_length), nearest);

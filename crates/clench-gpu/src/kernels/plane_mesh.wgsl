@@ -68,7 +68,7 @@ fn add_outline(pair: u32, mesh: Placed, hull: u32, face: u32, lowest: vec4f, nor
         push_corner(vec3f(dot(along, arm), dot(sideways, arm), 0.0));
     }
     let size = length(mesh.size);
-    let same = size * SAME_SPOT;
+    let same = size * PLANE_SAME_POINT;
     make_convex(same);
     find_moments();
     var toward = vec2f(1.0, 0.0);
@@ -85,7 +85,7 @@ fn add_outline(pair: u32, mesh: Placed, hull: u32, face: u32, lowest: vec4f, nor
                 lowest_at = k;
             }
         }
-        if (attempt == 0u && least - lowest.w <= size * MISSED) {
+        if (attempt == 0u && least - lowest.w <= size * PLANE_MISS) {
             break;
         }
         let arm = lowest.xyz - start;

@@ -1,5 +1,5 @@
-//! Convex polyhedra: the hulls of meshes that may collide, once each, and boxes that may collide with cylinders; and
-//! height fields.
+//! Convex polyhedra: the hulls of meshes that may collide, once each, and one box for all that may collide with
+//! cylinders; and height fields.
 
 use super::{Tables, starts};
 use crate::codes::row;
@@ -99,6 +99,7 @@ impl Tables {
         self.row::<FieldNumbers>();
         let mut most_corners = 0;
         let mut of_mesh = vec![None; m.meshes.len()];
+        let mut of_box = None;
         let mut of_geom = vec![super::NONE as usize; m.geoms.len()];
         for (candidate, &g) in candidates
             .iter()
@@ -122,10 +123,9 @@ impl Tables {
                     most_corners = corners.fold(most_corners, usize::max);
                     of_geom[g] = place;
                 }
-                (ShapeKind::Box, _) if beside_cylinder => {
-                    if let Some(hull) = hull_of_box(m.params.geom_size[g]) {
-                        of_geom[g] = self.hull(&hull);
-                    }
+                // A flat box is no polyhedron.
+                (ShapeKind::Box, _) if beside_cylinder && is_solid(m.params.geom_size[g]) => {
+                    of_geom[g] = *of_box.get_or_insert_with(|| self.hull(&unit_box()));
                 }
                 (ShapeKind::HeightField, _) => {
                     if let Some(field) = m.heights(g) {
@@ -210,11 +210,17 @@ impl Tables {
     }
 }
 
-/// Returns a box as a polyhedron; `None` if it is flat.
-fn hull_of_box(size: Vec3<f64>) -> Option<Hull> {
+/// Returns true if no half size of a box is zero.
+fn is_solid(size: Vec3<f64>) -> bool {
+    size.to_array().iter().all(|&x| x > 0.0)
+}
+
+/// Returns the box whose half sizes are 1 as a polyhedron; the kernels scale it.
+fn unit_box() -> Hull {
     let sign = |k: usize, axis: usize| if k >> axis & 1 == 1 { -1.0 } else { 1.0 };
-    let corner = |k| size.scale_by(Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2)));
-    let corners: Vec<_> = (0..8).map(corner).collect();
-    let surface = convex_hull(&corners, None).ok()?;
-    Some(Hull::new(&surface, &corners))
+    let corners = Vec::from_iter((0..8).map(|k| Vec3::new(sign(k, 0), sign(k, 1), sign(k, 2))));
+    match convex_hull(&corners, None) {
+        Ok(surface) => Hull::new(&surface, &corners),
+        Err(error) => unreachable!("a cube has a hull: {error}"),
+    }
 }

@@ -10,6 +10,7 @@ mod large;
 mod outputs;
 mod random;
 mod refusals;
+mod sizes;
 mod solver;
 mod stages;
 mod steps;

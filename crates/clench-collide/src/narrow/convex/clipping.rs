@@ -10,10 +10,10 @@ use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// The angle below which edges are parallel; others cross.
-const PARALLEL: f64 = 1e-3;
+pub(crate) const PARALLEL: f64 = 1e-3;
 
 /// The distance beyond an end of an edge, relative to its length, at which a crossing is still on the edge.
-const BEYOND_END: f64 = 1e-5;
+pub(crate) const BEYOND_END: f64 = 1e-5;
 
 /// A projected edge or face: x and y across the normal, z along it.
 pub(super) struct ProjectedFeature<S> {

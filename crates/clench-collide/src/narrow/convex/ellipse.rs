@@ -14,7 +14,7 @@
 use clench_math::Scalar;
 
 /// The maximum number of Newton steps. Four are usual.
-const STEPS: usize = 16;
+pub(crate) const STEPS: usize = 16;
 
 /// An ellipse with semi-axes 1 along x and b ≤ 1 along y: an obliquely projected circle.
 pub(super) struct Ellipse<S> {

@@ -25,12 +25,12 @@ use clench_math::{Mat3, Scalar, Vec3};
 /// The maximum number of rounds. Most move a face, some find that it cannot be moved.
 const ROUNDS: usize = 2 * VERTICES;
 /// The maximum error of the depth of curved bodies, relative to the smaller body.
-const SLACK: f64 = 1e-4;
+pub(crate) const SLACK: f64 = 1e-4;
 /// The distance that a face can be moved, relative to the smaller body, below which Newton's method is tried.
-const NEAR: f64 = 0.1;
+pub(crate) const NEAR: f64 = 0.1;
 
 /// The preferred minimum distance of the initial vertices, relative to the smaller body.
-const FAR: f64 = 0.05;
+pub(crate) const FAR: f64 = 0.05;
 
 /// Returns the largest gap of overlapping cores, which is negative. The simplex must contain the origin, and becomes
 /// the face of the difference that the gap belongs to.

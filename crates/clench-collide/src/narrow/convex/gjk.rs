@@ -19,14 +19,14 @@ use super::{
 use clench_math::Scalar;
 
 /// The maximum number of iterations. Five to ten are usual.
-const MAX_ITERATIONS: usize = 64;
+pub(crate) const MAX_ITERATIONS: usize = 64;
 /// The difference of the bounds, relative to the smaller body, below which Newton's method is tried.
 const NEAR: f64 = 0.1;
 /// The multiple of √ε, relative to the smaller body, below which the direction of v is noise.
 const NOISE: f64 = 4.0;
 
 /// The maximum difference of the bounds at the end of a search, relative to the smaller body.
-const MAX_DIFFERENCE: f64 = 1e-6;
+pub(crate) const MAX_DIFFERENCE: f64 = 1e-6;
 
 /// The result for two cores.
 pub(super) enum Cores<S> {

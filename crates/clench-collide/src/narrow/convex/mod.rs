@@ -2,6 +2,7 @@
 
 mod body;
 mod clipping;
+mod constants;
 mod cylinder_polyhedron;
 mod cylinders;
 mod ellipse;
@@ -23,6 +24,7 @@ use super::placed::AnyPlaced;
 use super::separating_axis::SeparatingAxis;
 use crate::{Contacts, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
+pub use constants::{CONVEX_CONSTANTS, CONVEX_COUNTS};
 use epa::epa;
 use gjk::{Cores, gjk};
 use pair::{Gap, Pair};

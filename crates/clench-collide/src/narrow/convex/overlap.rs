@@ -14,13 +14,13 @@ use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// The distance below which points of a patch are merged, relative to the smaller body.
-const SAME_POINT: f64 = 1e-5;
+pub(crate) const SAME_POINT: f64 = 1e-5;
 /// The error of the patch's depth, relative to the smaller body.
-const MAX_MISS: f64 = 1e-6;
+pub(crate) const MAX_MISS: f64 = 1e-6;
 /// The ratio by which the extension of features that miss each other grows until they touch.
-const EXTENSION: f64 = 1.25;
+pub(crate) const EXTENSION: f64 = 1.25;
 /// The extension, relative to the smaller body, from which on it is enough that the features overlap.
-const MAX_EXTENSION: f64 = 1e-3;
+pub(crate) const MAX_EXTENSION: f64 = 1e-3;
 /// The angle up to which faces are level, rad.
 const LEVEL: f64 = 1e-9;
 

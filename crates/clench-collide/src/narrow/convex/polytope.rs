@@ -12,7 +12,7 @@ use clench_math::{Scalar, Vec3};
 pub(super) const VERTICES: usize = 128;
 const FACES: usize = 2 * VERTICES - 4;
 /// The distance below which vertices are merged, relative to the smaller body.
-const SAME: f64 = 1e-6;
+pub(crate) const SAME: f64 = 1e-6;
 
 /// A side of a face: the index of the face and of the side, counted from corner to next corner.
 #[derive(Clone, Copy)]

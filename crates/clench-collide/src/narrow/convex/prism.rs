@@ -31,7 +31,7 @@ pub(super) const EDGES: [[usize; 4]; 9] = [
     [2, 5, 4, 3],
 ];
 /// The z component, by [`FACE_COSINE`], above which a unit direction matches no wall.
-const RISE: f64 = 0.1;
+pub(crate) const RISE: f64 = 0.1;
 /// The neighbours of each corner.
 const NEIGHBORS: [[usize; 3]; 6] = [
     [1, 2, 3],

@@ -18,11 +18,11 @@ use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 
 /// The maximum number of steps. Newton's method converges quadratically or not at all.
-const MAX_STEPS: usize = 12;
+pub(crate) const MAX_STEPS: usize = 12;
 /// The maximum number of halvings of a step that decreases the gap.
-const MAX_HALVINGS: usize = 3;
+pub(crate) const MAX_HALVINGS: usize = 3;
 /// The maximum rotation of a step, rad.
-const MAX_ROTATION: f64 = 0.3;
+pub(crate) const MAX_ROTATION: f64 = 0.3;
 /// The rotation of the last step, in double precision; the next one's would be of the order of its square.
 const CONVERGED_ROTATION: f64 = 2e-6;
 

@@ -1,9 +1,6 @@
 // Features projected along the contact's normal, and clipping one against the other: x and y across the normal, z along
 // it. CPU counterparts: `clench-collide/src/narrow/convex/clipping.rs` and `polygon.rs`.
 
-// Edges at less than this angle are parallel; others cross.
-const PARALLEL: f32 = 1e-3;
-
 // A polygon, or a segment (two corners).
 var<private> polygon: array<vec3f, POLYGON_CORNERS>;
 var<private> polygon_count: u32;
@@ -88,23 +85,34 @@ fn clip_polygon(outward: vec2f, limit: f32) {
     }
 }
 
-// Returns the crossing of two segments in the projection, or the point nearest to it.
+// Returns the parameter, 0 to 1, of the point of a segment that is nearest to another in the projection.
+fn nearest_along(along: vec2f, to: vec2f) -> f32 {
+    return clamp(dot(along, to) / dot(along, along), 0.0, 1.0);
+}
+
+// Returns the crossing of two segments in the projection, or the middle between their nearest points.
 fn crossing(a: Projected, b: Projected) -> vec3f {
     let p = feature_corners[a.place];
     let q = feature_corners[b.place];
     let u = feature_corners[a.place + 1u] - p;
     let v = feature_corners[b.place + 1u] - q;
     let inverse = 1.0 / cross_2d(u.xy, v.xy);
-    let s = clamp(cross_2d((q - p).xy, v.xy) * inverse, 0.0, 1.0);
-    let t = clamp(cross_2d((q - p).xy, u.xy) * inverse, 0.0, 1.0);
-    return (p + u * s + q + v * t) * 0.5;
+    let at = vec2f(cross_2d((q - p).xy, v.xy), cross_2d((q - p).xy, u.xy)) * inverse;
+    var ends = clamp(at, vec2f(0.0), vec2f(1.0));
+    let beyond = abs(at - ends);
+    if (max(beyond.x, beyond.y) > CLIP_BEYOND_END) {
+        // The lines of nearly parallel segments may cross far beyond the end at which the segments are nearest.
+        ends.y = nearest_along(v.xy, (p + u * ends.x - q).xy);
+        ends.x = nearest_along(u.xy, (q + v * ends.y - p).xy);
+    }
+    return (p + u * ends.x + q + v * ends.y) * 0.5;
 }
 
 fn is_parallel(a: Projected, b: Projected) -> bool {
     let u = (feature_corners[a.place + 1u] - feature_corners[a.place]).xy;
     let v = (feature_corners[b.place + 1u] - feature_corners[b.place]).xy;
     let area = cross_2d(u, v);
-    return area * area <= dot(u, u) * dot(v, v) * PARALLEL * PARALLEL;
+    return area * area <= dot(u, u) * dot(v, v) * CLIP_PARALLEL * CLIP_PARALLEL;
 }
 
 // Returns the coordinates, in the plane of a cap and from its centre, of the point above or below a point of the

@@ -68,6 +68,7 @@ fn find_touching(given_gap: bool, range: f32) -> bool {
         }
     }
     touching_vertex = vertex_along(best.normal);
+    searched = !certain;
     if (certain) {
         begin_simplex(touching_vertex);
     }

@@ -2,9 +2,6 @@
 // CPU counterparts: `clench-collide/src/narrow/convex/cylinder_polyhedron.rs`, which derives the candidate directions,
 // and `ellipse.rs`.
 
-// The maximum number of Newton steps on an ellipse, converged or not.
-const ELLIPSE_STEPS: u32 = 16u;
-
 // A cylinder in the frame of a polyhedron.
 struct Cylinder {
     axis: vec3f,
@@ -34,7 +31,11 @@ struct Crease {
     rotation: vec2f,
 }
 
-// A polyhedron is a hull, or, if `hull` is NONE, the ground below a terrain triangle, which is the first body.
+// True if the polyhedron is a box: its half sizes scale that of half sizes 1. Others are not scaled.
+var<private> is_box: bool;
+var<private> box_scale: vec3f;
+
+// A polyhedron is a hull, a box, or, if `hull` is NONE, the ground below a terrain triangle, which is the first body.
 fn is_ground(hull: u32) -> bool {
     return ANY_TERRAIN && hull == NONE;
 }
@@ -50,7 +51,7 @@ fn vertex_of(hull: u32, k: u32) -> vec3f {
     if (is_ground(hull)) {
         return prism[k];
     }
-    return vertex_of_hull(hull, k);
+    return vertex_of_hull(hull, k) * box_scale;
 }
 
 fn faces_of(hull: u32) -> u32 {
@@ -64,7 +65,9 @@ fn plane_of(hull: u32, face: u32) -> vec4f {
     if (is_ground(hull)) {
         return plane_of_prism(face);
     }
-    return plane_of_hull(hull, face);
+    let plane = plane_of_hull(hull, face);
+    // The normals of a box are along its axes.
+    return vec4f(plane.xyz, plane.w * select(1.0, dot(abs(plane.xyz), box_scale), is_box));
 }
 
 fn creases_of(hull: u32) -> u32 {
@@ -84,7 +87,7 @@ fn crease_of(hull: u32, k: u32) -> Crease {
         return Crease(start, along, cross(start, along), edge.zw, rotation);
     }
     let place = words[hull + HULL_CREASES] + 8u * k;
-    let start = shape3(place);
+    let start = shape3(place) * box_scale;
     let along = shape3(place + 3u);
     let faces = words[hull + HULL_CREASE_FACES] + 2u * k;
     let rotation = vec2f(numbers[place + 6u], numbers[place + 7u]);
@@ -232,6 +235,8 @@ fn polyhedron_gap(limit: f32) -> Gap {
         hull = NONE;
         c = Cylinder(rotation_b[2], offset_b, body_b.size);
     }
+    is_box = !ground && body_b.kind == BOX;
+    box_scale = select(vec3f(1.0), body_b.size, is_box);
     largest_gap = Gap(vec3f(0.0, 0.0, 1.0), -UNMOVABLE, false);
     bar = -UNMOVABLE;
     for (var face = 0u; face < faces_of(hull) && largest_gap.gap <= limit; face++) {

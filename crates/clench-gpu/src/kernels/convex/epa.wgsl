@@ -1,13 +1,6 @@
 // The penetration depth of two cores: the expanding polytope algorithm (van den Bergen 2001). CPU counterpart:
 // `clench-collide/src/narrow/convex/epa.rs`.
 
-// The tolerance of the depth of curved bodies, relative to the smaller body.
-const SLACK: f32 = 1e-4;
-// Newton's method is tried if a face can move by less than this share of the smaller body.
-const NEAR: f32 = 0.1;
-// The preferred minimum distance of a polytope's first vertices, relative to the smaller body.
-const FAR: f32 = 0.05;
-
 // Returns the distance of `w` from the first vertex, the line of the first two, or the plane of the first three.
 fn reach_from(stage: u32, w: vec3f, along: vec3f, normal: vec3f) -> f32 {
     let offset = w - polytope_w(0u);
@@ -49,7 +42,7 @@ fn enclose() -> bool {
             var vertex = simplex[min(k, 3u)];
             if (k >= simplex_count) {
                 // The simplex has a vertex far enough away.
-                if (max_reach > smallest * FAR) {
+                if (max_reach > smallest * EPA_FAR) {
                     break;
                 }
                 let n = direction_of_stage(stage, k - simplex_count, along, normal);
@@ -113,7 +106,7 @@ fn expand(curved: bool) -> bool {
         let face = nearest_face_of_polytope();
         let distance = fetch(face_at(face) + 10u);
         // The amount by which the depth through the nearest face may still be smaller.
-        let slack = select(exactness, max(smallest * SLACK, exactness), best.settled);
+        let slack = select(exactness, max(smallest * EPA_SLACK, exactness), best.settled);
         let corners = corners_of(face);
         known = -best.gap - distance <= slack;
         if (known && !best.settled && distance < UNMOVABLE) {
@@ -139,7 +132,7 @@ fn expand(curved: bool) -> bool {
             // Rounding allows no further movement.
             put(face_at(face) + 10u, UNMOVABLE);
         }
-        if (better && curved && movable < max(smallest, distance) * NEAR) {
+        if (better && curved && movable < max(smallest, distance) * EPA_NEAR) {
             touch(corners);
             return false;
         }

@@ -1,11 +1,6 @@
 // The part of a body that lies against a plane: a face, an edge or a corner. CPU counterpart: `feature` of the shapes
 // in `clench-collide/src/shape`.
 
-// Faces and edges count as lying against the plane up to a tilt of 5°.
-const FACE_COSINE: f32 = 0.996;
-const EDGE_SINE: f32 = 0.087;
-// A cap with a smaller tilt is level to rounding: all its corners are equally deep.
-const TILT: f32 = 5e-6;
 // The corners of a feature of the first body, then those of the second, each in its body's frame.
 var<private> feature_corners: array<vec3f, 2 * FEATURE_CORNERS>;
 
@@ -58,7 +53,7 @@ fn box_feature(size: vec3f, corner: vec3f, d: vec3f, place: u32) -> Feature {
 fn cap_feature(size: vec3f, d: vec3f, place: u32) -> Feature {
     let up = signed(1.0, d.z);
     var first = vec2f(size.x, 0.0);
-    if (length(d.xy) > TILT) {
+    if (length(d.xy) > CAP_TILT) {
         first = radial_direction(d) * size.x;
     }
     for (var k = 0u; k < bound(CAP_CORNERS); k++) {

@@ -2,10 +2,8 @@
 // `clench-collide/src/narrow/convex/gjk.rs`, except that Newton's method runs after the search, because its text is
 // long.
 
-const GJK_ROUNDS: u32 = 64u;
-// Shares of the smaller body: the distance below which its direction is noise, and the tolerance of the bounds.
+// The distance below which its direction is noise, relative to the smaller body.
 const TOUCHING: f32 = 4.0 * ROOT_OF_EPSILON;
-const DOUBT: f32 = 1e-6;
 
 // The outcomes of a search: a gap beyond the limit, the origin seems inside, nothing is nearer.
 const BEYOND: u32 = 0u;
@@ -72,7 +70,7 @@ fn gjk(limit: f32) -> u32 {
     for (var attempt = 0u; attempt < bound(2u); attempt++) {
         end = search_nearest(limit);
         let inside = end.how == INSIDE && best.gap > exactness;
-        let short = end.how == NEAREST && end.length - best.gap > max(smallest * DOUBT, exactness);
+        let short = end.how == NEAREST && end.length - best.gap > max(smallest * GJK_MAX_DIFFERENCE, exactness);
         if (!inside && !short) {
             break;
         }

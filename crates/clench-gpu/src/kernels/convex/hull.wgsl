@@ -36,7 +36,7 @@ fn furthest_of_hull(hull: u32, d: vec3f) -> u32 {
 // Returns the face at a vertex most nearly perpendicular to `d`; NONE if all are tilted by more than 5°.
 fn face_across(hull: u32, vertex: u32, d: vec3f) -> u32 {
     let faces = words[hull + HULL_VERTEX_FACES];
-    var cosine = FACE_COSINE;
+    var cosine: f32 = FACE_COSINE;
     var best_face = NONE;
     for (var k = words[faces + vertex]; k < words[faces + vertex + 1u]; k++) {
         let other = dot(plane_of_hull(hull, words[k]).xyz, d);
@@ -47,11 +47,6 @@ fn face_across(hull: u32, vertex: u32, d: vec3f) -> u32 {
     }
     return best_face;
 }
-
-// The minimum lead of a corner over the sampled ones for it to count, relative to its body.
-const NOTICEABLE: f32 = 1e-7;
-// Faces with a smaller tilt are level.
-const LEVEL: f32 = 2e-3;
 
 // Stores the corners of a face; of many, only every second, third and so on. Then the furthest vertex is kept too, but
 // for a level face only if it is noticeably further than the others.
@@ -65,8 +60,8 @@ fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Fea
     for (var k = 0u; k < count; k += stride) {
         furthest = max(furthest, dot(vertex_of_hull(body.hull, words[begin + k]), d));
     }
-    let level = dot(d - normal, d - normal) <= LEVEL * LEVEL;
-    let needed = !level || dot(vertex_of_hull(body.hull, vertex), d) > furthest + body.reach * NOTICEABLE;
+    let level = dot(d - normal, d - normal) <= HULL_LEVEL * HULL_LEVEL;
+    let needed = !level || dot(vertex_of_hull(body.hull, vertex), d) > furthest + body.reach * HULL_NOTICEABLE;
     var kept = 0u;
     for (var k = 0u; k < count; k++) {
         let corner = words[begin + k];

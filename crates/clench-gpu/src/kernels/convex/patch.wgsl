@@ -1,11 +1,6 @@
 // The points of a contact: the overlap of two bodies' features, projected along the normal. CPU counterparts:
 // `clench-collide/src/narrow/convex/overlap.rs` and `patch.rs`.
 
-// Shares of the smaller body: the distance below which points are merged, and that by which a patch may miss the
-// deepest point.
-const SAME_SPOT: f32 = 1e-5;
-const MISSED: f32 = 1e-6;
-
 // Contacts in the projection: the position across the normal, and the heights of both surfaces.
 var<private> spots: array<vec4f, POLYGON_CORNERS + 1>;
 var<private> spot_count: u32;
@@ -23,12 +18,19 @@ fn at_distance(spot: vec4f, distance: f32) -> vec4f {
 // The vertex along the normal of the largest gap. The nearest points of the cores are its points if they face each
 // other, else those of the simplex.
 var<private> touching_vertex: Vertex;
+// True if a search by support functions found the gap.
+var<private> searched: bool;
+
+// Returns true if the support points along the normal face each other.
+fn is_facing(n: vec3f) -> bool {
+    return length(touching_vertex.w - n * best.gap) <= smallest * PATCH_MISS;
+}
 
 fn witness(view: mat3x3f, n: vec3f) -> vec4f {
     let vertex = touching_vertex;
     var on_a = vertex.a;
     var on_b = vertex.b;
-    if (length(vertex.w - n * best.gap) > smallest * MISSED) {
+    if (!is_facing(n)) {
         let count = simplex_count;
         simplex_count = 1u;
         weights[0] = 1.0;
@@ -61,6 +63,15 @@ fn least_distance() -> f32 {
     return least;
 }
 
+// Returns the first spot whose distance is the least, to the tolerance.
+fn deepest_spot(least: f32) -> u32 {
+    var deepest = 0u;
+    while (deepest + 1u < spot_count && spot_distance(spots[deepest]) > least + exactness) {
+        deepest++;
+    }
+    return deepest;
+}
+
 // Fills the spots with the corners of the overlap of two features, and returns the least distance.
 fn find_spots(a: Projected, b: Projected, beyond: f32) -> f32 {
     overlap(a, b, beyond);
@@ -75,7 +86,7 @@ fn find_spots(a: Projected, b: Projected, beyond: f32) -> f32 {
 // patch. If these miss the lowest spot by more than `slack`, the outline is sampled from its direction, and it is one
 // of them.
 fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: f32) {
-    let same = smallest * SAME_SPOT;
+    let same = smallest * PATCH_SAME_POINT;
     make_convex(same);
     find_moments();
     let few = polygon_count <= PATCH_POINTS;
@@ -116,7 +127,7 @@ fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: 
 
 // Keeps the deepest of coincident spots, among those within reach.
 fn merge_spots(reach: f32) {
-    let same = smallest * SAME_SPOT;
+    let same = smallest * PATCH_SAME_POINT;
     var kept = 0u;
     for (var k = 0u; k < spot_count; k++) {
         let spot = spots[k];
@@ -180,29 +191,43 @@ fn add_patch(pair: u32, a: Placed, n: vec3f, of_a: Feature, of_b: Feature, range
     let first = project_feature(0u, of_a, view, vec3f());
     let second = project_feature(FEATURE_CORNERS, of_b, view * rotation_b, view * offset_b);
 
-    let slack = max(smallest * MISSED, exactness);
+    let slack = max(smallest * PATCH_MISS, exactness);
+    // The normal of a gap that is the largest up to the tolerance may be that of features which miss each other by the
+    // root of the tolerance.
+    let may_extend = !searched && !is_facing(n);
+    let far = smallest * PATCH_MAX_EXTENSION;
     var least = UNMOVABLE;
-    // Bodies that touch with an edge touch at the border of a face, which rounding may miss.
-    for (var k = 0u; k < bound(3u); k++) {
-        least = find_spots(first, second, select(select(slack, exactness, k == 1u), 0.0, k == 0u));
-        if (least <= best.gap + slack) {
+    var beyond: f32 = 0.0;
+    loop {
+        least = find_spots(first, second, beyond);
+        let misses = least > best.gap + slack;
+        // Bodies that touch with an edge touch at the border of a face, which rounding may miss.
+        let wider = beyond < slack || (may_extend && (beyond < far || (spot_count == 0u && beyond < largest)));
+        if (!(misses && wider)) {
             break;
+        }
+        if (beyond < slack) {
+            beyond = select(slack, exactness, beyond == 0.0);
+        } else {
+            beyond *= PATCH_EXTENSION;
         }
     }
     let reach = range + body_a.radius + body_b.radius;
-    if (least > best.gap + slack) {
+    let extended = beyond > slack;
+    if (extended || least > best.gap + slack) {
         // The features miss the deepest point.
+        var lowest = at_distance(spots[deepest_spot(least)], best.gap);
+        if (!extended || spot_count == 0u) {
+            lowest = witness(view, n);
+        }
         for (var k = spot_count; k > 0u; k--) {
             spots[k] = spots[k - 1u];
         }
-        spots[0] = witness(view, n);
+        spots[0] = lowest;
         spot_count++;
-        least = spot_distance(spots[0]);
+        least = spot_distance(lowest);
     }
-    var deepest = 0u;
-    while (deepest + 1u < spot_count && spot_distance(spots[deepest]) > least + exactness) {
-        deepest++;
-    }
+    let deepest = deepest_spot(least);
     let lowest = spots[deepest];
     if (spot_distance(lowest) > reach) {
         // They touch by less than the features show.

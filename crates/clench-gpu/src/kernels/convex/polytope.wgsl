@@ -6,8 +6,6 @@
 // horizon lists the sides of the remaining faces in order: the side, and its start and end corners.
 
 const UNMOVABLE: f32 = 3e38;
-// Vertices nearer than this share of the smaller body are merged.
-const SAME_VERTEX: f32 = 1e-6;
 const FACE_SIZE: u32 = 12u;
 
 var<private> vertex_count: u32;
@@ -189,7 +187,7 @@ fn stitch() {
 // Replaces the faces visible from a vertex by faces to it; `face` is one of them. Does nothing and returns false if the
 // vertex is one of its corners or rounding has broken the horizon.
 fn add_to_polytope(face: u32, vertex: Vertex) -> bool {
-    let same = max(smallest * SAME_VERTEX, exactness);
+    let same = max(smallest * POLYTOPE_SAME_VERTEX, exactness);
     for (var k = 0u; k < bound(3u); k++) {
         let apart = polytope_w(fetch_index(face_at(face) + k)) - vertex.w;
         if (dot(apart, apart) <= same * same) {

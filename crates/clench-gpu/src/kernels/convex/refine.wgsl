@@ -1,10 +1,7 @@
 // Newton's method for the direction of the largest gap, near it. CPU counterpart:
 // `clench-collide/src/narrow/convex/refine.rs`, which derives the steps.
 
-const NEWTON_STEPS: u32 = 12u;
-const NEWTON_HALVINGS: u32 = 3u;
-// The maximum rotation of a step, and its cosine.
-const MAX_ROTATION: f32 = 0.3;
+// The cosine of the maximum rotation of a step.
 const MAX_ROTATION_COSINE: f32 = 0.955336489125606;
 // The rotation of a converged step.
 const CONVERGED_ROTATION: f32 = max(2e-6, 256.0 * EPSILON);
@@ -146,7 +143,7 @@ fn refine_cap(n: vec3f, gap: f32) -> Gap {
         let bend = between(curvature_of(body_a, start), toward.xyz, toward.xyz)
             + between(curvature_of(body_b, back * start), back * toward.xyz, back * toward.xyz);
         let rotation = (toward.w - body.size.x) / max(bend + along, exactness);
-        found = Gap(direction(axis + toward.xyz * clamp(rotation, ROOT_OF_EPSILON, MAX_ROTATION)).xyz, along, false);
+        found = Gap(direction(axis + toward.xyz * clamp(rotation, ROOT_OF_EPSILON, REFINE_MAX_ROTATION)).xyz, along, false);
     }
     return found;
 }
@@ -162,20 +159,20 @@ fn refine(n: vec3f) -> Gap {
     var halvings = 0u;
     var steps = 0u;
     var may_leave = ANY_CYLINDER && (body_a.kind == CYLINDER || body_b.kind == CYLINDER);
-    for (var round = 0u; round < bound(NEWTON_STEPS * (NEWTON_HALVINGS + 2u)); round++) {
+    for (var round = 0u; round < bound(REFINE_STEPS * (REFINE_HALVINGS + 2u)); round++) {
         let w = vertex_along(tried).w;
         let gap = dot(tried, w);
         if (!(gap >= before - exactness * 1e-3)) {
             step = step * vec4f(0.5, 0.5, 0.5, 1.0);
             halvings++;
-            if (halvings > NEWTON_HALVINGS) {
+            if (halvings > REFINE_HALVINGS) {
                 return at;
             }
             tried = direction(at.normal + step.xyz).xyz;
             continue;
         }
         at = Gap(tried, gap, false);
-        if (edge_count == 2u || steps == NEWTON_STEPS) {
+        if (edge_count == 2u || steps == REFINE_STEPS) {
             return at;
         }
         if (may_leave) {
@@ -199,7 +196,7 @@ fn refine(n: vec3f) -> Gap {
             return at;
         }
         size = length(step.xyz);
-        step = vec4f(step.xyz * min(1.0, MAX_ROTATION / max(size, SMALLEST)), step.w);
+        step = vec4f(step.xyz * min(1.0, REFINE_MAX_ROTATION / max(size, SMALLEST)), step.w);
         before = gap;
         halvings = 0u;
         steps++;

@@ -6,7 +6,7 @@ use crate::narrow::per_lane::Point;
 use clench_math::{Scalar, Vec3};
 
 /// The minimum distance of the centre from the triangle, in tolerances, for an exact direction.
-const CLEAR: f64 = 1e3;
+pub(crate) const CLEAR: f64 = 1e3;
 
 impl<S: Scalar> Search<S> {
     /// Adds the contact of a triangle and a ball about `middle`. Returns false if it cannot decide: a centre below the

@@ -10,7 +10,7 @@ use clench_math::{Scalar, Vec3};
 use std::ops::Range;
 
 /// The distance below which points are merged, relative to the body's size.
-const SAME: f64 = 1e-5;
+pub(crate) const SAME: f64 = 1e-5;
 
 /// At most [`MAX_POINTS`] points, including the deepest.
 pub(super) struct Manifold<S> {

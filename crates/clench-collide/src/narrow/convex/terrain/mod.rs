@@ -31,22 +31,24 @@ use crate::narrow::per_lane::{Point, Points, per_lane};
 use crate::narrow::placed::{AnyPlaced, Placed};
 use crate::{Contacts, Pose, Shape, ShapeKind, Terrain};
 use arrayvec::ArrayVec;
+pub(super) use ball::CLEAR;
 use bounds::Bounds;
 use clench_math::{Mat3, Real, Scalar, Vec3};
 use face_clip::FaceClip;
 use grid::{TerrainGrid, Triangle, same_direction};
 use manifold::Manifold;
+pub(super) use manifold::SAME;
 use voronoi::VoronoiFeature;
 
 /// The maximum depth of a face, relative to the smallest depth of any prism.
-const FACE_DEPTH_RATIO: f64 = 2.0;
+pub(crate) const FACE_DEPTH_RATIO: f64 = 2.0;
 
 /// The angle, in tolerances for equal directions, up to which a direction is the face's normal: rounding of a
 /// triangle's corners turns its normal by no more.
-const FACE_NORMAL_RATIO: f64 = 8.0;
+pub(crate) const FACE_NORMAL_RATIO: f64 = 8.0;
 
 /// The maximum number of cached convex edges and vertices; others may be searched repeatedly.
-const MAX_FEATURES: usize = 4;
+pub(crate) const MAX_FEATURES: usize = 4;
 
 /// Computes the contacts of a height field and a bounded convex shape.
 pub(in crate::narrow) fn terrain<T: Real>(

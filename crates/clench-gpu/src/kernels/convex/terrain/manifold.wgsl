@@ -7,8 +7,6 @@
 
 const COUNTED: u32 = 0u;
 const PROVISIONAL: u32 = 1u;
-// Points nearer to each other than this share of the body's size are merged.
-const SAME_POINT: f32 = 1e-5;
 // Directions within this angle are equal, rad.
 const SAME_DIRECTION: f32 = max(1e-6, 100.0 * EPSILON);
 // The points of a facet, including a new one.
@@ -65,12 +63,12 @@ fn ground_of(point: TerrainPoint) -> vec3f {
 fn is_on_plane(p: TerrainPoint, point: TerrainPoint) -> bool {
     let rotation = p.normal - point.normal;
     let apart = abs(dot(ground_of(p) - ground_of(point), point.normal));
-    return dot(rotation, rotation) <= SAME_DIRECTION * SAME_DIRECTION && apart <= terrain_size * SAME_POINT;
+    return dot(rotation, rotation) <= SAME_DIRECTION * SAME_DIRECTION && apart <= terrain_size * MANIFOLD_SAME_POINT;
 }
 
 fn is_same_point(p: TerrainPoint, q: TerrainPoint) -> bool {
     let apart = p.position - q.position;
-    let same = terrain_size * SAME_POINT;
+    let same = terrain_size * MANIFOLD_SAME_POINT;
     return dot(apart, apart) <= same * same;
 }
 
@@ -89,7 +87,7 @@ fn is_redundant(point: TerrainPoint) -> bool {
         let side = other.position - start;
         let size = max(abs(side.x), max(abs(side.y), abs(side.z)));
         let rotation = dot(cross(side, point.position - start), other.normal);
-        within = within && rotation >= -terrain_size * SAME_POINT * size;
+        within = within && rotation >= -terrain_size * MANIFOLD_SAME_POINT * size;
         start = other.position;
     }
     if (point.distance < least - terrain_tolerance) {
@@ -217,7 +215,7 @@ fn extend_hull(begin: u32, k: u32) {
     while (facet_hull_count >= begin + 2u) {
         let p = facet_at[facet_hull[facet_hull_count - 2u]];
         let q = facet_at[facet_hull[facet_hull_count - 1u]];
-        if (cross_2d(q - p, at - p) > terrain_size * SAME_POINT * length(at - p)) {
+        if (cross_2d(q - p, at - p) > terrain_size * MANIFOLD_SAME_POINT * length(at - p)) {
             break;
         }
         facet_hull_count--;

@@ -1,8 +1,6 @@
 // The ground below a triangle of terrain: a convex body of six corners. CPU counterpart:
 // `clench-collide/src/narrow/convex/prism.rs`.
 
-// The rise of a unit direction above which it is no normal of a wall.
-const WALL_RISE: f32 = 0.1;
 const PRISM_FACES: u32 = 5u;
 const PRISM_EDGES: u32 = 9u;
 
@@ -90,7 +88,7 @@ fn feature_of_prism(d: vec3f, place: u32) -> Feature {
     var face = NONE;
     var normal = vec3f();
     // A direction that rises this steeply can only be the normal of the top.
-    let faces = select(PRISM_FACES, 1u, d.z > WALL_RISE);
+    let faces = select(PRISM_FACES, 1u, d.z > PRISM_WALL_RISE);
     for (var k = 0u; k < faces; k++) {
         let corners = corners_of_prism(k);
         let p = prism[corners.x];

@@ -4,14 +4,6 @@
 // Each triangle is a round of `convex`: the first body is the ground below it. The contacts of a round are listed in
 // memory and added to a manifold at its end. Closing rounds after the triangles merge the remaining contacts.
 
-// The maximum depth of a face that counts, relative to the smallest depth of any prism.
-const FACE_DEPTH_RATIO: f32 = 2.0;
-// The tolerance for a direction to count as the face's normal, relative to that for equal directions.
-const FACE_NORMAL_RATIO: f32 = 8.0;
-// The minimum distance of a ball's centre from a triangle for an exact direction, relative to the tolerance.
-const CLEAR: f32 = 1e3;
-// The maximum number of stored convex edges and vertices; others may be searched repeatedly.
-const MAX_FEATURES: u32 = 4u;
 // Rounds after the triangles: provisional contacts, then the deepest of those that count and of those that do not.
 const CLOSING_ROUNDS: u32 = 3u;
 
@@ -42,7 +34,7 @@ var<private> half_count: u32;
 var<private> any_is_near: bool;
 // The direction that separated the last triangle's ground from the body.
 var<private> apart_along: vec3f;
-var<private> features: array<TerrainFeature, MAX_FEATURES>;
+var<private> features: array<TerrainFeature, TERRAIN_MAX_FEATURES>;
 var<private> feature_count: u32;
 var<private> patch_count: u32;
 var<private> patch_is: u32;
@@ -133,7 +125,7 @@ fn ball_on_triangle() -> bool {
     let toward = direction(-near.point);
     let normal = toward.xyz;
     let gap = toward.w;
-    if (!(normal.z > 0.0 && gap > terrain_tolerance * CLEAR)) {
+    if (!(normal.z > 0.0 && gap > terrain_tolerance * TERRAIN_CLEAR)) {
         return false;
     }
     let radius = body_b.radius;
@@ -212,7 +204,7 @@ fn classify() -> bool {
     if (patch_is == KNOWN) {
         return true;
     }
-    if (length(best.normal - triangle_normal) <= FACE_NORMAL_RATIO * SAME_DIRECTION) {
+    if (length(best.normal - triangle_normal) <= TERRAIN_FACE_NORMAL_RATIO * SAME_DIRECTION) {
         patch_is = ALONG_NORMAL;
         return true;
     }
@@ -251,7 +243,7 @@ fn end_round() {
     } else if (patch_count > 0u && patch_is != REJECTED) {
         add_list(thread_field(TERRAIN_PATCH), patch_count, COUNTED, -UNMOVABLE);
         // Without capacity it is found again.
-        if (patch_is != KNOWN && feature_count < MAX_FEATURES) {
+        if (patch_is != KNOWN && feature_count < TERRAIN_MAX_FEATURES) {
             features[feature_count] = feature_of_triangle(best);
             feature_count++;
         }
@@ -270,7 +262,7 @@ fn close(round: u32) {
     if (round == 1u) {
         var least = deepest.distance;
         if (rejected.distance < UNMOVABLE) {
-            least = min(least, rejected.distance * FACE_DEPTH_RATIO);
+            least = min(least, rejected.distance * TERRAIN_FACE_DEPTH_RATIO);
         }
         if (deepest.distance == UNMOVABLE) {
             least = min(least, shallowest);
