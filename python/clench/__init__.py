@@ -52,6 +52,7 @@ from clench._core import (
     Viewer,
     __version__,
     devices,
+    render_device,
     solve,
 )
 from clench._descriptions import load_description
@@ -124,6 +125,7 @@ __all__ = [
     "devices",
     "identify",
     "load_description",
+    "render_device",
     "solve",
     "view",
 ]

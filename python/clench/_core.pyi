@@ -50,6 +50,7 @@ __all__ = [
     "Viewer",
     "__version__",
     "devices",
+    "render_device",
     "solve",
 ]
 
@@ -917,6 +918,7 @@ class Sim(_Outputs):
         kind: Literal["rgb", "depth", "geom"] = "rgb",
         groups: Sequence[int] | None = None,
         out: NDArray[Any] | None = None,
+        device: Literal["gpu", "cpu"] | None = None,
     ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3); (cameras, ...) for a sequence of cameras
     def ray(
         self,
@@ -1131,6 +1133,7 @@ class Batch(_Outputs):
         kind: Literal["rgb", "depth", "geom"] = "rgb",
         groups: Sequence[int] | None = None,
         out: NDArray[Any] | None = None,
+        device: Literal["gpu", "cpu"] | None = None,
     ) -> NDArray[Any]: ...  # as for Sim.render; (n, ...) unless env is an index
     def mass_matrix(self) -> _Floats: ...  # (n, nv, nv)
     def ray(
@@ -1521,6 +1524,7 @@ class Solution:
     def stats(self) -> SolverStats: ...
 
 def devices() -> list[str]: ...
+def render_device() -> str | None: ...
 def solve(
     M: ArrayLike, a_unc: ArrayLike, blocks: Iterable[Block], options: RigidOptions | None = None
 ) -> Solution: ...

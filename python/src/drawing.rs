@@ -10,8 +10,7 @@ use crate::kind::Kind;
 use crate::model::Model;
 use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
-use clench::Precision;
-use clench_render::{Picture, Pictures, Planes, RenderError, Renderer, View};
+use clench_render::{Picture, Planes, RayCaster, RenderError, Renderer, View};
 use clench_view::Viewed;
 use numpy::{
     Element, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods, dtype,
@@ -20,7 +19,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
 /// The number of environments between two checks for Ctrl-C.
 const UNINTERRUPTED: usize = 64;
@@ -32,8 +31,34 @@ pub(crate) struct Wanted<'a, 'py> {
     /// A camera or several.
     pub(crate) camera: Option<&'a Bound<'py, PyAny>>,
     pub(crate) kind: &'a str,
+    /// The drawer; by default a graphics device, or rays if there is none.
+    pub(crate) device: Option<&'a str>,
+    /// The number of threads that cast rays.
+    pub(crate) threads: usize,
     pub(crate) groups: Option<Vec<usize>>,
     pub(crate) out: Option<&'a Bound<'py, PyAny>>,
+}
+
+/// The drawer, as users choose it.
+#[derive(Clone, Copy)]
+enum Drawer {
+    /// A graphics device or, if there is none, rays.
+    Any,
+    Device,
+    Rays,
+}
+
+impl Drawer {
+    fn new(device: Option<&str>) -> PyResult<Self> {
+        match device {
+            None => Ok(Drawer::Any),
+            Some("gpu") => Ok(Drawer::Device),
+            Some("cpu") => Ok(Drawer::Rays),
+            Some(other) => Err(PyValueError::new_err(format!(
+                "device is {other:?}, but pictures are by \"gpu\" or \"cpu\""
+            ))),
+        }
+    }
 }
 
 /// The cameras of an argument, and whether it is a list.
@@ -109,6 +134,9 @@ pub(crate) fn draw<'py>(
         target,
         envs,
         picture,
+        drawer: Drawer::new(wanted.device)?,
+        colors: wanted.kind == "rgb",
+        threads: wanted.threads,
     };
     match wanted.kind {
         "rgb" => {
@@ -138,6 +166,9 @@ struct Asked<'a> {
     target: &'a Target,
     envs: &'a Envs,
     picture: Picture,
+    drawer: Drawer,
+    colors: bool,
+    threads: usize,
 }
 
 impl Asked<'_> {
@@ -149,11 +180,7 @@ impl Asked<'_> {
         out: Option<&Bound<'py, PyAny>>,
         planes: impl FnOnce(&mut [S]) -> Planes,
     ) -> PyResult<Bound<'py, PyAny>> {
-        // NumPy would report an impossible size as a lack of memory.
-        for (model, _) in self.scenes {
-            let model = model.get();
-            py.detach(|| with_renderer(model, |own| Ok(own.check_size(&self.picture)?)))?;
-        }
+        let by_rays = py.detach(|| self.is_by_rays())?;
         let out = match out {
             Some(out) => out.clone(),
             None => {
@@ -163,43 +190,87 @@ impl Asked<'_> {
             }
         };
         let mut memory = writable::<S>(&out, shape)?;
-        self.draw(py, planes(memory.as_slice_mut()?))?;
+        let mut planes = planes(memory.as_slice_mut()?);
+        for (model, slots) in self.scenes {
+            let (model, planes) = (model.get(), planes.reborrow());
+            match by_rays {
+                true => self.cast(py, model, slots, planes),
+                false => self.draw(py, model, slots, planes),
+            }?;
+        }
         Ok(out)
     }
 
-    /// Draws all environments, one model after another.
-    fn draw(&self, py: Python<'_>, mut planes: Planes) -> PyResult<()> {
-        let count = self.envs.of.len();
-        for (model, slots) in self.scenes {
-            let model = model.get();
-            let envs = slots.iter().map(|&slot| self.envs.of[slot]);
-            each_viewed!(self.target, viewed => py.detach(|| with_renderer(model, |renderer| {
-                let mut pictures = renderer.pictures(&self.picture, count, planes.reborrow())?;
-                let mut done = Ok(());
-                let mut slots = slots.iter();
-                viewed.query_each(envs, |_, sim| {
-                    if let (Ok(()), Some(&slot)) = (&done, slots.next()) {
-                        done = add(&mut pictures, sim, slot);
-                    }
-                }).map_err(RenderError::from)?;
-                done?;
-                Ok(pictures.finish()?)
-            })))?;
+    /// Returns true if rays make the pictures, after a check of their size: NumPy would report an impossible one as a
+    /// lack of memory.
+    fn is_by_rays(&self) -> Result<bool, Failure> {
+        let colors = self.colors;
+        if colors && matches!(self.drawer, Drawer::Rays) {
+            return Err(Failure::Colors);
         }
+        for (model, _) in self.scenes {
+            let model = model.get();
+            if !matches!(self.drawer, Drawer::Rays) {
+                match with_renderer(model, |own| Ok(own.check_size(&self.picture)?)) {
+                    Err(Failure::Render(RenderError::NoDevice(_)))
+                        if !colors && matches!(self.drawer, Drawer::Any) => {}
+                    Err(error) => return Err(error),
+                    Ok(()) => continue,
+                }
+            }
+            caster(model)?.check_size(&self.picture)?;
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    /// Draws the environments of a model on a graphics device.
+    fn draw(&self, py: Python<'_>, model: &Model, slots: &[usize], planes: Planes) -> PyResult<()> {
+        let count = self.envs.of.len();
+        each_viewed!(self.target, viewed => py.detach(|| with_renderer(model, |renderer| {
+            let mut pictures = renderer.pictures(&self.picture, count, planes)?;
+            self.each(viewed, slots, |sim, slot| pictures.add(sim, slot))?;
+            Ok(pictures.finish()?)
+        })))?;
         Ok(())
     }
-}
 
-/// Adds a picture, and checks for Ctrl-C now and then.
-fn add<T: Precision>(
-    pictures: &mut Pictures,
-    sim: &mut clench::Sim<T>,
-    slot: usize,
-) -> Result<(), Failure> {
-    if slot % UNINTERRUPTED == UNINTERRUPTED - 1 {
-        Python::attach(|py| py.check_signals())?;
+    /// Draws the environments of a model by rays.
+    fn cast(&self, py: Python<'_>, model: &Model, slots: &[usize], planes: Planes) -> PyResult<()> {
+        let count = self.envs.of.len();
+        each_viewed!(self.target, viewed => py.detach(|| {
+            let caster = caster(model)?;
+            let mut pictures = caster.pictures(&self.picture, count, planes, self.threads)?;
+            self.each(viewed, slots, |sim, slot| pictures.add(sim, slot))?;
+            pictures.finish();
+            Ok::<_, Failure>(())
+        }))?;
+        Ok(())
     }
-    Ok(pictures.add(sim, slot)?)
+
+    /// Adds a picture of each environment, and checks for Ctrl-C now and then.
+    fn each<V: Viewed>(
+        &self,
+        viewed: &mut V,
+        slots: &[usize],
+        mut add: impl FnMut(&mut clench::Sim<V::Scalar>, usize) -> Result<(), RenderError>,
+    ) -> Result<(), Failure> {
+        let mut add = |sim: &mut clench::Sim<V::Scalar>, slot: usize| {
+            if slot % UNINTERRUPTED == UNINTERRUPTED - 1 {
+                Python::attach(|py| py.check_signals())?;
+            }
+            Ok::<_, Failure>(add(sim, slot)?)
+        };
+        let envs = slots.iter().map(|&slot| self.envs.of[slot]);
+        let (mut done, mut slots) = (Ok(()), slots.iter());
+        let viewed = viewed.query_each(envs, |_, sim| {
+            if let (Ok(()), Some(&slot)) = (&done, slots.next()) {
+                done = add(sim, slot);
+            }
+        });
+        viewed.map_err(RenderError::from)?;
+        done
+    }
 }
 
 /// Calls a function with the renderer of a model. The interpreter must not be held: another thread may be drawing.
@@ -207,11 +278,38 @@ fn with_renderer<R>(
     model: &Model,
     call: impl FnOnce(&mut Renderer) -> Result<R, Failure>,
 ) -> Result<R, Failure> {
-    let mut renderer = (model.renderer().lock()).unwrap_or_else(PoisonError::into_inner);
-    match &mut *renderer {
+    let mut renderers = (model.renderers().lock()).unwrap_or_else(PoisonError::into_inner);
+    match &mut renderers.device {
         Some(renderer) => call(renderer),
         none => call(none.insert(Renderer::new(model.inner())?)),
     }
+}
+
+/// Returns the ray caster of a model. The interpreter must not be held.
+fn caster(model: &Model) -> Result<Arc<RayCaster>, Failure> {
+    let mut renderers = (model.renderers().lock()).unwrap_or_else(PoisonError::into_inner);
+    let caster = match &mut renderers.rays {
+        Some(caster) => caster,
+        none => none.insert(Arc::new(RayCaster::new(model.inner())?)),
+    };
+    Ok(Arc::clone(caster))
+}
+
+/// Names the graphics device that draws pictures.
+///
+/// Returns
+/// -------
+/// str or None
+///     Its name; None if there is none, so that ``render`` casts rays on the processor, which see distances and geoms
+///     but no colours.
+///
+/// Raises
+/// ------
+/// ClenchError
+///     If the package was built without rendering; the message says how to build it with that.
+#[pyfunction]
+pub(crate) fn render_device(py: Python<'_>) -> PyResult<Option<String>> {
+    Ok(py.detach(clench_render::device_name))
 }
 
 /// Returns the memory of an array of this shape.
@@ -236,6 +334,8 @@ fn writable<'py, S: Element>(
 /// An error of drawing, or a signal.
 enum Failure {
     Render(RenderError),
+    /// Colours by rays.
+    Colors,
     Python(PyErr),
 }
 
@@ -255,6 +355,9 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         match failure {
             Failure::Python(error) => error,
+            Failure::Colors => PyValueError::new_err(
+                "device \"cpu\" casts rays, which see no colours: kind must be \"depth\" or \"geom\"",
+            ),
             Failure::Render(RenderError::Sim(error)) => sim_error(error),
             Failure::Render(error @ (RenderError::Size(..) | RenderError::NoCamera(..))) => {
                 PyValueError::new_err(error.to_string())

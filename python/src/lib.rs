@@ -81,6 +81,8 @@ mod _core {
     #[pymodule_export]
     use crate::device::devices;
     #[pymodule_export]
+    use crate::drawing::render_device;
+    #[pymodule_export]
     use crate::element::Element;
     #[pymodule_export]
     use crate::free_camera::FreeCamera;

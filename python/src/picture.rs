@@ -12,9 +12,11 @@ use std::sync::Arc;
 
 #[pymethods]
 impl Sim {
-    /// Renders a picture of the current state, without a window, on a GPU or, if there is none, with Mesa.
+    /// Renders a picture of the current state, without a window, on a GPU or, if there is none, with Mesa. Rays on the
+    /// processor find distances and geoms without either.
     ///
-    /// Geoms have the sizes of the model, regardless of `set_param`. Skins are not drawn.
+    /// On a device geoms have the sizes of the model, regardless of `set_param`. Skins are not drawn. Pictures of rays
+    /// differ from those of a device at the edges of geoms, by less than a pixel.
     ///
     /// Parameters
     /// ----------
@@ -29,6 +31,9 @@ impl Sim {
     ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
     /// out : numpy.ndarray, optional
     ///     The contiguous array to write to.
+    /// device : {"gpu", "cpu"}, optional
+    ///     "gpu": a graphics device, or Mesa's software device. "cpu": rays on the processor, for "depth" and "geom"
+    ///     only. By default the first; if there is none (see `render_device`), rays.
     ///
     /// Returns
     /// -------
@@ -40,13 +45,14 @@ impl Sim {
     /// Raises
     /// ------
     /// ClenchError
-    ///     If no device can draw; the message says what to install. Also if the package was built without rendering;
-    ///     the message says how to build it with that.
+    ///     If colours are wanted, or device "gpu", and no device can draw; the message says what to install. Also if
+    ///     the package was built without rendering; the message says how to build it with that.
     /// ValueError
-    ///     If the size is invalid, no camera has the name, or `out` has another shape.
+    ///     If the size is invalid, no camera has the name, `out` has another shape, or rays should see colours.
     /// TypeError
     ///     If `out` has another dtype.
-    #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None, out = None))]
+    #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None, out = None,
+                        device = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
@@ -57,11 +63,14 @@ impl Sim {
         kind: &str,
         groups: Option<Vec<usize>>,
         out: Option<&Bound<'py, PyAny>>,
+        device: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let wanted = Wanted {
             size: (width, height),
             camera,
             kind,
+            device,
+            threads: 1,
             groups,
             out,
         };
@@ -118,6 +127,9 @@ impl Batch {
     ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
     /// out : numpy.ndarray, optional
     ///     The contiguous array to write to.
+    /// device : {"gpu", "cpu"}, optional
+    ///     "gpu": a graphics device, or Mesa's software device. "cpu": rays on the processor, for "depth" and "geom"
+    ///     only. By default the first; if there is none (see `render_device`), rays.
     ///
     /// Returns
     /// -------
@@ -125,7 +137,7 @@ impl Batch {
     ///     As for `Sim.render`, with an axis of environments in front unless `env` is an int. With several cameras the
     ///     next axis is theirs: (n, cameras, height, width, 3).
     #[pyo3(signature = (env = None, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None,
-                        out = None))]
+                        out = None, device = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
@@ -137,12 +149,15 @@ impl Batch {
         kind: &str,
         groups: Option<Vec<usize>>,
         out: Option<&Bound<'py, PyAny>>,
+        device: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let envs = Envs::new(self, env)?;
         let wanted = Wanted {
             size: (width, height),
             camera,
             kind,
+            device,
+            threads: self.threads(),
             groups,
             out,
         };

@@ -1,8 +1,17 @@
-//! The renderer of a model.
+//! The renderers of a model.
 
 #[cfg(feature = "render")]
-pub(crate) use clench_render::Renderer;
+pub(crate) use clench_render::{RayCaster, Renderer};
 
-/// A renderer, which cannot exist without the `render` feature.
+/// The renderers of a model; none before the first picture.
+#[cfg(feature = "render")]
+#[derive(Default)]
+pub(crate) struct Renderers {
+    pub(crate) device: Option<Renderer>,
+    pub(crate) rays: Option<std::sync::Arc<RayCaster>>,
+}
+
+/// No renderers, without the `render` feature.
 #[cfg(not(feature = "render"))]
-pub(crate) enum Renderer {}
+#[derive(Default)]
+pub(crate) struct Renderers;

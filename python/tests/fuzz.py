@@ -327,7 +327,7 @@ class Fuzz:
             "differentiate_pos": lambda: model.differentiate_pos(*qpos, self.maybe(lambda: 0.1)),
             "rays": lambda: owner.rays(self.numbers(2, 3), self.numbers(2, 3), **thing, groups=self.maybe(lambda: [0])),
             "heights": lambda: owner.heights(name, self.numbers(2, 2), **thing),
-            "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1])),
+            "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1]), device=self.maybe(lambda: self.choose((None, "cpu")))),
             "ik": lambda: owner.ik(self.maybe(lambda: [clench.FrameTarget(**thing, position=point), clench.ComTarget(point)])),
             "linearize": lambda: owner.linearize(self.maybe(lambda: ["xpos"]), self.maybe(lambda: {"body_mass": [1]})),
             "step1": lambda: owner.step1(),

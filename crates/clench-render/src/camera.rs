@@ -5,6 +5,8 @@ use clench::rigid::{Precision, Sim};
 
 /// The half size of the visible part of a plane if there is nothing else, m.
 const PLANE: f64 = 1.0;
+/// The distance of a camera that shows all movable geoms over their size.
+const DISTANCE: f64 = 1.75;
 
 /// A camera independent of the model, which looks at a point from a distance and a direction: MuJoCo's free camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +52,7 @@ impl FreeCamera {
         let size = squares.sum::<f64>().sqrt().clamp(0.02, 1e6);
         Ok(FreeCamera {
             lookat: middle,
-            distance: 1.75 * size,
+            distance: DISTANCE * size,
             azimuth: 131.0,
             elevation: -17.0,
             fovy: 42.0,
@@ -78,6 +80,13 @@ pub(crate) struct Placed {
     /// Half the height of the image at distance 1 or, for an orthographic camera, in metres.
     pub half: f32,
     pub parallel: bool,
+}
+
+impl FreeCamera {
+    /// Returns the present size of the movable geoms, m.
+    pub(crate) fn extent<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimError> {
+        Ok((Self::of_all(sim)?.distance / DISTANCE) as f32)
+    }
 }
 
 impl View {

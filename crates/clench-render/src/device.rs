@@ -1,5 +1,6 @@
 //! The GPU that draws.
 
+use std::sync::OnceLock;
 use wgpu::{
     Adapter, Backends, Device, DeviceDescriptor, Instance, InstanceDescriptor, Limits,
     PowerPreference, Queue, RequestAdapterOptions,
@@ -28,6 +29,33 @@ pub enum RenderError {
     Sim(#[from] clench::SimError),
 }
 
+/// The reason why there is no device, after a search without success: a process searches once.
+static MISSING: OnceLock<String> = OnceLock::new();
+
+/// Returns the name of the device that draws; `None` if there is none.
+pub fn device_name() -> Option<String> {
+    adapter().map(|adapter| adapter.get_info().name).ok()
+}
+
+/// Finds the fastest GPU, or else a software device.
+fn adapter() -> Result<Adapter, RenderError> {
+    if let Some(why) = MISSING.get() {
+        return Err(RenderError::NoDevice(why.clone()));
+    }
+    let instance = Instance::new(InstanceDescriptor {
+        backends: Backends::PRIMARY,
+        ..InstanceDescriptor::new_without_display_handle()
+    });
+    let adapter = pollster::block_on(instance.request_adapter(&RequestAdapterOptions {
+        power_preference: PowerPreference::HighPerformance,
+        ..RequestAdapterOptions::default()
+    }));
+    adapter.map_err(|error| {
+        let why = MISSING.get_or_init(|| error.to_string());
+        RenderError::NoDevice(why.clone())
+    })
+}
+
 /// A device with its queue, and its name for messages.
 pub(crate) struct Gpu {
     pub device: Device,
@@ -36,20 +64,12 @@ pub(crate) struct Gpu {
 }
 
 impl Gpu {
-    /// Opens the fastest GPU, or else a software device.
+    /// Opens the device that draws.
     ///
     /// # Errors
     /// Returns an error if there is none, or it does not start.
     pub(crate) fn open() -> Result<Self, RenderError> {
-        let instance = Instance::new(InstanceDescriptor {
-            backends: Backends::PRIMARY,
-            ..InstanceDescriptor::new_without_display_handle()
-        });
-        let adapter = pollster::block_on(instance.request_adapter(&RequestAdapterOptions {
-            power_preference: PowerPreference::HighPerformance,
-            ..RequestAdapterOptions::default()
-        }));
-        let adapter: Adapter = adapter.map_err(|error| RenderError::NoDevice(error.to_string()))?;
+        let adapter = adapter()?;
         let name = adapter.get_info().name;
         let opened = pollster::block_on(adapter.request_device(&DeviceDescriptor {
             label: Some("clench"),

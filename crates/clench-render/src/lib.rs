@@ -2,7 +2,8 @@
 //!
 //! A [`Renderer`] stores the shapes of a model on the device and draws an [`Image`] of a simulation from a [`View`]:
 //! colours, and optionally distances and the visible geoms. [`Pictures`] draws many simulations, several in a dispatch.
-//! The module `triangles` creates the shapes of geoms, [`camera`] the views.
+//! A [`RayCaster`] finds the same distances and geoms without a device. The module `triangles` creates the shapes of
+//! geoms, [`camera`] the views.
 //!
 //! This crate contains no physics and writes no files.
 
@@ -16,6 +17,7 @@ mod image;
 mod items;
 mod light;
 mod passes;
+mod rays;
 mod renderer;
 mod scene;
 mod shapes;
@@ -24,6 +26,7 @@ mod textures;
 mod triangles;
 
 pub use camera::{FreeCamera, View};
-pub use device::RenderError;
+pub use device::{RenderError, device_name};
 pub use image::{Image, Planes};
+pub use rays::{RayCaster, RayPictures};
 pub use renderer::{Picture, Pictures, Renderer};

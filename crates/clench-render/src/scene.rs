@@ -31,7 +31,7 @@ impl Scene {
     /// Uploads a model.
     pub(crate) fn new(gpu: &Gpu, passes: &Passes, model: &Arc<Model>) -> Result<Self, RenderError> {
         let mut sim = Sim::<f64>::new(Arc::clone(model))?;
-        let extent = (FreeCamera::of_all(&mut sim)?.distance / 1.75) as f32;
+        let extent = FreeCamera::extent(&mut sim)?;
         let mut items = items::of_model(model);
         let ground = items::add_ground(model, &mut items, extent, items::lowest(&mut sim)?);
         items.extend(ground);

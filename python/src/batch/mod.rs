@@ -304,7 +304,7 @@ impl Batch {
 
     /// int : Number of threads.
     #[getter]
-    fn threads(&self) -> usize {
+    pub(crate) fn threads(&self) -> usize {
         self.threads
     }
 

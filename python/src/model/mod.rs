@@ -8,7 +8,7 @@ use crate::error::{load_error, sim_error};
 use crate::fields;
 use crate::names::no_attribute;
 use crate::options::RigidOptions;
-use crate::renderer::Renderer;
+use crate::renderer::Renderers;
 use clench::SaveModel;
 use clench::rigid::model::{Integrator, ParamField};
 use numpy::PyArray1;
@@ -32,7 +32,7 @@ use std::sync::{Arc, Mutex};
 /// >>> model.nv, model.body("torso").mass, model.geom_size.shape
 /// (27, 14.357497305925833, (19, 3))
 #[pyclass(frozen, module = "clench")]
-pub(crate) struct Model(Arc<clench::Model>, Option<Source>, Mutex<Option<Renderer>>);
+pub(crate) struct Model(Arc<clench::Model>, Option<Source>, Mutex<Renderers>);
 
 /// The source of a model and the arguments of its loading, which pickles store.
 struct Source {
@@ -64,9 +64,9 @@ impl Model {
         &self.0
     }
 
-    /// Returns the renderer; none before the first picture.
+    /// Returns its renderers.
     #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing draws"))]
-    pub(crate) fn renderer(&self) -> &Mutex<Option<Renderer>> {
+    pub(crate) fn renderers(&self) -> &Mutex<Renderers> {
         &self.2
     }
 

@@ -15,7 +15,7 @@ pub use pictures::Pictures;
 use std::sync::Arc;
 
 /// The maximum number of pixels of a side.
-const MAX_SIDE: u32 = 8192;
+pub(crate) const MAX_SIDE: u32 = 8192;
 /// The number of forms of pictures whose textures are kept: a training loop asks for a few in turn.
 const MAX_CANVASES: usize = 4;
 
@@ -48,6 +48,28 @@ impl Picture {
         let sides = [self.width as usize, self.height as usize];
         let sizes = [count, self.views.len()].into_iter().chain(sides);
         sizes.into_iter().try_fold(1usize, usize::checked_mul)
+    }
+
+    /// Returns an error unless each side has 1 to `most` pixels.
+    pub(crate) fn check_sides(&self, most: u32) -> Result<(), RenderError> {
+        let sides = [self.width, self.height];
+        match sides.iter().all(|side| (1..=most).contains(side)) {
+            true => Ok(()),
+            false => Err(RenderError::Size(self.width, self.height, most)),
+        }
+    }
+
+    /// Panics if memory that is not empty has another size than the pictures of `count` simulations.
+    pub(crate) fn check_memory(&self, count: usize, out: &Planes) {
+        let pixels = self.pixels(count);
+        for (len, each) in [
+            (out.rgb.len(), 3),
+            (out.depth.len(), 1),
+            (out.geoms.len(), 1),
+        ] {
+            let fits = len == 0 || Some(len) == pixels.and_then(|pixels| pixels.checked_mul(each));
+            assert!(fits, "the memory of pictures has another size than they");
+        }
     }
 }
 
@@ -162,11 +184,7 @@ impl Renderer {
     /// Returns an error if it is out of range.
     pub fn check_size(&self, wanted: &Picture) -> Result<(), RenderError> {
         let most = MAX_SIDE.min(self.gpu.device.limits().max_texture_dimension_2d);
-        let [width, height] = [wanted.width, wanted.height];
-        match (1..=most).contains(&width) && (1..=most).contains(&height) {
-            true => Ok(()),
-            false => Err(RenderError::Size(width, height, most)),
-        }
+        wanted.check_sides(most)
     }
 
     /// Takes the textures of a form out of the renderer, or creates them.

@@ -39,15 +39,7 @@ impl<'a> Pictures<'a> {
         count: usize,
         out: Planes<'a>,
     ) -> Self {
-        let pixels = wanted.pixels(count);
-        for (len, each) in [
-            (out.rgb.len(), 3),
-            (out.depth.len(), 1),
-            (out.geoms.len(), 1),
-        ] {
-            let fits = len == 0 || Some(len) == pixels.and_then(|pixels| pixels.checked_mul(each));
-            assert!(fits, "the memory of pictures has another size than they");
-        }
+        wanted.check_memory(count, &out);
         let form = Form {
             size: [wanted.width, wanted.height],
             colors: !out.rgb.is_empty(),

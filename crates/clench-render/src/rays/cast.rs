@@ -1,0 +1,167 @@
+//! The rays of a picture, as many at a time as the processor's registers hold.
+
+use super::eye::{Eye, Window};
+use super::target::Target;
+use clench::collide::{Hit, Pose, Ray, Shape, ShapeKind, Terrain, UnitRay, ray};
+use clench::math::{Instructions, LaneTask, Mask, Mat3, Real, Scalar, Vec3, kernel};
+
+/// The distances and geom indices of a picture.
+#[derive(Default)]
+pub(super) struct Facts {
+    pub(super) depth: Vec<f32>,
+    pub(super) geoms: Vec<i32>,
+}
+
+impl Facts {
+    /// Replaces the picture by that of a camera.
+    pub(super) fn draw(&mut self, targets: &[Target], eye: &Eye) {
+        let pixels = eye.size[0] * eye.size[1];
+        self.depth.clear();
+        self.depth.resize(pixels, f32::INFINITY);
+        self.geoms.clear();
+        self.geoms.resize(pixels, -1);
+        let facts = self;
+        let drawing = Drawing {
+            targets,
+            eye,
+            facts,
+        };
+        let drawn = f64::in_lanes(Instructions::widest(), drawing);
+        debug_assert!(drawn.is_some(), "the widest instructions are available");
+    }
+}
+
+/// All rays of a picture.
+struct Drawing<'a> {
+    targets: &'a [Target<'a>],
+    eye: &'a Eye,
+    facts: &'a mut Facts,
+}
+
+impl LaneTask<f64> for Drawing<'_> {
+    type Output = ();
+
+    fn run<T: Real<Scalar = f64>>(self) {
+        for target in self.targets {
+            match target.branches() {
+                true => cast::<f64>(target, self.eye, self.facts),
+                false => cast::<T>(target, self.eye, self.facts),
+            }
+        }
+    }
+}
+
+/// Casts the rays that can hit a shape.
+#[kernel]
+fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
+    let shape = Aim::<T>::at(target);
+    let center = target.pose.position;
+    let window = match target.radius {
+        Some(radius) => eye.window(center, radius),
+        None => eye.whole(),
+    };
+    let Window { rows, columns } = window;
+    let mut lanes = T::ZERO;
+    for lane in 0..T::LANES {
+        lanes.set_lane(lane, lane as f64);
+    }
+    let [width, height] = eye.size.map(|side| side as f64);
+    let [right, up, back] = eye.axes.map(Vec3::<T>::splat);
+    let (place, near) = (Vec3::<T>::splat(eye.place), T::new(eye.near));
+    let pixel = eye.half / height;
+    for row in rows {
+        let across = up * T::new(pixel * (height - 2.0 * row as f64 - 1.0));
+        for start in columns.clone().step_by(T::LANES) {
+            let count = T::LANES.min(columns.end - start);
+            let first = row * eye.size[0] + start;
+            let column = lanes + lanes + T::new(2.0 * start as f64 + 1.0 - width);
+            let aside = right * (column * T::new(pixel)) + across;
+            // Distances are along the viewing direction, behind the near plane.
+            let (origin, direction) = match eye.parallel {
+                true => (place + aside, -back),
+                false => (place, aside - back),
+            };
+            let line = Ray {
+                origin: origin + direction * near,
+                direction,
+            };
+            let mut within = -T::ONE;
+            for lane in 0..count {
+                let depth = f64::from(facts.depth[first + lane]).min(eye.far);
+                within.set_lane(lane, depth - eye.near);
+            }
+            let may_hit = within.ge(T::ZERO) & shape.may_hit(&line, within);
+            if !may_hit.any() {
+                continue;
+            }
+            let distance = shape.hit(&line).distance;
+            let nearer = may_hit & distance.lt(within);
+            for lane in (0..count).filter(|&lane| nearer.lane(lane)) {
+                facts.depth[first + lane] = (distance.lane(lane) + eye.near) as f32;
+                facts.geoms[first + lane] = target.geom;
+            }
+        }
+    }
+}
+
+/// A shape in lanes, one for each ray.
+struct Aim<'a, T: Real> {
+    target: &'a Target<'a>,
+    shape: Shape<'a, T>,
+    pose: Pose<T>,
+    radius: Option<T>,
+}
+
+impl<'a, T: Real<Scalar = f64>> Aim<'a, T> {
+    #[inline(always)]
+    fn at(target: &'a Target<'a>) -> Self {
+        let size = Vec3::splat(target.size);
+        let [x, y, z] = target.pose.rotation.rows.map(Vec3::<T>::splat);
+        Aim {
+            target,
+            shape: match target.kind {
+                ShapeKind::HeightField => Shape::HeightField(Terrain {
+                    field: target.field,
+                    size,
+                }),
+                kind => Shape::new(kind, size),
+            },
+            pose: Pose {
+                position: Vec3::splat(target.pose.position),
+                rotation: Mat3::from_rows(x, y, z),
+            },
+            radius: target.radius.map(T::new),
+        }
+    }
+
+    #[inline(always)]
+    fn may_hit(&self, line: &Ray<T>, within: T) -> T::Mask {
+        match self.radius {
+            Some(radius) => UnitRay::of(line).may_intersect(self.pose.position, radius, within),
+            None => T::Mask::splat(true),
+        }
+    }
+
+    /// Returns the first hit; unlike other rays, those of a picture hit a plane from below too.
+    #[inline(always)]
+    fn hit(&self, line: &Ray<T>) -> Hit<T> {
+        if let Some(mesh) = self.target.mesh {
+            return mesh.ray(&self.pose, line);
+        }
+        let above = ray(&self.shape, &self.pose, line);
+        if self.target.kind != ShapeKind::Plane {
+            return above;
+        }
+        let [x, y, z] = [0, 1, 2].map(|k| self.pose.rotation.column(k));
+        let turned = Pose {
+            position: self.pose.position,
+            rotation: Mat3::from_columns(x, -y, -z),
+        };
+        let below = ray(&self.shape, &turned, line);
+        let nearer = below.distance.lt(above.distance);
+        Hit {
+            distance: T::select(nearer, below.distance, above.distance),
+            normal: Vec3::select(nearer, below.normal, above.normal),
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The rays of a camera.
+
+use crate::camera::Placed;
+use clench::math::Vec3;
+use std::ops::Range;
+
+/// A camera whose pixels are rays.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eye {
+    pub(super) place: Vec3<f64>,
+    /// The unit vectors to the right, upwards and backwards.
+    pub(super) axes: [Vec3<f64>; 3],
+    /// Half the height of the picture at distance 1 or, if the rays are parallel, in metres.
+    pub(super) half: f64,
+    pub(super) parallel: bool,
+    /// The distances along the viewing direction between which a ray hits, m.
+    pub(super) near: f64,
+    pub(super) far: f64,
+    /// The number of pixels in a row and in a column.
+    pub(super) size: [usize; 2],
+}
+
+/// The part of a picture that a shape can cover.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Window {
+    pub(super) rows: Range<usize>,
+    pub(super) columns: Range<usize>,
+}
+
+impl Eye {
+    /// Creates the rays of a camera between two distances. As in the pictures of a device, only parallel rays end.
+    pub(super) fn new(camera: &Placed, size: [u32; 2], [near, far]: [f64; 2]) -> Self {
+        let wide = |v: [f32; 3]| Vec3::from_array(v.map(f64::from));
+        Eye {
+            place: wide(camera.eye),
+            axes: camera.axes.map(wide),
+            half: f64::from(camera.half),
+            parallel: camera.parallel,
+            near,
+            far: if camera.parallel { far } else { f64::INFINITY },
+            size: size.map(|side| side as usize),
+        }
+    }
+
+    /// Returns the whole picture.
+    pub(super) fn whole(&self) -> Window {
+        Window {
+            rows: 0..self.size[1],
+            columns: 0..self.size[0],
+        }
+    }
+
+    /// Returns a part of the picture that contains a ball.
+    pub(super) fn window(&self, center: Vec3<f64>, radius: f64) -> Window {
+        let from = center - self.place;
+        let [x, y, back] = self.axes.map(|axis| axis.dot(from));
+        let ahead = -back;
+        if ![x, y, ahead, radius].iter().all(|x| x.is_finite()) {
+            return self.whole();
+        }
+        let radius = radius * 1.001 + 1e-6 * (x.abs() + y.abs() + ahead.abs());
+        let [nearest, farthest] = [ahead - radius, ahead + radius];
+        if farthest < self.near || nearest > self.far {
+            return Window {
+                rows: 0..0,
+                columns: 0..0,
+            };
+        }
+        if nearest <= 0.0 && !self.parallel {
+            return self.whole();
+        }
+        // The bounds of the ball's box at distance 1, in halves of the picture's height.
+        let scaled = |along: f64, divisor: f64| match self.parallel {
+            true => along / self.half,
+            false => along / (divisor * self.half),
+        };
+        let bounds = |along: f64| {
+            let (low, high) = (along - radius, along + radius);
+            let low = scaled(low, if low < 0.0 { nearest } else { farthest });
+            [
+                low,
+                scaled(high, if high > 0.0 { nearest } else { farthest }),
+            ]
+        };
+        let [width, height] = self.size;
+        let pixels = |middle: f64, [low, high]: [f64; 2], most: usize| {
+            let at = |x: f64| middle + 0.5 * height as f64 * x;
+            let (first, end) = (at(low).floor().max(0.0), at(high).ceil().max(0.0));
+            (first as usize).min(most)..(end as usize).min(most)
+        };
+        let [low, high] = bounds(y);
+        Window {
+            rows: pixels(0.5 * height as f64, [-high, -low], height),
+            columns: pixels(0.5 * width as f64, bounds(x), width),
+        }
+    }
+}
