@@ -185,6 +185,7 @@ class Model:
     def nmesh(self) -> int: ...
     @property
     def nhfield(self) -> int: ...
+    def appearance(self) -> dict[str, NDArray[np.float64]]: ...
     def names(self, kind: _Kind) -> list[str]: ...
     def body(self, which: str | SupportsIndex) -> Element: ...
     def joint(self, which: str | SupportsIndex) -> Element: ...
@@ -919,6 +920,7 @@ class Sim(_Outputs):
         groups: Sequence[int] | None = None,
         out: NDArray[Any] | None = None,
         device: Literal["gpu", "cpu"] | None = None,
+        appearance: dict[str, Any] | None = None,
     ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3); (cameras, ...) for a sequence of cameras
     def ray(
         self,
@@ -1134,6 +1136,7 @@ class Batch(_Outputs):
         groups: Sequence[int] | None = None,
         out: NDArray[Any] | None = None,
         device: Literal["gpu", "cpu"] | None = None,
+        appearance: dict[str, Any] | None = None,
     ) -> NDArray[Any]: ...  # as for Sim.render; (n, ...) unless env is an index
     def mass_matrix(self) -> _Floats: ...  # (n, nv, nv)
     def ray(

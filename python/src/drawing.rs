@@ -3,14 +3,16 @@
 use crate::arrays::require_shape;
 use crate::batch::AnyBatch;
 use crate::busy::lock;
-use crate::envs::{Envs, Scenes};
+use crate::envs::{Envs, Scene};
 use crate::error::{classes::ClenchError, sim_error};
 use crate::free_camera::FreeCamera;
 use crate::kind::Kind;
+use crate::looks::Appearance;
+pub(crate) use crate::looks::appearance;
 use crate::model::Model;
 use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
-use clench_render::{Picture, Planes, RayCaster, RenderError, Renderer, View};
+use clench_render::{Looks, Picture, Planes, RayCaster, RenderError, Renderer, View};
 use clench_view::Viewed;
 use numpy::{
     Element, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods, dtype,
@@ -26,6 +28,10 @@ const UNINTERRUPTED: usize = 64;
 
 /// The pictures that a user requests.
 pub(crate) struct Wanted<'a, 'py> {
+    /// The model, or the common layout of several.
+    pub(crate) layout: &'a clench::Model,
+    /// The number of environments of a batch.
+    pub(crate) n: Option<usize>,
     /// Width and height.
     pub(crate) size: (u32, u32),
     /// A camera or several.
@@ -37,6 +43,7 @@ pub(crate) struct Wanted<'a, 'py> {
     pub(crate) threads: usize,
     pub(crate) groups: Option<Vec<usize>>,
     pub(crate) out: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) appearance: Option<&'a Bound<'py, PyAny>>,
 }
 
 /// The drawer, as users choose it.
@@ -112,11 +119,11 @@ impl From<&FreeCamera> for clench_render::FreeCamera {
 /// Draws environments.
 pub(crate) fn draw<'py>(
     py: Python<'py>,
-    scenes: &Scenes,
+    scenes: &[Scene],
     (target, envs): (&Target, &Envs),
     wanted: Wanted<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Some((model, _)) = scenes.first() else {
+    let Some(Scene { model, .. }) = scenes.first() else {
         return Err(PyValueError::new_err("there is no model to draw"));
     };
     let cameras = Cameras::new(model.get().inner(), wanted.camera)?;
@@ -129,12 +136,20 @@ pub(crate) fn draw<'py>(
     if let Some(groups) = wanted.groups {
         picture.groups = groups;
     }
+    // Several environments have an axis in a batch, whose model is the common layout.
+    let read = |given: &Bound<'_, PyAny>| {
+        let appearance = Appearance::new(wanted.layout, wanted.n, given)?;
+        let mut models = scenes.iter().map(|scene| scene.model.get().inner());
+        models.try_for_each(|model| appearance.check(wanted.layout, model))?;
+        Ok::<_, PyErr>(appearance)
+    };
     let asked = Asked {
         scenes,
         target,
         envs,
         picture,
         drawer: Drawer::new(wanted.device)?,
+        appearance: wanted.appearance.map(read).transpose()?,
         colors: wanted.kind == "rgb",
         threads: wanted.threads,
     };
@@ -162,11 +177,12 @@ pub(crate) fn draw<'py>(
 
 /// A call with its arguments, apart from memory.
 struct Asked<'a> {
-    scenes: &'a Scenes,
+    scenes: &'a [Scene],
     target: &'a Target,
     envs: &'a Envs,
     picture: Picture,
     drawer: Drawer,
+    appearance: Option<Appearance>,
     colors: bool,
     threads: usize,
 }
@@ -191,11 +207,10 @@ impl Asked<'_> {
         };
         let mut memory = writable::<S>(&out, shape)?;
         let mut planes = planes(memory.as_slice_mut()?);
-        for (model, slots) in self.scenes {
-            let (model, planes) = (model.get(), planes.reborrow());
+        for scene in self.scenes {
             match by_rays {
-                true => self.cast(py, model, slots, planes),
-                false => self.draw(py, model, slots, planes),
+                true => self.cast(py, scene, planes.reborrow()),
+                false => self.draw(py, scene, planes.reborrow()),
             }?;
         }
         Ok(out)
@@ -208,8 +223,8 @@ impl Asked<'_> {
         if colors && matches!(self.drawer, Drawer::Rays) {
             return Err(Failure::Colors);
         }
-        for (model, _) in self.scenes {
-            let model = model.get();
+        for scene in self.scenes {
+            let model = scene.model.get();
             if !matches!(self.drawer, Drawer::Rays) {
                 match with_renderer(model, |own| Ok(own.check_size(&self.picture)?)) {
                     Err(Failure::Render(RenderError::NoDevice(_)))
@@ -225,23 +240,23 @@ impl Asked<'_> {
     }
 
     /// Draws the environments of a model on a graphics device.
-    fn draw(&self, py: Python<'_>, model: &Model, slots: &[usize], planes: Planes) -> PyResult<()> {
-        let count = self.envs.of.len();
+    fn draw(&self, py: Python<'_>, scene: &Scene, planes: Planes) -> PyResult<()> {
+        let (model, count) = (scene.model.get(), self.envs.of.len());
         each_viewed!(self.target, viewed => py.detach(|| with_renderer(model, |renderer| {
             let mut pictures = renderer.pictures(&self.picture, count, planes)?;
-            self.each(viewed, slots, |sim, slot| pictures.add(sim, slot))?;
+            self.each(viewed, scene, |sim, slot, looks| pictures.add(sim, slot, looks))?;
             Ok(pictures.finish()?)
         })))?;
         Ok(())
     }
 
     /// Draws the environments of a model by rays.
-    fn cast(&self, py: Python<'_>, model: &Model, slots: &[usize], planes: Planes) -> PyResult<()> {
-        let count = self.envs.of.len();
+    fn cast(&self, py: Python<'_>, scene: &Scene, planes: Planes) -> PyResult<()> {
+        let (model, count) = (scene.model.get(), self.envs.of.len());
         each_viewed!(self.target, viewed => py.detach(|| {
             let caster = caster(model)?;
             let mut pictures = caster.pictures(&self.picture, count, planes, self.threads)?;
-            self.each(viewed, slots, |sim, slot| pictures.add(sim, slot))?;
+            self.each(viewed, scene, |sim, slot, looks| pictures.add(sim, slot, looks))?;
             pictures.finish();
             Ok::<_, Failure>(())
         }))?;
@@ -252,17 +267,27 @@ impl Asked<'_> {
     fn each<V: Viewed>(
         &self,
         viewed: &mut V,
-        slots: &[usize],
-        mut add: impl FnMut(&mut clench::Sim<V::Scalar>, usize) -> Result<(), RenderError>,
+        scene: &Scene,
+        mut add: impl FnMut(
+            &mut clench::Sim<V::Scalar>,
+            usize,
+            Option<&Looks>,
+        ) -> Result<(), RenderError>,
     ) -> Result<(), Failure> {
+        let mut looks = (self.appearance.as_ref())
+            .map(|appearance| (appearance, Looks::of(scene.model.get().inner())));
         let mut add = |sim: &mut clench::Sim<V::Scalar>, slot: usize| {
             if slot % UNINTERRUPTED == UNINTERRUPTED - 1 {
                 Python::attach(|py| py.check_signals())?;
             }
-            Ok::<_, Failure>(add(sim, slot)?)
+            if let Some((appearance, looks)) = &mut looks {
+                appearance.apply(self.envs.of[slot], &scene.geoms, looks);
+            }
+            let looks = looks.as_ref().map(|(_, looks)| looks);
+            Ok::<_, Failure>(add(sim, slot, looks)?)
         };
-        let envs = slots.iter().map(|&slot| self.envs.of[slot]);
-        let (mut done, mut slots) = (Ok(()), slots.iter());
+        let envs = scene.slots.iter().map(|&slot| self.envs.of[slot]);
+        let (mut done, mut slots) = (Ok(()), scene.slots.iter());
         let viewed = viewed.query_each(envs, |_, sim| {
             if let (Ok(()), Some(&slot)) = (&done, slots.next()) {
                 done = add(sim, slot);

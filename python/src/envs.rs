@@ -5,8 +5,15 @@ use crate::model::Model;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// The models of environments, each with the places of its environments in a call.
-pub(crate) type Scenes = Vec<(Py<Model>, Vec<usize>)>;
+/// A model of environments.
+#[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing draws"))]
+pub(crate) struct Scene {
+    pub(crate) model: Py<Model>,
+    /// The places of its environments in a call.
+    pub(crate) slots: Vec<usize>,
+    /// Its geoms in the common layout of several models.
+    pub(crate) geoms: Vec<usize>,
+}
 
 /// The environments that a call is about, and whether they are a list.
 #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "nothing draws"))]

@@ -32,6 +32,8 @@ mod inertia_queries;
 mod kind;
 mod linearization;
 mod linearize;
+#[cfg(feature = "render")]
+mod looks;
 mod model;
 mod motion_queries;
 mod named;

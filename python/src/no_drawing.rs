@@ -1,13 +1,17 @@
 //! Replacement of `drawing` in a package that is built without rendering.
 
-use crate::envs::{Envs, Scenes};
+use crate::envs::{Envs, Scene};
 use crate::error::classes::ClenchError;
+use crate::model::Model;
 use crate::viewed::Target;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 /// The pictures that a user requests.
 #[expect(dead_code, reason = "nothing draws")]
 pub(crate) struct Wanted<'a, 'py> {
+    pub(crate) layout: &'a clench::Model,
+    pub(crate) n: Option<usize>,
     pub(crate) size: (u32, u32),
     pub(crate) camera: Option<&'a Bound<'py, PyAny>>,
     pub(crate) kind: &'a str,
@@ -15,22 +19,30 @@ pub(crate) struct Wanted<'a, 'py> {
     pub(crate) threads: usize,
     pub(crate) groups: Option<Vec<usize>>,
     pub(crate) out: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) appearance: Option<&'a Bound<'py, PyAny>>,
+}
+
+fn without() -> PyErr {
+    ClenchError::new_err(crate::device::without("pictures", "render"))
 }
 
 /// Returns an error that says how to build a package that draws.
 pub(crate) fn draw<'py>(
     _: Python<'py>,
-    _: &Scenes,
+    _: &[Scene],
     _: (&Target, &Envs),
     _: Wanted<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let text = crate::device::without("pictures", "render");
-    Err(ClenchError::new_err(text))
+    Err(without())
 }
 
-/// Returns an error that says how to build a package that draws.
+/// Returns that error.
+pub(crate) fn appearance<'py>(_: Python<'py>, _: &Model) -> PyResult<Bound<'py, PyDict>> {
+    Err(without())
+}
+
+/// Returns that error.
 #[pyfunction]
 pub(crate) fn render_device() -> PyResult<Option<String>> {
-    let text = crate::device::without("pictures", "render");
-    Err(ClenchError::new_err(text))
+    Err(without())
 }

@@ -1,14 +1,39 @@
 //! Pictures of simulations as arrays.
 
-use crate::batch::Batch;
+use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
-use crate::drawing::{Wanted, draw};
-use crate::envs::{Envs, Scenes};
+use crate::drawing::{Wanted, appearance, draw};
+use crate::envs::{Envs, Scene};
+use crate::error::sim_error;
 use crate::model::Model;
 use crate::sim::Sim;
 use crate::viewed::Target;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
+
+#[pymethods]
+impl Model {
+    /// Returns the colours and lights of pictures, to be changed and passed to `Sim.render` or `Batch.render`. They do
+    /// not affect physics. Of several models, geoms are those of the common layout.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to numpy.ndarray
+    ///     ``geom_rgba`` (ngeom, 4) and ``site_rgba`` (nsite, 4): red, green, blue and opacity, 0 to 1; 0 hides it.
+    ///     ``light_pos``, m, and ``light_dir`` (nlight, 3), in the frame of the light's body; they do not matter where
+    ///     its mode replaces them. ``light_ambient``, ``light_diffuse`` and ``light_specular`` (nlight, 3) and
+    ///     ``headlight_ambient``, ``headlight_diffuse`` and ``headlight_specular`` (3,): colours, from 0. A model
+    ///     without lights is in daylight, which no headlight changes.
+    ///
+    /// Raises
+    /// ------
+    /// ClenchError
+    ///     If the package was built without rendering; the message says how to build it with that.
+    fn appearance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        appearance(py, self)
+    }
+}
 
 #[pymethods]
 impl Sim {
@@ -34,6 +59,8 @@ impl Sim {
     /// device : {"gpu", "cpu"}, optional
     ///     "gpu": a graphics device, or Mesa's software device. "cpu": rays on the processor, for "depth" and "geom"
     ///     only. By default the first; if there is none (see `render_device`), rays.
+    /// appearance : dict, optional
+    ///     Colours and lights in place of the model's: arrays by name, as in `Model.appearance`.
     ///
     /// Returns
     /// -------
@@ -48,11 +75,12 @@ impl Sim {
     ///     If colours are wanted, or device "gpu", and no device can draw; the message says what to install. Also if
     ///     the package was built without rendering; the message says how to build it with that.
     /// ValueError
-    ///     If the size is invalid, no camera has the name, `out` has another shape, or rays should see colours.
+    ///     If the size is invalid, no camera has the name, `out` has another shape, rays should see colours, or
+    ///     the appearance has an unknown name, a wrong shape or an invalid number.
     /// TypeError
     ///     If `out` has another dtype.
     #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None, out = None,
-                        device = None))]
+                        device = None, appearance = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
@@ -64,8 +92,11 @@ impl Sim {
         groups: Option<Vec<usize>>,
         out: Option<&Bound<'py, PyAny>>,
         device: Option<&str>,
+        appearance: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let wanted = Wanted {
+            layout: self.described(),
+            n: None,
             size: (width, height),
             camera,
             kind,
@@ -73,35 +104,42 @@ impl Sim {
             threads: 1,
             groups,
             out,
+            appearance,
         };
         let target = Target::Sim(Arc::clone(self.shared()));
         let own = Envs {
             of: vec![0],
             list: false,
         };
-        let scenes = vec![(self.py_model().clone_ref(py), vec![0])];
+        let model = self.py_model();
+        let scenes = [Scene {
+            model: model.clone_ref(py),
+            slots: vec![0],
+            geoms: Vec::from_iter(0..model.get().inner().geoms.len()),
+        }];
         draw(py, &scenes, (&target, &own), wanted)
     }
 }
 
 impl Batch {
-    /// Returns the models of some environments, each with the places of its environments among them.
-    fn scenes(&self, py: Python<'_>, envs: &Envs) -> PyResult<Scenes> {
+    /// Returns the models of some environments.
+    fn scenes(&self, py: Python<'_>, envs: &Envs) -> PyResult<Vec<Scene>> {
         let guard = lock(self.shared(), "batch")?;
         let of = Vec::from_iter(envs.of.iter().map(|&env| self.model_of(&guard, env)));
-        let place = |model: &Py<Model>| {
+        let mut scenes = Vec::new();
+        for (index, model) in self.objects().iter().enumerate() {
             let own = of.iter().enumerate().filter(|(_, of)| of.is(model));
-            (
-                model.clone_ref(py),
-                Vec::from_iter(own.map(|(place, _)| place)),
-            )
-        };
-        let mut scenes = Vec::from_iter(self.objects().iter().map(place));
-        // Without environments, the first model still checks the arguments.
-        let first = scenes.first().map(|(model, _)| model.clone_ref(py));
-        scenes.retain(|(_, places)| !places.is_empty());
-        if let Some(first) = first.filter(|_| scenes.is_empty()) {
-            scenes.push((first, Vec::new()));
+            let slots = Vec::from_iter(own.map(|(slot, _)| slot));
+            // Without environments, the first model still checks the arguments.
+            if slots.is_empty() && !(of.is_empty() && index == 0) {
+                continue;
+            }
+            let geoms = each!(&*guard, batch => batch.geoms_of(index));
+            scenes.push(Scene {
+                model: model.clone_ref(py),
+                slots,
+                geoms: geoms.map_err(sim_error)?,
+            });
         }
         Ok(scenes)
     }
@@ -130,6 +168,9 @@ impl Batch {
     /// device : {"gpu", "cpu"}, optional
     ///     "gpu": a graphics device, or Mesa's software device. "cpu": rays on the processor, for "depth" and "geom"
     ///     only. By default the first; if there is none (see `render_device`), rays.
+    /// appearance : dict, optional
+    ///     Colours and lights in place of the model's: arrays by name, each in its shape in `Model.appearance`, or with
+    ///     an axis of all environments of the batch in front.
     ///
     /// Returns
     /// -------
@@ -137,7 +178,7 @@ impl Batch {
     ///     As for `Sim.render`, with an axis of environments in front unless `env` is an int. With several cameras the
     ///     next axis is theirs: (n, cameras, height, width, 3).
     #[pyo3(signature = (env = None, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None,
-                        out = None, device = None))]
+                        out = None, device = None, appearance = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
@@ -150,9 +191,12 @@ impl Batch {
         groups: Option<Vec<usize>>,
         out: Option<&Bound<'py, PyAny>>,
         device: Option<&str>,
+        appearance: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let envs = Envs::new(self, env)?;
         let wanted = Wanted {
+            layout: self.described(),
+            n: Some(self.count()),
             size: (width, height),
             camera,
             kind,
@@ -160,6 +204,7 @@ impl Batch {
             threads: self.threads(),
             groups,
             out,
+            appearance,
         };
         let scenes = self.scenes(py, &envs)?;
         let target = Target::Batch(Arc::clone(self.shared()));

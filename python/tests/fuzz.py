@@ -311,6 +311,7 @@ class Fuzz:
         x, point = self.numbers(*lead, model.nv), self.numbers(3)
         qpos = [self.numbers(*lead, model.nq) for _ in range(2)]
         kind, sizes = self.choose(("rgb", "depth", "geom")), [self.maybe(lambda: 16), self.maybe(lambda: 12)]
+        looks = {key: self.maybe(functools.partial(np.copy, own)) for key, own in model.appearance().items()}
         if isinstance(owner, clench.Batch):
             sizes.insert(0, self.count())
         asked: dict[str, Callable[[], Any]] = {
@@ -327,7 +328,7 @@ class Fuzz:
             "differentiate_pos": lambda: model.differentiate_pos(*qpos, self.maybe(lambda: 0.1)),
             "rays": lambda: owner.rays(self.numbers(2, 3), self.numbers(2, 3), **thing, groups=self.maybe(lambda: [0])),
             "heights": lambda: owner.heights(name, self.numbers(2, 2), **thing),
-            "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1]), device=self.maybe(lambda: self.choose((None, "cpu")))),
+            "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1]), device=self.maybe(lambda: self.choose((None, "cpu"))), appearance=self.maybe(lambda: self.choose((None, looks)))),
             "ik": lambda: owner.ik(self.maybe(lambda: [clench.FrameTarget(**thing, position=point), clench.ComTarget(point)])),
             "linearize": lambda: owner.linearize(self.maybe(lambda: ["xpos"]), self.maybe(lambda: {"body_mass": [1]})),
             "step1": lambda: owner.step1(),

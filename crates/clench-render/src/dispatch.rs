@@ -4,6 +4,7 @@ use crate::camera::Placed;
 use crate::canvas::Form;
 use crate::items::{self, Item, Surface};
 use crate::light::{Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
+use crate::looks::Looks;
 use crate::scene::Scene;
 use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE, Sight};
 use clench::collide::ShapeKind;
@@ -76,13 +77,23 @@ pub(crate) struct Snapshot {
 }
 
 impl Snapshot {
-    /// Evaluates a simulation.
+    /// Evaluates a simulation, with the looks of its model or with others.
     pub(crate) fn new<T: Precision>(
         scene: &Scene,
         sim: &mut Sim<T>,
         groups: &[usize],
+        looks: Option<&Looks>,
     ) -> Result<Self, clench::SimError> {
         let mut items = scene.items.clone();
+        let visuals = &scene.model.visuals;
+        let (mut lights, mut headlight) = (&visuals.lights, &visuals.headlight);
+        if let Some(looks) = looks {
+            (lights, headlight) = (&looks.lights, &looks.headlight);
+            let colors = looks.geom_rgba.iter().chain(&looks.site_rgba);
+            for (item, &color) in items[..scene.groups.len()].iter_mut().zip(colors) {
+                item.color = items::shown(&scene.model, color);
+            }
+        }
         for (item, pose) in items.iter_mut().zip(items::poses(sim)?) {
             item.pose = pose;
         }
@@ -93,11 +104,11 @@ impl Snapshot {
             .partition(|&k| items[k].color[3] >= 1.0);
         items.extend(items::of_tendons(sim)?);
         let centre = scene.centre(&items);
-        let places = light_places(&scene.model, sim.workspace());
+        let places = light_places(lights, sim.workspace());
         let reach = REACH * scene.extent;
         Ok(Snapshot {
             strings: scene.items.len()..items.len(),
-            lighting: Lighting::new(&scene.model.visuals, &places, centre, reach),
+            lighting: Lighting::new((lights, headlight), &places, centre, reach),
             items,
             opaque,
             transparent,

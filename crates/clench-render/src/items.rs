@@ -116,19 +116,23 @@ pub(crate) fn lowest<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimE
     Ok(if low.is_finite() { low } else { 0.0 })
 }
 
+/// Returns the colour of an item as its shader needs it: daylight is added in linear values, the light of a file in
+/// those of a screen.
+pub(crate) fn shown(model: &Model, [r, g, b, opacity]: [f32; 4]) -> [f32; 4] {
+    let [r, g, b] = match model.visuals.lights.is_empty() {
+        true => linear([r, g, b]),
+        false => [r, g, b],
+    };
+    [r, g, b, opacity]
+}
+
 /// Returns the item of an element. Without a material it has MuJoCo's default highlights.
 fn item_of(model: &Model, appearance: Appearance) -> Item {
     let visuals = &model.visuals;
     let material = appearance.material.and_then(|m| visuals.materials.get(m));
-    let [r, g, b, opacity] = visuals.rgba(appearance);
-    // Daylight is added in linear values, the light of a file in those of a screen.
-    let [r, g, b] = match visuals.lights.is_empty() {
-        true => linear([r, g, b]),
-        false => [r, g, b],
-    };
     Item {
         pose: [[0.0; 4]; 4],
-        color: [r, g, b, opacity],
+        color: shown(model, visuals.rgba(appearance)),
         surface: material.map_or([0.5, 0.5, 0.0, -1.0], |m| {
             [m.specular, m.shininess, m.emission, -1.0]
         }),

@@ -3,7 +3,7 @@
 use crate::camera::Placed;
 use crate::device::Gpu;
 use crate::passes::Passes;
-use clench::rigid::model::{Light, LightKind, Visuals};
+use clench::rigid::model::{Headlight, Light, LightKind};
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, TextureView};
 use zerocopy::IntoBytes;
 
@@ -58,25 +58,24 @@ pub(crate) struct Lighting {
 }
 
 impl Lighting {
-    /// Collects the lights of a model with the present position and direction of each. The first light that casts
+    /// Collects lights with the present position and direction of each. The first light that casts
     /// shadows is used; its shadow covers the region around `centre` within `reach`.
     pub(crate) fn new(
-        visuals: &Visuals,
+        (lights, headlight): (&[Light], &Headlight),
         places: &[[[f64; 3]; 2]],
         centre: [f32; 3],
         reach: f32,
     ) -> Self {
-        let all = visuals.lights.iter().zip(places);
+        let all = lights.iter().zip(places);
         let active: Vec<_> = all.filter(|(light, _)| light.properties.active).collect();
         let casting = active
             .iter()
             .position(|(light, _)| light.properties.castshadow);
-        let head = &visuals.headlight;
-        let head = [head.ambient, head.diffuse, head.specular]
-            .map(|color| if head.active { color } else { [0.0; 3] });
+        let head = [headlight.ambient, headlight.diffuse, headlight.specular]
+            .map(|color| if headlight.active { color } else { [0.0; 3] });
         let sight = casting.map(|index| sight(active[index].0, active[index].1, centre, reach));
         Lighting {
-            casts: sight.is_some() || visuals.lights.is_empty(),
+            casts: sight.is_some() || lights.is_empty(),
             sun: sight.unwrap_or_else(|| far_away(centre, TO_SUN, reach)),
             lamps: (active.iter().enumerate())
                 .map(|(index, &(light, place))| lamp(light, place, casting == Some(index)))

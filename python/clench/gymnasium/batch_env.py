@@ -69,6 +69,8 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     batch : clench.Batch
         The environments. States are live, ``batch.qpos`` is (n, nq); outputs are those of the last forward pass, that
         is of the start of the last simulation step (with RK4 its last stage), or of the reset.
+    render_appearance : dict of str to ndarray or None
+        Colours and lights of the pictures of each environment, see ``Model.appearance``; None for those of the model.
     fresh : ndarray
         Booleans (n,): True for environments that have not been stepped since their reset.
     elapsed : ndarray

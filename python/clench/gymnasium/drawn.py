@@ -19,6 +19,7 @@ class Drawn:
     render_mode: str | None
     render_size: tuple[int, int] = (480, 480)
     render_camera: str | int | FreeCamera | None = None
+    render_appearance: dict[str, Array] | None = None
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
 
     def render(self) -> tuple[Array, ...] | None:
@@ -35,4 +36,4 @@ class Drawn:
         if camera is None and "track" in self.batch.model.names("camera"):
             camera = "track"
         width, height = self.render_size
-        return tuple(self.batch.render(None, width, height, camera=camera))
+        return tuple(self.batch.render(None, width, height, camera=camera, appearance=self.render_appearance))

@@ -100,7 +100,7 @@ fn lights_have_mujocos_poses() {
         ],
         [[-0.35, -0.7, 2.852627944163], [0.0, 1.0, 0.0]],
     ];
-    let places = light_places(sim.model(), sim.workspace());
+    let places = light_places(&sim.model().visuals.lights, sim.workspace());
     assert_eq!(places.len(), expected.len());
     for (k, (place, expected)) in places.iter().zip(expected).enumerate() {
         let both = place.as_flattened().iter().zip(expected.as_flattened());

@@ -9,6 +9,7 @@ use crate::camera::FreeCamera;
 use crate::device::RenderError;
 use crate::image::Planes;
 use crate::light::{FAR, NEAR};
+use crate::looks::Looks;
 use crate::renderer::{MAX_SIDE, Picture};
 use cast::Facts;
 use clench::Model;
@@ -112,11 +113,17 @@ struct Scene<'a> {
 }
 
 impl RayPictures<'_> {
-    /// Draws the present state of a simulation, the `index`-th of all, now or with a later one.
+    /// Draws the present state of a simulation, the `index`-th of all, now or with a later one. Of
+    /// looks, only the opacity of geoms matters.
     ///
     /// # Errors
     /// Returns an error if a camera does not exist or the state cannot be evaluated.
-    pub fn add<T: Precision>(&mut self, sim: &mut Sim<T>, index: usize) -> Result<(), RenderError> {
+    pub fn add<T: Precision>(
+        &mut self,
+        sim: &mut Sim<T>,
+        index: usize,
+        looks: Option<&Looks>,
+    ) -> Result<(), RenderError> {
         let (extent, wanted) = (self.caster.extent, self.wanted);
         let place = |view: &crate::View| {
             let camera = view.place(sim)?;
@@ -127,7 +134,7 @@ impl RayPictures<'_> {
         let eyes = eyes.collect::<Result<_, RenderError>>()?;
         self.waiting.push(Scene {
             eyes,
-            targets: targets(&self.caster.model, sim, &wanted.groups, extent)?,
+            targets: targets(&self.caster.model, sim, (&wanted.groups, looks), extent)?,
             depth: (self.depth.get_mut(index).and_then(Option::take)).unwrap_or_default(),
             geoms: (self.geoms.get_mut(index).and_then(Option::take)).unwrap_or_default(),
         });

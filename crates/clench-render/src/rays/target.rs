@@ -2,6 +2,7 @@
 
 use crate::items;
 use crate::light::FAR;
+use crate::looks::Looks;
 use clench::collide::{HeightField, Pose, ShapeKind, TriangleMesh};
 use clench::math::{Mat3, Real, Vec3};
 use clench::rigid::{Precision, Sim};
@@ -25,15 +26,16 @@ pub(super) struct Target<'a> {
 pub(super) fn targets<'a, T: Precision>(
     model: &'a Model,
     sim: &mut Sim<T>,
-    groups: &[usize],
+    (groups, looks): (&[usize], Option<&Looks>),
     extent: f32,
 ) -> Result<Vec<Target<'a>>, SimError> {
     let places = sim.output("geom_xpos")?;
     let rotations = sim.output("geom_xmat")?;
     let mut all = Vec::new();
     for (g, geom) in model.geoms.iter().enumerate() {
-        let opacity = model.visuals.rgba(model.visuals.geoms[g])[3];
-        if !groups.contains(&(geom.group as usize)) || opacity <= 0.0 {
+        let own = looks.and_then(|looks| looks.geom_rgba.get(g)).copied();
+        let color = own.unwrap_or_else(|| model.visuals.rgba(model.visuals.geoms[g]));
+        if !groups.contains(&(geom.group as usize)) || color[3] <= 0.0 {
             continue;
         }
         let params = sim.params();

@@ -156,7 +156,7 @@ impl Renderer {
             geoms: &mut image.geoms,
         };
         let mut pictures = self.pictures(wanted, 1, planes)?;
-        pictures.add(sim, 0)?;
+        pictures.add(sim, 0, None)?;
         pictures.finish()?;
         Ok(image)
     }

@@ -6,6 +6,7 @@ use crate::device::RenderError;
 use crate::dispatch::{Dispatch, Snapshot};
 use crate::image::Planes;
 use crate::items::Item;
+use crate::looks::Looks;
 use clench::rigid::{Precision, Sim};
 use std::collections::VecDeque;
 use std::fmt::Display;
@@ -58,12 +59,17 @@ impl<'a> Pictures<'a> {
         }
     }
 
-    /// Draws the present state of a simulation, the `index`-th of all.
+    /// Draws the present state of a simulation, the `index`-th of all, with the looks of the model or with others.
     ///
     /// # Errors
     /// Returns an error if a camera does not exist, the state cannot be evaluated, or the device fails.
-    pub fn add<T: Precision>(&mut self, sim: &mut Sim<T>, index: usize) -> Result<(), RenderError> {
-        let shown = Snapshot::new(&self.renderer.scene, sim, &self.wanted.groups)?;
+    pub fn add<T: Precision>(
+        &mut self,
+        sim: &mut Sim<T>,
+        index: usize,
+        looks: Option<&Looks>,
+    ) -> Result<(), RenderError> {
+        let shown = Snapshot::new(&self.renderer.scene, sim, &self.wanted.groups, looks)?;
         let views = &self.wanted.views;
         let mut entered = false;
         for (k, view) in views.iter().enumerate() {

@@ -1,17 +1,17 @@
 //! Poses of lights.
 
-use clench_dynamics::model::{CameraMode, Light, Model};
+use clench_dynamics::model::{CameraMode, Light};
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Real, Scalar, Vec3};
 
-/// Returns the position, m, and unit direction of each light of a model in world axes, by the rules of MuJoCo's
-/// `mj_camlight`, for lane 0.
-pub fn light_places<T: Real>(model: &Model, ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
+/// Returns the position, m, and unit direction of lights in world axes, by the rules of MuJoCo's `mj_camlight`, for
+/// lane 0.
+pub fn light_places<T: Real>(lights: &[Light], ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
     let place = |light: &Light| {
         let (pos, dir) = light_place(light, ws);
         [pos.to_array(), dir.to_array()]
     };
-    model.visuals.lights.iter().map(place).collect()
+    lights.iter().map(place).collect()
 }
 
 fn light_place<T: Real>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f64>) {
