@@ -8,8 +8,8 @@ use clench::math::{Instructions, LaneTask, Mask, Mat3, Real, Scalar, Vec3, kerne
 /// The distances and geom indices of a picture.
 #[derive(Default)]
 pub(super) struct Facts {
-    pub(super) depth: Vec<f32>,
-    pub(super) geoms: Vec<i32>,
+    pub(super) depth: Vec<f64>,
+    pub(super) geoms: Vec<f64>,
 }
 
 impl Facts {
@@ -17,9 +17,9 @@ impl Facts {
     pub(super) fn draw(&mut self, targets: &[Target], eye: &Eye) {
         let pixels = eye.size[0] * eye.size[1];
         self.depth.clear();
-        self.depth.resize(pixels, f32::INFINITY);
+        self.depth.resize(pixels, f64::INFINITY);
         self.geoms.clear();
-        self.geoms.resize(pixels, -1);
+        self.geoms.resize(pixels, -1.0);
         let facts = self;
         let drawing = Drawing {
             targets,
@@ -54,7 +54,7 @@ impl LaneTask<f64> for Drawing<'_> {
 /// Casts the rays that can hit a shape.
 #[kernel]
 fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
-    let shape = Aim::<T>::at(target);
+    let shape = Aim::<T>::at(target, eye);
     let center = target.pose.position;
     let window = match target.radius {
         Some(radius) => eye.window(center, radius),
@@ -67,39 +67,45 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
     }
     let [width, height] = eye.size.map(|side| side as f64);
     let [right, up, back] = eye.axes.map(Vec3::<T>::splat);
-    let (place, near) = (Vec3::<T>::splat(eye.place), T::new(eye.near));
+    let place = Vec3::<T>::splat(eye.place);
+    let [near, far] = [eye.near, eye.far].map(T::new);
     let pixel = eye.half / height;
     for row in rows {
         let across = up * T::new(pixel * (height - 2.0 * row as f64 - 1.0));
         for start in columns.clone().step_by(T::LANES) {
-            let count = T::LANES.min(columns.end - start);
+            let count = T::LANES.min(eye.size[0] - start);
             let first = row * eye.size[0] + start;
             let column = lanes + lanes + T::new(2.0 * start as f64 + 1.0 - width);
             let aside = right * (column * T::new(pixel)) + across;
-            // Distances are along the viewing direction, behind the near plane.
-            let (origin, direction) = match eye.parallel {
+            let (from, direction) = match eye.parallel {
                 true => (place + aside, -back),
                 false => (place, aside - back),
             };
+            // Distances are along the viewing direction, behind the near plane.
             let line = Ray {
-                origin: origin + direction * near,
+                origin: from + direction * near,
                 direction,
             };
-            let mut within = -T::ONE;
-            for lane in 0..count {
-                let depth = f64::from(facts.depth[first + lane]).min(eye.far);
-                within.set_lane(lane, depth - eye.near);
-            }
-            let may_hit = within.ge(T::ZERO) & shape.may_hit(&line, within);
+            let depth = &mut facts.depth[first..first + count];
+            let mut nearest = [T::ZERO];
+            T::as_scalars_mut(&mut nearest)[..count].copy_from_slice(depth);
+            let within = nearest[0].min(far) - near;
+            let may_hit = shape.may_hit(&line, within);
             if !may_hit.any() {
                 continue;
             }
             let distance = shape.hit(&line).distance;
             let nearer = may_hit & distance.lt(within);
-            for lane in (0..count).filter(|&lane| nearer.lane(lane)) {
-                facts.depth[first + lane] = (distance.lane(lane) + eye.near) as f32;
-                facts.geoms[first + lane] = target.geom;
+            if !nearer.any() {
+                continue;
             }
+            nearest[0] = T::select(nearer, distance + near, nearest[0]);
+            depth.copy_from_slice(&T::as_scalars(&nearest)[..count]);
+            let geoms = &mut facts.geoms[first..first + count];
+            let mut geom = [T::ZERO];
+            T::as_scalars_mut(&mut geom)[..count].copy_from_slice(geoms);
+            geom[0] = T::select(nearer, T::new(f64::from(target.geom)), geom[0]);
+            geoms.copy_from_slice(&T::as_scalars(&geom)[..count]);
         }
     }
 }
@@ -114,9 +120,19 @@ struct Aim<'a, T: Real> {
 
 impl<'a, T: Real<Scalar = f64>> Aim<'a, T> {
     #[inline(always)]
-    fn at(target: &'a Target<'a>) -> Self {
+    fn at(target: &'a Target<'a>, eye: &Eye) -> Self {
         let size = Vec3::splat(target.size);
-        let [x, y, z] = target.pose.rotation.rows.map(Vec3::<T>::splat);
+        let mut rotation = target.pose.rotation;
+        // Unlike other rays, those of a picture hit a plane from below too.
+        let [ahead, side, normal] = [0, 1, 2].map(|k| rotation.column(k));
+        let above = match eye.parallel {
+            true => normal.dot(eye.axes[2]),
+            false => normal.dot(eye.place - target.pose.position),
+        };
+        if target.kind == ShapeKind::Plane && above < 0.0 {
+            rotation = Mat3::from_columns(ahead, -side, -normal);
+        }
+        let [x, y, z] = rotation.rows.map(Vec3::<T>::splat);
         Aim {
             target,
             shape: match target.kind {
@@ -142,26 +158,11 @@ impl<'a, T: Real<Scalar = f64>> Aim<'a, T> {
         }
     }
 
-    /// Returns the first hit; unlike other rays, those of a picture hit a plane from below too.
     #[inline(always)]
     fn hit(&self, line: &Ray<T>) -> Hit<T> {
-        if let Some(mesh) = self.target.mesh {
-            return mesh.ray(&self.pose, line);
-        }
-        let above = ray(&self.shape, &self.pose, line);
-        if self.target.kind != ShapeKind::Plane {
-            return above;
-        }
-        let [x, y, z] = [0, 1, 2].map(|k| self.pose.rotation.column(k));
-        let turned = Pose {
-            position: self.pose.position,
-            rotation: Mat3::from_columns(x, -y, -z),
-        };
-        let below = ray(&self.shape, &turned, line);
-        let nearer = below.distance.lt(above.distance);
-        Hit {
-            distance: T::select(nearer, below.distance, above.distance),
-            normal: Vec3::select(nearer, below.normal, above.normal),
+        match self.target.mesh {
+            Some(mesh) => mesh.ray(&self.pose, line),
+            None => ray(&self.shape, &self.pose, line),
         }
     }
 }

@@ -175,10 +175,10 @@ impl Scene<'_> {
             facts.draw(&self.targets, eye);
             let pixels = k * facts.depth.len()..(k + 1) * facts.depth.len();
             if let Some(depth) = self.depth.get_mut(pixels.clone()) {
-                depth.copy_from_slice(&facts.depth);
+                (depth.iter_mut().zip(&facts.depth)).for_each(|(to, &from)| *to = from as f32);
             }
             if let Some(geoms) = self.geoms.get_mut(pixels) {
-                geoms.copy_from_slice(&facts.geoms);
+                (geoms.iter_mut().zip(&facts.geoms)).for_each(|(to, &from)| *to = from as i32);
             }
         }
     }
