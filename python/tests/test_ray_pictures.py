@@ -164,6 +164,17 @@ def test_pictures_of_all_are_those_of_each(kind: Literal["depth", "geom"], preci
     assert batch.render(None, 8, 8, camera=[], kind=kind, device="cpu").shape == (70, 0, 8, 8)
 
 
+def test_large_pictures_are_drawn_in_bands() -> None:
+    # A picture of many bands of rows.
+    sim = clench.Sim(example("humanoid"))
+    camera = clench.FreeCamera([0, 0, 1], 3, elevation=-10)
+    small = sim.render(200, 150, camera=camera, kind="geom", device="cpu")
+    large = sim.render(1000, 750, camera=camera, kind="geom", device="cpu")
+    # The middle of a pixel is that of one of its 25 parts.
+    np.testing.assert_array_equal(large[2::5, 2::5], small)
+    assert sim.render(8192, 1, camera=camera, kind="depth", device="cpu").shape == (1, 8192)
+
+
 def test_environments_of_several_models_have_their_geoms() -> None:
     def posts(count: int) -> clench.Model:
         geoms = "".join(f'<geom size="0.1" pos="{x} 0 0"/>' for x in range(count))

@@ -4,18 +4,21 @@ use super::eye::{Eye, Window};
 use super::target::Target;
 use clench::collide::{Hit, Pose, Ray, Shape, ShapeKind, Terrain, UnitRay, ray};
 use clench::math::{Instructions, LaneTask, Mask, Mat3, Real, Scalar, Vec3, kernel};
+use std::ops::Range;
 
-/// The distances and geom indices of a picture.
+/// The distances and geom indices of some rows of a picture.
 #[derive(Default)]
 pub(super) struct Facts {
+    rows: Range<usize>,
     pub(super) depth: Vec<f64>,
     pub(super) geoms: Vec<f64>,
 }
 
 impl Facts {
-    /// Replaces the picture by that of a camera.
-    pub(super) fn draw(&mut self, targets: &[Target], eye: &Eye) {
-        let pixels = eye.size[0] * eye.size[1];
+    /// Replaces the picture by some rows of that of a camera.
+    pub(super) fn draw(&mut self, targets: &[Target], eye: &Eye, rows: Range<usize>) {
+        let pixels = eye.size[0] * rows.len();
+        self.rows = rows;
         self.depth.clear();
         self.depth.resize(pixels, f64::INFINITY);
         self.geoms.clear();
@@ -70,11 +73,12 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
     let place = Vec3::<T>::splat(eye.place);
     let [near, far] = [eye.near, eye.far].map(T::new);
     let pixel = eye.half / height;
-    for row in rows {
+    let drawn = facts.rows.clone();
+    for row in rows.start.max(drawn.start)..rows.end.min(drawn.end) {
         let across = up * T::new(pixel * (height - 2.0 * row as f64 - 1.0));
         for start in columns.clone().step_by(T::LANES) {
             let count = T::LANES.min(eye.size[0] - start);
-            let first = row * eye.size[0] + start;
+            let first = (row - drawn.start) * eye.size[0] + start;
             let column = lanes + lanes + T::new(2.0 * start as f64 + 1.0 - width);
             let aside = right * (column * T::new(pixel)) + across;
             let (from, direction) = match eye.parallel {

@@ -22,6 +22,8 @@ use target::{Target, targets};
 
 /// The number of environments that wait for the threads that draw them.
 const WAITING: usize = 64;
+/// The number of pixels that a thread draws at once, which bounds its memory.
+const BAND: usize = 1 << 16;
 /// The number of pixels that are worth a thread.
 const THREAD: usize = 1 << 15;
 
@@ -172,13 +174,18 @@ impl Scene<'_> {
     /// Writes the pictures of all cameras.
     fn draw(self, facts: &mut Facts) {
         for (k, eye) in self.eyes.iter().enumerate() {
-            facts.draw(&self.targets, eye);
-            let pixels = k * facts.depth.len()..(k + 1) * facts.depth.len();
-            if let Some(depth) = self.depth.get_mut(pixels.clone()) {
-                (depth.iter_mut().zip(&facts.depth)).for_each(|(to, &from)| *to = from as f32);
-            }
-            if let Some(geoms) = self.geoms.get_mut(pixels) {
-                (geoms.iter_mut().zip(&facts.geoms)).for_each(|(to, &from)| *to = from as i32);
+            let [width, height] = eye.size;
+            let band = (BAND / width).max(1);
+            for row in (0..height).step_by(band) {
+                let end = height.min(row + band);
+                facts.draw(&self.targets, eye, row..end);
+                let pixels = (k * height + row) * width..(k * height + end) * width;
+                if let Some(depth) = self.depth.get_mut(pixels.clone()) {
+                    (depth.iter_mut().zip(&facts.depth)).for_each(|(to, &from)| *to = from as f32);
+                }
+                if let Some(geoms) = self.geoms.get_mut(pixels) {
+                    (geoms.iter_mut().zip(&facts.geoms)).for_each(|(to, &from)| *to = from as i32);
+                }
             }
         }
     }
