@@ -13,7 +13,7 @@ import pytest
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 HELPERS = ("plots", "ppo", "walk_mujoco")
 EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem not in HELPERS)
-APART = ("train_policy", "cluster_plan", "walk", "feed_learner")  # These have tests of their own.
+APART = ("train_policy", "cluster_plan", "walk", "reach", "feed_learner")  # These have tests of their own.
 
 
 def run(name: str, *arguments: str, status: int = 0) -> str:

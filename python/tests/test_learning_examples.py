@@ -50,6 +50,16 @@ def test_walk_writes_scalars(tmp_path: Path) -> None:
     assert list(tmp_path.glob("events.*"))
 
 
+def test_reach_learns_from_pictures(tmp_path: Path) -> None:
+    plot = tmp_path / "plot.png"
+    printed = run("reach", "--plot", str(plot))
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    assert len(rewards(printed)) == 3 and "end within 3 cm" in printed
+    curve = rewards(run("reach", "--envs", "128", "--iterations", "25"))
+    # It begins at -1.5, and stays there if it sees nothing.
+    assert sum(curve[-5:]) / 5 > sum(curve[:5]) / 5 + 0.2
+
+
 def test_learner_is_fed(tmp_path: Path) -> None:
     plot = tmp_path / "plot.png"
     printed = run("feed_learner", "--plot", str(plot))
