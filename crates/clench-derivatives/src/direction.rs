@@ -3,6 +3,14 @@
 use clench_dynamics::Model;
 use clench_dynamics::model::ParamField;
 
+/// A stage of a step, with all that follow it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Start {
+    Positions,
+    Velocities,
+    Forces,
+}
+
 /// A direction in which the input of a step changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
@@ -19,11 +27,12 @@ pub(crate) enum Direction {
 }
 
 impl Direction {
-    /// Returns true if positions, or quantities that depend on them, change along the direction.
-    pub(crate) fn moves(self) -> bool {
+    /// Returns the first stage whose results change along the direction.
+    pub(crate) fn start(self) -> Start {
         match self {
-            Direction::Position(_) | Direction::Parameter(..) => true,
-            Direction::Velocity(_) | Direction::Activation(_) | Direction::Control(_) => false,
+            Direction::Position(_) | Direction::Parameter(..) => Start::Positions,
+            Direction::Velocity(_) => Start::Velocities,
+            Direction::Activation(_) | Direction::Control(_) => Start::Forces,
         }
     }
 }

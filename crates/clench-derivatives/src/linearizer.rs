@@ -1,7 +1,8 @@
 //! The matrices of a linearized step.
 
-use crate::direction::{self, Direction};
+use crate::direction::{self, Direction, Start};
 use crate::pass::{CreatePass, Pass, Source};
+use clench_dynamics::StepSettings;
 use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
 use clench_rigid::{Output, Sim, SimError};
@@ -139,20 +140,26 @@ impl Linearizer {
             settings: sim.settings(),
             state: &sim.state,
             outputs: &request.outputs,
-            same_positions: false,
+            start: Start::Positions,
+            constant_factor: has_constant_factor(&model, sim.settings()),
         };
         direction::list(source.model, &request.parameters, &mut self.directions);
         let columns = self.directions.len();
         self.all.clear();
         let mut end = 0;
-        let mut still = false;
+        let mut reuses = false;
         while end < columns {
             let first = end;
             end += self.pass_len(source, first);
             let directions = &self.directions[first..end];
-            let moves = directions.iter().any(|direction| direction.moves());
-            source.same_positions = still && !moves;
-            still = !moves && keeps_positions(source);
+            let earliest = directions.iter().map(|direction| direction.start()).min();
+            let earliest = earliest.unwrap_or(Start::Positions);
+            source.start = match reuses {
+                true => earliest,
+                false => Start::Positions,
+            };
+            reuses =
+                keeps_positions(source) && (source.constant_factor || earliest > Start::Positions);
             self.pass.run(source, directions, &mut |row, values| {
                 let start = row * columns + first;
                 if self.all.len() < (row + 1) * columns {
@@ -209,6 +216,12 @@ impl Linearizer {
             }
         }
     }
+}
+
+/// Returns true if nothing but the unconstrained acceleration depends on derivatives of the factor of the mass matrix.
+fn has_constant_factor(model: &Model, settings: &StepSettings) -> bool {
+    let others = settings.flags.diagexact || settings.solver.noslip_iterations > 0;
+    !others && model.integrator != Integrator::Discrete
 }
 
 /// Returns true if the workspace holds the positions and contacts of the start of a step after it.

@@ -1,6 +1,6 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
-use crate::direction::Direction;
+use crate::direction::{Direction, Start};
 use crate::tangent;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace, check, pipeline};
@@ -17,8 +17,10 @@ pub(crate) struct Source<'a> {
     pub settings: &'a StepSettings,
     pub state: &'a State<f64>,
     pub outputs: &'a [Output],
-    /// True if the last pass started from the same positions, without derivatives.
-    pub same_positions: bool,
+    /// The first stage whose results change along the directions.
+    pub start: Start,
+    /// True if the factor of the mass matrix needs no derivatives.
+    pub constant_factor: bool,
 }
 
 /// A step in dual numbers of a type that is known only at run time.
@@ -56,6 +58,7 @@ impl LaneTask<f64> for CreatePass<'_> {
             state,
             ws,
             outputs: Vec::new(),
+            last: Start::Positions,
         })
     }
 }
@@ -68,6 +71,8 @@ struct DualPass<L: Real<Scalar = f64>> {
     state: State<Number<L>>,
     ws: Workspace<Number<L>>,
     outputs: Vec<Number<L>>,
+    /// The start of the last pass.
+    last: Start,
 }
 
 impl<L: Real<Scalar = f64>> DualPass<L> {
@@ -142,13 +147,25 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             state,
             ws,
             outputs,
+            last,
         } = self;
         state.copy_from(before);
-        let step = if source.same_positions {
-            pipeline::step_from_velocities
-        } else {
-            ws.forget_poses();
-            pipeline::step
+        ws.constant_factor = source.constant_factor;
+        let start = source.start;
+        let held = std::mem::replace(last, start)..start;
+        if held.contains(&Start::Positions) && source.constant_factor {
+            ws.hold_positions();
+        }
+        if held.contains(&Start::Velocities) {
+            ws.hold_velocities();
+        }
+        let step = match start {
+            Start::Positions => {
+                ws.forget_poses();
+                pipeline::step
+            }
+            Start::Velocities => pipeline::step_from_velocities,
+            Start::Forces => pipeline::step_from_forces,
         };
         step(model, params, settings, state, ws, evaluate_sensors);
         let good = check::good_results(state, ws);

@@ -35,6 +35,7 @@ pub mod stages;
 pub mod state;
 pub mod step;
 pub mod stiction;
+mod still;
 pub mod workspace;
 
 pub use budget::Budget;

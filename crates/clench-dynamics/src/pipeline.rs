@@ -62,7 +62,9 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
     };
     mass_matrix(model, params, pos, mass);
     ws.clock.lap(Stage::Inertia as usize);
-    ws.singular = !if ws.articulated.is_empty() {
+    ws.singular = !if T::IS_DUAL && ws.constant_factor {
+        factor.factor_values(&model.tree, mass)
+    } else if ws.articulated.is_empty() {
         ws.solver.factor(factor, &model.tree, mass)
     } else {
         articulated_factor(model, params, pos, |_| T::ZERO, &mut ws.articulated, factor)
@@ -153,7 +155,7 @@ pub(crate) fn force_stage<T: Real>(
     if ws.metric.acts() {
         enter_metric(model, params, settings, state, ws);
     }
-    smooth_acceleration(model, &mut ws.problem);
+    smooth_acceleration(model, &mut ws.problem, ws.constant_factor);
     ws.clock.lap(Stage::Force as usize);
 }
 

@@ -42,6 +42,9 @@ pub struct Workspace<T: Real> {
     pub qacc: Vec<T>,
     /// Constraint forces along dofs (nv).
     pub qfrc_constraint: Vec<T>,
+    /// True if the factor of the mass matrix needs no derivatives, because only the unconstrained acceleration follows
+    /// from it. Only dual numbers have any.
+    pub constant_factor: bool,
     /// True if the workspace is read after a step. Otherwise a step in which everything sleeps computes nothing.
     pub read: bool,
     /// The trees that are awake.
@@ -106,6 +109,7 @@ impl<T: Real> Workspace<T> {
             solver: Solver::compiled(&model.tree),
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
+            constant_factor: false,
             read: true,
             sleep: Sleep::new(model),
             fixed: FixedPoses::new(model),

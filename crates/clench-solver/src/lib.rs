@@ -62,4 +62,4 @@ pub use solver::Solver;
 pub use stats::{LaneStats, SolveStats, Status};
 pub use stopwatch::{SolveClock, SolvePart, Stopwatch};
 pub use threads::Threads;
-pub use tree::{Tree, TreeFactor, TreeLu, TreeMatrix};
+pub use tree::{Tree, TreeFactor, TreeLu, TreeMatrix, solve_differentiated};

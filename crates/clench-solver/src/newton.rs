@@ -148,6 +148,11 @@ impl<T: Real> Newton<T> {
         self.hessian.solve(x);
     }
 
+    /// Computes H⁻¹ times the derivatives of `x`.
+    pub(crate) fn solve_tangents<N: Real<Value = T>>(&mut self, x: &mut [N], scratch: &mut Vec<T>) {
+        self.hessian.solve_tangents(x, scratch);
+    }
+
     /// Updates the factor in the lanes of `mask` in which few pieces changed; returns the lanes in which that
     /// succeeded.
     #[kernel]

@@ -4,9 +4,8 @@
 //! the velocity solves (M + h B) a = τ + Jᵀf instead of M a = τ + Jᵀf. A model without damping needs no second
 //! factorization.
 
-use super::integration::Integration;
 use crate::dynamics::articulated::articulated_factor;
-use crate::dynamics::integrate::{advance_semi_implicit, solve_implicit};
+use crate::dynamics::integrate::{advance_semi_implicit, factor_and_solve, solve_implicit};
 use crate::dynamics::reflected::dof_damper;
 use crate::model::{Model, Params};
 use crate::state::State;
@@ -71,14 +70,13 @@ fn damped_acceleration<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let tree = &model.tree;
-    let positive = if ws.articulated.is_empty() {
+    let positive = if T::IS_DUAL || ws.articulated.is_empty() {
         damped_inertia(model, params, qvel, ws);
-        let Integration { matrix, factor, .. } = &mut ws.integration;
-        ws.solver.factor(factor, tree, matrix)
+        factor_and_solve(tree, ws)
     } else {
         let factor = &mut ws.integration.factor;
         let (pos, bodies) = (&ws.position, &mut ws.articulated);
-        articulated_factor(
+        let positive = articulated_factor(
             model,
             params,
             pos,
@@ -86,10 +84,11 @@ fn damped_acceleration<T: Real>(
             |i| params.timestep * dof_damper(model, params, i).damping_slope(qvel[i]),
             bodies,
             factor,
-        )
+        );
+        solve_implicit(tree, ws);
+        positive
     };
     ws.singular |= damped & !positive;
-    solve_implicit(tree, ws);
     for (solved, &explicit) in ws.integration.qacc.iter_mut().zip(&ws.qacc) {
         *solved = T::select(damped, *solved, explicit);
     }

@@ -12,7 +12,7 @@ use crate::state::State;
 use crate::stiction::advance_friction;
 use crate::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
-use clench_solver::Tree;
+use clench_solver::{Tree, solve_differentiated};
 
 /// Computes `out += x · scale`, entry by entry.
 #[inline(always)]
@@ -130,6 +130,21 @@ pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
     sum_forces(ws);
     let Integration { factor, qacc, .. } = &mut ws.integration;
     factor.solve(tree, qacc);
+}
+
+/// Factors `integration.matrix` and solves for `integration.qacc`, from the sum of all forces. Returns false in lanes in
+/// which the matrix is not positive definite.
+#[inline(always)]
+pub(crate) fn factor_and_solve<T: Real>(tree: &Tree, ws: &mut Workspace<T>) -> T::Mask {
+    if T::IS_DUAL {
+        sum_forces(ws);
+        let Integration { matrix, qacc, .. } = &mut ws.integration;
+        return solve_differentiated(tree, matrix, qacc);
+    }
+    let Integration { matrix, factor, .. } = &mut ws.integration;
+    let positive = ws.solver.factor(factor, tree, matrix);
+    solve_implicit(tree, ws);
+    positive
 }
 
 /// Stores the sum of all forces in `integration.qacc`.

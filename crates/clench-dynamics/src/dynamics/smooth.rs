@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::stages::{Forces, Positions};
 use crate::state::State;
 use clench_math::{Force, Mask, Real, kernel};
-use clench_solver::Problem;
+use clench_solver::{Problem, solve_differentiated};
 
 /// Computes `qfrc_smooth`: passive + actuator + applied − bias.
 #[kernel]
@@ -31,8 +31,15 @@ pub(crate) fn smooth_forces<T: Real>(
 }
 
 /// Replaces the forces in `qacc_smooth` with their acceleration, by the factor of the problem.
-pub(crate) fn smooth_acceleration<T: Real>(model: &Model, problem: &mut Problem<T>) {
-    problem
-        .mass_factor
-        .solve(&model.tree, &mut problem.qacc_smooth);
+pub(crate) fn smooth_acceleration<T: Real>(
+    model: &Model,
+    problem: &mut Problem<T>,
+    constant_factor: bool,
+) {
+    let (tree, qacc) = (&model.tree, &mut problem.qacc_smooth);
+    if T::IS_DUAL && constant_factor {
+        solve_differentiated(tree, &problem.mass, qacc);
+        return;
+    }
+    problem.mass_factor.solve(tree, qacc);
 }

@@ -128,6 +128,15 @@ impl<T: Real> Hessian<T> {
             self.paths.solve(x);
         }
     }
+
+    /// Computes H⁻¹ times the derivatives of `x`.
+    pub(crate) fn solve_tangents<N: Real<Value = T>>(&mut self, x: &mut [N], scratch: &mut Vec<T>) {
+        if self.is_filled {
+            N::map_tangents(x, scratch, |x| self.filled.solve(x));
+        } else {
+            self.paths.solve_varying(x);
+        }
+    }
 }
 
 /// Lists the dofs of each block that acts on more than one branch: a count, then the dofs.

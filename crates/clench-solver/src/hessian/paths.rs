@@ -104,4 +104,9 @@ impl<T: Real> PathForm<T> {
     pub(super) fn solve(&self, x: &mut [T]) {
         self.factor.solve(&self.tree, x);
     }
+
+    /// Does the same in numbers with derivatives.
+    pub(super) fn solve_varying<N: Real<Value = T>>(&self, x: &mut [N]) {
+        self.factor.solve_varying(&self.tree, x);
+    }
 }

@@ -39,6 +39,11 @@ impl<V> Default for Sliding<V> {
 }
 
 impl<V: Real> Sliding<V> {
+    /// Returns true if no contact slides.
+    pub(super) fn is_empty(&self) -> bool {
+        self.contacts.is_empty()
+    }
+
     /// Prepares for a solved iterate and the factor of its Hessian.
     pub(super) fn prepare(
         &mut self,

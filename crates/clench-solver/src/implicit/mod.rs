@@ -129,16 +129,21 @@ impl<V: Real<Value = V>> Implicit<V> {
         let solution = &self.state.iterate.qacc;
         (iterate.qacc).extend(solution.iter().map(|&x| T::from_value(x)));
         iterate.evaluate_at_qacc(problem);
-        T::map_tangents(&mut iterate.gradient, &mut self.scratch, |x| {
-            self.newton.solve(x);
-            self.sliding.correct(&self.problem, x);
-        });
+        let (gradient, scratch) = (&mut iterate.gradient, &mut self.scratch);
+        self.newton.solve_tangents(gradient, scratch);
+        if !self.sliding.is_empty() {
+            T::map_tangents(gradient, scratch, |x| {
+                self.sliding.correct(&self.problem, x)
+            });
+        }
         for (a, &x) in iterate.qacc.iter_mut().zip(&iterate.gradient) {
             let value = a.value();
             *a = -x;
             a.set_value(value);
         }
-        iterate.evaluate_at_qacc(problem);
+        let qacc = std::mem::take(&mut iterate.qacc);
+        iterate.place(problem, &qacc);
+        iterate.differentiate(problem);
         let solved = &self.state.iterate;
         for (to, from) in [
             (&mut iterate.force, &solved.force),

@@ -17,12 +17,12 @@ const WIDTH: usize = 4;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeFactor<T> {
     /// L, row by row; its unit diagonal is not stored, and those entries are undefined.
-    lower: Vec<T>,
+    pub(super) lower: Vec<T>,
     /// U = D L, needed only while factoring.
     scaled: Vec<T>,
     /// D and 1 / D.
-    diagonal: Vec<T>,
-    inverse: Vec<T>,
+    pub(super) diagonal: Vec<T>,
+    pub(super) inverse: Vec<T>,
 }
 
 impl<T: Real> TreeFactor<T> {

@@ -7,6 +7,7 @@
 //! A row lists a path from a root. So the row of an ancestor is a prefix of the row of each of its descendants, and a
 //! column has the same index in all of them. The kernels use this: they run over contiguous values, without indices.
 
+mod differentiated;
 mod factor;
 mod lu;
 mod matrix;
@@ -14,6 +15,7 @@ mod matrix;
 mod tests;
 
 use crate::ProblemError;
+pub use differentiated::solve_differentiated;
 pub use factor::TreeFactor;
 pub use lu::TreeLu;
 pub use matrix::TreeMatrix;

@@ -1,0 +1,158 @@
+//! Removal of derivatives from the results of stages that do not change along the directions of the next pass.
+
+use crate::contact::Contact;
+use crate::stages::{Forces, Positions, Velocities};
+use crate::workspace::Workspace;
+use clench_math::{Inertia, Mat3, Motion, Quat, Real, Vec3};
+
+impl<T: Real> Workspace<T> {
+    /// Removes the derivatives of the position stage and of contacts. The factor of the mass matrix must have none.
+    pub fn hold_positions(&mut self) {
+        self.position.hold();
+        hold(&mut self.problem.mass.values, number);
+        hold(&mut self.contacts, contact);
+    }
+
+    /// Removes the derivatives of the velocity stage.
+    pub fn hold_velocities(&mut self) {
+        let Velocities {
+            cvel,
+            cdof_dot,
+            ten_velocity,
+            actuator_velocity,
+        } = &mut self.velocity;
+        hold(cvel, motion);
+        hold(cdof_dot, motion);
+        hold(ten_velocity, number);
+        hold(actuator_velocity, number);
+        let Forces {
+            qfrc_bias,
+            qfrc_spring,
+            qfrc_damper,
+            qfrc_gravcomp,
+            qfrc_fluid,
+            qfrc_adhesion,
+            qfrc_passive,
+            cacc,
+            // Those of the next stage, and scratch.
+            qfrc_actuator: _,
+            qfrc_smooth: _,
+            actuator_force: _,
+            ten_actuator_force: _,
+            ctrl: _,
+            act_dot: _,
+            cfrc_body: _,
+        } = &mut self.force;
+        hold(cacc, motion);
+        for forces in [
+            qfrc_bias,
+            qfrc_spring,
+            qfrc_damper,
+            qfrc_gravcomp,
+            qfrc_fluid,
+            qfrc_adhesion,
+            qfrc_passive,
+        ] {
+            hold(forces, number);
+        }
+    }
+}
+
+impl<T: Real> Positions<T> {
+    fn hold(&mut self) {
+        for points in [
+            &mut self.xpos,
+            &mut self.xipos,
+            &mut self.xanchor,
+            &mut self.xaxis,
+            &mut self.geom_xpos,
+            &mut self.site_xpos,
+            &mut self.subtree_com,
+            &mut self.subtree_moment,
+        ] {
+            hold(points, vector);
+        }
+        for frames in [
+            &mut self.xmat,
+            &mut self.ximat,
+            &mut self.geom_xmat,
+            &mut self.site_xmat,
+        ] {
+            hold(frames, frame);
+        }
+        for rotations in [&mut self.xquat, &mut self.jnt_rotation] {
+            hold(rotations, rotation);
+        }
+        hold(&mut self.cdof, motion);
+        for inertias in [&mut self.cinert, &mut self.crb] {
+            hold(inertias, inertia);
+        }
+        for numbers in [
+            &mut self.ten_length,
+            &mut self.ten_jacobian,
+            &mut self.actuator_length,
+            &mut self.actuator_moment,
+        ] {
+            hold(numbers, number);
+        }
+    }
+}
+
+/// Replaces every element by its value.
+#[inline(always)]
+fn hold<X>(elements: &mut [X], value: impl Fn(&X) -> X) {
+    for element in elements {
+        *element = value(element);
+    }
+}
+
+#[inline(always)]
+fn number<T: Real>(x: &T) -> T {
+    T::from_value(x.value())
+}
+
+#[inline(always)]
+fn vector<T: Real>(v: &Vec3<T>) -> Vec3<T> {
+    Vec3::new(number(&v.x), number(&v.y), number(&v.z))
+}
+
+#[inline(always)]
+fn frame<T: Real>(m: &Mat3<T>) -> Mat3<T> {
+    let [x, y, z] = &m.rows;
+    Mat3::from_rows(vector(x), vector(y), vector(z))
+}
+
+#[inline(always)]
+fn rotation<T: Real>(q: &Quat<T>) -> Quat<T> {
+    Quat::from_slice(&q.to_array().map(|x| number(&x)))
+}
+
+#[inline(always)]
+fn motion<T: Real>(m: &Motion<T>) -> Motion<T> {
+    Motion::new(vector(&m.angular), vector(&m.linear))
+}
+
+#[inline(always)]
+fn inertia<T: Real>(i: &Inertia<T>) -> Inertia<T> {
+    Inertia {
+        rotational: i.rotational.map(|x| number(&x)),
+        moment: vector(&i.moment),
+        mass: number(&i.mass),
+    }
+}
+
+fn contact<T: Real>(c: &Contact<T>) -> Contact<T> {
+    Contact {
+        dist: number(&c.dist),
+        pos: vector(&c.pos),
+        frame: frame(&c.frame),
+        includemargin: number(&c.includemargin),
+        friction: c.friction.map(|x| number(&x)),
+        solref: c.solref.map(|x| number(&x)),
+        solreffriction: c.solreffriction.map(|x| number(&x)),
+        solimp: c.solimp.map(|x| number(&x)),
+        adhesion: number(&c.adhesion),
+        surfacevel: c.surfacevel.map(|x| number(&x)),
+        ..*c
+    }
+}
