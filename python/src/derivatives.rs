@@ -15,6 +15,8 @@ use std::slice::from_ref;
 
 /// The memory of a simulation's derivatives, created on demand.
 pub(crate) type Memory = Option<Linearizer>;
+/// The memory of a batch's derivatives, created on demand.
+pub(crate) type BatchMemory = Option<BatchLinearizer>;
 
 /// The chosen outputs and parameters.
 pub(crate) struct Chosen {
@@ -103,11 +105,14 @@ impl Chosen {
     pub(crate) fn of_batch(
         &self,
         py: Python<'_>,
+        memory: &mut BatchMemory,
         batch: &mut clench::Batch<f64>,
     ) -> PyResult<Linearization> {
         let count = batch.count();
-        let mut linearizer = BatchLinearizer::new(batch);
-        let results = py.detach(|| linearizer.linearize(batch, &self.request));
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            linearizer.linearize(batch, &self.request)
+        });
         let results = results.map_err(|(env, error)| {
             let error = sim_error(error);
             let text = format!("environment {env}: {}", error.value(py));

@@ -99,9 +99,10 @@ impl Batch {
     ) -> PyResult<Linearization> {
         let model = self.described();
         let chosen = derivatives::Chosen::new(model, &outputs, parameters)?;
+        let mut memory = lock(self.linearizer(), "batch")?;
         let mut guard = lock(self.inner(), "batch")?;
         match &mut *guard {
-            AnyBatch::F64(batch) => chosen.of_batch(py, batch),
+            AnyBatch::F64(batch) => chosen.of_batch(py, &mut memory, batch),
             AnyBatch::F32(_) => Err(PyValueError::new_err(
                 "derivatives of a batch need double precision: create it with precision=\"64\"",
             )),

@@ -8,6 +8,8 @@ use std::convert::Infallible;
 
 /// The memory of a simulation's derivatives: none.
 pub(crate) type Memory = ();
+/// The memory of a batch's derivatives: none.
+pub(crate) type BatchMemory = ();
 
 /// The chosen outputs and parameters, which cannot exist.
 pub(crate) struct Chosen(Infallible);
@@ -35,6 +37,7 @@ impl Chosen {
     pub(crate) fn of_batch(
         &self,
         _: Python<'_>,
+        (): &mut BatchMemory,
         _: &mut clench::Batch<f64>,
     ) -> PyResult<Linearization> {
         match self.0 {}

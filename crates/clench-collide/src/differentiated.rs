@@ -16,8 +16,8 @@ const TRANSLATION: usize = 0;
 const ROTATIONS: [usize; 2] = [3, 6];
 const SIZES: [usize; 2] = [9, 12];
 
-/// A number with its derivatives by the poses and sizes of two shapes.
-type PairDual = Dual<f64, DIRECTIONS>;
+/// A number with its derivatives by the poses and sizes of two shapes, and an unused one that fills the registers.
+type PairDual = Dual<f64, { DIRECTIONS + 1 }>;
 
 /// Computes the same as [`collide_again`] in dual numbers. `collide` is [`collide_again`] in plain numbers.
 #[kernel]

@@ -13,7 +13,15 @@ pub struct BatchLinearizer {
 
 /// The memory of a thread, which serves its environments in turn: for each model of the batch, once it is needed.
 struct Worker {
-    own: Vec<Option<(Sim<f64>, Linearizer)>>,
+    own: Vec<Own>,
+}
+
+/// The memory for a model.
+#[derive(Default)]
+struct Own {
+    /// The simulation of the environment; created anew in each call, because options may have changed.
+    sim: Option<Sim<f64>>,
+    linearizer: Option<Linearizer>,
 }
 
 impl fmt::Debug for BatchLinearizer {
@@ -27,7 +35,7 @@ impl BatchLinearizer {
     pub fn new(batch: &Batch<f64>) -> Self {
         let threads = batch.threads().clamp(1, batch.count().max(1));
         let workers = (0..threads).map(|_| Worker {
-            own: batch.models().iter().map(|_| None).collect(),
+            own: batch.models().iter().map(|_| Own::default()).collect(),
         });
         BatchLinearizer {
             workers: workers.collect(),
@@ -78,6 +86,9 @@ impl Worker {
         first: usize,
         results: &mut [Linearization],
     ) -> Result<(), (usize, SimError)> {
+        for own in &mut self.own {
+            own.sim = None;
+        }
         for (env, result) in (first..).zip(results) {
             let copied = match batch.lock() {
                 Ok(batch) => self.copy(&batch, env),
@@ -97,16 +108,18 @@ impl Worker {
         batch: &Batch<f64>,
         env: usize,
     ) -> Result<(&Sim<f64>, &mut Linearizer), SimError> {
-        let own = &mut self.own[batch.env_model(env)];
-        let (sim, linearizer) = match own {
-            Some(own) => own,
-            None => {
-                let sim = batch.sim(env)?;
-                let linearizer = Linearizer::new(sim.model())?;
-                own.insert((sim, linearizer))
+        let Own { sim, linearizer } = &mut self.own[batch.env_model(env)];
+        let sim = match sim {
+            Some(sim) => {
+                batch.copy_to_sim(env, sim)?;
+                sim
             }
+            empty => empty.insert(batch.sim(env)?),
         };
-        batch.copy_to_sim(env, sim)?;
+        let linearizer = match linearizer {
+            Some(linearizer) => linearizer,
+            empty => empty.insert(Linearizer::new(sim.model())?),
+        };
         Ok((sim, linearizer))
     }
 }

@@ -140,6 +140,7 @@ impl Linearizer {
             settings: sim.settings(),
             state: &sim.state,
             outputs: &request.outputs,
+            first: true,
             start: Start::Positions,
             constant_factor: has_constant_factor(&model, sim.settings()),
         };
@@ -150,6 +151,7 @@ impl Linearizer {
         let mut reuses = false;
         while end < columns {
             let first = end;
+            source.first = first == 0;
             end += self.pass_len(source, first);
             let directions = &self.directions[first..end];
             let earliest = directions.iter().map(|direction| direction.start()).min();

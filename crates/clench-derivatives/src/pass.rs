@@ -17,6 +17,8 @@ pub(crate) struct Source<'a> {
     pub settings: &'a StepSettings,
     pub state: &'a State<f64>,
     pub outputs: &'a [Output],
+    /// True in the first pass from a state.
+    pub first: bool,
     /// The first stage whose results change along the directions.
     pub start: Start,
     /// True if the factor of the mass matrix needs no derivatives.
@@ -102,6 +104,20 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
         }
     }
 
+    /// Removes the derivatives of the state.
+    fn clear_state(&mut self) {
+        let State {
+            qpos,
+            qvel,
+            act,
+            ctrl,
+            ..
+        } = &mut self.before;
+        for number in [qpos, qvel, act, ctrl].into_iter().flatten() {
+            *number = Real::new(number.value);
+        }
+    }
+
     /// Removes the derivatives of the parameters.
     fn clear_params(&mut self, model: &Model, directions: &[Direction]) {
         for &direction in directions {
@@ -139,7 +155,11 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         let Source {
             model, settings, ..
         } = source;
-        self.before.set_values(source.state);
+        if source.first {
+            self.before.set_values(source.state);
+        } else {
+            self.clear_state();
+        }
         self.seed(model, directions);
         let DualPass {
             params,
@@ -149,17 +169,15 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             outputs,
             last,
         } = self;
-        state.copy_from(before);
+        if source.first {
+            state.copy_from(before);
+        } else {
+            state.copy_moving_from(before);
+            state.ctrl.clone_from(&before.ctrl);
+        }
         ws.constant_factor = source.constant_factor;
-        let start = source.start;
-        let held = std::mem::replace(last, start)..start;
-        if held.contains(&Start::Positions) && source.constant_factor {
-            ws.hold_positions();
-        }
-        if held.contains(&Start::Velocities) {
-            ws.hold_velocities();
-        }
-        let step = match start {
+        hold(ws, std::mem::replace(last, source.start), source);
+        let step = match source.start {
             Start::Positions => {
                 ws.forget_poses();
                 pipeline::step
@@ -195,5 +213,22 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             (!good).then(|| check::result_fault(model, source.state.time, state, ws, 0).into());
         self.clear_params(model, directions);
         fault.map_or(Ok(()), Err)
+    }
+}
+
+/// Removes the derivatives of the stages that the pass reuses from the last one, which began with stage `last`.
+fn hold<T: Real>(ws: &mut Workspace<T>, last: Start, source: Source<'_>) {
+    let held = last..source.start;
+    if held.contains(&Start::Positions) && source.constant_factor {
+        ws.hold_positions();
+    }
+    if held.contains(&Start::Velocities) {
+        ws.hold_velocities();
+    }
+    // Displacements of friction that sticks are found with the constraints.
+    ws.keep_constraints =
+        source.start == Start::Forces && source.constant_factor && !source.settings.stiction;
+    if ws.keep_constraints && !held.is_empty() {
+        ws.hold_constraints();
     }
 }

@@ -1,5 +1,6 @@
 //! Removal of derivatives from the results of stages that do not change along the directions of the next pass.
 
+use crate::constraint::BlockRecord;
 use crate::contact::Contact;
 use crate::stages::{Forces, Positions, Velocities};
 use crate::workspace::Workspace;
@@ -11,6 +12,19 @@ impl<T: Real> Workspace<T> {
         self.position.hold();
         hold(&mut self.problem.mass.values, number);
         hold(&mut self.contacts, contact);
+    }
+
+    /// Removes the derivatives of constraints, which the next pass keeps. (With the integrator `discrete` they depend
+    /// on the forces of actuators.)
+    pub fn hold_constraints(&mut self) {
+        self.problem.hold_constraints();
+        hold(&mut self.record.pos, number);
+        hold(&mut self.record.vel, number);
+        hold(&mut self.record.blocks, |block| BlockRecord {
+            margin: number(&block.margin),
+            impedance: number(&block.impedance),
+            ..*block
+        });
     }
 
     /// Removes the derivatives of the velocity stage.

@@ -205,11 +205,12 @@ impl<L: Real<Scalar = f64>, const K: usize> Real for Dual<L, K> {
 
     #[inline(always)]
     fn vectorize<R>(kernel: impl FnOnce() -> R) -> R {
-        L::vectorize(kernel)
+        // The derivatives of each number are contiguous.
+        L::vectorize_rows(kernel)
     }
     #[inline(always)]
     fn vectorize_rows<R>(kernel: impl FnOnce() -> R) -> R {
-        L::vectorize(kernel)
+        L::vectorize_rows(kernel)
     }
 
     #[inline(always)]

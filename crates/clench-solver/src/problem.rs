@@ -150,6 +150,21 @@ impl<T: Real> Problem<T> {
         self.malformed = None;
     }
 
+    /// Removes the derivatives of all blocks.
+    pub fn hold_constraints(&mut self) {
+        for numbers in [
+            &mut self.jacobian.values,
+            &mut self.aref,
+            &mut self.r,
+            &mut self.d,
+            &mut self.shape,
+        ] {
+            for x in numbers {
+                *x = T::from_value(x.value());
+            }
+        }
+    }
+
     /// Marks the blocks pushed from here on as terms ½ D (J a − aref)² of the metric: the matrix of the motion is M
     /// plus the sum of their D JᵀJ, and aref = J a_unc. `noslip` distinguishes them from constraints.
     pub fn begin_metric_terms(&mut self) {

@@ -3,6 +3,7 @@
 use crate::arrays::mask;
 use crate::busy::lock;
 use crate::count::Count;
+use crate::derivatives::BatchMemory;
 use crate::device::Device;
 use crate::error::sim_error;
 use crate::given_models::Models;
@@ -102,6 +103,8 @@ pub(crate) struct Batch {
     precision: Bits,
     threads: usize,
     lanes: usize,
+    /// The memory of derivatives, created on demand.
+    linearizer: Mutex<BatchMemory>,
 }
 
 #[pymethods]
@@ -161,6 +164,7 @@ impl Batch {
             precision,
             threads,
             lanes,
+            linearizer: Mutex::default(),
         };
         batch.keep(py, &record.0)?;
         Ok(PyClassInitializer::from(views).add_subclass(batch))
@@ -342,6 +346,11 @@ impl Batch {
     /// Returns the batch itself, which other threads may use.
     pub(crate) fn inner(&self) -> &Mutex<AnyBatch> {
         &self.inner
+    }
+
+    /// Returns the memory of derivatives.
+    pub(crate) fn linearizer(&self) -> &Mutex<BatchMemory> {
+        &self.linearizer
     }
 
     /// Returns a shared reference to the batch.

@@ -57,7 +57,9 @@ pub fn constraint_stage<T: Real>(
     if in_metric {
         couple_smooth(model, &settings.solver, ws);
     }
-    assemble(model, params, settings, state, ws);
+    if !(T::IS_DUAL && ws.keep_constraints) {
+        assemble(model, params, settings, state, ws);
+    }
     if in_metric {
         append_couplings(model, &settings.solver, ws);
     }
