@@ -2,8 +2,9 @@
 //!
 //! A [`Linearizer`] runs the step in [dual numbers](clench_math::Dual), several directions at a time. Every kernel of
 //! the step is generic over its number type, so no physics is written here, and every feature of the step has
-//! derivatives. The solution of the convex problem is differentiated by the implicit function theorem, with the Hessian
-//! that Newton's method factors.
+//! derivatives. Passes along velocities or controls alone keep the results of the stages that do not depend on them.
+//! Linear systems are solved with one factorization in plain numbers. The solution of the convex problem is
+//! differentiated by the implicit function theorem, with the Hessian that Newton's method factors.
 //!
 //! The derivative of a constraint that switches (a contact that begins, a limit that is reached) is that of the active
 //! side.

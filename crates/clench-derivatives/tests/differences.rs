@@ -244,6 +244,41 @@ fn integrators() {
     }
 }
 
+/// Some passes are along controls alone. Sensors read the results of all stages, of which these passes repeat few.
+#[test]
+fn many_controls() {
+    let motors = [r#"<motor joint="a"/><motor joint="b" gear="2"/>"#; 20].concat();
+    let text = format!(
+        r#"<mujoco>
+          <worldbody>
+            <geom type="plane" size="2 2 .1"/>
+            <body pos="0 0 .2">
+              <joint name="a" axis="0 1 0" damping=".1"/>
+              <geom type="capsule" fromto="0 0 0 .2 0 0" size=".03"/>
+              <body pos=".2 0 0">
+                <joint name="b" axis="1 1 0" damping=".1"/>
+                <geom type="capsule" fromto="0 0 0 .2 0 -.1" size=".03"/>
+                <site name="t" pos=".2 0 -.1"/>
+              </body>
+            </body>
+          </worldbody>
+          <actuator>{motors}</actuator>
+          <sensor>
+            <accelerometer site="t"/>
+            <force site="t"/>
+            <jointvel joint="b"/>
+            <actuatorfrc actuator="0"/>
+          </sensor>
+        </mujoco>"#
+    )
+    .replacen("<motor ", "<motor name=\"0\" ", 1);
+    check(
+        clench_formats::load_str(&text).expect("a model"),
+        RigidOptions::new(),
+        100,
+    );
+}
+
 /// Rotations have no axis at rest.
 #[test]
 fn joints_at_rest() {
