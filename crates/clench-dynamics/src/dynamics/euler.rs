@@ -5,7 +5,7 @@
 //! factorization.
 
 use crate::dynamics::articulated::articulated_factor;
-use crate::dynamics::integrate::{advance_semi_implicit, factor_and_solve, solve_implicit};
+use crate::dynamics::integrate::{advance_semi_implicit, factor_implicit, solve_implicit};
 use crate::dynamics::reflected::dof_damper;
 use crate::model::{Model, Params};
 use crate::state::State;
@@ -72,11 +72,11 @@ fn damped_acceleration<T: Real>(
     let tree = &model.tree;
     let positive = if T::IS_DUAL || ws.articulated.is_empty() {
         damped_inertia(model, params, qvel, ws);
-        factor_and_solve(tree, ws)
+        factor_implicit(tree, ws)
     } else {
         let factor = &mut ws.integration.factor;
         let (pos, bodies) = (&ws.position, &mut ws.articulated);
-        let positive = articulated_factor(
+        articulated_factor(
             model,
             params,
             pos,
@@ -84,11 +84,10 @@ fn damped_acceleration<T: Real>(
             |i| params.timestep * dof_damper(model, params, i).damping_slope(qvel[i]),
             bodies,
             factor,
-        );
-        solve_implicit(tree, ws);
-        positive
+        )
     };
     ws.singular |= damped & !positive;
+    solve_implicit(tree, ws);
     for (solved, &explicit) in ws.integration.qacc.iter_mut().zip(&ws.qacc) {
         *solved = T::select(damped, *solved, explicit);
     }

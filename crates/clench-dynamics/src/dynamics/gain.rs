@@ -17,11 +17,12 @@ pub(crate) fn unlimited_force<T: Real>(
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T {
+    let affine = |prm: &[T; 10]| prm[0] + prm[1] * at.length + prm[2] * at.velocity;
     let input = || input(model, params, given, act_dot, u, at);
     let (gainprm, biasprm) = (&params.actuator_gainprm[u], &params.actuator_biasprm[u]);
     let (gain, input) = match model.actuators[u].gain {
         GainKind::Fixed => (gainprm[0], input()),
-        GainKind::Affine => (affine(gainprm, at), input()),
+        GainKind::Affine => (affine(gainprm), input()),
         GainKind::Muscle => {
             let muscle = Muscle::new(params, u, gainprm, at.length);
             (muscle.gain(at.velocity), input())
@@ -39,16 +40,10 @@ pub(crate) fn unlimited_force<T: Real>(
     let active = gain * input;
     match model.actuators[u].bias {
         BiasKind::None | BiasKind::So3 | BiasKind::User => active,
-        BiasKind::Affine => active + affine(biasprm, at),
+        BiasKind::Affine => active + affine(biasprm),
         BiasKind::Muscle => active + Muscle::new(params, u, biasprm, at.length).bias(),
         BiasKind::DcMotor => active - dc_motor::back_emf(model, params, u, gain, at),
     }
-}
-
-/// Computes an affine function of length and velocity.
-#[inline(always)]
-fn affine<T: Real>(prm: &[T; 10], at: ActuatorMotion<T>) -> T {
-    prm[0] + prm[1] * at.length + prm[2] * at.velocity
 }
 
 /// Computes ∂force/∂velocity of [`unlimited_force`].

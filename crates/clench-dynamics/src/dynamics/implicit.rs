@@ -11,7 +11,9 @@ use crate::dynamics::coriolis::add_bias_derivatives;
 use crate::dynamics::derivatives::add_velocity_derivatives;
 use crate::dynamics::ellipsoid::FluidForces;
 use crate::dynamics::gyroscopic::{gyroscopic_product, is_free_tree, solve_gyroscopic};
-use crate::dynamics::integrate::{add_scaled, advance_semi_implicit, factor_and_solve, sum_forces};
+use crate::dynamics::integrate::{
+    add_scaled, advance_semi_implicit, factor_implicit, solve_implicit, sum_forces,
+};
 use crate::model::{Model, Params};
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -26,8 +28,9 @@ pub fn implicit_fast<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     symmetric_inertia(model, params, state, ws);
-    let positive = factor_and_solve(&model.tree, ws);
+    let positive = factor_implicit(&model.tree, ws);
     ws.singular |= !positive;
+    solve_implicit(&model.tree, ws);
     let Workspace {
         position: pos,
         velocity: vel,

@@ -124,27 +124,33 @@ pub(crate) fn advance_time<T: Real>(
     state.pass(params.timestep);
 }
 
-/// Solves for `integration.qacc` with `integration.factor`, from the sum of all forces.
+/// Solves for `integration.qacc` from the sum of all forces, with `integration.factor`; in dual numbers with
+/// `integration.matrix`.
 #[inline(always)]
 pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
     sum_forces(ws);
-    let Integration { factor, qacc, .. } = &mut ws.integration;
-    factor.solve(tree, qacc);
+    let Integration {
+        matrix,
+        factor,
+        qacc,
+        ..
+    } = &mut ws.integration;
+    if T::IS_DUAL {
+        solve_differentiated(tree, matrix, qacc);
+    } else {
+        factor.solve(tree, qacc);
+    }
 }
 
-/// Factors `integration.matrix` and solves for `integration.qacc`, from the sum of all forces. Returns false in lanes in
+/// Factors `integration.matrix` for [`solve_implicit`], which does so itself in dual numbers. Returns false in lanes in
 /// which the matrix is not positive definite.
 #[inline(always)]
-pub(crate) fn factor_and_solve<T: Real>(tree: &Tree, ws: &mut Workspace<T>) -> T::Mask {
-    if T::IS_DUAL {
-        sum_forces(ws);
-        let Integration { matrix, qacc, .. } = &mut ws.integration;
-        return solve_differentiated(tree, matrix, qacc);
-    }
+pub(crate) fn factor_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) -> T::Mask {
     let Integration { matrix, factor, .. } = &mut ws.integration;
-    let positive = ws.solver.factor(factor, tree, matrix);
-    solve_implicit(tree, ws);
-    positive
+    if T::IS_DUAL {
+        return factor.factor_values(tree, matrix);
+    }
+    ws.solver.factor(factor, tree, matrix)
 }
 
 /// Stores the sum of all forces in `integration.qacc`.
