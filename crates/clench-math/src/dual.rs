@@ -63,7 +63,7 @@ impl<L: Real<Scalar = f64>, const K: usize> Dual<L, K> {
         let (a, b) = (L::splat(slopes.0), L::splat(slopes.1));
         let mut tangent = self.tangent;
         for (x, &y) in tangent.iter_mut().zip(&other.tangent) {
-            *x = y.mul_add(b, *x * a);
+            *x = *x * a + y * b;
         }
         Dual { value, tangent }
     }

@@ -124,13 +124,6 @@ pub trait Real:
         self * Self::new(constant)
     }
 
-    /// Computes `self · factor + addend`. The product is not rounded where the processor saves time by that, so only
-    /// derivatives may use it.
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        self * factor + addend
-    }
-
     /// Creates the same constant in every lane, rounded to the lane's precision.
     fn new(value: f64) -> Self;
     /// Creates the same value in every lane.

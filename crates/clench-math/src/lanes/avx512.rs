@@ -159,7 +159,6 @@ registers! {
         add(a, b) = _mm512_add_pd;
         sub(a, b) = _mm512_sub_pd;
         mul(a, b) = _mm512_mul_pd;
-        mul_add(a, b, c) = _mm512_fmadd_pd;
         div(a, b) = _mm512_div_pd;
         min(a, b) = _mm512_min_pd;
         max(a, b) = _mm512_max_pd;
@@ -176,7 +175,6 @@ registers! {
         add(a, b) = _mm512_add_ps;
         sub(a, b) = _mm512_sub_ps;
         mul(a, b) = _mm512_mul_ps;
-        mul_add(a, b, c) = _mm512_fmadd_ps;
         div(a, b) = _mm512_div_ps;
         min(a, b) = _mm512_min_ps;
         max(a, b) = _mm512_max_ps;

@@ -169,11 +169,6 @@ impl<S: Scalar, const N: usize, I: Registers<S, N>> Real for Lanes<S, N, I> {
     }
 
     #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Lanes(I::mul_add(self.0, factor.0, addend.0))
-    }
-
-    #[inline(always)]
     fn new(value: f64) -> Self {
         Self::splat(S::new(value))
     }

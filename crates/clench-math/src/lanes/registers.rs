@@ -32,11 +32,6 @@ pub unsafe trait Registers<S: Scalar, const N: usize>: Copy + Send + Sync + 'sta
     fn add(a: Self::Vector, b: Self::Vector) -> Self::Vector;
     fn sub(a: Self::Vector, b: Self::Vector) -> Self::Vector;
     fn mul(a: Self::Vector, b: Self::Vector) -> Self::Vector;
-    /// Computes `a · b + c`, with one rounding or two.
-    #[inline(always)]
-    fn mul_add(a: Self::Vector, b: Self::Vector, c: Self::Vector) -> Self::Vector {
-        Self::add(Self::mul(a, b), c)
-    }
     fn div(a: Self::Vector, b: Self::Vector) -> Self::Vector;
     fn neg(a: Self::Vector) -> Self::Vector;
     fn abs(a: Self::Vector) -> Self::Vector;
