@@ -134,7 +134,7 @@ def public(rows, columns, path):
         axis.set_yscale("log")
         axis.yaxis.set_major_formatter("{x:g}")
     axes[0].set_ylabel("MuJoCo's time over Clench's")
-    axes[-1].legend(frameon=False)
+    axes[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     save(figure, path)
 
 
