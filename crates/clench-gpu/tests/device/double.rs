@@ -72,6 +72,37 @@ fn shapes_that_overlap_agree() {
     agree(&text(&own("hulls")), 20, 1.0, 1e-6);
 }
 
+#[test]
+fn solves_take_as_many_iterations_as_on_the_processor() {
+    for option in ["cone='pyramidal'", "cone='elliptic'"] {
+        for name in ["runner", "medley"] {
+            common::efforts::efforts_agree::<f64>(&own(name), option, 0.01);
+        }
+    }
+}
+
+/// Tests contacts three times as stiff as their impedance says: the estimate of their inverse inertia is the mean over
+/// three directions, in two of which a body hardly moves.
+#[test]
+fn very_stiff_cones_are_approached_as_on_the_processor() {
+    let body = "<body pos='0 0 0.098'>
+          <joint axis='0 1 0' pos='-1 0 0'/>
+          <joint type='slide' axis='1 0 0' armature='20'/>
+          <geom size='0.1' mass='1' friction='0.8'/>
+        </body>";
+    let file = format!(
+        "<mujoco model='stiff cones'>
+           <option cone='elliptic'/>
+           <default><geom solimp='0.9999 0.9999 0.001'/></default>
+           <worldbody><geom type='plane' size='1 1 1'/>{body}</worldbody>
+         </mujoco>"
+    );
+    if let Some(effort) = common::efforts::efforts_agree::<f64>(&file, "gravity='2 0 -9.81'", 0.01)
+    {
+        assert!(effort.iterations > 100, "no stages: {effort:?}");
+    }
+}
+
 /// In some micrometres of this window the end of a cylinder misses a triangle by less than the gap's tolerance shows.
 #[test]
 fn cylinders_at_the_edge_of_a_step_agree() {

@@ -1,7 +1,6 @@
 //! Solvers and their statistics: conjugate gradients, the duality gap, and starting points that are proven to be good.
 
 use crate::common::{self, Random, convert, general_batch, own, random_state, text, upload};
-use clench_gpu::GpuReal;
 use clench_rigid::Sim;
 use clench_rigid::model::Model;
 use clench_solver::Status;
@@ -92,78 +91,16 @@ fn a_start_that_is_good_enough_is_proven_so() {
     assert!(solves[0].gap <= 1e-5, "{:?}", solves[0]);
 }
 
-/// The iterations and the evaluations of line searches of some solves.
-#[derive(Clone, Copy, Debug, Default)]
-struct Effort {
-    iterations: usize,
-    evaluations: usize,
-}
-
-/// Asserts that the solves of random states of a model take as many iterations and evaluations as on the processor,
-/// within a fraction of their sums; returns the latter. The kernels are a second text of the solver: a change of one
-/// alone shows here.
-fn efforts_agree<S: GpuReal>(file: &str, option: &str, fraction: f64) -> Option<Effort> {
-    // The processor counts the iterations of islands separately.
-    let flag = "<option><flag island='disable'/></option>\n<worldbody>";
-    let file = file.replace("<option ", &format!("<option {option} "));
-    let model = text(&file.replace("<worldbody>", flag));
-    let mut random = Random::new(7);
-    let states = Vec::from_iter((0..40).map(|_| random_state(&model, &mut random, 0.7)));
-    let mut batch = general_batch::<S>(&model, states.len())?;
-    upload(&mut batch, &states);
-    batch.forward().expect("a device");
-    let mut sim = Sim::<S>::new(model.clone()).expect("a good model");
-    let [mut found, mut expected] = [Effort::default(); 2];
-    for (state, solve) in states.iter().zip(batch.solves().expect("a device")) {
-        sim.state = convert(&model, state);
-        sim.forward().expect("a good state");
-        let stats = sim.stats();
-        found.iterations += solve.iterations;
-        found.evaluations += solve.ls_evaluations;
-        expected.iterations += stats.iterations;
-        expected.evaluations += stats.ls_evaluations;
-    }
-    let near = |found: usize, expected: usize| {
-        (found as f64 - expected as f64).abs() <= fraction * expected as f64
-    };
-    assert!(
-        near(found.iterations, expected.iterations)
-            && near(found.evaluations, expected.evaluations),
-        "{} with {option}: {found:?} on the device, {expected:?} on the processor",
-        model.name
-    );
-    Some(expected)
-}
-
 #[test]
 fn solves_take_as_many_iterations_as_on_the_processor() {
-    for cone in ["pyramidal", "elliptic"] {
+    for option in ["cone='pyramidal'", "cone='elliptic'"] {
         for name in ["runner", "medley"] {
-            let option = format!("cone='{cone}'");
-            efforts_agree::<f64>(&own(name), &option, 0.01);
-            efforts_agree::<f32>(&own(name), &option, 0.1);
-            efforts_agree::<f32>(&own(name), &format!("{option} solver='CG'"), 0.05);
+            common::efforts::efforts_agree::<f32>(&own(name), option, 0.1);
+            common::efforts::efforts_agree::<f32>(
+                &own(name),
+                &format!("{option} solver='CG'"),
+                0.05,
+            );
         }
-    }
-}
-
-/// Tests contacts three times as stiff as their impedance says: the estimate of their inverse inertia is the mean over
-/// three directions, in two of which a body hardly moves.
-#[test]
-fn very_stiff_cones_are_approached_as_on_the_processor() {
-    let body = "<body pos='0 0 0.098'>
-          <joint axis='0 1 0' pos='-1 0 0'/>
-          <joint type='slide' axis='1 0 0' armature='20'/>
-          <geom size='0.1' mass='1' friction='0.8'/>
-        </body>";
-    let file = format!(
-        "<mujoco model='stiff cones'>
-           <option cone='elliptic'/>
-           <default><geom solimp='0.9999 0.9999 0.001'/></default>
-           <worldbody><geom type='plane' size='1 1 1'/>{body}</worldbody>
-         </mujoco>"
-    );
-    if let Some(effort) = efforts_agree::<f64>(&file, "gravity='2 0 -9.81'", 0.01) {
-        assert!(effort.iterations > 100, "no stages: {effort:?}");
     }
 }

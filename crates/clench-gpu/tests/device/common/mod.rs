@@ -5,6 +5,7 @@
 mod agreement;
 mod computed;
 mod drift;
+pub mod efforts;
 pub mod folders;
 
 pub use agreement::*;
