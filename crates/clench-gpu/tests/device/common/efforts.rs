@@ -12,8 +12,8 @@ pub struct Effort {
 }
 
 /// Asserts that the solves of random states of a model take as many iterations and evaluations as on the processor,
-/// within a fraction of their sums; returns the latter. The kernels are a second text of the solver: a change of one
-/// alone shows here.
+/// within two and a fraction of their sums; returns the latter. The kernels are a second text of the solver: a change
+/// of one alone shows here.
 pub fn efforts_agree<S: GpuReal>(file: &str, option: &str, fraction: f64) -> Option<Effort> {
     // The processor counts the iterations of islands separately.
     let flag = "<option><flag island='disable'/></option>\n<worldbody>";
@@ -36,7 +36,7 @@ pub fn efforts_agree<S: GpuReal>(file: &str, option: &str, fraction: f64) -> Opt
         expected.evaluations += stats.ls_evaluations;
     }
     let near = |found: usize, expected: usize| {
-        (found as f64 - expected as f64).abs() <= fraction * expected as f64
+        (found as f64 - expected as f64).abs() <= fraction * expected as f64 + 2.0
     };
     assert!(
         near(found.iterations, expected.iterations)
