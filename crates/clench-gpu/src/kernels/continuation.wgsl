@@ -8,6 +8,10 @@ var<private> stiffest: f32;
 
 // Returns the factor by which the current stage divides the stiffness of an elliptic cone.
 fn stiffening(first: u32) -> f32 {
+    if (level == 0.0) {
+        // The inverse inertia may still be that of another step, even NaN.
+        return 1.0;
+    }
     return 1.0 + row(D + first) * level * row(CONE_INERTIA + first);
 }
 
@@ -37,7 +41,7 @@ fn start_continuation(nblock: u32) -> bool {
 
 // Moves to the next stage if the current one has ended; returns true if so.
 fn advance_continuation(improvement: f32, cost: f32) -> bool {
-    if (level == 0.0 || improvement > CONTINUATION_SETTLED * cost) {
+    if (improvement > CONTINUATION_SETTLED * cost) {
         return false;
     }
     let next = level / CONTINUATION_STAGE;

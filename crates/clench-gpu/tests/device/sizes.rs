@@ -36,24 +36,31 @@ fn geoms_have_the_sizes_of_their_environments() {
         return;
     }
     let options = BatchOptions::default;
-    let mut device = clench_gpu::batch::<f32>(model.clone(), COUNT, options(), None).unwrap();
-    let mut processor = Batch::<f32>::with_options(model.clone(), COUNT, options()).unwrap();
-    let mut plain = Batch::<f32>::with_options(model.clone(), COUNT, options()).unwrap();
+    let mut device =
+        clench_gpu::batch::<f32>(model.clone(), COUNT, options(), None).expect("a device");
+    let mut processor =
+        Batch::<f32>::with_options(model.clone(), COUNT, options()).expect("a good model");
+    let mut plain =
+        Batch::<f32>::with_options(model.clone(), COUNT, options()).expect("a good model");
     let mut random = Random::new(4);
     let envs = Vec::from_iter(0..COUNT);
-    let row = processor.param("geom_size", 0).unwrap();
+    let row = processor.param("geom_size", 0).expect("a field");
     let sizes = row.repeat(COUNT);
     let sizes = Vec::from_iter((sizes.iter()).map(|x| x * (1.0 + 0.2 * random.signed() as f32)));
     for env in 0..COUNT {
         let state = random_state(&model, &mut random, 0.1);
         for batch in [&mut device, &mut processor, &mut plain] {
-            batch.state.write(env, &state).unwrap();
+            batch.state.write(env, &state).expect("a row");
         }
     }
-    device.randomize("geom_size", &envs, &sizes).unwrap();
-    processor.randomize("geom_size", &envs, &sizes).unwrap();
+    device
+        .randomize("geom_size", &envs, &sizes)
+        .expect("good sizes");
+    processor
+        .randomize("geom_size", &envs, &sizes)
+        .expect("good sizes");
     for batch in [&mut device, &mut processor, &mut plain] {
-        assert_eq!(batch.step_n(2).unwrap().running, COUNT);
+        assert_eq!(batch.step_n(2).expect("a device").running, COUNT);
     }
     // Rounding decides which points of some pairs touch: most environments agree.
     let mut near = 0;
