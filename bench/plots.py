@@ -5,6 +5,8 @@ import matplotlib
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
+plt.rcParams |= {"svg.hashsalt": "clench", "font.size": 8, "axes.spines.top": False, "axes.spines.right": False}
+
 COLORS = {"mujoco": "#888888", "clench": "#c04020", "clench f64": "#c04020", "clench f32": "#e0a030"}
 FIELDS = [("contacts_mean", ".0f"), ("iterations_mean", ".1f")]
 THREADED = "clench, all threads"  # one environment whose steps use all threads
@@ -39,7 +41,6 @@ def draw(record, folder):
     machine = "{processors} processors ({machine})".format(**record["machine"])
     parts = {"machine": machine, "processors": record["machine"]["processors"], "mujoco": record["machine"]["mujoco"], "alone": alone(record["rows"], scenes), "many": many(record["rows"], scenes)}
     (folder / "families.md").write_text(PAGE.format(**parts))
-    plt.rcParams |= {"svg.hashsalt": "clench", "font.size": 8, "axes.spines.top": False, "axes.spines.right": False}
     stages(record["stages"], folder / "families-stages.svg")
     growth(record["rows"], folder / "families-growth.svg")
 

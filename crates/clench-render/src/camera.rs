@@ -58,6 +58,11 @@ impl FreeCamera {
             fovy: 42.0,
         })
     }
+
+    /// Returns the present size of the movable geoms, m.
+    pub(crate) fn extent<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimError> {
+        Ok((Self::of_all(sim)?.distance / DISTANCE) as f32)
+    }
 }
 
 /// The selection of a camera.
@@ -80,13 +85,6 @@ pub(crate) struct Placed {
     /// Half the height of the image at distance 1 or, for an orthographic camera, in metres.
     pub half: f32,
     pub parallel: bool,
-}
-
-impl FreeCamera {
-    /// Returns the present size of the movable geoms, m.
-    pub(crate) fn extent<T: Precision>(sim: &mut Sim<T>) -> Result<f32, clench::SimError> {
-        Ok((Self::of_all(sim)?.distance / DISTANCE) as f32)
-    }
 }
 
 impl View {

@@ -58,8 +58,8 @@ pub(crate) struct Lighting {
 }
 
 impl Lighting {
-    /// Collects lights with the present position and direction of each. The first light that casts
-    /// shadows is used; its shadow covers the region around `centre` within `reach`.
+    /// Collects lights with the present position and direction of each. Only the first light with shadows
+    /// casts one, over the region around `centre` within `reach`.
     pub(crate) fn new(
         (lights, headlight): (&[Light], &Headlight),
         places: &[[[f64; 3]; 2]],

@@ -115,8 +115,8 @@ struct Scene<'a> {
 }
 
 impl RayPictures<'_> {
-    /// Draws the present state of a simulation, the `index`-th of all, now or with a later one. Of
-    /// looks, only the opacity of geoms matters.
+    /// Draws the present state of a simulation, the `index`-th of all, now or with a later one. Of the looks, only the
+    /// opacity of geoms matters.
     ///
     /// # Errors
     /// Returns an error if a camera does not exist or the state cannot be evaluated.
