@@ -5,6 +5,7 @@ use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
 use clench::Output;
 use clench::derivatives::{self, BatchLinearizer, Linearizer, Matrix, Request};
+use clench::rigid::batch::Precision;
 use clench::rigid::model::ParamField;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyIndexError;
@@ -16,7 +17,11 @@ use std::slice::from_ref;
 /// The memory of a simulation's derivatives, created on demand.
 pub(crate) type Memory = Option<Linearizer>;
 /// The memory of a batch's derivatives, created on demand.
-pub(crate) type BatchMemory = Option<BatchLinearizer>;
+#[derive(Default)]
+pub(crate) struct BatchMemory {
+    pub(crate) double: Option<BatchLinearizer<f64>>,
+    pub(crate) single: Option<BatchLinearizer<f32>>,
+}
 
 /// The chosen outputs and parameters.
 pub(crate) struct Chosen {
@@ -102,11 +107,11 @@ impl Chosen {
     }
 
     /// Linearizes the next step of every environment of a batch.
-    pub(crate) fn of_batch(
+    pub(crate) fn of_batch<S: Precision>(
         &self,
         py: Python<'_>,
-        memory: &mut BatchMemory,
-        batch: &mut clench::Batch<f64>,
+        memory: &mut Option<BatchLinearizer<S>>,
+        batch: &mut clench::Batch<S>,
     ) -> PyResult<Linearization> {
         let count = batch.count();
         let results = py.detach(|| {

@@ -5,7 +5,6 @@ use crate::busy::lock;
 use crate::derivatives;
 use crate::linearization::Linearization;
 use crate::sim::Sim;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -83,8 +82,7 @@ impl Batch {
     /// Raises
     /// ------
     /// ValueError
-    ///     If a name is unknown, a parameter follows from another, or the batch has single precision: derivatives are
-    ///     computed in double precision.
+    ///     If a name is unknown, or a parameter follows from another.
     /// IndexError
     ///     If a parameter does not have a number.
     /// SimulationError
@@ -102,10 +100,8 @@ impl Batch {
         let mut memory = lock(self.linearizer(), "batch")?;
         let mut guard = lock(self.inner(), "batch")?;
         match &mut *guard {
-            AnyBatch::F64(batch) => chosen.of_batch(py, &mut memory, batch),
-            AnyBatch::F32(_) => Err(PyValueError::new_err(
-                "derivatives of a batch need double precision: create it with precision=\"64\"",
-            )),
+            AnyBatch::F64(batch) => chosen.of_batch(py, &mut memory.double, batch),
+            AnyBatch::F32(batch) => chosen.of_batch(py, &mut memory.single, batch),
         }
     }
 }

@@ -3,13 +3,18 @@
 use crate::error::classes::ClenchError;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
+use clench::rigid::batch::Precision;
 use pyo3::prelude::*;
 use std::convert::Infallible;
 
 /// The memory of a simulation's derivatives: none.
 pub(crate) type Memory = ();
 /// The memory of a batch's derivatives: none.
-pub(crate) type BatchMemory = ();
+#[derive(Default)]
+pub(crate) struct BatchMemory {
+    pub(crate) double: (),
+    pub(crate) single: (),
+}
 
 /// The chosen outputs and parameters, which cannot exist.
 pub(crate) struct Chosen(Infallible);
@@ -34,11 +39,11 @@ impl Chosen {
         match self.0 {}
     }
 
-    pub(crate) fn of_batch(
+    pub(crate) fn of_batch<S: Precision>(
         &self,
         _: Python<'_>,
-        (): &mut BatchMemory,
-        _: &mut clench::Batch<f64>,
+        (): &mut (),
+        _: &mut clench::Batch<S>,
     ) -> PyResult<Linearization> {
         match self.0 {}
     }

@@ -244,8 +244,14 @@ def test_each_constraint_row_has_its_distance_from_a_switch() -> None:
 def test_single_precision() -> None:
     single, double = (clench.Sim(ball(), precision=bits) for bits in ("32", "64"))
     np.testing.assert_allclose(single.linearize().A, double.linearize().A, rtol=1e-6)
-    with pytest.raises(ValueError, match="double precision"):
-        clench.Batch(ball(), 2, precision="32").linearize()
+    batch = clench.Batch(example("quadruped"), 3, precision="32", threads=2)
+    batch.qvel[:] = np.random.default_rng(0).normal(size=batch.qvel.shape)
+    batch.randomize("body_mass", np.linspace(0.9, 1.1, 3)[:, None] * batch.param("body_mass"))
+    stacked = batch.linearize(["subtree_com"], {"body_mass": [1]})
+    for env in range(3):
+        alone = batch.sim(env).linearize(["subtree_com"], {"body_mass": [1]})
+        for name in "ABCD":
+            np.testing.assert_array_equal(getattr(stacked, name)[env], getattr(alone, name))
 
 
 def test_invalid_requests() -> None:

@@ -140,6 +140,15 @@ def test_options_and_constraints_stay() -> None:
         device.add_weld("torso", "pelvis")
 
 
+def test_derivatives_are_those_of_the_state_on_the_device() -> None:
+    device, processor = pair(2)
+    device.step(3)
+    processor.state = device.state
+    for name in "AB":
+        found, expected = (getattr(batch.linearize(), name) for batch in (device, processor))
+        np.testing.assert_array_equal(found, expected)
+
+
 def test_environments_train_on_a_device() -> None:
     class Stand(BatchEnv):
         model = example("humanoid")

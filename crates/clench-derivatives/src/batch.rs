@@ -1,41 +1,53 @@
 //! The derivatives of every environment of a batch.
 
 use crate::{Linearization, Linearizer, Request};
+use clench_rigid::batch::Precision;
 use clench_rigid::{Batch, Model, Output, Sim, SimError};
+use std::any::Any;
 use std::fmt;
 use std::sync::Mutex;
 
-/// Computes the derivatives of a batch on as many threads as the batch has, and reuses its memory.
-pub struct BatchLinearizer {
-    workers: Vec<Worker>,
+/// Computes the derivatives of a batch on as many threads as the batch has, and reuses its memory. Derivatives are
+/// computed in double precision, also those of a batch in single precision.
+pub struct BatchLinearizer<S: Precision = f64> {
+    workers: Vec<Worker<S>>,
     results: Vec<Linearization>,
 }
 
 /// The memory of a thread, which serves its environments in turn: for each model of the batch, once it is needed.
-struct Worker {
-    own: Vec<Own>,
+struct Worker<S: Precision> {
+    own: Vec<Own<S>>,
 }
 
 /// The memory for a model.
-#[derive(Default)]
-struct Own {
+struct Own<S: Precision> {
     /// The simulation of the environment; created anew in each call, because options may have changed.
-    sim: Option<Sim<f64>>,
+    sim: Option<Sim<S>>,
+    /// The same in double precision, for a batch in single precision.
+    double: Option<Sim<f64>>,
     linearizer: Option<Linearizer>,
 }
 
-impl fmt::Debug for BatchLinearizer {
+impl<S: Precision> Own<S> {
+    const EMPTY: Self = Own {
+        sim: None,
+        double: None,
+        linearizer: None,
+    };
+}
+
+impl<S: Precision> fmt::Debug for BatchLinearizer<S> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.debug_struct("BatchLinearizer").finish_non_exhaustive()
     }
 }
 
-impl BatchLinearizer {
+impl<S: Precision> BatchLinearizer<S> {
     /// Creates memory for a batch.
-    pub fn new(batch: &Batch<f64>) -> Self {
+    pub fn new(batch: &Batch<S>) -> Self {
         let threads = batch.threads().clamp(1, batch.count().max(1));
         let workers = (0..threads).map(|_| Worker {
-            own: batch.models().iter().map(|_| Own::default()).collect(),
+            own: batch.models().iter().map(|_| Own::EMPTY).collect(),
         });
         BatchLinearizer {
             workers: workers.collect(),
@@ -51,7 +63,7 @@ impl BatchLinearizer {
     /// if the processor lacks the compiled instructions.
     pub fn linearize(
         &mut self,
-        batch: &mut Batch<f64>,
+        batch: &mut Batch<S>,
         request: &Request,
     ) -> Result<&[Linearization], (usize, SimError)> {
         check_alike(batch, request).map_err(|error| (0, error))?;
@@ -59,7 +71,7 @@ impl BatchLinearizer {
         let share = self.results.len().div_ceil(self.workers.len()).max(1);
         let parts = self.workers.iter_mut().zip(self.results.chunks_mut(share));
         let first = std::thread::scope(|scope| {
-            let run = |(part, (worker, results)): (usize, (&'_ mut Worker, &'_ mut [_]))| {
+            let run = |(part, (worker, results)): (usize, (&'_ mut Worker<S>, &'_ mut [_]))| {
                 worker.run(batch, request, part * share, results)
             };
             let mut parts = parts.enumerate();
@@ -77,11 +89,11 @@ impl BatchLinearizer {
     }
 }
 
-impl Worker {
+impl<S: Precision> Worker<S> {
     /// Linearizes consecutive environments, from `first` on.
     fn run(
         &mut self,
-        batch: &Mutex<&mut Batch<f64>>,
+        batch: &Mutex<&mut Batch<S>>,
         request: &Request,
         first: usize,
         results: &mut [Linearization],
@@ -105,16 +117,24 @@ impl Worker {
     /// Copies an environment. Returns its simulation and the memory for its derivatives.
     fn copy(
         &mut self,
-        batch: &Batch<f64>,
+        batch: &Batch<S>,
         env: usize,
     ) -> Result<(&Sim<f64>, &mut Linearizer), SimError> {
-        let Own { sim, linearizer } = &mut self.own[batch.env_model(env)];
+        let Own {
+            sim,
+            double,
+            linearizer,
+        } = &mut self.own[batch.env_model(env)];
         let sim = match sim {
             Some(sim) => {
                 batch.copy_to_sim(env, sim)?;
                 sim
             }
             empty => empty.insert(batch.sim(env)?),
+        };
+        let sim = match (sim as &dyn Any).downcast_ref() {
+            Some(sim) => sim,
+            None => &*double.insert(sim.in_double_precision()?),
         };
         let linearizer = match linearizer {
             Some(linearizer) => linearizer,
@@ -125,7 +145,7 @@ impl Worker {
 }
 
 /// Checks that the derivatives of environments of different models are matrices of one shape.
-fn check_alike(batch: &Batch<f64>, request: &Request) -> Result<(), SimError> {
+fn check_alike<S: Precision>(batch: &Batch<S>, request: &Request) -> Result<(), SimError> {
     let [first, others @ ..] = batch.models() else {
         return Ok(());
     };
