@@ -14,9 +14,11 @@ fn main() {
     println!(
         "cargo::rustc-check-cfg=cfg(lanes, values(\"avx2\", \"avx512\", \"neon\", \"portable\"))"
     );
-    println!(
-        "cargo::rustc-check-cfg=cfg(single, values(\"scalar\", \"avx2\", \"avx512\", \"neon\", \"portable\"))"
-    );
+    for name in ["single", "derivatives"] {
+        println!(
+            "cargo::rustc-check-cfg=cfg({name}, values(\"scalar\", \"avx2\", \"avx512\", \"neon\", \"portable\"))"
+        );
+    }
     // Narrowest first.
     let sets: &[&str] = match &*var("CARGO_CFG_TARGET_ARCH").unwrap_or_default() {
         "x86_64" => &["avx2", "avx512"],
@@ -55,6 +57,20 @@ fn main() {
         _ => "scalar",
     };
     println!("cargo::rustc-cfg=single=\"{single}\"");
+    // Derivatives of a step are the longest to compile. They have no scalar form either where one set is compiled, and a
+    // debug build, which runs where it is built, has them for one set.
+    let is_debug = var("PROFILE").is_ok_and(|profile| profile == "debug");
+    let of_derivatives: Vec<&str> = match chosen {
+        [set] => vec![set],
+        _ if is_debug => {
+            let widest = chosen.iter().rfind(|set| is_available(set));
+            vec![widest.map_or("scalar", |set| set)]
+        }
+        _ => ["scalar"].iter().chain(chosen).copied().collect(),
+    };
+    for set in of_derivatives {
+        println!("cargo::rustc-cfg=derivatives=\"{set}\"");
+    }
 }
 
 /// Returns whether the building processor has an instruction set, as `Avx2::detected` and `Avx512::detected` decide it.

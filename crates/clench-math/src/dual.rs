@@ -51,9 +51,7 @@ impl<L: Real<Scalar = f64>, const K: usize> Dual<L, K> {
     fn chain(self, value: f64, slope: f64) -> Self {
         let slope = L::splat(slope);
         let mut tangent = self.tangent;
-        for x in &mut tangent {
-            *x *= slope;
-        }
+        each::<K>(|k| tangent[k] *= slope);
         Dual { value, tangent }
     }
 
@@ -62,9 +60,7 @@ impl<L: Real<Scalar = f64>, const K: usize> Dual<L, K> {
     fn chain2(self, other: Self, value: f64, slopes: (f64, f64)) -> Self {
         let (a, b) = (L::splat(slopes.0), L::splat(slopes.1));
         let mut tangent = self.tangent;
-        for (x, &y) in tangent.iter_mut().zip(&other.tangent) {
-            *x = *x * a + y * b;
-        }
+        each::<K>(|k| tangent[k] = tangent[k] * a + other.tangent[k] * b);
         Dual { value, tangent }
     }
 }
@@ -125,9 +121,7 @@ impl<L: Real<Scalar = f64>, const K: usize> AddAssign for Dual<L, K> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         self.value += other.value;
-        for (x, &y) in self.tangent.iter_mut().zip(&other.tangent) {
-            *x += y;
-        }
+        each::<K>(|k| self.tangent[k] += other.tangent[k]);
     }
 }
 impl<L: Real<Scalar = f64>, const K: usize> Sub for Dual<L, K> {
@@ -142,9 +136,7 @@ impl<L: Real<Scalar = f64>, const K: usize> SubAssign for Dual<L, K> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         self.value -= other.value;
-        for (x, &y) in self.tangent.iter_mut().zip(&other.tangent) {
-            *x -= y;
-        }
+        each::<K>(|k| self.tangent[k] -= other.tangent[k]);
     }
 }
 impl<L: Real<Scalar = f64>, const K: usize> Mul for Dual<L, K> {
@@ -180,10 +172,19 @@ impl<L: Real<Scalar = f64>, const K: usize> Neg for Dual<L, K> {
     #[inline(always)]
     fn neg(mut self) -> Self {
         self.value = -self.value;
-        for x in &mut self.tangent {
-            *x = -*x;
-        }
+        each::<K>(|k| self.tangent[k] = -self.tangent[k]);
         self
+    }
+}
+
+/// Calls `f` with each index below `K`. A loop over an iterator takes much longer to compile, and every kernel contains
+/// these operations.
+#[inline(always)]
+fn each<const K: usize>(mut f: impl FnMut(usize)) {
+    let mut k = 0;
+    while k < K {
+        f(k);
+        k += 1;
     }
 }
 

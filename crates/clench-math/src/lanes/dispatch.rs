@@ -102,13 +102,13 @@ impl Instructions {
             .unwrap_or(Instructions::Scalar)
     }
 
-    /// Runs a task in the widest lanes of derivatives. As in single precision, there are no scalar ones if one
-    /// instruction set was compiled.
+    /// Runs a task in the widest lanes, for derivatives. A build may have them for fewer instruction sets than steps;
+    /// `build.rs` selects them.
     ///
     /// # Errors
-    /// Returns that instruction set if this processor lacks it.
+    /// Returns the widest instruction set if derivatives were not compiled for it.
     pub fn with_derivatives<K: LaneTask<f64>>(task: K) -> Result<K::Output, Instructions> {
-        derivatives(Self::widest(), task).ok_or(SINGLE)
+        derivatives(Self::widest(), task).ok_or(Self::widest())
     }
 
     /// Returns the number of lanes of type `S`.
@@ -168,7 +168,7 @@ pub(crate) fn in_widest<R>(kernel: impl FnOnce() -> R) -> R {
 }
 
 macro_rules! in_lanes {
-    ($(#[$has_scalar:meta])* $name:ident $scalar:ident: $narrow:literal $medium:literal $wide:literal) => {
+    ($(#[$has_scalar:meta])* $name:ident $scalar:ident $compiled:ident: $narrow:literal $medium:literal $wide:literal) => {
         /// Runs a task in lanes of these instructions; `None` if they are not available.
         #[inline(always)]
         pub(crate) fn $name<K: LaneTask<$scalar>>(
@@ -179,25 +179,25 @@ macro_rules! in_lanes {
                 _ if !instructions.available() => return None,
                 $(#[$has_scalar])*
                 Instructions::Scalar => task.run::<$scalar>(),
-                #[cfg(lanes = "neon")]
+                #[cfg($compiled = "neon")]
                 Instructions::Neon => task.run::<Lanes<$scalar, $narrow, Neon>>(),
-                #[cfg(lanes = "avx2")]
+                #[cfg($compiled = "avx2")]
                 Instructions::Avx2 => task.run::<Lanes<$scalar, $medium, Avx2>>(),
-                #[cfg(lanes = "avx512")]
+                #[cfg($compiled = "avx512")]
                 Instructions::Avx512 => task.run::<Lanes<$scalar, $wide, Avx512>>(),
-                #[cfg(lanes = "portable")]
+                #[cfg($compiled = "portable")]
                 Instructions::Portable => task.run::<Lanes<$scalar, $narrow, Portable>>(),
                 _ => return None,
             })
         }
     };
 }
-in_lanes!(f64 f64: 2 4 8);
+in_lanes!(f64 f64 lanes: 2 4 8);
 in_lanes!(
     #[cfg(single = "scalar")]
-    f32 f32: 4 8 16
+    f32 f32 lanes: 4 8 16
 );
 in_lanes!(
-    #[cfg(single = "scalar")]
-    derivatives f64: 2 4 8
+    #[cfg(derivatives = "scalar")]
+    derivatives f64 derivatives: 2 4 8
 );
