@@ -1,4 +1,4 @@
-"""What each query costs, from Python, beside MuJoCo's function: `python bench/queries.py MODEL [--envs N]`.
+"""Measures each query from Python, next to MuJoCo's function: `python bench/queries.py MODEL [--envs N]`.
 
 Both engines are asked in one state, in turn; times are medians over repetitions. What a batch answers is for all environments.
 """

@@ -11,7 +11,7 @@ import conftest
 import program
 import public
 
-STEPS, HELD = 2000, 20  # HELD steps have the same control
+STEPS, PERIOD = 2000, 20  # Controls change every PERIOD steps.
 MODELS = [public.path(name) for name in public.compared()] + sorted(conftest.GYMNASIUM.glob("*.xml"))
 BAD = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
 
@@ -33,8 +33,8 @@ def test_motion_stays_finite(path, tmp_path):
     model = mujoco.MjModel.from_xml_path(str(path))
     limited = model.actuator_ctrllimited.astype(bool)
     low, high = np.where(limited, model.actuator_ctrlrange.T, [[-1.0], [1.0]])
-    drawn = np.random.default_rng(0).uniform(low, high, (STEPS // HELD, model.nu))
-    np.save(tmp_path / "ctrl.npy", np.repeat(drawn, HELD, axis=0))
+    drawn = np.random.default_rng(0).uniform(low, high, (STEPS // PERIOD, model.nu))
+    np.save(tmp_path / "ctrl.npy", np.repeat(drawn, PERIOD, axis=0))
     flags = ("--ctrl", tmp_path / "ctrl.npy") if model.nu else ()
     done = program.run("simulate", path, "--steps", STEPS, *flags)
-    assert done.returncode == 0 or diverges(model, np.repeat(drawn, HELD, axis=0)), done.stderr
+    assert done.returncode == 0 or diverges(model, np.repeat(drawn, PERIOD, axis=0)), done.stderr

@@ -6,7 +6,7 @@ import numpy as np
 import oracle
 
 IDLE = 1e-14  # metres: a lever that is only rounding
-HELD = 1e-9  # newtons
+MIN_FORCE = 1e-9  # newtons
 NEARER = 1e-3  # metres
 NEXT_TO = 1e-10  # metres
 JUMP = 1e-6  # metres
@@ -64,7 +64,7 @@ def held_by_rounding(theirs):
     idle = np.abs(theirs.jacobian).max(axis=1, initial=0) <= IDLE
     equality = theirs.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
     alone = equality & ~np.isin(theirs.efc_id, theirs.efc_id[equality & ~idle])
-    return bool((np.abs(theirs.efc_force[idle & (tendons | alone)]) > HELD).any())
+    return bool((np.abs(theirs.efc_force[idle & (tendons | alone)]) > MIN_FORCE).any())
 
 
 def pierces(model, sensor, theirs):

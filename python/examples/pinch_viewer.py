@@ -1,4 +1,4 @@
-"""A block is pinched between two fingers, and looked at in the browser.
+"""Pinches a block between two fingers, and shows it in the browser.
 
 The viewer shows contact forces. The loop draws its own objects, and may continue without the viewer::
 

@@ -61,11 +61,11 @@ def main() -> None:
     print(f"carried it to x = {box.xpos[0]:.3f} m")
     sim.remove(grip)
     path += rest(sim, 1.0 if options.quick else 2.0)
-    print(f"let go: it lies at x = {box.xpos[0]:.3f} m, z = {box.xpos[2]:.3f} m")
+    print(f"released: it lies at x = {box.xpos[0]:.3f} m, z = {box.xpos[2]:.3f} m")
 
     def draw(axes: Axes) -> None:
         axes.plot(*zip(*path))
-        axes.set(xlabel="time, s", ylabel="height of the box, m", title="A box is picked up and let go")
+        axes.set(xlabel="time, s", ylabel="height of the box, m", title="A box is picked up and released")
 
     plots.finish(options, draw)
 

@@ -102,7 +102,7 @@ def test_a_device_steps_in_double_precision() -> None:
     [
         ({"device": "tpu"}, ValueError, 'must be "cpu", "gpu"'),
         ({"device": 3}, TypeError, "a str, not int"),
-        ({"device": "gpu:no such card"}, ValueError, 'no graphics device "no such card"'),
+        ({"device": "gpu:no such GPU"}, ValueError, 'no graphics device "no such GPU"'),
     ],
 )
 def test_what_cannot_be_is_said(how: dict[str, Any], error: type[Exception], words: str) -> None:

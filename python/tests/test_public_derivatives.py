@@ -25,14 +25,14 @@ DIFFERENT = {
     "bimanual_viperx_end_effector_transfer_cube": "meshes touch at other points",
 }
 PATHS = [path for path in (*FEATURES, *(ROOT / ".venv/models" / name for name in PUBLIC)) if path.stem not in DIFFERENT]
-STEPS, HELD = 40, 10  # HELD steps have the same control
+STEPS, PERIOD = 40, 10  # Controls change every PERIOD steps.
 SIZES = 1e-4, 1e-5
 # Relative to 1 + the derivative.
 PRECISION = 1e-6
 # Numbers that differ by more between two step sizes switch: neither is a derivative.
 NOISE = 1e-4
-MOST_SWITCHING = 0.2
-# The derivatives by so many numbers are compared, chosen at random.
+MAX_SWITCHING = 0.2
+# The maximum number of compared derivatives, which are chosen at random.
 COLUMNS = 40
 Array = Any
 
@@ -60,7 +60,7 @@ class Differences:
         mujoco.mj_resetData(model, data)
         data.qvel[:] = 0.1 * rng.standard_normal(model.nv)
         for step in range(STEPS):
-            if step % HELD == 0:
+            if step % PERIOD == 0:
                 data.ctrl[:] = rng.uniform(low, high)
             mujoco.mj_step(model, data)
         state = mujoco.mjtState.mjSTATE_INTEGRATION
@@ -151,4 +151,4 @@ def test_derivatives_are_mujocos(path: Path) -> None:
         assert error[worst] <= PRECISION * scale[worst], (
             f"row {worst} by {columns[number]}: {exact[worst, number]:.9g}, MuJoCo {found[worst]:.9g} ± {noise[worst]:.1e}"
         )
-    assert switching <= MOST_SWITCHING * exact.shape[0] * len(chosen)
+    assert switching <= MAX_SWITCHING * exact.shape[0] * len(chosen)

@@ -243,13 +243,13 @@ def test_a_function_needs_steps_and_may_fail() -> None:
 
 
 @pytest.mark.parametrize("ctrl", [None, lambda _: None], ids=["held", "function"])
-def test_progress_is_told(ctrl: Any, capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_is_reported(ctrl: Any, capsys: pytest.CaptureFixture[str]) -> None:
     batch = clench.Batch(ball(), 2)
-    told: list[tuple[int, int]] = []
-    batch.rollout(None, ctrl, [], 10_000, progress=lambda done, steps: told.append((done, steps)))
-    assert len(told) > 2
-    assert told == sorted(told)
-    assert told[-1] == (10_000, 10_000)
+    reported: list[tuple[int, int]] = []
+    batch.rollout(None, ctrl, [], 10_000, progress=lambda done, steps: reported.append((done, steps)))
+    assert len(reported) > 2
+    assert reported == sorted(reported)
+    assert reported[-1] == (10_000, 10_000)
     batch.rollout(None, ctrl, [], 100, progress=True)
     line = capsys.readouterr().err
     assert line.startswith("\rrollout: 100 of 100 steps")

@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders whose sources are checked.
+/// Folders whose sources in Rust and WGSL are checked.
 const FOLDERS: [&str; 4] = ["crates", "python/src", "xtask", "fuzz"];
+/// Folders whose scripts in Python and TypeScript are checked.
+const SCRIPT_FOLDERS: [&str; 4] = ["python", "parity", "bench", "web/src"];
 /// Words that no doc comment begins with: what follows them is a noun clause.
 const OPENINGS: [&str; 7] = ["What", "Where", "How", "Whether", "Who", "Which", "When"];
 /// Words of the glossary's left column that have no other sense here.
@@ -37,7 +39,7 @@ fn doc_comments_and_messages_use_the_usual_terms() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut files = Vec::new();
     for folder in FOLDERS {
-        collect(&root.join(folder), &mut files);
+        collect(&root.join(folder), &["rs", "wgsl"], &mut files);
     }
     assert!(files.len() > 800, "only {} files", files.len());
     let mut wrong = Vec::new();
@@ -52,14 +54,34 @@ fn doc_comments_and_messages_use_the_usual_terms() {
     assert!(wrong.is_empty(), "see docs/words.md:\n{}", wrong.join("\n"));
 }
 
-/// Collects the Rust and WGSL files of a folder, except build products.
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+#[test]
+fn scripts_use_the_usual_terms() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut files = Vec::new();
+    for folder in SCRIPT_FOLDERS {
+        collect(&root.join(folder), &["py", "pyi", "ts"], &mut files);
+    }
+    assert!(files.len() > 200, "only {} files", files.len());
+    let mut wrong = Vec::new();
+    for file in &files {
+        let text = fs::read_to_string(file).expect("a source file");
+        for (line, reason) in script_faults(&text) {
+            wrong.push(format!("{}:{line}: {reason}", file.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "see docs/words.md:\n{}", wrong.join("\n"));
+}
+
+/// Collects the files of a folder whose names have one of these ends, except build products.
+fn collect(folder: &Path, ends: &[&str], files: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).expect("a folder of the repository");
     for path in entries.map(|entry| entry.expect("an entry").path()) {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let is_source = path.extension().is_some_and(|e| e == "rs" || e == "wgsl");
+        let is_source = ends
+            .iter()
+            .any(|&end| path.extension().is_some_and(|e| e == end));
         if path.is_dir() && name != "target" {
-            collect(&path, files);
+            collect(&path, ends, files);
         } else if is_source {
             files.push(path);
         }
@@ -99,17 +121,37 @@ fn faults(text: &str) -> Vec<(usize, String)> {
     found
 }
 
+/// Returns the lines of a script that contain an avoided word, or begin its documentation with one of [`OPENINGS`].
+fn script_faults(text: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let trimmed = line.trim_start();
+        let comment = ["\"\"\"", "/**"]
+            .iter()
+            .find_map(|quote| trimmed.strip_prefix(quote));
+        let first = comment.and_then(|comment| comment.split_whitespace().next());
+        let opening = first.filter(|first| OPENINGS.contains(first));
+        found.extend(opening.map(|word| (number, format!("begins with {word:?}"))));
+        found.extend(avoided(line).map(|word| (number, format!("contains {word:?}"))));
+    }
+    found
+}
+
+/// Returns the word of [`AVOIDED_IN_MESSAGES`] that a text contains, if any.
+fn avoided(text: &str) -> Option<&'static str> {
+    let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+    let words = text.split(|c| !is_letter(c)).filter(|w| !w.is_empty());
+    let spaced = format!(" {} ", Vec::from_iter(words).join(" ").to_lowercase());
+    let mut all = AVOIDED_IN_MESSAGES.into_iter();
+    all.find(|word| spaced.contains(&format!(" {word} ")))
+}
+
 /// Returns the lines of string literals that contain an avoided word, with the word; tests at the end are skipped.
 fn message_faults(text: &str) -> Vec<(usize, String)> {
     let text = text.split("#[cfg(test)]").next().unwrap_or_default();
     let mut found = Vec::new();
     for (line, literal) in literals(text) {
-        let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
-        let words = literal.split(|c| !is_letter(c)).filter(|w| !w.is_empty());
-        let spaced = format!(" {} ", Vec::from_iter(words).join(" ").to_lowercase());
-        let used = AVOIDED_IN_MESSAGES
-            .iter()
-            .find(|word| spaced.contains(&format!(" {word} ")));
+        let used = avoided(&literal);
         found.extend(used.map(|word| (line, format!("a message contains {word:?}"))));
     }
     found
@@ -163,6 +205,13 @@ fn messages_are_found_in_literals() {
         message_faults("r#\"<a/>\"#; \"The device is NOT there.\"").len(),
         1
     );
+}
+
+#[test]
+fn each_rule_for_scripts_finds_its_faults() {
+    let text = "\"\"\"What it costs.\"\"\"\nx = told  # retold\n/** How it is */\n# What for\n";
+    let lines = Vec::from_iter(script_faults(text).into_iter().map(|(line, _)| line));
+    assert_eq!(lines, [1, 2, 3]);
 }
 
 #[test]
