@@ -61,7 +61,7 @@ SCENES = {
 def compare(_, args):
     """Prints a table, writes the figures and returns a row for each scene, number of environments and engine."""
     print(f"\n{'scene':<22}{'envs':>6} {'engine':<10}{'µs/step':>11}{'ratio':>7}{'contacts':>10}{'iterations':>12}{'gradient':>10}")
-    rows, stages, left_out = [], {}, []
+    rows, stages, omitted = [], {}, []
     with tempfile.TemporaryDirectory() as folder:
         for name, (family, source, before) in SCENES.items():
             if args.filter not in name:
@@ -71,16 +71,16 @@ def compare(_, args):
                 path = pathlib.Path(folder) / "scene.xml"
                 path.write_text(source)
             scene = Scene(name, family, path, before, args)
-            rows += scene.alone(left_out)
+            rows += scene.alone(omitted)
             stages[name] = scene.stages()
             for envs in BATCHES:
                 try:
                     rows += scene.batch(envs)
                 except Unmeasured as reason:
-                    left_out.append(f"{name}, {envs} environments: {str(reason).splitlines()[-1]}")
+                    omitted.append(f"{name}, {envs} environments: {str(reason).splitlines()[-1]}")
     rows += grow_environments(args) if not args.filter else []
-    print("not measured:", *(left_out or ["none"]), sep="\n  ")
-    record = {"machine": machine(), "rows": rows, "stages": stages, "not_measured": left_out}
+    print("not measured:", *(omitted or ["none"]), sep="\n  ")
+    record = {"machine": machine(), "rows": rows, "stages": stages, "not_measured": omitted}
     if args.filter and OUT.exists():
         record = with_others(record, json.loads(OUT.read_text()))
     OUT.parent.mkdir(parents=True, exist_ok=True)
@@ -99,8 +99,8 @@ def with_others(record, earlier):
     rows = sorted([*kept, *record["rows"]], key=lambda row: (row["family"] == "environments", names.index(row["scene"])))
     stages = earlier["stages"] | record["stages"]
     stages = {name: stages[name] for name in names if name in stages}
-    left_out = [reason for reason in earlier["not_measured"] if not reason.startswith(tuple(f"{name}{end}" for name in measured for end in ",:"))]
-    return record | {"rows": rows, "stages": stages, "not_measured": left_out + record["not_measured"]}
+    omitted = [reason for reason in earlier["not_measured"] if not reason.startswith(tuple(f"{name}{end}" for name in measured for end in ",:"))]
+    return record | {"rows": rows, "stages": stages, "not_measured": omitted + record["not_measured"]}
 
 
 class Scene:
@@ -113,16 +113,16 @@ class Scene:
         self.state = settled(path, before) if before else None
         self.common["nv"] = int(self.model.nv)
 
-    def alone(self, left_out):
+    def alone(self, omitted):
         """Times one environment in both engines; large scenes on all threads too.
 
-        If MuJoCo takes too long, only Clench runs, and `left_out` records it.
+        If MuJoCo takes too long, only Clench runs, and `omitted` records it.
         """
         engines = ["mujoco", "clench", *[THREADED][: self.common["family"] == "large" and processors() > 1]]
         try:
             steps = self.affordable(1, 2000)
         except Unmeasured as reason:
-            left_out.append(f"{self.common['scene']}: {reason}")
+            omitted.append(f"{self.common['scene']}: {reason}")
             engines, steps = engines[1:], 20
         controls = smooth_controls(self.model, steps)
         arrays = self.arrays(controls, self.state[None] if self.state is not None else None)

@@ -37,7 +37,7 @@ def compare(_, args):
     if args.docs and args.filter:
         sys.exit("--docs needs all models: omit --filter")
     chosen = [name for name in public.compared() if args.filter in name]
-    results, left_out = [], []
+    results, omitted = [], []
     for name in chosen:
         path = public.path(name)
         model = load(path)
@@ -46,7 +46,7 @@ def compare(_, args):
         try:
             results.append(measure(name, path, model, args))
         except Unmeasured as reason:
-            left_out.append(f"{name}: {str(reason).splitlines()[-1]}")
+            omitted.append(f"{name}: {str(reason).splitlines()[-1]}")
             continue
         row = results[-1]
         print(
@@ -58,7 +58,7 @@ def compare(_, args):
     if args.docs:
         plots.public(results, COLUMNS, ROOT / "docs" / "public-models.svg")
         rewrite(ROOT / "docs" / "performance.md", summaries)
-    print("not measured:", *(left_out or ["none"]), sep="\n  ")
+    print("not measured:", *(omitted or ["none"]), sep="\n  ")
     return [row | {"engine": "clench", "ratio": row["alone"]} for row in results]
 
 

@@ -166,7 +166,7 @@ impl Batch {
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let x = Table::row_of("x", x, nv, Some(self.count()))?;
-            let found = py.detach(|| batch.mul_mass(x.given())).map_err(sim_error)?;
+            let found = py.detach(|| batch.mul_mass(x.input())).map_err(sim_error)?;
             rows_array(py, &found, &[self.count(), nv])
         })
     }
@@ -191,7 +191,7 @@ impl Batch {
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let x = Table::row_of("x", x, nv, Some(self.count()))?;
-            let found = py.detach(|| batch.solve_mass(x.given())).map_err(sim_error)?;
+            let found = py.detach(|| batch.solve_mass(x.input())).map_err(sim_error)?;
             rows_array(py, &found, &[self.count(), nv])
         })
     }
@@ -239,7 +239,7 @@ impl Batch {
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let rays = rays(origins, directions, Some(self.count()))?;
-            let found = py.detach(|| batch.rays(rays.given(), frame, &filter));
+            let found = py.detach(|| batch.rays(rays.input(), frame, &filter));
             let shape = [self.count(), rays.rows];
             RayHits::new(py, found.map_err(sim_error)?.as_slice(), &shape)
         })
@@ -280,7 +280,7 @@ impl Batch {
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let places = Table::rows_of("places", places, 2, Some(self.count()))?;
-            let found = py.detach(|| batch.heights(hfield, places.given(), frame));
+            let found = py.detach(|| batch.heights(hfield, places.input(), frame));
             rows_array(py, &found.map_err(sim_error)?, &[self.count(), places.rows])
         })
     }
@@ -311,7 +311,7 @@ impl Batch {
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let qacc = Table::row_of("qacc", qacc, model.nv, Some(self.count()))?;
-            let found = py.detach(|| batch.inverse(qacc.given(), kind)).map_err(sim_error)?;
+            let found = py.detach(|| batch.inverse(qacc.input(), kind)).map_err(sim_error)?;
             rows_array(py, &found, &[self.count(), model.nv])
         })
     }

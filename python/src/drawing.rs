@@ -27,7 +27,7 @@ use std::sync::{Arc, PoisonError};
 const UNINTERRUPTED: usize = 64;
 
 /// The pictures that a user requests.
-pub(crate) struct Wanted<'a, 'py> {
+pub(crate) struct DrawRequest<'a, 'py> {
     /// The model, or the common layout of several.
     pub(crate) layout: &'a clench::Model,
     /// The number of environments of a batch.
@@ -121,51 +121,51 @@ pub(crate) fn draw<'py>(
     py: Python<'py>,
     scenes: &[Scene],
     (target, envs): (&Target, &Envs),
-    wanted: Wanted<'_, 'py>,
+    request: DrawRequest<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let Some(Scene { model, .. }) = scenes.first() else {
         return Err(PyValueError::new_err("there is no model to draw"));
     };
-    let cameras = Cameras::new(model.get().inner(), wanted.camera)?;
+    let cameras = Cameras::new(model.get().inner(), request.camera)?;
     let mut shape = Vec::new();
     shape.extend(envs.list.then_some(envs.of.len()));
     shape.extend(cameras.list.then_some(cameras.views.len()));
-    shape.extend([wanted.size.1 as usize, wanted.size.0 as usize]);
-    let mut picture = Picture::new(wanted.size.0, wanted.size.1);
+    shape.extend([request.size.1 as usize, request.size.0 as usize]);
+    let mut picture = Picture::new(request.size.0, request.size.1);
     picture.views = cameras.views;
-    if let Some(groups) = wanted.groups {
+    if let Some(groups) = request.groups {
         picture.groups = groups;
     }
     // Several environments have an axis in a batch, whose model is the common layout.
     let read = |given: &Bound<'_, PyAny>| {
-        let appearance = Appearance::new(wanted.layout, wanted.n, given)?;
+        let appearance = Appearance::new(request.layout, request.n, given)?;
         let mut models = scenes.iter().map(|scene| scene.model.get().inner());
-        models.try_for_each(|model| appearance.check(wanted.layout, model))?;
+        models.try_for_each(|model| appearance.check(request.layout, model))?;
         Ok::<_, PyErr>(appearance)
     };
-    let asked = Asked {
+    let call = DrawCall {
         scenes,
         target,
         envs,
         picture,
-        drawer: Drawer::new(wanted.device)?,
-        appearance: wanted.appearance.map(read).transpose()?,
-        colors: wanted.kind == "rgb",
-        threads: wanted.threads,
+        drawer: Drawer::new(request.device)?,
+        appearance: request.appearance.map(read).transpose()?,
+        colors: request.kind == "rgb",
+        threads: request.threads,
     };
-    match wanted.kind {
+    match request.kind {
         "rgb" => {
             shape.push(3);
-            asked.array(py, &shape, wanted.out, |rgb| Planes {
+            call.array(py, &shape, request.out, |rgb| Planes {
                 rgb,
                 ..Planes::default()
             })
         }
-        "depth" => asked.array(py, &shape, wanted.out, |depth| Planes {
+        "depth" => call.array(py, &shape, request.out, |depth| Planes {
             depth,
             ..Planes::default()
         }),
-        "geom" => asked.array(py, &shape, wanted.out, |geoms| Planes {
+        "geom" => call.array(py, &shape, request.out, |geoms| Planes {
             geoms,
             ..Planes::default()
         }),
@@ -176,7 +176,7 @@ pub(crate) fn draw<'py>(
 }
 
 /// A call with its arguments, apart from memory.
-struct Asked<'a> {
+struct DrawCall<'a> {
     scenes: &'a [Scene],
     target: &'a Target,
     envs: &'a Envs,
@@ -187,7 +187,7 @@ struct Asked<'a> {
     threads: usize,
 }
 
-impl Asked<'_> {
+impl DrawCall<'_> {
     /// Draws into `out`, or into a new array.
     fn array<'py, S: Element>(
         &self,

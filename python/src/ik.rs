@@ -12,7 +12,7 @@ use crate::row_sim::{AnySim, each_sim};
 use crate::sim::Sim;
 use crate::table::Table;
 use crate::target::{Choice, Choices};
-use clench::{Given, Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Precision};
+use clench::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Precision, QueryInput};
 use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -309,9 +309,9 @@ impl Batch {
             let goals = Goals::of(model, targets, Some(n))?;
             let start = start.map(|start| Table::row_of("start", start, model.nq, Some(n))).transpose()?;
             let (values, each) = goals.all(n);
-            let values = if each { Given::Each(&values) } else { Given::Shared(&values) };
+            let values = if each { QueryInput::Each(&values) } else { QueryInput::Shared(&values) };
             let ik = Ik::new(model, goals.tasks, options).map_err(sim_error)?;
-            let found = py.detach(|| batch.ik(&ik, values, start.as_ref().map(Table::given)));
+            let found = py.detach(|| batch.ik(&ik, values, start.as_ref().map(Table::input)));
             many(py, &found.map_err(sim_error)?, model.nq, ik.tasks().len())
         })
     }

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 
 /// The pictures that a user requests.
 #[expect(dead_code, reason = "nothing draws")]
-pub(crate) struct Wanted<'a, 'py> {
+pub(crate) struct DrawRequest<'a, 'py> {
     pub(crate) layout: &'a clench::Model,
     pub(crate) n: Option<usize>,
     pub(crate) size: (u32, u32),
@@ -31,7 +31,7 @@ pub(crate) fn draw<'py>(
     _: Python<'py>,
     _: &[Scene],
     _: (&Target, &Envs),
-    _: Wanted<'_, 'py>,
+    _: DrawRequest<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     Err(without())
 }

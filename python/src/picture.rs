@@ -2,7 +2,7 @@
 
 use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
-use crate::drawing::{Wanted, appearance, draw};
+use crate::drawing::{DrawRequest, appearance, draw};
 use crate::envs::{Envs, Scene};
 use crate::error::sim_error;
 use crate::model::Model;
@@ -72,7 +72,7 @@ impl Sim {
     /// Raises
     /// ------
     /// ClenchError
-    ///     If colours are wanted, or device "gpu", and no device can draw; the message says what to install. Also if
+    ///     If colours are requested, or device "gpu", and no device can draw; the message says what to install. Also if
     ///     the package was built without rendering; the message says how to build it with that.
     /// ValueError
     ///     If the size is invalid, no camera has the name, `out` has another shape, rays should see colours, or
@@ -94,7 +94,7 @@ impl Sim {
         device: Option<&str>,
         appearance: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let wanted = Wanted {
+        let request = DrawRequest {
             layout: self.described(),
             n: None,
             size: (width, height),
@@ -117,7 +117,7 @@ impl Sim {
             slots: vec![0],
             geoms: Vec::from_iter(0..model.get().inner().geoms.len()),
         }];
-        draw(py, &scenes, (&target, &own), wanted)
+        draw(py, &scenes, (&target, &own), request)
     }
 }
 
@@ -194,7 +194,7 @@ impl Batch {
         appearance: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let envs = Envs::new(self, env)?;
-        let wanted = Wanted {
+        let request = DrawRequest {
             layout: self.described(),
             n: Some(self.count()),
             size: (width, height),
@@ -208,6 +208,6 @@ impl Batch {
         };
         let scenes = self.scenes(py, &envs)?;
         let target = Target::Batch(Arc::clone(self.shared()));
-        draw(py, &scenes, (&target, &envs), wanted)
+        draw(py, &scenes, (&target, &envs), request)
     }
 }

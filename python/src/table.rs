@@ -1,7 +1,7 @@
 //! Arguments of queries: the same for all environments, or different for each.
 
 use crate::arrays::{numbers, require_shape, shape_text};
-use clench::{Given, Precision};
+use clench::{Precision, QueryInput};
 use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -58,10 +58,10 @@ impl<S: Precision + Element> Table<S> {
     }
 
     /// Returns the numbers in the form that a batch requires.
-    pub(crate) fn given(&self) -> Given<'_, S> {
+    pub(crate) fn input(&self) -> QueryInput<'_, S> {
         match self.each {
-            true => Given::Each(&self.values),
-            false => Given::Shared(&self.values),
+            true => QueryInput::Each(&self.values),
+            false => QueryInput::Shared(&self.values),
         }
     }
 

@@ -123,7 +123,7 @@ def test_rays_see_what_is_visible() -> None:
     assert set(np.unique(geoms)) == {-1, 2, 3}
     with_hidden = sim.render(160, 120, camera=camera, kind="geom", groups=[4], device="cpu")
     assert set(np.unique(with_hidden)) == {-1, 1}
-    # Tendons are no geoms but have a distance; sites, in the same groups, are left out.
+    # Tendons are no geoms but have a distance; sites, in the same groups, are omitted.
     depth = sim.render(160, 120, camera=camera, kind="depth", device="cpu")
     strings = np.isfinite(depth) & (geoms == -1)
     assert strings.sum() > 100

@@ -190,7 +190,7 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
         begin.elapsed().as_secs_f64()
     );
     if profile == Profile::Quick {
-        println!("{}", left_out(&names));
+        println!("{}", omitted(&names));
     }
     Ok(())
 }
@@ -217,7 +217,7 @@ fn choose(names: &[&str], profile: Profile) -> Result<Vec<&'static Stage>, Strin
 }
 
 /// Returns a text with the parts that a quick run of these stages, or of all, omits.
-fn left_out(names: &[&str]) -> String {
+fn omitted(names: &[&str]) -> String {
     let mut text = String::from("This quick run omitted, and `cargo xtask test` includes:");
     for stage in STAGES {
         let is_named = names.contains(&stage.name);

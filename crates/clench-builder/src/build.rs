@@ -141,7 +141,7 @@ impl ModelBuilder {
             },
             same_frames: SameFrames::default(),
             notes: self.notes.clone(),
-            left_out: self.left_out.clone(),
+            omitted: self.omitted.clone(),
             custom: self.custom.clone(),
             visuals: Visuals::default(),
         }

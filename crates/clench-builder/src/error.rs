@@ -38,9 +38,9 @@ pub fn shorten(text: &str) -> String {
     let boundary = |from: usize| (from..text.len()).find(|&at| text.is_char_boundary(at));
     let head = boundary(ENDS).unwrap_or(0);
     let tail = boundary(text.len() - ENDS).unwrap_or(text.len());
-    let left_out = tail - head;
+    let omitted = tail - head;
     format!(
-        "{} [... {left_out} bytes ...] {}",
+        "{} [... {omitted} bytes ...] {}",
         &text[..head],
         &text[tail..]
     )

@@ -54,7 +54,7 @@ pub struct ModelBuilder {
     /// Messages to report to the user once, such as a replaced solver.
     pub notes: Vec<String>,
     /// Elements of the file that were omitted because they are not supported yet, each with its location.
-    pub left_out: Vec<String>,
+    pub omitted: Vec<String>,
     /// The user's own data.
     pub custom: Custom,
     /// The number of the user's own numbers per element.
@@ -84,7 +84,7 @@ impl Default for ModelBuilder {
             excludes: Vec::new(),
             keyframes: Vec::new(),
             notes: Vec::new(),
-            left_out: Vec::new(),
+            omitted: Vec::new(),
             custom: Custom::default(),
             user_widths: UserWidths::default(),
         }

@@ -57,8 +57,8 @@ impl ModelFile {
         for note in &model.notes {
             print_message(format_args!("note: {note}"));
         }
-        for left_out in &model.left_out {
-            print_message(format_args!("omitted: {left_out}"));
+        for omitted in &model.omitted {
+            print_message(format_args!("omitted: {omitted}"));
         }
         Ok(model)
     }

@@ -27,7 +27,7 @@ impl FromArgMatches for Overrides {
         let mut options = RigidOptions::new();
         for &option in RigidOption::ALL {
             let given = match option.argument() {
-                Argument::Given(_) => matches.get_one(option.name()).copied(),
+                Argument::Value(_) => matches.get_one(option.name()).copied(),
                 Argument::Sets(_, value) => matches.get_flag(option.name()).then_some(value),
             };
             if let Some(value) = given {
@@ -49,7 +49,7 @@ fn flag(option: RigidOption) -> Arg {
     let arg = Arg::new(option.name()).help_heading(HEADING);
     let sentence = option.sentence().trim_end_matches('.');
     match option.argument() {
-        Argument::Given(flag) => {
+        Argument::Value(flag) => {
             let default = option.default(false);
             arg.long(flag)
                 .value_parser(parser(default))

@@ -179,7 +179,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         hold(ws, std::mem::replace(last, source.start), source);
         let step = match source.start {
             Start::Positions => {
-                ws.forget_poses();
+                ws.invalidate_poses();
                 pipeline::step
             }
             Start::Velocities => pipeline::step_from_velocities,

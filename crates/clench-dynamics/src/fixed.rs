@@ -26,9 +26,9 @@ impl FixedPoses {
         for (body, moves) in fixed.clone().iter().map(|fixed| !fixed).enumerate() {
             fixed[model.bodies[body].root] &= !moves;
         }
-        let left_out = |body: usize| body != 0 && fixed[model.bodies[body].root];
+        let omitted = |body: usize| body != 0 && fixed[model.bodies[body].root];
         let mut moving: Vec<Range<usize>> = Vec::new();
-        for body in (0..model.nbody()).filter(|&body| !left_out(body)) {
+        for body in (0..model.nbody()).filter(|&body| !omitted(body)) {
             match moving.last_mut() {
                 Some(last) if last.end == body => last.end += 1,
                 _ => moving.push(body..body + 1),

@@ -41,7 +41,7 @@ pub fn position_stage<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
-    ws.forget_poses();
+    ws.invalidate_poses();
     positions(model, params, state, ws);
 }
 

@@ -130,8 +130,8 @@ impl<T: Real> Workspace<T> {
 
     /// Invalidates all poses, so that the next pass computes them. Needed if they were computed from other parameters
     /// or must follow from a state regardless of earlier passes.
-    pub fn forget_poses(&mut self) {
-        self.sleep.forget();
+    pub fn invalidate_poses(&mut self) {
+        self.sleep.invalidate();
         self.fixed.invalidate();
     }
 

@@ -65,7 +65,7 @@ impl Loader {
     }
 
     /// Omits unsupported elements of an MJCF model if the remainder keeps its meaning: plugins, deformable bodies,
-    /// sensors, forces and flags, but no joint, tendon or actuator. `left_out` of the model lists them.
+    /// sensors, forces and flags, but no joint, tendon or actuator. `omitted` of the model lists them.
     #[must_use]
     pub fn ignore_unsupported(mut self, ignore: bool) -> Self {
         self.ignore_unsupported = ignore;

@@ -92,9 +92,9 @@ kernels! {
     FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Finds active constraints and their softness.
-    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "held", "equalities", "adhesive", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "adhesive", "constraints";
     /// Computes their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "held", "softness", "exact", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/elliptic", "costs/costs", "costs/hessian",
         "continuation", "tiles", "cholesky", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
@@ -103,7 +103,7 @@ kernels! {
     /// Computes camera poses, on request.
     CAMERAS = "cameras", Thread: "cameras";
     /// Computes accelerations of bodies, forces between them and the energy, on request.
-    BODY_FORCES = "body_forces", Thread: "chains", "held", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
     /// Traces the rays of sensors, on request.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// Reads sensors, on request.

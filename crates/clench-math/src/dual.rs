@@ -382,8 +382,8 @@ impl<L: Real<Scalar = f64>, const K: usize> Real for Dual<L, K> {
 }
 
 impl<L: Real<Scalar = f64>, const K: usize> Scalar for Dual<L, K> {
-    type Alone = Self;
-    const ALONE: Instructions = Instructions::Scalar;
+    type SingleEnv = Self;
+    const SINGLE_ENV: Instructions = Instructions::Scalar;
     const EPSILON: Self = Self::constant(f64::EPSILON);
     const INFINITY: Self = Self::constant(f64::INFINITY);
     const MAX: Self = Self::constant(f64::MAX);

@@ -215,10 +215,10 @@ pub trait Scalar:
     Real<Scalar = Self, Mask = bool, Clock = f64> + PartialOrd + std::fmt::Display
 {
     /// The number type for computing one environment: the scalar itself, or lanes of it that all hold the same numbers.
-    /// Its values may exist only if the instructions [`ALONE`](Self::ALONE) are available.
-    type Alone: Real<Scalar = Self>;
-    /// The instructions of [`Alone`](Self::Alone).
-    const ALONE: Instructions;
+    /// Its values may exist only if the instructions [`SINGLE_ENV`](Self::SINGLE_ENV) are available.
+    type SingleEnv: Real<Scalar = Self>;
+    /// The instructions of [`SingleEnv`](Self::SingleEnv).
+    const SINGLE_ENV: Instructions;
     /// The distance from 1 to the next larger number.
     const EPSILON: Self;
     /// Positive infinity.

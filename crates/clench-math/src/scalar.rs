@@ -153,8 +153,8 @@ macro_rules! scalar {
             }
 
             impl Scalar for $t {
-                type Alone = $alone;
-                const ALONE: Instructions = $instructions;
+                type SingleEnv = $alone;
+                const SINGLE_ENV: Instructions = $instructions;
                 const EPSILON: $t = $t::EPSILON;
                 const INFINITY: $t = $t::INFINITY;
                 const MAX: $t = $t::MAX;

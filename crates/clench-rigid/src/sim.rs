@@ -42,14 +42,14 @@ pub struct Sim<T: Precision = f64> {
     /// The state that the next step starts from.
     pub state: State<T>,
     model: Arc<Model>,
-    params: Params<T::Alone>,
+    params: Params<T::SingleEnv>,
     options: RigidOptions,
     settings: StepSettings,
-    ws: Workspace<T::Alone>,
+    ws: Workspace<T::SingleEnv>,
     /// Memory for the state if it is computed in lanes.
     lane_copy: LaneCopy<T>,
     /// Memory for other values in that type.
-    numbers: Vec<T::Alone>,
+    numbers: Vec<T::SingleEnv>,
     initial: State<T>,
     /// The part of the state that a step writes, as it was before the present step.
     last_good: State<T>,
@@ -60,7 +60,7 @@ pub struct Sim<T: Precision = f64> {
     /// The serial number of the last constraint that was added at run time.
     pub(crate) last_serial: u32,
     /// The workspace of inverse dynamics, created on demand, so that [`workspace`](Self::workspace) does not change.
-    inverse_ws: Option<Box<Workspace<T::Alone>>>,
+    inverse_ws: Option<Box<Workspace<T::SingleEnv>>>,
 }
 
 impl<T: Precision> Sim<T> {
@@ -78,8 +78,8 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`new`](Self::new).
     pub fn with_options(model: Arc<Model>, options: RigidOptions) -> Result<Self, SimError> {
-        if !T::ALONE.available() {
-            return Err(SimError::Instructions(T::ALONE));
+        if !T::SINGLE_ENV.available() {
+            return Err(SimError::Instructions(T::SINGLE_ENV));
         }
         let settings = StepSettings::supported::<T>(&model, options)?;
         let model = settings.adapt(model);
@@ -209,7 +209,7 @@ impl<T: Precision> Sim<T> {
     fn invalidate(&mut self) {
         self.halfway = false;
         self.validity.invalidate();
-        self.ws.forget_poses();
+        self.ws.invalidate_poses();
     }
 
     /// Computes the required results for the present state unless the workspace holds them.
@@ -223,7 +223,7 @@ impl<T: Precision> Sim<T> {
         self.check_state()?;
         self.halfway = false;
         self.ws.clock.start();
-        self.ws.forget_poses();
+        self.ws.invalidate_poses();
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
         computed_state::read(&self.state, &mut self.lane_copy, |state| {
             T::position_stage(model, params, state, ws);
@@ -301,12 +301,12 @@ impl<T: Precision> Sim<T> {
     }
     /// Returns the results of the last step, forward pass or [`refresh`](Self::refresh). After a step, positions and
     /// contacts are those at its start. Values have the number type that the environment is computed in; read lane 0.
-    pub fn workspace(&self) -> &Workspace<T::Alone> {
+    pub fn workspace(&self) -> &Workspace<T::SingleEnv> {
         &self.ws
     }
     /// Returns the contacts of the last step, forward pass or [`refresh`](Self::refresh).
     /// [`contact_rows`](crate::readout::contact_rows) adds their forces and wrenches.
-    pub fn contacts(&self) -> &[Contact<T::Alone>] {
+    pub fn contacts(&self) -> &[Contact<T::SingleEnv>] {
         &self.ws.contacts
     }
     /// Returns the statistics of the last solve.
@@ -350,7 +350,7 @@ impl<T: Precision> Sim<T> {
     }
 
     /// Calls `reader` with the data that outputs are read from.
-    pub(crate) fn read<R>(&mut self, reader: impl FnOnce(&mut Source<T::Alone>) -> R) -> R {
+    pub(crate) fn read<R>(&mut self, reader: impl FnOnce(&mut Source<T::SingleEnv>) -> R) -> R {
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
         computed_state::read(&self.state, &mut self.lane_copy, |state| {
             reader(&mut Source {
@@ -366,11 +366,11 @@ impl<T: Precision> Sim<T> {
     pub(crate) fn change(
         &mut self,
         values: &mut [T],
-        compute: impl FnOnce(&Self, &mut [T::Alone]),
+        compute: impl FnOnce(&Self, &mut [T::SingleEnv]),
     ) {
         let mut numbers = std::mem::take(&mut self.numbers);
         numbers.clear();
-        numbers.extend(values.iter().copied().map(T::Alone::splat));
+        numbers.extend(values.iter().copied().map(T::SingleEnv::splat));
         compute(self, &mut numbers);
         read_lane(&numbers, 0, values);
         self.numbers = numbers;
@@ -391,7 +391,7 @@ impl<T: Precision> Sim<T> {
         self.check_state()?;
         let (model, state) = (&self.model, &self.state);
         let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(T::workspace(model)));
-        let splat = |numbers: &[T]| numbers.iter().copied().map(T::Alone::splat).collect();
+        let splat = |numbers: &[T]| numbers.iter().copied().map(T::SingleEnv::splat).collect();
         let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
         let given = (&qacc[..], given);
         let (params, settings) = (&self.params, &self.settings);

@@ -45,9 +45,9 @@ struct Source {
 impl Model {
     /// Wraps a model, after a warning about omitted elements.
     fn with_warning(py: Python<'_>, model: clench::Model, source: Source) -> PyResult<Self> {
-        if !model.left_out.is_empty() {
+        if !model.omitted.is_empty() {
             let category = py.get_type::<PyUserWarning>();
-            let message = format!("omitted from the model:\n{}", model.left_out.join("\n"));
+            let message = format!("omitted from the model:\n{}", model.omitted.join("\n"));
             let message = CString::new(message.replace('\0', " "))?;
             PyErr::warn(py, &category, &message, 1)?;
         }
@@ -98,7 +98,7 @@ impl Model {
     ///     ``floating_base``.
     /// ignore_unsupported : bool
     ///     True to omit unsupported parts of an MJCF model if the rest keeps its meaning: plugins, deformable bodies,
-    ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`left_out` list them.
+    ///     sensors, forces and flags, but no joint, tendon or actuator. A warning and :attr:`omitted` list them.
     ///
     /// Returns
     /// -------
@@ -279,8 +279,8 @@ impl Model {
     }
     /// list of str : Omitted unsupported parts, each with its location in the file.
     #[getter]
-    fn left_out(&self) -> Vec<String> {
-        self.0.left_out.clone()
+    fn omitted(&self) -> Vec<String> {
+        self.0.omitted.clone()
     }
     /// Returns the user's array of numbers with this name (MJCF's ``custom/numeric``).
     ///

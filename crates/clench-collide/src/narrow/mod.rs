@@ -44,7 +44,7 @@ macro_rules! pairs {
         /// Returns true if MuJoCo uses its general algorithm for a pair, in either order. Its flag `multiccd` selects
         /// several points or only the deepest ([`Contacts::keep_deepest`]). It does not affect a height field's
         /// contacts.
-        pub fn multiccd_matters(a: ShapeKind, b: ShapeKind) -> bool {
+        pub fn multiccd_applies(a: ShapeKind, b: ShapeKind) -> bool {
             match (a.min(b), a.max(b)) {
                 $((ShapeKind::$first, ShapeKind::$second) => Algorithm::$mujoco == Algorithm::General,)*
                 _ => false,

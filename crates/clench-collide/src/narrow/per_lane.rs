@@ -25,8 +25,8 @@ pub(super) fn per_lane<T: Real, A: Solid<T>, B: Solid<T>>(
     margin: T,
     out: &mut Contacts<T>,
     pair: impl Fn(
-        Placed<A::Alone, T::Scalar>,
-        Placed<B::Alone, T::Scalar>,
+        Placed<A::SingleEnv, T::Scalar>,
+        Placed<B::SingleEnv, T::Scalar>,
         T::Scalar,
         &mut Points<T::Scalar>,
     ),
@@ -46,8 +46,8 @@ pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
     out: &mut Contacts<T>,
     mut pair: impl FnMut(
         usize,
-        Placed<A::Alone, T::Scalar>,
-        Placed<B::Alone, T::Scalar>,
+        Placed<A::SingleEnv, T::Scalar>,
+        Placed<B::SingleEnv, T::Scalar>,
         T::Scalar,
         &mut Points<T::Scalar>,
     ),

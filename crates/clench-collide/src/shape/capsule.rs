@@ -19,10 +19,10 @@ pub struct Capsule<T> {
 }
 
 impl<T: Real> Solid<T> for Capsule<T> {
-    type Alone = Capsule<T::Scalar>;
+    type SingleEnv = Capsule<T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Capsule {
             radius: self.radius.lane(lane),
             half_length: self.half_length.lane(lane),

@@ -16,10 +16,10 @@ pub struct Cuboid<T> {
 }
 
 impl<T: Real> Solid<T> for Cuboid<T> {
-    type Alone = Cuboid<T::Scalar>;
+    type SingleEnv = Cuboid<T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Cuboid {
             half_lengths: self.half_lengths.lane(lane),
         }

@@ -22,10 +22,10 @@ pub struct Cylinder<T> {
 }
 
 impl<T: Real> Solid<T> for Cylinder<T> {
-    type Alone = Cylinder<T::Scalar>;
+    type SingleEnv = Cylinder<T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Cylinder {
             radius: self.radius.lane(lane),
             half_length: self.half_length.lane(lane),

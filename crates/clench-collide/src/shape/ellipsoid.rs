@@ -21,10 +21,10 @@ pub struct Ellipsoid<T> {
 }
 
 impl<T: Real> Solid<T> for Ellipsoid<T> {
-    type Alone = Ellipsoid<T::Scalar>;
+    type SingleEnv = Ellipsoid<T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Ellipsoid {
             semi_axes: self.semi_axes.lane(lane),
         }

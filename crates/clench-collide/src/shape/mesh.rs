@@ -23,10 +23,10 @@ pub struct Mesh<'a, T> {
 }
 
 impl<'a, T: Real> Solid<T> for Mesh<'a, T> {
-    type Alone = Mesh<'a, T::Scalar>;
+    type SingleEnv = Mesh<'a, T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Mesh {
             hull: self.hull,
             extent: self.extent.lane(lane),

@@ -226,10 +226,10 @@ impl Shape<'_, f64> {
 }
 
 impl<'a, T: Real> Solid<T> for Shape<'a, T> {
-    type Alone = Shape<'a, T::Scalar>;
+    type SingleEnv = Shape<'a, T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         of_each!(self, solid => Shape::from(solid.lane(lane)))
     }
     #[inline(always)]

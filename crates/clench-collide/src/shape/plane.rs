@@ -12,9 +12,9 @@ pub struct Plane<T> {
 }
 
 impl<T: Real> Solid<T> for Plane<T> {
-    type Alone = Plane<T::Scalar>;
+    type SingleEnv = Plane<T::Scalar>;
 
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Plane {
             size: self.size.lane(lane),
         }

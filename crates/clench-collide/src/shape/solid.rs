@@ -6,10 +6,10 @@ use clench_math::{Real, Vec3};
 /// A shape about its own origin, in one environment or several in parallel.
 pub(crate) trait Solid<T: Real>: Copy {
     /// The same shape in one environment.
-    type Alone: Copy;
+    type SingleEnv: Copy;
 
     /// Returns the shape of one lane.
-    fn lane(&self, lane: usize) -> Self::Alone;
+    fn lane(&self, lane: usize) -> Self::SingleEnv;
 
     /// Returns the size as defined by [`ShapeKind`](crate::ShapeKind), m.
     fn size(&self) -> Vec3<T>;

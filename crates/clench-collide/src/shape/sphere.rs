@@ -16,10 +16,10 @@ pub struct Sphere<T> {
 }
 
 impl<T: Real> Solid<T> for Sphere<T> {
-    type Alone = Sphere<T::Scalar>;
+    type SingleEnv = Sphere<T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Sphere {
             radius: self.radius.lane(lane),
         }

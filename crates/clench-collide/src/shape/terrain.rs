@@ -17,10 +17,10 @@ pub struct Terrain<'a, T> {
 }
 
 impl<'a, T: Real> Solid<T> for Terrain<'a, T> {
-    type Alone = Terrain<'a, T::Scalar>;
+    type SingleEnv = Terrain<'a, T::Scalar>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::Alone {
+    fn lane(&self, lane: usize) -> Self::SingleEnv {
         Terrain {
             field: self.field,
             size: self.size.lane(lane),

@@ -8,26 +8,30 @@
 //! to the point, plus ω × ṗ. The impedance depends on the norm of the violation; A₀ is the sum of the bodies'
 //! translational inverse weights.
 
+use super::anchor_frames::{AnchorFrames, FrameConstraint};
 use super::assembly::Assembly;
 use super::context::ConstraintContext;
-use super::held::{Held, HeldFrames};
 use super::row::Row;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use clench_math::{Motion, Real, Vec3, kernel};
 use clench_solver::Cost;
 
 #[kernel]
-pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>, held: &Held<T>) {
-    let bodies = held.frames.bodies;
+pub(super) fn push<T: Real>(
+    context: &ConstraintContext<T>,
+    out: &mut Assembly<T>,
+    constraint: &FrameConstraint<T>,
+) {
+    let bodies = constraint.frames.bodies;
     let chains = Chains::new(context.model, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
     }
-    let anchors = Anchors::new(context, &held.frames);
+    let anchors = Anchors::new(context, &constraint.frames);
     let violation = anchors.separation;
     let bias = anchors.bias[0].linear - anchors.bias[1].linear;
-    let (soft, block) = held.soften(context, violation.norm());
+    let (soft, block) = constraint.soften(context, violation.norm());
     let a0 = bodies.map(|b| context.params.body_invweight0[b][0]);
     let mut rows = [Row::default(); 3];
     for (i, row) in rows.iter_mut().enumerate() {
@@ -57,7 +61,7 @@ pub(super) struct Anchors<T> {
 
 impl<T: Real> Anchors<T> {
     #[inline(always)]
-    pub(super) fn new(context: &ConstraintContext<T>, frames: &HeldFrames<T>) -> Self {
+    pub(super) fn new(context: &ConstraintContext<T>, frames: &AnchorFrames<T>) -> Self {
         let [body1, body2] = frames.bodies;
         let [world1, world2] = frames.points(context.position);
         let first = BodyPoint::new(context.model, context.position, body1, world1);

@@ -6,9 +6,9 @@
 //! tie this pair; in a lane, at most one block of a slot is active. All blocks use MuJoCo's default softness of
 //! equalities.
 
+use super::anchor_frames::{AnchorFrames, FrameConstraint};
 use super::assembly::{Assembly, ConstraintSource};
 use super::context::ConstraintContext;
-use super::held::{Held, HeldFrames};
 use super::softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 use super::{connect, weld};
 use crate::model::Model;
@@ -100,16 +100,16 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
                 return;
             }
             let (bodies, weld) = (tie.bodies, tie.weld);
-            let held = Held {
-                frames: HeldFrames::of_slot(context.state, slot, bodies),
+            let constraint = FrameConstraint {
+                frames: AnchorFrames::of_slot(context.state, slot, bodies),
                 source: ConstraintSource::Dynamic { slot, bodies, weld },
                 active,
                 solref,
                 solimp,
             };
             match weld {
-                true => weld::push(context, out, &held),
-                false => connect::push(context, out, &held),
+                true => weld::push(context, out, &constraint),
+                false => connect::push(context, out, &constraint),
             }
         });
     }

@@ -4,6 +4,7 @@
 //! MuJoCo's order: equalities, dry friction, limits, contacts. Constraints added at run time follow the equalities.
 
 mod active;
+mod anchor_frames;
 pub(crate) mod assembly;
 mod connect;
 mod contact;
@@ -12,7 +13,6 @@ mod coordinate;
 pub mod dynamic;
 mod exact;
 mod friction;
-mod held;
 mod implicit;
 mod joint_equality;
 mod limit;
@@ -20,9 +20,9 @@ mod row;
 pub mod softness;
 mod weld;
 
+pub use anchor_frames::AnchorFrames;
 pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
 use context::ConstraintContext;
-pub use held::HeldFrames;
 pub use joint_equality::equality_slope;
 pub use softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF, Softness, impedance};
 pub use weld::weld_torque;
@@ -34,11 +34,11 @@ use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
+use anchor_frames::FrameConstraint;
 use assembly::Assembly;
 use clench_math::{Mask, Real, kernel};
 use coordinate::Coordinate;
 use exact::ExactDiagonal;
-use held::Held;
 use implicit::ImplicitRows;
 
 /// Assembles the constraints of a configuration, solves the problem, and stores the acceleration in `ws.qacc` and the
@@ -174,10 +174,18 @@ fn push_equalities<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
         }
         match equality.target {
             EqualityTarget::Connect { body1, body2 } => {
-                connect::push(context, out, &Held::by_equality(context, i, [body1, body2]));
+                connect::push(
+                    context,
+                    out,
+                    &FrameConstraint::by_equality(context, i, [body1, body2]),
+                );
             }
             EqualityTarget::Weld { body1, body2 } => {
-                weld::push(context, out, &Held::by_equality(context, i, [body1, body2]));
+                weld::push(
+                    context,
+                    out,
+                    &FrameConstraint::by_equality(context, i, [body1, body2]),
+                );
             }
             EqualityTarget::Joint { joint1, joint2 } => {
                 let leader = joint2.map(Coordinate::Joint);

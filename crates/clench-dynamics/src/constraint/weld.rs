@@ -12,10 +12,10 @@
 //! J̇ v is r̈ with ω̇ the bias accelerations. The impedance depends on the norm of all six rows; A₀ is the sum of the
 //! bodies' inverse weights, translational and rotational.
 
+use super::anchor_frames::{AnchorFrames, FrameConstraint};
 use super::assembly::Assembly;
 use super::connect::Anchors;
 use super::context::ConstraintContext;
-use super::held::{Held, HeldFrames};
 use super::row::Row;
 use crate::dynamics::chains::{Chains, Side};
 use crate::stages::Positions;
@@ -23,22 +23,26 @@ use clench_math::{Quat, Real, Vec3, kernel};
 use clench_solver::Cost;
 
 #[kernel]
-pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T>, held: &Held<T>) {
-    let bodies = held.frames.bodies;
+pub(super) fn push<T: Real>(
+    context: &ConstraintContext<T>,
+    out: &mut Assembly<T>,
+    constraint: &FrameConstraint<T>,
+) {
+    let bodies = constraint.frames.bodies;
     let chains = Chains::new(context.model, bodies);
     chains.collect(out.dofs());
     if out.dofs().is_empty() {
         return;
     }
-    let anchors = Anchors::new(context, &held.frames);
+    let anchors = Anchors::new(context, &constraint.frames);
     let [bias1, bias2] = anchors.bias;
     let translation = anchors.separation;
     let bias_translation = bias1.linear - bias2.linear;
-    let relative = Relative::new(context.position, &held.frames);
+    let relative = Relative::new(context.position, &constraint.frames);
     let rotation = relative.rho.imaginary() * relative.scale;
     let bias_rotation = relative.bias(context, bodies, [bias1.angular, bias2.angular]);
     let length = (translation.norm_squared() + rotation.norm_squared()).sqrt();
-    let (soft, block) = held.soften(context, length);
+    let (soft, block) = constraint.soften(context, length);
     let mut rows = [Row::default(); 6];
     for (i, row) in rows.iter_mut().enumerate() {
         let (pos, bias, part) = match i {
@@ -67,7 +71,7 @@ pub(super) fn push<T: Real>(context: &ConstraintContext<T>, out: &mut Assembly<T
 #[kernel]
 pub fn weld_torque<T: Real>(
     position: &Positions<T>,
-    frames: &HeldFrames<T>,
+    frames: &AnchorFrames<T>,
     f: Vec3<T>,
 ) -> Vec3<T> {
     let relative = Relative::new(position, frames);
@@ -86,7 +90,7 @@ struct Relative<T> {
 
 impl<T: Real> Relative<T> {
     #[inline(always)]
-    fn new(position: &Positions<T>, frames: &HeldFrames<T>) -> Self {
+    fn new(position: &Positions<T>, frames: &AnchorFrames<T>) -> Self {
         let xquat = &position.xquat;
         let [body1, body2] = frames.bodies;
         let first = xquat[body1] * frames.quats[0];

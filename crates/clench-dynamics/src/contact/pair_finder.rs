@@ -7,7 +7,7 @@ use super::{Candidate, contact_range};
 use crate::model::{Model, Params};
 use crate::stages::Positions;
 use clench_collide::{
-    Collide, ContactPoint, Contacts, SeparatingAxis, compiled_collide, multiccd_matters,
+    Collide, ContactPoint, Contacts, SeparatingAxis, compiled_collide, multiccd_applies,
 };
 use clench_math::{Mask, Real, Scalar, kernel};
 
@@ -117,7 +117,7 @@ impl<T: Real> PairFinder<T> {
                 points.as_slice().iter().fold(none, any).count()
             });
             let [a, b] = candidate.kinds;
-            if !multiccd && multiccd_matters(a, b) {
+            if !multiccd && multiccd_applies(a, b) {
                 points.keep_deepest();
             }
             if !points.as_slice().is_empty() {

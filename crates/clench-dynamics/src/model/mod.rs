@@ -125,7 +125,7 @@ pub struct Model {
     /// Messages to report to the user once.
     pub notes: Vec<String>,
     /// Elements of the file that were omitted because they are not supported yet, each with its location.
-    pub left_out: Vec<String>,
+    pub omitted: Vec<String>,
     /// The user's own data.
     pub custom: Custom,
     /// The appearance of its elements.

@@ -12,7 +12,7 @@ use clench_solver::{ConstraintSolver, SolverOptions, Switch};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Argument {
     /// A flag followed by the value.
-    Given(&'static str),
+    Value(&'static str),
     /// A flag that implies a value.
     Sets(&'static str, OptionValue),
 }
@@ -131,7 +131,7 @@ macro_rules! declare_options {
 
             /// Returns the flag of the program that sets it.
             pub fn argument(self) -> Argument {
-                use Argument::{Given, Sets};
+                use Argument::{Value, Sets};
                 use OptionValue::Truth;
                 match self { $($( RigidOption::$name => $argument, )*)* }
             }
@@ -243,7 +243,7 @@ mod tests {
     fn names_of_flags_and_attributes_are_different() {
         let mut names: Vec<&str> = Vec::new();
         for &option in RigidOption::ALL {
-            let (Argument::Given(flag) | Argument::Sets(flag, _)) = option.argument();
+            let (Argument::Value(flag) | Argument::Sets(flag, _)) = option.argument();
             names.push(flag);
         }
         let all = names.len();

@@ -17,33 +17,33 @@ macro_rules! rigid_options {
         $crate::solver_options! { $then
             step {
                 /// Shortest time constant (s) that a constraint may have; 0.01. Models from MJCF have none.
-                constraint_timeconst: f64 = 0.01, NotNegative, Given("constraint-timeconst"), Nowhere;
+                constraint_timeconst: f64 = 0.01, NotNegative, Value("constraint-timeconst"), Nowhere;
                 /// Enables joint limits; true.
                 enable_joint_limit: bool = true, Any, Sets("no-joint-limit", Truth(false)), Nowhere;
                 /// Disables all constraints; false.
                 disable_constraint: bool = false, Any, Sets("no-constraint", Truth(true)),
                     Flag("constraint", [Truth(true), Truth(false)]);
                 /// Maximum number of contacts of a step, which reports an overflow by its status; auto: buffers grow.
-                max_contacts: MaxContacts = MaxContacts::Auto, Any, Given("max-contacts"), Nowhere;
+                max_contacts: MaxContacts = MaxContacts::Auto, Any, Value("max-contacts"), Nowhere;
                 /// Shape of frictional contacts; pyramidal.
-                friction_cone: FrictionCone = FrictionCone::Pyramidal, Any, Given("cone"), Attribute("cone");
+                friction_cone: FrictionCone = FrictionCone::Pyramidal, Any, Value("cone"), Attribute("cone");
                 /// Law of friction in contacts; convex. In the model coulomb, sliding does not change the normal force,
                 /// and the option `friction_cone` has no effect.
-                contact_model: ContactModel = ContactModel::Convex, Any, Given("contact-model"),
+                contact_model: ContactModel = ContactModel::Convex, Any, Value("contact-model"),
                     Text("clench.contact_model");
                 /// Friction that sticks: contacts, dofs and tendons remember where they stuck, so that nothing creeps
                 /// under a steady load; false. Chosen when a simulation is created.
                 stiction: bool = false, Any, Sets("stiction", Truth(true)), Text("clench.stiction");
                 /// Maximum number of pairs of geoms that stick at a time, beyond which a step fails; 0, which means one
                 /// that suits the model. Chosen when a simulation is created.
-                max_stick_pairs: usize = 0, Any, Given("max-stick-pairs"), Nowhere;
+                max_stick_pairs: usize = 0, Any, Value("max-stick-pairs"), Nowhere;
                 /// Ratio of friction to normal impedance in elliptic and Coulomb contacts; 1.
-                impratio: f64 = 1.0, Positive, Given("impratio"), Attribute("impratio");
+                impratio: f64 = 1.0, Positive, Value("impratio"), Attribute("impratio");
                 /// Maximum directions that a sensor `insidesite` with `enclosed` tries from each of its starts; 35. (In
                 /// MuJoCo also a limit of collision iterations, which have none here.)
-                ccd_iterations: usize = 35, Any, Given("ccd-iterations"), Attribute("ccd_iterations");
+                ccd_iterations: usize = 35, Any, Value("ccd-iterations"), Attribute("ccd_iterations");
                 /// Relative slope, and step in rad, at which that search ends; 1e-6.
-                ccd_tolerance: f64 = 1e-6, NotNegative, Given("ccd-tolerance"), Attribute("ccd_tolerance");
+                ccd_tolerance: f64 = 1e-6, NotNegative, Value("ccd-tolerance"), Attribute("ccd_tolerance");
                 /// Resets a diverged simulation to its initial state, and counts the resets, instead of stopping with
                 /// an error; false.
                 autoreset: bool = false, Any, Sets("autoreset", Truth(true)),

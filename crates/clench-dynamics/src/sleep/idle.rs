@@ -128,7 +128,7 @@ fn clear<T: Real>(
 
 impl<T: Real> Sleep<T> {
     /// Invalidates all poses, so that the next pass computes them.
-    pub fn forget(&mut self) {
+    pub fn invalidate(&mut self) {
         (self.placed, self.at_rest) = (false, false);
         if self.enabled {
             self.parts.clear();

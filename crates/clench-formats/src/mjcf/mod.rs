@@ -22,11 +22,11 @@ mod include;
 mod inputs;
 mod joint;
 pub(crate) mod keyframe;
-mod leave_out;
 mod light;
 mod linear_map;
 mod mesh;
 mod never_fused;
+mod omit;
 pub(crate) mod option;
 pub(crate) mod orientation;
 mod relations;
@@ -91,7 +91,7 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
         compiler: (*sources.main().spec).clone(),
         bodies: vec![body::world()],
         notes: composed.notes.clone(),
-        left_out: composed.left_out.clone(),
+        omitted: composed.omitted.clone(),
         ..ModelBuilder::default()
     };
     let mut options = OptionReader::default();

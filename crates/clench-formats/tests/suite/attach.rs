@@ -68,7 +68,7 @@ fn an_attached_body_brings_its_references_and_the_settings_of_its_file() {
         "of the main class of its file"
     );
     assert_eq!(model.bodies[3].geoms[0].mesh, "p_m");
-    assert_eq!(model.physics.timestep, 0.002, "its options are left out");
+    assert_eq!(model.physics.timestep, 0.002, "its options are omitted");
     assert!(model.notes.iter().any(|note| note.contains("\"arm\"")));
     assert!(model.build().is_ok());
 }

@@ -28,15 +28,15 @@ fn axis_of(i: u32) -> Spatial {
 }
 
 // Returns an entry of row `k` of a connect or weld: the points' separation, then the frames' rotation.
-fn held_entry(equality: u32, k: u32, i: u32) -> f32 {
+fn frames_entry(equality: u32, k: u32, i: u32) -> f32 {
     let first = words[EQ_PAIR + 2u * equality];
     let second = words[EQ_PAIR + 2u * equality + 1u];
     var motion = Spatial(vec3f(), vec3f());
     if (moves(first, i)) {
-        motion = motion_at(first, i, held_point(equality, 0u));
+        motion = motion_at(first, i, anchor_point(equality, 0u));
     }
     if (moves(second, i)) {
-        motion = plus(motion, times(motion_at(second, i, held_point(equality, 1u)), -1.0));
+        motion = plus(motion, times(motion_at(second, i, anchor_point(equality, 1u)), -1.0));
     }
     if (k < 3u) {
         return motion.linear[k];
@@ -102,8 +102,8 @@ fn entry(a: u32, i: u32) -> f32 {
     let b = u32(row(ROW_BLOCK + a));
     let source = block(b, BLOCK_SOURCE);
     switch block(b, BLOCK_KIND) {
-        case HELD: {
-            return held_entry(source, a - block(b, BLOCK_ROW), i);
+        case FRAMES: {
+            return frames_entry(source, a - block(b, BLOCK_ROW), i);
         }
         case COUPLING: {
             return coupling_entry(source, a, i);

@@ -35,16 +35,16 @@ fn weld_bias(equality: u32, alpha: vec3f) -> vec3f {
 }
 
 // Adds three rows at a violation, with their bias acceleration.
-fn add_held_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
+fn add_frame_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
     for (var k = 0u; k < 3u; k++) {
         let aref = -soft.stiffness * violation[k] - bias[k];
         add_row(violation[k], aref, soft.damping, regularization(soft.impedance, a0), 0.0);
     }
 }
 
-fn push_held(equality: u32, prm: u32, is_weld: bool) {
-    let p = held_point(equality, 0u);
-    let q = held_point(equality, 1u);
+fn push_frames(equality: u32, prm: u32, is_weld: bool) {
+    let p = anchor_point(equality, 0u);
+    let q = anchor_point(equality, 1u);
     let first = bias_acceleration(words[EQ_PAIR + 2u * equality], p);
     let second = bias_acceleration(words[EQ_PAIR + 2u * equality + 1u], q);
     let apart = p - q;
@@ -52,11 +52,11 @@ fn push_held(equality: u32, prm: u32, is_weld: bool) {
     if (is_weld) {
         turned = relative_quat(equality).yzw * torquescale(equality);
     }
-    let soft = soften(prm + HELD_SOLREF, sqrt(dot(apart, apart) + dot(turned, turned)));
-    begin_block(HELD, COST_QUADRATIC, words[EQ_ROWS + equality], equality, soft.impedance);
-    add_held_rows(apart, first.linear - second.linear, soft, parameter(prm + HELD_INVWEIGHT));
+    let soft = soften(prm + FRAMES_SOLREF, sqrt(dot(apart, apart) + dot(turned, turned)));
+    begin_block(FRAMES, COST_QUADRATIC, words[EQ_ROWS + equality], equality, soft.impedance);
+    add_frame_rows(apart, first.linear - second.linear, soft, parameter(prm + FRAMES_INVWEIGHT));
     if (is_weld) {
-        add_held_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + HELD_INVWEIGHT + 1u));
+        add_frame_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + FRAMES_INVWEIGHT + 1u));
     }
 }
 
@@ -70,7 +70,7 @@ fn push_equality(equality: u32) {
             push_coupling(equality, words[EQ_PRM + equality]);
         }
         case EQ_CONNECT, EQ_WELD: {
-            push_held(equality, words[EQ_PRM + equality], kind == EQ_WELD);
+            push_frames(equality, words[EQ_PRM + equality], kind == EQ_WELD);
         }
         case EQ_STATIC, default: {
         }

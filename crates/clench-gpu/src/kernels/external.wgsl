@@ -29,13 +29,13 @@ fn push_contact(source: u32, f: vec3f, t: vec3f) {
     push_by_contact(words[PAIR_BODY + 2u * pair + 1u], 1.0, axes * f, axes * t, at);
 }
 
-fn push_held(equality: u32, force: vec3f, rotation: vec3f) {
+fn push_frames(equality: u32, force: vec3f, rotation: vec3f) {
     // Zero for a connect.
     let rho = relative_quat(equality);
     let turned = (rotation * rho.x + cross(rho.yzw, rotation)) * (0.5 * torquescale(equality));
-    let couple = quat_rotate(held_quat(equality, 1u), turned);
-    push(words[EQ_PAIR + 2u * equality], 1.0, force, couple, held_point(equality, 0u));
-    push(words[EQ_PAIR + 2u * equality + 1u], -1.0, force, couple, held_point(equality, 1u));
+    let couple = quat_rotate(anchor_quat(equality, 1u), turned);
+    push(words[EQ_PAIR + 2u * equality], 1.0, force, couple, anchor_point(equality, 0u));
+    push(words[EQ_PAIR + 2u * equality + 1u], -1.0, force, couple, anchor_point(equality, 1u));
 }
 
 // Returns the constraint force along tendon `t`.
@@ -58,7 +58,7 @@ fn tendon_constraint_force(t: u32) -> f32 {
                 sum += select(0.0, force, words[EQ_PAIR + 2u * source] == c);
                 sum -= select(0.0, row(SHAPE + first) * force, words[EQ_PAIR + 2u * source + 1u] == c);
             }
-            case HELD, CONTACT_NORMAL, CONTACT_PYRAMID, CONTACT_ELLIPTIC, default: {
+            case FRAMES, CONTACT_NORMAL, CONTACT_PYRAMID, CONTACT_ELLIPTIC, default: {
             }
         }
     }
@@ -99,8 +99,8 @@ fn external_forces() {
         let wrench = block_wrench(b);
         if (kind >= CONTACT_NORMAL) {
             push_contact(block(b, BLOCK_SOURCE), wrench.linear, wrench.angular);
-        } else if (kind == HELD) {
-            push_held(block(b, BLOCK_SOURCE), wrench.linear, wrench.angular);
+        } else if (kind == FRAMES) {
+            push_frames(block(b, BLOCK_SOURCE), wrench.linear, wrench.angular);
         }
     }
     push_strings();

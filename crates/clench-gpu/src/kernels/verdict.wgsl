@@ -1,4 +1,4 @@
-// Limits on the results of a step or forward pass. CPU counterpart: `each_result` in `check.rs`.
+// Limits on the results of a step or forward pass. CPU counterpart: `good_results` in `check.rs`.
 
 fn is_far(x: f32) -> bool {
     return is_wild(x) || abs(x) > 1e10;

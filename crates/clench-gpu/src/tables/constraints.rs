@@ -9,7 +9,7 @@ use clench_solver::Cost;
 codes! {
     /// The kinds of block of the convex problem; those of contacts come last.
     enum BlockKind {
-        Held = "HELD",
+        Frames = "FRAMES",
         Coupling = "COUPLING",
         DryFriction = "DRY_FRICTION",
         Limit = "LIMIT",

@@ -5,7 +5,7 @@ use super::distances::{Measured, measured};
 use super::{Capacity, Tables};
 use crate::codes::{Code, codes, row};
 use crate::methods::{Method, may_be_general, method_of_pair, points_of_pair};
-use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_matters};
+use clench_collide::{MAX_POINTS, PATCH_POINTS, ShapeKind, allowance, multiccd_applies};
 use clench_math::Scalar;
 use clench_rigid::contact::{Candidate, contact_params, contact_range};
 use clench_rigid::model::Model;
@@ -24,7 +24,7 @@ const PAIRS_OF_A_THREAD: usize = 32;
 /// The same with pairs of general convex shapes, each as costly as many others.
 const CONVEX_PAIRS_OF_A_THREAD: usize = 8;
 /// The maximum number of threads of the narrow phase; each has memory for all contacts of the environment.
-const MOST_THREADS: usize = 8;
+const MAX_THREADS: usize = 8;
 /// The maximum number of vertices of the polytope of overlapping shapes. Single precision does not benefit from the
 /// processor's 128.
 const POLYTOPE_VERTICES: usize = 64;
@@ -135,14 +135,14 @@ impl Tables {
             true => CONVEX_PAIRS_OF_A_THREAD,
             false => PAIRS_OF_A_THREAD,
         };
-        capacity.threads = (all.len() / of_a_thread).clamp(1, MOST_THREADS);
+        capacity.threads = (all.len() / of_a_thread).clamp(1, MAX_THREADS);
         for method in Method::ALL {
             let used = methods.contains(method) || (general && *method == Method::Convex);
             self.flag(&format!("ANY_{}", method.constant()), used);
         }
         let deepest = |c: &Candidate| {
             let [a, b] = c.kinds;
-            !s.flags.multiccd && multiccd_matters(a, b)
+            !s.flags.multiccd && multiccd_applies(a, b)
         };
         let deepest = candidates.iter().map(|c| usize::from(deepest(c)));
         let of_measured = measured.iter().map(|_| 1);

@@ -18,7 +18,7 @@ codes! {
 }
 row! {
     /// The numbers of an equality of frames.
-    numbers HeldNumbers, "HELD" {
+    numbers FramesNumbers, "FRAMES" {
         anchor1: 3,
         anchor2: 3,
         quat1: 4,
@@ -82,14 +82,14 @@ impl Tables {
             match kind {
                 Kind::Coupling => numbers.extend(coupling(m, i, pair).numbers()),
                 Kind::Static | Kind::Connect | Kind::Weld => {
-                    numbers.extend(held(m, i, pair).numbers());
+                    numbers.extend(frames(m, i, pair).numbers());
                 }
             }
             capacity.blocks += 1;
             capacity.rows += dim;
         }
         self.codes::<Kind>();
-        self.row::<HeldNumbers>();
+        self.row::<FramesNumbers>();
         self.row::<CouplingNumbers>();
         self.count("NEQ", count);
         self.words("EQ_KIND", kinds);
@@ -101,10 +101,10 @@ impl Tables {
     }
 }
 
-fn held(m: &Model, i: usize, bodies: [usize; 2]) -> HeldNumbers {
+fn frames(m: &Model, i: usize, bodies: [usize; 2]) -> FramesNumbers {
     let p = &m.params;
     let weight = |part: usize| bodies.iter().map(|&b| p.body_invweight0[b][part]).sum();
-    HeldNumbers {
+    FramesNumbers {
         anchor1: p.eq_anchor1[i].to_array(),
         anchor2: p.eq_anchor2[i].to_array(),
         quat1: p.eq_quat1[i].to_array(),

@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 
 /// AVX and AVX2.
-#[allow(unreachable_pub, reason = "one set can be part of `Scalar::Alone`")]
+#[allow(unreachable_pub, reason = "one set can be part of `Scalar::SingleEnv`")]
 #[derive(Clone, Copy)]
 pub struct Avx2;
 

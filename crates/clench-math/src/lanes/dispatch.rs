@@ -92,7 +92,7 @@ impl Instructions {
     /// Returns true if kernels in the precision `S` were compiled for these instructions and this processor has them.
     /// If one instruction set was compiled, single precision has no scalar kernels.
     pub fn available_for<S: Scalar>(self) -> bool {
-        self.available() && (self != Instructions::Scalar || S::ALONE == Instructions::Scalar)
+        self.available() && (self != Instructions::Scalar || S::SINGLE_ENV == Instructions::Scalar)
     }
 
     /// Returns the widest instruction set that is [available](Self::available).

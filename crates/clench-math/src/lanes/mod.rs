@@ -5,8 +5,8 @@
 //!
 //! All `unsafe` code of the crate is here, for two reasons. First, intrinsics and functions compiled for an instruction
 //! set must not run on a processor that lacks it. So sets other than [`Portable`] have no public name, and `dispatch`
-//! passes lanes of them to a [`LaneTask`] only after detecting them. ([`Scalar::Alone`] can also be lanes; its users
-//! check [`Scalar::ALONE`] first.) Second, lanes are accessed as the plain numbers that they consist of.
+//! passes lanes of them to a [`LaneTask`] only after detecting them. ([`Scalar::SingleEnv`] can also be lanes; its
+//! users check [`Scalar::SINGLE_ENV`] first.) Second, lanes are accessed as the plain numbers that they consist of.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;

@@ -7,7 +7,7 @@ use std::arch::aarch64::*;
 use std::mem::transmute;
 
 /// Advanced SIMD.
-#[allow(unreachable_pub, reason = "one set can be part of `Scalar::Alone`")]
+#[allow(unreachable_pub, reason = "one set can be part of `Scalar::SingleEnv`")]
 #[derive(Clone, Copy)]
 pub struct Neon;
 

@@ -22,7 +22,7 @@ pub(super) struct Target<'a> {
 }
 
 /// Returns the visible geoms and the tendons in the present state of a simulation, as a device draws them: infinite
-/// planes end, and sites are left out.
+/// planes end, and sites are omitted.
 pub(super) fn targets<'a, T: Precision>(
     model: &'a Model,
     sim: &mut Sim<T>,

@@ -21,33 +21,33 @@ use clench_math::{Mask, Real, Scalar, Vec3, write_lane};
 
 /// Input values of a query.
 #[derive(Clone, Copy, Debug)]
-pub enum Given<'a, S> {
+pub enum QueryInput<'a, S> {
     /// The same values for all environments.
     Shared(&'a [S]),
     /// Separate values for each environment, one after the other.
     Each(&'a [S]),
 }
 
-impl<S: Copy> Given<'_, S> {
+impl<S: Copy> QueryInput<'_, S> {
     /// Returns all values.
     pub(super) fn all(&self) -> &[S] {
         match self {
-            Given::Shared(values) | Given::Each(values) => values,
+            QueryInput::Shared(values) | QueryInput::Each(values) => values,
         }
     }
 
     /// Returns the number of values per environment.
     pub(super) fn width(&self, count: usize) -> usize {
         match self {
-            Given::Shared(values) => values.len(),
-            Given::Each(values) => values.len() / count.max(1),
+            QueryInput::Shared(values) => values.len(),
+            QueryInput::Each(values) => values.len() / count.max(1),
         }
     }
 
     fn row(&self, env: usize, width: usize) -> &[S] {
         match self {
-            Given::Shared(values) => values,
-            Given::Each(values) => &values[env * width..][..width],
+            QueryInput::Shared(values) => values,
+            QueryInput::Each(values) => &values[env * width..][..width],
         }
     }
 }
@@ -79,7 +79,7 @@ pub enum Query<'a, S> {
     /// Inverse kinematics. Input: goals, and optional start positions instead of the present ones.
     Kinematics {
         ik: &'a Ik,
-        start: Option<Given<'a, S>>,
+        start: Option<QueryInput<'a, S>>,
     },
 }
 
@@ -89,7 +89,7 @@ pub struct QueryCall<'a, S: Scalar + Shared> {
     pub settings: &'a StepSettings,
     pub rows: EnvRows<'a, S>,
     pub query: Query<'a, S>,
-    pub given: Given<'a, S>,
+    pub input: QueryInput<'a, S>,
     /// The number of input values per environment.
     pub width: usize,
     pub answers: Cells<'a, S>,
@@ -104,8 +104,8 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
         memory: &mut QueryMemory<T>,
         out: &mut Vec<T>,
     ) -> T::Mask {
-        let QueryMemory { given, search } = memory;
-        self.gather(group, &self.given, self.width, given);
+        let QueryMemory { input, search } = memory;
+        self.gather(group, &self.input, self.width, input);
         let everywhere = T::Mask::splat(true);
         if let Query::Kinematics { ik, start } = &self.query {
             let memory = search.take().filter(|memory| memory.fits(self.model, ik));
@@ -114,20 +114,20 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
             if let Some(start) = start {
                 self.gather(group, start, self.model.nq, &mut search.state.qpos);
             }
-            search.goals.copy_from_slice(given);
+            search.goals.copy_from_slice(input);
             search.run(self.model, params, ik);
             search.write(out);
             return everywhere;
         }
         if let Query::Inverse(kind) = self.query {
             out.resize(self.model.nv, T::ZERO);
-            let given = (&given[..], kind);
-            (Step::compiled().inverse)(self.model, params, self.settings, state, given, ws, out);
+            let input = (&input[..], kind);
+            (Step::compiled().inverse)(self.model, params, self.settings, state, input, ws, out);
             return clench_dynamics::check::good_results(state, ws);
         }
         match self.query {
             Query::Acceleration(..) => {
-                ws.forget_poses();
+                ws.invalidate_poses();
                 (Step::compiled().forward)(
                     self.model,
                     params,
@@ -153,7 +153,7 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
         if let Query::Velocity(..) = self.query {
             (Step::compiled().velocities)(self.model, &ws.position, &state.qvel, &mut ws.velocity);
         }
-        self.write_answer(params, ws, given, out);
+        self.write_answer(params, ws, input, out);
         match self.query {
             Query::Acceleration(..) => {
                 clench_dynamics::check::good_results(state, ws) & !ws.collision.overflow
@@ -175,7 +175,7 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
         &self,
         params: &Params<T>,
         ws: &Workspace<T>,
-        given: &[T],
+        input: &[T],
         out: &mut Vec<T>,
     ) {
         let (model, pos) = (self.model, &ws.position);
@@ -206,14 +206,14 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
             }
             Query::MulMass => {
                 out.resize(model.nv, T::ZERO);
-                (Step::compiled().mul)(ws.mass(), &model.tree, given, out);
+                (Step::compiled().mul)(ws.mass(), &model.tree, input, out);
             }
             Query::SolveMass => {
-                out.extend_from_slice(given);
+                out.extend_from_slice(input);
                 (Step::compiled().solve)(ws.mass_factor(), &model.tree, out);
             }
-            Query::Rays { frame, filter } => cast(geoms, frame, given, filter, out),
-            Query::Heights { geom, frame } => sample(geoms, geom, frame, given, out),
+            Query::Rays { frame, filter } => cast(geoms, frame, input, filter, out),
+            Query::Heights { geom, frame } => sample(geoms, geom, frame, input, out),
             Query::Inverse(_) | Query::Kinematics { .. } => {}
         }
     }
@@ -221,13 +221,13 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
     fn gather<T: Real<Scalar = S>>(
         &self,
         group: &Group<T>,
-        given: &Given<S>,
+        input: &QueryInput<S>,
         width: usize,
         lanes: &mut Vec<T>,
     ) {
         lanes.resize(width, T::ZERO);
         for (lane, env) in group.fill() {
-            write_lane(given.row(env, width), lane, lanes);
+            write_lane(input.row(env, width), lane, lanes);
         }
     }
 }
@@ -238,14 +238,14 @@ pub(super) fn write_vectors<T: Real>(vectors: [Vec3<T>; 2], out: &mut Vec<T>) {
 
 /// Scratch memory of queries.
 pub struct QueryMemory<T: Real> {
-    given: Vec<T>,
+    input: Vec<T>,
     search: Option<Search<T>>,
 }
 
 impl<T: Real> QueryMemory<T> {
     pub fn new() -> Self {
         QueryMemory {
-            given: Vec::new(),
+            input: Vec::new(),
             search: None,
         }
     }

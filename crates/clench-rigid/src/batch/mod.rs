@@ -36,7 +36,7 @@ mod stepper;
 mod summary;
 mod targets;
 
-pub use answer::Given;
+pub use answer::QueryInput;
 pub use backend::{Backend, Outcome, StepFailure};
 pub use divergence::Divergence;
 use env_rows::ParamRows;

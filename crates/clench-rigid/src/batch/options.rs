@@ -59,7 +59,7 @@ impl BatchOptions {
         match self.instructions {
             Some(chosen) if !chosen.available_for::<S>() => Err(SimError::Instructions(chosen)),
             Some(chosen) => Ok(chosen),
-            None => fastest::<S>(count, threads).ok_or(SimError::Instructions(S::ALONE)),
+            None => fastest::<S>(count, threads).ok_or(SimError::Instructions(S::SINGLE_ENV)),
         }
     }
 }

@@ -28,7 +28,7 @@ impl Precision for f64 {}
 impl Precision for f32 {}
 
 /// The number type that one environment is computed in.
-type Alone<S> = <S as Scalar>::Alone;
+type SingleEnv<S> = <S as Scalar>::SingleEnv;
 
 /// Declares the functions of [`Lanewise`] with their bodies, and compiles them for both precisions.
 macro_rules! compile {
@@ -54,12 +54,12 @@ compile! {
     }
 
     /// Returns the parameters of a model, for one environment.
-    fn params(model: &Model) -> Params<Alone<Self>> {
+    fn params(model: &Model) -> Params<SingleEnv<Self>> {
         model.params.broadcast()
     }
 
     /// Creates a workspace for one environment.
-    fn workspace(model: &Model) -> Workspace<Alone<Self>> {
+    fn workspace(model: &Model) -> Workspace<SingleEnv<Self>> {
         (Step::compiled().workspace)(model)
     }
 
@@ -69,17 +69,17 @@ compile! {
     }
 
     /// Returns true if a step or forward pass of one environment succeeded.
-    fn good_results(state: &State<Self>, ws: &Workspace<Alone<Self>>) -> bool {
+    fn good_results(state: &State<Self>, ws: &Workspace<SingleEnv<Self>>) -> bool {
         check::well_computed(ws).lane(0) && check::well_moved(state)
     }
 
     /// Runs [`pipeline::step`](clench_dynamics::pipeline::step) for one environment.
     fn step(
         model: &Model,
-        params: &Params<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
-        state: &mut State<Alone<Self>>,
-        ws: &mut Workspace<Alone<Self>>,
+        state: &mut State<SingleEnv<Self>>,
+        ws: &mut Workspace<SingleEnv<Self>>,
     ) {
         (Step::compiled().step)(model, params, settings, state, ws, sensor::evaluate);
     }
@@ -87,10 +87,10 @@ compile! {
     /// Runs [`pipeline::forward`](clench_dynamics::pipeline::forward) for one environment.
     fn forward(
         model: &Model,
-        params: &Params<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
-        state: &State<Alone<Self>>,
-        ws: &mut Workspace<Alone<Self>>,
+        state: &State<SingleEnv<Self>>,
+        ws: &mut Workspace<SingleEnv<Self>>,
     ) {
         (Step::compiled().forward)(model, params, settings, state, ws, sensor::evaluate);
     }
@@ -98,10 +98,10 @@ compile! {
     /// Runs [`pipeline::rest`](clench_dynamics::pipeline::rest) for one environment.
     fn rest(
         model: &Model,
-        params: &Params<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
-        state: &mut State<Alone<Self>>,
-        ws: &mut Workspace<Alone<Self>>,
+        state: &mut State<SingleEnv<Self>>,
+        ws: &mut Workspace<SingleEnv<Self>>,
     ) -> bool {
         (Step::compiled().rest)(model, params, settings, state, ws, sensor::evaluate)
     }
@@ -109,10 +109,10 @@ compile! {
     /// Runs [`pipeline::before_forces`](clench_dynamics::pipeline::before_forces) for one environment.
     fn before_forces(
         model: &Model,
-        params: &Params<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
-        state: &State<Alone<Self>>,
-        ws: &mut Workspace<Alone<Self>>,
+        state: &State<SingleEnv<Self>>,
+        ws: &mut Workspace<SingleEnv<Self>>,
     ) {
         (Step::compiled().before_forces)(model, params, settings, state, ws);
     }
@@ -120,10 +120,10 @@ compile! {
     /// Runs [`pipeline::step_from_forces`](clench_dynamics::pipeline::step_from_forces) for one environment.
     fn step_from_forces(
         model: &Model,
-        params: &Params<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
-        state: &mut State<Alone<Self>>,
-        ws: &mut Workspace<Alone<Self>>,
+        state: &mut State<SingleEnv<Self>>,
+        ws: &mut Workspace<SingleEnv<Self>>,
     ) {
         (Step::compiled().step_from_forces)(model, params, settings, state, ws, sensor::evaluate);
     }
@@ -131,9 +131,9 @@ compile! {
     /// Runs [`pipeline::position_stage`](clench_dynamics::pipeline::position_stage) for one environment.
     fn position_stage(
         model: &Model,
-        params: &Params<Alone<Self>>,
-        state: &State<Alone<Self>>,
-        ws: &mut Workspace<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
+        state: &State<SingleEnv<Self>>,
+        ws: &mut Workspace<SingleEnv<Self>>,
     ) {
         (Step::compiled().position_stage)(model, params, state, ws);
     }
@@ -141,51 +141,51 @@ compile! {
     /// Runs [`pipeline::state_energy`](clench_dynamics::pipeline::state_energy) for one environment.
     fn state_energy(
         model: &Model,
-        params: &Params<Alone<Self>>,
-        state: &State<Alone<Self>>,
-        scratch: &mut EnergyScratch<Alone<Self>>,
-    ) -> Energy<Alone<Self>> {
+        params: &Params<SingleEnv<Self>>,
+        state: &State<SingleEnv<Self>>,
+        scratch: &mut EnergyScratch<SingleEnv<Self>>,
+    ) -> Energy<SingleEnv<Self>> {
         (Step::compiled().state_energy)(model, params, state, scratch)
     }
 
     /// Appends an output of one environment to `out`.
-    fn read(output: Output, source: &mut Source<Alone<Self>>, out: &mut Vec<Alone<Self>>) {
+    fn read(output: Output, source: &mut Source<SingleEnv<Self>>, out: &mut Vec<SingleEnv<Self>>) {
         output.read(source, out);
     }
 
     /// Computes the joint reactions on bodies of one environment.
-    fn body_forces(source: &mut Source<Alone<Self>>) {
+    fn body_forces(source: &mut Source<SingleEnv<Self>>) {
         update_body_forces(source.model, source.params, source.state, source.ws);
     }
 
     /// Returns the forces of the constraints of one environment.
-    fn pushes(source: &Source<Alone<Self>>) -> Vec<Push> {
+    fn pushes(source: &Source<SingleEnv<Self>>) -> Vec<Push> {
         readout::pushes(source, 0)
     }
 
     /// Returns the tendon paths of one environment.
     fn tendon_lines(
         model: &Model,
-        params: &Params<Alone<Self>>,
-        ws: &Workspace<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
+        ws: &Workspace<SingleEnv<Self>>,
     ) -> Vec<TendonLine> {
         readout::tendon_lines(model, params, &ws.position)
     }
 
     /// Runs inverse kinematics for one environment.
-    fn ik(model: &Model, params: &Params<Alone<Self>>, ik: &Ik, search: &mut Search<Alone<Self>>) {
+    fn ik(model: &Model, params: &Params<SingleEnv<Self>>, ik: &Ik, search: &mut Search<SingleEnv<Self>>) {
         search.run(model, params, ik);
     }
 
     /// Runs [`inverse`](clench_dynamics::inverse::inverse) for one environment.
     fn inverse(
         model: &Model,
-        params: &Params<Alone<Self>>,
+        params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
-        state: &State<Alone<Self>>,
-        given: (&[Alone<Self>], Acceleration),
-        ws: &mut Workspace<Alone<Self>>,
-        qfrc_inverse: &mut [Alone<Self>],
+        state: &State<SingleEnv<Self>>,
+        given: (&[SingleEnv<Self>], Acceleration),
+        ws: &mut Workspace<SingleEnv<Self>>,
+        qfrc_inverse: &mut [SingleEnv<Self>],
     ) {
         (Step::compiled().inverse)(model, params, settings, state, given, ws, qfrc_inverse);
     }

@@ -4,7 +4,7 @@
 //! No result of an earlier step is used, so that an answer always holds for the present state, even after a step. An
 //! environment whose state is invalid gets NaN. Environments that do not run are included.
 
-use super::answer::{Given, Query, QueryCall};
+use super::answer::{Query, QueryCall, QueryInput};
 use super::cells::Cells;
 use super::env_rows::EnvRows;
 use super::run::for_each_group;
@@ -27,7 +27,7 @@ impl<S: Precision> Batch<S> {
     pub fn jacobian(&mut self, object: FrameObject) -> Result<Rows<S>, SimError> {
         check_object(&self.model, object)?;
         let width = 6 * self.model.nv;
-        self.run_query(Query::Jacobian(object), Given::Shared(&[]), width)
+        self.run_query(Query::Jacobian(object), QueryInput::Shared(&[]), width)
     }
 
     /// Returns the Jacobian of the centre of mass of a body's subtree (n, 3 × nv), see
@@ -38,7 +38,7 @@ impl<S: Precision> Batch<S> {
     pub fn subtree_jacobian(&mut self, body: usize) -> Result<Rows<S>, SimError> {
         check_body(&self.model, body)?;
         let width = 3 * self.model.nv;
-        self.run_query(Query::SubtreeJacobian(body), Given::Shared(&[]), width)
+        self.run_query(Query::SubtreeJacobian(body), QueryInput::Shared(&[]), width)
     }
 
     /// Returns the first hit of each ray in each environment, see [`Sim::rays`](crate::Sim::rays), as five values per
@@ -49,7 +49,7 @@ impl<S: Precision> Batch<S> {
     /// [`step`](Self::step) do.
     pub fn rays(
         &mut self,
-        rays: Given<S>,
+        rays: QueryInput<S>,
         frame: Option<FrameObject>,
         filter: &RayFilter,
     ) -> Result<Rows<S>, SimError> {
@@ -67,7 +67,7 @@ impl<S: Precision> Batch<S> {
     pub fn heights(
         &mut self,
         geom: usize,
-        places: Given<S>,
+        places: QueryInput<S>,
         frame: Option<FrameObject>,
     ) -> Result<Rows<S>, SimError> {
         let width = self.check_input("places", &places)?;
@@ -81,11 +81,15 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// Returns an error if the number of accelerations is wrong, if one is not finite, or if
     /// [`Sim::inverse`](crate::Sim::inverse) does not support this kind, or as [`step`](Self::step) does.
-    pub fn inverse(&mut self, qacc: Given<S>, given: Acceleration) -> Result<Rows<S>, SimError> {
+    pub fn inverse(
+        &mut self,
+        qacc: QueryInput<S>,
+        kind: Acceleration,
+    ) -> Result<Rows<S>, SimError> {
         let nv = self.model.nv;
         self.check_numbers("qacc", &qacc, nv)?;
-        check_acceleration(&self.model, given)?;
-        self.run_query(Query::Inverse(given), qacc, nv)
+        check_acceleration(&self.model, kind)?;
+        self.run_query(Query::Inverse(kind), qacc, nv)
     }
 
     /// Returns joint positions that bring the tasks of `ik` to their goals in each environment, from the present states
@@ -97,8 +101,8 @@ impl<S: Precision> Batch<S> {
     pub fn ik(
         &mut self,
         ik: &Ik,
-        goals: Given<S>,
-        start: Option<Given<S>>,
+        goals: QueryInput<S>,
+        start: Option<QueryInput<S>>,
     ) -> Result<Vec<IkSolution<S>>, SimError> {
         self.check_numbers("goals", &goals, ik.goal_len(&self.model))?;
         if let Some(start) = &start {
@@ -114,20 +118,20 @@ impl<S: Precision> Batch<S> {
     pub(super) fn check_numbers(
         &self,
         name: &'static str,
-        given: &Given<S>,
+        input: &QueryInput<S>,
         width: usize,
     ) -> Result<(), SimError> {
-        let total = match given {
-            Given::Shared(_) => width,
-            Given::Each(_) => width.saturating_mul(self.count()),
+        let total = match input {
+            QueryInput::Shared(_) => width,
+            QueryInput::Each(_) => width.saturating_mul(self.count()),
         };
-        check_values(name, given.all(), total)
+        check_values(name, input.all(), total)
     }
 
     /// Returns the number of values per environment.
-    fn check_input(&self, name: &'static str, given: &Given<S>) -> Result<usize, SimError> {
-        let width = given.width(self.count());
-        if let Given::Each(values) = given {
+    fn check_input(&self, name: &'static str, input: &QueryInput<S>) -> Result<usize, SimError> {
+        let width = input.width(self.count());
+        if let QueryInput::Each(values) = input {
             check_length(name, values.len(), width * self.count())?;
         }
         Ok(width)
@@ -136,7 +140,7 @@ impl<S: Precision> Batch<S> {
     pub(super) fn run_query(
         &mut self,
         query: Query<S>,
-        given: Given<S>,
+        input: QueryInput<S>,
         width: usize,
     ) -> Result<Rows<S>, SimError> {
         self.check_state()?;
@@ -156,8 +160,8 @@ impl<S: Precision> Batch<S> {
                 params: &self.params,
             },
             query,
-            width: given.width(count),
-            given,
+            width: input.width(count),
+            input,
             answers: Cells::new(&mut answers),
         };
         let (steppers, order) = (&mut self.steppers, &self.order);

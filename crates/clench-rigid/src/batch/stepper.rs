@@ -90,7 +90,7 @@ where
             }
         }
         if rows.models.are_several() || !rows.params.is_empty() {
-            self.ws.forget_poses();
+            self.ws.invalidate_poses();
         }
         let has_occasional = (group.iter()).any(|(_, env)| rows.inputs.has_occasional(env));
         if has_occasional {

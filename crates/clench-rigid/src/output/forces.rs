@@ -6,7 +6,7 @@
 
 use super::source::Source;
 use super::tendon_forces::each_pull;
-use clench_dynamics::constraint::{ConstraintSource, HeldFrames, weld_torque};
+use clench_dynamics::constraint::{AnchorFrames, ConstraintSource, weld_torque};
 use clench_dynamics::contact::Contact;
 use clench_dynamics::model::EqualityTarget;
 use clench_dynamics::workspace::Workspace;
@@ -161,10 +161,10 @@ pub(crate) fn each_joint_of_bodies<T: Real>(
 }
 
 /// Returns the anchor frames of a connect or weld, and true if it is a weld.
-fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(HeldFrames<T>, bool)> {
+fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(AnchorFrames<T>, bool)> {
     match source {
         ConstraintSource::Dynamic { slot, bodies, weld } => {
-            Some((HeldFrames::of_slot(s.state, slot, bodies), weld))
+            Some((AnchorFrames::of_slot(s.state, slot, bodies), weld))
         }
         ConstraintSource::Equality(e) => {
             let target = s.model.equalities[e].target;
@@ -174,7 +174,7 @@ fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(HeldFrame
                 return None;
             };
             let weld = matches!(target, EqualityTarget::Weld { .. });
-            Some((HeldFrames::of_equality(s.params, e, [body1, body2]), weld))
+            Some((AnchorFrames::of_equality(s.params, e, [body1, body2]), weld))
         }
         ConstraintSource::DofFriction(_)
         | ConstraintSource::TendonFriction(_)

@@ -107,7 +107,7 @@ impl<T: Precision> Sim<T> {
         Ok(along(self.frames(), axes, object, acceleration).map(|vector| vector.lane(0)))
     }
 
-    fn frames(&self) -> Frames<'_, T::Alone> {
+    fn frames(&self) -> Frames<'_, T::SingleEnv> {
         Frames {
             model: self.model(),
             params: self.params(),
@@ -123,7 +123,7 @@ impl<T: Precision> Sim<T> {
         check_length("jacobian", length, 6 * self.model().nv)
     }
 
-    pub(super) fn body_point(&self, anchor: Anchor<T>) -> BodyPoint<T::Alone> {
+    pub(super) fn body_point(&self, anchor: Anchor<T>) -> BodyPoint<T::SingleEnv> {
         match anchor {
             Anchor::Object(object) => self.frames().point(object),
             Anchor::Point { body, place } => {

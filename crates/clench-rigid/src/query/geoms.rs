@@ -60,7 +60,7 @@ impl<T: Precision> Sim<T> {
         Ok(distance(&a.0, &a.1, &b.0, &b.1, limit))
     }
 
-    pub(super) fn geoms(&self) -> Geoms<'_, T::Alone> {
+    pub(super) fn geoms(&self) -> Geoms<'_, T::SingleEnv> {
         Geoms {
             model: self.model(),
             params: self.params(),

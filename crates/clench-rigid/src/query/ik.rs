@@ -27,7 +27,7 @@ impl<T: Precision> Sim<T> {
         self.check_state()?;
         let mut search = Search::new(self.model(), ik);
         search.state.splat_from(&self.state);
-        for lane in 0..T::Alone::LANES {
+        for lane in 0..T::SingleEnv::LANES {
             if let Some(start) = start {
                 write_lane(start, lane, &mut search.state.qpos);
             }

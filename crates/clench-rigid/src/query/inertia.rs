@@ -22,7 +22,7 @@ impl<T: Precision> Sim<T> {
         check_values("x", x, self.model().nv)?;
         check_length("product", product.len(), x.len())?;
         self.require(Computed::Positions)?;
-        let x = Vec::from_iter(x.iter().copied().map(T::Alone::splat));
+        let x = Vec::from_iter(x.iter().copied().map(T::SingleEnv::splat));
         self.change(product, |sim, product| {
             let mass = sim.workspace().mass();
             (Step::compiled().mul)(mass, &sim.model().tree, &x, product);

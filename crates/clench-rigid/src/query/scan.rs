@@ -55,7 +55,7 @@ impl<T: Precision> Sim<T> {
     ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
         check_rays(self.model(), frame, rays)?;
         self.require(Computed::Positions)?;
-        let rays = Vec::from_iter(rays.iter().copied().map(T::Alone::splat));
+        let rays = Vec::from_iter(rays.iter().copied().map(T::SingleEnv::splat));
         let mut hits = Vec::new();
         cast(self.geoms(), frame, &rays, filter, &mut hits);
         let hits = Vec::from_iter(hits.iter().map(|number| number.lane(0)));
@@ -83,7 +83,7 @@ impl<T: Precision> Sim<T> {
     ) -> Result<Vec<T>, SimError> {
         check_places(self.model(), geom, frame, places)?;
         self.require(Computed::Positions)?;
-        let places = Vec::from_iter(places.iter().copied().map(T::Alone::splat));
+        let places = Vec::from_iter(places.iter().copied().map(T::SingleEnv::splat));
         let mut heights = Vec::new();
         sample(self.geoms(), geom, frame, &places, &mut heights);
         Ok(heights.iter().map(|height| height.lane(0)).collect())

@@ -83,12 +83,12 @@ impl<T: Precision> Sim<T> {
     }
 
     /// Returns the parameters of this simulation.
-    pub fn params(&self) -> &Params<T::Alone> {
+    pub fn params(&self) -> &Params<T::SingleEnv> {
         &self.params
     }
     /// Returns the parameters for modification in this simulation. Arrays keep their lengths. Unlike
     /// [`set_param`](Self::set_param), it checks and updates nothing.
-    pub fn params_mut(&mut self) -> &mut Params<T::Alone> {
+    pub fn params_mut(&mut self) -> &mut Params<T::SingleEnv> {
         self.invalidate();
         Model::invalidate_same_frames(&mut self.model);
         &mut self.params

@@ -50,10 +50,10 @@ impl<T: Precision> Sim<T> {
         &mut self,
         pass: impl FnOnce(
             &Model,
-            &Params<T::Alone>,
+            &Params<T::SingleEnv>,
             &StepSettings,
-            &mut State<T::Alone>,
-            &mut Workspace<T::Alone>,
+            &mut State<T::SingleEnv>,
+            &mut Workspace<T::SingleEnv>,
         ) + Send,
     ) {
         let (model, params, settings) = (&self.model, &self.params, &self.settings);

@@ -2,7 +2,7 @@
 
 use crate::batches::*;
 use clench_math::{Instructions, Vec3};
-use clench_rigid::batch::Given;
+use clench_rigid::batch::QueryInput;
 use clench_rigid::builder::{GeomSpec, HeightFieldSpec, ModelBuilder};
 use clench_rigid::model::FrameObject;
 use clench_rigid::options::RigidOptions;
@@ -112,8 +112,8 @@ fn motions_of_objects_are_those_of_each_alone() {
 fn masses<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
     let nv = sims[0].model().nv;
     let x = Vec::from_iter((0..ENVS * nv).map(|k| S::new((k as f64 * 0.7).sin())));
-    let products = batch.mul_mass(Given::Each(&x)).unwrap();
-    let solved = batch.solve_mass(Given::Shared(&x[..nv])).unwrap();
+    let products = batch.mul_mass(QueryInput::Each(&x)).unwrap();
+    let solved = batch.solve_mass(QueryInput::Shared(&x[..nv])).unwrap();
     for (env, sim) in sims.iter_mut().enumerate() {
         let mut own = vec![S::ZERO; nv];
         sim.mul_mass(&x[env * nv..][..nv], &mut own).unwrap();
@@ -122,7 +122,7 @@ fn masses<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
         sim.solve_mass(&mut own).unwrap();
         assert_bits(solved.row(env), &own, &|| format!("solution {env}"));
     }
-    assert!(batch.mul_mass(Given::Each(&x[1..])).is_err());
+    assert!(batch.mul_mass(QueryInput::Each(&x[1..])).is_err());
 }
 
 #[test]
@@ -145,12 +145,12 @@ fn rays_and_heights_are_those_of_each_alone() {
             ..RayFilter::default()
         };
         let found = batch
-            .rays(Given::Shared(&rays), Some(object), &filter)
+            .rays(QueryInput::Shared(&rays), Some(object), &filter)
             .unwrap();
         let geom = ground(&sims[0]);
         let places = Vec::from_iter((0..ENVS * 8).map(|k| (k as f64 * 0.37).sin() * 1.4));
         let heights = batch
-            .heights(geom, Given::Each(&places), Some(object))
+            .heights(geom, QueryInput::Each(&places), Some(object))
             .unwrap();
         for (env, sim) in sims.iter_mut().enumerate() {
             let own = sim.rays(&rays, Some(object), &filter).unwrap();
@@ -204,7 +204,7 @@ fn inverse_dynamics_are_those_of_each_alone() {
         let nv = sims[0].model().nv;
         let qacc = Vec::from_iter((0..ENVS * nv).map(|k| (k as f64).sin() * 5.0));
         for given in [Acceleration::Continuous, Acceleration::Discrete] {
-            let found = batch.inverse(Given::Each(&qacc), given).unwrap();
+            let found = batch.inverse(QueryInput::Each(&qacc), given).unwrap();
             for (env, sim) in sims.iter_mut().enumerate() {
                 let mut own = vec![0.0; nv];
                 sim.inverse(&qacc[env * nv..][..nv], given, &mut own)
@@ -231,7 +231,7 @@ fn kinematics<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
         goals.extend([0.2 * phase.sin(), 0.2 * phase.cos(), 0.4, 0.0, 0.0, 0.6].map(S::new));
         goals.extend_from_slice(batch.state.qpos.row(0));
     }
-    let found = batch.ik(&ik, Given::Each(&goals), None).unwrap();
+    let found = batch.ik(&ik, QueryInput::Each(&goals), None).unwrap();
     for (env, sim) in sims.iter_mut().enumerate() {
         let own = sim.ik(&ik, &goals[env * width..][..width], None).unwrap();
         assert_bits(&found[env].qpos, &own.qpos, &|| format!("qpos {env}"));
@@ -264,13 +264,17 @@ fn an_environment_that_fails_a_query_is_reported_and_disturbs_no_other() {
     assert_eq!(batch.statuses().len(), ENVS);
     assert!(
         batch
-            .rays(Given::Shared(&[1.0; 5]), None, &RayFilter::default())
+            .rays(QueryInput::Shared(&[1.0; 5]), None, &RayFilter::default())
             .is_err()
     );
-    assert!(batch.heights(0, Given::Shared(&[1.0; 2]), None).is_err());
     assert!(
         batch
-            .inverse(Given::Shared(&[1.0]), Acceleration::Continuous)
+            .heights(0, QueryInput::Shared(&[1.0; 2]), None)
+            .is_err()
+    );
+    assert!(
+        batch
+            .inverse(QueryInput::Shared(&[1.0]), Acceleration::Continuous)
             .is_err()
     );
 }

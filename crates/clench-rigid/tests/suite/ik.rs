@@ -2,7 +2,7 @@
 
 use crate::machines::{Numbers, distance, floating};
 use clench_math::{Quat, Vec3};
-use clench_rigid::batch::Given;
+use clench_rigid::batch::QueryInput;
 use clench_rigid::builder::{BodySpec, GeomSpec, JointSpec, ModelBuilder};
 use clench_rigid::dynamics::integrate::integrate_positions;
 use clench_rigid::model::{FrameObject, JointKind};
@@ -123,7 +123,9 @@ fn restarts_reach_more_targets() {
     };
     let ik = Ik::new(&model, pose_of_tip(&model), options).unwrap();
     let mut batch = Batch::<f64>::new(Arc::clone(&model), goals.len()).unwrap();
-    let together = batch.ik(&ik, Given::Each(&goals.concat()), None).unwrap();
+    let together = batch
+        .ik(&ik, QueryInput::Each(&goals.concat()), None)
+        .unwrap();
     assert_eq!(together, often);
 }
 

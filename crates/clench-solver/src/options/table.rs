@@ -17,7 +17,7 @@ macro_rules! solver_options {
         $then! {
             solver {
                 /// Minimisation algorithm; Newton.
-                constraint_solver: ConstraintSolver = ConstraintSolver::Newton, Any, Given("solver"),
+                constraint_solver: ConstraintSolver = ConstraintSolver::Newton, Any, Value("solver"),
                     // PGS approaches the minimum that Newton computes.
                     Words("solver", &[
                         ("Newton", Algorithm(ConstraintSolver::Newton)),
@@ -25,28 +25,28 @@ macro_rules! solver_options {
                         ("PGS", Algorithm(ConstraintSolver::Newton)),
                     ]);
                 /// Maximum number of iterations of a solve; 50. Models from MJCF default to 100.
-                iterations: usize = 50, Any, Given("iterations"), Attribute("iterations");
+                iterations: usize = 50, Any, Value("iterations"), Attribute("iterations");
                 /// Tolerance for the gradient norm and the last improvement (CG: the duality gap), over mean inertia ×
                 /// nv; 1e-8, but 1e-5 in single precision. Zero iterates to the working precision.
-                tolerance: f64 = 1e-8 => 1e-5, NotNegative, Given("tolerance"), Attribute("tolerance");
+                tolerance: f64 = 1e-8 => 1e-5, NotNegative, Value("tolerance"), Attribute("tolerance");
                 /// Maximum number of evaluations of a line search; 50. With 0 it takes its first guess if the cost
                 /// decreases there, like MuJoCo.
-                ls_iterations: usize = 50, Any, Given("ls-iterations"), Attribute("ls_iterations");
+                ls_iterations: usize = 50, Any, Value("ls-iterations"), Attribute("ls_iterations");
                 /// Slope at which a line search stops, relative to the tolerance; 0.01.
-                ls_tolerance: f64 = 0.01, NotNegative, Given("ls-tolerance"), Attribute("ls_tolerance");
+                ls_tolerance: f64 = 0.01, NotNegative, Value("ls-tolerance"), Attribute("ls_tolerance");
                 /// Sparse storage of the Hessian; auto: chosen per model.
-                sparse_solve: Switch = Switch::Auto, Any, Given("sparse"),
+                sparse_solve: Switch = Switch::Auto, Any, Value("sparse"),
                     Words("jacobian", &[
                         ("auto", Choice(Switch::Auto)),
                         ("sparse", Choice(Switch::On)),
                         ("dense", Choice(Switch::Off)),
                     ]);
                 /// Maximum number of sweeps that remove the slip of friction after the solve; 0.
-                noslip_iterations: usize = 0, Any, Given("noslip-iterations"), Attribute("noslip_iterations");
+                noslip_iterations: usize = 0, Any, Value("noslip-iterations"), Attribute("noslip_iterations");
                 /// Improvement, over mean inertia × nv, below which the sweeps stop; 1e-6.
-                noslip_tolerance: f64 = 1e-6, NotNegative, Given("noslip-tolerance"), Attribute("noslip_tolerance");
+                noslip_tolerance: f64 = 1e-6, NotNegative, Value("noslip-tolerance"), Attribute("noslip_tolerance");
                 /// Separate solves of uncoupled parts; auto: if the model has more than one tree.
-                islands: Switch = Switch::Auto, Any, Given("islands"),
+                islands: Switch = Switch::Auto, Any, Value("islands"),
                     Flag("island", [Choice(Switch::Off), Choice(Switch::Auto)]);
                 /// True to start a solve from the acceleration given to it, in a simulation the last one; true.
                 warmstart: bool = true, Any, Sets("no-warmstart", Truth(false)),

@@ -5,7 +5,7 @@ use clench::rigid::{Batch, EnvStatus, Fault, Precision};
 use clench::{Sim, SimError};
 use std::fmt::{self, Display, Formatter};
 
-struct Alone<S: Precision> {
+struct SingleEnv<S: Precision> {
     env: usize,
     sim: Sim<S>,
     /// True if neither poisoned nor failed since the last reset.
@@ -13,7 +13,7 @@ struct Alone<S: Precision> {
 }
 
 pub struct Watch<S: Precision> {
-    alone: Vec<Alone<S>>,
+    alone: Vec<SingleEnv<S>>,
     steps: usize,
     same_failures: usize,
 }
@@ -22,7 +22,7 @@ impl<S: Precision> Watch<S> {
     /// Watches `count` environments of a batch, all of which are in the initial state.
     pub fn new(batch: &Batch<S>, count: usize) -> Self {
         let envs = (0..count).map(|i| i * batch.count() / count);
-        let alone = envs.map(|env| Alone {
+        let alone = envs.map(|env| SingleEnv {
             env,
             sim: batch.sim(env).expect("an environment that is there"),
             healthy: true,
@@ -34,7 +34,7 @@ impl<S: Precision> Watch<S> {
         }
     }
 
-    fn find(&mut self, env: usize) -> Option<&mut Alone<S>> {
+    fn find(&mut self, env: usize) -> Option<&mut SingleEnv<S>> {
         self.alone.iter_mut().find(|alone| alone.env == env)
     }
 
@@ -67,7 +67,7 @@ impl<S: Precision> Watch<S> {
     /// Steps the watched environments and compares them with the batch.
     pub fn step(&mut self, batch: &Batch<S>) {
         for alone in self.alone.iter_mut().filter(|alone| alone.healthy) {
-            let Alone { env, sim, healthy } = alone;
+            let SingleEnv { env, sim, healthy } = alone;
             let result = sim.step();
             self.steps += 1;
             match (batch.status(*env), result) {

@@ -166,7 +166,11 @@ fn rays_and_heights_are_those_of_the_own_model() {
         rays.extend([x, y, 2.0, -0.4 * x, -0.4 * y, -1.0]);
     }
     let filter = clench::RayFilter::default();
-    let found = batch.rays(clench::rigid::batch::Given::Shared(&rays), None, &filter);
+    let found = batch.rays(
+        clench::rigid::batch::QueryInput::Shared(&rays),
+        None,
+        &filter,
+    );
     let found = found.expect("finite");
     for (env, &model) in of_env.iter().enumerate() {
         let mut sim = batch.sim(env).expect("exists");

@@ -55,7 +55,7 @@ pub struct Flags {
     /// Sensors.
     pub sensor: bool,
     /// Several contacts of a pair whose contacts MuJoCo finds by its general algorithm (see
-    /// `clench_collide::multiccd_matters`); otherwise only the deepest.
+    /// `clench_collide::multiccd_applies`); otherwise only the deepest.
     pub multiccd: bool,
     /// Constraints use the inverse inertia of the present configuration, not an estimate at qpos0. Off by default.
     pub diagexact: bool,

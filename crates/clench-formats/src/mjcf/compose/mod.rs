@@ -41,7 +41,7 @@ pub(crate) struct Composed {
     /// Notes for the user.
     pub notes: Vec<String>,
     /// The elements omitted because they are not supported yet.
-    pub left_out: Vec<String>,
+    pub omitted: Vec<String>,
 }
 
 /// Composes a model from a document whose includes are expanded.
@@ -64,7 +64,7 @@ pub(crate) fn compose(
         open: identity.into_iter().collect(),
         last_number: 0,
         notes: Vec::new(),
-        left_out: ignore_unsupported.then(Vec::new),
+        omitted: ignore_unsupported.then(Vec::new),
     };
     shared.check(&mut root)?;
     let (_, keyframes) = compose_model(&mut root, directory, &mut shared)?;
@@ -73,7 +73,7 @@ pub(crate) fn compose(
         sources: shared.sources,
         keyframes,
         notes: shared.notes,
-        left_out: shared.left_out.unwrap_or_default(),
+        omitted: shared.omitted.unwrap_or_default(),
     })
 }
 

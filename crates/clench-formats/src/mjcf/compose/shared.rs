@@ -2,7 +2,7 @@
 
 use crate::LoadError;
 use crate::mjcf::document::Element;
-use crate::mjcf::leave_out::leave_out;
+use crate::mjcf::omit::omit;
 use crate::mjcf::schema;
 use crate::mjcf::source::Sources;
 use crate::spending::Spending;
@@ -20,14 +20,14 @@ pub(super) struct Shared<'a> {
     pub last_number: u32,
     pub notes: Vec<String>,
     /// The omitted unsupported elements; `None` if omission is not allowed.
-    pub left_out: Option<Vec<String>>,
+    pub omitted: Option<Vec<String>>,
 }
 
 impl Shared<'_> {
     /// Checks a document against the schema, after any allowed omissions.
     pub(super) fn check(&mut self, root: &mut Element) -> Result<(), LoadError> {
-        if let Some(left_out) = &mut self.left_out {
-            leave_out(root, left_out);
+        if let Some(omitted) = &mut self.omitted {
+            omit(root, omitted);
         }
         schema::check(root)
     }

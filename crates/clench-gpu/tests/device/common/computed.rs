@@ -10,14 +10,16 @@ use std::collections::BTreeMap;
 pub fn computed<S: Precision>(sim: &Sim<S>) -> BTreeMap<&'static str, Vec<f64>> {
     let ws = sim.workspace();
     let (pos, vel, force) = (&ws.position, &ws.velocity, &ws.force);
-    let plain = |x: &[S::Alone]| x.iter().copied().map(first).collect::<Vec<f64>>();
-    let vectors = |v: &[Vec3<S::Alone>]| v.iter().flat_map(|v| v.to_array().map(first)).collect();
-    let quats = |q: &[Quat<S::Alone>]| q.iter().flat_map(|q| q.to_array().map(first)).collect();
-    let matrices = |m: &[Mat3<S::Alone>]| {
+    let plain = |x: &[S::SingleEnv]| x.iter().copied().map(first).collect::<Vec<f64>>();
+    let vectors =
+        |v: &[Vec3<S::SingleEnv>]| v.iter().flat_map(|v| v.to_array().map(first)).collect();
+    let quats = |q: &[Quat<S::SingleEnv>]| q.iter().flat_map(|q| q.to_array().map(first)).collect();
+    let matrices = |m: &[Mat3<S::SingleEnv>]| {
         let rows = m.iter().flat_map(|m| m.rows);
         rows.flat_map(|r| r.to_array().map(first)).collect()
     };
-    let motions = |m: &[Motion<S::Alone>]| m.iter().flat_map(|m| m.to_array().map(first)).collect();
+    let motions =
+        |m: &[Motion<S::SingleEnv>]| m.iter().flat_map(|m| m.to_array().map(first)).collect();
     let mut all = BTreeMap::new();
     all.insert("xpos", vectors(&pos.xpos));
     all.insert("xquat", quats(&pos.xquat));
@@ -87,7 +89,7 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
             jacobian.extend(dense);
         }
     }
-    let plain = |x: &[S::Alone]| x.iter().copied().map(first).collect();
+    let plain = |x: &[S::SingleEnv]| x.iter().copied().map(first).collect();
     vec![
         ("aref", aref),
         ("r", r),

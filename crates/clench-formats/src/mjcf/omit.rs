@@ -39,17 +39,17 @@ const ESSENTIAL_ATTRIBUTES: &[&str] = &[
 ];
 
 /// Removes unsupported elements from a document, and adds a line about each.
-pub(crate) fn leave_out(root: &mut Element, left_out: &mut Vec<String>) {
+pub(crate) fn omit(root: &mut Element, omitted: &mut Vec<String>) {
     let mut pending = vec![root];
     while let Some(element) = pending.pop() {
         let parent = element.tag.clone();
         element.children.retain_mut(|child| {
             let reason = unsupported(&parent, child);
             let Some(reason) = reason else {
-                leave_out_attributes(&parent, child, left_out);
+                omit_attributes(&parent, child, omitted);
                 return true;
             };
-            left_out.push(child.error(reason).to_string());
+            omitted.push(child.error(reason).to_string());
             false
         });
         pending.extend(element.children.iter_mut().rev());
@@ -69,18 +69,18 @@ fn unsupported(parent: &str, element: &Element) -> Option<String> {
         .then(|| "is omitted: it is not supported yet".to_owned())
 }
 
-fn leave_out_attributes(parent: &str, element: &mut Element, left_out: &mut Vec<String>) {
-    let is_left = |(name, value): &(String, String)| {
+fn omit_attributes(parent: &str, element: &mut Element, omitted: &mut Vec<String>) {
+    let is_omitted = |(name, value): &(String, String)| {
         let essential = ESSENTIAL_ATTRIBUTES.contains(&name.as_str());
         !essential && schema::is_later_attribute(parent, &element.tag, name, value)
     };
-    let left: Vec<String> = (element.attributes.iter())
-        .filter(|attribute| is_left(attribute))
+    let names: Vec<String> = (element.attributes.iter())
+        .filter(|attribute| is_omitted(attribute))
         .map(|(name, _)| name.clone())
         .collect();
-    for name in left {
+    for name in names {
         let note = format!("the attribute {name} is omitted: it is not supported yet");
-        left_out.push(element.error(note).to_string());
+        omitted.push(element.error(note).to_string());
         element.attributes.retain(|(other, _)| *other != name);
     }
 }

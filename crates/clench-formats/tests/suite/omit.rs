@@ -19,16 +19,16 @@ fn plugins_and_deformable_bodies_are_omitted_and_listed() {
     assert!(Loader::new().read_str(text).is_err());
     let model = read(text).unwrap();
     assert_eq!(model.bodies.len(), 2);
-    assert_eq!(model.left_out.len(), 2, "{:?}", model.left_out);
+    assert_eq!(model.omitted.len(), 2, "{:?}", model.omitted);
     assert!(
-        model.left_out[0].starts_with("2: plugin"),
+        model.omitted[0].starts_with("2: plugin"),
         "{:?}",
-        model.left_out
+        model.omitted
     );
     assert!(
-        model.left_out[1].starts_with("4: flexcomp \"cloth\""),
+        model.omitted[1].starts_with("4: flexcomp \"cloth\""),
         "{:?}",
-        model.left_out
+        model.omitted
     );
 }
 
@@ -42,13 +42,13 @@ fn signed_distance_fields_are_omitted_with_their_meshes() {
     )
     .unwrap();
     assert_eq!(model.bodies[0].geoms.len(), 1);
-    assert_eq!(model.left_out.len(), 2);
+    assert_eq!(model.omitted.len(), 2);
 }
 
 #[test]
 fn nothing_is_omitted_from_a_supported_model() {
     let model = read("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>").unwrap();
-    assert!(model.left_out.is_empty());
+    assert!(model.omitted.is_empty());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::state::State;
 use clench_math::{Quat, Real, Vec3};
 
 /// Two frames, one on each of two bodies.
-pub struct HeldFrames<T> {
+pub struct AnchorFrames<T> {
     /// The bodies.
     pub bodies: [usize; 2],
     /// The origin of each frame in its body's frame.
@@ -20,11 +20,11 @@ pub struct HeldFrames<T> {
     pub torquescale: T,
 }
 
-impl<T: Real> HeldFrames<T> {
+impl<T: Real> AnchorFrames<T> {
     /// Returns the frames of an equality of the model.
     #[inline(always)]
     pub fn of_equality(params: &Params<T>, equality: usize, bodies: [usize; 2]) -> Self {
-        HeldFrames {
+        AnchorFrames {
             bodies,
             anchors: [params.eq_anchor1[equality], params.eq_anchor2[equality]],
             quats: [params.eq_quat1[equality], params.eq_quat2[equality]],
@@ -35,7 +35,7 @@ impl<T: Real> HeldFrames<T> {
     /// Returns the frames of a constraint that was added at run time.
     #[inline(always)]
     pub fn of_slot(state: &State<T>, slot: usize, bodies: [usize; 2]) -> Self {
-        HeldFrames {
+        AnchorFrames {
             bodies,
             anchors: [state.dynamic_anchor1[slot], state.dynamic_anchor2[slot]],
             quats: [state.dynamic_quat[slot], Quat::IDENTITY],
@@ -55,15 +55,15 @@ impl<T: Real> HeldFrames<T> {
 }
 
 /// Two constrained frames, with their softness and active lanes.
-pub(super) struct Held<T: Real> {
-    pub frames: HeldFrames<T>,
+pub(super) struct FrameConstraint<T: Real> {
+    pub frames: AnchorFrames<T>,
     pub source: ConstraintSource,
     pub active: T::Mask,
     pub solref: [T; 2],
     pub solimp: [T; 5],
 }
 
-impl<T: Real> Held<T> {
+impl<T: Real> FrameConstraint<T> {
     /// Creates the constraint of an equality.
     #[inline(always)]
     pub(super) fn by_equality(
@@ -71,8 +71,8 @@ impl<T: Real> Held<T> {
         equality: usize,
         bodies: [usize; 2],
     ) -> Self {
-        Held {
-            frames: HeldFrames::of_equality(context.params, equality, bodies),
+        FrameConstraint {
+            frames: AnchorFrames::of_equality(context.params, equality, bodies),
             source: ConstraintSource::Equality(equality),
             active: context.active_equality(equality),
             solref: context.params.eq_solref[equality],
