@@ -269,7 +269,9 @@ fn wrap(model: &Model, wrap: Wrap) -> (i32, i32, i32) {
 /// Returns the type of an equality and its objects.
 fn equality(target: EqualityTarget) -> (i32, i32, i32) {
     let (first, second) = match target.coupled() {
-        Coupled::Bodies([first, second]) => (first, Some(second)),
+        Coupled::Points([first, second]) | Coupled::Frames([first, second]) => {
+            (first, Some(second))
+        }
         Coupled::Joints(follower, leader) | Coupled::Tendons(follower, leader) => {
             (follower, leader)
         }

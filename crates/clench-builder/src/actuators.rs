@@ -49,15 +49,8 @@ fn add(
     if spec.dampratio.is_some() && spec.biasprm[1] > 0.0 {
         return Err(spec.error("dampratio needs a gain that is not negative"));
     }
-    let outputs = match spec.gain {
-        GainKind::So3 => orientation::OUTPUTS,
-        GainKind::Fixed
-        | GainKind::Affine
-        | GainKind::Muscle
-        | GainKind::DcMotor
-        | GainKind::Pid
-        | GainKind::User => 1,
-    };
+    let is_rotation = spec.gain == GainKind::So3;
+    let outputs = if is_rotation { orientation::OUTPUTS } else { 1 };
     let controller = controller(spec, model.na)?;
     let activations = activations(spec, &controller)?;
     let (all, limit) = (

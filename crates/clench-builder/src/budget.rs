@@ -34,7 +34,7 @@ pub(super) fn equalities(builder: &ModelBuilder, model: &Model) -> Result<(), Bu
     };
     let rows = model.equalities.iter().map(|equality| {
         let dofs = match equality.target.coupled() {
-            Coupled::Bodies(bodies) => bodies.map(path).iter().sum(),
+            Coupled::Points(bodies) | Coupled::Frames(bodies) => bodies.map(path).iter().sum(),
             Coupled::Joints(..) => 2,
             Coupled::Tendons(..) => 2 * model.nv as u64,
         };

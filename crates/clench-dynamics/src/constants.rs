@@ -10,7 +10,7 @@ use crate::dynamics::kinematics::Computed;
 use crate::dynamics::tendon_armature::add_tendon_inertia;
 use crate::dynamics::{tendon, transmission};
 use crate::error::SimError;
-use crate::model::{CameraMode, EqualityTarget, JointKind, Model, ParamField, Params};
+use crate::model::{CameraMode, Coupled, JointKind, Model, ParamField, Params};
 use crate::singular::first_bad_pivot;
 use crate::stages::Positions;
 use crate::{State, Step};
@@ -247,22 +247,19 @@ impl Constants {
     /// Sets the anchors. A connect's second anchor coincides with the first at qpos0; sites are their own anchors.
     fn set_anchors(&self, model: &Model, params: &mut Params<f64>) {
         for (i, equality) in model.equalities.iter().enumerate() {
-            match (equality.sites, equality.target) {
-                (Some([site1, site2]), _) => {
+            match (equality.sites, equality.target.coupled()) {
+                (Some([site1, site2]), coupled) => {
                     params.eq_anchor1[i] = params.site_pos[site1];
                     params.eq_anchor2[i] = params.site_pos[site2];
-                    if let EqualityTarget::Weld { .. } = equality.target {
+                    if let Coupled::Frames(_) = coupled {
                         params.eq_quat1[i] = params.site_quat[site1];
                         params.eq_quat2[i] = params.site_quat[site2];
                     }
                 }
-                (None, EqualityTarget::Connect { body1, body2 }) => {
-                    let bodies = [body1, body2];
+                (None, Coupled::Points(bodies)) => {
                     params.eq_anchor2[i] = carry(&self.pose, bodies, params.eq_anchor1[i]);
                 }
-                (None, EqualityTarget::Weld { .. })
-                | (None, EqualityTarget::Joint { .. })
-                | (None, EqualityTarget::Tendon { .. }) => {}
+                (None, Coupled::Frames(_) | Coupled::Joints(..) | Coupled::Tendons(..)) => {}
             }
         }
     }

@@ -16,7 +16,7 @@ impl<T: Real> ConstraintContext<'_, T> {
             return active;
         }
         let awake = match self.model.equalities[equality].target.coupled() {
-            Coupled::Bodies(bodies) => self.sleep.is_either_awake(bodies),
+            Coupled::Points(bodies) | Coupled::Frames(bodies) => self.sleep.is_either_awake(bodies),
             Coupled::Joints(follower, leader) => {
                 let joints = [Some(follower), leader].into_iter().flatten();
                 self.awake(joints.map(Coordinate::Joint))

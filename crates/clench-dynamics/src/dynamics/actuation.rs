@@ -55,14 +55,10 @@ pub fn actuation<T: Real>(
         if actuator.forcelimited {
             let range = params.actuator_forcerange[u];
             let out = &mut force.actuator_force[actuator.outputs.clone()];
-            match actuator.gain {
-                GainKind::So3 => orientation::limit(out, range),
-                GainKind::Fixed
-                | GainKind::Affine
-                | GainKind::Muscle
-                | GainKind::DcMotor
-                | GainKind::Pid
-                | GainKind::User => out[0] = out[0].clamp(range[0], range[1]),
+            if actuator.gain == GainKind::So3 {
+                orientation::limit(out, range);
+            } else {
+                out[0] = out[0].clamp(range[0], range[1]);
             }
         }
         // Ranges of tendons and actuators limit the force of a motor's current, without cogging and friction.

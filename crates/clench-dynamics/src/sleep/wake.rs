@@ -191,7 +191,9 @@ pub fn wake_coupled<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace
         }
         let of_joint = |joint: usize| Some(model.tree.tree_of(model.joints[joint].dof));
         match equality.target.coupled() {
-            Coupled::Bodies(bodies) => woke |= wake_bodies(model, sleep, bodies, active),
+            Coupled::Points(bodies) | Coupled::Frames(bodies) => {
+                woke |= wake_bodies(model, sleep, bodies, active);
+            }
             Coupled::Joints(follower, leader) => {
                 if let [Some(one), Some(other)] = [of_joint(follower), leader.and_then(of_joint)] {
                     woke |= wake_couple(sleep, [one, other], active);

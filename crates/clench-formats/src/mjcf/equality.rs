@@ -1,7 +1,8 @@
-//! `<equality>`: connect, weld, joint and tendon; their rules, reader and writer.
+//! `<equality>`: connect, weld, joint and tendon; their rules, reader, scaling and writer.
 
 use super::document::Element;
 use super::rules::rule::{NONE, Rule, section};
+use super::scale::{Along, Frames};
 use super::write::names::{SaveError, body_name, named};
 use super::write::xml::{Tag, Xml};
 use crate::LoadError;
@@ -153,6 +154,74 @@ fn read_weld(element: &Element) -> Result<EqualityKind, LoadError> {
         relpose,
         torquescale,
     })
+}
+
+impl Frames {
+    /// Scales the target and the softness of an equality.
+    pub(super) fn scale_equality(&self, equality: &mut EqualitySpec) {
+        let width = match &mut equality.kind {
+            EqualityKind::Connect(ConnectAnchor::Bodies { body1, anchor, .. }) => {
+                *anchor = self.in_body(body1).apply(*anchor);
+                self.of_body(body1).length
+            }
+            EqualityKind::Connect(ConnectAnchor::Sites { site1, site2 }) => {
+                self.of_site(site1).mean(self.of_site(site2)).length
+            }
+            EqualityKind::Weld {
+                anchor,
+                relpose,
+                torquescale,
+            } => {
+                let [first, second] = match anchor {
+                    ConnectAnchor::Bodies {
+                        body1,
+                        body2,
+                        anchor,
+                    } => {
+                        *anchor = self.in_body(body2).apply(*anchor);
+                        if let Some((pos, _)) = relpose {
+                            *pos = self.in_body(body1).apply(*pos);
+                        }
+                        [body1, body2].map(|name| self.of_body(name))
+                    }
+                    ConnectAnchor::Sites { site1, site2 } => {
+                        [site1, site2].map(|name| self.of_site(name))
+                    }
+                };
+                let between = first.mean(second).length;
+                *torquescale *= between;
+                between
+            }
+            EqualityKind::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                let leader = joint2.as_ref().map(|joint| self.of_joint(joint));
+                scale_coupling(self.of_joint(joint1), leader, polycoef)
+            }
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => {
+                let leader = tendon2.as_ref().map(|tendon| self.of_tendon(tendon));
+                scale_coupling(self.of_tendon(tendon1), leader, polycoef)
+            }
+        };
+        equality.solimp[2] *= width;
+    }
+}
+
+/// Scales y = Σ coef_k xᵏ, and returns the scale of y.
+fn scale_coupling(follower: Along, leader: Option<Along>, polycoef: &mut [f64; 5]) -> f64 {
+    let leader = leader.map_or(1.0, |along| along.coordinate);
+    let mut factor = follower.coordinate;
+    for coefficient in polycoef {
+        *coefficient *= factor;
+        factor /= leader;
+    }
+    follower.coordinate
 }
 
 /// Writes all constraints of a model.

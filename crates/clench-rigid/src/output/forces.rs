@@ -8,7 +8,7 @@ use super::source::Source;
 use super::tendon_forces::each_pull;
 use clench_dynamics::constraint::{AnchorFrames, ConstraintSource, weld_torque};
 use clench_dynamics::contact::Contact;
-use clench_dynamics::model::EqualityTarget;
+use clench_dynamics::model::Coupled;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Real, Vec3, kernel};
 
@@ -167,14 +167,12 @@ fn frames<T: Real>(s: &Source<T>, source: ConstraintSource) -> Option<(AnchorFra
             Some((AnchorFrames::of_slot(s.state, slot, bodies), weld))
         }
         ConstraintSource::Equality(e) => {
-            let target = s.model.equalities[e].target;
-            let (EqualityTarget::Connect { body1, body2 } | EqualityTarget::Weld { body1, body2 }) =
-                target
-            else {
-                return None;
+            let (bodies, weld) = match s.model.equalities[e].target.coupled() {
+                Coupled::Points(bodies) => (bodies, false),
+                Coupled::Frames(bodies) => (bodies, true),
+                Coupled::Joints(..) | Coupled::Tendons(..) => return None,
             };
-            let weld = matches!(target, EqualityTarget::Weld { .. });
-            Some((AnchorFrames::of_equality(s.params, e, [body1, body2]), weld))
+            Some((AnchorFrames::of_equality(s.params, e, bodies), weld))
         }
         ConstraintSource::DofFriction(_)
         | ConstraintSource::TendonFriction(_)

@@ -10,7 +10,7 @@ use clench_dynamics::dynamics::reflected::{tendon_armature, tendon_damper};
 use clench_dynamics::dynamics::spring::{tendon_elongation, tendon_spring};
 use clench_dynamics::dynamics::tendon::gradient;
 use clench_dynamics::dynamics::tendon_path::{Span, bias_acceleration, each_span};
-use clench_dynamics::model::{EqualityTarget, Transmission};
+use clench_dynamics::model::{Coupled, Transmission};
 use clench_math::{Mask, Real, kernel};
 
 /// Calls `show` for every span of every spatial tendon, with the force of the tendon.
@@ -92,16 +92,15 @@ fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
                 }
                 T::select(along.ge(T::ZERO), T::ONE, -T::ONE)
             }
-            ConstraintSource::Equality(e) => match s.model.equalities[e].target {
-                EqualityTarget::Tendon { tendon1, .. } if tendon1 == t => T::ONE,
-                EqualityTarget::Tendon {
-                    tendon2: Some(leader),
-                    ..
-                } if leader == t => -equality_slope(s.params, &ws.position, e, leader),
-                EqualityTarget::Tendon { .. }
-                | EqualityTarget::Connect { .. }
-                | EqualityTarget::Weld { .. }
-                | EqualityTarget::Joint { .. } => continue,
+            ConstraintSource::Equality(e) => match s.model.equalities[e].target.coupled() {
+                Coupled::Tendons(follower, _) if follower == t => T::ONE,
+                Coupled::Tendons(_, Some(leader)) if leader == t => {
+                    -equality_slope(s.params, &ws.position, e, leader)
+                }
+                Coupled::Tendons(..)
+                | Coupled::Points(_)
+                | Coupled::Frames(_)
+                | Coupled::Joints(..) => continue,
             },
             // Another tendon's, or of no tendon.
             ConstraintSource::TendonFriction(_)

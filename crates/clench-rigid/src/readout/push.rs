@@ -7,7 +7,7 @@
 use super::blocks::active_blocks;
 use crate::output::{Source, each_joint_of_bodies};
 use clench_dynamics::constraint::ConstraintSource;
-use clench_dynamics::model::{EqualityTarget, JointKind};
+use clench_dynamics::model::{Coupled, JointKind};
 use clench_math::{Real, Scalar, Vec3};
 use clench_solver::Block;
 
@@ -51,7 +51,7 @@ pub(crate) fn pushes<T: Real>(s: &Source<T>, lane: usize) -> Vec<Push> {
         let joints = match source {
             ConstraintSource::JointLimit(_) => true,
             ConstraintSource::Equality(e) => {
-                matches!(s.model.equalities[e].target, EqualityTarget::Joint { .. })
+                matches!(s.model.equalities[e].target.coupled(), Coupled::Joints(..))
             }
             ConstraintSource::Dynamic { .. }
             | ConstraintSource::DofFriction(_)

@@ -5,7 +5,7 @@ use super::Sim;
 use crate::Precision;
 use clench_dynamics::constraint::dynamic::{CONNECT, WELD, tied};
 use clench_dynamics::error::{SimError, no_such};
-use clench_dynamics::model::{EqualityTarget, Model};
+use clench_dynamics::model::{Coupled, Model};
 use clench_dynamics::sleep::wake_in_state;
 use clench_dynamics::state::State;
 use clench_math::{Quat, Vec3};
@@ -138,22 +138,22 @@ impl<T: Precision> Sim<T> {
         let Some(found) = self.model.equalities.get(equality) else {
             return Err(no_such("equality", equality, self.model.equalities.len()));
         };
-        let target = found.target;
+        let coupled = found.target.coupled();
         self.refresh_positions()?;
         let [anchor1, anchor2] = [&self.params.eq_anchor1, &self.params.eq_anchor2]
             .map(|anchors| anchors[equality].lane(0));
-        match target {
-            EqualityTarget::Weld { body1, body2 } => {
+        match coupled {
+            Coupled::Frames(bodies) => {
                 let quat2 = self.params.eq_quat2[equality].lane(0);
-                let (anchor, quat) = self.present_pose([body1, body2], anchor2, quat2);
+                let (anchor, quat) = self.present_pose(bodies, anchor2, quat2);
                 self.params.eq_anchor1[equality] = Vec3::splat(anchor);
                 self.params.eq_quat1[equality] = Quat::splat(quat);
             }
-            EqualityTarget::Connect { body1, body2 } => {
-                let anchor2 = self.carry([body1, body2], anchor1);
+            Coupled::Points(bodies) => {
+                let anchor2 = self.carry(bodies, anchor1);
                 self.params.eq_anchor2[equality] = Vec3::splat(anchor2);
             }
-            EqualityTarget::Joint { .. } | EqualityTarget::Tendon { .. } => {
+            Coupled::Joints(..) | Coupled::Tendons(..) => {
                 return Err(SimError::CannotHold {
                     what: format!("equality \"{}\"", self.model.equalities[equality].name),
                     reason: "only welds and connects constrain a pose",

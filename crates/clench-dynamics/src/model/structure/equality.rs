@@ -37,8 +37,10 @@ pub enum EqualityTarget {
 /// The elements that an equality couples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coupled {
-    /// Two bodies.
-    Bodies([usize; 2]),
+    /// A point of each of two bodies.
+    Points([usize; 2]),
+    /// A frame of each of two bodies.
+    Frames([usize; 2]),
     /// A follower joint and its leader.
     Joints(usize, Option<usize>),
     /// A follower tendon and its leader.
@@ -51,8 +53,8 @@ impl EqualityTarget {
     fn facts(self) -> (&'static str, i32, usize, Coupled) {
         use Coupled::*;
         match self {
-            EqualityTarget::Connect { body1, body2 } => ("connect", 0, 3, Bodies([body1, body2])),
-            EqualityTarget::Weld { body1, body2 } => ("weld", 1, 6, Bodies([body1, body2])),
+            EqualityTarget::Connect { body1, body2 } => ("connect", 0, 3, Points([body1, body2])),
+            EqualityTarget::Weld { body1, body2 } => ("weld", 1, 6, Frames([body1, body2])),
             EqualityTarget::Joint { joint1, joint2 } => ("joint", 2, 1, Joints(joint1, joint2)),
             EqualityTarget::Tendon { tendon1, tendon2 } => {
                 ("tendon", 3, 1, Tendons(tendon1, tendon2))

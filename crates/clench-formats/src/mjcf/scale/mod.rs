@@ -94,7 +94,7 @@ impl Scale {
     }
 
     /// Returns the geometric mean of two scales.
-    fn mean(self, other: Scale) -> Scale {
+    pub(super) fn mean(self, other: Scale) -> Scale {
         match self == other {
             true => self,
             false => self.zip(other, |a, b| (a * b).sqrt()),
@@ -149,9 +149,9 @@ enum Coordinate {
 
 /// The factors of the quantities along a coordinate.
 #[derive(Clone, Copy, Debug)]
-struct Along {
+pub(super) struct Along {
     /// The factor of positions and velocities.
-    coordinate: f64,
+    pub(super) coordinate: f64,
     /// The factor of the coordinate's unit for forces.
     unit: f64,
     /// The factor of forces or torques.
@@ -368,7 +368,7 @@ impl Frames {
     /// Scales the elements that refer to the frames' contents.
     ///
     /// # Errors
-    /// Returns an error if an equality, actuator or sensor cannot be scaled, or on excess memory.
+    /// Returns an error if an actuator or sensor cannot be scaled, or on excess memory.
     pub(super) fn scale_remaining(
         mut self,
         shortcuts: &[Shortcut],
@@ -382,7 +382,9 @@ impl Frames {
         self.weigh_shells(builder);
         self.scale_tendons(builder);
         self.scale_pairs(builder);
-        self.scale_equalities(builder)?;
+        for equality in &mut builder.equalities {
+            self.scale_equality(equality);
+        }
         self.scale_sensors(builder)?;
         let actuators = self.scale_actuators(shortcuts, builder)?;
         self.scale_keyframes(&actuators, builder);

@@ -1,11 +1,10 @@
-//! Scaling of pairs, tendons, equalities and sensors.
+//! Scaling of pairs, tendons and sensors. Equalities scale in the file of their reader.
 
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::LoadError;
 use crate::mjcf::linear_map::LinearMap;
 use clench_builder::{
-    ConnectAnchor, EqualityKind, EqualitySpec, FrameKind, FrameName, GeomsName, ModelBuilder,
-    SensorSpec, SensorSubject, TendonSpec, WrapSpec,
+    FrameKind, FrameName, GeomsName, ModelBuilder, SensorSpec, SensorSubject, TendonSpec, WrapSpec,
 };
 use clench_dynamics::model::{Attachment, JointKind, SensorDimension};
 use std::collections::BTreeMap;
@@ -15,22 +14,22 @@ impl Frames {
         self.scale(names.get(name).copied().unwrap_or(0))
     }
 
-    pub(super) fn of_body(&self, name: &str) -> Scale {
+    pub(in crate::mjcf) fn of_body(&self, name: &str) -> Scale {
         self.scale(self.bodies.get(name).map_or(0, |&(frame, _)| frame))
     }
 
     /// Returns the map of positions in body axes.
-    fn in_body(&self, name: &str) -> LinearMap {
+    pub(in crate::mjcf) fn in_body(&self, name: &str) -> LinearMap {
         let found = self.bodies.get(name);
         found.map_or(LinearMap::NONE, |&(_, linear_map)| linear_map)
     }
 
-    pub(super) fn of_site(&self, name: &str) -> Scale {
+    pub(in crate::mjcf) fn of_site(&self, name: &str) -> Scale {
         self.of(&self.sites, name)
     }
 
     /// Returns the factors of a joint's coordinate, and of forces along it.
-    pub(super) fn of_joint(&self, name: &str) -> Along {
+    pub(in crate::mjcf) fn of_joint(&self, name: &str) -> Along {
         let Some(joint) = self.joints.get(name) else {
             return Scale::ONE.along(Coordinate::Angle);
         };
@@ -46,7 +45,7 @@ impl Frames {
     }
 
     /// Returns the factors of a tendon's length, and of forces along it.
-    pub(super) fn of_tendon(&self, name: &str) -> Along {
+    pub(in crate::mjcf) fn of_tendon(&self, name: &str) -> Along {
         let found = self.tendons.get(name).copied();
         let (frame, coordinate) = found.unwrap_or((0, Coordinate::Length));
         self.scale(frame).along(coordinate)
@@ -107,70 +106,6 @@ impl Frames {
             self.tendons
                 .insert(tendon.name.clone(), (frame, coordinate));
         }
-    }
-
-    /// Scales the targets and the softness of equalities.
-    ///
-    /// # Errors
-    /// Returns an error for a kind without a known scaling.
-    pub(super) fn scale_equalities(&self, builder: &mut ModelBuilder) -> Result<(), LoadError> {
-        let mut equalities = builder.equalities.iter_mut();
-        equalities.try_for_each(|equality| self.scale_equality(equality))
-    }
-
-    fn scale_equality(&self, equality: &mut EqualitySpec) -> Result<(), LoadError> {
-        let width = match &mut equality.kind {
-            EqualityKind::Connect(ConnectAnchor::Bodies { body1, anchor, .. }) => {
-                *anchor = self.in_body(body1).apply(*anchor);
-                self.of_body(body1).length
-            }
-            EqualityKind::Connect(ConnectAnchor::Sites { site1, site2 }) => {
-                self.of_site(site1).mean(self.of_site(site2)).length
-            }
-            EqualityKind::Weld {
-                anchor,
-                relpose,
-                torquescale,
-            } => {
-                let [first, second] = match anchor {
-                    ConnectAnchor::Bodies {
-                        body1,
-                        body2,
-                        anchor,
-                    } => {
-                        *anchor = self.in_body(body2).apply(*anchor);
-                        if let Some((pos, _)) = relpose {
-                            *pos = self.in_body(body1).apply(*pos);
-                        }
-                        [body1, body2].map(|name| self.of_body(name))
-                    }
-                    ConnectAnchor::Sites { site1, site2 } => {
-                        [site1, site2].map(|name| self.of_site(name))
-                    }
-                };
-                let between = first.mean(second).length;
-                *torquescale *= between;
-                between
-            }
-            EqualityKind::Joint {
-                joint1,
-                joint2,
-                polycoef,
-            } => {
-                let leader = joint2.as_ref().map(|joint| self.of_joint(joint));
-                scale_coupling(self.of_joint(joint1), leader, polycoef)
-            }
-            EqualityKind::Tendon {
-                tendon1,
-                tendon2,
-                polycoef,
-            } => {
-                let leader = tendon2.as_ref().map(|tendon| self.of_tendon(tendon));
-                scale_coupling(self.of_tendon(tendon1), leader, polycoef)
-            }
-        };
-        equality.solimp[2] *= width;
-        Ok(())
     }
 
     /// Scales the cutoff and the noise of each sensor.
@@ -261,15 +196,4 @@ fn scale_tendon(tendon: &mut TendonSpec, along: Along) {
     tendon.armature *= along.gain();
     along.polynomial(&mut tendon.stiffness);
     along.polynomial(&mut tendon.damping);
-}
-
-/// Scales y = Σ coef_k xᵏ, and returns the scale of y.
-fn scale_coupling(follower: Along, leader: Option<Along>, polycoef: &mut [f64; 5]) -> f64 {
-    let leader = leader.map_or(1.0, |along| along.coordinate);
-    let mut factor = follower.coordinate;
-    for coefficient in polycoef {
-        *coefficient *= factor;
-        factor /= leader;
-    }
-    follower.coordinate
 }
