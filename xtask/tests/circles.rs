@@ -1,5 +1,6 @@
 //! No file of a crate uses, directly or indirectly, a file that uses it, so each can be read with its dependencies
-//! only. The exception is the dispatch of lanes, which returns number types that it is implemented for.
+//! only. The exception is the dispatch of lanes, which returns number types that it is implemented for. Folders may use
+//! each other, but few files do so against the order of their crate's folders.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -19,22 +20,62 @@ struct Import {
 
 /// The file that may be part of a cycle.
 const EXEMPT: &str = "lanes::dispatch";
+/// The maximum number of uses in a crate that run against the order of its folders.
+const MAX_BACK_ARROWS: usize = 10;
 /// The maximum length of a chain of re-exports.
 const MAX_EXPORTS: usize = 8;
 
 #[test]
 fn files_use_each_other_in_no_circle() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let crates = fs::read_dir(root.join("crates")).expect("the folder is there");
-    let crates = crates.map(|entry| entry.expect("it can be listed").path());
     let mut files = 0;
-    for folder in crates.chain([root.join("python"), root.join("xtask")]) {
+    for folder in crates() {
         let modules = modules(&folder.join("src"));
         files += modules.len();
         let circle = circle(&uses(&modules));
         assert!(circle.is_empty(), "{}: {circle:#?}", folder.display());
     }
     assert!(files > 400, "only {files} files were found");
+}
+
+#[test]
+fn few_uses_run_against_the_order_of_folders() {
+    for folder in crates() {
+        let found = back_arrows(&uses(&modules(&folder.join("src"))));
+        println!("{}: {found:#?}", folder.display());
+        assert!(
+            found.len() <= MAX_BACK_ARROWS,
+            "{}: {found:#?}",
+            folder.display()
+        );
+    }
+}
+
+#[test]
+fn a_use_against_the_order_of_folders_is_found() {
+    let modules = |uses: &[(&str, &str)]| {
+        let module = |path: &str| Module::from_iter(path.split("::").map(str::to_owned));
+        let mut found: BTreeMap<Module, BTreeSet<Module>> = BTreeMap::new();
+        for (user, used) in uses {
+            found.entry(module(user)).or_default().insert(module(used));
+        }
+        found
+    };
+    let uses = [
+        ("a::x", "b::x"),
+        ("a::y", "b::y"),
+        ("b::z", "a::z"),
+        ("c", "a::x"),
+    ];
+    assert_eq!(back_arrows(&modules(&uses)), ["b::z uses a::z"]);
+    assert!(back_arrows(&modules(&[("a::x", "a::y"), ("a::y", "b")])).is_empty());
+}
+
+/// Returns the folders of all crates.
+fn crates() -> impl Iterator<Item = PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let crates = fs::read_dir(root.join("crates")).expect("the folder is there");
+    let crates = crates.map(|entry| entry.expect("it can be listed").path());
+    crates.chain([root.join("python"), root.join("xtask")])
 }
 
 #[test]
@@ -222,24 +263,98 @@ fn resolve(
     }
 }
 
-/// Returns the uses that remain after repeatedly removing modules that use nothing or are not used.
+/// Returns the uses between files that are part of a cycle, or connect two.
 fn circle(uses: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<String> {
     let mut left: BTreeSet<(String, String)> = BTreeSet::new();
     for (user, used) in uses {
         left.extend(used.iter().map(|used| (user.join("::"), used.join("::"))));
     }
     left.retain(|(user, used)| user != EXEMPT && used != EXEMPT);
+    remove_ends(&mut left);
+    let left = left.iter();
+    left.map(|(user, used)| format!("{user} uses {used}"))
+        .collect()
+}
+
+/// Removes uses of modules that use nothing, and by modules that nothing uses, until there are no more of them.
+fn remove_ends(uses: &mut BTreeSet<(String, String)>) {
     loop {
-        let users: BTreeSet<String> = left.iter().map(|(user, _)| user.clone()).collect();
-        let used: BTreeSet<String> = left.iter().map(|(_, used)| used.clone()).collect();
-        let before = left.len();
-        left.retain(|(from, to)| users.contains(to) && used.contains(from));
-        if left.len() == before {
+        let users: BTreeSet<String> = uses.iter().map(|(user, _)| user.clone()).collect();
+        let used: BTreeSet<String> = uses.iter().map(|(_, used)| used.clone()).collect();
+        let before = uses.len();
+        uses.retain(|(from, to)| users.contains(to) && used.contains(from));
+        if uses.len() == before {
             break;
         }
     }
-    let told = left
-        .iter()
-        .map(|(user, used)| format!("{user} uses {used}"));
-    told.collect()
+}
+
+/// Returns the uses that run against the order of the folders, and of the files beside them: the order in which the
+/// fewest uses do so, as far as moving one folder at a time finds it.
+fn back_arrows(uses: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<String> {
+    let mut folders: BTreeMap<Module, Vec<[&Module; 2]>> = BTreeMap::new();
+    for (user, used) in uses {
+        for used in used {
+            let pairs = user.iter().zip(used);
+            let depth = pairs.take_while(|(user, used)| user == used).count();
+            let inside = folders.entry(user[..depth].to_vec()).or_default();
+            inside.push([user, used]);
+        }
+    }
+    let mut found = Vec::new();
+    for (folder, uses) in &folders {
+        let name = |module: &Module| module.get(folder.len()).cloned().unwrap_or_default();
+        let all = uses.iter().map(|[user, used]| (name(user), name(used)));
+        let mut cyclic = BTreeSet::from_iter(all);
+        remove_ends(&mut cyclic);
+        let tied = (uses.iter()).filter(|[user, used]| cyclic.contains(&(name(user), name(used))));
+        let arrows = Vec::from_iter(tied.map(|[user, used]| (name(user), name(used))));
+        let order = order(&arrows);
+        let place = |of: &String| order.iter().position(|name| name == of);
+        let back = |[user, used]: &&[&Module; 2]| {
+            let arrow = (name(user), name(used));
+            cyclic.contains(&arrow) && place(&arrow.0) < place(&arrow.1)
+        };
+        let back = uses.iter().filter(back);
+        found.extend(
+            back.map(|[user, used]| format!("{} uses {}", user.join("::"), used.join("::"))),
+        );
+    }
+    found
+}
+
+/// Returns the names in an order in which few arrows run from an earlier to a later one.
+fn order(arrows: &[(String, String)]) -> Vec<String> {
+    let names = BTreeSet::from_iter(arrows.iter().flat_map(|(from, to)| [from, to]));
+    let names = Vec::from_iter(names);
+    let index = |of: &String| names.binary_search(&of).expect("it is a name");
+    let arrows = Vec::from_iter(arrows.iter().map(|(from, to)| (index(from), index(to))));
+    let against = |order: &[usize]| {
+        let mut places = vec![0; order.len()];
+        (0..)
+            .zip(order)
+            .for_each(|(place, &name)| places[name] = place);
+        let back = |(from, to): &&(usize, usize)| places[*from] < places[*to];
+        arrows.iter().filter(back).count()
+    };
+    let mut best = Vec::from_iter(0..names.len());
+    best.sort_by_key(|&name| arrows.iter().filter(|arrow| arrow.0 == name).count());
+    let mut least = against(&best);
+    loop {
+        let before = least;
+        for from in 0..best.len() {
+            for to in 0..best.len() {
+                let mut moved = best.clone();
+                let name = moved.remove(from);
+                moved.insert(to, name);
+                let count = against(&moved);
+                if count < least {
+                    (best, least) = (moved, count);
+                }
+            }
+        }
+        if least == before {
+            return best.into_iter().map(|name| names[name].clone()).collect();
+        }
+    }
 }

@@ -3,35 +3,15 @@
 
 use crate::contact::{Contact, Excess};
 use crate::error::{Fault, SimError};
+pub use crate::error::{check_count, check_length};
 use crate::model::Model;
 use crate::place::{joint_of, massless};
-use crate::state::kind::{self, Kind};
+use crate::state::bounds::{Bound, OCCASIONAL, each_input, first_beyond, within};
+pub use crate::state::bounds::{beyond_bounds, has_occasional};
 use crate::state::{FIELDS, State};
 use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Mat3, Real, Scalar, kernel};
 use clench_solver::Status;
-
-/// The limit of valid positions, velocities and accelerations (MuJoCo's `mjMAXVAL`).
-const MAX_VALUE: f64 = 1e10;
-
-/// The limit of the numbers of a field.
-#[derive(Clone, Copy)]
-enum Bound {
-    /// At most [`MAX_VALUE`].
-    Near,
-    /// Finite.
-    Finite,
-}
-
-impl Bound {
-    #[inline(always)]
-    fn of<T: Real>(self) -> T {
-        match self {
-            Bound::Near => T::new(MAX_VALUE),
-            Bound::Finite => T::splat(T::Scalar::MAX),
-        }
-    }
-}
 
 /// Checks that the values have the right length and are finite.
 pub fn check_values<T: Scalar>(
@@ -50,34 +30,6 @@ pub fn check_values<T: Scalar>(
     }
 }
 
-/// Checks that an input has the length that the model needs.
-///
-/// # Errors
-/// Returns an error if the length is not `expected`.
-pub fn check_length(field: &'static str, found: usize, expected: usize) -> Result<(), SimError> {
-    if found == expected {
-        return Ok(());
-    }
-    Err(SimError::WrongLength {
-        field,
-        found,
-        expected,
-    })
-}
-
-/// Checks that the length is a multiple of `each`.
-pub fn check_count(field: &'static str, found: usize, each: usize) -> Result<(), SimError> {
-    check_length(field, found, found / each * each)
-}
-
-/// Returns the first number of a lane that is beyond a limit, if any.
-fn first_beyond<T: Real>(values: &[T], lane: usize, bound: Bound) -> Option<(usize, f64)> {
-    let value = |i: usize| values[i].lane(lane);
-    let limit = bound.of::<T::Scalar>();
-    let index = (0..values.len()).find(|&i| !value(i).abs().le(limit))?;
-    Some((index, value(index).to_f64()))
-}
-
 /// Checks that a state has the lengths of the model.
 pub fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimError> {
     if s.fits(model) {
@@ -88,38 +40,6 @@ pub fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimErro
     }
     Ok(())
 }
-
-macro_rules! declare_inputs {
-    ($($group:ident { $(
-        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
-    )* })*) => {
-        /// Returns true if some numbers of a field of the state are beyond its limit.
-        pub fn beyond_bounds<T: Scalar>(field: &str, values: &[T]) -> bool {
-            $($(if field == stringify!($name) {
-                return first_beyond(values, 0, Bound::$bound).is_some();
-            })*)*
-            false
-        }
-
-        /// Passes every number of a state except its time to `visit`, for the groups that are wanted: field, its limit,
-        /// index of the first number in the field, numbers.
-        #[inline(always)]
-        fn each_input<T: Real>(
-            s: &State<T>,
-            wanted: impl Fn(&'static str) -> bool,
-            mut visit: impl FnMut(&'static str, Bound, usize, &[T]),
-        ) {
-            $(if wanted(stringify!($group)) {
-                $(kind::$kind::numbers::<T>(
-                    &s.$name,
-                    #[inline(always)]
-                    |start, numbers| visit(stringify!($name), Bound::$bound, start, numbers),
-                );)*
-            })*
-        }
-    };
-}
-crate::state_fields!(declare_inputs);
 
 /// Passes the computed quantities that must be within limits to `visit`.
 #[inline(always)]
@@ -134,49 +54,6 @@ fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bou
     visit("qvel", Bound::Near, &state.qvel);
     visit("qpos", Bound::Near, &state.qpos);
     visit("act", Bound::Finite, &state.act);
-}
-
-/// Returns the lanes in which all numbers are within a limit.
-#[inline(always)]
-fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
-    let limit = bound.of();
-    let mut mask = T::Mask::splat(true);
-    for x in values {
-        mask &= x.abs().le(limit);
-    }
-    mask
-}
-
-/// The group of fields that are mostly zero.
-const OCCASIONAL: &str = "occasional";
-
-/// Returns true if an occasional input is not zero.
-pub fn has_occasional<S: Scalar>(s: &State<S>) -> bool {
-    let mut bits = 0;
-    each_input(
-        s,
-        |group| group == OCCASIONAL,
-        #[inline(always)]
-        |_, _, _, numbers| {
-            for x in numbers {
-                bits |= x.to_f64().to_bits();
-            }
-        },
-    );
-    bits != 0
-}
-
-/// Returns true if all occasional inputs satisfy `wanted`, which receives some numbers at a time.
-#[inline(always)]
-pub(crate) fn are_occasional<T: Real>(s: &State<T>, wanted: impl Fn(&[T]) -> bool) -> bool {
-    let mut all = true;
-    each_input(
-        s,
-        |group| group == OCCASIONAL,
-        #[inline(always)]
-        |_, _, _, numbers| all &= wanted(numbers),
-    );
-    all
 }
 
 /// Returns the lanes whose state a step can start from. If `occasional` is false, all [occasional

@@ -1,10 +1,28 @@
 //! The errors of a simulation.
 
-use crate::contact::UnsupportedPair;
-use crate::dynamics::discrete_limits::NotDiscrete;
 use crate::options::OptionError;
 use clench_math::Instructions;
 use std::sync::Arc;
+
+/// An option or element that the integrator `discrete` cannot be combined with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the integrator discrete cannot be combined with {with}: {reason}")]
+pub struct NotDiscrete {
+    /// The option or element.
+    pub with: String,
+    /// The reason.
+    pub reason: &'static str,
+}
+
+/// Two geoms that may collide but whose shapes are not supported.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}geoms {first} and {second} may collide, but {kinds} is not supported")]
+pub struct UnsupportedPair {
+    pub(crate) place: String,
+    pub(crate) first: String,
+    pub(crate) second: String,
+    pub(crate) kinds: String,
+}
 
 /// The reason that a simulation cannot start, accept an input, or continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -286,4 +304,24 @@ fn at(place: &Option<Arc<str>>) -> String {
 /// Returns the error for an index beyond the elements of the model.
 pub fn no_such(kind: &'static str, index: usize, count: usize) -> SimError {
     SimError::NoSuchElement { kind, index, count }
+}
+
+/// Checks that an input has the length that the model needs.
+///
+/// # Errors
+/// Returns an error if the length is not `expected`.
+pub fn check_length(field: &'static str, found: usize, expected: usize) -> Result<(), SimError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(SimError::WrongLength {
+        field,
+        found,
+        expected,
+    })
+}
+
+/// Checks that the length is a multiple of `each`.
+pub fn check_count(field: &'static str, found: usize, each: usize) -> Result<(), SimError> {
+    check_length(field, found, found / each * each)
 }

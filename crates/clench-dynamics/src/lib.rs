@@ -27,6 +27,7 @@ pub mod pipeline;
 pub mod place;
 pub mod profile;
 pub mod readings;
+pub mod record;
 pub mod sensors;
 pub mod settings;
 pub mod singular;

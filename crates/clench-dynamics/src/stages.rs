@@ -92,6 +92,25 @@ impl<T: Real> Positions<T> {
     }
 }
 
+/// Lengths and gradients of tendons, stored as in [`Positions`].
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths<'a, T> {
+    /// Lengths (ntendon).
+    pub length: &'a [T],
+    /// The gradients, entry after entry.
+    pub jacobian: &'a [T],
+}
+
+impl<'a, T: Real> Lengths<'a, T> {
+    /// Returns the lengths at a pose.
+    pub fn of(pos: &'a Positions<T>) -> Self {
+        Lengths {
+            length: &pos.ten_length,
+            jacobian: &pos.ten_jacobian,
+        }
+    }
+}
+
 /// The quantities that depend on velocities.
 #[derive(Clone, Debug, Default)]
 pub struct Velocities<T> {

@@ -1,7 +1,7 @@
 //! Removal of derivatives from the results of stages that do not change along the directions of the next pass.
 
-use crate::constraint::BlockRecord;
 use crate::contact::Contact;
+use crate::record::BlockRecord;
 use crate::stages::{Forces, Positions, Velocities};
 use crate::workspace::Workspace;
 use clench_math::{Inertia, Mat3, Motion, Quat, Real, Vec3};

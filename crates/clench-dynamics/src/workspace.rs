@@ -1,7 +1,6 @@
 //! The data derived from model and state: preallocated, reused, inspectable.
 
 use crate::Model;
-use crate::constraint::assembly::ConstraintRecord;
 use crate::contact::Contact;
 use crate::contact::collision::Collision;
 use crate::dynamics::articulated::{ArticulatedInertia, articulated_bodies};
@@ -10,6 +9,7 @@ use crate::dynamics::metric::Metric;
 use crate::fixed::FixedPoses;
 use crate::profile::{Profile, StepClock};
 use crate::readings::SensorReadings;
+use crate::record::ConstraintRecord;
 use crate::sleep::Sleep;
 use crate::stages::filled;
 pub use crate::stages::{Forces, Positions, Velocities};

@@ -9,6 +9,7 @@
 pub mod batch;
 pub mod ik;
 mod output;
+mod precision;
 mod query;
 pub mod readout;
 mod sensor;
@@ -21,7 +22,7 @@ pub use clench_dynamics::{
     sleep, state, workspace,
 };
 
-pub use batch::{Batch, BatchOptions, EnvStatus, Precision};
+pub use batch::{Batch, BatchOptions, EnvStatus};
 pub use clench_dynamics::dynamics::frames::Axes;
 pub use clench_dynamics::geometry::{RayFilter, RayHit};
 pub use clench_dynamics::inverse::Acceleration;
@@ -32,6 +33,7 @@ pub use ik::{Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask};
 pub use output::Output;
 #[doc(hidden)]
 pub use output::Source as OutputSource;
+pub use precision::Precision;
 pub use query::Anchor;
 #[doc(hidden)]
 pub use sensor::evaluate as evaluate_sensors;

@@ -1,10 +1,10 @@
 //! The active lanes and the softness of constraints.
 
-use super::assembly::{BlockRecord, ConstraintSource};
 use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
 use super::softness::Softness;
 use crate::model::Coupled;
+use crate::record::{BlockRecord, ConstraintSource};
 use clench_math::{Mask, Real};
 
 impl<T: Real> ConstraintContext<'_, T> {

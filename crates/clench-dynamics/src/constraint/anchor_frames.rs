@@ -1,9 +1,9 @@
 //! The anchor frames of connects and welds, both of the model and added at run time.
 
-use super::assembly::{BlockRecord, ConstraintSource};
 use super::context::ConstraintContext;
 use super::softness::Softness;
 use crate::model::Params;
+use crate::record::{BlockRecord, ConstraintSource};
 use crate::stages::Positions;
 use crate::state::State;
 use clench_math::{Quat, Real, Vec3};

@@ -25,12 +25,13 @@
 //! damping (`solreffriction`); the rows of a pyramid share that of the normal, since its edges mix them.
 
 use super::Softness;
-use super::assembly::{Assembly, BlockRecord, ConstraintSource};
+use super::assembly::Assembly;
 use super::context::ConstraintContext;
 use super::row::Row;
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
 use crate::options::{ContactModel, FrictionCone};
+use crate::record::{BlockRecord, ConstraintSource};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 

@@ -9,10 +9,11 @@
 //! violation; A₀ is the inverse weight of the dof or tendon.
 
 use super::Softness;
-use super::assembly::{Assembly, BlockRecord, ConstraintSource};
+use super::assembly::Assembly;
 use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
 use super::row::Row;
+use crate::record::{BlockRecord, ConstraintSource};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::Cost;
 

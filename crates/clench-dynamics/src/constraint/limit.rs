@@ -10,11 +10,12 @@
 //! A₀ is the inverse weight of the joint's first dof, or of the tendon.
 
 use super::Softness;
-use super::assembly::{Assembly, BlockRecord, ConstraintSource};
+use super::assembly::Assembly;
 use super::context::ConstraintContext;
 use super::coordinate::Coordinate;
 use super::row::Row;
 use crate::model::JointKind;
+use crate::record::{BlockRecord, ConstraintSource};
 use clench_math::{Mask, Quat, Real, kernel};
 use clench_solver::Cost;
 

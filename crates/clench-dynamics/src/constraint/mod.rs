@@ -20,8 +20,8 @@ mod row;
 pub mod softness;
 mod weld;
 
+pub use crate::record::{BlockRecord, ConstraintRecord, ConstraintSource};
 pub use anchor_frames::AnchorFrames;
-pub use assembly::{BlockRecord, ConstraintRecord, ConstraintSource};
 use context::ConstraintContext;
 pub use joint_equality::equality_slope;
 pub use softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF, Softness, impedance};

@@ -22,7 +22,7 @@ pub use mix::{ContactParams, contact_params, contact_range};
 pub(crate) use placed_shape::{ALL_LANES, AssetLanes, exists, mask_of, mesh_in, shape_in};
 pub use placed_shape::{heights_in, shape};
 pub use select::check_supported;
-pub use select::{Candidate, UnsupportedPair, candidates};
+pub use select::{Candidate, candidates};
 
 use clench_math::{Mask, Mat3, Real, Vec3};
 

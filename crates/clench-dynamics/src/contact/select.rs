@@ -8,6 +8,7 @@
 //! Candidates are in the order in which MuJoCo lists contacts: by body pair, explicit pairs first, then by geoms.
 
 use crate::Model;
+use crate::error::UnsupportedPair;
 use crate::model::Geom;
 use clench_collide::{ShapeKind, supported};
 
@@ -20,16 +21,6 @@ pub struct Candidate {
     pub kinds: [ShapeKind; 2],
     /// The explicit pair, if any.
     pub pair: Option<u32>,
-}
-
-/// Two geoms that may collide but whose shapes are not supported.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{place}geoms {first} and {second} may collide, but {kinds} is not supported")]
-pub struct UnsupportedPair {
-    place: String,
-    first: String,
-    second: String,
-    kinds: String,
 }
 
 /// The maximum number of listed pairs: a list grows with the square of the geoms. Beyond, the broad phase runs in each

@@ -14,11 +14,10 @@
 //! taken about a nearby point, here each body's centre of mass. Thus D and L have errors of a few roundings for any
 //! length of chain. In double precision, M is accurate enough.
 
-use crate::constraint::softness::is_single;
 use crate::dynamics::reflected::{dof_armature, tendon_armature};
 use crate::model::{JointKind, Model, Params};
 use crate::stages::Positions;
-use clench_math::{Inertia, Mask, Mat3, Real, Vec3, kernel};
+use clench_math::{Inertia, Mask, Mat3, Real, Scalar, Vec3, kernel};
 use clench_solver::TreeFactor;
 
 /// The inertia of an articulated body about a point: moment = rotational ω + coupling v, force = couplingᵀ ω + mass v.
@@ -117,7 +116,8 @@ pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> 
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
     let heavy = |t| tendon_armature(model, &model.params, t) > 0.0;
     let heavy_tendons = (0..model.tendons.len()).any(heavy);
-    if is_single::<T>() && longest.is_some_and(|n| n > MAX_DOFS) && !heavy_tendons {
+    let is_single = T::Scalar::DIGITS == f32::MANTISSA_DIGITS;
+    if is_single && longest.is_some_and(|n| n > MAX_DOFS) && !heavy_tendons {
         vec![ArticulatedInertia::ZERO; model.nbody()]
     } else {
         Vec::new()

@@ -5,12 +5,12 @@
 //! velocity over h, so only positions remain to be integrated. A free body that is its own tree, without constraints or
 //! couplings of the metric, is solved once more with its gyroscopic forces.
 
-use crate::constraint::assembly::ConstraintRecord;
 use crate::dynamics::ellipsoid::FluidForces;
 use crate::dynamics::gyroscopic::{gyroscopic_product, is_free_tree, solve_gyroscopic};
 use crate::dynamics::integrate::{add_scaled, advance_semi_implicit};
 use crate::dynamics::metric::{Metric, add_metric, each_arm};
 use crate::model::{Model, Params};
+use crate::record::ConstraintRecord;
 use crate::settings::StepSettings;
 use crate::stages::Positions;
 use crate::state::State;

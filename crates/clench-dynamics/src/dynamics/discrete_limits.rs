@@ -1,18 +1,9 @@
 //! The combinations that the integrator `discrete` does not support.
 
 use crate::dynamics::metric::Along;
+use crate::error::NotDiscrete;
 use crate::model::{BiasKind, GainKind, Integrator, Model, SleepPolicy};
 use clench_solver::Switch;
-
-/// An option or element that the integrator `discrete` cannot be combined with.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the integrator discrete cannot be combined with {with}: {reason}")]
-pub struct NotDiscrete {
-    /// The option or element.
-    pub with: String,
-    /// The reason.
-    pub reason: &'static str,
-}
 
 /// Checks that a model can step in the metric: `sleep` is true if its trees may sleep, and `islands` if islands are
 /// solved separately.

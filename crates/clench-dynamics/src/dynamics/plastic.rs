@@ -9,27 +9,8 @@
 use crate::dynamics::spring::{JointElongation, elongation_of_joint, elongation_outside};
 use crate::model::{Model, Params};
 use crate::sleep::Sleep;
-use crate::stages::Positions;
+use crate::stages::Lengths;
 use clench_math::{Mask, Quat, Real, Vec3, kernel};
-
-/// Lengths and gradients of tendons, stored as in [`Positions`].
-#[derive(Clone, Copy, Debug)]
-pub struct Lengths<'a, T> {
-    /// Lengths (ntendon).
-    pub length: &'a [T],
-    /// The gradients, entry after entry.
-    pub jacobian: &'a [T],
-}
-
-impl<'a, T: Real> Lengths<'a, T> {
-    /// Returns the lengths at a pose.
-    pub fn of(pos: &'a Positions<T>) -> Self {
-        Lengths {
-            length: &pos.ten_length,
-            jacobian: &pos.ten_jacobian,
-        }
-    }
-}
 
 /// Updates yielding springs after a step that moved the positions to `qpos` along `velocity` (nv), with the tendons
 /// initially at `start`. Sleeping springs do not yield.

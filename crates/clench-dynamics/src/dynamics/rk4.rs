@@ -13,9 +13,10 @@ use super::integration::{Integration, Rates};
 use crate::dynamics::integrate::{
     add_scaled, advance_activations, advance_time, integrate_positions,
 };
-use crate::dynamics::plastic::{Lengths, yield_springs};
+use crate::dynamics::plastic::yield_springs;
 use crate::model::{JointKind, Model, Params};
 use crate::profile::Stage;
+use crate::stages::Lengths;
 use crate::state::State;
 use crate::stiction::advance_friction;
 use crate::workspace::Workspace;

@@ -2,8 +2,7 @@
 
 use super::rule::Rule;
 use super::{Model, ParamField, Params};
-use crate::check::check_length;
-use crate::error::SimError;
+use crate::error::{SimError, check_length};
 use clench_collide::{Shape, ShapeKind};
 use clench_math::{Real, Scalar};
 use std::sync::Arc;

@@ -7,13 +7,13 @@
 
 use super::wake::wake_coupled;
 use super::{Sleep, hold, is_blank, mocap_pose, wake_touched};
-use crate::check::are_occasional;
 use crate::constraint::assemble;
 use crate::fixed::FixedPoses;
 use crate::model::{Model, Params};
 use crate::sensors::Sensors;
 use crate::settings::StepSettings;
 use crate::state::State;
+use crate::state::bounds::are_occasional;
 use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Real, kernel};
 use std::ops::Range;

@@ -4,10 +4,10 @@
 //! is touched or pulled takes the counter of the tree that wakes it, because both must be at rest to sleep again.
 
 use super::{AWAKE, Sleep, is_blank, mocap_pose};
-use crate::constraint::dynamic::each_tie;
 use crate::model::{Coupled, KinematicTree, Model, Params, SleepPolicy};
 use crate::settings::StepSettings;
 use crate::state::State;
+use crate::state::slots::each_tie;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, kernel};
 

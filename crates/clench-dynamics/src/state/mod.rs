@@ -1,6 +1,8 @@
 //! The data that a user saves and restores.
 
+pub(crate) mod bounds;
 pub mod kind;
+pub(crate) mod slots;
 mod table;
 
 use crate::model::{ControlInput, Joint, Keyframe, Model};

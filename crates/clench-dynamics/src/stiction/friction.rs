@@ -5,9 +5,9 @@
 
 use super::pairs::Stiction;
 use crate::constraint::ConstraintSource;
-use crate::dynamics::plastic::Lengths;
 use crate::model::{Model, Params};
 use crate::sleep::Sleep;
+use crate::stages::Lengths;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 

@@ -2,8 +2,8 @@
 
 use super::backend::{Backend, Outcome};
 use super::env_rows::ParamRows;
-use super::precision::Precision;
 use crate::output::Output;
+use crate::precision::Precision;
 use crate::sim::Sim;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::{Model, ParamField};

@@ -21,7 +21,7 @@ use clench_math::{Clock, LaneTask, Mask, Real, Scalar, write_lane};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Creates a stepper in lanes chosen at run time.
-pub(super) struct MakeStepper<'a> {
+pub(crate) struct MakeStepper<'a> {
     pub model: &'a Model,
 }
 

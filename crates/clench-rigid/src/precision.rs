@@ -1,8 +1,8 @@
-//! The number types of batches.
+//! The number types of simulations and batches, for which this crate compiles what they call.
 
-use super::job::Stepper;
-use super::shared::Shared;
-use super::stepper::MakeStepper;
+use crate::batch::job::Stepper;
+use crate::batch::shared::Shared;
+use crate::batch::stepper::MakeStepper;
 use crate::ik::{Ik, Search};
 use crate::output::{Output, Source};
 use crate::readout::{self, Push, TendonLine};
