@@ -1,6 +1,6 @@
 //! Sensor readings.
 
-use crate::model::{Model, SensorKind};
+use crate::model::Model;
 use clench_math::{Force, Motion, Real};
 
 /// The sensor readings and the data that they are computed from.
@@ -55,7 +55,11 @@ impl<T: Real> BodyForces<T> {
     #[inline(never)]
     pub fn new(model: &Model) -> Self {
         let mut bodies = BodyForces::default();
-        if model.sensors.iter().any(|sensor| is_needed(sensor.kind)) {
+        if model
+            .sensors
+            .iter()
+            .any(|sensor| sensor.kind.needs_body_forces())
+        {
             bodies.make_room(model.nbody());
         }
         bodies
@@ -78,16 +82,4 @@ impl<T> Default for BodyForces<T> {
             external: Vec::new(),
         }
     }
-}
-
-/// Returns true if a kind of sensor reads accelerations or forces of bodies.
-pub fn is_needed(kind: SensorKind) -> bool {
-    matches!(
-        kind,
-        SensorKind::Accelerometer
-            | SensorKind::Force
-            | SensorKind::Torque
-            | SensorKind::FrameLinAcc
-            | SensorKind::FrameAngAcc
-    )
 }

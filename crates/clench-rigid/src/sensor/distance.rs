@@ -1,9 +1,9 @@
 //! The smallest distance between two sets of geoms. Each lane is searched separately.
 
-use super::kinds;
 use super::reading::Reading;
 use clench_collide::{Pose, Separation, Shape, distance};
 use clench_dynamics::model::{Sensor, SensorKind};
+use clench_dynamics::sensor_group;
 use clench_math::{Real, Vec3};
 use std::ops::Range;
 
@@ -29,9 +29,13 @@ impl<T: Real> Reading<'_, T> {
                     put(&[<T::Scalar as Real>::ZERO; 6]);
                 }
                 // The builder gives the other kinds other targets.
-                (kinds!(whole) | kinds!(element) | kinds!(frame) | kinds!(others), _) => {
-                    put(&[<T::Scalar as Real>::ZERO; 6])
-                }
+                (
+                    sensor_group!(whole)
+                    | sensor_group!(element)
+                    | sensor_group!(frame)
+                    | sensor_group!(others),
+                    _,
+                ) => put(&[<T::Scalar as Real>::ZERO; 6]),
             }
         }
     }

@@ -3,9 +3,9 @@
 //! Given R, p, ω, v of the reference frame, an object at p' that moves with ω', v' has the relative position Rᵀ(p' −
 //! p), angular velocity Rᵀ(ω' − ω) and linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
-use super::kinds;
 use super::reading::Reading;
 use clench_dynamics::model::{FrameObject, SensorKind};
+use clench_dynamics::sensor_group;
 use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};
 
 impl<T: Real> Reading<'_, T> {
@@ -44,7 +44,10 @@ impl<T: Real> Reading<'_, T> {
             Kind::FrameLinAcc => self.acceleration(object).linear.write(out),
             Kind::FrameAngAcc => self.acceleration(object).angular.write(out),
             // The builder gives these kinds other targets.
-            kinds!(whole) | kinds!(element) | kinds!(geoms) | kinds!(others) => out.fill(T::ZERO),
+            sensor_group!(whole)
+            | sensor_group!(element)
+            | sensor_group!(geoms)
+            | sensor_group!(others) => out.fill(T::ZERO),
         }
     }
 

@@ -16,74 +16,11 @@ pub(crate) mod tactile;
 mod volume;
 
 use clench_dynamics::model::{Model, Params, Sensor, SensorData, SensorKind};
-use clench_dynamics::readings::is_needed;
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
 use reading::Reading;
-
-/// The patterns of the kinds of sensor by what they are read of, so that a match names every kind.
-macro_rules! kinds {
-    (whole) => {
-        SensorKind::PotentialEnergy
-            | SensorKind::KineticEnergy
-            | SensorKind::Clock
-            | SensorKind::User
-    };
-    (element) => {
-        SensorKind::Touch
-            | SensorKind::Accelerometer
-            | SensorKind::Velocimeter
-            | SensorKind::Gyro
-            | SensorKind::Force
-            | SensorKind::Torque
-            | SensorKind::Magnetometer
-            | SensorKind::JointPos
-            | SensorKind::JointVel
-            | SensorKind::JointActuatorFrc
-            | SensorKind::BallQuat
-            | SensorKind::BallAngVel
-            | SensorKind::JointLimitPos
-            | SensorKind::JointLimitVel
-            | SensorKind::JointLimitFrc
-            | SensorKind::TendonPos
-            | SensorKind::TendonVel
-            | SensorKind::TendonActuatorFrc
-            | SensorKind::TendonLimitPos
-            | SensorKind::TendonLimitVel
-            | SensorKind::TendonLimitFrc
-            | SensorKind::ActuatorPos
-            | SensorKind::ActuatorVel
-            | SensorKind::ActuatorFrc
-            | SensorKind::SubtreeCom
-            | SensorKind::SubtreeLinVel
-            | SensorKind::SubtreeAngMom
-    };
-    (frame) => {
-        SensorKind::FramePos
-            | SensorKind::FrameQuat
-            | SensorKind::FrameXAxis
-            | SensorKind::FrameYAxis
-            | SensorKind::FrameZAxis
-            | SensorKind::FrameLinVel
-            | SensorKind::FrameAngVel
-            | SensorKind::FrameLinAcc
-            | SensorKind::FrameAngAcc
-    };
-    (geoms) => {
-        SensorKind::Distance | SensorKind::Normal | SensorKind::FromTo
-    };
-    // Other objects, rays, contacts or taxels, which the target describes.
-    (others) => {
-        SensorKind::InsideSite
-            | SensorKind::CamProjection
-            | SensorKind::Rangefinder
-            | SensorKind::Contact
-            | SensorKind::Tactile
-    };
-}
-use kinds;
 
 /// Evaluates all sensors of the model if they are read now or later.
 #[kernel]
@@ -99,7 +36,7 @@ pub fn evaluate<T: Real>(
         return;
     }
     let mut data = std::mem::take(&mut ws.sensors.data);
-    let needs_bodies = |sensor: &Sensor| is_needed(sensor.kind);
+    let needs_bodies = |sensor: &Sensor| sensor.kind.needs_body_forces();
     if model.sensors.iter().any(needs_bodies) {
         bodies::update(model, params, state, ws);
     }

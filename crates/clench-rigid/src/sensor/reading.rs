@@ -1,6 +1,5 @@
 //! The data that sensors are read from.
 
-use super::kinds;
 use clench_dynamics::Step;
 use clench_dynamics::constraint::ConstraintSource;
 use clench_dynamics::dynamics::frames::Frames;
@@ -8,6 +7,7 @@ use clench_dynamics::geometry::Geoms;
 use clench_dynamics::model::{
     FrameObject, Model, Params, Sensor, SensorKind, SensorTarget, Transmission,
 };
+use clench_dynamics::sensor_group;
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
@@ -76,7 +76,10 @@ impl<'a, T: Real> Reading<'a, T> {
             // No program of the user's writes it here.
             SensorKind::User => out.fill(T::ZERO),
             // The builder gives these kinds other targets.
-            kinds!(element) | kinds!(frame) | kinds!(geoms) | kinds!(others) => out.fill(T::ZERO),
+            sensor_group!(element)
+            | sensor_group!(frame)
+            | sensor_group!(geoms)
+            | sensor_group!(others) => out.fill(T::ZERO),
         }
     }
 
@@ -123,7 +126,10 @@ impl<'a, T: Real> Reading<'a, T> {
             Kind::SubtreeLinVel => self.subtree(element).velocity.write(out),
             Kind::SubtreeAngMom => self.subtree(element).angular_momentum.write(out),
             // The builder gives these kinds other targets.
-            kinds!(whole) | kinds!(frame) | kinds!(geoms) | kinds!(others) => out.fill(T::ZERO),
+            sensor_group!(whole)
+            | sensor_group!(frame)
+            | sensor_group!(geoms)
+            | sensor_group!(others) => out.fill(T::ZERO),
         }
     }
 
