@@ -1,6 +1,6 @@
 //! The stages of a step. Each reads from the workspace the results of the stages before it.
 
-use crate::constraint::constraint_stage;
+use crate::constraint::{assemble, constraint_stage};
 use crate::contact::detect;
 use crate::dynamics::actuation::actuation;
 use crate::dynamics::adhesion::adhesion;
@@ -29,7 +29,7 @@ use crate::stages::Positions;
 use crate::state::State;
 use crate::stiction::drag;
 use crate::workspace::{EnergyScratch, Workspace};
-use clench_math::Real;
+use clench_math::{Mask, Real};
 use clench_solver::TreeMatrix;
 use std::slice::from_ref;
 
@@ -195,24 +195,33 @@ pub fn before_forces<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     ws.clock.start();
-    let sleep = settings.flags.sleep;
-    if sleep {
-        sleep::wake_touched(model, state, ws);
-        ws.sleep.find_parts(model, state, &ws.fixed);
-    }
-    positions(model, params, state, ws);
-    if sleep {
-        sleep::wake_pulled(model, params, settings, ws);
-    }
-    detect(model, params, settings, ws);
-    if sleep {
-        while sleep::wake_touching(model, ws) {
-            detect(model, params, settings, ws);
-        }
-        sleep::wake_coupled(model, state, ws);
+    if settings.flags.sleep {
+        wake(model, params, settings, state, ws);
+    } else {
+        positions(model, params, state, ws);
+        detect(model, params, settings, ws);
     }
     adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
+}
+
+/// Computes positions and contacts of what is awake, and wakes trees as soon as the cause is computed.
+fn wake<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    sleep::wake_touched(model, state, ws);
+    ws.sleep.find_parts(model, state, &ws.fixed);
+    positions(model, params, state, ws);
+    sleep::wake_pulled(model, params, settings, ws);
+    detect(model, params, settings, ws);
+    while sleep::wake_touching(model, ws) {
+        detect(model, params, settings, ws);
+    }
+    sleep::wake_coupled(model, state, ws);
 }
 
 /// Computes the second half of forward dynamics: forces, including those of controls, and constraints.
@@ -244,7 +253,7 @@ pub fn step<T: Real>(
         return;
     }
     if settings.flags.sleep && sleep::is_idle(model, state, ws) {
-        sleep::idle(model, params, settings, state, ws, sensors);
+        idle(model, params, settings, state, ws, sensors);
         return;
     }
     before_forces(model, params, settings, state, ws);
@@ -262,9 +271,59 @@ pub fn rest<T: Real>(
 ) -> bool {
     let rests = settings.flags.sleep && sleep::rests(model, state, ws);
     if rests {
-        sleep::pass_time(model, params, settings, state, ws, sensors);
+        pass_time(model, params, settings, state, ws, sensors);
     }
     rests
+}
+
+/// Does a step that only advances time.
+fn pass_time<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    sensors(model, params, settings, state, ws);
+    state.pass(params.timestep);
+}
+
+/// Does a step in which nothing is awake.
+fn idle<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &mut State<T>,
+    ws: &mut Workspace<T>,
+    sensors: Sensors<T>,
+) {
+    if !ws.sleep.is_at_rest() {
+        clear(model, params, settings, state, ws);
+    }
+    pass_time(model, params, settings, state, ws, sensors);
+    sleep::hold(model, state, ws);
+    state.qacc_warmstart.fill(T::ZERO);
+}
+
+/// Clears contacts, constraints and failures in the workspace. Its poses and forces are not updated.
+fn clear<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    settings: &StepSettings,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    ws.contacts.clear();
+    ws.collision.excess = T::ZERO;
+    ws.collision.overflow = T::Mask::splat(false);
+    ws.singular = T::Mask::splat(false);
+    ws.problem.qacc_smooth.fill(T::ZERO);
+    assemble(model, params, settings, state, ws);
+    (ws.solver.solve(&ws.problem, &settings.solver, None))
+        .expect("a problem without constraints has the model's lengths");
+    ws.qacc.fill(T::ZERO);
+    ws.qfrc_constraint.fill(T::ZERO);
 }
 
 /// Does the remainder of a step after positions and contacts: reuses those of the last pass, which was for the same

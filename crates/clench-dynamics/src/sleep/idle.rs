@@ -6,12 +6,9 @@
 //! once, unless the workspace is not read.
 
 use super::wake::wake_coupled;
-use super::{Sleep, hold, is_blank, mocap_pose, wake_touched};
-use crate::constraint::assemble;
+use super::{Sleep, is_blank, mocap_pose, wake_touched};
 use crate::fixed::FixedPoses;
-use crate::model::{Model, Params};
-use crate::sensors::Sensors;
-use crate::settings::StepSettings;
+use crate::model::Model;
 use crate::state::State;
 use crate::state::bounds::are_occasional;
 use crate::workspace::Workspace;
@@ -57,19 +54,6 @@ fn all_blank<T: Real>(numbers: &[T]) -> bool {
     blocks.all(|block| block.iter().fold(T::Mask::splat(true), and_blank).all())
 }
 
-/// Does a step that only advances time.
-pub(crate) fn pass_time<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &mut State<T>,
-    ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
-) {
-    sensors(model, params, settings, state, ws);
-    state.pass(params.timestep);
-}
-
 /// Returns true if a step only advances time: nothing is awake, nothing wakes, and the model has no actuators and no
 /// past values. Mocap bodies must not have moved.
 #[kernel]
@@ -87,43 +71,6 @@ pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspa
         return false;
     }
     ws.sleep.rests_as_before(model, state) || (model.nmocap == 0 && !ws.read)
-}
-
-/// Does a step that only advances time.
-pub(crate) fn idle<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &mut State<T>,
-    ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
-) {
-    if !ws.sleep.at_rest {
-        clear(model, params, settings, state, ws);
-    }
-    pass_time(model, params, settings, state, ws, sensors);
-    hold(model, state, ws);
-    state.qacc_warmstart.fill(T::ZERO);
-}
-
-/// Clears contacts, constraints and failures in the workspace. Its poses and forces are not updated.
-fn clear<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
-    ws.contacts.clear();
-    ws.collision.excess = T::ZERO;
-    ws.collision.overflow = T::Mask::splat(false);
-    ws.singular = T::Mask::splat(false);
-    ws.problem.qacc_smooth.fill(T::ZERO);
-    assemble(model, params, settings, state, ws);
-    (ws.solver.solve(&ws.problem, &settings.solver, None))
-        .expect("a problem without constraints has the model's lengths");
-    ws.qacc.fill(T::ZERO);
-    ws.qfrc_constraint.fill(T::ZERO);
 }
 
 impl<T: Real> Sleep<T> {

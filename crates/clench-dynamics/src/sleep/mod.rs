@@ -15,7 +15,7 @@ mod wake;
 
 pub use fall::fall_asleep;
 pub(crate) use fall::hold;
-pub(crate) use idle::{idle, is_idle, pass_time, rests};
+pub(crate) use idle::{is_idle, rests};
 pub use wake::wake_in_state;
 pub(crate) use wake::{wake_coupled, wake_pulled, wake_touched, wake_touching};
 
@@ -118,6 +118,11 @@ impl<T: Real> Sleep<T> {
             true => self.bodies[first] | self.bodies[second],
             false => T::Mask::splat(true),
         }
+    }
+
+    /// Returns true if all trees slept in the last pass, at the positions that it stored.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.at_rest
     }
 
     /// Returns the lanes in which everything sleeps.
