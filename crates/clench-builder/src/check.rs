@@ -2,11 +2,12 @@
 //! be positive.
 
 use super::element::{Element, check_pose};
+use super::element_number::{ElementNumber, NumberRange};
 use super::model_builder::ModelBuilder;
 use super::{
-    ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, EqualitySpec, GeomMass, GeomSpec,
-    InertiaSpec, JointSpec, KeyframeSpec, PairSpec, SiteSpec, TendonSpec, WrapSpec, equalities,
-    lights,
+    ActuatorSpec, BodySpec, BuildError, CameraLens, CameraSpec, DOF_NUMBERS, EqualitySpec,
+    GeomMass, GeomSpec, InertiaSpec, JOINT_NUMBERS, JointSpec, KeyframeSpec, PairSpec, SiteSpec,
+    TENDON_NUMBERS, TendonSpec, WrapSpec, equalities, lights,
 };
 use clench_collide::ShapeKind;
 use clench_dynamics::model::Integrator;
@@ -124,18 +125,30 @@ fn check_body(body: &BodySpec, body_name: &str) -> Result<(), BuildError> {
         .map_err(as_inertial)
 }
 
+fn check_numbers(
+    element: &impl Element,
+    rows: &[ElementNumber],
+    numbers: &[f64],
+) -> Result<(), BuildError> {
+    rows.iter().zip(numbers).try_for_each(|(row, &number)| {
+        let check = match row.range {
+            NumberRange::Finite => Element::require_finite,
+            NumberRange::NotNegative => Element::require_not_negative,
+        };
+        check(element, row.name, &[number])
+    })
+}
+
 fn check_joint(j: &JointSpec) -> Result<(), BuildError> {
     j.require_finite("pos", &j.pos.to_array())?;
     j.require_finite("axis", &j.axis.to_array())?;
     j.require_finite("ref", &[j.reference])?;
     j.require_finite("springref", &[j.springref])?;
-    j.require_not_negative("springyield", &[j.springyield])?;
-    j.require_finite("margin", &[j.margin])?;
     j.require_finite("stiffness", &j.stiffness)?;
     j.require_finite("damping", &j.damping)?;
     j.require_finite("springdamper", &j.springdamper)?;
-    j.require_not_negative("armature", &[j.armature])?;
-    j.require_not_negative("frictionloss", &[j.frictionloss])?;
+    check_numbers(j, &JOINT_NUMBERS, &j.joint_numbers())?;
+    check_numbers(j, &DOF_NUMBERS, &j.dof_numbers())?;
     check_softness(
         j,
         &[j.solref_limit, j.solref_friction],
@@ -219,13 +232,10 @@ fn check_tendon(t: &TendonSpec) -> Result<(), BuildError> {
             WrapSpec::Site(_) | WrapSpec::Geom { .. } => {}
         }
     }
-    t.require_finite("margin", &[t.margin])?;
     t.require_finite("stiffness", &t.stiffness)?;
     t.require_finite("damping", &t.damping)?;
-    t.require_not_negative("armature", &[t.armature])?;
-    t.require_not_negative("frictionloss", &[t.frictionloss])?;
     t.require_finite("springlength", &t.springlength.unwrap_or_default())?;
-    t.require_not_negative("springyield", &[t.springyield])?;
+    check_numbers(t, &TENDON_NUMBERS, &t.numbers())?;
     check_softness(
         t,
         &[t.solref_limit, t.solref_friction],

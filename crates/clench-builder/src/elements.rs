@@ -1,9 +1,10 @@
 //! Bodies and the elements on them, with MuJoCo's defaults.
 
+use super::element_number::{ElementNumber, NumberDimension, NumberRange, declare_numbers};
 use super::{AppearanceSpec, CameraSpec, CompilerSpec, LightSpec, Origin};
 use clench_collide::ShapeKind;
 use clench_dynamics::constraint::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use clench_dynamics::model::{Interpolation, JointKind, SleepPolicy};
+use clench_dynamics::model::{Interpolation, JointKind, ParamField, SleepPolicy};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -80,95 +81,113 @@ pub enum InertiaSpec {
     Full([f64; 6]),
 }
 
-/// A joint.
-#[derive(Clone, Debug)]
-pub struct JointSpec {
-    /// Name, possibly empty.
-    pub name: String,
-    /// Kind of motion.
-    pub kind: JointKind,
-    /// Anchor in the body frame, m.
-    pub pos: Vec3<f64>,
-    /// Axis in the body frame (normalized by the builder).
-    pub axis: Vec3<f64>,
-    /// Allowed positions, rad or m; for a ball joint (0, maximum angle).
-    pub range: [f64; 2],
-    /// True if the range limits the joint; `None`: if `autolimits` and a range is given.
-    pub limited: Option<bool>,
-    /// Limits of the total actuator force, N or N m.
-    pub actuatorfrcrange: [f64; 2],
-    /// True if that range applies; `None` as for `limited`.
-    pub actuatorfrclimited: Option<bool>,
-    /// True if gravity compensation counts as actuation.
-    pub actuatorgravcomp: bool,
-    /// Distance at which the limit constraint appears.
-    pub margin: f64,
-    /// Position in the initial configuration.
-    pub reference: f64,
-    /// Position at which the spring is at rest.
-    pub springref: f64,
-    /// Elongation, m or rad, at which the spring yields and its rest position follows; 0 for never.
-    pub springyield: f64,
-    /// Coefficients of the spring force a x + b x² + c x³ at a displacement x, N/m or N m/rad.
-    pub stiffness: [f64; 3],
-    /// Coefficients of the damping force a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
-    pub damping: [f64; 3],
-    /// Time constant and damping ratio from which the linear stiffness and damping are derived, if positive.
-    pub springdamper: [f64; 2],
-    /// Added inertia of the joint, kg or kg m².
-    pub armature: f64,
-    /// Dry friction, N or N m.
-    pub frictionloss: f64,
-    /// Limit reference dynamics.
-    pub solref_limit: [f64; 2],
-    /// Limit impedance.
-    pub solimp_limit: [f64; 5],
-    /// Dry-friction reference dynamics.
-    pub solref_friction: [f64; 2],
-    /// Dry-friction impedance.
-    pub solimp_friction: [f64; 5],
-    /// Group, only for selection by the user.
-    pub group: i32,
-    /// True if the model's `alignfree` applies to this free joint; `None`: the compiler's setting.
-    pub align: Option<bool>,
-    /// The user's own numbers.
-    pub user: Arc<[f64]>,
-    /// The source location.
-    pub origin: Option<Origin>,
-}
-
-impl Default for JointSpec {
-    fn default() -> Self {
-        JointSpec {
-            name: String::new(),
-            kind: JointKind::Hinge,
-            pos: Vec3::ZERO,
-            axis: Vec3::new(0.0, 0.0, 1.0),
-            range: [0.0; 2],
-            limited: None,
-            actuatorfrcrange: [0.0; 2],
-            actuatorfrclimited: None,
-            actuatorgravcomp: false,
-            margin: 0.0,
-            reference: 0.0,
-            springref: 0.0,
-            springyield: 0.0,
-            stiffness: [0.0; 3],
-            damping: [0.0; 3],
-            springdamper: [0.0; 2],
-            armature: 0.0,
-            frictionloss: 0.0,
-            solref_limit: DEFAULT_SOLREF,
-            solimp_limit: DEFAULT_SOLIMP,
-            solref_friction: DEFAULT_SOLREF,
-            solimp_friction: DEFAULT_SOLIMP,
-            group: 0,
-            align: None,
-            user: Arc::default(),
-            origin: None,
+/// Declares joints with the fields of the table of element numbers.
+macro_rules! declare_joint {
+    ([]
+    joint {$(
+        $(#[$joint_doc:meta])* $joint:ident: $jp:ident, $jc:ident, $jr:ident, $jd:ident;
+    )*}
+    dof {$(
+        $(#[$dof_doc:meta])* $dof:ident: $dp:ident, $dc:ident, $dr:ident, $dd:ident;
+    )*}
+    tendon {$($tendon:tt)*}) => {
+        /// A joint.
+        #[derive(Clone, Debug)]
+        pub struct JointSpec {
+            /// Name, possibly empty.
+            pub name: String,
+            /// Kind of motion.
+            pub kind: JointKind,
+            /// Anchor in the body frame, m.
+            pub pos: Vec3<f64>,
+            /// Axis in the body frame (normalized by the builder).
+            pub axis: Vec3<f64>,
+            /// Allowed positions, rad or m; for a ball joint (0, maximum angle).
+            pub range: [f64; 2],
+            /// True if the range limits the joint; `None`: if `autolimits` and a range is given.
+            pub limited: Option<bool>,
+            /// Limits of the total actuator force, N or N m.
+            pub actuatorfrcrange: [f64; 2],
+            /// True if that range applies; `None` as for `limited`.
+            pub actuatorfrclimited: Option<bool>,
+            /// True if gravity compensation counts as actuation.
+            pub actuatorgravcomp: bool,
+            /// Position in the initial configuration.
+            pub reference: f64,
+            /// Position at which the spring is at rest.
+            pub springref: f64,
+            /// Coefficients of the spring force a x + b x² + c x³ at a displacement x, N/m or N m/rad.
+            pub stiffness: [f64; 3],
+            /// Coefficients of the damping force a v + b v |v| + c v³ at a velocity v, N s/m or N m s/rad.
+            pub damping: [f64; 3],
+            /// Time constant and damping ratio from which the linear stiffness and damping are derived, if positive.
+            pub springdamper: [f64; 2],
+            /// Limit reference dynamics.
+            pub solref_limit: [f64; 2],
+            /// Limit impedance.
+            pub solimp_limit: [f64; 5],
+            /// Dry-friction reference dynamics.
+            pub solref_friction: [f64; 2],
+            /// Dry-friction impedance.
+            pub solimp_friction: [f64; 5],
+            /// Group, only for selection by the user.
+            pub group: i32,
+            /// True if the model's `alignfree` applies to this free joint; `None`: the compiler's setting.
+            pub align: Option<bool>,
+            /// The user's own numbers.
+            pub user: Arc<[f64]>,
+            /// The source location.
+            pub origin: Option<Origin>,
+            $($(#[$joint_doc])* pub $joint: f64,)*
+            $($(#[$dof_doc])* pub $dof: f64,)*
         }
-    }
+
+        impl Default for JointSpec {
+            fn default() -> Self {
+                JointSpec {
+                    name: String::new(),
+                    kind: JointKind::Hinge,
+                    pos: Vec3::ZERO,
+                    axis: Vec3::new(0.0, 0.0, 1.0),
+                    range: [0.0; 2],
+                    limited: None,
+                    actuatorfrcrange: [0.0; 2],
+                    actuatorfrclimited: None,
+                    actuatorgravcomp: false,
+                    reference: 0.0,
+                    springref: 0.0,
+                    stiffness: [0.0; 3],
+                    damping: [0.0; 3],
+                    springdamper: [0.0; 2],
+                    solref_limit: DEFAULT_SOLREF,
+                    solimp_limit: DEFAULT_SOLIMP,
+                    solref_friction: DEFAULT_SOLREF,
+                    solimp_friction: DEFAULT_SOLIMP,
+                    group: 0,
+                    align: None,
+                    user: Arc::default(),
+                    origin: None,
+                    $($joint: 0.0,)*
+                    $($dof: 0.0,)*
+                }
+            }
+        }
+
+        /// The attributes of MJCF in the two tables that follow, in one literal.
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! joint_attributes {
+            () => { concat!($(" ", stringify!($joint),)* $(" ", stringify!($dof)),*) };
+        }
+        declare_numbers! { JointSpec
+            /// The numbers of joints that reach the parameters unchanged.
+            JOINT_NUMBERS joint_numbers joint_numbers_mut: $($joint: $jp, $jc, $jr, $jd;)* }
+        declare_numbers! { JointSpec
+            /// Those of joints that reach the parameters of each of their dofs.
+            DOF_NUMBERS dof_numbers dof_numbers_mut: $($dof: $dp, $dc, $dr, $dd;)* }
+    };
 }
+clench_dynamics::element_numbers!(declare_joint);
 
 /// The mass of a geom.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::element::{Element, resolve_limited, resolve_range};
 use super::model_builder::ModelBuilder;
-use super::{BuildError, JointSpec};
+use super::{BuildError, DOF_NUMBERS, JOINT_NUMBERS, JointSpec, element_number};
 use clench_dynamics::model::{Dof, Joint, JointKind, Model};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
@@ -116,12 +116,11 @@ fn push_params(
     let [linear, higher @ ..] = spec.stiffness;
     p.jnt_stiffness.push(linear);
     p.jnt_stiffnesspoly.push(higher);
-    p.jnt_springyield.push(spec.springyield);
     p.jnt_range.push(spec.range);
-    p.jnt_margin.push(spec.margin);
     p.jnt_actfrcrange.push(spec.actuatorfrcrange);
     p.jnt_solref.push(spec.solref_limit);
     p.jnt_solimp.push(spec.solimp_limit);
+    element_number::push(&JOINT_NUMBERS, &spec.joint_numbers(), p);
     let start = p.qpos0.len();
     match spec.kind {
         JointKind::Free => {
@@ -148,11 +147,10 @@ fn add_dof(spec: &JointSpec, b: usize, joint: usize, model: &mut Model) {
     body.last_dof = Some(model.nv);
     model.nv += 1;
     let p = &mut model.params;
-    p.dof_armature.push(spec.armature);
     let [linear, higher @ ..] = spec.damping;
     p.dof_damping.push(linear);
     p.dof_dampingpoly.push(higher);
-    p.dof_frictionloss.push(spec.frictionloss);
     p.dof_solref.push(spec.solref_friction);
     p.dof_solimp.push(spec.solimp_friction);
+    element_number::push(&DOF_NUMBERS, &spec.dof_numbers(), p);
 }

@@ -42,6 +42,7 @@ mod contacts;
 mod controllers;
 mod derived;
 mod element;
+mod element_number;
 mod elements;
 mod equalities;
 mod error;
@@ -77,9 +78,10 @@ pub use assets::HeightFieldSpec;
 pub use camera_spec::{CameraLens, CameraSpec, CameraTracking};
 pub use clench_dynamics::constraint::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 pub use clench_dynamics::model::{MeshInertia, MeshSpec, Origin};
+pub use element_number::{ElementNumber, NumberDimension};
 pub use elements::{
-    BodySpec, DEFAULT_DYNAMIC_CONSTRAINTS, GeomMass, GeomSpec, HistorySpec, InertiaSpec,
-    InertialSpec, JointSpec, SiteSpec,
+    BodySpec, DEFAULT_DYNAMIC_CONSTRAINTS, DOF_NUMBERS, GeomMass, GeomSpec, HistorySpec,
+    InertiaSpec, InertialSpec, JOINT_NUMBERS, JointSpec, SiteSpec,
 };
 pub use error::{BuildError, shorten};
 pub use light_spec::LightSpec;
@@ -91,7 +93,7 @@ pub use physics::{
 pub use placed::surfacevel_in_frame;
 pub use relations::{
     ActuatorSpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, KeyframeElement,
-    KeyframePart, KeyframeSpec, PairSpec, TendonSpec, TransmissionSpec, WrapSpec,
+    KeyframePart, KeyframeSpec, PairSpec, TENDON_NUMBERS, TendonSpec, TransmissionSpec, WrapSpec,
 };
 pub use sensor_specs::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, SensorSpec, SensorSubject,

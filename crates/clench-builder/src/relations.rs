@@ -1,9 +1,10 @@
 //! Elements that refer to others by name: tendons, actuators, equality constraints, contact pairs and keyframes, with
 //! MuJoCo's defaults.
 
+use super::element_number::{ElementNumber, NumberDimension, NumberRange, declare_numbers};
 use super::{AppearanceSpec, HistorySpec, Origin};
 use clench_dynamics::constraint::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
-use clench_dynamics::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
+use clench_dynamics::model::{BiasKind, ControlInput, DynamicsKind, GainKind, ParamField};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -30,81 +31,91 @@ pub enum WrapSpec {
     Pulley(f64),
 }
 
-/// A tendon: fixed, a weighted sum of joint positions, or spatial, a string through sites and around geoms. Both have
-/// limits, springs, dampers, friction, inertia and actuators, which depend only on the length and its gradient.
-#[derive(Clone, Debug)]
-pub struct TendonSpec {
-    /// Name, possibly empty.
-    pub name: String,
-    /// Its path: only joints, or branches that begin and end with a site.
-    pub path: Vec<WrapSpec>,
-    /// Allowed lengths.
-    pub range: [f64; 2],
-    /// True if the range limits the tendon; `None`: if `autolimits` and a range is given.
-    pub limited: Option<bool>,
-    /// Limits of the total actuator force.
-    pub actuatorfrcrange: [f64; 2],
-    /// True if that range applies; `None` as for `limited`.
-    pub actuatorfrclimited: Option<bool>,
-    /// Distance at which the limit constraint appears.
-    pub margin: f64,
-    /// Spring stiffness: coefficients of the first, second and third power of the elongation.
-    pub stiffness: [f64; 3],
-    /// Damping: coefficients of v, v |v| and v³ at the velocity v.
-    pub damping: [f64; 3],
-    /// Inertia for changes of the length, for a tendon that wraps around no geom.
-    pub armature: f64,
-    /// Dead band of the spring; `None`: the length at the rest positions of the joints' springs.
-    pub springlength: Option<[f64; 2]>,
-    /// Elongation at which the spring yields and its dead band follows; 0 for never.
-    pub springyield: f64,
-    /// Dry friction.
-    pub frictionloss: f64,
-    /// Limit reference dynamics.
-    pub solref_limit: [f64; 2],
-    /// Limit impedance.
-    pub solimp_limit: [f64; 5],
-    /// Dry-friction reference dynamics.
-    pub solref_friction: [f64; 2],
-    /// Dry-friction impedance.
-    pub solimp_friction: [f64; 5],
-    /// Its appearance.
-    pub appearance: AppearanceSpec,
-    /// Radius when drawn, m.
-    pub width: f64,
-    /// The user's own numbers.
-    pub user: Arc<[f64]>,
-    /// The source location.
-    pub origin: Option<Origin>,
-}
-
-impl Default for TendonSpec {
-    fn default() -> Self {
-        TendonSpec {
-            name: String::new(),
-            path: Vec::new(),
-            range: [0.0; 2],
-            limited: None,
-            actuatorfrcrange: [0.0; 2],
-            actuatorfrclimited: None,
-            margin: 0.0,
-            stiffness: [0.0; 3],
-            damping: [0.0; 3],
-            armature: 0.0,
-            springlength: None,
-            springyield: 0.0,
-            frictionloss: 0.0,
-            solref_limit: DEFAULT_SOLREF,
-            solimp_limit: DEFAULT_SOLIMP,
-            solref_friction: DEFAULT_SOLREF,
-            solimp_friction: DEFAULT_SOLIMP,
-            appearance: AppearanceSpec::default(),
-            width: 0.003,
-            user: Arc::default(),
-            origin: None,
+/// Declares tendons with the fields of the table of element numbers.
+macro_rules! declare_tendon {
+    ([] joint {$($joint:tt)*} dof {$($dof:tt)*}
+    tendon {$(
+        $(#[$doc:meta])* $name:ident: $param:ident, $check:ident, $rule:ident, $dimension:ident;
+    )*}) => {
+        /// A tendon: fixed, a weighted sum of joint positions, or spatial, a string through sites and around geoms.
+        /// Both have limits, springs, dampers, friction, inertia and actuators, which depend only on the length and its
+        /// gradient.
+        #[derive(Clone, Debug)]
+        pub struct TendonSpec {
+            /// Name, possibly empty.
+            pub name: String,
+            /// Its path: only joints, or branches that begin and end with a site.
+            pub path: Vec<WrapSpec>,
+            /// Allowed lengths.
+            pub range: [f64; 2],
+            /// True if the range limits the tendon; `None`: if `autolimits` and a range is given.
+            pub limited: Option<bool>,
+            /// Limits of the total actuator force.
+            pub actuatorfrcrange: [f64; 2],
+            /// True if that range applies; `None` as for `limited`.
+            pub actuatorfrclimited: Option<bool>,
+            /// Spring stiffness: coefficients of the first, second and third power of the elongation.
+            pub stiffness: [f64; 3],
+            /// Damping: coefficients of v, v |v| and v³ at the velocity v.
+            pub damping: [f64; 3],
+            /// Dead band of the spring; `None`: the length at the rest positions of the joints' springs.
+            pub springlength: Option<[f64; 2]>,
+            /// Limit reference dynamics.
+            pub solref_limit: [f64; 2],
+            /// Limit impedance.
+            pub solimp_limit: [f64; 5],
+            /// Dry-friction reference dynamics.
+            pub solref_friction: [f64; 2],
+            /// Dry-friction impedance.
+            pub solimp_friction: [f64; 5],
+            /// Its appearance.
+            pub appearance: AppearanceSpec,
+            /// Radius when drawn, m.
+            pub width: f64,
+            /// The user's own numbers.
+            pub user: Arc<[f64]>,
+            /// The source location.
+            pub origin: Option<Origin>,
+            $($(#[$doc])* pub $name: f64,)*
         }
-    }
+
+        impl Default for TendonSpec {
+            fn default() -> Self {
+                TendonSpec {
+                    name: String::new(),
+                    path: Vec::new(),
+                    range: [0.0; 2],
+                    limited: None,
+                    actuatorfrcrange: [0.0; 2],
+                    actuatorfrclimited: None,
+                    stiffness: [0.0; 3],
+                    damping: [0.0; 3],
+                    springlength: None,
+                    solref_limit: DEFAULT_SOLREF,
+                    solimp_limit: DEFAULT_SOLIMP,
+                    solref_friction: DEFAULT_SOLREF,
+                    solimp_friction: DEFAULT_SOLIMP,
+                    appearance: AppearanceSpec::default(),
+                    width: 0.003,
+                    user: Arc::default(),
+                    origin: None,
+                    $($name: 0.0,)*
+                }
+            }
+        }
+
+        /// The attributes of MJCF in the table that follows, in one literal.
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! tendon_attributes {
+            () => { concat!($(" ", stringify!($name)),*) };
+        }
+        declare_numbers! { TendonSpec
+            /// The numbers of tendons that reach the parameters unchanged.
+            TENDON_NUMBERS numbers numbers_mut: $($name: $param, $check, $rule, $dimension;)* }
+    };
 }
+clench_dynamics::element_numbers!(declare_tendon);
 
 /// The transmission of an actuator.
 #[derive(Clone, Debug, PartialEq)]

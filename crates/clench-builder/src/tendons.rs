@@ -4,7 +4,7 @@ use super::element::{Element, resolve_range};
 use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::visuals::Palette;
-use super::{BuildError, TendonSpec, WrapSpec};
+use super::{BuildError, TENDON_NUMBERS, TendonSpec, WrapSpec, element_number};
 use clench_collide::ShapeKind;
 use clench_dynamics::dynamics::chains::Chains;
 use clench_dynamics::model::{JointKind, Model, Tendon, Wrap};
@@ -193,16 +193,13 @@ fn push_params(spec: &TendonSpec, model: &mut Model) {
     let [linear, higher @ ..] = spec.damping;
     p.tendon_damping.push(linear);
     p.tendon_dampingpoly.push(higher);
-    p.tendon_springyield.push(spec.springyield);
-    p.tendon_armature.push(spec.armature);
     p.tendon_range.push(spec.range);
-    p.tendon_margin.push(spec.margin);
     p.tendon_actfrcrange.push(spec.actuatorfrcrange);
-    p.tendon_frictionloss.push(spec.frictionloss);
     p.tendon_solref_lim.push(spec.solref_limit);
     p.tendon_solimp_lim.push(spec.solimp_limit);
     p.tendon_solref_fri.push(spec.solref_friction);
     p.tendon_solimp_fri.push(spec.solimp_friction);
+    element_number::push(&TENDON_NUMBERS, &spec.numbers(), p);
 }
 
 /// Sets the rest lengths of springs: as specified, or the lengths at the rest positions of the joints' springs, which

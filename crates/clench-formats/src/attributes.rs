@@ -2,6 +2,7 @@
 
 use crate::LoadError;
 use crate::document::Element;
+use clench_builder::ElementNumber;
 use clench_math::Vec3;
 use std::sync::Arc;
 
@@ -164,11 +165,22 @@ impl Element {
     }
 
     /// Overwrites a number if the attribute is present.
+    #[inline(never)] // Every reader calls it.
     pub(crate) fn set_number(&self, name: &str, target: &mut f64) -> Result<(), LoadError> {
         if let Some([number]) = self.numbers(name)? {
             *target = number;
         }
         Ok(())
+    }
+
+    /// Overwrites the numbers of some rows of a table that are present.
+    pub(crate) fn set_element_numbers(
+        &self,
+        rows: &[ElementNumber],
+        numbers: &mut [&mut f64],
+    ) -> Result<(), LoadError> {
+        let mut pairs = rows.iter().zip(numbers);
+        pairs.try_for_each(|(row, number)| self.set_number(row.name, number))
     }
 
     /// Rejects single numbers below zero.

@@ -63,6 +63,15 @@ impl<T: Real> Flat<'_, T> {
         }
     }
 
+    /// Returns a number by its index.
+    pub(super) fn number(&self, index: usize) -> T {
+        match self {
+            Flat::Numbers(x) => x[index],
+            Flat::Vectors(v) => v[index / 3].to_array()[index % 3],
+            Flat::Quats(q) => q[index / 4].to_array()[index % 4],
+        }
+    }
+
     /// Returns the numbers of lane `lane`.
     pub(super) fn read_lane(&self, lane: usize) -> Vec<T::Scalar> {
         let read = |x: T| x.lane(lane);

@@ -5,6 +5,7 @@
 //! environment of a batch can have its own.
 
 mod custom;
+mod element_numbers;
 mod fields;
 pub(crate) mod flat;
 mod lookup;

@@ -5,6 +5,12 @@ use super::rule::Rule;
 use clench_math::{Quat, Real, Vec3};
 
 macro_rules! params {
+    // The rows of this file, and those of the table of element numbers.
+    ([$($rows:tt)*] $($group:ident {$(
+        $(#[$doc:meta])* $name:ident: $param:ident, $check:ident, $rule:ident, $dimension:ident;
+    )*})*) => {
+        params! { $($rows)* $($($(#[$doc])* $param: Vec<T>, $rule;)*)* }
+    };
     ($($(#[$doc:meta])* $name:ident: $kind:ty, $rule:expr;)*) => {
         /// The numbers of a model, one array per field (the index is that of the element).
         ///
@@ -98,6 +104,18 @@ impl<T: Real> Params<T> {
     pub fn read_lane(&self, field: ParamField, lane: usize) -> Vec<T::Scalar> {
         self.flat(field).read_lane(lane)
     }
+    /// Returns a number of a field in lane `lane`, by its index among all of them.
+    pub fn number(&self, field: ParamField, lane: usize, index: usize) -> T::Scalar {
+        self.flat(field).number(index).lane(lane)
+    }
+    /// Appends an element to a field that has one number each.
+    pub fn push(&mut self, field: ParamField, number: T::Scalar) {
+        let elements = self.width(field);
+        self.resize(field, elements + 1);
+        for lane in 0..T::LANES {
+            self.write_part(field, lane, elements, &[number]);
+        }
+    }
     /// Replaces the numbers of a field in lane `lane` by the same number of others.
     pub fn write_lane(&mut self, field: ParamField, lane: usize, row: &[T::Scalar]) {
         self.flat_mut(field).write_lane(lane, 0, row);
@@ -114,7 +132,7 @@ impl<T: Real> Params<T> {
     }
 }
 
-params! {
+crate::element_numbers! { params
     /// Time step, s.
     timestep: T, Positive;
     /// Acceleration of gravity.
@@ -170,12 +188,8 @@ params! {
     jnt_stiffness: Vec<T>, Finite;
     /// Coefficients of the spring's quadratic and cubic force.
     jnt_stiffnesspoly: Vec<[T; 2]>, Finite;
-    /// Elongation at which the spring yields.
-    jnt_springyield: Vec<T>, IfModel;
     /// Allowed positions.
     jnt_range: Vec<[T; 2]>, Range;
-    /// Distance at which the limit becomes active.
-    jnt_margin: Vec<T>, Finite;
     /// Limits of the total actuator force.
     jnt_actfrcrange: Vec<[T; 2]>, Range;
     /// Limit reference dynamics.
@@ -183,8 +197,6 @@ params! {
     /// Limit impedance.
     jnt_solimp: Vec<[T; 5]>, Finite;
 
-    /// Added inertia.
-    dof_armature: Vec<T>, NotNegative;
     /// Factor of a velocity before it is compared with `sleep_tolerance`: 1 for translations, the size of the body for
     /// rotations, m.
     dof_length: Vec<T>, NotNegative;
@@ -192,8 +204,6 @@ params! {
     dof_damping: Vec<T>, Finite;
     /// Coefficients of quadratic and cubic damping.
     dof_dampingpoly: Vec<[T; 2]>, Finite;
-    /// Dry friction.
-    dof_frictionloss: Vec<T>, NotNegative;
     /// Dry-friction reference dynamics.
     dof_solref: Vec<[T; 2]>, Finite;
     /// Dry-friction impedance.
@@ -268,24 +278,16 @@ params! {
     tendon_damping: Vec<T>, Finite;
     /// Coefficients of quadratic and cubic damping.
     tendon_dampingpoly: Vec<[T; 2]>, Finite;
-    /// Inertia for changes of the length.
-    tendon_armature: Vec<T>, IfModel;
     /// Dead band of the spring.
     tendon_lengthspring: Vec<[T; 2]>, Range;
-    /// Elongation at which the spring yields.
-    tendon_springyield: Vec<T>, IfModel;
     /// Length at qpos0.
     tendon_length0: Vec<T>, Finite;
     /// Inverse inertia at qpos0.
     tendon_invweight0: Vec<T>, NotNegative;
     /// Allowed lengths.
     tendon_range: Vec<[T; 2]>, Range;
-    /// Distance at which the limit becomes active.
-    tendon_margin: Vec<T>, Finite;
     /// Limits of the total actuator force.
     tendon_actfrcrange: Vec<[T; 2]>, Range;
-    /// Dry friction.
-    tendon_frictionloss: Vec<T>, NotNegative;
     /// Limit reference dynamics.
     tendon_solref_lim: Vec<[T; 2]>, Finite;
     /// Limit impedance.

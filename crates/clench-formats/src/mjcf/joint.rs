@@ -4,7 +4,7 @@ use super::compiler::CompilerOptions;
 use super::document::Element;
 use super::orientation::Pose;
 use crate::LoadError;
-use clench_builder::JointSpec;
+use clench_builder::{DOF_NUMBERS, JOINT_NUMBERS, JointSpec};
 use clench_dynamics::model::JointKind;
 
 /// Overwrites what the element gives; angles remain in the file's unit until [`finish`].
@@ -23,15 +23,13 @@ pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadE
     element.set_range("actuatorfrcrange", &mut joint.actuatorfrcrange)?;
     element.set_tristate("actuatorfrclimited", &mut joint.actuatorfrclimited)?;
     element.set_boolean("actuatorgravcomp", &mut joint.actuatorgravcomp)?;
-    element.set_number("margin", &mut joint.margin)?;
     element.set_number("ref", &mut joint.reference)?;
     element.set_number("springref", &mut joint.springref)?;
-    element.set_number("springyield", &mut joint.springyield)?;
     element.overlay("stiffness", &mut joint.stiffness)?;
     element.overlay("damping", &mut joint.damping)?;
     element.set_numbers("springdamper", &mut joint.springdamper)?;
-    element.set_number("armature", &mut joint.armature)?;
-    element.set_number("frictionloss", &mut joint.frictionloss)?;
+    element.set_element_numbers(&JOINT_NUMBERS, &mut joint.joint_numbers_mut())?;
+    element.set_element_numbers(&DOF_NUMBERS, &mut joint.dof_numbers_mut())?;
     element.set_user(&mut joint.user)?;
     element.overlay("solreflimit", &mut joint.solref_limit)?;
     element.overlay("solimplimit", &mut joint.solimp_limit)?;

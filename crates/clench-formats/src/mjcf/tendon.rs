@@ -3,7 +3,7 @@
 use super::appearance::read_appearance;
 use super::document::Element;
 use crate::LoadError;
-use clench_builder::{TendonSpec, WrapSpec};
+use clench_builder::{TENDON_NUMBERS, TendonSpec, WrapSpec};
 
 /// Overwrites the attributes that the element gives and default classes can also set.
 pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<(), LoadError> {
@@ -11,12 +11,9 @@ pub(crate) fn read_common(element: &Element, tendon: &mut TendonSpec) -> Result<
     element.set_tristate("limited", &mut tendon.limited)?;
     element.set_range("actuatorfrcrange", &mut tendon.actuatorfrcrange)?;
     element.set_tristate("actuatorfrclimited", &mut tendon.actuatorfrclimited)?;
-    element.set_number("margin", &mut tendon.margin)?;
     element.overlay("stiffness", &mut tendon.stiffness)?;
-    element.set_number("springyield", &mut tendon.springyield)?;
     element.overlay("damping", &mut tendon.damping)?;
-    element.set_number("armature", &mut tendon.armature)?;
-    element.set_number("frictionloss", &mut tendon.frictionloss)?;
+    element.set_element_numbers(&TENDON_NUMBERS, &mut tendon.numbers_mut())?;
     element.overlay("solreflimit", &mut tendon.solref_limit)?;
     element.overlay("solimplimit", &mut tendon.solimp_limit)?;
     element.overlay("solreffriction", &mut tendon.solref_friction)?;

@@ -1,6 +1,7 @@
 //! Sections that refer to elements of the tree, except actuators.
 
 use super::rule::{NONE, Rule, section};
+use clench_builder::tendon_attributes;
 
 pub(super) const RULES: &[Rule] = &[
     section("contact", "pair exclude", ""),
@@ -17,8 +18,11 @@ pub(super) const RULES: &[Rule] = &[
     section("tendon", "spatial fixed", ""),
     Rule {
         element: "spatial",
-        read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength springyield solreflimit solimplimit solreffriction solimpfriction user",
+        read: concat!(
+            "name class limited range actuatorfrclimited actuatorfrcrange stiffness damping springlength solreflimit solimplimit \
+            solreffriction solimpfriction user",
+            tendon_attributes!()
+        ),
         ignored: "group width material rgba",
         children: "site geom pulley",
         ..NONE
@@ -40,8 +44,11 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "fixed",
-        read: "name class limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength springyield solreflimit solimplimit solreffriction solimpfriction user",
+        read: concat!(
+            "name class limited range actuatorfrclimited actuatorfrcrange stiffness damping springlength solreflimit solimplimit \
+            solreffriction solimpfriction user",
+            tendon_attributes!()
+        ),
         ignored: "group",
         children: "joint",
         ..NONE
@@ -53,8 +60,11 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "default/tendon",
-        read: "limited range actuatorfrclimited actuatorfrcrange margin stiffness damping armature \
-            frictionloss springlength springyield solreflimit solimplimit solreffriction solimpfriction user",
+        read: concat!(
+            "limited range actuatorfrclimited actuatorfrcrange stiffness damping springlength solreflimit solimplimit \
+            solreffriction solimpfriction user",
+            tendon_attributes!()
+        ),
         ignored: "group width material rgba",
         ..NONE
     },

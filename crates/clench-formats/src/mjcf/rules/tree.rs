@@ -1,6 +1,7 @@
 //! The body tree.
 
 use super::rule::{NONE, Rule, ignored, section};
+use clench_builder::joint_attributes;
 
 /// The content of the world, a body, a frame or a replica.
 const IN_A_BODY: &str =
@@ -47,9 +48,11 @@ pub(super) const RULES: &[Rule] = &[
     },
     Rule {
         element: "joint",
-        read: "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit \
-            solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref \
-            springyield armature damping frictionloss user",
+        read: concat!(
+            "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit \
+            solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp ref springref damping user",
+            joint_attributes!()
+        ),
         ..NONE
     },
     Rule {

@@ -4,8 +4,8 @@
 use super::{Coordinate, Scale};
 use crate::mjcf::linear_map::{Deformation, LinearMap, nearly_equal};
 use clench_builder::{
-    CameraLens, CameraSpec, GeomMass, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,
-    SiteSpec,
+    CameraLens, CameraSpec, DOF_NUMBERS, GeomMass, GeomSpec, InertiaSpec, InertialSpec,
+    JOINT_NUMBERS, JointSpec, LightSpec, SiteSpec,
 };
 use clench_collide::ShapeKind;
 use clench_dynamics::model::JointKind;
@@ -42,15 +42,13 @@ impl Scale {
         let length = length.ok_or("its axis is not aligned with the axes of the scale")?;
         let along = self.along_direction(coordinate, length);
         joint.range = joint.range.map(|end| end * along.coordinate);
-        joint.margin *= along.coordinate;
         joint.reference *= along.coordinate;
         joint.springref *= along.coordinate;
-        joint.springyield *= along.coordinate;
         joint.solimp_limit[2] *= along.coordinate;
         joint.solimp_friction[2] *= along.coordinate;
         joint.actuatorfrcrange = joint.actuatorfrcrange.map(|end| end * along.force);
-        joint.frictionloss *= along.force;
-        joint.armature *= along.gain();
+        along.element_numbers(&JOINT_NUMBERS, &mut joint.joint_numbers_mut());
+        along.element_numbers(&DOF_NUMBERS, &mut joint.dof_numbers_mut());
         along.polynomial(&mut joint.stiffness);
         along.polynomial(&mut joint.damping);
         Ok(length)

@@ -22,7 +22,9 @@ use super::orientation::Pose;
 use super::shortcut::Shortcut;
 use crate::LoadError;
 use crate::spending::Spending;
-use clench_builder::{BodySpec, BuildError, JointSpec, ModelBuilder, Origin};
+use clench_builder::{
+    BodySpec, BuildError, ElementNumber, JointSpec, ModelBuilder, NumberDimension, Origin,
+};
 use clench_dynamics::model::JointKind;
 use clench_math::Vec3;
 use std::collections::BTreeMap;
@@ -167,6 +169,17 @@ impl Along {
         for coefficient in coefficients {
             factor /= self.unit;
             *coefficient *= factor;
+        }
+    }
+
+    /// Scales the numbers of some rows of a table.
+    fn element_numbers(self, rows: &[ElementNumber], numbers: &mut [&mut f64]) {
+        for (row, number) in rows.iter().zip(numbers) {
+            **number *= match row.dimension {
+                NumberDimension::Coordinate => self.coordinate,
+                NumberDimension::Force => self.force,
+                NumberDimension::ForcePerCoordinate => self.gain(),
+            };
         }
     }
 

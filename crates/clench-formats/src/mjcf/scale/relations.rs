@@ -4,7 +4,8 @@ use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::LoadError;
 use crate::mjcf::linear_map::LinearMap;
 use clench_builder::{
-    FrameKind, FrameName, GeomsName, ModelBuilder, SensorSpec, SensorSubject, TendonSpec, WrapSpec,
+    FrameKind, FrameName, GeomsName, ModelBuilder, SensorSpec, SensorSubject, TENDON_NUMBERS,
+    TendonSpec, WrapSpec,
 };
 use clench_dynamics::model::{Attachment, JointKind, SensorDimension};
 use std::collections::BTreeMap;
@@ -187,13 +188,10 @@ fn scale_tendon(tendon: &mut TendonSpec, along: Along) {
     tendon.springlength = tendon
         .springlength
         .map(|rest| rest.map(|end| end * along.coordinate));
-    tendon.springyield *= along.coordinate;
-    tendon.margin *= along.coordinate;
     tendon.solimp_limit[2] *= along.coordinate;
     tendon.solimp_friction[2] *= along.coordinate;
     tendon.actuatorfrcrange = tendon.actuatorfrcrange.map(|end| end * along.force);
-    tendon.frictionloss *= along.force;
-    tendon.armature *= along.gain();
+    along.element_numbers(&TENDON_NUMBERS, &mut tendon.numbers_mut());
     along.polynomial(&mut tendon.stiffness);
     along.polynomial(&mut tendon.damping);
 }

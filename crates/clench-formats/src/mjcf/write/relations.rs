@@ -2,7 +2,7 @@
 
 use super::names::{SaveError, body_name, label, named};
 use super::xml::Xml;
-use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
+use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, TENDON_NUMBERS};
 use clench_dynamics::Model;
 use clench_dynamics::model::{Pair, Tendon, Wrap};
 
@@ -77,7 +77,6 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
         .boolean("limited", *limited)
         .numbers_unless("actuatorfrcrange", &p.tendon_actfrcrange[t], &[0.0; 2])
         .boolean("actuatorfrclimited", *actfrclimited)
-        .number_unless("margin", p.tendon_margin[t], 0.0)
         .polynomial(
             "stiffness",
             polynomial(p.tendon_stiffness[t], p.tendon_stiffnesspoly[t]),
@@ -86,10 +85,8 @@ fn write_tendon(model: &Model, t: usize, tendon: &Tendon, xml: &mut Xml) -> Resu
             "damping",
             polynomial(p.tendon_damping[t], p.tendon_dampingpoly[t]),
         )
-        .number_unless("armature", p.tendon_armature[t], 0.0)
+        .element_numbers(&TENDON_NUMBERS, p, t)
         .numbers("springlength", &p.tendon_lengthspring[t])
-        .number_unless("springyield", p.tendon_springyield[t], 0.0)
-        .number_unless("frictionloss", p.tendon_frictionloss[t], 0.0)
         .numbers_unless("solreflimit", &p.tendon_solref_lim[t], &DEFAULT_SOLREF)
         .numbers_unless("solimplimit", &p.tendon_solimp_lim[t], &DEFAULT_SOLIMP)
         .numbers_unless("solreffriction", &p.tendon_solref_fri[t], &DEFAULT_SOLREF)

@@ -3,7 +3,9 @@
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
 use crate::document::MAX_DEPTH;
-use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, surfacevel_in_frame};
+use clench_builder::{
+    DEFAULT_SOLIMP, DEFAULT_SOLREF, DOF_NUMBERS, ElementNumber, JOINT_NUMBERS, surfacevel_in_frame,
+};
 use clench_collide::ShapeKind;
 use clench_dynamics::Model;
 use clench_dynamics::model::{
@@ -138,10 +140,11 @@ fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> 
             parent: _,
             frictionloss: _,
         } = &model.dofs[d];
-        let same = p.dof_armature[d] == p.dof_armature[*dof]
+        let same_number =
+            |row: &ElementNumber| p.number(row.param, 0, d) == p.number(row.param, 0, *dof);
+        let same = DOF_NUMBERS.iter().all(same_number)
             && p.dof_damping[d] == p.dof_damping[*dof]
             && p.dof_dampingpoly[d] == p.dof_dampingpoly[*dof]
-            && p.dof_frictionloss[d] == p.dof_frictionloss[*dof]
             && p.dof_solref[d] == p.dof_solref[*dof]
             && p.dof_solimp[d] == p.dof_solimp[*dof];
         if !same {
@@ -168,14 +171,12 @@ fn write_joint(model: &Model, j: usize, xml: &mut Xml) -> Result<(), SaveError> 
         .boolean("limited", *limited)
         .numbers_unless("actuatorfrcrange", &p.jnt_actfrcrange[j], &[0.0; 2])
         .boolean("actuatorfrclimited", *actfrclimited)
-        .number_unless("margin", p.jnt_margin[j], 0.0)
         .numbers_unless("solreflimit", &p.jnt_solref[j], &DEFAULT_SOLREF)
         .numbers_unless("solimplimit", &p.jnt_solimp[j], &DEFAULT_SOLIMP)
-        .number_unless("springyield", p.jnt_springyield[j], 0.0)
         .polynomial("stiffness", stiffness)
         .polynomial("damping", damping)
-        .number_unless("armature", p.dof_armature[d], 0.0)
-        .number_unless("frictionloss", p.dof_frictionloss[d], 0.0)
+        .element_numbers(&JOINT_NUMBERS, p, j)
+        .element_numbers(&DOF_NUMBERS, p, d)
         .numbers_unless("solreffriction", &p.dof_solref[d], &DEFAULT_SOLREF)
         .numbers_unless("solimpfriction", &p.dof_solimp[d], &DEFAULT_SOLIMP)
         .integer_unless("group", (*group).into(), 0);

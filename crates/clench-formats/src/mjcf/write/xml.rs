@@ -1,5 +1,7 @@
 //! Elements as indented text, each with its attributes on one line.
 
+use clench_builder::ElementNumber;
+use clench_dynamics::Params;
 use std::fmt::Write;
 
 /// The text so far, and the open elements at its end.
@@ -182,6 +184,18 @@ impl Tag<'_> {
     pub(in crate::mjcf) fn polynomial(self, name: &str, coefficients: [f64; 3]) -> Self {
         let used = coefficients.iter().rposition(|&c| c != 0.0);
         self.numbers_unless(name, &coefficients[..used.map_or(0, |last| last + 1)], &[])
+    }
+
+    /// Writes the numbers of element `index` that a table lists and that are not zero.
+    pub(in crate::mjcf) fn element_numbers(
+        self,
+        rows: &[ElementNumber],
+        params: &Params<f64>,
+        index: usize,
+    ) -> Self {
+        rows.iter().fold(self, |tag, row| {
+            tag.number_unless(row.name, params.number(row.param, 0, index), 0.0)
+        })
     }
 
     /// Writes a number unless it is the default.
