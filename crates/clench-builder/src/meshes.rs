@@ -1,5 +1,5 @@
-//! Conversion of an author's mesh to one about its centre of mass, along its principal axes, by the rules of MuJoCo's
-//! compiler.
+//! Meshes: an author's mesh becomes one about its centre of mass, along its principal axes, with its hull, by the
+//! rules of MuJoCo's compiler.
 
 use super::element::Element;
 use super::solid::Solid;

@@ -1,4 +1,4 @@
-//! The softness of a constraint: converts solref and solimp into the parameters of the convex problem.
+//! The softness of a constraint: converts solref and solimp into aref and R.
 //!
 //! A constraint with violation r and rate v has the reference acceleration of a damped spring; its impedance d ∈ (0, 1)
 //! sets how closely it follows it:

@@ -1,4 +1,4 @@
-//! Steps of a batch: environments are grouped, threads claim groups, and failures are reported as statuses.
+//! Steps of a batch: environments are grouped, threads claim groups, and environments that failed are reported.
 
 use super::env_rows::EnvRows;
 use super::job::{Call, Job, Pass, Stepper};

@@ -1,4 +1,5 @@
-//! A thread's scratch memory, in which a group of environments is gathered, stepped in lanes and scattered.
+//! The step of a group of environments: a thread gathers them, steps them in lanes, and scatters those that succeeded.
+//! The rows of an environment that failed stay at its last good state, and its status reports the fault.
 
 use super::answer::{QueryCall, QueryMemory};
 use super::env_rows::EnvRows;
