@@ -1,6 +1,6 @@
 //! Contact points, in a small buffer without heap.
 
-use crate::frame_from_normal;
+use crate::frame::frame_from_normal;
 use clench_math::{Mask, Mat3, Real, Vec3};
 
 /// The maximum number of contact points of a pair, reached by a shape on a height field.

@@ -5,7 +5,10 @@
 //! relative to the other, the rotation of each, and the sizes of both. The chain rule does the rest. Faces, edges and
 //! vertices of polyhedra are differentiated as the features that they are, curved surfaces with their curvature.
 
-use crate::{Collide, Contacts, Pose, SeparatingAxis, Shape, collide_again};
+use crate::contact::Contacts;
+use crate::narrow::{Collide, SeparatingAxis, collide_again};
+use crate::pose::Pose;
+use crate::shape::Shape;
 use clench_math::{Dual, Mask, Mat3, Real, Scalar, Vec3, kernel};
 use std::cell::Cell;
 

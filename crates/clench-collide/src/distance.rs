@@ -1,7 +1,11 @@
 //! The signed distance of two shapes.
 
+use crate::compiled::compiled_collide;
+use crate::contact::Contacts;
+use crate::narrow::supported;
 use crate::narrow::{Collide, SeparatingAxis, collide_again};
-use crate::{Contacts, Pose, Shape, Terrain, compiled_collide, supported};
+use crate::pose::Pose;
+use crate::shape::{Shape, Terrain};
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// The shortest connection between two shapes.

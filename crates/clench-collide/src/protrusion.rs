@@ -13,7 +13,8 @@
 //! returns the best value found within its limits. This code repeats it step by step, since models rely on its values:
 //! tight limits may stop it early.
 
-use crate::{Pose, Shape};
+use crate::pose::Pose;
+use crate::shape::Shape;
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// The limits of the search for a maximum.

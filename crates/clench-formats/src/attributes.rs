@@ -1,7 +1,7 @@
 //! Typed access to attributes, with MuJoCo's errors: too few numbers, too many, not a number.
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::ElementNumber;
 use clench_math::Vec3;
 use std::sync::Arc;

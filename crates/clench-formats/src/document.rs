@@ -3,7 +3,7 @@
 //! An owned tree rather than `roxmltree`'s own, because includes splice the elements of several files into one. Neither
 //! this module nor the readers recurse over it, so that a deep file needs no more stack than a flat one.
 
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use crate::tolerant;
 use clench_builder::Origin;

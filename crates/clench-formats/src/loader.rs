@@ -1,8 +1,9 @@
 //! Model loading: reads the bytes, detects the format and configures its reader.
 
 use crate::document;
+use crate::error::LoadError;
 use crate::spending::{Memory, Spending, memory_name};
-use crate::{LoadError, mjcf, urdf};
+use crate::{mjcf, urdf};
 use clench_builder::ModelBuilder;
 use clench_dynamics::{Budget, Model};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! The location of a block's data.
 
-use crate::Cost;
+use crate::costs::Cost;
 use std::ops::Range;
 
 /// The location of a block in the pools.

@@ -12,7 +12,8 @@
 
 use crate::descent::{Convergence, Direction, SolverState};
 use crate::iterate::{Iterate, dot};
-use crate::{Problem, Settings};
+use crate::options::Settings;
+use crate::problem::Problem;
 use clench_math::{Real, kernel};
 
 /// Powell's limit: consecutive gradients whose overlap is this fraction of the new one are far from orthogonal.

@@ -1,7 +1,9 @@
 //! Validation of problems.
 
+use crate::costs::Cost;
 use crate::error::ProblemError;
-use crate::{Block, Cost, Problem, TreeFactor};
+use crate::problem::{Block, Problem};
+use crate::tree::TreeFactor;
 use clench_math::{Mask, Real, Scalar};
 
 impl<T: Real> Problem<T> {

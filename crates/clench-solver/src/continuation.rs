@@ -7,7 +7,8 @@
 //! stages to its own value. Only the last stage, the original problem, can end a solve.
 
 use crate::block_index::BlockIndex;
-use crate::{Cost, Problem};
+use crate::costs::Cost;
+use crate::problem::Problem;
 use clench_math::{Mask, Real, kernel};
 
 /// The value of A D above which a cone is very stiff.

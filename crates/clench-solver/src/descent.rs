@@ -3,8 +3,12 @@
 use crate::costs::Totals;
 use crate::iterate::{Iterate, dot};
 use crate::line_search::{Precision, Step};
+use crate::options::Settings;
+use crate::problem::Problem;
 use crate::ray::Ray;
-use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Status, Threads};
+use crate::stats::{SolveStats, Status};
+use crate::stopwatch::{SolveClock, SolvePart};
+use crate::threads::Threads;
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// A method that computes search directions.

@@ -7,12 +7,15 @@
 //! all other lanes, so neighbours do not affect a lane's result. If few lanes have an island, each solves it in
 //! scalars, which is faster and gives the same bits.
 
+use crate::options::Settings;
 use crate::partition::{Island, Lists, Partition};
 use crate::problem::{Part, Problem};
 use crate::results::Results;
 use crate::slot::Slot;
+use crate::stopwatch::SolveClock;
+use crate::threads::Threads;
 use crate::transfer::{AllLanes, OneLane, Transfer};
-use crate::{Settings, SolveClock, Threads, Tree};
+use crate::tree::Tree;
 use clench_math::{Mask, Real};
 use std::sync::Arc;
 

@@ -1,11 +1,11 @@
 //! The iterate: the state that changes during a solve.
 
-use crate::Problem;
 use crate::block_index::BlockIndex;
 use crate::continuation::Continuation;
 use crate::costs::{BlockCost, Rows, Totals, with_cost};
 use crate::jacobian::Jacobian;
 use crate::normal_forces::NormalForces;
+use crate::problem::Problem;
 use crate::ray::Ray;
 use clench_math::{Mask, Real, Scalar, kernel};
 

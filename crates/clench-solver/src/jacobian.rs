@@ -2,9 +2,9 @@
 //!
 //! The solver needs nothing else, so rows need not be stored if another form is cheaper.
 
-use crate::Tree;
 use crate::block_index::BlockIndex;
 use crate::costs::{Form, MAX_DIM, Weight};
+use crate::tree::Tree;
 use clench_math::{Real, array, kernel};
 use std::ops::Range;
 

@@ -10,11 +10,12 @@
 //! cancel.
 
 use crate::block_index::BlockIndex;
+use crate::costs::Cost;
 use crate::costs::{BlockCost, Slope, with_cost};
 use crate::iterate::{Iterate, add_scaled, dot};
 use crate::jacobian::Jacobian;
+use crate::problem::Problem;
 use crate::ray::Ray;
-use crate::{Cost, Problem};
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// The result of a line search.

@@ -8,7 +8,8 @@
 //! ```
 
 use crate::iterate::dot;
-use crate::{Problem, Tree, TreeFactor, TreeMatrix};
+use crate::problem::Problem;
+use crate::tree::{Tree, TreeFactor, TreeMatrix};
 use clench_math::{Real, kernel};
 
 /// Memory for the terms of one problem.

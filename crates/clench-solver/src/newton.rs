@@ -7,8 +7,12 @@ use crate::costs::{BlockCost, with_cost};
 use crate::descent::{Convergence, Direction, SolverState};
 use crate::hessian::Hessian;
 use crate::iterate::Iterate;
+use crate::options::{Settings, Switch};
 use crate::prediction::Prediction;
-use crate::{Problem, Settings, SolveClock, SolvePart, SolveStats, Switch, Threads};
+use crate::problem::Problem;
+use crate::stats::SolveStats;
+use crate::stopwatch::{SolveClock, SolvePart};
+use crate::threads::Threads;
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// Newton's method, with the factored Hessian.

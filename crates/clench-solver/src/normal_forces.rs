@@ -14,7 +14,8 @@
 //! where friction jams; the iteration from the start selects one.
 
 use crate::block_index::BlockIndex;
-use crate::{Cost, Problem};
+use crate::costs::Cost;
+use crate::problem::Problem;
 use clench_math::{Real, kernel};
 
 /// The limits of γ. From 1 on, the last two changes point away from a repelling fixed point; λ then moves to f, which

@@ -16,11 +16,14 @@
 //! computed after them.
 
 use crate::block_index::BlockIndex;
+use crate::costs::Cost;
 use crate::costs::MAX_DIM;
 use crate::iterate::{Iterate, dot};
 use crate::jacobian::Jacobian;
 use crate::metric_terms::MetricTerms;
-use crate::{Cost, Problem, Settings, SolveStats};
+use crate::options::Settings;
+use crate::problem::Problem;
+use crate::stats::SolveStats;
 use clench_math::{Mask, Real, Scalar, kernel};
 
 /// The maximum number of Newton steps for the multiplier of an ellipse, which converges quadratically from below.

@@ -6,8 +6,8 @@
 //!
 //! Sleeping also uses the partition: bodies sleep by island.
 
-use crate::Problem;
 use crate::minimum_degree::MinimumDegree;
+use crate::problem::Problem;
 use clench_math::{Mask, Real, kernel};
 use std::cmp::Reverse;
 use std::ops::Range;

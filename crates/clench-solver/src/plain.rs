@@ -1,7 +1,10 @@
 //! Problems from plain arrays, without trees, bodies or joints.
 
 use crate::check::check_length;
-use crate::{Cost, Problem, ProblemError, Tree};
+use crate::costs::Cost;
+use crate::error::ProblemError;
+use crate::problem::Problem;
+use crate::tree::Tree;
 use clench_math::{Mask, Real};
 use std::sync::Arc;
 

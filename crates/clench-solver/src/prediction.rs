@@ -14,10 +14,11 @@
 //! decreases the cost; near the solution it is the step d.
 
 use crate::block_index::BlockIndex;
+use crate::costs::Cost;
 use crate::costs::{Coulomb, MAX_DIM};
 use crate::hessian::Hessian;
 use crate::iterate::{Iterate, dot};
-use crate::{Cost, Problem};
+use crate::problem::Problem;
 use clench_math::{Mask, Real, kernel};
 
 /// The maximum number of directions, and the residual, relative to the right-hand side, at which the method stops. The

@@ -1,11 +1,12 @@
 //! The problem: the data that stay constant during a solve.
 
 use crate::block_index::BlockIndex;
+use crate::costs;
 use crate::costs::{Cost, MAX_DIM, Rows};
 use crate::jacobian::StoredRows;
 use crate::runs::runs;
 use crate::transfer::Transfer;
-use crate::{Tree, TreeFactor, TreeMatrix, costs};
+use crate::tree::{Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, kernel};
 use std::ops::Range;
 use std::sync::Arc;

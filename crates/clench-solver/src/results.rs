@@ -1,10 +1,11 @@
 //! The results of a solve.
 
 use crate::iterate::all_finite;
+use crate::problem::Problem;
 use crate::slot::Slot;
+use crate::stats::{SolveStats, Status};
 use crate::transfer::Transfer;
 use crate::workspace::Workspace;
-use crate::{Problem, SolveStats, Status};
 use clench_math::{Real, kernel};
 
 /// The results of a solve.

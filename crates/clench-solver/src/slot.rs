@@ -1,7 +1,7 @@
 //! The memory for solving one island.
 
-use crate::Tree;
 use crate::problem::Problem;
+use crate::tree::Tree;
 use crate::workspace::Workspace;
 use clench_math::Real;
 use std::sync::Arc;

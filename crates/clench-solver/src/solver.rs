@@ -3,15 +3,18 @@
 //! Solves are compiled with this crate; a crate that steps simulations calls them without compiling them again.
 
 use crate::check::check_length;
+use crate::costs::Cost;
 use crate::descent::SolverState;
+use crate::error::ProblemError;
 use crate::islands::{Islands, Job};
+use crate::options::{Settings, Switch};
+use crate::problem::Problem;
 use crate::results::Results;
+use crate::stats::SolveStats;
 use crate::stopwatch::SolveClock;
+use crate::threads::Threads;
+use crate::tree::{Tree, TreeFactor, TreeMatrix};
 use crate::workspace::Workspace;
-use crate::{
-    Cost, Problem, ProblemError, Settings, SolveStats, Switch, Threads, Tree, TreeFactor,
-    TreeMatrix,
-};
 use clench_math::{CompiledKernels, KernelTable, Real};
 use std::sync::LazyLock;
 

@@ -1,8 +1,9 @@
 //! The distance of constraints from a change of their piece, where the force has no derivative.
 
 use crate::block_index::BlockIndex;
+use crate::costs::Cost;
 use crate::costs::{MAX_DIM, Rows};
-use crate::{Cost, Problem};
+use crate::problem::Problem;
 use clench_math::{Real, Scalar};
 
 impl<T: Real> Problem<T> {

@@ -1,12 +1,15 @@
 //! The memory of a solve of one whole problem.
 
 use crate::cg::Cg;
+use crate::costs::Cost;
 use crate::costs::Pyramid;
 use crate::descent::{SolverState, minimise, trace};
 use crate::implicit::{Implicit, Memory};
 use crate::newton::Newton;
 use crate::noslip::Noslip;
-use crate::{ConstraintSolver, Cost, Problem, Settings, SolveStats, Status};
+use crate::options::{ConstraintSolver, Settings};
+use crate::problem::Problem;
+use crate::stats::{SolveStats, Status};
 use clench_math::{Real, kernel};
 
 /// Memory for problems solved as a whole.

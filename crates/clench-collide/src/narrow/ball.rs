@@ -2,7 +2,8 @@
 
 use super::placed::Placed;
 use super::segment::Segment;
-use crate::{Capsule, ContactPoint, Contacts, Sphere};
+use crate::contact::{ContactPoint, Contacts};
+use crate::shape::{Capsule, Sphere};
 use clench_math::{Mask, Real, Vec3, kernel};
 
 /// A point with a radius: a sphere, or a point on the axis of a capsule.

@@ -12,7 +12,9 @@ use super::convex;
 use super::per_lane::{Points, per_lane_where};
 use super::placed::Placed;
 use super::separating_axis::SeparatingAxis;
-use crate::{Contacts, Cuboid, Pose};
+use crate::contact::Contacts;
+use crate::pose::Pose;
+use crate::shape::Cuboid;
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// The margin by which an edge pair must beat the best face, relative to its own separation, to break a tie.

@@ -6,7 +6,8 @@
 use super::convex;
 use super::per_lane::per_lane_where;
 use super::placed::Placed;
-use crate::{Capsule, ContactPoint, Contacts, Cuboid, Sphere};
+use crate::contact::{ContactPoint, Contacts};
+use crate::shape::{Capsule, Cuboid, Sphere};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// Clamps each coordinate to the box of half lengths `size`.

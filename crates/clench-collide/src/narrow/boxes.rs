@@ -5,7 +5,8 @@
 
 use super::placed::AnyPlaced;
 use super::separating_axis::SeparatingAxis;
-use crate::{Shape, Sphere, allowance};
+use crate::broad::allowance;
+use crate::shape::{Shape, Sphere};
 use clench_math::{Real, Vec3};
 
 /// Returns the lanes in which the boxes of two bounded shapes are at most `margin` apart along all of their face

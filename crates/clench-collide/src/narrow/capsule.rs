@@ -15,7 +15,8 @@
 use super::ball::{Ball, across_axes, ball_ball};
 use super::placed::Placed;
 use super::segment::Segment;
-use crate::{Capsule, Contacts};
+use crate::contact::Contacts;
+use crate::shape::Capsule;
 use clench_math::{Mask, Real, kernel};
 
 /// The squared sine of the angle below which capsules are parallel.

@@ -4,7 +4,8 @@ use super::ball::across_axes;
 use super::penetration::{deepest, penetration_depth};
 use super::placed::Placed;
 use super::segment::Segment;
-use crate::{Capsule, ContactPoint, Contacts, Cylinder, Sphere};
+use crate::contact::{ContactPoint, Contacts};
+use crate::shape::{Capsule, Cylinder, Sphere};
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
 /// The maximum steps to the nearest point of a segment. Four to eight are usual; this many bisections leave only

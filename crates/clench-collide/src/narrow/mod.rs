@@ -21,7 +21,9 @@ mod polygon;
 mod segment;
 mod separating_axis;
 
-use crate::{Contacts, Pose, Shape, ShapeKind};
+use crate::contact::Contacts;
+use crate::pose::Pose;
+use crate::shape::{Shape, ShapeKind};
 use clench_math::{Real, kernel};
 pub use constants::SHAPE_CONSTANTS;
 pub use convex::{CONVEX_CONSTANTS, CONVEX_COUNTS};

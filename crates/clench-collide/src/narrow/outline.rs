@@ -14,7 +14,7 @@
 //! the rounded polygon: with its second moments C about the middle m, sectors have equal angles in x ↦ C^(-½) (x − m).
 
 use super::polygon::CAPACITY;
-use crate::PATCH_POINTS;
+use crate::contact::PATCH_POINTS;
 use arrayvec::ArrayVec;
 use clench_math::{Real, Scalar, Vec3};
 

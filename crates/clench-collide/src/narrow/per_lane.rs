@@ -2,8 +2,9 @@
 
 use super::placed::Placed;
 use crate::contact::set_lane;
+use crate::contact::{ContactPoint, Contacts, MAX_POINTS};
+use crate::frame::frame_from_normal;
 use crate::shape::Solid;
-use crate::{ContactPoint, Contacts, MAX_POINTS, frame_from_normal};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Mat3, Real, Vec3};
 

@@ -1,6 +1,7 @@
 //! Shapes with their poses.
 
-use crate::{Pose, Shape};
+use crate::pose::Pose;
+use crate::shape::Shape;
 
 /// A shape and its pose.
 #[derive(Clone, Copy)]

@@ -1,8 +1,9 @@
 //! Shapes on a plane. The plane is the first shape, so normals point out of it.
 
 use super::placed::Placed;
-use crate::{Capsule, ContactPoint, Contacts, Cuboid, Cylinder, Ellipsoid, Plane, Sphere};
-use crate::{frame_along, frame_from_normal};
+use crate::contact::{ContactPoint, Contacts};
+use crate::frame::{frame_along, frame_from_normal};
+use crate::shape::{Capsule, Cuboid, Cylinder, Ellipsoid, Plane, Sphere};
 use clench_math::{Mask, Mat3, Real, Scalar, Vec3, kernel};
 
 /// Adds the contact of a surface point that is `distance` above the plane.

@@ -8,8 +8,11 @@ use super::outline::Outline;
 use super::per_lane::{Point, Points, per_lane_where};
 use super::placed::Placed;
 use super::polygon::Polygon;
+use crate::broad::allowance;
+use crate::contact::{Contacts, PATCH_POINTS};
+use crate::hull::Hull;
 use crate::shape::{MAX_CORNERS, Solid};
-use crate::{Contacts, Hull, Mesh, PATCH_POINTS, Plane, allowance};
+use crate::shape::{Mesh, Plane};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 

@@ -1,7 +1,7 @@
 //! The axis segment of a capsule.
 
 use super::placed::Placed;
-use crate::Capsule;
+use crate::shape::Capsule;
 use clench_math::{Real, Vec3};
 
 /// The points center + t axis with |t| ≤ half length.

@@ -6,8 +6,9 @@
 //! of a search. So a cached direction only skips a search that would find nothing, and changes no result.
 
 use super::placed::AnyPlaced;
+use crate::hull::Hull;
 use crate::shape::Solid;
-use crate::{Hull, Mesh, Shape};
+use crate::shape::{Mesh, Shape};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// The error of a search relative to the smaller shape, twice what the search itself allows ...

@@ -1,6 +1,6 @@
 //! Rays, hits, and rays in the frame of a shape.
 
-use crate::Pose;
+use crate::pose::Pose;
 use clench_math::{Real, Scalar, Vec3};
 
 /// A ray in the frame of a shape, with a direction of unit length.

@@ -14,8 +14,9 @@ pub use line::{Hit, Ray};
 pub use triangles::{TriangleMesh, TriangleMeshError, TriangleNode};
 pub use unit_ray::UnitRay;
 
+use crate::pose::Pose;
+use crate::shape::Shape;
 use crate::shape::Solid;
-use crate::{Pose, Shape};
 use clench_math::{Real, kernel};
 
 /// Computes the first hit of a ray on a shape. A zero direction or a number that is not finite hits nothing.

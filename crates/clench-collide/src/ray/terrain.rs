@@ -9,7 +9,7 @@
 
 use super::chord::Chord;
 use super::line::Line;
-use crate::HeightField;
+use crate::height_field::HeightField;
 use clench_math::Vec3;
 
 /// The relative height of the bounding box above the highest point.

@@ -5,7 +5,7 @@
 //! Wald 2013).
 
 use super::line::{Hit, Line, Ray};
-use crate::Pose;
+use crate::pose::Pose;
 use clench_math::{Real, Vec3, kernel};
 
 /// The maximum number of triangles in a leaf.

@@ -1,7 +1,7 @@
 //! A fast conservative test of a ray against a sphere.
 
 use super::line::{Ray, Unit};
-use crate::allowance;
+use crate::broad::allowance;
 use clench_math::{Real, Scalar, Vec3};
 
 /// A ray with a unit direction, created once for many bounding spheres.

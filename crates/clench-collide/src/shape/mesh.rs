@@ -3,7 +3,7 @@
 use super::core::Core;
 use super::feature::{Feature, MAX_CORNERS, most_level};
 use super::solid::Solid;
-use crate::Hull;
+use crate::hull::Hull;
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
 use clench_math::{Mask, Real, Scalar, Vec3};

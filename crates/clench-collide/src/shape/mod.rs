@@ -30,8 +30,9 @@ pub(crate) use solid::{Homogeneous, Solid};
 pub use sphere::Sphere;
 pub use terrain::Terrain;
 
+use crate::height_field::HeightField;
+use crate::hull::Hull;
 use crate::ray::line::Line;
-use crate::{HeightField, Hull};
 use clench_math::{Real, Vec3};
 
 /// The kinds of shape, in the order of the two shapes of a pair (MuJoCo's `mjtGeom`).

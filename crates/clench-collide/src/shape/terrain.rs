@@ -2,7 +2,7 @@
 
 use super::cuboid::Cuboid;
 use super::solid::{Homogeneous, Solid};
-use crate::HeightField;
+use crate::height_field::HeightField;
 use crate::ray::line::Line;
 use crate::ray::terrain::height_field;
 use clench_math::{Mask, Real, Vec3};

@@ -5,11 +5,11 @@
 //! its nearest such ancestor (MuJoCo manual, modeling chapter, "Shortcuts"); `general` inherits from any default.
 
 use super::controller::{self, Saturation};
-use super::document::Element;
 use super::inputs;
 use super::shortcut::{self, ActuatorParams, Shortcut};
 use super::transmission;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
 use clench_dynamics::model::Interpolation;
 use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};

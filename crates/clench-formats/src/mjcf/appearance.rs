@@ -1,8 +1,8 @@
 //! The appearance of elements: colours, materials, and their assignment to geoms.
 
-use super::document::Element;
 use super::sections::entries;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{AppearanceSpec, MaterialSpec};
 use clench_dynamics::model::Material;
 use std::collections::BTreeMap;

@@ -1,10 +1,10 @@
 //! `<asset>`: meshes and height fields. A referenced material must exist.
 
-use super::document::Element;
 use super::sections::{entries, sections};
 use super::source::Sources;
 use super::{hfield, schema};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::ModelBuilder;
 use std::collections::BTreeSet;

@@ -3,13 +3,13 @@
 use super::appearance::Palette;
 use super::compiler::CompilerOptions;
 use super::defaults::{Classes, MAIN};
-use super::document::Element;
 use super::joint;
 use super::linear_map::LinearMap;
 use super::orientation::{Orientation, Pose};
 use super::scale::{FrameId, Frames, Named};
 use super::source::Sources;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::{
     BodySpec, CameraSpec, CompilerSpec, GeomSpec, InertiaSpec, InertialSpec, JointSpec, LightSpec,

@@ -1,9 +1,9 @@
 //! `<camera>`: a frame that follows bodies, and its optics. Used only by sensors.
 
 use super::compiler::CompilerOptions;
-use super::document::Element;
 use super::orientation::{Orientation, Pose};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{CameraLens, CameraSpec, CameraTracking};
 use clench_math::Vec3;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! `<compiler>`: settings for reading the file (units, order of rotations) and for deriving omitted values.
 
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{CompilerSpec, InertiaFromGeom, LengthRangeMode, LengthRangeSpec};
 use clench_math::{Quat, Vec3};
 

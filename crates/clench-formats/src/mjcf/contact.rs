@@ -1,8 +1,8 @@
 //! `<contact>`: pairs that collide regardless of their masks, and bodies that never collide.
 
-use super::document::Element;
 use super::geom::read_condim;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{DEFAULT_SOLIMP, DEFAULT_SOLREF, ExcludeSpec, PairSpec};
 
 /// Returns the defaults of a pair. Pairs in files do not mix the parameters of their geoms; they have their own

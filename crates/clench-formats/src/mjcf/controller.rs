@@ -1,9 +1,9 @@
 //! The shortcuts `pid` and `dcmotor`.
 
-use super::document::Element;
 use super::inputs::read_inputs;
 use super::shortcut::{ActuatorParams, not_negative};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 
 /// Reads `pid`: force = kp (position − length) + kv (velocity − its velocity) + ki ∫error + feedforward.

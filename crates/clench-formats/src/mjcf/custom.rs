@@ -1,9 +1,9 @@
 //! User data: `<custom>`, and the counts of user numbers of elements.
 
-use super::document::Element;
 use super::schema;
 use super::sections::entries;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::UserWidths;
 use clench_dynamics::model::{Custom, TupleEntry};

@@ -1,11 +1,11 @@
 //! `<equality>`: connect, weld, joint and tendon; their rules, reader, scaling and writer.
 
-use super::document::Element;
 use super::rules::rule::{NONE, Rule, section};
 use super::scale::{Along, Frames};
 use super::write::names::{SaveError, body_name, named};
 use super::write::xml::{Tag, Xml};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{ConnectAnchor, DEFAULT_SOLIMP, DEFAULT_SOLREF, EqualityKind, EqualitySpec};
 use clench_dynamics::Model;
 use clench_dynamics::model::{Equality, EqualityTarget};

@@ -5,8 +5,8 @@
 //! file.
 
 use super::compiler::CompilerOptions;
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use std::path::{Path, PathBuf};
 

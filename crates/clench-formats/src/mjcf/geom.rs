@@ -2,10 +2,10 @@
 
 use super::appearance::{Palette, read_appearance};
 use super::compiler::CompilerOptions;
-use super::document::Element;
 use super::linear_map::{Deformation, LinearMap};
 use super::orientation::{Orientation, Pose, segment};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{GeomMass, GeomSpec};
 use clench_collide::ShapeKind;
 use clench_math::Vec3;

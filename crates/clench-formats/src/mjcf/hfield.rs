@@ -1,9 +1,9 @@
 //! `<hfield>`: a height field from an image, a binary file, or numbers in the model.
 
-use super::document::Element;
 use super::files::Files;
-use crate::LoadError;
+use crate::document::Element;
 use crate::elevation::{Elevation, HEIGHT, read_grid, read_png};
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::HeightFieldSpec;
 

@@ -3,8 +3,8 @@
 //! As in MuJoCo 4.0, a file is looked up in the directory of the main model, then in that of the including file, and no
 //! file may appear twice, by any path; so includes cannot recurse.
 
-use super::document::{self, Element, MAX_DEPTH};
-use crate::LoadError;
+use crate::document::{self, Element, MAX_DEPTH};
+use crate::error::LoadError;
 use crate::spending::Spending;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};

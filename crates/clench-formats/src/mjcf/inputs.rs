@@ -1,7 +1,7 @@
 //! `input`: the meaning of an actuator's controls.
 
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_dynamics::model::{ControlInput, GainKind};
 
 /// The inputs that an actuator can name, in the required order.

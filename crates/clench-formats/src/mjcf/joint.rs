@@ -1,9 +1,9 @@
 //! `<joint>` and `<freejoint>`.
 
 use super::compiler::CompilerOptions;
-use super::document::Element;
 use super::orientation::Pose;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{DOF_NUMBERS, JOINT_NUMBERS, JointSpec};
 use clench_dynamics::model::JointKind;
 

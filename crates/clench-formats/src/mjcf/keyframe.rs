@@ -1,7 +1,7 @@
 //! `<keyframe>`: stored states, and `<size nkey="..."/>`, which can request more of them.
 
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::KeyframeSpec;
 
 /// Reads the state of a `<key>`; vector lengths are checked when the model is built.

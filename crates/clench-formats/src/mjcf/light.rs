@@ -1,9 +1,9 @@
 //! `<light>` and the headlight: used only by viewers.
 
 use super::camera::{Mode, tracking};
-use super::document::Element;
 use super::orientation::Pose;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::LightSpec;
 use clench_dynamics::model::{Headlight, LightKind, LightProperties};
 use clench_math::{Quat, Vec3};

@@ -1,8 +1,8 @@
 //! `<mesh>`: a mesh from a file, from vertices and faces in the model, or built in.
 
-use super::document::Element;
 use super::files::Files;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::mesh::{self, Format, MeshFolder, Objects, Triangles, builtin, obj};
 use crate::spending::Spending;
 use clench_builder::{MeshInertia, MeshSpec};

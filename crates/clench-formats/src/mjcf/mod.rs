@@ -49,8 +49,8 @@ use sections::sections;
 pub use support::{Support, supported};
 pub use write::{SaveError, SaveModel};
 
-use crate::LoadError;
 use crate::document::{self, Element};
+use crate::error::LoadError;
 use crate::spending::Spending;
 use body::BodyReader;
 use clench_builder::ModelBuilder;

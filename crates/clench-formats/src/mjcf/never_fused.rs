@@ -1,7 +1,7 @@
 //! Bodies referenced by elements without effect on motion: MuJoCo does not fuse them into others.
 
-use super::document::Element;
 use super::sections::entries;
+use crate::document::Element;
 use clench_builder::BodySpec;
 use std::collections::HashSet;
 

@@ -4,8 +4,8 @@
 //! force or a flag. Omitting a tendon or an actuator would change the controls and coordinates of the model, so those
 //! are still rejected, and so are references to omitted elements.
 
-use super::document::Element;
 use super::schema;
+use crate::document::Element;
 
 /// Elements that cannot be omitted.
 const ESSENTIAL: &[&str] = &[

@@ -4,8 +4,8 @@
 //! Solver options that a file omits have the defaults of its format, not this library's: a MuJoCo user gets MuJoCo's
 //! numbers.
 
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{ContactOverride, DEFAULT_SOLIMP, DEFAULT_SOLREF, ModelBuilder};
 use clench_dynamics::model::{Flags, Integrator};
 use clench_dynamics::options::{Mjcf, OptionValue, RigidOption, RigidOptions};

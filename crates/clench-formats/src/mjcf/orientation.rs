@@ -1,9 +1,9 @@
 //! Poses: the five representations of an orientation, and frames that transform their contents.
 
 use super::compiler::CompilerOptions;
-use super::document::Element;
 use super::linear_map::{Deformation, LinearMap};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_math::{Mat3, Quat, Vec3};
 
 /// Vectors shorter than this have no direction (MuJoCo's `mjEPS`).

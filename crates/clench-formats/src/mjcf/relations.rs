@@ -1,12 +1,12 @@
 //! The sections that refer to elements of the body tree.
 
 use super::defaults::MAIN;
-use super::document::Element;
 use super::sections::entries;
 use super::shortcut::Shortcut;
 use super::source::Sources;
 use super::{contact, equality, keyframe, sensor, tendon};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{ActuatorSpec, ModelBuilder, TendonSpec};
 use clench_dynamics::model::SensorKind;
 

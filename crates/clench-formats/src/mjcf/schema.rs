@@ -3,10 +3,10 @@
 //! The outcomes are: read; accepted and without effect on motion; known to MuJoCo but not supported yet; unknown. The
 //! tables are in [`rules`](super::rules).
 
-use super::document::Element;
 use super::rules::rules;
 use super::sensor;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::mjcf::rules::Rule;
 use clench_dynamics::model::SensorKind;
 

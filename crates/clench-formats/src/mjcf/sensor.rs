@@ -1,8 +1,8 @@
 //! `<sensor>`: the attributes of a kind of sensor follow from its attachment.
 
 use super::actuator::read_history;
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::mjcf::rules::{NONE, Rule};
 use clench_builder::{
     ContactQuerySpec, ContactSideName, FrameKind, FrameName, GeomsName, HistorySpec, SensorSpec,

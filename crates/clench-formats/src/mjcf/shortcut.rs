@@ -1,9 +1,9 @@
 //! The shortcuts of `<actuator>`: actuators whose dynamics, gain and bias derive from parameters of their own, such as
 //! `kp`, `kv`, `area`.
 
-use super::document::Element;
 use super::inputs::{Inputs, read_inputs};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{ActuatorSpec, TransmissionSpec};
 use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
 

@@ -2,11 +2,11 @@
 
 use super::appearance::read_appearance;
 use super::compiler::CompilerOptions;
-use super::document::Element;
 use super::geom::{known_kind, place_segment, read_kind};
 use super::linear_map::Deformation;
 use super::orientation::{Orientation, Pose};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{AppearanceSpec, SiteSpec};
 use clench_collide::ShapeKind;
 use clench_math::Vec3;

@@ -3,10 +3,10 @@
 
 use super::compiler::{self, CompilerOptions};
 use super::defaults::Classes;
-use super::document::Element;
 use super::files::Files;
 use super::sections::sections;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::CompilerSpec;
 use std::path::Path;

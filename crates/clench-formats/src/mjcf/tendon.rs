@@ -1,8 +1,8 @@
 //! `<tendon>`: weighted sums of joint positions, and strings through sites and around geoms.
 
 use super::appearance::read_appearance;
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{TENDON_NUMBERS, TendonSpec, WrapSpec};
 
 /// Overwrites the attributes that the element gives and default classes can also set.

@@ -1,8 +1,8 @@
 //! `<texture>`: files or a pattern. As in MuJoCo, a pattern takes precedence over a file, and a file over six of them.
 
-use super::document::Element;
 use super::files::{Content, Files};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::image::Image;
 use crate::spending::Spending;
 use clench_dynamics::model::{

@@ -1,7 +1,7 @@
 //! The transmission of an actuator, from the attributes of its target.
 
-use super::document::Element;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::TransmissionSpec;
 
 /// The attributes that name a target; an actuator has one.

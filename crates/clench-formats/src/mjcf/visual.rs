@@ -1,11 +1,11 @@
 //! Visual elements: the materials and textures of a file.
 
 use super::appearance::read_material;
-use super::document::Element;
 use super::sections::entries;
 use super::source::Sources;
 use super::{light, schema, texture};
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::{MaterialSpec, ModelBuilder};
 use clench_dynamics::model::{Material, Texture};

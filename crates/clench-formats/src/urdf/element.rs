@@ -1,7 +1,7 @@
 //! Common functions for URDF elements: unique children, error context, memory.
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 
 impl Element {

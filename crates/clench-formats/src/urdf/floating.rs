@@ -1,7 +1,7 @@
 //! Freeing of the base of a robot whose file fixes it to the world.
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use clench_builder::{JointSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;
 

@@ -2,8 +2,8 @@
 
 use super::element::consume;
 use super::meshes::Meshes;
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::mjcf::orientation::Pose;
 use crate::spending::Spending;
 use clench_builder::{GeomMass, GeomSpec};

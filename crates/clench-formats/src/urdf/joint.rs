@@ -3,8 +3,8 @@
 use super::element::{consume, inside};
 use super::geometry::read_origin;
 use super::tree::Tree;
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::{EqualityKind, EqualitySpec, JointSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;

@@ -3,8 +3,8 @@
 use super::element::{consume, inside};
 use super::geometry::{GeomReader, read_origin};
 use super::tree::Link;
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::{BodySpec, InertiaSpec, InertialSpec, ModelBuilder};
 use clench_math::{Mat3, Quat, Vec3};

@@ -1,7 +1,7 @@
 //! `<mesh>`: file lookup and sharing of equal meshes.
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::mesh::{self, Format, MeshFolder, Objects};
 use crate::mjcf::compiler::CompilerOptions;
 use crate::mjcf::files::{Content, slashes};

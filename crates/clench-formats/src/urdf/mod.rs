@@ -15,8 +15,8 @@ mod meshes;
 mod settings;
 mod tree;
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::ModelBuilder;
 use geometry::{GeomReader, Materials};

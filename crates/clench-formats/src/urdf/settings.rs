@@ -1,7 +1,7 @@
 //! `<mujoco>`, MuJoCo's extension of URDF: settings for deriving omitted values, and the physics of the world.
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use crate::mjcf::compiler::{self, CompilerOptions};
 use crate::mjcf::option::OptionReader;
 use crate::mjcf::{keyframe, schema};

@@ -1,7 +1,7 @@
 //! The kinematic tree of links.
 
-use crate::LoadError;
 use crate::document::Element;
+use crate::error::LoadError;
 use std::collections::HashMap;
 
 /// The name of the link that is the world itself.

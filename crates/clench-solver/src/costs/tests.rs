@@ -2,7 +2,7 @@
 //! values along a ray agree with those at points.
 
 use super::*;
-use crate::Cost;
+use crate::costs::Cost;
 
 const COSTS: [Cost; 6] = [
     Cost::Quadratic,

@@ -4,8 +4,11 @@ use super::rank_one::each_of_change;
 use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::Jacobian;
+use crate::problem::Problem;
 use crate::sparse::{SparseFactor, SparsePattern, Window};
-use crate::{Problem, SolveClock, SolvePart, Threads, Tree};
+use crate::stopwatch::{SolveClock, SolvePart};
+use crate::threads::Threads;
+use crate::tree::Tree;
 use clench_math::{Mask, Real, kernel};
 
 /// H and its factor over a sparse pattern.

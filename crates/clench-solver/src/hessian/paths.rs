@@ -4,8 +4,10 @@ use super::rank_one::each_of_change;
 use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::Jacobian;
+use crate::problem::Problem;
+use crate::stopwatch::{SolveClock, SolvePart};
 use crate::tree::CouplingScratch;
-use crate::{Problem, SolveClock, SolvePart, Tree, TreeFactor, TreeMatrix};
+use crate::tree::{Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, kernel};
 
 /// H and its factor over a tree.

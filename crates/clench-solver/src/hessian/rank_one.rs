@@ -1,8 +1,8 @@
 //! The vector of a rank-one change of the Hessian.
 
-use crate::Problem;
 use crate::block_index::BlockIndex;
 use crate::costs::RankOne;
+use crate::problem::Problem;
 use clench_math::Real;
 
 /// Calls `put` with each entry of the vector of a rank-one change of a block's Hessian.

@@ -7,10 +7,11 @@
 //! ```
 
 use crate::block_index::BlockIndex;
+use crate::costs::Cost;
 use crate::iterate::Iterate;
 use crate::newton::Newton;
 use crate::prediction::{Friction, normal_product};
-use crate::{Cost, Problem};
+use crate::problem::Problem;
 use clench_math::{Mask, Real};
 
 /// The contacts that press and slide, and the factor of I − V Y.

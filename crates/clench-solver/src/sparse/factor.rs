@@ -9,7 +9,7 @@
 use super::elimination::{Elimination, Open, Spare};
 use super::pattern::{MAX_DOFS, SparsePattern, Supernode};
 use super::tiles::{NARROW, Rows, Tiles};
-use crate::Threads;
+use crate::threads::Threads;
 use clench_math::{Mask, Real, Scalar, array, kernel};
 
 /// The matrix, replaced by its factor.

@@ -6,9 +6,9 @@
 //! *Computer Solution of Large Sparse Positive Definite Systems*, 1981; Davis, *Direct Methods for Sparse Linear
 //! Systems*, 2006, §4.)
 
-use crate::Tree;
 use crate::minimum_degree::merge;
 use crate::partition::Lists;
+use crate::tree::Tree;
 use std::ops::Range;
 
 /// The filled pattern of a symmetric matrix, in supernodes.

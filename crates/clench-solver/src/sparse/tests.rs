@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::jacobian::Pattern;
+use crate::threads::Threads;
 use crate::tree::CouplingScratch;
-use crate::{Threads, Tree, TreeFactor, TreeMatrix};
+use crate::tree::{Tree, TreeFactor, TreeMatrix};
 use std::collections::BTreeSet;
 
 struct Rng(u64);

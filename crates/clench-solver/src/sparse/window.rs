@@ -2,7 +2,7 @@
 
 use super::pattern::{SparsePattern, Supernode};
 use crate::jacobian::{Part, Pattern};
-use crate::{Tree, TreeMatrix};
+use crate::tree::{Tree, TreeMatrix};
 use clench_math::{Real, kernel};
 use std::ops::Range;
 

@@ -14,7 +14,7 @@ mod matrix;
 #[cfg(test)]
 mod tests;
 
-use crate::ProblemError;
+use crate::error::ProblemError;
 pub use differentiated::solve_differentiated;
 pub use factor::TreeFactor;
 pub use lu::TreeLu;

@@ -27,7 +27,7 @@ use super::{
     prism::{EDGES, FACES, Prism},
 };
 use crate::hull::{FEW_FACES, Hull};
-use crate::{Cuboid, Cylinder};
+use crate::shape::{Cuboid, Cylinder};
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Scalar, Vec3};
 

@@ -20,7 +20,7 @@ use super::{
     largest_gap::LargestGap,
     pair::{Gap, Pair},
 };
-use crate::Cylinder;
+use crate::shape::Cylinder;
 use crate::shape::Solid;
 use clench_math::{Mat3, Scalar, Vec3};
 

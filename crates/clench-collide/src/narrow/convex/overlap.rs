@@ -6,7 +6,7 @@
 use super::clipping::ProjectedFeature;
 use super::pair::{Gap, Pair, Vertex, across};
 use super::simplex::Simplex;
-use crate::PATCH_POINTS;
+use crate::contact::PATCH_POINTS;
 use crate::narrow::outline::Outline;
 use crate::narrow::polygon::{CAPACITY, Polygon};
 use crate::shape::Feature;

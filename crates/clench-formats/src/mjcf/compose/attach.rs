@@ -6,7 +6,7 @@ use super::names::Namespace;
 use super::relations::{FOLLOWING, follows};
 use super::replicate::drop_inertia;
 use super::settings::Settings;
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::compiler::Conflict;
 use crate::mjcf::document::Element;
 use crate::mjcf::schema;

@@ -6,7 +6,7 @@ use super::names::{Names, Namespace};
 use super::relations;
 use super::settings::Settings;
 use super::shared::Shared;
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::document::{self, Element, MAX_DEPTH};
 
 /// An expander of the body tree of one model.

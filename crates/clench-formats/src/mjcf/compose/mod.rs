@@ -16,10 +16,10 @@ mod settings;
 mod shared;
 mod urdf;
 
-use super::document::{self, Element};
 use super::include::Includes;
 use super::source::Sources;
-use crate::LoadError;
+use crate::document::{self, Element};
+use crate::error::LoadError;
 use crate::mjcf::sections::sections;
 use crate::spending::Spending;
 use attached_keyframe::AttachedKeyframe;

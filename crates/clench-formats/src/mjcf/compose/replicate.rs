@@ -3,7 +3,7 @@
 use super::composer::Composer;
 use super::names::{Kind, Namespace, kind_of};
 use super::relations::{FOLLOWING, concerns, follows, resolves};
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::document::Element;
 use crate::mjcf::orientation::Pose;
 use clench_math::Vec3;

@@ -1,6 +1,6 @@
 //! The state shared by all models of a composition.
 
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::document::Element;
 use crate::mjcf::omit::omit;
 use crate::mjcf::schema;

@@ -1,8 +1,8 @@
 //! Attached URDF files: read as a model, and converted to equivalent MJCF.
 
 use super::shared::Shared;
-use crate::LoadError;
 use crate::document::{self, Element};
+use crate::error::LoadError;
 use crate::mjcf::SaveModel;
 use crate::mjcf::sections::entries;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Scaling of actuators: the quantity that a control measures determines the factor of its gains.
 
 use super::{Along, Coordinate, Frames, located};
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::shortcut::Shortcut;
 use clench_builder::{ActuatorSpec, BuildError, ModelBuilder, SensorSubject, TransmissionSpec};
 use clench_dynamics::model::{Attachment, BiasKind, ControlInput, DynamicsKind, GainKind};

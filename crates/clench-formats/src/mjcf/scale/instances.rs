@@ -1,7 +1,7 @@
 //! Meshes and height fields in every size that frames require.
 
 use super::{FrameId, Frames, located};
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::linear_map::LinearMap;
 use crate::spending::Spending;
 use clench_builder::{GeomMass, GeomSpec, HeightFieldSpec, MeshInertia, MeshSpec, ModelBuilder};

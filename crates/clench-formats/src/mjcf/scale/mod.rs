@@ -16,11 +16,11 @@ mod instances;
 mod keyframes;
 mod relations;
 
-use super::document::Element;
 use super::linear_map::LinearMap;
 use super::orientation::Pose;
 use super::shortcut::Shortcut;
-use crate::LoadError;
+use crate::document::Element;
+use crate::error::LoadError;
 use crate::spending::Spending;
 use clench_builder::{
     BodySpec, BuildError, ElementNumber, JointSpec, ModelBuilder, NumberDimension, Origin,

@@ -1,7 +1,7 @@
 //! Scaling of pairs, tendons and sensors. Equalities scale in the file of their reader.
 
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
-use crate::LoadError;
+use crate::error::LoadError;
 use crate::mjcf::linear_map::LinearMap;
 use clench_builder::{
     FrameKind, FrameName, GeomsName, ModelBuilder, SensorSpec, SensorSubject, TENDON_NUMBERS,

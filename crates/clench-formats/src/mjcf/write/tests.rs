@@ -1,7 +1,8 @@
 //! A written model loads to the same model: every record, every number.
 
 use super::SaveModel;
-use crate::{Loader, load_str};
+use crate::load_str;
+use crate::loader::Loader;
 use clench_dynamics::model::{
     Body, Geom, HeightField, Joint, Mesh, ParamField, Sensor, SensorKind, SensorTarget,
 };

@@ -1,6 +1,6 @@
 //! The triangles of a height field and their neighbours.
 
-use crate::HeightField;
+use crate::height_field::HeightField;
 use crate::narrow::convex::prism::Prism;
 use clench_math::{Real, Scalar, Vec3};
 

@@ -2,9 +2,9 @@
 //! points nearest to each other are dropped.
 
 use super::grid::same_direction;
+use crate::contact::{MAX_POINTS, PATCH_POINTS};
 use crate::narrow::convex::pair::across;
 use crate::narrow::per_lane::Point;
-use crate::{MAX_POINTS, PATCH_POINTS};
 use arrayvec::ArrayVec;
 use clench_math::{Scalar, Vec3};
 use std::ops::Range;

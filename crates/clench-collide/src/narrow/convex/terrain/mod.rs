@@ -27,9 +27,11 @@ use super::{
     prism::Prism,
     simplex::Simplex,
 };
+use crate::contact::Contacts;
 use crate::narrow::per_lane::{Point, Points, per_lane};
 use crate::narrow::placed::{AnyPlaced, Placed};
-use crate::{Contacts, Pose, Shape, ShapeKind, Terrain};
+use crate::pose::Pose;
+use crate::shape::{Shape, ShapeKind, Terrain};
 use arrayvec::ArrayVec;
 pub(super) use ball::CLEAR;
 use bounds::Bounds;
