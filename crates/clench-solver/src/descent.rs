@@ -284,11 +284,23 @@ impl<T: Real> Convergence<T> {
         if !(iterate.normal_forces.exist() && mask.any()) {
             return mask;
         }
-        let gamma = iterate.normal_forces.replace(problem, &iterate.force, mask);
-        let norm = self.reevaluate(problem, iterate, mask);
+        let (gamma, moved) = iterate.normal_forces.replace(problem, &iterate.force, mask);
+        // The gradient changes only with the limits, and these have no effect where all contacts stick.
+        let settled = stats.gradient.le(self.tolerance) & T::Mask::splat(D::NEWTON);
+        if !(mask & !settled | moved).any() {
+            return mask;
+        }
+        let totals = iterate.evaluate(problem);
+        let acts = moved & (!totals.changes.eq(T::ZERO) | totals.curved | self.curved);
+        if !(mask & !settled | acts).any() {
+            return mask;
+        }
+        let norm = self.differentiate(problem, iterate, totals, mask);
         stats.gradient = T::select(mask, self.scale * norm, stats.gradient);
-        let rounding = iterate.rounding(problem, &mut ray.mass_direction);
-        let mut consistent = stats.gradient.le(self.tolerance) | norm.le(rounding);
+        let mut consistent = stats.gradient.le(self.tolerance);
+        if (mask & !consistent).any() {
+            consistent |= norm.le(iterate.rounding(problem, &mut ray.mass_direction));
+        }
         if !D::NEWTON {
             let gap = self.scale * gap(problem, iterate, &mut ray.mass_direction);
             consistent |= gap.le(self.tolerance);
@@ -297,7 +309,8 @@ impl<T: Real> Convergence<T> {
         let others = mask & !consistent;
         if others.any() {
             iterate.normal_forces.mix(problem, gamma, others);
-            self.reevaluate(problem, iterate, others);
+            let norm = self.reevaluate(problem, iterate, others);
+            stats.gradient = T::select(others, self.scale * norm, stats.gradient);
             self.refreshed &= !others;
             direction.restart(others);
         }
@@ -314,9 +327,21 @@ impl<T: Real> Convergence<T> {
     }
 
     /// Reevaluates after the lanes of `mask` were changed by more than a step; returns the norm of the gradient.
-    #[kernel]
+    #[inline(always)]
     fn reevaluate(&mut self, problem: &Problem<T>, iterate: &mut Iterate<T>, mask: T::Mask) -> T {
         let totals = iterate.evaluate(problem);
+        self.differentiate(problem, iterate, totals, mask)
+    }
+
+    /// Does the remainder after the evaluation that returned `totals`; returns the norm of the gradient.
+    #[kernel]
+    fn differentiate(
+        &mut self,
+        problem: &Problem<T>,
+        iterate: &mut Iterate<T>,
+        totals: Totals<T>,
+        mask: T::Mask,
+    ) -> T {
         let norm = iterate.differentiate(problem);
         self.curved = totals.curved;
         self.same_hessian &= !mask;

@@ -39,16 +39,26 @@ impl<T: Real> Iterate<T> {
         warmstart: Option<&[T]>,
         ray: &mut Ray<T>,
     ) -> Totals<T> {
-        let totals = self.place(problem, &problem.qacc_smooth);
         match warmstart {
-            Some(warm) => self.better_of(problem, warm, totals, ray),
-            None => totals,
+            Some(warm) => {
+                self.move_to(problem, &problem.qacc_smooth);
+                self.better_of(problem, warm, ray)
+            }
+            None => self.place(problem, &problem.qacc_smooth),
         }
     }
 
     /// Moves to an acceleration, as if it were the unconstrained one; returns the totals of the constraints there.
     #[kernel]
     pub fn place(&mut self, problem: &Problem<T>, qacc: &[T]) -> Totals<T> {
+        self.move_to(problem, qacc);
+        self.normal_forces.start(problem, &self.residual);
+        self.evaluate(problem)
+    }
+
+    /// Moves to an acceleration, as if it were the unconstrained one, and computes the residual there.
+    #[kernel]
+    fn move_to(&mut self, problem: &Problem<T>, qacc: &[T]) {
         let (nv, nrow) = (problem.nv(), problem.nrow());
         self.continuation.reset();
         for v in [
@@ -66,8 +76,6 @@ impl<T: Real> Iterate<T> {
         self.qacc.extend_from_slice(qacc);
         problem.jacobian.mul(&self.qacc, &mut self.residual);
         subtract(&mut self.residual, &problem.aref);
-        self.normal_forces.start(problem, &self.residual);
-        self.evaluate(problem)
     }
 
     /// Evaluates everything at `qacc`, gradient included.
@@ -82,16 +90,9 @@ impl<T: Real> Iterate<T> {
         self.differentiate(problem);
     }
 
-    /// Moves to `warm` in the lanes in which it costs less than the current point, whose totals are `totals`. Returns
-    /// the totals.
+    /// Moves to `warm` in the lanes in which it costs less than the current point. Returns the totals.
     #[kernel]
-    fn better_of(
-        &mut self,
-        problem: &Problem<T>,
-        warm: &[T],
-        mut totals: Totals<T>,
-        ray: &mut Ray<T>,
-    ) -> Totals<T> {
+    fn better_of(&mut self, problem: &Problem<T>, warm: &[T], ray: &mut Ray<T>) -> Totals<T> {
         // The ray from the current point to `warm`.
         ray.direction.clear();
         ray.direction.extend_from_slice(warm);
@@ -103,11 +104,9 @@ impl<T: Real> Iterate<T> {
         ray.rows.resize(problem.nrow(), T::ZERO);
         problem.jacobian.mul(warm, &mut ray.rows);
         subtract(&mut ray.rows, &problem.aref);
-        if self.normal_forces.exist() {
-            // Costs can be compared if friction has the same limits: those of `warm`, which is near the solution.
-            self.normal_forces.start(problem, &ray.rows);
-            totals = self.evaluate(problem);
-        }
+        // Costs can be compared if friction has the same limits: those of `warm`, which is near the solution.
+        self.normal_forces.start(problem, &ray.rows);
+        let totals = self.evaluate(problem);
         self.residual.swap_with_slice(&mut ray.rows);
         let warm_totals = self.evaluate(problem);
         let inertial = T::new(0.5) * dot(&ray.direction, &ray.mass_direction);

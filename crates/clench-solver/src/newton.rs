@@ -105,20 +105,24 @@ impl<T: Real> Direction<T> for Newton<T> {
             self.updatable = !convergence.curved;
         }
         clock.lap(SolvePart::Factorization as usize);
+        let mut predicted = T::Mask::splat(false);
         if iterate.normal_forces.exist() {
             let lanes = convergence.live & iterate.normal_forces.predicts();
-            let predicted = (self.prediction).run(problem, &mut self.hessian, iterate, lanes);
-            if predicted.any() {
-                iterate.evaluate(problem);
-                iterate.differentiate(problem);
-            }
+            predicted = (self.prediction).run(problem, &mut self.hessian, iterate, lanes);
         }
         ray.direction.clear();
         ray.direction.extend_from_slice(&iterate.gradient);
         for x in &mut ray.direction {
             *x = -*x;
         }
-        self.hessian.solve(&mut ray.direction);
+        if (convergence.live & !predicted).any() {
+            self.hessian.solve(&mut ray.direction);
+        }
+        if predicted.any() {
+            for (x, &step) in ray.direction.iter_mut().zip(self.prediction.step()) {
+                *x = T::select(predicted, -step, *x);
+            }
+        }
     }
 }
 

@@ -16,7 +16,7 @@
 use crate::block_index::BlockIndex;
 use crate::costs::Cost;
 use crate::problem::Problem;
-use clench_math::{Real, kernel};
+use clench_math::{Mask, Real, kernel};
 
 /// The limits of γ. From 1 on, the last two changes point away from a repelling fixed point; λ then moves to f, which
 /// leads to an attracting one. A very negative γ extrapolates too far from two iterates that are close.
@@ -79,13 +79,15 @@ impl<T: Real> NormalForces<T> {
         self.exist
     }
 
-    /// Sets λ to the normal forces of `force` in the lanes of `mask`; returns γ.
+    /// Sets λ to the normal forces of `force` in the lanes of `mask`; returns γ and the lanes in which λ changes.
     #[kernel]
-    pub fn replace(&mut self, problem: &Problem<T>, force: &[T], mask: T::Mask) -> T {
+    pub fn replace(&mut self, problem: &Problem<T>, force: &[T], mask: T::Mask) -> (T, T::Mask) {
         let (mut overlap, mut square) = (T::ZERO, T::ZERO);
+        let mut moves = T::Mask::splat(false);
         for b in blocks(problem) {
             let (k, force) = (b.active_start, force[b.row]);
             let residual = force - self.given[k];
+            moves |= !residual.eq(T::ZERO);
             let growth = residual - self.residual[k];
             overlap += residual * growth;
             square += growth * growth;
@@ -101,7 +103,7 @@ impl<T: Real> NormalForces<T> {
         let gamma = (overlap / square).max(T::new(MIXING.0));
         let mixes = self.rounds.gt(T::ZERO) & square.gt(T::ZERO) & gamma.lt(T::new(MIXING.1));
         self.rounds += T::select(mask, T::ONE, T::ZERO);
-        T::select(mixes, gamma, T::ZERO)
+        (T::select(mixes, gamma, T::ZERO), moves & mask)
     }
 
     /// Moves λ by −γ (f − f₋) in the lanes of `mask`.
@@ -115,21 +117,32 @@ impl<T: Real> NormalForces<T> {
     }
 
     /// Adds `delta`, one number for each of `blocks`, to λ in the lanes of `mask`. A sum below zero predicts a solution
-    /// that does not exist, where friction jams; λ then becomes the normal force of `force`.
+    /// that does not exist, where friction jams; λ then becomes the normal force of `force`. Returns the lanes of `mask`
+    /// in which λ moves by `delta` exactly.
     #[kernel]
-    pub fn move_by(&mut self, blocks: &[BlockIndex], delta: &[T], force: &[T], mask: T::Mask) {
+    pub fn move_by(
+        &mut self,
+        blocks: &[BlockIndex],
+        delta: &[T],
+        force: &[T],
+        mask: T::Mask,
+    ) -> T::Mask {
         self.predictions += T::select(mask, T::ONE, T::ZERO);
         let count = self.predictions - T::new(MAX_FULL);
         let phase = count - T::new(CYCLE) * (count / T::new(CYCLE)).floor();
         let damped = count.gt(T::ZERO) & phase.eq(T::ZERO);
         let share = T::select(damped, T::new(0.5), T::ONE);
+        let mut exact = mask & !damped;
         for (b, &delta) in blocks.iter().zip(delta) {
             let given = &mut self.given[b.active_start];
             let moved = *given + delta;
-            let target = T::select(moved.lt(T::ZERO), force[b.row], moved);
+            let jams = moved.lt(T::ZERO);
+            exact &= !jams;
+            let target = T::select(jams, force[b.row], moved);
             let moved = *given + share * (target - *given);
             *given = T::select(mask, moved, *given);
         }
+        exact
     }
 
     /// Computes the largest |f − λ|.

@@ -9,15 +9,16 @@
 //! (I − D J_n H⁻¹ B) δ = f − λ + D J_n H⁻¹ g
 //! ```
 //!
-//! One unknown a contact, solved by the generalized conjugate residual method (Eisenstat, Elman & Schultz 1983). The
-//! step that follows is Newton's for the convex problem with the friction limits λ + δ, along which the line search
-//! decreases the cost; near the solution it is the step d.
+//! One unknown a sliding contact, solved by the generalized conjugate residual method (Eisenstat, Elman & Schultz 1983);
+//! δ of the other contacts follows from d. If the limits λ + δ change no piece, the gradient with them is g + B δ. So d
+//! is also Newton's step for the convex problem with these limits, along which the line search decreases the cost;
+//! otherwise that step is computed.
 
 use crate::block_index::BlockIndex;
 use crate::costs::Cost;
 use crate::costs::{Coulomb, MAX_DIM};
 use crate::hessian::Hessian;
-use crate::iterate::{Iterate, dot};
+use crate::iterate::{Iterate, add_scaled, dot};
 use crate::problem::Problem;
 use clench_math::{Mask, Real, kernel};
 
@@ -31,13 +32,17 @@ const RESIDUAL: f64 = 1e-2;
 pub(crate) struct Prediction<T> {
     /// The Coulomb blocks.
     blocks: Vec<BlockIndex>,
-    /// The entries μ_j u_j of B for each row, and D for each block.
+    /// The entries μ_j u_j of B for each row; for each block D, and 1 where it slides, else 0.
     friction: Vec<T>,
     weights: Vec<T>,
+    slides: Vec<T>,
     /// δ, the residual, and pairs of a direction and its image, one number a block.
     delta: Vec<T>,
     residual: Vec<T>,
     directions: Vec<T>,
+    /// H⁻¹ B times each direction, and −d; one number a dof.
+    responses: Vec<T>,
+    step: Vec<T>,
     /// Forces of rows, and a vector over dofs.
     rows: Vec<T>,
     dofs: Vec<T>,
@@ -67,8 +72,9 @@ impl<T: Real> Friction<T> {
 }
 
 impl<T: Real> Prediction<T> {
-    /// Moves λ to the prediction in the lanes of `mask` in which a contact slides, and returns them; `hessian` is
-    /// factored at the iterate. If all contacts stick, their limits have no effect.
+    /// Moves λ to the prediction in the lanes of `mask` in which a contact slides, and evaluates the iterate; `hessian`
+    /// is factored there. Returns the lanes in which Newton's step is d. If all contacts stick, their limits have no
+    /// effect.
     #[kernel]
     pub fn run(
         &mut self,
@@ -85,16 +91,17 @@ impl<T: Real> Prediction<T> {
         self.dofs.clear();
         self.dofs.extend_from_slice(&iterate.gradient);
         self.solve(hessian);
+        self.step.clear();
+        self.step.extend_from_slice(&self.dofs);
         self.residual.clear();
         for (k, b) in self.blocks.iter().enumerate() {
-            let growth = self.weights[k] * normal_product(problem, b, &self.dofs);
-            let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
-            self.residual
-                .push(T::select(mask, missing + growth, T::ZERO));
+            let predicted = self.predicted(problem, iterate, k, b, mask);
+            self.residual.push(self.slides[k] * predicted);
         }
         self.delta.clear();
         self.delta.resize(count, T::ZERO);
         self.directions.clear();
+        self.responses.clear();
         let small = T::new(RESIDUAL * RESIDUAL) * dot(&self.residual, &self.residual);
         let mut open = mask;
         for i in 0..MAX_DIRECTIONS {
@@ -113,9 +120,44 @@ impl<T: Real> Prediction<T> {
                 self.delta[k] += alpha * direction[k];
                 self.residual[k] -= alpha * image[k];
             }
+            add_scaled(
+                &mut self.step,
+                alpha,
+                &self.responses[i * self.dofs.len()..],
+            );
         }
-        (iterate.normal_forces).move_by(&self.blocks, &self.delta, &iterate.force, mask);
-        mask
+        for (k, b) in self.blocks.iter().enumerate() {
+            if self.slides[k].eq(T::ZERO).any() {
+                let predicted = self.predicted(problem, iterate, k, b, mask);
+                self.delta[k] += (T::ONE - self.slides[k]) * predicted;
+            }
+        }
+        let exact =
+            (iterate.normal_forces).move_by(&self.blocks, &self.delta, &iterate.force, mask);
+        let changes = iterate.evaluate(problem).changes;
+        iterate.differentiate(problem);
+        exact & changes.eq(T::ZERO)
+    }
+
+    /// Computes δ = f − λ − D J_n d of the `k`-th block; zero outside the lanes of `mask`.
+    #[inline(always)]
+    fn predicted(
+        &self,
+        problem: &Problem<T>,
+        iterate: &Iterate<T>,
+        k: usize,
+        b: &BlockIndex,
+        mask: T::Mask,
+    ) -> T {
+        let growth = self.weights[k] * normal_product(problem, b, &self.step);
+        let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
+        T::select(mask, missing + growth, T::ZERO)
+    }
+
+    /// Returns −d of the last prediction.
+    #[inline(always)]
+    pub(crate) fn step(&self) -> &[T] {
+        &self.step
     }
 
     /// Computes `dofs ← H⁻¹ dofs`. Not inlined in its two callers: it is long.
@@ -124,24 +166,38 @@ impl<T: Real> Prediction<T> {
         hessian.solve(&mut self.dofs);
     }
 
-    /// Lists the blocks with B and D; both are zero outside the lanes of `mask`. Returns the lanes in which one slides.
+    /// Lists the blocks with B and D; both are zero outside the lanes of `mask`. Returns the lanes in which one slides
+    /// under a load; without any, nothing more is prepared.
     #[inline(always)]
     fn prepare(&mut self, problem: &Problem<T>, iterate: &Iterate<T>, mask: T::Mask) -> T::Mask {
         let mut sliding = T::Mask::splat(false);
         self.blocks.clear();
         self.weights.clear();
-        self.friction.clear();
-        self.friction.resize(problem.nrow(), T::ZERO);
-        self.rows.resize(problem.nrow(), T::ZERO);
+        self.slides.clear();
         let blocks = problem.jacobian.blocks.iter();
         for b in blocks.filter(|b| b.cost == Cost::Coulomb) {
-            self.blocks.push(*b);
-            let friction = Friction::new(problem, iterate, b);
-            let slides = friction.slides & mask;
-            self.weights.push(T::select(mask, friction.weight, T::ZERO));
+            let presses = iterate.active_set[b.active_start].gt(T::ZERO);
+            let loaded = presses | iterate.normal_forces.of(b).gt(T::ZERO);
+            let slides = mask & loaded & iterate.active_set[b.active_start + 1].gt(T::ZERO);
             sliding |= slides;
-            for j in 1..b.dim {
-                self.friction[b.row + j] = T::select(slides, friction.rows[j], T::ZERO);
+            self.blocks.push(*b);
+            self.slides.push(T::select(slides, T::ONE, T::ZERO));
+            self.weights
+                .push(T::select(mask & presses, problem.d[b.row], T::ZERO));
+        }
+        if !sliding.any() {
+            return sliding;
+        }
+        self.friction.resize(problem.nrow(), T::ZERO);
+        self.rows.resize(problem.nrow(), T::ZERO);
+        for (b, &slides) in self.blocks.iter().zip(&self.slides) {
+            self.friction[b.rows()].fill(T::ZERO);
+            if slides.gt(T::ZERO).any() {
+                let rows = problem.rows(b);
+                let direction = Coulomb::slip_direction(rows, &iterate.residual[b.rows()]);
+                for j in 1..b.dim {
+                    self.friction[b.row + j] = slides * direction[j];
+                }
             }
         }
         sliding
@@ -158,27 +214,28 @@ impl<T: Real> Prediction<T> {
         self.dofs.fill(T::ZERO);
         (problem.jacobian).add_transposed_of(&self.blocks, &self.rows, &mut self.dofs);
         self.solve(hessian);
+        self.responses.extend_from_slice(&self.dofs);
         self.directions.extend_from_slice(&self.residual);
         for (k, b) in self.blocks.iter().enumerate() {
             let product = self.weights[k] * normal_product(problem, b, &self.dofs);
-            self.directions.push(self.residual[k] - product);
+            self.directions
+                .push(self.residual[k] - self.slides[k] * product);
         }
     }
 
     /// Makes the image of direction `i` orthogonal to those before it.
     #[inline(always)]
     fn orthogonalize(&mut self, i: usize, count: usize) {
+        let nv = self.dofs.len();
         let (before, new) = self.directions.split_at_mut(2 * i * count);
-        let (direction, image) = new.split_at_mut(count);
-        for pair in before.chunks_exact(2 * count) {
-            let (other, other_image) = pair.split_at(count);
+        let (responses, response) = self.responses.split_at_mut(i * nv);
+        for (j, pair) in before.chunks_exact(2 * count).enumerate() {
+            let other_image = &pair[count..];
             let square = dot(other_image, other_image);
-            let overlap = dot(image, other_image);
+            let overlap = dot(&new[count..], other_image);
             let beta = T::select(square.gt(T::ZERO), overlap / square, T::ZERO);
-            for k in 0..count {
-                direction[k] -= beta * other[k];
-                image[k] -= beta * other_image[k];
-            }
+            add_scaled(new, -beta, pair);
+            add_scaled(response, -beta, &responses[j * nv..]);
         }
     }
 }
