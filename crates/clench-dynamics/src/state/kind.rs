@@ -1,8 +1,9 @@
 //! The element types of the fields of a state: numbers, vectors, quaternions, wrenches, truth values.
 
 use clench_math::{Force, Mask, Quat, Real, Scalar, Vec3};
-use std::array::from_mut;
 use std::fmt::Debug;
+use std::iter::once;
+use std::slice::{from_mut, from_ref};
 
 /// A kind of element. An element is a few numbers in each lane, or a truth value.
 pub trait Kind {
@@ -19,14 +20,16 @@ pub trait Kind {
     fn zero<T: Real>() -> Self::Of<T>;
     /// Returns the zero cell.
     fn zero_cell<S: Real>() -> Self::Cell<S>;
-    /// Returns cell `part` of an element in lane `lane`.
-    fn cell<T: Real>(element: &Self::Of<T>, part: usize, lane: usize) -> Self::Cell<T::Scalar>;
-    /// Sets cell `part` of an element in lane `lane`.
-    fn set_cell<T: Real>(
-        element: &mut Self::Of<T>,
-        part: usize,
+    /// Returns the cells of an element in lane `lane`.
+    fn cells<T: Real>(
+        element: &Self::Of<T>,
         lane: usize,
-        cell: Self::Cell<T::Scalar>,
+    ) -> impl Iterator<Item = Self::Cell<T::Scalar>>;
+    /// Sets the cells of an element in lane `lane`.
+    fn set_cells<T: Real>(
+        element: &mut Self::Of<T>,
+        lane: usize,
+        cells: impl Iterator<Item = Self::Cell<T::Scalar>>,
     );
     /// Converts a cell to a number.
     fn number<S: Scalar>(cell: Self::Cell<S>) -> S;
@@ -65,12 +68,14 @@ impl Kind for Number {
         S::ZERO
     }
     #[inline(always)]
-    fn cell<T: Real>(number: &T, _: usize, lane: usize) -> T::Scalar {
-        T::as_scalars(std::slice::from_ref(number))[lane]
+    fn cells<T: Real>(number: &T, lane: usize) -> impl Iterator<Item = T::Scalar> {
+        once(T::as_scalars(from_ref(number))[lane])
     }
     #[inline(always)]
-    fn set_cell<T: Real>(number: &mut T, _: usize, lane: usize, cell: T::Scalar) {
-        T::as_scalars_mut(from_mut(number))[lane] = cell;
+    fn set_cells<T: Real>(number: &mut T, lane: usize, cells: impl Iterator<Item = T::Scalar>) {
+        for cell in cells {
+            T::as_scalars_mut(from_mut(number))[lane] = cell;
+        }
     }
     #[inline(always)]
     fn number<S: Scalar>(cell: S) -> S {
@@ -109,12 +114,14 @@ impl Kind for Integer {
         0
     }
     #[inline(always)]
-    fn cell<T: Real>(number: &T, _: usize, lane: usize) -> i32 {
-        number.lane(lane).to_f64() as i32
+    fn cells<T: Real>(number: &T, lane: usize) -> impl Iterator<Item = i32> {
+        once(number.lane(lane).to_f64() as i32)
     }
     #[inline(always)]
-    fn set_cell<T: Real>(number: &mut T, _: usize, lane: usize, cell: i32) {
-        number.set_lane(lane, T::Scalar::new(f64::from(cell)));
+    fn set_cells<T: Real>(number: &mut T, lane: usize, cells: impl Iterator<Item = i32>) {
+        for cell in cells {
+            number.set_lane(lane, T::Scalar::new(f64::from(cell)));
+        }
     }
     #[inline(always)]
     fn number<S: Scalar>(cell: i32) -> S {
@@ -157,15 +164,17 @@ macro_rules! compound {
                 S::ZERO
             }
             #[inline(always)]
-            fn cell<T: Real>(element: &$of<T>, part: usize, lane: usize) -> T::Scalar {
-                let parts = [$(&element.$($part).+),*];
-                Number::cell(parts[part], 0, lane)
+            fn cells<T: Real>(element: &$of<T>, lane: usize) -> impl Iterator<Item = T::Scalar> {
+                [$(T::as_scalars(from_ref(&element.$($part).+))[lane]),*].into_iter()
             }
             #[inline(always)]
-            fn set_cell<T: Real>(element: &mut $of<T>, part: usize, lane: usize, cell: T::Scalar) {
-                let parts = [$(&mut element.$($part).+),*];
-                if let Some(part) = parts.into_iter().nth(part) {
-                    Number::set_cell(part, 0, lane, cell);
+            fn set_cells<T: Real>(
+                element: &mut $of<T>,
+                lane: usize,
+                cells: impl Iterator<Item = T::Scalar>,
+            ) {
+                for (part, cell) in [$(&mut element.$($part).+),*].into_iter().zip(cells) {
+                    T::as_scalars_mut(from_mut(part))[lane] = cell;
                 }
             }
             #[inline(always)]
@@ -250,12 +259,14 @@ impl Kind for Truth {
         0
     }
     #[inline(always)]
-    fn cell<T: Real>(truth: &T::Mask, _: usize, lane: usize) -> u8 {
-        u8::from(truth.lane(lane))
+    fn cells<T: Real>(truth: &T::Mask, lane: usize) -> impl Iterator<Item = u8> {
+        once(u8::from(truth.lane(lane)))
     }
     #[inline(always)]
-    fn set_cell<T: Real>(truth: &mut T::Mask, _: usize, lane: usize, cell: u8) {
-        truth.set_lane(lane, cell != 0);
+    fn set_cells<T: Real>(truth: &mut T::Mask, lane: usize, cells: impl Iterator<Item = u8>) {
+        for cell in cells {
+            truth.set_lane(lane, cell != 0);
+        }
     }
     #[inline(always)]
     fn number<S: Scalar>(cell: u8) -> S {

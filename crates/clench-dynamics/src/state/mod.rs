@@ -125,12 +125,12 @@ fn splat<T: Real, K: Kind>(from: &[K::Of<T::Scalar>], to: &mut [K::Of<T>]) {
 /// Converts the elements of one environment, for every lane.
 fn set_values<S: Scalar, T: Real, K: Kind>(from: &[K::Of<S>], to: &mut [K::Of<T>]) {
     for (from, to) in from.iter().zip(to) {
-        for part in 0..K::WIDTH {
-            for lane in 0..T::LANES {
-                let number = K::number::<S>(K::cell::<S>(from, part, 0)).to_f64();
-                let number = K::from_number::<T::Scalar>(T::Scalar::new(number));
-                K::set_cell::<T>(to, part, lane, number);
-            }
+        for lane in 0..T::LANES {
+            let numbers = K::cells::<S>(from, 0).map(|cell| {
+                let number = K::number::<S>(cell).to_f64();
+                K::from_number::<T::Scalar>(T::Scalar::new(number))
+            });
+            K::set_cells::<T>(to, lane, numbers);
         }
     }
 }
@@ -138,14 +138,16 @@ fn set_values<S: Scalar, T: Real, K: Kind>(from: &[K::Of<S>], to: &mut [K::Of<T>
 /// Copies the elements of the first lane.
 fn first_lane<T: Real, K: Kind>(from: &[K::Of<T>], to: &mut [K::Of<T::Scalar>]) {
     for (from, to) in from.iter().zip(to) {
-        for part in 0..K::WIDTH {
-            K::set_cell::<T::Scalar>(to, part, 0, K::cell::<T>(from, part, 0));
-        }
+        K::set_cells::<T::Scalar>(to, 0, K::cells::<T>(from, 0));
     }
 }
 
 #[inline(never)] // Every field calls it.
 fn copy<X: Copy>(from: &[X], to: &mut Vec<X>) {
+    if to.len() == from.len() {
+        // One copy of memory. A vector copies structs of generic numbers one by one.
+        return to.copy_from_slice(from);
+    }
     to.clear();
     to.extend_from_slice(from);
 }
@@ -237,7 +239,7 @@ macro_rules! declare_moving {
             /// Copies the fields that a step writes from another state of the same model, without allocating.
             pub fn copy_moving_from(&mut self, other: &Self) {
                 self.time = other.time;
-                $(self.$name.clone_from(&other.$name);)*
+                $(copy(&other.$name, &mut self.$name);)*
             }
 
             /// Writes the fields that a step changes from the first lane to the state of one environment of the same

@@ -27,10 +27,12 @@ impl<T: Real> Stiction<T> {
     ) {
         self.find_pairs(model, contacts);
         self.displacements.resize(contacts.len(), [T::ZERO; 5]);
+        self.cursors.clear();
+        self.cursors.resize(T::LANES, 0);
         for pair in &mut self.pairs {
             let present = present_pose(pos, pair.bodies);
             pair.reference = present;
-            pair.read_reference(&state.stick_references);
+            pair.read_reference(&state.stick_references, &mut self.cursors);
             pair.displace(pos, &present, contacts, &mut self.displacements);
         }
     }

@@ -16,22 +16,26 @@ impl<T: Real> Stiction<T> {
     /// remain.
     pub(super) fn drag_friction(&self, model: &Model, ws: &Workspace<T>, displacements: &mut [T]) {
         let nv = model.nv;
-        for (i, displacement) in displacements.iter_mut().enumerate() {
-            let awake = match i.checked_sub(nv) {
-                Some(tendon) => is_tendon_awake(model, &ws.sleep, tendon),
-                None => ws.sleep.is_awake(model.tree.tree_of(i)),
-            };
-            *displacement = T::select(awake, T::ZERO, *displacement);
+        if model.may_sleep() {
+            for (i, displacement) in displacements.iter_mut().enumerate() {
+                let awake = match i.checked_sub(nv) {
+                    Some(tendon) => is_tendon_awake(model, &ws.sleep, tendon),
+                    None => ws.sleep.is_awake(model.tree.tree_of(i)),
+                };
+                *displacement = T::select(awake, T::ZERO, *displacement);
+            }
+        } else {
+            displacements.fill(T::ZERO);
         }
         for (b, record) in ws.record.blocks.iter().enumerate() {
             let displacement = match record.source {
                 ConstraintSource::DofFriction(i) => &mut displacements[i],
                 ConstraintSource::TendonFriction(i) => &mut displacements[nv + i],
-                ConstraintSource::Equality(_)
-                | ConstraintSource::Dynamic { .. }
-                | ConstraintSource::JointLimit(_)
+                ConstraintSource::Equality(_) | ConstraintSource::Dynamic { .. } => continue,
+                // Limits and contacts follow dry friction.
+                ConstraintSource::JointLimit(_)
                 | ConstraintSource::TendonLimit(_)
-                | ConstraintSource::Contact(_) => continue,
+                | ConstraintSource::Contact(_) => break,
             };
             let block = ws.problem.block(b);
             let row = block.rows().start;

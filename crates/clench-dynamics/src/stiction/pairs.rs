@@ -1,6 +1,6 @@
 //! The data of stiction in a step: the pairs of geoms that touch, their references and displacements.
 
-use clench_math::{Mat3, Quat, Real, Vec3};
+use clench_math::{Quat, Real, Vec3};
 use std::ops::Range;
 
 /// The stick references of a step and the displacements from them.
@@ -12,6 +12,8 @@ pub struct Stiction<T: Real> {
     pub(super) displacements: Vec<[T; 5]>,
     /// The change of aref per displacement, for each row of the problem, 1/s².
     pub(crate) slopes: Vec<T>,
+    /// Scratch: the place in the list of references after that of the last pair, for each lane.
+    pub(super) cursors: Vec<usize>,
     /// Scratch: the contacts of a pair that carry a load.
     pub(super) loaded: Vec<LoadedContact<T>>,
 }
@@ -79,6 +81,8 @@ impl<T: Real> RelativePose<T> {
 /// A contact that carries a load in some lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LoadedContact<T> {
+    /// Its index in the workspace.
+    pub(super) index: usize,
     /// The normal force, N; zero in the other lanes.
     pub(super) force: T,
     /// The friction that its spring asks for, in units of normal force, N: e of `return_mapping`.
@@ -86,11 +90,4 @@ pub(super) struct LoadedContact<T> {
     /// The change of that by its first slide, N/m: κ of `return_mapping`.
     pub(super) stiffness: T,
     pub(super) displacement: [T; 5],
-    pub(super) dim: usize,
-    pub(super) point: Vec3<T>,
-    pub(super) frame: Mat3<T>,
-    /// The squared ratio of spin to slide friction, m².
-    pub(super) squared_arm: T,
-    /// The displacement of the surfaces themselves in a step.
-    pub(super) drift: [T; 3],
 }

@@ -18,21 +18,23 @@ fn tags<T: Real>(reference: &StickReference<T>, lane: usize) -> [T::Scalar; 2] {
 
 /// Copies one lane of a reference.
 fn copy_lane<T: Real>(from: &StickReference<T>, to: &mut StickReference<T>, lane: usize) {
-    for part in 0..Reference::WIDTH {
-        Reference::set_cell::<T>(to, part, lane, Reference::cell::<T>(from, part, lane));
-    }
+    Reference::set_cells::<T>(to, lane, Reference::cells::<T>(from, lane));
 }
 
 impl<T: Real> StickPair<T> {
-    /// Reads the reference from the list, in the lanes where the pair touches and has one.
+    /// Reads the reference from the list, in the lanes where the pair touches and has one. The search in a lane begins
+    /// at its `cursor`, after the last pair: the list has the order of the pairs.
     #[inline(never)]
-    pub(super) fn read_reference(&mut self, list: &[StickReference<T>]) {
+    pub(super) fn read_reference(&mut self, list: &[StickReference<T>], cursors: &mut [usize]) {
         let wanted = self.geoms.map(tag::<T::Scalar>);
         let mut own = self.stored();
         for lane in (0..T::LANES).filter(|&lane| self.active.lane(lane)) {
-            let mut listed = (list.iter()).take_while(|one| tags(one, lane)[0] != T::Scalar::ZERO);
-            if let Some(found) = listed.find(|one| tags(one, lane) == wanted) {
-                copy_lane(found, &mut own, lane);
+            let cursor = cursors[lane];
+            let is_used = |&i: &usize| tags(&list[i], lane)[0] != T::Scalar::ZERO;
+            let mut places = (cursor..list.len()).take_while(is_used).chain(0..cursor);
+            if let Some(found) = places.find(|&i| tags(&list[i], lane) == wanted) {
+                copy_lane(&list[found], &mut own, lane);
+                cursors[lane] = found + 1;
             }
         }
         self.reference = RelativePose {

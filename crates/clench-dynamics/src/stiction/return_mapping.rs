@@ -18,6 +18,7 @@
 
 use super::displacement::present_pose;
 use super::pairs::{LoadedContact, RelativePose, StickPair, Stiction};
+use crate::contact::Contact;
 use crate::contact::collision::Excess;
 use crate::model::{Model, Params};
 use crate::stages::Positions;
@@ -57,12 +58,12 @@ pub(crate) fn drag<T: Real>(
         loaded.clear();
         pair.active = T::Mask::splat(false);
         for i in pair.contacts() {
-            if let Some(contact) = LoadedContact::new(params, ws, slopes, i) {
+            if let Some(contact) = LoadedContact::new(ws, slopes, i) {
                 pair.active |= contact.force.gt(T::ZERO);
                 loaded.push(contact);
             }
         }
-        pair.map(&ws.position, loaded);
+        pair.map(params, &ws.position, &ws.contacts, loaded);
     }
     let full = stiction.store(model, &ws.sleep, &mut state.stick_references);
     ws.collision.record_excess(full, Excess::StickPairs);
@@ -73,7 +74,7 @@ pub(crate) fn drag<T: Real>(
 impl<T: Real> LoadedContact<T> {
     /// Reads the solution of the `index`-th contact of the workspace. `None` if it has no friction.
     #[inline(always)]
-    fn new(params: &Params<T>, ws: &Workspace<T>, slopes: &[T], index: usize) -> Option<Self> {
+    fn new(ws: &Workspace<T>, slopes: &[T], index: usize) -> Option<Self> {
         let contact = &ws.contacts[index];
         let block_index = contact.block.filter(|_| contact.dim > 1)?;
         let block = ws.problem.block(block_index);
@@ -86,7 +87,7 @@ impl<T: Real> LoadedContact<T> {
         let mut stiffness = T::ZERO;
         for j in 1..contact.dim {
             let mu = contact.friction[j - 1];
-            let per_row = slopes[first + j] / block.r[j];
+            let per_row = slopes[first + j] * block.d[j];
             let stiff = match pyramid {
                 true => mu * per_row,
                 false => per_row / mu,
@@ -99,17 +100,12 @@ impl<T: Real> LoadedContact<T> {
                 stiffness = stiff;
             }
         }
-        let arm = contact.friction[2] / contact.friction[0];
         Some(LoadedContact {
+            index,
             force: T::select(active, force.max(T::ZERO), T::ZERO),
             demand: if pyramid { demand } else { demand.sqrt() },
             stiffness,
             displacement,
-            dim: contact.dim,
-            point: contact.pos,
-            frame: contact.frame,
-            squared_arm: arm * arm,
-            drift: contact.surfacevel.map(|v| v * params.timestep),
         })
     }
 
@@ -118,6 +114,9 @@ impl<T: Real> LoadedContact<T> {
     fn factor(&self, limit: T) -> T {
         let most = limit * self.stiffness;
         let beyond = self.demand.gt(most) & self.force.gt(T::ZERO);
+        if !beyond.any() {
+            return T::ONE;
+        }
         T::select(
             beyond,
             most / T::select(beyond, self.demand, T::ONE),
@@ -125,15 +124,16 @@ impl<T: Real> LoadedContact<T> {
         )
     }
 
-    /// Replaces the displacements by their change, or in the lanes of `anew` by their new values.
+    /// Replaces the displacements by their change, or in the lanes of `anew` by their new values; the surfaces
+    /// themselves have moved by `drift`.
     #[inline(always)]
-    fn change(&mut self, limit: T, anew: T::Mask) {
+    fn change(&mut self, limit: T, anew: T::Mask, drift: [T; 3]) {
         let factor = self.factor(limit) - T::select(anew, T::ZERO, T::ONE);
-        for (j, phi) in self.displacement.iter_mut().enumerate() {
+        for phi in &mut self.displacement {
             *phi *= factor;
-            if let Some(&drift) = self.drift.get(j) {
-                *phi += drift;
-            }
+        }
+        for (phi, drift) in self.displacement.iter_mut().zip(drift) {
+            *phi += drift;
         }
     }
 }
@@ -141,7 +141,13 @@ impl<T: Real> LoadedContact<T> {
 impl<T: Real> StickPair<T> {
     /// Changes the reference so that no contact stores more than it can carry.
     #[inline(always)]
-    fn map(&mut self, pos: &Positions<T>, loaded: &mut [LoadedContact<T>]) {
+    fn map(
+        &mut self,
+        params: &Params<T>,
+        pos: &Positions<T>,
+        contacts: &[Contact<T>],
+        loaded: &mut [LoadedContact<T>],
+    ) {
         let mut limit = T::ZERO;
         for contact in &*loaded {
             let stiff = contact.stiffness.gt(T::ZERO);
@@ -153,7 +159,7 @@ impl<T: Real> StickPair<T> {
         let mut moves = rolls;
         for contact in &*loaded {
             moves |= contact.factor(limit).lt(T::ONE);
-            for drift in contact.drift {
+            for drift in contacts[contact.index].surfacevel {
                 moves |= !drift.eq(T::ZERO);
             }
         }
@@ -161,9 +167,10 @@ impl<T: Real> StickPair<T> {
             return;
         }
         for contact in &mut *loaded {
-            contact.change(limit, rolls);
+            let drift = contacts[contact.index].surfacevel;
+            contact.change(limit, rolls, drift.map(|v| v * params.timestep));
         }
-        let twist = fit(loaded);
+        let twist = fit(contacts, loaded);
         let start = RelativePose::select(rolls, present_pose(pos, self.bodies), self.reference);
         let moved = start.displaced(pos, self.bodies[0], &twist);
         self.reference = RelativePose::select(moves, moved, self.reference);
@@ -172,37 +179,51 @@ impl<T: Real> StickPair<T> {
 
 /// Returns the rigid motion that fits the displacements of loaded contacts best.
 #[inline(always)]
-fn fit<T: Real>(loaded: &[LoadedContact<T>]) -> Twist<T> {
+fn fit<T: Real>(contacts: &[Contact<T>], loaded: &[LoadedContact<T>]) -> Twist<T> {
     let mut weight = T::ZERO;
     let mut sums = [Vec3::ZERO; 4];
-    for contact in loaded {
+    for &LoadedContact {
+        index,
+        force,
+        displacement: phi,
+        ..
+    } in loaded
+    {
+        let contact = &contacts[index];
         let [normal, t1, t2] = contact.frame.rows;
-        let phi = &contact.displacement;
         let slide = t1 * phi[0] + t2 * phi[1];
         let roll = match contact.dim {
             6 => t1 * phi[3] + t2 * phi[4],
             _ => Vec3::ZERO,
         };
-        weight += contact.force;
-        for (sum, x) in sums.iter_mut().zip([contact.point, normal, slide, roll]) {
-            *sum += x * contact.force;
+        weight += force;
+        for (sum, x) in sums.iter_mut().zip([contact.pos, normal, slide, roll]) {
+            *sum += x * force;
         }
     }
     let inverse = T::ONE / T::select(weight.gt(T::ZERO), weight, T::ONE);
     let [centre, normal, translation, rolls] = sums.map(|sum| sum * inverse);
     let (normal, _) = normal.normalize();
     let (mut moment, mut squared) = (T::ZERO, T::ZERO);
-    for contact in loaded {
+    for &LoadedContact {
+        index,
+        force,
+        displacement: phi,
+        ..
+    } in loaded
+    {
+        let contact = &contacts[index];
         let [_, t1, t2] = contact.frame.rows;
-        let phi = &contact.displacement;
-        let arm = contact.point - centre;
+        let arm = contact.pos - centre;
         let arm = arm - normal * normal.dot(arm);
         let slide = t1 * phi[0] + t2 * phi[1] - translation;
-        moment += contact.force * normal.dot(arm.cross(slide));
-        squared += contact.force * arm.norm_squared();
+        moment += force * normal.dot(arm.cross(slide));
+        squared += force * arm.norm_squared();
         if contact.dim >= 4 {
-            moment += contact.force * contact.squared_arm * phi[2];
-            squared += contact.force * contact.squared_arm;
+            // The squared ratio of spin to slide friction, m².
+            let ratio = contact.friction[2] / contact.friction[0];
+            moment += force * (ratio * ratio) * phi[2];
+            squared += force * (ratio * ratio);
         }
     }
     let determined = squared.gt(weight * T::new(MIN_SQUARED_ARM));

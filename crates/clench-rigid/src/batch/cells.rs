@@ -79,13 +79,10 @@ impl<C: Shared> Cells<'_, C> {
         out: &mut [K::Of<T>],
     ) {
         for (element, cells) in out.iter_mut().zip(self.row(env).chunks_exact(K::WIDTH)) {
-            let is_zero = |cell: C| K::number::<T::Scalar>(cell) == T::Scalar::ZERO;
-            if K::LISTED && is_zero(C::load(&cells[0])) && is_zero(K::cell(element, 0, lane)) {
+            if K::LISTED && is_end::<K, T>(C::load(&cells[0]), element, lane) {
                 break;
             }
-            for (part, cell) in cells.iter().enumerate() {
-                K::set_cell(element, part, lane, C::load(cell));
-            }
+            K::set_cells(element, lane, cells.iter().map(C::load));
         }
     }
 
@@ -98,12 +95,11 @@ impl<C: Shared> Cells<'_, C> {
         elements: &[K::Of<T>],
     ) {
         for (element, cells) in elements.iter().zip(self.row(env).chunks_exact(K::WIDTH)) {
-            let is_zero = |cell: C| K::number::<T::Scalar>(cell) == T::Scalar::ZERO;
-            if K::LISTED && is_zero(C::load(&cells[0])) && is_zero(K::cell(element, 0, lane)) {
+            if K::LISTED && is_end::<K, T>(C::load(&cells[0]), element, lane) {
                 break;
             }
-            for (part, cell) in cells.iter().enumerate() {
-                C::store(cell, K::cell(element, part, lane));
+            for (to, cell) in cells.iter().zip(K::cells(element, lane)) {
+                C::store(to, cell);
             }
         }
     }
@@ -124,4 +120,11 @@ impl<S: Scalar + Shared> Cells<'_, S> {
             S::store(cell, lanes[lane]);
         }
     }
+}
+
+/// Returns true if a list ends with the element whose first cell is `first` in a row, and in lane `lane` of `element`.
+#[inline(always)]
+fn is_end<K: Kind, T: Real>(first: K::Cell<T::Scalar>, element: &K::Of<T>, lane: usize) -> bool {
+    let is_zero = |cell| K::number::<T::Scalar>(cell) == T::Scalar::ZERO;
+    is_zero(first) && K::cells::<T>(element, lane).next().is_some_and(is_zero)
 }

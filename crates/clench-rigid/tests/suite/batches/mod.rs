@@ -185,8 +185,8 @@ pub fn assert_state<S: Precision>(
         let what = || format!("{}, row {row}: {field}", what());
         assert_bits(found.row(row), expected, &what);
     }
-    let references = (expected.stick_references.iter())
-        .flat_map(|one| (0..Reference::WIDTH).map(|part| Reference::cell::<S>(one, part, 0)));
+    let references =
+        (expected.stick_references.iter()).flat_map(|one| Reference::cells::<S>(one, 0));
     let what_of_references = || format!("{}, row {row}: stick_references", what());
     assert_bits(
         rows.stick_references.row(row),
