@@ -1,5 +1,6 @@
 //! Motions of whole models whose outcome mechanics predicts.
 
+mod endurance;
 mod heaps;
 mod sliding;
 mod stick_references;

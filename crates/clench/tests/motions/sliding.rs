@@ -86,6 +86,54 @@ fn a_puck_that_spins_slides_as_with_fine_steps() {
 }
 
 #[test]
+fn a_sphere_thrown_obliquely_with_back_spin_moves_on_a_parabola_until_it_rolls() {
+    const RADIUS: f64 = 0.1;
+    let mu = 0.2;
+    let ball = format!("<body pos='0 0 {RADIUS}'><freejoint/><geom size='{RADIUS}'/></body>");
+    for (velocity, spin) in [
+        ([2.0, 1.0], [10.0, -15.0]),
+        ([1.0, 0.5], [0.0, -40.0]),
+        ([0.5, 2.0], [30.0, 20.0]),
+    ] {
+        // The slip of the contact point keeps its direction and loses 7/2 μ g.
+        let slip = [
+            velocity[0] - RADIUS * spin[1],
+            velocity[1] + RADIUS * spin[0],
+        ];
+        let speed = f64::hypot(slip[0], slip[1]);
+        let slides = speed / (3.5 * mu * G);
+        for timestep in [STEP, 0.005] {
+            for stiction in [false, true] {
+                let mut sim = start(timestep, mu, 3, &floor_with(&ball), stiction);
+                run(&mut sim, 1.0);
+                let before = [sim.state.qpos[0], sim.state.qpos[1]];
+                for axis in 0..2 {
+                    sim.state.qvel[axis] = velocity[axis];
+                    sim.state.qvel[3 + axis] = spin[axis];
+                }
+                let mut passed = 0.0;
+                for i in 1..=8 {
+                    run(&mut sim, 0.1);
+                    passed += 0.1;
+                    let what =
+                        format!("{velocity:?}, {timestep} s, stiction {stiction}, interval {i}");
+                    let braked = f64::min(passed, slides);
+                    for axis in 0..2 {
+                        let brake = mu * G * slip[axis] / speed;
+                        let v = velocity[axis] - brake * braked;
+                        assert_close(sim.state.qvel[axis], v, speed, &what);
+                        let x = velocity[axis] * passed - brake * braked * (passed - 0.5 * braked);
+                        let found = sim.state.qpos[axis] - before[axis];
+                        assert_close(found, x, speed * passed, &what);
+                    }
+                }
+                assert!(passed > slides, "it rolls in the end");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_billiard_break_is_that_of_fine_steps() {
     const RADIUS: f64 = 0.0286;
     let ball = |x: f64, y: f64| {
