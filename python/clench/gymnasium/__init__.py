@@ -14,7 +14,8 @@ environment, all copies are simulated by one :class:`clench.Batch`::
 
 Observations, rewards, infos, random initial states and keyword arguments are gymnasium's. The model files are read from
 the installed gymnasium package; its own ``mujoco`` extra is not needed. In addition to gymnasium's arguments each task
-takes ``precision``, ``device``, ``threads``, ``options`` and ``autoreset_mode`` of :class:`BatchEnv`. With
+takes ``precision``, ``device``, ``threads``, ``options`` and ``autoreset_mode`` of :class:`BatchEnv`. Friction by
+Coulomb's law, without creep, is ``options={"contact_model": "coulomb", "stiction": True}``. With
 ``render_mode="rgb_array"``, ``render`` returns pictures, drawn without a window; there is no other mode.
 
 A custom task is a class that defines, over all environments at once, the observation, the reward, and the end of an

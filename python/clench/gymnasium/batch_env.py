@@ -52,8 +52,9 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         must be able to compute all of :attr:`outputs`.
     threads : int, optional
         Number of threads of the simulation; by default that of the machine.
-    options : clench.RigidOptions, optional
-        Options that take precedence over those of the model's file.
+    options : clench.RigidOptions or dict, optional
+        Options that take precedence over those of the model's file, or their names and values, as in
+        ``{"contact_model": "coulomb", "stiction": True}``.
     autoreset_mode : gymnasium.vector.AutoresetMode or str
         The time of resets after the end of an episode: with the next step, in the same step, or only by :meth:`reset`.
     render_mode : {None, "rgb_array"}
@@ -100,7 +101,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
     precision: Literal["64", "32"] | None = None
     device: str = "cpu"
     threads: int | None = None
-    options: RigidOptions | None = None
+    options: RigidOptions | Mapping[str, Any] | None = None
     autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP
     failure_reward: float = 0.0
 
@@ -115,7 +116,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         precision: Literal["64", "32"] | None = None,
         device: str | None = None,
         threads: int | None = None,
-        options: RigidOptions | None = None,
+        options: RigidOptions | Mapping[str, Any] | None = None,
         autoreset_mode: AutoresetMode | str | None = None,
         render_mode: str | None = None,
         render_size: tuple[int, int] | None = None,
@@ -151,12 +152,13 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         self.render_mode = render_mode
 
         self.num_envs = num_envs
+        rigid = self.options
         self.batch = Batch(
             loaded(self.model),
             num_envs,
             self.precision,
             self.threads,
-            options=self.options,
+            options=RigidOptions(**rigid) if isinstance(rigid, Mapping) else rigid,
             record=self.outputs,
             device=self.device,
         )

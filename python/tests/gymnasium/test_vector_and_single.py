@@ -60,6 +60,22 @@ def episode(envs: Any, seed: Any) -> Any:
     return [envs.reset(seed=seed)[0], *(envs.step(envs.action_space.sample())[0] for _ in range(10))]
 
 
+def test_options_by_name() -> None:
+    """Options are given by name, also in the text of a spec, or as an object."""
+    named = {"contact_model": "coulomb", "stiction": True}
+    by_name: Any = gymnasium.make_vec("clench/Hopper-v5", 2, options=named)
+    as_object: Any = gymnasium.make_vec("clench/Hopper-v5", 2, options=clench.RigidOptions(**named))
+    first = episode(by_name, 5)
+    assert_same(first, episode(as_object, 5))
+    assert not np.array_equal(first, episode(gymnasium.make_vec("clench/Hopper-v5", 2), 5))
+    single: Any = gymnasium.make("clench/Hopper-v5", options=named)
+    again: Any = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(single.spec.to_json()))
+    for env in (single, again):
+        assert (env.unwrapped.sim.options.contact_model, env.unwrapped.sim.options.stiction) == ("coulomb", True)
+    with pytest.raises(TypeError, match="contact"):
+        gymnasium.make_vec("clench/Hopper-v5", 2, options={"contact": "coulomb"})
+
+
 def test_seeds() -> None:
     envs: Any = gymnasium.make_vec("clench/Hopper-v5", 4, max_episode_steps=4)
     again: Any = gymnasium.make_vec("clench/Hopper-v5", 4, max_episode_steps=4)
