@@ -117,8 +117,8 @@ impl<T: Real> NormalForces<T> {
     }
 
     /// Adds `delta`, one number for each of `blocks`, to λ in the lanes of `mask`. A sum below zero predicts a solution
-    /// that does not exist, where friction jams; λ then becomes the normal force of `force`. Returns the lanes of `mask`
-    /// in which λ moves by `delta` exactly.
+    /// that does not exist, where friction jams; λ then becomes the normal force of `force`. Returns the lanes of
+    /// `mask` in which λ moves by `delta` exactly.
     #[kernel]
     pub fn move_by(
         &mut self,

@@ -9,10 +9,10 @@
 //! (I − D J_n H⁻¹ B) δ = f − λ + D J_n H⁻¹ g
 //! ```
 //!
-//! One unknown a sliding contact, solved by the generalized conjugate residual method (Eisenstat, Elman & Schultz 1983);
-//! δ of the other contacts follows from d. If the limits λ + δ change no piece, the gradient with them is g + B δ. So d
-//! is also Newton's step for the convex problem with these limits, along which the line search decreases the cost;
-//! otherwise that step is computed.
+//! One unknown a sliding contact, solved by the generalized conjugate residual method (Eisenstat, Elman & Schultz
+//! 1983); δ of the other contacts follows from d. If the limits λ + δ change no piece, the gradient with them is
+//! g + B δ. So d is also Newton's step for the convex problem with these limits, along which the line search decreases
+//! the cost; otherwise that step is computed.
 
 use crate::block_index::BlockIndex;
 use crate::costs::Cost;
