@@ -6,9 +6,11 @@ use std::io::{BufRead, BufReader, pipe};
 use std::process::Command;
 
 /// Substrings of the names of tests that take from 8 s to a minute; a quick run omits them.
-const LONG: [&str; 8] = [
+const LONG: [&str; 10] = [
     "accuracy::depths_and_normals_are_true",
     "closed_forms::a_cylinder_in_a_",
+    "endurance::a_pinched_capsule_stays_for_a_minute_and_for_ten",
+    "endurance::what_friction_carries_stands_for_ten_minutes",
     "distance::the_distance_is_true_and_its_points_lie_on_the_surfaces",
     "hostile::replicas_are_counted",
     "truth::the_deepest_point_is_the_true_distance",

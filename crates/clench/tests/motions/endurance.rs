@@ -34,7 +34,7 @@ fn a_pinched_capsule_stays_for_a_minute_and_for_ten() {
     for (law, cone) in [PYRAMIDS, CONES, COULOMB] {
         for impratio in [1.0, 10.0, 100.0] {
             for timestep in [0.002, 0.005] {
-                // Stiff pyramids hop, with or without stiction.
+                // Pyramids hop at a high impratio or a long step (docs/contact.md).
                 if cone == FrictionCone::Pyramidal && (timestep > 0.002 || impratio > 10.0) {
                     continue;
                 }

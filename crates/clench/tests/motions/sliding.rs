@@ -107,10 +107,8 @@ fn a_sphere_thrown_obliquely_with_back_spin_moves_on_a_parabola_until_it_rolls()
                 let mut sim = start(timestep, mu, 3, &floor_with(&ball), stiction);
                 run(&mut sim, 1.0);
                 let before = [sim.state.qpos[0], sim.state.qpos[1]];
-                for axis in 0..2 {
-                    sim.state.qvel[axis] = velocity[axis];
-                    sim.state.qvel[3 + axis] = spin[axis];
-                }
+                sim.state.qvel[..2].copy_from_slice(&velocity);
+                sim.state.qvel[3..5].copy_from_slice(&spin);
                 let mut passed = 0.0;
                 for i in 1..=8 {
                     run(&mut sim, 0.1);
