@@ -62,7 +62,7 @@ def episode(envs: Any, seed: Any) -> Any:
 
 def test_options_by_name() -> None:
     """Options are given by name, also in the text of a spec, or as an object."""
-    named = {"contact_model": "coulomb", "stiction": True}
+    named: dict[str, Any] = {"contact_model": "coulomb", "stiction": True}
     by_name: Any = gymnasium.make_vec("clench/Hopper-v5", 2, options=named)
     as_object: Any = gymnasium.make_vec("clench/Hopper-v5", 2, options=clench.RigidOptions(**named))
     first = episode(by_name, 5)
