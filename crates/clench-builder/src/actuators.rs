@@ -49,8 +49,10 @@ fn add(
     if spec.dampratio.is_some() && spec.biasprm[1] > 0.0 {
         return Err(spec.error("dampratio needs a gain that is not negative"));
     }
-    let is_rotation = spec.gain == GainKind::So3;
-    let outputs = if is_rotation { orientation::OUTPUTS } else { 1 };
+    let outputs = match spec.gain.is_rotation() {
+        true => orientation::OUTPUTS,
+        false => 1,
+    };
     let controller = controller(spec, model.na)?;
     let activations = activations(spec, &controller)?;
     let (all, limit) = (
@@ -114,7 +116,7 @@ fn check_parts(
     {
         return Err(spec.error("an orientation servo needs a ball joint"));
     }
-    if spec.gain == GainKind::So3 && forcelimited && spec.forcerange[0] != 0.0 {
+    if spec.gain.is_rotation() && forcelimited && spec.forcerange[0] != 0.0 {
         return Err(
             spec.error("the forcerange of an orientation servo limits a norm: it must start at 0")
         );
@@ -201,7 +203,7 @@ fn activations(spec: &ActuatorSpec, controller: &Controller) -> Result<usize, Bu
     let own = match spec.dynamics {
         DynamicsKind::None => 0,
         DynamicsKind::Pid | DynamicsKind::DcMotor => controller.count,
-        DynamicsKind::Integrator if spec.gain == GainKind::So3 => orientation::OUTPUTS,
+        DynamicsKind::Integrator if spec.gain.is_rotation() => orientation::OUTPUTS,
         DynamicsKind::Integrator
         | DynamicsKind::Filter
         | DynamicsKind::FilterExact

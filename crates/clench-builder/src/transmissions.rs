@@ -4,7 +4,7 @@ use super::element::Element;
 use super::resolve::AllNames;
 use super::{ActuatorSpec, BuildError, TransmissionSpec};
 use clench_dynamics::dynamics::chains::Chains;
-use clench_dynamics::model::{GainKind, Model, Transmission};
+use clench_dynamics::model::{Model, Transmission};
 
 /// Returns the transmission of an actuator.
 ///
@@ -13,7 +13,7 @@ use clench_dynamics::model::{GainKind, Model, Transmission};
 /// not rotate.
 pub(super) fn find(spec: &ActuatorSpec, names: &AllNames) -> Result<Transmission, BuildError> {
     let site = |name: &String| names.sites.find(name, spec);
-    let is_rotational = spec.gain == GainKind::So3;
+    let is_rotational = spec.gain.is_rotation();
     Ok(match &spec.transmission {
         TransmissionSpec::Joint(name) if is_rotational => {
             Transmission::Rotation(names.joints.find(name, spec)?)

@@ -229,6 +229,8 @@ pub trait Scalar:
     const MIN_POSITIVE: Self;
     /// The number of binary digits of the mantissa, including the implicit one: 53 or 24.
     const DIGITS: u32;
+    /// True for single precision, whose rounding needs its own floors and factors.
+    const IS_SINGLE: bool = Self::DIGITS == f32::MANTISSA_DIGITS;
     /// Converts the value to `f64`.
     fn to_f64(self) -> f64;
     /// Runs a task in lanes of these instructions; `None` if they are not available.

@@ -3,9 +3,9 @@
 use super::exact::ExactDiagonal;
 use super::implicit::ImplicitRows;
 use super::row::Row;
-use super::softness::{is_single, least_regularization};
+use super::softness::least_regularization;
 use crate::record::{BlockRecord, ConstraintRecord, ConstraintSource};
-use clench_math::{Mask, Real, kernel};
+use clench_math::{Mask, Real, Scalar, kernel};
 use clench_solver::{Cost, Problem};
 
 /// The maximum rows of a block.
@@ -79,7 +79,7 @@ impl<T: Real> Assembly<'_, T> {
             let matrix = (&*target.jacobian, &dofs[..]);
             implicit.regularize(cost, rows, matrix, (block.impedance, estimated), &mut r);
         }
-        if is_single::<T>() {
+        if T::Scalar::IS_SINGLE {
             raise_regularization(
                 cost,
                 rows,

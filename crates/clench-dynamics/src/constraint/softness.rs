@@ -138,12 +138,6 @@ pub(crate) fn above_least<T: Real>(r: T) -> T {
     r.max(T::new(MIN_VALUE))
 }
 
-/// Returns true if `T` has single precision, whose rounding needs its own floors and factors.
-#[inline(always)]
-pub(crate) fn is_single<T: Real>() -> bool {
-    size_of::<T::Scalar>() < size_of::<f64>()
-}
-
 /// Returns the minimum of R of a row whose current inverse inertia is about `a`, in a working precision below double.
 /// (Double precision uses `MIN_VALUE`, as MuJoCo does.)
 ///

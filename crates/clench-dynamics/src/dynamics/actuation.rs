@@ -6,7 +6,7 @@ use crate::dynamics::activation::acting_controls;
 use crate::dynamics::gain::unlimited_force;
 use crate::dynamics::transmission::moment;
 use crate::dynamics::{dc_motor, orientation};
-use crate::model::{BiasKind, GainKind, Model, Params, Transmission};
+use crate::model::{BiasKind, Model, Params, Transmission};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Real, kernel};
@@ -41,7 +41,7 @@ pub fn actuation<T: Real>(
         if !actuator.disabled {
             let act_dot = &force.act_dot;
             let out = &mut force.actuator_force[actuator.outputs.clone()];
-            if actuator.gain == GainKind::So3 {
+            if actuator.gain.is_rotation() {
                 orientation::torque(model, params, given, act_dot, u, (pos, vel)).write(out);
             } else {
                 let at = ActuatorMotion::of(model, pos, vel, u);
@@ -55,7 +55,7 @@ pub fn actuation<T: Real>(
         if actuator.forcelimited {
             let range = params.actuator_forcerange[u];
             let out = &mut force.actuator_force[actuator.outputs.clone()];
-            if actuator.gain == GainKind::So3 {
+            if actuator.gain.is_rotation() {
                 orientation::limit(out, range);
             } else {
                 out[0] = out[0].clamp(range[0], range[1]);

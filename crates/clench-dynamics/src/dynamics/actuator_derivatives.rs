@@ -23,7 +23,7 @@ pub(crate) fn velocity_derivative<T: Real>(
     if actuator.disabled {
         return T::ZERO;
     }
-    if actuator.gain == GainKind::So3 {
+    if actuator.gain.is_rotation() {
         return orientation::slope(model, params, u, &force.actuator_force);
     }
     let at = ActuatorMotion::of(model, pos, vel, u);
@@ -54,7 +54,7 @@ pub(crate) fn length_derivative<T: Real>(
     if actuator.disabled {
         return T::ZERO;
     }
-    if actuator.gain == GainKind::So3 {
+    if actuator.gain.is_rotation() {
         return orientation::length_slope(model, params, u, &force.actuator_force);
     }
     let at = ActuatorMotion::of(model, pos, vel, u);

@@ -116,8 +116,7 @@ pub fn articulated_bodies<T: Real>(model: &Model) -> Vec<ArticulatedInertia<T>> 
     let longest = (0..model.nv).map(|i| model.tree.row(i).len()).max();
     let heavy = |t| tendon_armature(model, &model.params, t) > 0.0;
     let heavy_tendons = (0..model.tendons.len()).any(heavy);
-    let is_single = T::Scalar::DIGITS == f32::MANTISSA_DIGITS;
-    if is_single && longest.is_some_and(|n| n > MAX_DOFS) && !heavy_tendons {
+    if T::Scalar::IS_SINGLE && longest.is_some_and(|n| n > MAX_DOFS) && !heavy_tendons {
         vec![ArticulatedInertia::ZERO; model.nbody()]
     } else {
         Vec::new()

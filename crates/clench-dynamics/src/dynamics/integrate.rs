@@ -95,7 +95,7 @@ pub(crate) fn advance_activations<T: Real>(
                 act[a] = nearest_setpoint(model, params, u, act[a], at.length);
             }
         }
-        if actuator.gain == GainKind::So3 && !actuator.acts.is_empty() {
+        if actuator.gain.is_rotation() && !actuator.acts.is_empty() {
             orientation::shorten(&mut act[actuator.acts.clone()]);
         }
     }

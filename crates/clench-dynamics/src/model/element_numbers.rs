@@ -3,7 +3,7 @@
 /// Passes to the macro `$then` its arguments in brackets, and groups of lines
 ///
 /// ```text
-/// /// What it is.
+/// /// Its meaning.
 /// name: parameter, Finite or NotNegative, rule of the parameter, Dimension;
 /// ```
 ///

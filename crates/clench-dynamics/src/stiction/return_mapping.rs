@@ -182,14 +182,8 @@ impl<T: Real> StickPair<T> {
 fn fit<T: Real>(contacts: &[Contact<T>], loaded: &[LoadedContact<T>]) -> Twist<T> {
     let mut weight = T::ZERO;
     let mut sums = [Vec3::ZERO; 4];
-    for &LoadedContact {
-        index,
-        force,
-        displacement: phi,
-        ..
-    } in loaded
-    {
-        let contact = &contacts[index];
+    for one in loaded {
+        let (contact, force, phi) = (&contacts[one.index], one.force, &one.displacement);
         let [normal, t1, t2] = contact.frame.rows;
         let slide = t1 * phi[0] + t2 * phi[1];
         let roll = match contact.dim {
@@ -205,14 +199,8 @@ fn fit<T: Real>(contacts: &[Contact<T>], loaded: &[LoadedContact<T>]) -> Twist<T
     let [centre, normal, translation, rolls] = sums.map(|sum| sum * inverse);
     let (normal, _) = normal.normalize();
     let (mut moment, mut squared) = (T::ZERO, T::ZERO);
-    for &LoadedContact {
-        index,
-        force,
-        displacement: phi,
-        ..
-    } in loaded
-    {
-        let contact = &contacts[index];
+    for one in loaded {
+        let (contact, force, phi) = (&contacts[one.index], one.force, &one.displacement);
         let [_, t1, t2] = contact.frame.rows;
         let arm = contact.pos - centre;
         let arm = arm - normal * normal.dot(arm);

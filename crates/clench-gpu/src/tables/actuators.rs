@@ -79,7 +79,7 @@ impl Tables {
         self.flag("ACTUATION", m.flags.actuation && count > 0);
         let outputs = || 0..m.nout();
         self.count("NOUT", m.nout());
-        let servo = |a: &Actuator| a.gain == GainKind::So3;
+        let servo = |a: &Actuator| a.gain.is_rotation();
         self.flag("ANY_ORIENTATION", m.actuators.iter().any(servo));
         let of_each = m.actuators.iter().map(|a| a.outputs.len());
         self.words("ACTUATOR_OUTPUT", starts(of_each));

@@ -5,11 +5,7 @@ use crate::{Real, Scalar};
 /// Selects a constant by the lane's precision.
 #[inline(always)]
 pub(super) fn by_precision<T: Real, C>(double: C, single: C) -> C {
-    if T::Scalar::DIGITS > f32::MANTISSA_DIGITS {
-        double
-    } else {
-        single
-    }
+    if T::Scalar::IS_SINGLE { single } else { double }
 }
 
 /// Computes Σ cᵢ zⁱ, with even and odd powers separate so that the two dependency chains overlap.

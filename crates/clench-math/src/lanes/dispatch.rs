@@ -108,7 +108,8 @@ impl Instructions {
     /// # Errors
     /// Returns the widest instruction set if derivatives were not compiled for it.
     pub fn with_derivatives<K: LaneTask<f64>>(task: K) -> Result<K::Output, Instructions> {
-        derivatives(Self::widest(), task).ok_or(Self::widest())
+        let widest = Self::widest();
+        derivatives(widest, task).ok_or(widest)
     }
 
     /// Returns the number of lanes of type `S`.

@@ -142,6 +142,21 @@ kinds! {
     }
 }
 
+impl GainKind {
+    /// Returns true if the actuator turns a rotation by a torque of three parts; other gains have one force.
+    pub fn is_rotation(self) -> bool {
+        match self {
+            GainKind::So3 => true,
+            GainKind::Fixed
+            | GainKind::Affine
+            | GainKind::Muscle
+            | GainKind::DcMotor
+            | GainKind::Pid
+            | GainKind::User => false,
+        }
+    }
+}
+
 impl BiasKind {
     /// Returns true if the bias is a restoring spring of the gain's stiffness, which may be damped by a ratio.
     pub fn pulls_back(self, gain: GainKind, gainprm: &[f64; 10], biasprm: &[f64; 10]) -> bool {
