@@ -15,8 +15,7 @@
 //! the cost; otherwise that step is computed.
 
 use crate::block_index::BlockIndex;
-use crate::costs::Cost;
-use crate::costs::{Coulomb, MAX_DIM};
+use crate::costs::{Cost, Coulomb};
 use crate::hessian::Hessian;
 use crate::iterate::{Iterate, add_scaled, dot};
 use crate::problem::Problem;
@@ -46,29 +45,6 @@ pub(crate) struct Prediction<T> {
     /// Forces of rows, and a vector over dofs.
     rows: Vec<T>,
     dofs: Vec<T>,
-}
-
-/// The entries of a block in B and D.
-pub(crate) struct Friction<T: Real> {
-    /// The lanes in which it slides.
-    pub slides: T::Mask,
-    /// D where the contact presses, else 0.
-    pub weight: T,
-    /// μ_j u_j where it slides; row 0 is zero.
-    pub rows: [T; MAX_DIM],
-}
-
-impl<T: Real> Friction<T> {
-    /// Reads a Coulomb block at the iterate.
-    #[inline(always)]
-    pub(crate) fn new(problem: &Problem<T>, iterate: &Iterate<T>, b: &BlockIndex) -> Self {
-        let presses = iterate.active_set[b.active_start].gt(T::ZERO);
-        Friction {
-            slides: iterate.active_set[b.active_start + 1].gt(T::ZERO),
-            weight: T::select(presses, problem.d[b.row], T::ZERO),
-            rows: Coulomb::slip_direction(problem.rows(b), &iterate.residual[b.rows()]),
-        }
-    }
 }
 
 impl<T: Real> Prediction<T> {

@@ -7,10 +7,10 @@
 //! ```
 
 use crate::block_index::BlockIndex;
-use crate::costs::Cost;
+use crate::costs::{Cost, Coulomb};
 use crate::iterate::Iterate;
 use crate::newton::Newton;
-use crate::prediction::{Friction, normal_product};
+use crate::prediction::normal_product;
 use crate::problem::Problem;
 use clench_math::{Mask, Real};
 
@@ -55,20 +55,15 @@ impl<V: Real> Sliding<V> {
         let nv = problem.nv();
         self.contacts.clear();
         self.responses.clear();
-        for b in problem
-            .jacobian
-            .blocks
-            .iter()
-            .filter(|b| b.cost == Cost::Coulomb)
-        {
-            let Friction {
-                slides,
-                weight,
-                rows,
-            } = Friction::new(problem, iterate, b);
-            if !(slides & weight.gt(V::ZERO)).any() {
+        let blocks = problem.jacobian.blocks.iter();
+        for b in blocks.filter(|b| b.cost == Cost::Coulomb) {
+            let presses = iterate.active_set[b.active_start].gt(V::ZERO);
+            let slides = iterate.active_set[b.active_start + 1].gt(V::ZERO);
+            if !(slides & presses).any() {
                 continue;
             }
+            let weight = V::select(presses, problem.d[b.row], V::ZERO);
+            let rows = Coulomb::slip_direction(problem.rows(b), &iterate.residual[b.rows()]);
             let start = self.responses.len();
             self.responses.resize(start + nv, V::ZERO);
             let response = &mut self.responses[start..];
