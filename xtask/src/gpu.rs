@@ -13,9 +13,10 @@ const DRIVERS: [&str; 2] = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
 /// The compute tests, of `clench-gpu` and of the program, and the rendering tests.
 const COMPUTING: [&str; 2] = ["device", "gpu"];
 const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "videos"];
-/// Tests of `device` that take about as long as all others: most compile their own kernels, whereas the others share
-/// kernels for any model. Mesa's software device compiles on one core per program, so both parts run in parallel.
-const PART: [&str; 5] = ["batch::", "outputs::", "double::", "random::", "steps::"];
+/// Tests of `device` that compile their own kernels, or those for any model in double precision, and run them a few
+/// times. The others share the kernels for any model in single precision, and run them for longer than Mesa's software
+/// device takes to optimize them. It compiles on one core per program, so both parts run in parallel.
+const PART: [&str; 4] = ["batch::", "outputs::", "double::", "random::"];
 /// The number of random models that are written for the tests.
 const RANDOM_MODELS: usize = 200;
 /// The number of random models of a soak, and the distance of its seeds.
@@ -30,6 +31,7 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
     write_random_models(1, RANDOM_MODELS)?;
     let mut part = computing(profile, &COMPUTING[..1])?;
     part.arg("--").args(PART);
+    part.env("GALLIVM_PERF", "nopt");
     // The remaining tests, and those of the program.
     let mut rest = computing(profile, &COMPUTING)?;
     rest.arg("--");
@@ -72,9 +74,6 @@ fn random_folder() -> PathBuf {
 /// Returns the command for these tests with the environment that compute tests need.
 fn computing(profile: Profile, names: &[&str]) -> Result<Command, String> {
     let mut tests = tests(profile, names);
-    // Tests run many kernels a few times only: Mesa's software device takes longer to optimize them than to run them
-    // unoptimized.
-    tests.env("GALLIVM_PERF", "nopt");
     tests.env("LP_NATIVE_VECTOR_WIDTH", "128");
     tests.env("CLENCH_GYMNASIUM", python::gymnasium_assets()?);
     tests.env("CLENCH_DM_CONTROL", python::dm_control_suite());

@@ -277,14 +277,24 @@ fn clippy(profile: Profile) -> Result<(), String> {
 }
 
 fn doc(profile: Profile) -> Result<(), String> {
+    // With the features of the other checks, so that dependencies are not checked again.
     let mut doc = profile.cargo(&["doc", "--quiet", "--workspace", "--no-deps"]);
+    doc.args(["--features", ALL_FEATURES]);
     doc.env("RUSTDOCFLAGS", "-D warnings");
     run(doc)
 }
 
 /// Builds the program with the default features.
 pub(crate) fn build(profile: Profile) -> Result<(), String> {
-    compile(profile, "clench-cli", ["--bin", "clench"])
+    match profile {
+        // Dependencies have the features that the tests' packages select together, so they are not compiled again.
+        Profile::Dev | Profile::Quick => {
+            let mut build = profile.cargo(&["build", "--quiet", "--bin", "clench"]);
+            build.args(unit::packages(profile));
+            run(build)
+        }
+        Profile::Release | Profile::Dist => compile(profile, "clench-cli", ["--bin", "clench"]),
+    }
 }
 
 /// Builds a target of a package.

@@ -63,17 +63,25 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
 }
 
 fn tests(profile: Profile, kind: &str) -> Command {
-    let mut tests = profile.cargo(&["test", "--workspace", kind]);
-    match profile {
-        // Packages that need `wgpu`, which takes a minute and a half to compile, are excluded.
-        Profile::Quick => tests.args(
-            ["clench-gpu", "clench-render", "clench-python"]
-                .map(|name| format!("--exclude={name}")),
-        ),
-        _ => tests.args(["--features", ALL_FEATURES]),
-    };
+    let mut tests = profile.cargo(&["test", kind]);
+    tests.args(packages(profile));
+    if profile != Profile::Quick {
+        tests.args(["--features", ALL_FEATURES]);
+    }
     tests.env("CLENCH_GPU", "skip");
     tests
+}
+
+/// Returns the arguments that select the packages of this stage.
+pub(crate) fn packages(profile: Profile) -> Vec<String> {
+    // They need `wgpu`, which takes a minute and a half to compile.
+    let omitted: &[&str] = match profile {
+        Profile::Quick => &["clench-gpu", "clench-render", "clench-python"],
+        Profile::Dev | Profile::Release | Profile::Dist => &[],
+    };
+    let mut arguments = vec!["--workspace".to_owned()];
+    arguments.extend(omitted.iter().map(|name| format!("--exclude={name}")));
+    arguments
 }
 
 /// Returns true if the line is about an external crate; the project's own have a path.
