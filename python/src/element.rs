@@ -1,9 +1,8 @@
 //! `clench.Element`.
 
-use crate::assets;
-use crate::fields;
 use crate::kind::Kind;
 use crate::names::no_attribute;
+use crate::{assets, fields};
 use clench::Model;
 use pyo3::prelude::*;
 use pyo3::types::PySlice;

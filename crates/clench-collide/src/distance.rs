@@ -2,8 +2,7 @@
 
 use crate::compiled::compiled_collide;
 use crate::contact::Contacts;
-use crate::narrow::supported;
-use crate::narrow::{Collide, SeparatingAxis, collide_again};
+use crate::narrow::{Collide, SeparatingAxis, collide_again, supported};
 use crate::pose::Pose;
 use crate::shape::{Shape, Terrain};
 use clench_math::{Mat3, Real, Scalar, Vec3};

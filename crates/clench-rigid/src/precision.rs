@@ -8,14 +8,13 @@ use crate::output::{Output, Source};
 use crate::readout::{self, Push, TendonLine};
 use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
-use clench_dynamics::Step;
-use clench_dynamics::check;
 use clench_dynamics::dynamics::energy::Energy;
 use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::{EnergyScratch, Workspace};
+use clench_dynamics::{Step, check};
 use clench_math::{Instructions, Mask, Scalar};
 
 /// A number type of simulations and batches: `f64` or `f32`.

@@ -10,8 +10,7 @@
 //! cancel.
 
 use crate::block_index::BlockIndex;
-use crate::costs::Cost;
-use crate::costs::{BlockCost, Slope, with_cost};
+use crate::costs::{BlockCost, Cost, Slope, with_cost};
 use crate::iterate::{Iterate, add_scaled, dot};
 use crate::jacobian::Jacobian;
 use crate::problem::Problem;

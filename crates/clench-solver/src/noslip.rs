@@ -16,8 +16,7 @@
 //! computed after them.
 
 use crate::block_index::BlockIndex;
-use crate::costs::Cost;
-use crate::costs::MAX_DIM;
+use crate::costs::{Cost, MAX_DIM};
 use crate::iterate::{Iterate, dot};
 use crate::jacobian::Jacobian;
 use crate::metric_terms::MetricTerms;

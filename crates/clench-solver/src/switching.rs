@@ -1,8 +1,7 @@
 //! The distance of constraints from a change of their piece, where the force has no derivative.
 
 use crate::block_index::BlockIndex;
-use crate::costs::Cost;
-use crate::costs::{MAX_DIM, Rows};
+use crate::costs::{Cost, MAX_DIM, Rows};
 use crate::problem::Problem;
 use clench_math::{Real, Scalar};
 

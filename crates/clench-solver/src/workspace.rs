@@ -1,8 +1,7 @@
 //! The memory of a solve of one whole problem.
 
 use crate::cg::Cg;
-use crate::costs::Cost;
-use crate::costs::Pyramid;
+use crate::costs::{Cost, Pyramid};
 use crate::descent::{SolverState, minimise, trace};
 use crate::implicit::{Implicit, Memory};
 use crate::newton::Newton;

@@ -1,8 +1,7 @@
 //! Bounding sphere and bounding box of a shape.
 
 use crate::pose::Pose;
-use crate::shape::Shape;
-use crate::shape::Solid;
+use crate::shape::{Shape, Solid};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// Returns the factor, slightly more than 1, that enlarges bounding radii and margins. It keeps rounding from rejecting

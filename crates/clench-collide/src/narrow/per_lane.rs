@@ -1,8 +1,7 @@
 //! Pairs that branch too much for lanes: each lane is computed separately, in scalar code.
 
 use super::placed::Placed;
-use crate::contact::set_lane;
-use crate::contact::{ContactPoint, Contacts, MAX_POINTS};
+use crate::contact::{ContactPoint, Contacts, MAX_POINTS, set_lane};
 use crate::frame::frame_from_normal;
 use crate::shape::Solid;
 use arrayvec::ArrayVec;

@@ -11,8 +11,7 @@ use super::polygon::Polygon;
 use crate::broad::allowance;
 use crate::contact::{Contacts, PATCH_POINTS};
 use crate::hull::Hull;
-use crate::shape::{MAX_CORNERS, Solid};
-use crate::shape::{Mesh, Plane};
+use crate::shape::{MAX_CORNERS, Mesh, Plane, Solid};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 

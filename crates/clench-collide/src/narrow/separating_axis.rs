@@ -7,8 +7,7 @@
 
 use super::placed::AnyPlaced;
 use crate::hull::Hull;
-use crate::shape::Solid;
-use crate::shape::{Mesh, Shape};
+use crate::shape::{Mesh, Shape, Solid};
 use clench_math::{Mask, Real, Scalar, Vec3};
 
 /// The error of a search relative to the smaller shape, twice what the search itself allows ...

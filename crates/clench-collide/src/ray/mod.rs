@@ -15,8 +15,7 @@ pub use triangles::{TriangleMesh, TriangleMeshError, TriangleNode};
 pub use unit_ray::UnitRay;
 
 use crate::pose::Pose;
-use crate::shape::Shape;
-use crate::shape::Solid;
+use crate::shape::{Shape, Solid};
 use clench_math::{Real, kernel};
 
 /// Computes the first hit of a ray on a shape. A zero direction or a number that is not finite hits nothing.

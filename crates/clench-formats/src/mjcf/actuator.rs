@@ -11,8 +11,7 @@ use super::transmission;
 use crate::document::Element;
 use crate::error::LoadError;
 use clench_builder::{ActuatorSpec, HistorySpec, TransmissionSpec};
-use clench_dynamics::model::Interpolation;
-use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind};
+use clench_dynamics::model::{BiasKind, DynamicsKind, GainKind, Interpolation};
 
 /// Overwrites the history settings that the element gives; a negative number of samples is none, as in MuJoCo.
 pub(crate) fn read_history(element: &Element, history: &mut HistorySpec) -> Result<(), LoadError> {

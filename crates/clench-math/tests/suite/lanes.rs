@@ -1,8 +1,10 @@
 //! Every operation on lanes equals the scalar operation to the bit.
 
 use crate::support::{EqualsAlone, Formula, Random, TestScalar, in_arrays, in_instruction_sets};
-use clench_math::{Instructions, LaneMask, LaneTask, Lanes, Mask, Real, Scalar};
-use clench_math::{broadcast, cast, read_lane, write_lane};
+use clench_math::{
+    Instructions, LaneMask, LaneTask, Lanes, Mask, Real, Scalar, broadcast, cast, read_lane,
+    write_lane,
+};
 
 const ROUNDS: usize = 3000;
 

@@ -1,8 +1,7 @@
 //! Softness: MuJoCo's numbers, and their effect on a mass.
 
 use clench_math::{Lanes, Real};
-use clench_rigid::constraint::Softness;
-use clench_rigid::constraint::impedance;
+use clench_rigid::constraint::{Softness, impedance};
 
 /// The limit of MuJoCo's `refsafe`: twice a time step of 2 ms.
 const LEAST: f64 = 0.004;

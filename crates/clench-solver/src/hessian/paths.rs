@@ -6,8 +6,7 @@ use crate::costs::{Form, RankOne, Weight};
 use crate::jacobian::Jacobian;
 use crate::problem::Problem;
 use crate::stopwatch::{SolveClock, SolvePart};
-use crate::tree::CouplingScratch;
-use crate::tree::{Tree, TreeFactor, TreeMatrix};
+use crate::tree::{CouplingScratch, Tree, TreeFactor, TreeMatrix};
 use clench_math::{Mask, Real, kernel};
 
 /// H and its factor over a tree.

@@ -3,8 +3,7 @@
 use super::*;
 use crate::jacobian::Pattern;
 use crate::threads::Threads;
-use crate::tree::CouplingScratch;
-use crate::tree::{Tree, TreeFactor, TreeMatrix};
+use crate::tree::{CouplingScratch, Tree, TreeFactor, TreeMatrix};
 use std::collections::BTreeSet;
 
 struct Rng(u64);

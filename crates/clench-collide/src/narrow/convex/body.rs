@@ -1,8 +1,9 @@
 //! The bodies of the search for the largest gap: shapes, or the ground below a triangle of terrain.
 
 use super::prism::Prism;
-use crate::shape::{Capsule, Cuboid, Cylinder, Mesh, Shape, Sphere};
-use crate::shape::{Core, Curvature, EllipsoidCore, Feature};
+use crate::shape::{
+    Capsule, Core, Cuboid, Curvature, Cylinder, EllipsoidCore, Feature, Mesh, Shape, Sphere,
+};
 use clench_math::{Scalar, Vec3};
 
 /// A convex body in its own frame, as a core plus a ball.

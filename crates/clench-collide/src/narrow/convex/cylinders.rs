@@ -20,8 +20,7 @@ use super::{
     largest_gap::LargestGap,
     pair::{Gap, Pair},
 };
-use crate::shape::Cylinder;
-use crate::shape::Solid;
+use crate::shape::{Cylinder, Solid};
 use clench_math::{Mat3, Scalar, Vec3};
 
 /// Returns the largest gap of two overlapping cylinders, or a positive one if they are apart. It is not settled if it
