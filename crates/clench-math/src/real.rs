@@ -233,6 +233,10 @@ pub trait Scalar:
     const IS_SINGLE: bool = Self::DIGITS == f32::MANTISSA_DIGITS;
     /// Converts the value to `f64`.
     fn to_f64(self) -> f64;
+    /// Returns true if the absolute values of all numbers are at most `limit`. It is compiled for speed in every crate.
+    fn all_within(values: &[Self], limit: Self) -> bool {
+        values.iter().all(|x| x.abs().le(limit))
+    }
     /// Runs a task in lanes of these instructions; `None` if they are not available.
     fn in_lanes<K: LaneTask<Self>>(instructions: Instructions, task: K) -> Option<K::Output>;
 }

@@ -164,6 +164,14 @@ macro_rules! scalar {
                 fn to_f64(self) -> f64 {
                     self as f64
                 }
+                #[inline(never)]
+                fn all_within(values: &[$t], limit: $t) -> bool {
+                    let mut within = true;
+                    for x in values {
+                        within &= x.abs() <= limit;
+                    }
+                    within
+                }
                 #[inline(always)]
                 fn in_lanes<K: LaneTask<$t>>(
                     instructions: Instructions,

@@ -38,9 +38,16 @@ pub(crate) fn first_beyond<T: Real>(
     Some((index, value(index).to_f64()))
 }
 
+/// The minimum number of values for which a vectorized loop is worth a call.
+const WORTH_CALL: usize = 32;
+
 /// Returns the lanes in which all numbers are within a limit.
 #[inline(always)]
 pub(crate) fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
+    if T::LANES == 1 && values.len() >= WORTH_CALL {
+        let values = T::as_scalars(values);
+        return T::Mask::splat(T::Scalar::all_within(values, bound.of()));
+    }
     let limit = bound.of();
     let mut mask = T::Mask::splat(true);
     for x in values {
