@@ -83,8 +83,10 @@ impl<T: Real> Islands<T> {
 
     /// Solves each island and adds it to the results.
     pub(crate) fn solve(&mut self, job: &Job<T>, clock: &mut SolveClock, results: &mut Results<T>) {
-        self.lists.fill(job.problem);
-        self.slots.start(&job.problem.tree);
+        if self.slots.start(&job.problem.tree) {
+            self.lists.list_dofs(&job.problem.tree);
+        }
+        self.lists.list_blocks(job.problem);
         if T::LANES == 1 && job.threads.count() > 1 {
             self.solve_at_once(job, clock, results);
         } else {
@@ -175,14 +177,18 @@ impl<T: Real> Job<'_, T> {
 }
 
 impl TreeLists {
-    /// Lists the dofs and blocks of each tree, ascending.
-    fn fill<T: Real>(&mut self, problem: &Problem<T>) {
-        let tree = problem.tree();
+    /// Lists the dofs of each tree, ascending.
+    fn list_dofs(&mut self, tree: &Tree) {
         self.local.resize(tree.nv(), 0);
         self.dofs.clear(tree.ntree());
         for dof in (0..tree.nv()).rev() {
             self.dofs.push_front(tree.tree_of(dof) as u32, dof as u32);
         }
+    }
+
+    /// Lists the blocks of each tree, ascending.
+    fn list_blocks<T: Real>(&mut self, problem: &Problem<T>) {
+        let tree = problem.tree();
         self.blocks.clear(tree.ntree());
         for (k, b) in problem.jacobian.blocks.iter().enumerate().rev() {
             if let Some(&dof) = problem.jacobian.dofs(b).first() {
@@ -223,8 +229,8 @@ impl TreeLists {
 }
 
 impl<T: Real> Slots<T> {
-    /// Releases all slots for a new solve.
-    fn start(&mut self, tree: &Arc<Tree>) {
+    /// Releases all slots for a new solve. Returns true if it is the first one over this forest.
+    fn start(&mut self, tree: &Arc<Tree>) -> bool {
         let known = self
             .tree
             .as_ref()
@@ -237,6 +243,7 @@ impl<T: Real> Slots<T> {
         }
         self.slots.iter_mut().for_each(|slot| slot.taken = false);
         self.restart();
+        !known
     }
 
     /// Restarts the assignment for the same islands.

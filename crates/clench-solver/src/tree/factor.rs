@@ -237,20 +237,17 @@ impl<T: Real> TreeFactor<T> {
     #[kernel]
     pub fn solve(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
-        for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
-            *x *= inverse;
-        }
         for &TreeSupernode { first, len } in &tree.supernodes {
             with_len!(len, LEN => self.solve_supernode::<LEN>(tree, first, x));
         }
     }
 
-    /// Computes `x ← L⁻¹ x` in the rows of a supernode whose ancestors are done.
+    /// Computes `x ← L⁻¹ D⁻¹ x` in the rows of a supernode whose ancestors are done.
     #[inline(always)]
     fn solve_supernode<const LEN: usize>(&self, tree: &Tree, first: usize, x: &mut [T]) {
         let shared = &tree.row(first)[..tree.depth(first)];
         let rows: [&[T]; LEN] = tree.supernode_rows(&self.lower, first);
-        let mut sums: [T; LEN] = array(|m| x[first + m]);
+        let mut sums: [T; LEN] = array(|m| x[first + m] * self.inverse[first + m]);
         for (k, &c) in shared.iter().enumerate() {
             let x = x[c as usize];
             for m in 0..LEN {

@@ -20,6 +20,7 @@ pub use factor::TreeFactor;
 pub use lu::TreeLu;
 pub use matrix::TreeMatrix;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The sparsity pattern of M: the forest of degrees of freedom (dofs).
 ///
@@ -160,6 +161,17 @@ impl Tree {
             *row = &values[self.starts[first + m]..self.starts[first + m + 1]];
         }
         rows
+    }
+
+    /// Limits the rows that factorizations and solutions over this tree, a copy of `whole`, compute to those of some
+    /// dofs, which are whole trees. The others keep their values.
+    pub fn limit_rows(&mut self, whole: &Tree, dofs: impl Iterator<Item = Range<usize>>) {
+        self.supernodes.clear();
+        let count = |dof: usize| whole.supernodes.partition_point(|s| s.first < dof);
+        for dofs in dofs {
+            let some = &whole.supernodes[count(dofs.start)..count(dofs.end)];
+            self.supernodes.extend_from_slice(some);
+        }
     }
 
     /// Returns, for each tree, the first one of the same shape: its dofs have the same parents, relative to the tree's
