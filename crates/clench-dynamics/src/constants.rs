@@ -11,6 +11,7 @@ use crate::dynamics::tendon_armature::add_tendon_inertia;
 use crate::dynamics::{tendon, transmission};
 use crate::error::SimError;
 use crate::model::{CameraMode, Coupled, JointKind, Model, ParamField, Params};
+use crate::part::Part;
 use crate::singular::first_bad_pivot;
 use crate::stages::Positions;
 use crate::{State, Step};
@@ -79,7 +80,8 @@ impl Constants {
         mut pose: Positions<f64>,
     ) -> Result<Self, SingularMass> {
         let mut mass = TreeMatrix::zeros(&model.tree);
-        composite_inertia(model, params, &mut pose, &mut mass);
+        let whole = [Part::whole(model)];
+        composite_inertia(model, params, &whole, &mut pose, &mut mass);
         add_tendon_inertia(model, params, &pose, &mut mass);
         let mut factor = TreeFactor::zeros(&model.tree);
         if !factor.factor(&model.tree, &mass) {
@@ -304,9 +306,8 @@ pub fn pose(model: &Model, params: &Params<f64>, qpos: &[f64]) -> Positions<f64>
     let mut state = State::new(model);
     state.qpos.copy_from_slice(qpos);
     let mut pos = Positions::new(model);
-    let all = 0..model.nbody();
-    let all = Computed::all(std::slice::from_ref(&all));
-    (Step::compiled().poses)(model, params, &state, all, &mut pos);
+    let whole = [Part::whole(model)];
+    (Step::compiled().poses)(model, params, &state, Computed::all(&whole), &mut pos);
     pos
 }
 

@@ -1,7 +1,7 @@
 //! The poses of bodies that are fixed to the world. They follow from the parameters alone and are computed once.
 
 use crate::model::Model;
-use std::ops::Range;
+use crate::part::Part;
 use std::slice::from_ref;
 
 /// The validity of a workspace's poses of bodies that are fixed to the world.
@@ -11,11 +11,12 @@ pub struct FixedPoses {
     known: bool,
     /// The number of times that they were computed.
     version: u64,
-    /// All bodies.
-    bodies: Range<usize>,
-    /// Ranges of the bodies whose poses a pass computes when the fixed poses are valid: all but those of trees on the
-    /// world in which nothing moves. The world is among them.
-    moving: Vec<Range<usize>>,
+    /// The whole model.
+    whole: Part,
+    /// False for the bodies of trees on the world in which nothing moves.
+    moves: Vec<bool>,
+    /// The parts whose poses a pass computes when the fixed poses are valid: the bodies in `moves`.
+    moving: Vec<Part>,
 }
 
 impl FixedPoses {
@@ -26,18 +27,14 @@ impl FixedPoses {
         for (body, moves) in fixed.clone().iter().map(|fixed| !fixed).enumerate() {
             fixed[model.bodies[body].root] &= !moves;
         }
-        let omitted = |body: usize| body != 0 && fixed[model.bodies[body].root];
-        let mut moving: Vec<Range<usize>> = Vec::new();
-        for body in (0..model.nbody()).filter(|&body| !omitted(body)) {
-            match moving.last_mut() {
-                Some(last) if last.end == body => last.end += 1,
-                _ => moving.push(body..body + 1),
-            }
-        }
+        let moves = |body: usize| body == 0 || !fixed[model.bodies[body].root];
+        let mut moving = Vec::new();
+        Part::list(model, &moves, &mut moving);
         FixedPoses {
             known: false,
             version: 0,
-            bodies: 0..model.nbody(),
+            whole: Part::whole(model),
+            moves: Vec::from_iter((0..model.nbody()).map(moves)),
             moving,
         }
     }
@@ -64,11 +61,16 @@ impl FixedPoses {
         self.version
     }
 
-    /// Returns the ranges of the bodies whose poses a pass computes.
-    pub fn parts(&self) -> &[Range<usize>] {
+    /// Returns false for the bodies of trees on the world in which nothing moves.
+    pub(crate) fn moves(&self) -> &[bool] {
+        &self.moves
+    }
+
+    /// Returns the parts whose poses a pass computes.
+    pub fn parts(&self) -> &[Part] {
         match self.known {
             true => &self.moving,
-            false => from_ref(&self.bodies),
+            false => from_ref(&self.whole),
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::contact::detect;
 use crate::dynamics::actuation::actuation;
 use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::discrete::{add_metric_forces, enter_metric};
-use crate::dynamics::euler::damped_inertia;
+use crate::dynamics::euler::{damped_inertia, damped_lanes};
 use crate::dynamics::implicit::{add_gyroscopic_products, full_inertia, symmetric_inertia};
 use crate::model::{Integrator, Model, Params};
 use crate::pipeline::{position_stage, velocity_stage};
@@ -106,7 +106,8 @@ fn make_continuous<T: Real>(
     let tree = &model.tree;
     match model.integrator {
         Integrator::Euler => {
-            damped_inertia(model, params, &state.qvel, ws);
+            let damped = damped_lanes(model, params, ws);
+            damped_inertia(model, params, &state.qvel, damped, ws);
             let matrix = &ws.integration.matrix;
             matrix.mul(tree, &ws.qacc, &mut ws.integration.qacc);
         }

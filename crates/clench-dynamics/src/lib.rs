@@ -23,6 +23,7 @@ pub mod history;
 pub mod inverse;
 pub mod model;
 pub mod options;
+pub mod part;
 pub mod pipeline;
 pub mod place;
 pub mod profile;

@@ -21,6 +21,7 @@ use crate::dynamics::tendon_armature::{add_tendon_bias, add_tendon_inertia};
 use crate::dynamics::transmission::transmissions;
 use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
+use crate::part::Part;
 use crate::profile::Stage;
 use crate::sensors::Sensors;
 use crate::settings::StepSettings;
@@ -31,7 +32,6 @@ use crate::stiction::drag;
 use crate::workspace::{EnergyScratch, Workspace};
 use clench_math::{Mask, Real};
 use clench_solver::TreeMatrix;
-use std::slice::from_ref;
 
 /// Computes the quantities that depend on positions: poses, spatial inertias and dof axes, tendons and transmissions,
 /// and the mass matrix with its factor.
@@ -60,12 +60,12 @@ fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &
         true => (&mut ws.metric.mass, &mut ws.metric.mass_factor),
         false => (&mut ws.problem.mass, &mut ws.problem.mass_factor),
     };
-    mass_matrix(model, params, pos, mass);
+    mass_matrix(model, params, ws.sleep.computed(), pos, mass);
     ws.clock.lap(Stage::Inertia as usize);
     ws.singular = !if T::IS_DUAL && ws.constant_factor {
         factor.factor_values(&model.tree, mass)
     } else if ws.articulated.is_empty() {
-        ws.solver.factor(factor, &model.tree, mass)
+        ws.solver.factor(factor, ws.sleep.rows(model), mass)
     } else {
         articulated_factor(model, params, pos, |_| T::ZERO, &mut ws.articulated, factor)
     };
@@ -97,14 +97,16 @@ pub fn body_poses<T: Real>(
     com_positions(model, params, computed.parts, pos);
 }
 
-/// Computes the mass matrix at given poses, with the inertia of tendons.
+/// Computes the mass matrix of some parts at given poses, with the inertia of tendons. The parts include all dofs of
+/// tendons.
 fn mass_matrix<T: Real>(
     model: &Model,
     params: &Params<T>,
+    parts: &[Part],
     pos: &mut Positions<T>,
     mass: &mut TreeMatrix<T>,
 ) {
-    composite_inertia(model, params, pos, mass);
+    composite_inertia(model, params, parts, pos, mass);
     add_tendon_inertia(model, params, pos, mass);
 }
 
@@ -116,10 +118,9 @@ pub fn state_energy<T: Real>(
     scratch: &mut EnergyScratch<T>,
 ) -> Energy<T> {
     let EnergyScratch { position, mass } = scratch;
-    let bodies = 0..model.nbody();
-    let all = Computed::all(from_ref(&bodies));
-    poses(model, params, state, all, position);
-    mass_matrix(model, params, position, mass);
+    let whole = [Part::whole(model)];
+    poses(model, params, state, Computed::all(&whole), position);
+    mass_matrix(model, params, &whole, position, mass);
     energy(model, params, position, mass, state)
 }
 
@@ -132,9 +133,11 @@ pub(crate) fn velocity_stage<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
-    velocities(model, pos, &state.qvel, vel);
-    passive_forces(model, params, pos, vel, state, &ws.contacts, force);
-    bias_forces(model, params, pos, vel, &state.qvel, force);
+    let parts = ws.sleep.computed();
+    velocities(model, parts, pos, &state.qvel, vel);
+    let at = (pos, &*vel);
+    passive_forces(model, params, parts, at, state, &ws.contacts, force);
+    bias_forces(model, params, parts, pos, vel, &state.qvel, force);
     let bias = &mut force.qfrc_bias;
     add_tendon_bias(model, params, pos, vel, &state.qvel, bias);
     ws.clock.lap(Stage::Velocity as usize);
@@ -150,12 +153,16 @@ pub(crate) fn force_stage<T: Real>(
 ) {
     let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
     actuation(model, params, state, pos, vel, ws.integration.offset, force);
-    smooth_forces(model, state, pos, force);
-    ws.problem.qacc_smooth.copy_from_slice(&force.qfrc_smooth);
+    smooth_forces(model, ws.sleep.computed(), state, pos, force);
+    for part in ws.sleep.computed() {
+        let forces = &force.qfrc_smooth[part.dofs.clone()];
+        ws.problem.qacc_smooth[part.dofs.clone()].copy_from_slice(forces);
+    }
     if ws.metric.acts() {
         enter_metric(model, params, settings, state, ws);
     }
-    smooth_acceleration(model, &mut ws.problem, ws.constant_factor);
+    let rows = ws.sleep.rows(model);
+    smooth_acceleration(rows, &mut ws.problem, ws.constant_factor);
     ws.clock.lap(Stage::Force as usize);
 }
 
@@ -216,12 +223,14 @@ fn wake<T: Real>(
     sleep::wake_touched(model, state, ws);
     ws.sleep.find_parts(model, state, &ws.fixed);
     positions(model, params, state, ws);
-    sleep::wake_pulled(model, params, settings, ws);
+    let mut woke = sleep::wake_pulled(model, params, settings, ws);
     detect(model, params, settings, ws);
     while sleep::wake_touching(model, ws) {
+        woke = true;
         detect(model, params, settings, ws);
     }
-    sleep::wake_coupled(model, state, ws);
+    woke |= sleep::wake_coupled(model, state, ws);
+    ws.sleep.leave_last(model, state, &ws.fixed, woke);
 }
 
 /// Computes the second half of forward dynamics: forces, including those of controls, and constraints.
@@ -236,7 +245,9 @@ fn from_forces<T: Real>(
     constraint_stage(model, params, settings, state, ws);
     if settings.flags.sleep {
         ws.sleep.still(model, &mut ws.qacc);
-        ws.sleep.note(model, state);
+        if !ws.singular.any() {
+            ws.sleep.note(model, state);
+        }
     }
 }
 
@@ -314,6 +325,7 @@ fn clear<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
+    ws.sleep.invalidate();
     ws.contacts.clear();
     ws.collision.excess = T::ZERO;
     ws.collision.overflow = T::Mask::splat(false);

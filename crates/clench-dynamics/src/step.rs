@@ -6,6 +6,7 @@ use crate::dynamics::kinematics::Computed;
 use crate::dynamics::velocity::velocities;
 use crate::inverse::{Acceleration, inverse};
 use crate::model::{Model, Params};
+use crate::part::Part;
 use crate::pipeline;
 use crate::sensors::Sensors;
 use crate::settings::StepSettings;
@@ -43,7 +44,7 @@ pub struct Step<T: Real> {
     /// [`pipeline::body_poses`].
     pub body_poses: fn(&Model, &Params<T>, &State<T>, Computed, &mut Positions<T>),
     /// [`velocities`].
-    pub velocities: fn(&Model, &Positions<T>, &[T], &mut Velocities<T>),
+    pub velocities: fn(&Model, &[Part], &Positions<T>, &[T], &mut Velocities<T>),
     /// [`energy`].
     pub energy: fn(&Model, &Params<T>, &Positions<T>, &TreeMatrix<T>, &State<T>) -> Energy<T>,
     /// [`pipeline::state_energy`].

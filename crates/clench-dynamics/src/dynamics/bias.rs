@@ -5,14 +5,16 @@
 
 use crate::dynamics::project::project_forces;
 use crate::model::{Model, Params};
+use crate::part::Part;
 use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Motion, Real, Vec3, kernel};
 
-/// Computes `qfrc_bias`, on the left side of the equation of motion.
+/// Computes `qfrc_bias` of some parts, on the left side of the equation of motion.
 #[kernel]
 pub(crate) fn bias_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
+    parts: &[Part],
     pos: &Positions<T>,
     vel: &Velocities<T>,
     qvel: &[T],
@@ -25,15 +27,24 @@ pub(crate) fn bias_forces<T: Real>(
     };
     force.cacc[0] = Motion::new(Vec3::ZERO, -gravity);
     force.cfrc_body[0] = Force::ZERO;
-    for (b, body) in model.bodies.iter().enumerate().skip(1) {
-        let mut cacc = force.cacc[body.parent];
-        for i in body.dofs.clone() {
-            cacc += vel.cdof_dot[i] * qvel[i];
+    for part in parts {
+        for b in part.bodies.start.max(1)..part.bodies.end {
+            let body = &model.bodies[b];
+            let mut cacc = force.cacc[body.parent];
+            for i in body.dofs.clone() {
+                cacc += vel.cdof_dot[i] * qvel[i];
+            }
+            let (inertia, cvel) = (pos.cinert[b], vel.cvel[b]);
+            force.cacc[b] = cacc;
+            force.cfrc_body[b] = inertia * cacc + cvel.cross_force(inertia * cvel);
         }
-        let (inertia, cvel) = (pos.cinert[b], vel.cvel[b]);
-        force.cacc[b] = cacc;
-        force.cfrc_body[b] = inertia * cacc + cvel.cross_force(inertia * cvel);
+        force.qfrc_bias[part.dofs.clone()].fill(T::ZERO);
     }
-    force.qfrc_bias.fill(T::ZERO);
-    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_bias);
+    project_forces(
+        model,
+        parts,
+        pos,
+        &mut force.cfrc_body,
+        &mut force.qfrc_bias,
+    );
 }

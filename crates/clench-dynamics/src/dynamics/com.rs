@@ -1,25 +1,25 @@
 //! Centres of mass, and inertias and dof axes as spatial vectors about them.
 
 use crate::model::{JointKind, Model, Params};
+use crate::part::Part;
 use crate::stages::Positions;
 use clench_math::{Inertia, Motion, Real, Vec3, kernel};
-use std::ops::Range;
 
 /// Below this mass (kg) a subtree's centre of mass is that of its top body (MuJoCo's `mjMINVAL`).
 const MASSLESS: f64 = 1e-15;
 
-/// Computes `subtree_com`, `cinert` and `cdof` of the bodies in the ranges `parts`, from the poses.
+/// Computes `subtree_com`, `cinert` and `cdof` of the bodies of some parts, from the poses.
 #[kernel]
 pub fn com_positions<T: Real>(
     model: &Model,
     params: &Params<T>,
-    parts: &[Range<usize>],
+    parts: &[Part],
     pos: &mut Positions<T>,
 ) {
     subtree_com(model, params, parts, pos);
     pos.cinert[0] = Inertia::ZERO;
     for part in parts {
-        for b in part.start.max(1)..part.end {
+        for b in part.bodies.start.max(1)..part.bodies.end {
             let offset = pos.xipos[b] - pos.subtree_com[model.bodies[b].root];
             pos.cinert[b] = Inertia::from_principal(
                 params.body_inertia[b],
@@ -35,20 +35,17 @@ pub fn com_positions<T: Real>(
 /// Sums moments from the last body to the first. Bodies outside the parts form whole trees on the world, whose moments
 /// are still valid.
 #[inline(always)]
-fn subtree_com<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    parts: &[Range<usize>],
-    pos: &mut Positions<T>,
-) {
-    for b in parts.iter().cloned().flatten() {
-        pos.subtree_moment[b] = pos.xipos[b] * params.body_mass[b];
-    }
-    for b in parts.iter().rev().cloned().flat_map(Range::rev) {
-        let parent = model.bodies[b].parent;
-        if parent != 0 {
-            let moment = pos.subtree_moment[b];
-            pos.subtree_moment[parent] += moment;
+fn subtree_com<T: Real>(model: &Model, params: &Params<T>, parts: &[Part], pos: &mut Positions<T>) {
+    for part in parts {
+        for b in part.bodies.clone() {
+            pos.subtree_moment[b] = pos.xipos[b] * params.body_mass[b];
+        }
+        for b in part.bodies.clone().rev() {
+            let parent = model.bodies[b].parent;
+            if parent != 0 {
+                let moment = pos.subtree_moment[b];
+                pos.subtree_moment[parent] += moment;
+            }
         }
     }
     for (b, body) in model.bodies.iter().enumerate().skip(1).rev() {
@@ -57,7 +54,7 @@ fn subtree_com<T: Real>(
             pos.subtree_moment[0] += moment;
         }
     }
-    for b in parts.iter().cloned().flatten() {
+    for b in parts.iter().flat_map(|part| part.bodies.clone()) {
         let mass = params.body_subtreemass[b];
         let massless = mass.lt(T::new(MASSLESS));
         let inverse = T::ONE / T::select(massless, T::ONE, mass);
@@ -70,8 +67,8 @@ fn subtree_com<T: Real>(
 /// part at the centre of mass is axis × (com − anchor). Ball and free joints rotate about the axes of the moved body; a
 /// free joint translates along the world's axes.
 #[inline(always)]
-fn dof_axes<T: Real>(model: &Model, part: &Range<usize>, pos: &mut Positions<T>) {
-    for j in model.joints_of(part) {
+fn dof_axes<T: Real>(model: &Model, part: &Part, pos: &mut Positions<T>) {
+    for j in part.joints.clone() {
         let joint = &model.joints[j];
         let offset = pos.subtree_com[model.bodies[joint.body].root] - pos.xanchor[j];
         let rotation = |axis: Vec3<T>| Motion::new(axis, axis.cross(offset));

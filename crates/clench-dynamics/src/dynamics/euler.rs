@@ -21,16 +21,24 @@ pub fn euler<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     ws.integration.qacc.copy_from_slice(&ws.qacc);
-    let damped = damped_lanes(model, params);
+    let damped = damped_lanes(model, params, ws);
     if damped.any() {
         damped_acceleration(model, params, &state.qvel, damped, ws);
     }
     advance_semi_implicit(model, params, state, ws);
 }
 
-/// Returns the lanes with implicit damping and a damped dof.
+/// Returns the lanes with implicit damping and a damped dof, which change only with the parameters.
 #[inline(always)]
-fn damped_lanes<T: Real>(model: &Model, params: &Params<T>) -> T::Mask {
+pub(crate) fn damped_lanes<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    ws: &mut Workspace<T>,
+) -> T::Mask {
+    let version = ws.fixed.version();
+    if !T::IS_DUAL && version == ws.integration.damped.1 {
+        return ws.integration.damped.0;
+    }
     let mut damped = T::Mask::splat(false);
     if model.flags.eulerdamp && model.flags.damper {
         for i in 0..model.nv {
@@ -38,6 +46,7 @@ fn damped_lanes<T: Real>(model: &Model, params: &Params<T>) -> T::Mask {
             damped |= damper.linear.gt(T::ZERO) | damper.is_curved();
         }
     }
+    ws.integration.damped = (damped, version);
     damped
 }
 
@@ -47,11 +56,11 @@ pub(crate) fn damped_inertia<T: Real>(
     model: &Model,
     params: &Params<T>,
     qvel: &[T],
+    damped: T::Mask,
     ws: &mut Workspace<T>,
 ) {
     let matrix = &mut ws.integration.matrix;
     matrix.values.copy_from_slice(&ws.problem.mass.values);
-    let damped = damped_lanes(model, params);
     for (i, &v) in qvel.iter().enumerate() {
         if let Some(diagonal) = matrix.row_mut(&model.tree, i).last_mut() {
             let slope = dof_damper(model, params, i).damping_slope(v);
@@ -69,10 +78,9 @@ fn damped_acceleration<T: Real>(
     damped: T::Mask,
     ws: &mut Workspace<T>,
 ) {
-    let tree = &model.tree;
     let positive = if T::IS_DUAL || ws.articulated.is_empty() {
-        damped_inertia(model, params, qvel, ws);
-        factor_implicit(tree, ws)
+        damped_inertia(model, params, qvel, damped, ws);
+        factor_implicit(model, ws)
     } else {
         let factor = &mut ws.integration.factor;
         let (pos, bodies) = (&ws.position, &mut ws.articulated);
@@ -87,7 +95,7 @@ fn damped_acceleration<T: Real>(
         )
     };
     ws.singular |= damped & !positive;
-    solve_implicit(tree, ws);
+    solve_implicit(model, ws);
     for (solved, &explicit) in ws.integration.qacc.iter_mut().zip(&ws.qacc) {
         *solved = T::select(damped, *solved, explicit);
     }

@@ -12,6 +12,7 @@
 use crate::dynamics::ellipsoid::{Ellipsoid, ellipsoids};
 use crate::dynamics::project::{force_at, local_velocity, project_forces};
 use crate::model::{Model, Params};
+use crate::part::Part;
 use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Force, Mask, Motion, Real, Vec3, kernel};
 use std::f64::consts::PI;
@@ -52,20 +53,20 @@ pub(crate) fn symmetric_and_skew<T: Real>(columns: [Force<T>; 6]) -> [[Force<T>;
     parts
 }
 
-/// Computes `qfrc_fluid` (zero without a fluid).
+/// Computes `qfrc_fluid` of some parts (zero without a fluid).
 #[kernel]
 pub(crate) fn fluid_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
+    parts: &[Part],
     pos: &Positions<T>,
     vel: &Velocities<T>,
     force: &mut Forces<T>,
 ) {
-    force.qfrc_fluid.fill(T::ZERO);
     if !has_fluid(params) {
         return;
     }
-    for b in 0..model.nbody() {
+    for b in parts.iter().flat_map(|part| part.bodies.clone()) {
         force.cfrc_body[b] = if model.bodies[b].fluid_ellipsoids {
             let mut sum = Force::ZERO;
             for geom in ellipsoids(model, b) {
@@ -76,7 +77,12 @@ pub(crate) fn fluid_forces<T: Real>(
             Drag::new(model, params, pos, vel, b).force(model, pos)
         };
     }
-    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_fluid);
+    let Forces {
+        cfrc_body,
+        qfrc_fluid,
+        ..
+    } = force;
+    project_forces(model, parts, pos, cfrc_body, qfrc_fluid);
 }
 
 /// The resistance of the fluid to one body, at one velocity.

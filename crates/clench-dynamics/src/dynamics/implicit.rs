@@ -28,9 +28,9 @@ pub fn implicit_fast<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     symmetric_inertia(model, params, state, ws);
-    let positive = factor_implicit(&model.tree, ws);
+    let positive = factor_implicit(model, ws);
     ws.singular |= !positive;
-    solve_implicit(&model.tree, ws);
+    solve_implicit(model, ws);
     let Workspace {
         position: pos,
         velocity: vel,

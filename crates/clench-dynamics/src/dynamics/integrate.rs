@@ -7,12 +7,13 @@ use crate::dynamics::activation::next_activation;
 use crate::dynamics::orientation;
 use crate::dynamics::plastic::yield_springs;
 use crate::model::{GainKind, JointKind, Model, Params};
+use crate::part::Part;
 use crate::stages::{Lengths, Positions, Velocities};
 use crate::state::State;
 use crate::stiction::advance_friction;
 use crate::workspace::Workspace;
 use clench_math::{Quat, Real, Vec3, kernel};
-use clench_solver::{Tree, solve_differentiated};
+use clench_solver::solve_differentiated;
 
 /// Computes `out += x · scale`, entry by entry.
 #[inline(always)]
@@ -23,9 +24,23 @@ pub fn add_scaled<T: Real>(out: &mut [T], x: &[T], scale: T) {
 }
 
 /// Moves `qpos` along `velocity` (nv) for `time` seconds. Orientations rotate about the child's axes.
-#[kernel]
 pub fn integrate_positions<T: Real>(model: &Model, qpos: &mut [T], velocity: &[T], time: T) {
-    for joint in &model.joints {
+    integrate_parts(model, &[Part::whole(model)], qpos, velocity, time);
+}
+
+/// Does so for some parts.
+#[kernel]
+fn integrate_parts<T: Real>(
+    model: &Model,
+    parts: &[Part],
+    qpos: &mut [T],
+    velocity: &[T],
+    time: T,
+) {
+    for joint in parts
+        .iter()
+        .flat_map(|part| &model.joints[part.joints.clone()])
+    {
         let (mut q, mut v) = (&mut qpos[joint.qpos..], &velocity[joint.dof..]);
         match joint.kind {
             JointKind::Slide | JointKind::Hinge => q[0] += v[0] * time,
@@ -125,10 +140,11 @@ pub(crate) fn advance_time<T: Real>(
 }
 
 /// Solves for `integration.qacc` from the sum of all forces, with `integration.factor`; in dual numbers with
-/// `integration.matrix`.
+/// `integration.matrix`. It solves in the parts that the pass computes.
 #[inline(always)]
-pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
+pub(crate) fn solve_implicit<T: Real>(model: &Model, ws: &mut Workspace<T>) {
     sum_forces(ws);
+    let tree = ws.sleep.rows(model);
     let Integration {
         matrix,
         factor,
@@ -145,7 +161,8 @@ pub(crate) fn solve_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) {
 /// Factors `integration.matrix` for [`solve_implicit`], which does so itself in dual numbers. Returns false in lanes in
 /// which the matrix is not positive definite.
 #[inline(always)]
-pub(crate) fn factor_implicit<T: Real>(tree: &Tree, ws: &mut Workspace<T>) -> T::Mask {
+pub(crate) fn factor_implicit<T: Real>(model: &Model, ws: &mut Workspace<T>) -> T::Mask {
+    let tree = ws.sleep.rows(model);
     let Integration { matrix, factor, .. } = &mut ws.integration;
     if T::IS_DUAL {
         return factor.factor_values(tree, matrix);
@@ -163,8 +180,8 @@ pub(crate) fn sum_forces<T: Real>(ws: &mut Workspace<T>) {
 }
 
 /// Advances activations, then velocities by `integration.qacc`, then positions with the new velocities (semi-implicit
-/// Euler), then rest positions of springs, then time.
-#[inline(always)]
+/// Euler), then rest positions of springs, then time. Positions of parts that the pass does not compute stay the same.
+#[kernel]
 pub(crate) fn advance_semi_implicit<T: Real>(
     model: &Model,
     params: &Params<T>,
@@ -175,7 +192,8 @@ pub(crate) fn advance_semi_implicit<T: Real>(
     let (at, act_dot) = ((&ws.position, &ws.velocity), &ws.force.act_dot);
     advance_activations(model, params, at, act_dot, &mut state.act);
     add_scaled(&mut state.qvel, &ws.integration.qacc, h);
-    integrate_positions(model, &mut state.qpos, &state.qvel, h);
+    let parts = ws.sleep.computed();
+    integrate_parts(model, parts, &mut state.qpos, &state.qvel, h);
     let motion = (&state.qpos[..], &state.qvel[..]);
     yield_springs(
         model,

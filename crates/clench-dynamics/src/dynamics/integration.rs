@@ -3,12 +3,12 @@
 use super::coriolis::Coriolis;
 use super::plastic::has_yielding_tendons;
 use crate::model::{Integrator, Model};
-use clench_math::Real;
+use clench_math::{Mask, Real};
 use clench_solver::{TreeFactor, TreeLu, TreeMatrix};
 
 /// Memory of the integrators.
 #[derive(Clone, Debug)]
-pub struct Integration<T> {
+pub struct Integration<T: Real> {
     /// M − h ∂τ/∂v.
     pub matrix: TreeMatrix<T>,
     /// Its factor.
@@ -25,6 +25,9 @@ pub struct Integration<T> {
     pub start: Rates<T>,
     /// Runge–Kutta: the velocities of actuators (nout) at the start of the step.
     pub actuator_velocity: Vec<T>,
+    /// The lanes with implicit damping and a damped dof, and the [version](crate::fixed::FixedPoses::version) of the
+    /// parameters for which they were found.
+    pub damped: (T::Mask, u64),
     /// Runge–Kutta: tendon lengths and gradients at the start of the step; empty if no tendon's spring yields.
     pub tendons: [Vec<T>; 2],
     /// Runge–Kutta: the rates of the current stage.
@@ -75,6 +78,7 @@ impl<T: Real> Integration<T> {
             offset: T::ZERO,
             start: Rates::new(model, model.nq),
             actuator_velocity: vec![T::ZERO; model.nout()],
+            damped: (T::Mask::splat(false), 0),
             tendons: match has_yielding_tendons(model) || model.max_stick_pairs.is_some() {
                 true => [model.tendons.len(), model.tendon_dofs.len()].map(|n| vec![T::ZERO; n]),
                 false => Default::default(),

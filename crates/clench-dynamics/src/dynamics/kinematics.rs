@@ -9,10 +9,11 @@
 //! Transforms that are trivial in every environment ([`SameFrames`](crate::model::SameFrames)) are copied, not
 //! composed.
 //!
-//! Poses are computed only for ranges of bodies. These omit bodies fixed to the world, and trees asleep since the last
-//! pass, whose poses are still valid.
+//! Poses are computed only for parts of the model. These omit bodies fixed to the world, and trees asleep since the
+//! last pass, whose poses are still valid.
 
 use crate::model::{JointKind, Model, Params};
+use crate::part::Part;
 use crate::stages::Positions;
 use crate::state::State;
 use clench_math::{Mat3, Quat, Real, Vec3, kernel};
@@ -21,15 +22,15 @@ use std::ops::Range;
 /// The poses that a pass computes.
 #[derive(Clone, Copy, Debug)]
 pub struct Computed<'a> {
-    /// The ranges of bodies whose poses are computed.
-    pub parts: &'a [Range<usize>],
+    /// The parts whose poses are computed.
+    pub parts: &'a [Part],
     /// True to include geoms and sites on bodies that are fixed to the world.
     pub fixed: bool,
 }
 
 impl<'a> Computed<'a> {
-    /// Selects all poses on the bodies in some ranges.
-    pub fn all(parts: &'a [Range<usize>]) -> Self {
+    /// Selects all poses on the bodies of some parts.
+    pub fn all(parts: &'a [Part]) -> Self {
         Computed { parts, fixed: true }
     }
 }
@@ -50,16 +51,15 @@ pub fn kinematics<T: Real>(
     pos.xquat[0] = Quat::IDENTITY;
     pos.xmat[0] = Mat3::IDENTITY;
     for part in computed.parts {
-        let joints = model.joints_of(part);
-        let rotations = &mut pos.jnt_rotation[joints.clone()];
-        joint_rotations(model, params, &state.qpos, joints, rotations);
-        for b in part.start.max(1)..part.end {
+        let rotations = &mut pos.jnt_rotation[part.joints.clone()];
+        joint_rotations(model, params, &state.qpos, part.joints.clone(), rotations);
+        for b in part.bodies.start.max(1)..part.bodies.end {
             let (xpos, xquat) = body_pose(model, params, state, pos, b);
             pos.xpos[b] = xpos;
             pos.xquat[b] = xquat;
             pos.xmat[b] = xquat.to_matrix();
         }
-        attached_poses(model, params, (part, computed.fixed), pos);
+        attached_poses(model, params, (&part.bodies, computed.fixed), pos);
     }
 }
 
@@ -143,11 +143,11 @@ fn body_pose<T: Real>(
 fn attached_poses<T: Real>(
     model: &Model,
     params: &Params<T>,
-    (part, fixed): (&Range<usize>, bool),
+    (bodies, fixed): (&Range<usize>, bool),
     pos: &mut Positions<T>,
 ) {
     let same = &model.same_frames;
-    for b in part.clone() {
+    for b in bodies.clone() {
         if !fixed && model.is_fixed(b) {
             continue;
         }

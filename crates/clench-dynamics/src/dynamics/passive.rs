@@ -10,48 +10,58 @@ use crate::dynamics::spring::{
 };
 use crate::dynamics::tendon::add_tendon_force;
 use crate::model::{Model, Params};
+use crate::part::Part;
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Force, Mask, Real, Vec3, kernel};
 
-/// Computes `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`.
-/// Gravity compensation of joints with `actgravcomp` belongs to the actuators. As in MuJoCo, disabling springs and
-/// dampers disables all passive forces.
+/// Computes `qfrc_spring`, `qfrc_damper`, `qfrc_gravcomp`, `qfrc_fluid`, `qfrc_adhesion` and their sum `qfrc_passive`
+/// of some parts, which include all dofs of tendons. Gravity compensation of joints with `actgravcomp` belongs to the
+/// actuators. As in MuJoCo, disabling springs and dampers disables all passive forces.
 #[kernel]
 pub(crate) fn passive_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
-    pos: &Positions<T>,
-    vel: &Velocities<T>,
+    parts: &[Part],
+    (pos, vel): (&Positions<T>, &Velocities<T>),
     state: &State<T>,
     contacts: &[Contact<T>],
     force: &mut Forces<T>,
 ) {
-    force.qfrc_spring.fill(T::ZERO);
-    force.qfrc_damper.fill(T::ZERO);
-    force.qfrc_gravcomp.fill(T::ZERO);
-    force.qfrc_fluid.fill(T::ZERO);
-    force.qfrc_adhesion.fill(T::ZERO);
-    force.qfrc_passive.fill(T::ZERO);
+    for qfrc in [
+        &mut force.qfrc_spring,
+        &mut force.qfrc_damper,
+        &mut force.qfrc_gravcomp,
+        &mut force.qfrc_fluid,
+        &mut force.qfrc_adhesion,
+        &mut force.qfrc_passive,
+    ] {
+        for part in parts {
+            qfrc[part.dofs.clone()].fill(T::ZERO);
+        }
+    }
     if !model.flags.spring && !model.flags.damper {
         return;
     }
     if model.flags.spring {
-        springs(model, params, pos, state, &mut force.qfrc_spring);
+        springs(model, params, parts, pos, state, &mut force.qfrc_spring);
     }
     if model.flags.damper {
-        dampers(model, params, pos, vel, &state.qvel, &mut force.qfrc_damper);
+        let qfrc = &mut force.qfrc_damper;
+        dampers(model, params, parts, (pos, vel), &state.qvel, qfrc);
     }
-    gravity_compensation(model, params, pos, force);
-    fluid_forces(model, params, pos, vel, force);
-    adhesion(model, pos, contacts, force);
-    for (i, dof) in model.dofs.iter().enumerate() {
-        let mut sum = force.qfrc_spring[i] + force.qfrc_damper[i] + force.qfrc_fluid[i];
-        sum += force.qfrc_adhesion[i];
-        if !model.joints[dof.joint].actgravcomp {
-            sum += force.qfrc_gravcomp[i];
+    gravity_compensation(model, params, parts, pos, force);
+    fluid_forces(model, params, parts, pos, vel, force);
+    adhesion(model, parts, pos, contacts, force);
+    for part in parts {
+        for i in part.dofs.clone() {
+            let mut sum = force.qfrc_spring[i] + force.qfrc_damper[i] + force.qfrc_fluid[i];
+            sum += force.qfrc_adhesion[i];
+            if !model.joints[model.dofs[i].joint].actgravcomp {
+                sum += force.qfrc_gravcomp[i];
+            }
+            force.qfrc_passive[i] = sum;
         }
-        force.qfrc_passive[i] = sum;
     }
 }
 
@@ -59,13 +69,14 @@ pub(crate) fn passive_forces<T: Real>(
 fn springs<T: Real>(
     model: &Model,
     params: &Params<T>,
+    parts: &[Part],
     pos: &Positions<T>,
     state: &State<T>,
     qfrc: &mut [T],
 ) {
-    for (j, joint) in model.joints.iter().enumerate() {
+    for j in parts.iter().flat_map(|part| part.joints.clone()) {
         let spring = joint_spring(params, j);
-        let qfrc = &mut qfrc[joint.dof..];
+        let qfrc = &mut qfrc[model.joints[j].dof..];
         match joint_elongation(model, params, state, j) {
             None => {}
             Some(JointElongation::Scalar(x)) => qfrc[0] += -x * spring.stiffness(x),
@@ -100,13 +111,16 @@ fn pull_back<T: Real>(spring: &Polynomial<T>, elongation: Vec3<T>, qfrc: &mut [T
 fn dampers<T: Real>(
     model: &Model,
     params: &Params<T>,
-    pos: &Positions<T>,
-    vel: &Velocities<T>,
+    parts: &[Part],
+    (pos, vel): (&Positions<T>, &Velocities<T>),
     qvel: &[T],
     qfrc: &mut [T],
 ) {
-    for (i, (qfrc, &v)) in qfrc.iter_mut().zip(qvel).enumerate() {
-        *qfrc = -v * dof_damper(model, params, i).damping(v);
+    for part in parts {
+        for i in part.dofs.clone() {
+            let v = qvel[i];
+            qfrc[i] = -v * dof_damper(model, params, i).damping(v);
+        }
     }
     for t in 0..model.tendons.len() {
         let velocity = vel.ten_velocity[t];
@@ -119,6 +133,7 @@ fn dampers<T: Real>(
 #[inline(always)]
 fn adhesion<T: Real>(
     model: &Model,
+    parts: &[Part],
     pos: &Positions<T>,
     contacts: &[Contact<T>],
     force: &mut Forces<T>,
@@ -136,7 +151,12 @@ fn adhesion<T: Real>(
         }
     }
     force.cfrc_body[0] = Force::ZERO;
-    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_adhesion);
+    let Forces {
+        cfrc_body,
+        qfrc_adhesion,
+        ..
+    } = force;
+    project_forces(model, parts, pos, cfrc_body, qfrc_adhesion);
 }
 
 /// Supports the share `gravcomp` of each body's weight at its centre of mass. As in MuJoCo, negative shares, which add
@@ -145,6 +165,7 @@ fn adhesion<T: Real>(
 fn gravity_compensation<T: Real>(
     model: &Model,
     params: &Params<T>,
+    parts: &[Part],
     pos: &Positions<T>,
     force: &mut Forces<T>,
 ) {
@@ -156,11 +177,16 @@ fn gravity_compensation<T: Real>(
     if !model.flags.gravity || !lifted.any() {
         return;
     }
-    for b in 0..model.nbody() {
+    for b in parts.iter().flat_map(|part| part.bodies.clone()) {
         let share = T::select(lifted, params.body_gravcomp[b], T::ZERO);
         let lift = params.gravity * -(params.body_mass[b] * share);
         force.cfrc_body[b] = force_at(model, pos, b, pos.xipos[b], lift, Vec3::ZERO);
     }
     force.cfrc_body[0] = Force::ZERO;
-    project_forces(model, pos, &mut force.cfrc_body, &mut force.qfrc_gravcomp);
+    let Forces {
+        cfrc_body,
+        qfrc_gravcomp,
+        ..
+    } = force;
+    project_forces(model, parts, pos, cfrc_body, qfrc_gravcomp);
 }

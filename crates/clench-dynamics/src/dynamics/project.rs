@@ -1,6 +1,7 @@
 //! Projection between bodies and dofs: Σ_b J_bᵀ f_b in one pass over the tree, and the frames of forces and velocities.
 
 use crate::model::Model;
+use crate::part::Part;
 use crate::stages::Positions;
 use clench_math::{Force, Mat3, Motion, Real, Vec3, kernel};
 
@@ -18,23 +19,29 @@ pub fn force_at<T: Real>(
     Force::new(torque + arm.cross(force), force)
 }
 
-/// Adds the dof forces of one spatial force per body to `qfrc`. Overwrites `forces` with the forces on the body and all
-/// below it.
+/// Adds the dof forces of one spatial force per body of some parts to `qfrc`. Overwrites `forces` with the forces on
+/// the body and all below it.
 #[kernel]
 pub fn project_forces<T: Real>(
     model: &Model,
+    parts: &[Part],
     pos: &Positions<T>,
     forces: &mut [Force<T>],
     qfrc: &mut [T],
 ) {
-    for (b, body) in model.bodies.iter().enumerate().skip(1).rev() {
-        if body.parent != 0 {
-            let force = forces[b];
-            forces[body.parent] += force;
+    for part in parts {
+        for b in part.bodies.clone().rev() {
+            let parent = model.bodies[b].parent;
+            if parent != 0 {
+                let force = forces[b];
+                forces[parent] += force;
+            }
         }
-    }
-    for ((qfrc, dof), axis) in qfrc.iter_mut().zip(&model.dofs).zip(&pos.cdof) {
-        *qfrc += axis.dot(forces[dof.body]);
+        let dofs = part.dofs.clone();
+        let axes = model.dofs[dofs.clone()].iter().zip(&pos.cdof[dofs.clone()]);
+        for (qfrc, (dof, axis)) in qfrc[dofs].iter_mut().zip(axes) {
+            *qfrc += axis.dot(forces[dof.body]);
+        }
     }
 }
 

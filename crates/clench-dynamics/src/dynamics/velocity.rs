@@ -3,13 +3,23 @@
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
 use crate::model::{JointKind, Model};
+use crate::part::Part;
 use crate::stages::{Positions, Velocities};
 use clench_math::{Motion, Real, kernel};
 
-/// Computes `cvel`, `cdof_dot`, tendon and actuator velocities.
+/// Computes `cvel` and `cdof_dot` of some parts, and tendon and actuator velocities.
 #[kernel]
-pub fn velocities<T: Real>(model: &Model, pos: &Positions<T>, qvel: &[T], vel: &mut Velocities<T>) {
-    body_velocities(model, pos, qvel, vel);
+pub fn velocities<T: Real>(
+    model: &Model,
+    parts: &[Part],
+    pos: &Positions<T>,
+    qvel: &[T],
+    vel: &mut Velocities<T>,
+) {
+    vel.cvel[0] = Motion::ZERO;
+    for part in parts {
+        body_velocities(model, part, pos, qvel, vel);
+    }
     tendon::tendon_velocities(model, pos, qvel, &mut vel.ten_velocity);
     for (u, velocity) in vel.actuator_velocity.iter_mut().enumerate() {
         *velocity = T::ZERO;
@@ -28,12 +38,13 @@ pub fn velocities<T: Real>(model: &Model, pos: &Positions<T>, qvel: &[T], vel: &
 #[inline(always)]
 fn body_velocities<T: Real>(
     model: &Model,
+    part: &Part,
     pos: &Positions<T>,
     qvel: &[T],
     vel: &mut Velocities<T>,
 ) {
-    vel.cvel[0] = Motion::ZERO;
-    for (b, body) in model.bodies.iter().enumerate().skip(1) {
+    for b in part.bodies.start.max(1)..part.bodies.end {
+        let body = &model.bodies[b];
         let mut cvel = vel.cvel[body.parent];
         for joint in &model.joints[body.joints.clone()] {
             let mut dofs = joint.dof..joint.dof + joint.kind.nv();

@@ -144,15 +144,6 @@ impl Model {
         let weld = &self.bodies[self.bodies[body].weld];
         weld.dofs.is_empty() && weld.mocap.is_none()
     }
-    /// Returns the joints of consecutive bodies.
-    #[inline(always)]
-    pub(crate) fn joints_of(&self, bodies: &Range<usize>) -> Range<usize> {
-        match self.bodies[bodies.clone()] {
-            [ref first, .., ref last] => first.joints.start..last.joints.end,
-            [ref only] => only.joints.clone(),
-            [] => 0..0,
-        }
-    }
     /// Returns true if any tree can sleep.
     pub(crate) fn may_sleep(&self) -> bool {
         !self.tree_asleep0.is_empty()

@@ -1,18 +1,20 @@
 //! The work that a step skips for sleeping trees.
 //!
-//! The poses of sleeping trees are not computed again if their positions are those of the workspace's poses. If no lane
-//! has an awake tree, and nothing can wake one, a step only advances time. The workspace then holds the results of the
-//! last pass; they are exact if all trees slept in it at their present positions. Otherwise the step is done in full
-//! once, unless the workspace is not read.
+//! Nothing of a tree is computed again while it sleeps at the positions of the last pass, in which it also slept. If no
+//! lane has an awake tree, and nothing can wake one, a step only advances time. The workspace then holds the results of
+//! the last pass; they are exact if all trees slept in it at their present positions. Otherwise the step is done in
+//! full once, unless the workspace is not read.
 
 use super::wake::wake_coupled;
-use super::{Sleep, is_blank, mocap_pose, wake_touched};
+use super::{Sleep, all_blank, all_same, mocap_pose, wake_touched};
 use crate::fixed::FixedPoses;
 use crate::model::Model;
+use crate::part::Part;
 use crate::state::State;
 use crate::state::bounds::are_occasional;
 use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Real, kernel};
+use clench_solver::Tree;
 use std::ops::Range;
 
 /// Returns true if everything sleeps as the last pass left it, so that a step only advances time. Models with elements
@@ -33,25 +35,6 @@ pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> boo
         && all_blank(&state.qfrc_applied)
         && are_occasional(state, all_blank)
         && (0..T::LANES).all(|lane| state.time.lane(lane).is_finite())
-}
-
-/// The number of values that are compared between tests of the result.
-const BLOCK: usize = 256;
-
-/// Returns true if two arrays hold equal numbers in all lanes.
-#[inline(always)]
-fn all_same<T: Real>(one: &[T], other: &[T]) -> bool {
-    let same = |same: T::Mask, (a, b): (&T, &T)| same & a.eq(*b);
-    let mut blocks = one.chunks(BLOCK).zip(other.chunks(BLOCK));
-    blocks.all(|(a, b)| a.iter().zip(b).fold(T::Mask::splat(true), same).all())
-}
-
-/// Returns true if all bits of all numbers are zero.
-#[inline(always)]
-fn all_blank<T: Real>(numbers: &[T]) -> bool {
-    let mut blocks = numbers.chunks(BLOCK);
-    let and_blank = |blank: T::Mask, x: &T| blank & is_blank(*x);
-    blocks.all(|block| block.iter().fold(T::Mask::splat(true), and_blank).all())
 }
 
 /// Returns true if a step only advances time: nothing is awake, nothing wakes, and the model has no actuators and no
@@ -77,10 +60,7 @@ impl<T: Real> Sleep<T> {
     /// Invalidates all poses, so that the next pass computes them.
     pub fn invalidate(&mut self) {
         (self.placed, self.at_rest) = (false, false);
-        if self.enabled {
-            self.parts.clear();
-            self.parts.push(0..self.bodies.len());
-        }
+        self.parts.select_all();
     }
 
     /// Records a pass over a state.
@@ -90,38 +70,58 @@ impl<T: Real> Sleep<T> {
         for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
             pose.copy_from_slice(&mocap_pose(state, m));
         }
+        self.parts.note();
         self.placed = true;
         self.at_rest = self.all_asleep().all();
     }
 
-    /// Returns the ranges of the bodies whose poses the position stage computes: all but those of trees on the world
-    /// whose fixed poses are valid, or that sleep as in the last pass.
-    pub fn parts<'a>(&'a self, fixed: &'a FixedPoses) -> &'a [Range<usize>] {
+    /// Returns the parts whose poses the position stage computes: [`computed`](Self::computed), but never bodies on the
+    /// world whose fixed poses are valid.
+    pub fn parts<'a>(&'a self, fixed: &'a FixedPoses) -> &'a [Part] {
         match self.enabled {
-            true => &self.parts,
+            true => self.computed(),
             false => fixed.parts(),
         }
     }
 
-    /// Computes [`parts`](Self::parts) for a state.
-    pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>, fixed: &FixedPoses) {
-        self.parts.clear();
-        let mut trees = model.trees.iter().zip(&self.awake).peekable();
-        for part in fixed.parts() {
-            let mut start = part.start;
-            while let Some((tree, awake)) = trees.next_if(|(tree, _)| tree.bodies.end <= part.end) {
-                let apart = !awake.any() && model.bodies[tree.bodies.start].parent == 0;
-                if apart && self.placed && self.lies_as_before(tree.qpos.clone(), state) {
-                    if start < tree.bodies.start {
-                        self.parts.push(start..tree.bodies.start);
-                    }
-                    start = tree.bodies.end;
-                }
-            }
-            if start < part.end {
-                self.parts.push(start..part.end);
-            }
+    /// Returns the parts that the stages of the pass compute: all but trees that sleep as in the last pass, and, if any
+    /// tree can sleep, bodies on the world whose fixed poses are valid.
+    pub fn computed(&self) -> &[Part] {
+        self.parts.get()
+    }
+
+    /// Returns the sparsity of the mass matrix, limited to the rows of these parts.
+    pub(crate) fn rows<'a>(&'a self, model: &'a Model) -> &'a Tree {
+        self.parts.rows(model)
+    }
+
+    /// Adds the trees that woke during the pass, if any, to the parts that it computes. The workspace now differs from
+    /// the last pass.
+    pub(crate) fn leave_last(
+        &mut self,
+        model: &Model,
+        state: &State<T>,
+        fixed: &FixedPoses,
+        woke: bool,
+    ) {
+        if woke && self.placed {
+            self.find_parts(model, state, fixed);
         }
+        (self.placed, self.at_rest) = (false, false);
+    }
+
+    /// Finds the parts that a pass over a state computes.
+    #[inline(never)]
+    pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>, fixed: &FixedPoses) {
+        if !self.placed {
+            self.parts.select_all();
+            return;
+        }
+        for (t, tree) in model.trees.iter().enumerate() {
+            let same = self.lies_as_before(tree.qpos.clone(), state);
+            self.parts.set_same(t, same);
+        }
+        self.parts.select(model, fixed);
     }
 
     /// Returns true if positions are those of the last pass.

@@ -11,6 +11,7 @@
 
 mod fall;
 mod idle;
+mod parts;
 mod wake;
 
 pub use fall::fall_asleep;
@@ -23,7 +24,7 @@ use crate::model::Model;
 use crate::state::State;
 use clench_math::{Mask, Quat, Real, Scalar, Vec3};
 use clench_solver::Partition;
-use std::ops::Range;
+use parts::Parts;
 
 /// The counter of a moving tree; it reaches `READY` after 10 steps below the tolerance (MuJoCo's `mjMINAWAKE`).
 pub const AWAKE: f64 = -11.0;
@@ -41,13 +42,12 @@ pub struct Sleep<T: Real> {
     awake: Vec<T::Mask>,
     /// Lanes in which each body is awake: mocap bodies always, because the user may move them, and fixed bodies never.
     bodies: Vec<T::Mask>,
-    /// True if the workspace's results are those of the positions and mocap poses in `pose`.
+    /// True if the workspace's results are those of a complete pass at the positions and mocap poses in `pose`.
     placed: bool,
     pose: Vec<T>,
     /// True if, in addition, all trees slept in the last pass in all lanes.
     at_rest: bool,
-    /// Ranges of the bodies whose poses the position stage computes.
-    parts: Vec<Range<usize>>,
+    parts: Parts,
     partition: Partition<T>,
     /// Scratch: the trees of an island.
     members: Vec<u32>,
@@ -60,15 +60,16 @@ impl<T: Real> Sleep<T> {
     pub fn new(model: &Model) -> Self {
         let enabled = model.may_sleep();
         let numbers = |of_model: usize| if enabled { of_model } else { 0 };
-        let awake = |of_model: usize| vec![T::Mask::splat(true); numbers(of_model)];
         Sleep {
             enabled,
             counters: vec![T::new(AWAKE); numbers(model.ntree())],
-            awake: awake(model.ntree()),
-            bodies: awake(model.nbody()),
+            awake: vec![T::Mask::splat(true); numbers(model.ntree())],
+            bodies: (0..numbers(model.nbody()))
+                .map(|body| T::Mask::splat(!model.is_fixed(body)))
+                .collect(),
             at_rest: false,
             placed: false,
-            parts: std::iter::once(0..model.nbody()).collect(),
+            parts: Parts::new(model),
             pose: vec![T::ZERO; numbers(model.nq + 7 * model.nmocap)],
             partition: Partition::default(),
             members: Vec::new(),
@@ -88,17 +89,11 @@ impl<T: Real> Sleep<T> {
 
     /// Updates the awake lanes from the counters.
     fn update(&mut self, model: &Model) {
-        for (awake, counter) in self.awake.iter_mut().zip(&self.counters) {
-            *awake = counter.lt(T::ZERO);
-        }
-        for (body, awake) in self.bodies.iter_mut().enumerate() {
-            *awake = match model.tree_of_body(body) {
-                Some(tree) => self.awake[tree],
-                None => {
-                    let weld = model.bodies[body].weld;
-                    T::Mask::splat(model.bodies[weld].mocap.is_some())
-                }
-            };
+        for (t, counter) in self.counters.iter().enumerate() {
+            let awake = counter.lt(T::ZERO);
+            self.awake[t] = awake;
+            self.bodies[model.trees[t].bodies.clone()].fill(awake);
+            self.parts.set_awake(t, awake.any());
         }
     }
 
@@ -160,6 +155,25 @@ impl<T: Real> Sleep<T> {
 #[inline(always)]
 fn is_blank<T: Real>(x: T) -> T::Mask {
     x.eq(T::ZERO) & T::ONE.copysign(x).gt(T::ZERO)
+}
+
+/// The number of values that are compared between tests of the result.
+const BLOCK: usize = 256;
+
+/// Returns true if two arrays hold equal numbers in all lanes.
+#[inline(always)]
+fn all_same<T: Real>(one: &[T], other: &[T]) -> bool {
+    let same = |same: T::Mask, (a, b): (&T, &T)| same & a.eq(*b);
+    let mut blocks = one.chunks(BLOCK).zip(other.chunks(BLOCK));
+    blocks.all(|(a, b)| a.iter().zip(b).fold(T::Mask::splat(true), same).all())
+}
+
+/// Returns true if all bits of all numbers are zero.
+#[inline(always)]
+fn all_blank<T: Real>(numbers: &[T]) -> bool {
+    let mut blocks = numbers.chunks(BLOCK);
+    let and_blank = |blank: T::Mask, x: &T| blank & is_blank(*x);
+    blocks.all(|block| block.iter().fold(T::Mask::splat(true), and_blank).all())
 }
 
 /// Returns the pose of a mocap body in the layout of [`State::pose_asleep`].

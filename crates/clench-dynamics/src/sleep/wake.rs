@@ -3,13 +3,13 @@
 //! A tree wakes with its whole island. A tree that the user or an equality wakes starts its counter anew. A tree that
 //! is touched or pulled takes the counter of the tree that wakes it, because both must be at rest to sleep again.
 
-use super::{AWAKE, Sleep, is_blank, mocap_pose};
+use super::{AWAKE, Sleep, all_blank, is_blank, mocap_pose};
 use crate::model::{Coupled, KinematicTree, Model, Params, SleepPolicy};
 use crate::settings::StepSettings;
 use crate::state::State;
 use crate::state::slots::each_tie;
 use crate::workspace::Workspace;
-use clench_math::{Mask, Real, Scalar, kernel};
+use clench_math::{Force, Mask, Real, Scalar, kernel};
 
 impl<T: Real> Sleep<T> {
     /// Wakes the island of a tree in some lanes, with `counter` for each of its trees. In lanes where the tree is
@@ -52,12 +52,17 @@ impl<T: Real> Sleep<T> {
 pub(crate) fn wake_touched<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) {
     let sleep = &mut ws.sleep;
     sleep.begin(model, state);
+    let forces = !(all_blank(&state.qfrc_applied) && no_wrench(&state.xfrc_applied).all());
     for (t, tree) in model.trees.iter().enumerate() {
         let asleep = !sleep.awake[t];
         if !asleep.any() {
             continue;
         }
-        let touched = asleep & !is_untouched(model, tree, state);
+        let mut untouched = is_untouched(model, tree, state);
+        if forces {
+            untouched &= is_free(tree, state);
+        }
+        let touched = asleep & !untouched;
         // Another tree of the island may have woken it.
         let touched = touched & sleep.counters[t].ge(T::ZERO);
         if touched.any() {
@@ -67,12 +72,13 @@ pub(crate) fn wake_touched<T: Real>(model: &Model, state: &State<T>, ws: &mut Wo
     sleep.update(model);
 }
 
-/// Returns the lanes in which a sleeping tree is as it fell asleep.
+/// Returns the lanes in which a sleeping tree is as it fell asleep, apart from the forces on it.
 #[inline(always)]
 fn is_untouched<T: Real>(model: &Model, tree: &KinematicTree, state: &State<T>) -> T::Mask {
     let mut same = T::Mask::splat(tree.sleep != SleepPolicy::Never);
-    for q in tree.qpos.clone() {
-        same &= state.qpos[q].eq(state.pose_asleep[q]);
+    let asleep = &state.pose_asleep[tree.qpos.clone()];
+    for (q, &asleep) in state.qpos[tree.qpos.clone()].iter().zip(asleep) {
+        same &= q.eq(asleep);
     }
     if let Some(mocap) = tree.mocap {
         let kept = &state.pose_asleep[model.nq + 7 * mocap..];
@@ -80,40 +86,43 @@ fn is_untouched<T: Real>(model: &Model, tree: &KinematicTree, state: &State<T>) 
             same &= x.eq(kept);
         }
     }
-    for i in tree.dofs.clone() {
-        same &= is_blank(state.qvel[i]);
+    for &v in &state.qvel[tree.dofs.clone()] {
+        same &= is_blank(v);
     }
-    same & is_free(tree, state)
+    same
 }
 
 /// Returns the lanes in which the user applies no force to a tree.
 #[inline(always)]
 pub(super) fn is_free<T: Real>(tree: &KinematicTree, state: &State<T>) -> T::Mask {
     let mut free = T::Mask::splat(true);
-    for i in tree.dofs.clone() {
-        free &= is_blank(state.qfrc_applied[i]);
+    for &force in &state.qfrc_applied[tree.dofs.clone()] {
+        free &= is_blank(force);
     }
-    for force in &state.xfrc_applied[tree.bodies.clone()] {
-        for x in force
-            .linear
-            .to_array()
-            .into_iter()
-            .chain(force.angular.to_array())
-        {
-            free &= is_blank(x);
-        }
-    }
-    free
+    free & no_wrench(&state.xfrc_applied[tree.bodies.clone()])
 }
 
-/// Wakes trees by tendons that connect them to others, if such a tendon is at a limit or has dry friction.
+/// Returns the lanes in which all bits of some forces are zero.
+#[inline(always)]
+fn no_wrench<T: Real>(forces: &[Force<T>]) -> T::Mask {
+    let mut blank = T::Mask::splat(true);
+    for force in forces {
+        for part in [force.linear, force.angular] {
+            blank &= is_blank(part.x) & is_blank(part.y) & is_blank(part.z);
+        }
+    }
+    blank
+}
+
+/// Wakes trees by tendons that connect them to others, if such a tendon is at a limit or has dry friction. Returns true
+/// if there were any.
 #[kernel]
 pub(crate) fn wake_pulled<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
     ws: &mut Workspace<T>,
-) {
+) -> bool {
     let sleep = &mut ws.sleep;
     let mut woke = false;
     for (t, tendon) in model.tendons.iter().enumerate() {
@@ -134,6 +143,7 @@ pub(crate) fn wake_pulled<T: Real>(
     if woke {
         sleep.update(model);
     }
+    woke
 }
 
 /// Wakes trees in contact with awake trees or mocap bodies. Returns true if there were any. Contact detection must then

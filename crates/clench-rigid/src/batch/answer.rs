@@ -151,7 +151,9 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
             Query::Kinematics { .. } | Query::Inverse(_) => {}
         }
         if let Query::Velocity(..) = self.query {
-            (Step::compiled().velocities)(self.model, &ws.position, &state.qvel, &mut ws.velocity);
+            let parts = ws.sleep.computed();
+            let (pos, vel) = (&ws.position, &mut ws.velocity);
+            (Step::compiled().velocities)(self.model, parts, pos, &state.qvel, vel);
         }
         self.write_answer(params, ws, input, out);
         match self.query {

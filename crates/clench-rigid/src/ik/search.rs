@@ -19,10 +19,10 @@ use clench_dynamics::Step;
 use clench_dynamics::dynamics::frames::Frames;
 use clench_dynamics::dynamics::kinematics::Computed;
 use clench_dynamics::model::{JointKind, Model, Params};
+use clench_dynamics::part::Part;
 use clench_dynamics::stages::Positions;
 use clench_dynamics::state::State;
 use clench_math::{Mask, Quat, Real, Scalar, kernel};
-use std::ops::Range;
 
 /// ε: the minimum damping. At singular postures A alone cannot be factored.
 const MIN_DAMPING: f64 = 1e-9;
@@ -51,7 +51,7 @@ pub struct Search<T: Real> {
     /// The index of the [`IkStatus`].
     status: T,
     position: Positions<T>,
-    all: Range<usize>,
+    all: [Part; 1],
     here: Equations<T>,
     there: Equations<T>,
     scratch: Scratch<T>,
@@ -82,7 +82,7 @@ impl<T: Real> Search<T> {
             iterations: T::ZERO,
             status: T::ZERO,
             position: Positions::new(model),
-            all: 0..model.nbody(),
+            all: [Part::whole(model)],
             there: here.clone(),
             scratch: Scratch::new(model),
             factor: here.matrix.clone(),
@@ -214,7 +214,8 @@ impl<T: Real> Search<T> {
             promised += T::new(0.5) * step * slope;
         }
         self.state.qpos.copy_from_slice(&self.qpos);
-        (self.compiled.integrate_positions)(model, &mut self.state.qpos, &self.velocity, T::ONE);
+        let qpos = &mut self.state.qpos;
+        (self.compiled.integrate_positions)(model, qpos, &self.velocity, T::ONE);
         if ik.options.limits {
             project(model, params, ik, &mut self.state.qpos);
         }
@@ -226,8 +227,8 @@ impl<T: Real> Search<T> {
     #[inline(always)]
     fn evaluate(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
         let pos = &mut self.position;
-        let all = std::slice::from_ref(&self.all);
-        (self.compiled.body_poses)(model, params, &self.state, Computed::all(all), pos);
+        let all = Computed::all(&self.all);
+        (self.compiled.body_poses)(model, params, &self.state, all, pos);
         let frames = Frames { model, params, pos };
         let goals = (ik, &self.goals[..]);
         (self.there).build(frames, &self.state.qpos, goals, &mut self.scratch);

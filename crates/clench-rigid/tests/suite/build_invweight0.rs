@@ -1,6 +1,7 @@
 //! Quantities that the builder derives from the whole model: inverse inertias, springs, servo damping, equality data.
 
 use clench_dynamics::constants::CONSTANTS;
+use clench_dynamics::part::Part;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, GeomSpec, JointSpec,
@@ -27,13 +28,12 @@ fn bob(name: &str, mass: f64) -> BodySpec {
 
 fn positions(model: &Model) -> (Positions<f64>, Vec<f64>) {
     let mut pos = Positions::new(model);
-    let bodies = 0..model.nbody();
-    let parts = std::slice::from_ref(&bodies);
+    let parts = &[Part::whole(model)];
     let all = kinematics::Computed::all(parts);
     kinematics::kinematics(model, &model.params, &State::new(model), all, &mut pos);
     com::com_positions(model, &model.params, parts, &mut pos);
     let mut mass = TreeMatrix::zeros(&model.tree);
-    inertia::composite_inertia(model, &model.params, &mut pos, &mut mass);
+    inertia::composite_inertia(model, &model.params, parts, &mut pos, &mut mass);
     let dense = mass.to_dense(&model.tree);
     (pos, dense)
 }

@@ -1,6 +1,7 @@
 //! Smooth dynamics compared with its definitions.
 
 use crate::machines::{distance, everything, floating, shake, sim, turn_between};
+use clench_dynamics::part::Part;
 use clench_math::{Force, Motion, Vec3};
 use clench_rigid::dynamics::coriolis::{Coriolis, add_bias_derivatives};
 use clench_rigid::dynamics::derivatives::add_velocity_derivatives;
@@ -151,7 +152,13 @@ fn bias_is_the_force_of_steady_motion() {
             );
         }
         let mut expected = vec![0.0; model.nv];
-        project_forces(model, &ws.position, &mut forces, &mut expected);
+        project_forces(
+            model,
+            &[Part::whole(model)],
+            &ws.position,
+            &mut forces,
+            &mut expected,
+        );
         let error = distance(&expected, &ws.force.qfrc_bias);
         assert!(error < 1e-7, "seed {seed}: {error}");
     }

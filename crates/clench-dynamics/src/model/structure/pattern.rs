@@ -37,6 +37,11 @@ impl RowPattern {
         self.dofs.is_empty()
     }
 
+    /// Returns the dofs of all rows.
+    pub(crate) fn all_dofs(&self) -> &[u32] {
+        &self.dofs
+    }
+
     /// Returns the range of the entries of a row.
     #[inline(always)]
     pub fn range(&self, row: usize) -> Range<usize> {
