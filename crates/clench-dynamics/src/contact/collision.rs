@@ -1,6 +1,7 @@
 //! The state of contact detection between steps, and its budget.
 
 use super::Candidate;
+use super::awake_pairs::AwakePairs;
 use super::body_pairs::BodyPairs;
 use super::bounding_sphere::BoundingSphere;
 use super::dynamic_broad_phase::DynamicBroadPhase;
@@ -79,6 +80,8 @@ pub struct Collision<T: Real> {
     pub(super) candidates: Vec<Candidate>,
     /// The same pairs by body, if they are listed once.
     pub(super) body_pairs: BodyPairs<T>,
+    /// The listed candidates of which a tree is awake.
+    pub(super) awake_pairs: AwakePairs,
     /// The candidates that may touch now.
     pub(super) near: Vec<u32>,
     /// Finds the candidates of a large model in each step; those of a small one never change.
@@ -110,6 +113,7 @@ impl<T: Real> Collision<T> {
             overflow: T::Mask::splat(false),
             excess: T::ZERO,
             body_pairs: BodyPairs::new(model, &candidates),
+            awake_pairs: AwakePairs::new(model, &candidates),
             candidates,
             broad_phase,
             near: Vec::new(),

@@ -68,16 +68,25 @@ pub fn detect<T: Real>(
         broad_phase.update(model, params, pos, ws.fixed.version(), spheres);
         let too_many = broad_phase.find(model, &mut collision.candidates);
         collision.record_excess(too_many, Excess::Pairs);
-        let all = 0..collision.candidates.len();
-        find_near(params, pos, &awake, all, false, collision);
     } else {
         let body_pairs = &mut collision.body_pairs;
         bounding_sphere::update(model, params, pos, body_pairs.geoms(), spheres);
         body_pairs.update(spheres);
-        for run in 0..body_pairs.len() {
-            if let Some(candidates) = collision.body_pairs.near(run) {
-                find_near(params, pos, &awake, candidates, true, collision);
-            }
+        collision.awake_pairs.mark(awake.sleep.map(Sleep::trees));
+    }
+    let listed = collision.broad_phase.is_none();
+    let runs = if listed {
+        collision.body_pairs.len()
+    } else {
+        1
+    };
+    for run in 0..runs {
+        let mut rest = match listed {
+            true => collision.body_pairs.near(run).unwrap_or_default(),
+            false => 0..collision.candidates.len(),
+        };
+        while let Some(candidates) = collision.awake_pairs.next(&mut rest) {
+            find_near(params, pos, &awake, candidates, listed, collision);
         }
     }
     ws.clock.lap(Stage::BroadPhase as usize);
@@ -102,26 +111,30 @@ pub fn detect<T: Real>(
     ws.clock.lap(Stage::NarrowPhase as usize);
 }
 
-/// Appends the candidates that may touch in any lane to the near pairs. With `boxes` it also compares their boxes; a
-/// broad phase has done so for its own candidates.
+/// Appends the candidates that may touch in any lane to the near pairs. If they are `listed` it also compares their
+/// boxes; a broad phase has done so for its own candidates.
 #[inline(always)]
 fn find_near<T: Real>(
     params: &Params<T>,
     pos: &Positions<T>,
     awake: &Awake<T>,
     candidates: Range<usize>,
-    boxes: bool,
+    listed: bool,
     collision: &mut Collision<T>,
 ) {
     for index in candidates {
         let candidate = &collision.candidates[index];
-        let awake_in = awake.of(candidate);
+        // With one lane, the candidates of a list are those of awake trees.
+        let awake_in = match listed && T::LANES == 1 {
+            true => T::Mask::splat(true),
+            false => awake.of(candidate),
+        };
         if !awake_in.any() {
             continue;
         }
         let range = || contact_range(awake.model, params, candidate).1;
         let mut near = awake_in & may_touch(candidate, &collision.spheres, pos, range);
-        if near.any() && boxes && pays(candidate) {
+        if near.any() && listed && pays(candidate) {
             near &= boxes_may_touch(awake.model, params, pos, candidate, range());
         }
         if near.any() {

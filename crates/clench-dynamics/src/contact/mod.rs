@@ -1,6 +1,7 @@
 //! Contact detection: the pairs that may touch, their contact points and contact parameters. `constraint::contact`
 //! turns contacts into constraints.
 
+mod awake_pairs;
 mod body_pairs;
 mod bounding_box;
 mod bounding_sphere;

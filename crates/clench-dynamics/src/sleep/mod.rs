@@ -24,7 +24,7 @@ use crate::model::Model;
 use crate::state::State;
 use clench_math::{Mask, Quat, Real, Scalar, Vec3};
 use clench_solver::Partition;
-use parts::Parts;
+pub(crate) use parts::Parts;
 
 /// The counter of a moving tree; it reaches `READY` after 10 steps below the tolerance (MuJoCo's `mjMINAWAKE`).
 pub const AWAKE: f64 = -11.0;
@@ -95,6 +95,11 @@ impl<T: Real> Sleep<T> {
             self.bodies[model.trees[t].bodies.clone()].fill(awake);
             self.parts.set_awake(t, awake.any());
         }
+    }
+
+    /// Returns the trees that are awake in any lane.
+    pub(crate) fn trees(&self) -> &Parts {
+        &self.parts
     }
 
     /// Returns the lanes in which a tree is awake.

@@ -8,7 +8,7 @@ use std::slice::from_ref;
 
 /// The parts that a pass computes.
 #[derive(Clone, Debug)]
-pub(super) struct Parts {
+pub(crate) struct Parts {
     /// True if the pass computes the whole model.
     all: bool,
     whole: Part,
@@ -80,6 +80,11 @@ impl Parts {
     /// Records whether a tree is awake in any lane.
     pub(super) fn set_awake(&mut self, tree: usize, awake: bool) {
         self.trees[tree].awake = awake;
+    }
+
+    /// Returns true if a tree is awake in any lane, or if none can sleep.
+    pub(crate) fn is_awake(&self, tree: usize) -> bool {
+        self.trees.get(tree).is_none_or(|tree| tree.awake)
     }
 
     /// Records that a pass ends.
