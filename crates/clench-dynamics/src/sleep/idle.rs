@@ -95,9 +95,9 @@ impl<T: Real> Sleep<T> {
         self.parts.rows(model)
     }
 
-    /// Adds the trees that woke during the pass, if any, to the parts that it computes. The workspace now differs from
-    /// the last pass.
-    pub(crate) fn leave_last(
+    /// Adds the trees that woke during the pass, if any, to the parts that its other stages compute. They overwrite
+    /// the results of the last pass.
+    pub(crate) fn add_woken(
         &mut self,
         model: &Model,
         state: &State<T>,

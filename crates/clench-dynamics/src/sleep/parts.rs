@@ -82,9 +82,9 @@ impl Parts {
         self.trees[tree].awake = awake;
     }
 
-    /// Returns true if a tree is awake in any lane, or if none can sleep.
+    /// Returns true if a tree is awake in any lane. Trees must be able to sleep.
     pub(crate) fn is_awake(&self, tree: usize) -> bool {
-        self.trees.get(tree).is_none_or(|tree| tree.awake)
+        self.trees[tree].awake
     }
 
     /// Records that a pass ends.
