@@ -26,14 +26,14 @@ class Identification:
     parameters : dict of str to numpy.ndarray
         All numbers of each field, with the estimates in place, for `Sim.set_param`.
     estimates : numpy.ndarray
-        (n,) The estimated numbers: the fields in the order of the call, each with its indices in theirs.
+        (n,) The estimated numbers, in the order of `parameters` and of the indices of each field.
     covariance : numpy.ndarray
         (n, n) Covariance of the estimates, σ² (Jᵀ J)⁻¹. Infinite if the recordings do not determine all of them.
     residual : float
-        σ, the root of the sum of squared residuals over their number less n. It is near 1 if the model fits and `scale`
-        holds the standard deviations of the noise.
+        σ, the root of the sum of squared residuals over their number minus n. It is near 1 if the model fits and
+        `scale` holds the standard deviations of the noise.
     result : scipy.optimize.OptimizeResult
-        SciPy's result: cost, Jacobian, residuals, number of evaluations, reason to end.
+        SciPy's result: cost, Jacobian, residuals, number of evaluations, termination status.
     """
 
     parameters: dict[str, NDArray[np.float64]]
@@ -93,7 +93,7 @@ def identify(
     ValueError
         If a name or shape is wrong, or nothing was recorded.
     IndexError
-        If a field does not have a number.
+        If an index is outside its field.
     SimulationError
         If a simulation with the values of the model fails.
 

@@ -19,7 +19,7 @@ __all__ = ["State"]
 
 # The version of the byte format; readers reject newer versions. Before version 2, times had the precision of all other
 # numbers; before version 3, there were no delays and no sleeping; before version 4, no constraints were added at run
-# time; before version 5, there were no plastic springs; before version 6, nothing stuck.
+# time; before version 5, there were no plastic springs; before version 6, no stick references.
 _VERSION = 6
 # The fields that were added in version 4, with the number of values per element.
 _SINCE_4 = {

@@ -50,7 +50,7 @@ class LoadError(ClenchError, ValueError):
 
 
 class SimulationError(ClenchError, RuntimeError):
-    """The state cannot be stepped, or the step failed; the last good state is kept."""
+    """The state cannot be stepped, or the step failed; the last good state is retained."""
 
 
 class BusyError(ClenchError, RuntimeError):

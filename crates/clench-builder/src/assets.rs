@@ -1,4 +1,4 @@
-//! Height fields, as their author gives them.
+//! Descriptions of height fields.
 
 use super::Origin;
 

@@ -1,4 +1,4 @@
-//! Length ranges of actuators that their author did not give. A force pulls each to its shortest and its longest
+//! Length ranges of actuators that the model does not specify. A force pulls each to its shortest and its longest
 //! length, in a simulation without contacts, gravity, springs, dampers and dry friction whose velocities decay, as in
 //! MuJoCo's `mj_setLengthRange` (modeling chapter, "Length range").
 
@@ -19,7 +19,7 @@ const MIN_TIMECONST: f64 = 0.01;
 /// The minimum of accelerations and forces that are divisors (MuJoCo's `mjMINVAL`).
 const MIN_NORM: f64 = 1e-15;
 
-/// Computes the length ranges that are needed and not given.
+/// Computes the length ranges that are needed and not specified.
 ///
 /// # Errors
 /// Returns an error if a simulation fails, a length does not converge or has no range, or the steps exceed the budget.
@@ -207,7 +207,7 @@ impl<'a> Search<'a> {
         Ok(seen.unwrap_or_default())
     }
 
-    /// Does a step and returns the length at its start.
+    /// Takes a step and returns the length at its start.
     fn pull(&mut self, u: usize, direction: f64) -> Result<f64, Fault> {
         let settings = self.settings;
         let fading = (-self.model.params.timestep / settings.timeconst.max(MIN_TIMECONST)).exp();
@@ -245,7 +245,7 @@ impl<'a> Search<'a> {
         Ok(length)
     }
 
-    /// Does a step of the simulation. The model's sensors are off.
+    /// Takes a step of the simulation. The model's sensors are off.
     fn advance(&mut self) -> Result<(), Fault> {
         self.check()?;
         let (model, time) = (&self.model, self.state.time);
@@ -278,5 +278,5 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 fn failure(spec: &ActuatorSpec, error: &SimError) -> BuildError {
-    spec.error(format!("while its length range was looked for: {error}; give lengthrange, or change <lengthrange> of the compiler"))
+    spec.error(format!("the search for its length range failed: {error}; give lengthrange, or change <lengthrange> of the compiler"))
 }

@@ -16,8 +16,8 @@ use clench_dynamics::{pipeline, sleep};
 /// Finds the trees, and resolves which may sleep.
 ///
 /// # Errors
-/// Returns an error for a policy of a body that is not the root of a tree, or one that lets a tree sleep that a tendon
-/// couples to another.
+/// Returns an error for a policy of a body that is not the root of a tree, or a policy that permits sleep of a tree
+/// that a tendon couples to another.
 pub(super) fn add_trees(
     builder: &ModelBuilder,
     order: &[usize],
@@ -87,7 +87,7 @@ pub(super) fn add_trees(
     Ok(())
 }
 
-/// Keeps a tree awake that something may move undetected, unless its author set a policy.
+/// Sets the policy of a tree that can move undetected to `Never`, unless the model specifies one.
 fn prevent_sleep(tree: &mut KinematicTree) {
     if tree.sleep == SleepPolicy::Auto {
         tree.sleep = SleepPolicy::Never;

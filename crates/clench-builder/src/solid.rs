@@ -1,9 +1,10 @@
 //! Volume, centre of mass and inertia of a triangulated solid, computed as in MuJoCo.
 //!
 //! Each triangle is the base of a pyramid with a common apex, whose volume has the sign of the side on which the apex
-//! is. Over a closed surface the sum does not depend on the apex. A pyramid's centre of mass is at 3/4 of the path to
-//! its base, and ∫ x xᵀ dV over a pyramid D, E, F with its apex at the origin is V/20 (Σ_i 2 p_i p_iᵀ + Σ_{i≠j} p_i
-//! p_jᵀ); over only the triangle, it is its area over 12 times the same. MuJoCo uses the 3/4 for a shell too.
+//! is. Over a closed surface the sum does not depend on the apex. A pyramid's centre of mass is at 3/4 of the line to
+//! the centroid of its base, and ∫ x xᵀ dV over a pyramid D, E, F with its apex at the origin is V/20 (Σ_i 2 p_i p_iᵀ +
+//! Σ_{i≠j} p_i p_jᵀ); over only the triangle, it is its area over 12 times the same. MuJoCo uses the 3/4 for a shell
+//! too.
 
 use super::MeshInertia;
 use clench_math::{Mat3, Vec3};

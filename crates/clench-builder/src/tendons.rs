@@ -15,8 +15,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Returns an error if a path is empty, mixes joints and sites, repeats a joint, has a joint without a scalar position,
-/// a branch that does not begin and end with a site, or a geom that is no sphere or cylinder, or if a range is not
-/// ascending.
+/// a branch that does not begin and end with a site, or a geom that is neither a sphere nor a cylinder, or if a range
+/// is not ascending.
 pub(super) fn add_all(
     builder: &ModelBuilder,
     names: &AllNames,
@@ -136,8 +136,8 @@ fn check_order(spec: &TendonSpec, path: &[Wrap]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Returns the dofs that change the length of a tendon. For a spatial one they move two bodies relative to each other,
-/// between which a part of it can be straight.
+/// Returns the dofs that change the length of a tendon. Those of a spatial tendon move two bodies relative to each
+/// other between which it can have a straight span.
 fn dofs(tendon: &Tendon, model: &Model) -> Vec<u32> {
     let mut dofs = Vec::new();
     for &wrap in &tendon.path {

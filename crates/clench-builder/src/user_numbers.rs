@@ -1,4 +1,4 @@
-//! The user's own numbers. All elements of a kind have the same number of them, as in MuJoCo.
+//! The attribute `user` of elements. All elements of a kind have the same number of values, as in MuJoCo.
 
 use super::BuildError;
 use super::element::Element;

@@ -1,4 +1,4 @@
-//! Contact points, in a small buffer without heap.
+//! Contact points, in a buffer of fixed size.
 
 use crate::frame::frame_from_normal;
 use clench_math::{Mask, Mat3, Real, Vec3};
@@ -72,7 +72,7 @@ impl<T: Real> Contacts<T> {
     pub fn as_slice(&self) -> &[ContactPoint<T>] {
         &self.points[..self.len]
     }
-    /// Keeps the first of the deepest points of each environment.
+    /// Retains the first of the deepest points of each environment.
     #[inline(always)]
     pub fn keep_deepest(&mut self) {
         if self.len < 2 {

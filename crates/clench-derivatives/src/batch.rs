@@ -21,7 +21,7 @@ struct Worker<S: Precision> {
 
 /// The memory for a model.
 struct Own<S: Precision> {
-    /// The simulation of the environment; created anew in each call, because options may have changed.
+    /// The simulation of the environment; recreated in each call, because options may have changed.
     sim: Option<Sim<S>>,
     /// The same in double precision, for a batch in single precision.
     double: Option<Sim<f64>>,

@@ -1,4 +1,4 @@
-//! The parts of a model that a pass computes.
+//! A part of a model: consecutive bodies that form whole trees.
 
 use crate::model::Model;
 use std::ops::Range;

@@ -91,7 +91,7 @@ impl StepSettings {
         Ok(settings)
     }
 
-    /// Returns the model with the slots for stick references that the settings ask for.
+    /// Returns the model with the slots for stick references that the settings require.
     #[must_use]
     pub fn adapt(&self, model: Arc<Model>) -> Arc<Model> {
         let wanted = self.stick_pairs(&model);
@@ -103,7 +103,7 @@ impl StepSettings {
         Arc::new(model)
     }
 
-    /// Checks that the model has the slots for stick references that the settings ask for.
+    /// Checks that the model has the slots for stick references that the settings require.
     ///
     /// # Errors
     /// Returns an error if it does not.
@@ -117,7 +117,7 @@ impl StepSettings {
         }
     }
 
-    /// Returns the number of slots for stick references that the settings ask for.
+    /// Returns the number of slots for stick references that the settings require.
     fn stick_pairs(&self, model: &Model) -> Option<usize> {
         let collides = |geom: &&Geom| geom.contype != 0 || geom.conaffinity != 0;
         let moves = |geom: &&Geom| collides(geom) && !model.is_fixed(geom.body);

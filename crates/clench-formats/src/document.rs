@@ -1,6 +1,6 @@
 //! The elements of a file, each with its source location.
 //!
-//! An owned tree rather than `roxmltree`'s own, because includes splice the elements of several files into one. Neither
+//! The tree is owned, not `roxmltree`'s, because includes splice the elements of several files into one. Neither
 //! this module nor the readers recurse over it, so that a deep file needs no more stack than a flat one.
 
 use crate::error::LoadError;
@@ -12,13 +12,13 @@ use std::sync::Arc;
 
 /// The maximum nesting depth of elements, as in MuJoCo.
 pub(crate) const MAX_DEPTH: usize = 500;
-/// The maximum number of attributes; no MJCF element has a quarter of them. The parser compares each with all preceding
-/// ones.
+/// The maximum number of attributes; MJCF elements have fewer than a quarter. The parser compares each with all
+/// preceding ones.
 const MAX_ATTRIBUTES: usize = 200;
 /// The maximum number of namespace declarations, which are ignored here. The parser copies them from element to
 /// element.
 const MAX_NAMESPACES: usize = 20;
-/// The memory that an element or attribute takes during and after parsing, besides its own text, in bytes.
+/// The memory that an element or attribute takes during and after parsing, in addition to its text, bytes.
 const MARK: u64 = 300;
 
 /// An element with its attributes and children; text and comments are dropped.
@@ -97,7 +97,7 @@ pub(crate) fn parse(
     }
 }
 
-/// The reason that a text is not a document.
+/// The reason for which a text is not a document.
 enum Failure {
     /// It is not XML.
     Malformed(LoadError),
@@ -138,7 +138,7 @@ fn count_newlines(bytes: &[u8]) -> u32 {
     bytes.iter().filter(|&&b| b == b'\n').count() as u32
 }
 
-/// An excess of something in a text, with its location.
+/// A limit that a text exceeds, with the location.
 pub(crate) struct Excess {
     line: u32,
     message: String,
@@ -281,7 +281,7 @@ impl Converter<'_> {
                 "unknown element <{name}>: its name is in a namespace, and MJCF has none"
             )));
         }
-        // At the root they point editors to a schema.
+        // At the root, such attributes refer editors to a schema.
         let is_root = node.parent_element().is_none();
         let named = |a: &roxmltree::Attribute| a.namespace().is_some() && !is_root;
         if let Some(attribute) = node.attributes().find(named) {

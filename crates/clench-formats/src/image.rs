@@ -19,7 +19,7 @@ pub(crate) struct Image {
 }
 
 impl Image {
-    /// Reads a PNG image, of 16 bits per sample the upper 8. First counts `cost` bytes per pixel against the budget.
+    /// Reads a PNG image, of 16-bit samples the upper 8 bits. First counts `cost` bytes per pixel against the budget.
     ///
     /// # Errors
     /// Returns a message if the bytes are invalid.

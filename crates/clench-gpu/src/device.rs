@@ -110,8 +110,7 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-/// The maximum number of cached kernels of a device. Beyond it the cache is cleared; batches keep the kernels they
-/// have.
+/// The maximum number of cached kernels of a device. Beyond it the cache is cleared; batches retain their kernels.
 const MAX_KERNELS: usize = 128;
 
 /// The open devices of this process, with the requested names and features.
@@ -155,7 +154,7 @@ pub(crate) struct Device {
     /// The bindings of its kernels.
     pub arrays: wgpu::BindGroupLayout,
     pub pipeline_layout: wgpu::PipelineLayout,
-    /// By text; `None` while being compiled.
+    /// The kernels by source text; `None` while one is compiled.
     kernels: Mutex<HashMap<String, Arc<Mutex<Option<wgpu::ComputePipeline>>>>>,
 }
 
@@ -263,7 +262,7 @@ impl Device {
     /// Submits commands and waits for them.
     ///
     /// # Errors
-    /// Returns an error if the device is lost or has refused something since the last call.
+    /// Returns an error if the device is lost or has reported an error since the last call.
     pub(crate) fn submit(&self, commands: wgpu::CommandBuffer) -> Result<(), GpuError> {
         let submission = self.queue.submit([commands]);
         self.wait(submission)
@@ -272,7 +271,7 @@ impl Device {
     /// Waits for a submission and all before it.
     ///
     /// # Errors
-    /// Returns an error if the device was lost.
+    /// Returns an error if the device is lost or has reported an error since the last call.
     pub(crate) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::Wait {
             submission_index: Some(submission),

@@ -16,7 +16,7 @@ use std::fmt::Write;
 /// The maximum number of workgroups along x if each has one environment: a dispatch has at most 65,535 along an axis.
 pub(crate) const GRID: u32 = 32_768;
 
-/// The threads of a team.
+/// The number of threads of a team.
 pub(crate) const TEAM: u32 = 8;
 
 /// The threads that process an environment.
@@ -28,15 +28,15 @@ pub(crate) enum Workers {
     Team,
     /// The threads of the narrow phase; a workgroup holds those of several environments.
     NarrowPhase,
-    /// A thread for each ray of its sensors, likewise; beyond [`GRID`] rays each thread traces several.
+    /// A thread for each ray; a workgroup holds those of several environments. Beyond [`GRID`], threads trace several.
     Rays,
     /// One workgroup.
     Workgroup,
 }
 
 impl Workers {
-    /// Returns the number of threads of a workgroup: a subgroup on most GPUs if each has an environment; otherwise four
-    /// for each row of a tile of H (half as many took 10 % longer on a GPU).
+    /// Returns the number of threads of a workgroup: a subgroup of most GPUs if it holds several environments;
+    /// otherwise four for each row of a tile of H (half as many took 10 % longer on a GPU).
     const fn threads(self) -> u32 {
         match self {
             Workers::Thread | Workers::Team | Workers::NarrowPhase | Workers::Rays => 32,
@@ -130,7 +130,7 @@ pub(crate) struct Memory<'a> {
     pub work: &'a Fields,
     /// The private memory of a thread of the narrow phase.
     pub thread: &'a Fields,
-    /// The threads of the narrow phase for each environment.
+    /// The number of threads of the narrow phase for each environment.
     pub threads: usize,
     /// The rays of the sensors of each environment.
     pub rays: usize,
@@ -315,7 +315,7 @@ mod tests {
         "EXCLUDED",
         // Refused before a batch is made.
         "COST_COULOMB",
-        // Only the processor refuses large problems.
+        // Only the CPU refuses large problems.
         "SOLVE_TOO_LARGE",
         // The affine law is the default case of each switch.
         "LAW_AFFINE",

@@ -3,10 +3,10 @@
 //!
 //! [`batch`] creates a [`clench_rigid::Batch`] that a device steps, with all features of a batch: rows, resets,
 //! snapshots, recorded outputs, queries. [`GpuBatch`] is its device part alone, for users who want no implicit
-//! transfers. Its kernels (`kernels/*.wgsl`) are the GPU counterparts of the kernels of `clench-rigid` and
-//! `clench-solver`, stage by stage, and tests compare them so. They run on GPUs of any vendor through `wgpu`, and on
-//! Mesa's software device where there is none. Unsupported features of a model are errors before the first step.
-//! `docs/gpu.md` describes the layout of a step.
+//! transfers. Its kernels (`kernels/*.wgsl`) are the GPU counterparts of the kernels of the CPU, stage by
+//! stage, and tests compare them so. They run on GPUs of any vendor through `wgpu`, and on Mesa's software device where
+//! there is none. Unsupported features of a model are errors before the first step. `docs/gpu.md` describes the layout
+//! of a step.
 //!
 //! This crate contains the kernels, the tables that they read, and their arrays. Physics that the processor computes
 //! too belongs in the crates below; this one only repeats it.

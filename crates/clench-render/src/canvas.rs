@@ -85,7 +85,7 @@ impl Form {
         u64::from(self.row()) * u64::from(self.size[1])
     }
 
-    /// Returns the number of pictures of a dispatch if a call asks for so many.
+    /// Returns the number of pictures of a dispatch of a call that requests `asked` pictures.
     pub(crate) fn pictures(&self, asked: usize) -> u32 {
         let shadow = u64::from(self.colors) * 4 * u64::from(self.shadow()).pow(2);
         let each = u64::from(self.planes()) * self.picture() + shadow;

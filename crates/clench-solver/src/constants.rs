@@ -1,4 +1,4 @@
-//! The numbers of the methods, by the names that the GPU kernels have for them.
+//! The constants of the methods, by their names in the GPU kernels.
 
 use crate::cg::{Cg, OVERLAP};
 use crate::continuation::{FIRST, SETTLED, STAGE, STIFF};

@@ -1,7 +1,7 @@
 //! Coulomb's law: friction is limited by the normal force of the solution.
 //!
-//! A Coulomb block limits friction by a given normal force λ, which makes the problem convex (Tresca's friction). Its
-//! solution has normal forces f(λ), and Coulomb's law asks for the fixed point λ = f(λ) (Haslinger, *Approximation of
+//! A Coulomb block limits friction by a fixed normal force λ, which makes the problem convex (Tresca's friction). Its
+//! solution has normal forces f(λ), and Coulomb's law requires the fixed point λ = f(λ) (Haslinger, *Approximation of
 //! the Signorini problem with friction, obeying the Coulomb law*, 1983). λ starts at the normal forces of the starting
 //! acceleration. When an inner solve has converged, λ moves to f(λ), mixed with the last change (Anderson, *Iterative
 //! procedures for nonlinear integral equations*, 1965):
@@ -30,7 +30,7 @@ const MAX_ROUNDS: f64 = 3.0;
 const MAX_FULL: f64 = 8.0;
 const CYCLE: f64 = 3.0;
 
-/// The given normal forces of Coulomb blocks, each at the index of its first entry in the active set.
+/// The normal forces λ of Coulomb blocks, each at the index of its first entry in the active set.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NormalForces<T> {
     /// λ.

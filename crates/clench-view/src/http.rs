@@ -1,4 +1,4 @@
-//! Requests of browsers: the token and the origin are checked. The subset of HTTP/1.1 that a page and a WebSocket need.
+//! Requests of browsers: checks token and origin. The subset of HTTP/1.1 that a page and a WebSocket need.
 //!
 //! A page on the web may try to reach a viewer on its reader's machine. It does not know the token. In addition, a
 //! request is refused before the token is checked if the browser reports that it comes from another page (`Origin`), or

@@ -14,7 +14,7 @@ const EMBEDDED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/page.html.gz")
 /// The source folder of the page.
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web");
 
-/// The markers around the data of a recording; nothing stands between them in the page itself.
+/// The markers before and after the data of a recording; in a page without data they are adjacent.
 const BEFORE_DATA: &str = "<script id=\"recording\" type=\"application/json\">";
 const AFTER_DATA: &str = "</script>";
 

@@ -28,7 +28,7 @@ class Drawn:
         Returns
         -------
         tuple of ndarray or None
-            Their pictures (height, width, 3), uint8; None if ``render_mode`` is None.
+            The pictures (height, width, 3), uint8; None if ``render_mode`` is None.
         """
         if self.render_mode is None:
             return None

@@ -33,7 +33,7 @@ def _loaded(model: Source) -> Model:
 
 
 def action_space(model: Model) -> Box:
-    """Returns the ranges of a model's controls, float32 as in gymnasium; a control without a range has no bounds."""
+    """Returns the space of a model's controls, float32 as in gymnasium; a control without a range is unbounded."""
     limited = model.actuator_ctrllimited.astype(np.bool_)
     low = np.where(limited, model.actuator_ctrlrange[:, 0], -np.inf)
     high = np.where(limited, model.actuator_ctrlrange[:, 1], np.inf)

@@ -214,7 +214,7 @@ class ClenchBackend(Playback):
         }
 
     def _substep(self, controls: Array, *, first: bool) -> None:
-        """Asks the task for controls and forces, and steps once with them."""
+        """Requests controls and forces from the task, and steps once with them."""
         batch = self.batch
         if self._tracked and not first:
             self._refresh()

@@ -30,7 +30,7 @@ pub struct SharedLayout {
 }
 
 /// Environments of one model are grouped if more geoms of the world than this differ: a step in lanes of other models
-/// computes the bounds of the world anew.
+/// recomputes the bounds of the world.
 const MANY_STATICS: usize = 32;
 
 /// Consecutive numbers of a parameter field.
@@ -129,7 +129,7 @@ impl SharedLayout {
         })
     }
 
-    /// Gives the layout numbers for all its geoms, and clears what the numbers of some model do not guarantee.
+    /// Gives the layout numbers for all its geoms, and clears the guarantees that the numbers of some model break.
     fn general_numbers(&mut self, owners: &[(usize, usize)]) {
         let layout = Arc::make_mut(&mut self.layout);
         for &field in ParamField::ALL.iter().filter(|field| field.is_of_geoms()) {

@@ -198,7 +198,7 @@ impl Grid {
         for &one in &self.wide {
             let is_fixed = |index: u32| fixed[index as usize];
             for other in 0..all.len() as u32 {
-                // The second of two wide boxes checks the pair, but a fixed one checks those that are not fixed.
+                // The first of two wide boxes that move checks the pair; the moving one checks a pair with a fixed box.
                 let twice = self.is_wide[other as usize]
                     && (other <= one || is_fixed(one))
                     && !is_fixed(other);

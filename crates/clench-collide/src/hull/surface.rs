@@ -1,4 +1,4 @@
-//! The points and triangles on the surface of a hull.
+//! The convex hull of points: its corners and triangles.
 
 use super::error::HullError;
 use super::quickhull::{side, triangles};

@@ -1,6 +1,6 @@
 //! Rays against the triangles of a mesh, with a tree of boxes.
 //!
-//! Ray and triangle are sheared so that the ray is the z axis. Then the signs of three areas tell on which side of each
+//! Ray and triangle are sheared so that the ray is the z axis. Then the signs of three areas give the side of each
 //! edge the ray passes. They are the same for both triangles at an edge, so no ray passes between them (Woop, Benthin &
 //! Wald 2013).
 

@@ -17,8 +17,7 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// Returns the radius in metres of a sphere about the origin that encloses the shape.
     fn bounding_radius(&self) -> T;
 
-    /// Returns the extent along a local unit vector d, or an upper bound: the support function of the shape or of an
-    /// enclosing box.
+    /// Returns the support function along a local unit vector d, or an upper bound: that of an enclosing box.
     fn reach_along(&self, d: Vec3<T>) -> T;
 
     /// Returns half the lengths of the bounding box along the shape's axes, m.

@@ -1,4 +1,4 @@
-//! The destination of constraint rows: the convex problem, and its record for readers.
+//! The assembly of the convex problem: computes aref, R and D of each row, and records the rows for readers.
 
 use super::exact::ExactDiagonal;
 use super::implicit::ImplicitRows;

@@ -1,7 +1,8 @@
 //! The constraint stage: every active constraint becomes a block of the convex problem, which is solved once.
 //!
-//! Each file derives one kind of constraint; `softness` converts their parameters into R and aref. Blocks are in
-//! MuJoCo's order: equalities, dry friction, limits, contacts. Constraints added at run time follow the equalities.
+//! Each file derives one kind of constraint; `softness` converts solref and solimp into stiffness, damping and R;
+//! `assembly` computes aref. Blocks are in MuJoCo's order: equalities, dry friction, limits, contacts. Constraints
+//! added at run time follow the equalities.
 
 mod active;
 mod anchor_frames;

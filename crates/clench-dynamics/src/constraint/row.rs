@@ -1,4 +1,4 @@
-//! One row of a block, before the block is pushed.
+//! One row of a block, with the spring's part of its reference acceleration.
 
 use super::softness::Softness;
 use clench_math::Real;

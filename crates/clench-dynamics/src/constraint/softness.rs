@@ -1,4 +1,5 @@
-//! The softness of a constraint: converts solref and solimp into aref and R.
+//! The softness of a constraint: converts solref and solimp into stiffness, damping, impedance and R. Reference
+//! accelerations: `row.rs` computes the spring's part of aref, `assembly.rs` adds the damper's.
 //!
 //! A constraint with violation r and rate v has the reference acceleration of a damped spring; its impedance d ∈ (0, 1)
 //! sets how closely it follows it:
@@ -12,9 +13,9 @@
 //!
 //! y rises from 0 at 0 to 1 at 1, y = x^p / mid^(p−1) up to the midpoint and point-symmetric in shape above. A₀ is the
 //! inverse inertia of the constraint in the initial configuration, so a mass of any size on one such constraint follows
-//! a = d (−b v − k d r) + (1 − d) a_unc: at dmax, a spring-damper with the given time constant. The rules and limits
-//! are those of MuJoCo 4.0 (Computation, "Constraint model"), with one addition: no time constant is shorter than
-//! `constraint_timeconst`.
+//! a = d (−b v − k d r) + (1 − d) a_unc: at dmax, a spring-damper with the time constant of solref. The rules and
+//! limits are those of MuJoCo 4.0 (Computation, "Constraint model"), with one addition: no time constant is shorter
+//! than `constraint_timeconst`.
 //!
 //! The integrator `discrete` evaluates the spring-damper at the end of the step, at the violation r + h v⁺ and the rate
 //! v⁺ = v + h a, and solves for a:

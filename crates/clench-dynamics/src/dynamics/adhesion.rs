@@ -1,4 +1,4 @@
-//! Transmissions to contacts: attract a body to the objects that it touches.
+//! Transmissions to contacts, which attract a body to the objects that it touches.
 //!
 //! All contacts of the body, including those within the gap that carry no force yet, share the force equally. Along a
 //! contact's normal n, from its first body to the second, the bodies separate with n · (v₂ − v₁): the moment arms are

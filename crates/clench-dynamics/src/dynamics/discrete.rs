@@ -66,7 +66,7 @@ pub(crate) fn couple_smooth<T: Real>(model: &Model, settings: &Settings, ws: &mu
 }
 
 /// Appends the couplings of the metric to the constraints of the problem, relative to the acceleration without
-/// constraints, in lanes that have any.
+/// constraints, in lanes in which a constraint acts.
 pub(crate) fn append_couplings<T: Real>(model: &Model, settings: &Settings, ws: &mut Workspace<T>) {
     ws.problem.noslip_factor.clear();
     if let (true, Some(factor)) = (settings.noslip_iterations > 0, ws.metric.backbone_factor()) {

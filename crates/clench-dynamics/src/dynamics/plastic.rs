@@ -1,7 +1,7 @@
 //! Springs that yield.
 //!
-//! If the stretch of a spring at the end of a step exceeds its yield, its rest position moves by the excess, so that
-//! the yield remains as stretch (ideal plasticity). Rest positions are part of the state and constant within a step,
+//! If the elongation of a spring at the end of a step exceeds its yield, its rest position moves by the excess, so that
+//! the yield remains as elongation (ideal plasticity). Rest positions are part of the state and constant within a step,
 //! including Runge–Kutta stages. As in MuJoCo 4.0, with which these rules were determined, joints are evaluated at
 //! their positions after the step, and tendons by extrapolating their initial length and gradient with the velocity
 //! that moved the positions. Stiffness and width of the dead band do not change.
@@ -57,7 +57,7 @@ pub(crate) fn yield_springs<T: Real>(
     }
 }
 
-/// Returns the signed excess of a stretch over the yield; 0 if the spring does not yield.
+/// Returns the signed excess of an elongation over the yield; 0 if the spring does not yield.
 #[inline(always)]
 fn beyond<T: Real>(elongation: T, limit: T) -> T {
     let above = T::select(elongation.gt(limit), elongation - limit, T::ZERO);
@@ -65,8 +65,8 @@ fn beyond<T: Real>(elongation: T, limit: T) -> T {
     T::select(limit.gt(T::ZERO), out, T::ZERO)
 }
 
-/// Turns the rest orientation of a ball joint's spring about the axis of its stretch, until the yield remains as
-/// stretch.
+/// Turns the rest orientation of a ball joint's spring about the axis of its elongation, until the yield remains
+/// as elongation.
 #[inline(always)]
 fn yield_rotation<T: Real>(elongation: Vec3<T>, limit: T, awake: T::Mask, rest: &mut [T]) {
     let (axis, angle) = elongation.normalize();

@@ -1,4 +1,4 @@
-//! Springs: the stretch of each, which determines force and energy.
+//! Springs: the elongation of each, which determines force and energy.
 
 use crate::dynamics::polynomial::Polynomial;
 use crate::model::{JointKind, Model, Params};
@@ -21,7 +21,7 @@ pub(crate) fn joint_spring<T: Real>(params: &Params<T>, j: usize) -> Polynomial<
     Polynomial::new(params.jnt_stiffness[j], params.jnt_stiffnesspoly[j])
 }
 
-/// Returns the stretch of joint `j` in a state; `None` if it has no spring in any lane.
+/// Returns the elongation of joint `j` in a state; `None` if it has no spring in any lane.
 #[inline(always)]
 pub(crate) fn joint_elongation<T: Real>(
     model: &Model,

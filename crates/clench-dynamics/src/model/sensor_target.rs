@@ -57,7 +57,7 @@ macro_rules! fields {
         }
 
         impl $name {
-            /// All of them, in their order in `sensordata`.
+            /// All fields, in their order in `sensordata`.
             pub const ALL: &[$name] = &[$($name::$field),*];
 
             /// Returns its name in MJCF.
@@ -182,9 +182,8 @@ pub enum SensorTarget {
         site: usize,
         /// The object.
         object: FrameObject,
-        /// True if the whole object counts: the sensor measures how far it protrudes, not whether its position is
-        /// inside. The object is then no camera; for a body it is the geoms: its own with `Inertial`, also those of its
-        /// descendants with `Body`.
+        /// True if the sensor measures how far the object protrudes; else it tests if the position is inside. The
+        /// object is then no camera; of a body it measures the geoms (`Inertial`), or those of the subtree (`Body`).
         enclosed: bool,
     },
     /// The image of a site in a camera.

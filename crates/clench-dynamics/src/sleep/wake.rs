@@ -1,6 +1,6 @@
 //! The causes that wake sleeping trees, in the order in which a step tests for them.
 //!
-//! A tree wakes with its whole island. A tree that the user or an equality wakes starts its counter anew. A tree that
+//! A tree wakes with its whole island. A tree that the user or an equality wakes restarts its counter. A tree that
 //! is touched or pulled takes the counter of the tree that wakes it, because both must be at rest to sleep again.
 
 use super::{AWAKE, Sleep, all_blank, is_blank, mocap_pose};

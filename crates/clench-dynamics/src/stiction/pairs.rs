@@ -85,7 +85,7 @@ pub(super) struct LoadedContact<T> {
     pub(super) index: usize,
     /// The normal force, N; zero in the other lanes.
     pub(super) force: T,
-    /// The friction that its spring asks for, in units of normal force, N: e of `return_mapping`.
+    /// The friction that its spring requires, in units of normal force, N: e of `return_mapping`.
     pub(super) demand: T,
     /// The change of that by its first slide, N/m: κ of `return_mapping`.
     pub(super) stiffness: T,

@@ -1,6 +1,6 @@
 //! The return mapping: after a solve, stick references are dragged along by contacts that slide or roll.
 //!
-//! With s = k d, the spring of a contact with the displacement φ asks for friction of the size
+//! With s = k d, the spring of a contact with the displacement φ requires friction of the size
 //!
 //! ```text
 //! elliptic, Coulomb:  e = ‖ s φ_j / (R_j μ_j) ‖        pyramid:  e = Σ_j μ_j s |φ_j| / R        in units of normal force

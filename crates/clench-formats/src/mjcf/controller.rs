@@ -1,4 +1,4 @@
-//! The shortcuts `pid` and `dcmotor`.
+//! The actuator shortcuts `pid` and `dcmotor`.
 
 use super::inputs::read_inputs;
 use super::shortcut::{ActuatorParams, not_negative};
@@ -60,7 +60,7 @@ pub(crate) fn read_pid(
 
 /// The force limits set by `saturation` of a `dcmotor`.
 pub(crate) enum Saturation {
-    /// Not given: limits are unchanged.
+    /// Not specified: limits are unchanged.
     Inherited,
     /// No limit.
     None,
@@ -111,8 +111,8 @@ fn count_activations(motor: &ActuatorParams) -> i32 {
     states.map(|state| i32::from(state > 0.0)).iter().sum()
 }
 
-/// Reads resistance R and motor constant K, given or from a nominal operating point (MuJoCo's technical note on motors,
-/// section 2.1).
+/// Reads resistance R and motor constant K, specified or from a nominal operating point (MuJoCo's technical note on
+/// motors, section 2.1).
 fn read_constants(
     element: &Element,
     motor: &mut ActuatorParams,

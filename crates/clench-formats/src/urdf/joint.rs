@@ -139,7 +139,7 @@ fn across(axis: Vec3<f64>) -> [Vec3<f64>; 2] {
     [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)].map(|v| rotation.rotate(v))
 }
 
-/// Reads the limits of position, and of effort as limits of total actuator force. Velocities have no limit.
+/// Reads the limits of position, and of effort as limits of total actuator force; ignores velocity limits.
 fn read_limit(
     element: &Element,
     kind: Kind,

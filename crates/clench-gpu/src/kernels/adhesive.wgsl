@@ -1,4 +1,4 @@
-// Contacts with adhesion, see `constraint/contact.rs` of clench-rigid.
+// Contacts with adhesion, see `constraint/contact.rs` of clench-dynamics.
 
 // Returns the adhesion of a contact. Its rows add this force against the passive one that pulls its bodies together.
 fn contact_adhesion(contact: u32) -> f32 {

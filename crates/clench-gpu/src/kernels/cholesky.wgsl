@@ -1,7 +1,7 @@
-// The factor of H = LLᵀ, tile by tile of its lower triangle, column by column of tiles. A tile of H minus the products
-// of the previous tiles is stored only when complete; H itself is never stored. For tiles on the diagonal the inverse
-// of L is stored, so that divisions become products without sequential dependencies (as in MAGMA: Tomov, Nath, Ltaief &
-// Dongarra, *Dense linear algebra solvers for multicore with GPU accelerators*, 2010).
+// The factor of the Hessian H = LLᵀ, tile by tile of its lower triangle, column by column of tiles. A tile of H minus
+// the products of the previous tiles is stored only when complete; H itself is never stored. For tiles on the diagonal
+// the inverse of L is stored, so that divisions become products without sequential dependencies (as in MAGMA: Tomov,
+// Nath, Ltaief & Dongarra, *Dense linear algebra solvers for multicore with GPU accelerators*, 2010).
 
 // The pivot, relative to the original diagonal, below which it is only rounding error.
 const MIN_PIVOT: f32 = EPSILON;

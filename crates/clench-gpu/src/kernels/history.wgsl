@@ -1,5 +1,5 @@
 // Buffers of past controls: an owner's number, the times of samples, oldest first, relative to the present, and their
-// values. CPU counterpart: `history.rs` of clench-rigid. A buffer is a row of words at `h`.
+// values. CPU counterpart: `history.rs` of clench-dynamics. A buffer is a row of words at `h`.
 
 fn sample_time(h: u32, k: u32) -> f32 {
     return given(HISTORY + words[h + HISTORY_START] + 1u + k);

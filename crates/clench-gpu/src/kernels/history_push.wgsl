@@ -1,5 +1,5 @@
 // Stores the controls of a step for delayed actuators, and the measurements at its start for delayed sensors. CPU
-// counterpart: `history.rs` of clench-rigid.
+// counterpart: `history.rs` of clench-dynamics.
 
 // Moves `count` numbers of a buffer down by `by`.
 fn shift_down(first: u32, count: u32, by: u32) {

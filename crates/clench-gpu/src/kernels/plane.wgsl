@@ -21,7 +21,7 @@ fn plane_capsule(pair: u32, normal: vec3f, above: f32, center: vec3f, axis: vec3
     add_on_plane(pair, middle - axis * size.y, above - rise - size.x, normal, tangent, range);
 }
 
-// Adds the lowest point of an ellipsoid: its support against the normal.
+// Adds the lowest point of an ellipsoid: its support point opposite to the normal.
 fn plane_ellipsoid(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat3x3f, size: vec3f, range: f32) {
     let scaled = (transpose(axes) * normal) * size;
     let depth = length(scaled);

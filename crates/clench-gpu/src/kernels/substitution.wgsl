@@ -4,7 +4,7 @@
 // Teams and workgroups share this text. Each defines, in `tree.wgsl` and `precondition.wgsl`, the index of a thread and
 // the number of workers, the memory of the unknowns at `x`, and the barrier after which all see them.
 
-// Computes x ← L⁻ᵀ x, in place, from the leaves to the root. Each dof subtracts all its descendants.
+// Computes x ← L⁻ᵀ x, in place, from the leaves to the root. Each dof subtracts the terms of all its descendants.
 fn substitute_towards_root(x: u32) {
     for (var level = NLEVEL; level > 0u; level--) {
         for (var n = words[LEVEL_START + level - 1u] + worker(); n < words[LEVEL_START + level]; n += workers()) {
@@ -19,7 +19,7 @@ fn substitute_towards_root(x: u32) {
     }
 }
 
-// Computes x ← L⁻¹ D⁻¹ x, in place, from the root to the leaves. Each dof subtracts all its ancestors.
+// Computes x ← L⁻¹ D⁻¹ x, in place, from the root to the leaves. Each dof subtracts the terms of all its ancestors.
 fn substitute_towards_leaves(x: u32) {
     for (var level = 0u; level < bound(NLEVEL); level++) {
         for (var n = words[LEVEL_START + level] + worker(); n < words[LEVEL_START + level + 1u]; n += workers()) {

@@ -38,7 +38,7 @@ codes! {
         Source = "BLOCK_SOURCE",
     }
 }
-/// The numbers of a block.
+/// The number of words of a block.
 pub(crate) const BLOCK_SIZE: usize = BlockField::ALL.len();
 
 row! {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// The maximum number of pixels of a side.
 pub(crate) const MAX_SIDE: u32 = 8192;
-/// The number of forms of pictures whose textures are kept: a training loop asks for a few in turn.
+/// The number of forms of pictures whose textures are stored: a training loop alternates between a few.
 const MAX_CANVASES: usize = 4;
 
 /// The settings of the pictures of a simulation.

@@ -22,8 +22,8 @@ fn radical_inverse(mut index: u64, base: u64) -> f64 {
     value
 }
 
-/// Sets the slides and hinges that are solved for to start posture `index`: within their ranges, or half a turn around
-/// `qpos` for a hinge without range.
+/// Sets the slides and hinges of the search to start posture `index`: within their ranges, or within half a turn of
+/// `qpos` for a hinge without a range.
 #[inline(always)]
 pub(super) fn sample_posture<T: Real>(
     model: &Model,

@@ -1,4 +1,4 @@
-//! The data that sensors are read from.
+//! The reading of one sensor by its kind, and the data that it is read from.
 
 use clench_dynamics::Step;
 use clench_dynamics::constraint::ConstraintSource;

@@ -14,7 +14,7 @@ const MAX_THREADS: usize = 1024;
 
 impl<T: Precision> Sim<T> {
     /// Sets the number of threads that share each subsequent step and forward pass: pairs of geoms, islands, and the
-    /// Hessian of a large island. Results are identical bit for bit. They pay off for scenes whose steps take a
+    /// Hessian of a large island. Results are identical bit for bit. Threads pay off for scenes whose steps take a
     /// millisecond or more; for many environments use a [`Batch`](crate::Batch).
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl<T: Precision> Sim<T> {
         self.ws.threads.count()
     }
 
-    /// Returns an error after a fork, as the threads do not exist in the new process.
+    /// Returns an error after a fork: the threads do not exist in the new process.
     pub(super) fn check_threads(&self) -> Result<(), SimError> {
         match self.ws.threads.are_lost() {
             true => Err(SimError::Forked),
@@ -45,7 +45,7 @@ impl<T: Precision> Sim<T> {
         }
     }
 
-    /// Runs a pass in whose parts the threads can share.
+    /// Runs a pass whose work the threads can share.
     pub(super) fn on_threads(
         &mut self,
         pass: impl FnOnce(

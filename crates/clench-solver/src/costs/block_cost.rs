@@ -11,9 +11,9 @@ pub(crate) struct Rows<'a, T> {
     pub d: &'a [T],
     pub r: &'a [T],
     pub shape: &'a [T],
-    /// Added to R by a stage of [continuation](crate::continuation); used only by elliptic cones.
+    /// The number added to R by a stage of [continuation](crate::continuation); used only by elliptic cones.
     pub softer: T,
-    /// The given normal force of a Coulomb block; see [`normal_forces`](crate::normal_forces).
+    /// The normal force λ that limits the friction of a Coulomb block; see [`normal_forces`](crate::normal_forces).
     pub given: T,
 }
 

@@ -1,4 +1,4 @@
-//! Frictional contact by Coulomb's law: a one-sided normal, and friction within a disc whose radius is given.
+//! Frictional contact by Coulomb's law: a one-sided normal, and friction within a disc of fixed radius.
 //!
 //! Scale the tangential rows so that the disc becomes circular (see [`slip`](super::slip)). With K = D_j / μ_j², the
 //! same for all j, and λ the given normal force:

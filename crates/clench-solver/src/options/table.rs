@@ -1,5 +1,5 @@
-//! The table of solver options, one per row. The table of `clench-rigid` includes these rows and adds the other options
-//! of a simulation. Builder methods, checks, the program's flags, MJCF and Python are derived from both.
+//! The table of solver options, one per row. The table of `clench-dynamics` includes these rows and adds the other
+//! options of a simulation. Builder methods, checks, the program's flags, MJCF and Python are derived from both.
 
 /// Passes the rows to the macro `$then`, followed by `$rest`:
 ///
@@ -8,8 +8,8 @@
 /// name: Type = default => default in single precision, Range, Argument, Mjcf;
 /// ```
 ///
-/// The types of the same names in `clench_rigid::options` define `Range`, `Argument` (of the program) and `Mjcf`. The
-/// solver reads only names, types and defaults.
+/// The types of the same names in `clench_dynamics::options` define `Range`, `Argument` (of the program) and `Mjcf`.
+/// The solver reads only names, types and defaults.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! solver_options {

@@ -1,4 +1,4 @@
-//! Scaling of pairs, tendons and sensors. Equalities scale in the file of their reader.
+//! Scaling of pairs, tendons and sensors; `equality.rs` scales equalities.
 
 use super::{Along, Coordinate, FrameId, Frames, Scale, located};
 use crate::error::LoadError;
@@ -71,8 +71,8 @@ impl Frames {
         }
     }
 
-    /// Scales tendons by the frames that enclose their entire path. A tendon measures lengths if any element of its
-    /// path does.
+    /// Scales tendons by the frames that enclose their entire path. The coordinate of a tendon is an angle if
+    /// its path has only joints that rotate.
     pub(super) fn scale_tendons(&mut self, builder: &mut ModelBuilder) {
         for tendon in &mut builder.tendons {
             let frames = tendon.path.iter().filter_map(|wrap| match wrap {

@@ -1,4 +1,4 @@
-//! `<compiler>` and `<option>`: settings that leave nothing to derive, and the physics of the world.
+//! `<compiler>`, whose settings derive nothing, and `<option>`, the physics of the world.
 
 use super::names::SaveError;
 use super::xml::{Tag, Xml};
@@ -30,7 +30,7 @@ fn unwritable(option: &str, reason: &str) -> SaveError {
     SaveError::new(format!("the option {option}"), reason)
 }
 
-/// Rejects an active floor of time constants: MJCF has none, so the file would mean another motion.
+/// Rejects an active floor of time constants: MJCF has none, so the saved model would move differently.
 fn check_time_constants(model: &Model) -> Result<(), SaveError> {
     let floor = model.options.constraint_timeconst.unwrap_or(0.01);
     let p = &model.params;
