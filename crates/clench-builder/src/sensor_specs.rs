@@ -101,9 +101,9 @@ pub enum SensorSubject {
         site: String,
         /// The object.
         object: FrameName,
-        /// True if the whole object counts: the sensor measures how far it protrudes, m, not whether its position is
-        /// inside. The object is then a site, a geom, the geoms of a body (`Inertial`), or those of a body and its
-        /// descendants (`Body`), all of them bounded.
+        /// False if the sensor tests if the object's position is inside, true if it measures how far the object
+        /// protrudes, m. The object is then a site, a geom, the geoms of a body (`Inertial`), or those of a body and
+        /// its descendants (`Body`), all of them bounded.
         enclosed: bool,
     },
     /// The image of a site in a camera.

@@ -212,7 +212,7 @@ pub fn before_forces<T: Real>(
     velocity_stage(model, params, state, ws);
 }
 
-/// Computes positions and contacts of what is awake, and wakes trees as soon as the cause is computed.
+/// Computes positions and contacts of awake trees, and wakes trees as soon as the cause is computed.
 fn wake<T: Real>(
     model: &Model,
     params: &Params<T>,

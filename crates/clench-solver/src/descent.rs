@@ -67,7 +67,7 @@ pub(crate) struct Convergence<T: Real> {
 pub(crate) const NEGLIGIBLE: f64 = 4.0;
 /// A gradient counts as progress if it is below this fraction of the best so far.
 pub(crate) const NOTICEABLE: f64 = 0.7;
-/// CG solves for given limits of friction until the duality gap is this fraction of the one that new limits left.
+/// CG solves for fixed limits of friction until the duality gap is this fraction of the one that new limits left.
 const INNER: f64 = 0.1;
 
 /// Minimises the cost, starting from the better of `warmstart` and the unconstrained acceleration.
@@ -333,7 +333,7 @@ impl<T: Real> Convergence<T> {
         self.differentiate(problem, iterate, totals, mask)
     }
 
-    /// Does the remainder after the evaluation that returned `totals`; returns the norm of the gradient.
+    /// Completes the evaluation that returned `totals`; returns the norm of the gradient.
     #[kernel]
     fn differentiate(
         &mut self,

@@ -139,7 +139,7 @@ impl<T: Real> Problem<T> {
         self.mass_factor.factor(&self.tree, &self.mass)
     }
 
-    /// Removes all blocks and keeps their memory.
+    /// Removes all blocks and retains their memory.
     pub fn clear_constraints(&mut self) {
         self.jacobian.clear();
         self.aref.clear();

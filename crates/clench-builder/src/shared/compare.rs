@@ -77,7 +77,7 @@ pub(super) fn require_same(a: &Model, b: &Model) -> Result<(), String> {
     }
 }
 
-/// Compares what determines the derivative of a medium's drag.
+/// Compares the numbers that determine the derivative of a medium's drag.
 fn require_same_drag(a: &Model, b: &Model) -> Result<(), String> {
     let drags = |model: &Model| model.params.density != 0.0 || model.params.viscosity != 0.0;
     match drags(a) || drags(b) {
@@ -86,7 +86,7 @@ fn require_same_drag(a: &Model, b: &Model) -> Result<(), String> {
     }
 }
 
-/// Lets a layout skip nothing that a model of the same structure needs.
+/// Clears the shortcuts of a layout that a model of the same structure does not allow.
 pub(super) fn generalize(layout: &mut Model, model: &Model) {
     for (all, one) in layout.bodies.iter_mut().zip(&model.bodies) {
         all.simple_inertia &= one.simple_inertia;

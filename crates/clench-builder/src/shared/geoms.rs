@@ -14,11 +14,11 @@ use clench_dynamics::model::{
 };
 use std::sync::Arc;
 
-/// The value of two geoms of one class that share a place.
+/// The value of two geoms of one class that share a slot.
 const MATCH: u32 = 2;
 /// The additional value if they have the same name, or none.
 const SAME_NAME: u32 = 3;
-/// The maximum size of the table of values of a body's geoms; longer lists share the first places.
+/// The maximum size of the table of values of a body's geoms; longer lists share the first slots.
 const MAX_TABLE: usize = 1 << 20;
 
 /// The structure of a geom that lanes must have in common.
@@ -104,7 +104,7 @@ impl Alignment {
         Ok(alignment)
     }
 
-    /// Returns, for each model, the place in the layout of each geom.
+    /// Returns, for each model, the slot in the layout of each geom.
     pub(super) fn geoms(&self) -> Vec<Vec<usize>> {
         self.slots.clone()
     }
@@ -158,7 +158,7 @@ fn merge(merged: &mut Vec<Slot>, own: Vec<Slot>, count: &mut usize) -> Vec<usize
     numbers
 }
 
-/// Returns the place in `merged` that each geom of a further model shares, in ascending order; `None` for a new geom.
+/// Returns the slot in `merged` that each geom of a further model shares, in ascending order; `None` for a new geom.
 fn places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     // Most models agree in most geoms.
     let alike = |(a, b): &(&Slot, &Slot)| value(a, b) == Some(MATCH + SAME_NAME);
@@ -174,14 +174,14 @@ fn places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     (0..start).map(Some).chain(rest).collect()
 }
 
-/// Returns the value of two geoms that share a place, if they can.
+/// Returns the value of two geoms that share a slot, if they can.
 fn value(a: &Slot, b: &Slot) -> Option<u32> {
     let matches = Class::of(&a.geom) == Class::of(&b.geom);
     let named = a.geom.name == b.geom.name;
     matches.then_some(MATCH + if named { SAME_NAME } else { 0 })
 }
 
-/// Returns the places of greatest total value, by dynamic programming.
+/// Returns the slots of greatest total value, by dynamic programming.
 fn best_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     // The greatest value of the geoms from i and j on.
     let mut best = vec![vec![0; own.len() + 1]; merged.len() + 1];
@@ -205,7 +205,7 @@ fn best_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     (0..own.len()).map(place).collect()
 }
 
-/// Returns for each geom the first place of its class after the place of the geom before it.
+/// Returns for each geom the first slot of its class after the slot of the geom before it.
 fn first_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     let mut next = 0;
     let place = |slot: &Slot| {

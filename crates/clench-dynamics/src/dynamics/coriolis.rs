@@ -5,7 +5,7 @@
 //! Wensing 2021):
 //!
 //! ```text
-//! δv = s     δa = ṡ + s × (v_b − u),  u the velocity with which what follows the joint in the chain is carried along
+//! δv = s     δa = ṡ + s × (v_b − u),  u the velocity of the chain just after the joint
 //! δf_b = B_b s + I_b (ṡ − s × u)      B_b x = I_b (x × v_b) + x ×* I_b v_b + v_b ×* I_b x
 //! ```
 //!

@@ -257,7 +257,7 @@ impl Model {
                     .map(|(b, _)| b)
                     .collect(),
             ),
-            // The step skips nothing because of the others.
+            // No shortcut of the step depends on the other fields.
             _ => return,
         };
         for i in changes {

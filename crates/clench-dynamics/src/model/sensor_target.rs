@@ -182,8 +182,9 @@ pub enum SensorTarget {
         site: usize,
         /// The object.
         object: FrameObject,
-        /// True if the sensor measures how far the object protrudes; else it tests if the position is inside. The
-        /// object is then no camera; of a body it measures the geoms (`Inertial`), or those of the subtree (`Body`).
+        /// False if the sensor tests if the object's position is inside, true if it measures how far the object
+        /// protrudes. Then the object is not a camera; of a body, the geoms are measured (`Inertial`), or those of the
+        /// subtree (`Body`).
         enclosed: bool,
     },
     /// The image of a site in a camera.

@@ -53,7 +53,8 @@ impl ActuatorDraft {
             || (self.shortcut == Shortcut::General && self.parameters.gain == shortcut.gain())
     }
 
-    /// Overwrites what the element gives; `inherited` are the parameters that `shortcut` inherits from its class.
+    /// Overwrites the values that the element has; `inherited` are the parameters that `shortcut` inherits from its
+    /// class.
     pub(super) fn read(
         &mut self,
         element: &Element,

@@ -58,7 +58,7 @@ impl Default for CameraDraft {
 }
 
 impl CameraDraft {
-    /// Overwrites what the element gives.
+    /// Overwrites the values that the element has.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         self.mode.read(element)?;
         element.set_numbers("pos", &mut self.pos)?;
@@ -147,7 +147,7 @@ impl CameraDraft {
 }
 
 impl Mode {
-    /// Overwrites what the element gives.
+    /// Overwrites the values that the element has.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let modes = [
             ("fixed", Mode::Fixed),

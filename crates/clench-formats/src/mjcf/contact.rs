@@ -20,7 +20,7 @@ pub(crate) fn default_pair() -> PairSpec {
     }
 }
 
-/// Overwrites what the element gives.
+/// Overwrites the values that the element has.
 pub(crate) fn read_pair(element: &Element, pair: &mut PairSpec) -> Result<(), LoadError> {
     pair.condim = read_condim(element)?.or(pair.condim);
     element.overlay_option("friction", &mut pair.friction)?;

@@ -60,7 +60,7 @@ impl Default for EqualityDraft {
 }
 
 impl EqualityDraft {
-    /// Overwrites what the element gives.
+    /// Overwrites the values that the element has.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         element.set_boolean("active", &mut self.active)?;
         element.overlay("solref", &mut self.solref)?;

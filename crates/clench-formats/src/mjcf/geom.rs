@@ -67,7 +67,7 @@ impl Default for GeomDraft {
 }
 
 impl GeomDraft {
-    /// Overwrites what the element gives.
+    /// Overwrites the values that the element has.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         let geom = &mut self.spec;
         read_kind(element, &mut self.kind)?;

@@ -7,7 +7,7 @@ use crate::error::LoadError;
 use clench_builder::{DOF_NUMBERS, JOINT_NUMBERS, JointSpec};
 use clench_dynamics::model::JointKind;
 
-/// Overwrites what the element gives; angles remain in the file's unit until [`finish`].
+/// Overwrites the values that the element has; angles remain in the file's unit until [`finish`].
 pub(crate) fn read(element: &Element, joint: &mut JointSpec) -> Result<(), LoadError> {
     let kinds = [
         ("free", JointKind::Free),

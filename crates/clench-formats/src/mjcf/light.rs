@@ -32,7 +32,7 @@ impl Default for LightDraft {
 }
 
 impl LightDraft {
-    /// Overwrites what the element gives.
+    /// Overwrites the values that the element has.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         self.mode.read(element)?;
         element.set_numbers("pos", &mut self.pos)?;

@@ -43,7 +43,7 @@ impl Default for SiteDraft {
 }
 
 impl SiteDraft {
-    /// Overwrites what the element gives.
+    /// Overwrites the values that the element has.
     pub(super) fn read(&mut self, element: &Element) -> Result<(), LoadError> {
         read_kind(element, &mut self.kind)?;
         match self.kind {

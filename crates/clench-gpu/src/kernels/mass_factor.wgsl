@@ -1,4 +1,5 @@
-// The factor of the mass matrix M. `cholesky.wgsl` factors the Hessian H.
+// The factor of the mass matrix M. CPU counterpart: `clench-solver/src/tree/factor.rs`. `cholesky.wgsl` factors the
+// Hessian H.
 
 // Returns zero: nothing is added to the diagonal of M.
 fn added_inertia(i: u32) -> f32 {

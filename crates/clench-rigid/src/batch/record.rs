@@ -10,7 +10,7 @@ use clench_dynamics::check::check_length;
 use clench_dynamics::error::SimError;
 use std::mem::{replace, swap};
 
-/// The number of environment steps, and of steps, after which a rollout asks whether to go on: a fraction of a second.
+/// The number of environment steps, and of steps, after which a rollout calls `go_on`: a fraction of a second.
 const ENV_STEPS_A_PORTION: usize = 1 << 16;
 const STEPS_A_PORTION: usize = 1 << 12;
 

@@ -42,7 +42,7 @@ impl<E: Copy> Rows<E> {
     }
 
     /// Does the same, but returns no rows and sets `error` if memory is insufficient, so that a struct of many tables
-    /// has one way out.
+    /// has one exit.
     #[inline(never)]
     pub(super) fn new_or(
         (count, width): (usize, usize),

@@ -17,9 +17,9 @@ const STEPS_A_GROUP: usize = 8;
 impl<S: Precision> Batch<S> {
     /// Advances every running environment by one time step.
     ///
-    /// With the option `autoreset`, a step that fails (except for too many contacts) is repeated from the initial
-    /// state, including applied forces, mocap poses and switches, and is counted in [`resets`](Self::resets). Controls
-    /// are reset too, except those of a rollout.
+    /// With the option `autoreset`, a step that fails (except beyond `max_contacts` or the budget) is repeated from
+    /// the initial state, including applied forces, mocap poses and switches, and is counted in
+    /// [`resets`](Self::resets). Controls are reset too, except those of a rollout.
     ///
     /// # Errors
     /// Returns an error if tables of [`state`](Self::state) have wrong shapes, or after a fork of a batch with threads.

@@ -15,8 +15,8 @@ impl<S: Precision> Batch<S> {
     /// Creates environments of several models; environment i has model `env_model[i]`.
     ///
     /// The models have the same bodies, joints, sites, cameras, tendons, actuators, sensors and constraints, with the
-    /// same names of joints, actuators and sensors. Their geoms, meshes and height fields differ as they like, and so
-    /// do all numbers. Environments of all models share lanes. Each moves exactly as a [`Sim`] of its own model.
+    /// same names of joints, actuators and sensors. Their geoms, meshes, height fields and all numbers may
+    /// differ. Environments of all models share lanes. Each moves exactly as a [`Sim`] of its own model.
     ///
     /// [`model`](Self::model) is the common layout: each body has the geoms that any model needs there, and
     /// [`geoms_of`](Self::geoms_of) returns those of one model. Parameters and outputs of geoms are in this layout;
@@ -46,7 +46,7 @@ impl<S: Precision> Batch<S> {
         Ok(batch)
     }
 
-    /// Creates `count` environments of models that take turns: environment i has model i modulo their number.
+    /// Creates `count` environments; environment i has model i modulo the number of models.
     ///
     /// # Errors
     /// Returns an error as [`of_models`](Self::of_models) does.

@@ -55,7 +55,7 @@ pub enum Controls<'a, S> {
 }
 
 impl<S> Controls<'_, S> {
-    /// Returns the controls of an environment in a step, unless held.
+    /// Returns the controls of an environment in a step; `None` if they are those of the state.
     pub(super) fn row(&self, env: usize, step: usize, steps: usize, nu: usize) -> Option<&[S]> {
         match self {
             Controls::Held => None,

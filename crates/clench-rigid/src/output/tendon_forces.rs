@@ -102,7 +102,7 @@ fn constraint_force<T: Real>(s: &Source<T>, t: usize) -> T {
                 | Coupled::Frames(_)
                 | Coupled::Joints(..) => continue,
             },
-            // Another tendon's, or of no tendon.
+            // Constraints of another tendon, or of none.
             ConstraintSource::TendonFriction(_)
             | ConstraintSource::TendonLimit(_)
             | ConstraintSource::Dynamic { .. }

@@ -41,9 +41,8 @@ pub(crate) fn cast<T: Real>(
     }
 }
 
-/// Appends the world height of a height field's surface at each position (x, y); not a number in environments of a
-/// shared layout without the field. With a frame, these are relative to
-/// its position, along its horizontally projected x axis.
+/// Appends the world height of a height field's surface at each position (x, y); NaN in environments of a shared layout
+/// without the field. With a frame, positions are relative to its own, along its horizontally projected x axis.
 #[kernel]
 pub(crate) fn sample<T: Real>(
     geoms: Geoms<'_, T>,

@@ -1,7 +1,7 @@
 //! Frictional contact by Coulomb's law: a one-sided normal, and friction within a disc of fixed radius.
 //!
 //! Scale the tangential rows so that the disc becomes circular (see [`slip`](super::slip)). With K = D_j / μ_j², the
-//! same for all j, and λ the given normal force:
+//! same for all j, and λ the fixed normal force:
 //!
 //! ```text
 //! s = ½ D₀ min(y₀, 0)² + h(T),   h = ½ K T² where K T < λ, else λ T − λ² / (2 K)
