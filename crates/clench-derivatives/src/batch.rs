@@ -1,6 +1,6 @@
 //! The derivatives of every environment of a batch.
 
-use crate::{Linearization, Linearizer, Request};
+use crate::{InputTangent, Linearization, Linearizer, OutputTangent, Request};
 use clench_rigid::batch::Precision;
 use clench_rigid::{Batch, Model, Output, Sim, SimError};
 use std::any::Any;
@@ -12,6 +12,7 @@ use std::sync::Mutex;
 pub struct BatchLinearizer<S: Precision = f64> {
     workers: Vec<Worker<S>>,
     results: Vec<Linearization>,
+    along: Vec<OutputTangent>,
 }
 
 /// The memory of a thread, which serves its environments in turn: for each model of the batch, once it is needed.
@@ -52,6 +53,7 @@ impl<S: Precision> BatchLinearizer<S> {
         BatchLinearizer {
             workers: workers.collect(),
             results: vec![Linearization::default(); batch.count()],
+            along: vec![OutputTangent::default(); batch.count()],
         }
     }
 
@@ -67,36 +69,85 @@ impl<S: Precision> BatchLinearizer<S> {
         request: &Request,
     ) -> Result<&[Linearization], (usize, SimError)> {
         check_alike(batch, request).map_err(|error| (0, error))?;
-        let batch = &Mutex::new(batch);
-        let share = self.results.len().div_ceil(self.workers.len()).max(1);
-        let parts = self.workers.iter_mut().zip(self.results.chunks_mut(share));
-        let first = std::thread::scope(|scope| {
-            let run = |(part, (worker, results)): (usize, (&'_ mut Worker<S>, &'_ mut [_]))| {
-                worker.run(batch, request, part * share, results)
-            };
-            let mut parts = parts.enumerate();
-            // This thread takes the first part.
-            let own = parts.next();
-            let others = Vec::from_iter(parts.map(|part| scope.spawn(move || run(part))));
-            let own = own.map_or(Ok(()), run);
-            let others = others.into_iter().map(|other| match other.join() {
-                Ok(result) => result,
-                Err(panic) => std::panic::resume_unwind(panic),
-            });
-            others.fold(own, Result::and)
-        });
-        first.map(|()| &self.results[..])
+        let results = &mut self.results;
+        run(
+            &mut self.workers,
+            batch,
+            results,
+            |linearizer, sim, _, result| {
+                result.clone_from(linearizer.linearize(sim, request)?);
+                Ok(())
+            },
+        )?;
+        Ok(results)
+    }
+
+    /// Returns the directional derivatives of the next step of every environment, each along its own tangent; see
+    /// [`Linearizer::jvp`].
+    ///
+    /// # Errors
+    /// Returns the errors of [`linearize`](Self::linearize).
+    ///
+    /// # Panics
+    /// Panics if the number of tangents is not that of environments, or if a matrix has another shape.
+    pub fn jvp(
+        &mut self,
+        batch: &mut Batch<S>,
+        request: &Request,
+        tangents: &[InputTangent],
+    ) -> Result<&[OutputTangent], (usize, SimError)> {
+        check_alike(batch, request).map_err(|error| (0, error))?;
+        let results = &mut self.along;
+        assert_eq!(tangents.len(), results.len(), "one tangent an environment");
+        run(
+            &mut self.workers,
+            batch,
+            results,
+            |linearizer, sim, env, result| {
+                result.clone_from(linearizer.jvp(sim, request, &tangents[env])?);
+                Ok(())
+            },
+        )?;
+        Ok(results)
     }
 }
 
+/// Calls a function for every environment, on the threads of the workers: with the memory for its derivatives, a copy
+/// of it, its index and its result. Returns the error of the first that has one.
+fn run<S: Precision, R: Send>(
+    workers: &mut [Worker<S>],
+    batch: &mut Batch<S>,
+    results: &mut [R],
+    each: impl Fn(&mut Linearizer, &Sim<f64>, usize, &mut R) -> Result<(), SimError> + Sync,
+) -> Result<(), (usize, SimError)> {
+    let (batch, each) = (&Mutex::new(batch), &each);
+    let share = results.len().div_ceil(workers.len()).max(1);
+    let parts = workers.iter_mut().zip(results.chunks_mut(share));
+    std::thread::scope(|scope| {
+        let run = |(part, (worker, results)): (usize, (&'_ mut Worker<S>, &'_ mut [R]))| {
+            worker.run(batch, part * share, results, each)
+        };
+        let mut parts = parts.enumerate();
+        // This thread takes the first part.
+        let own = parts.next();
+        let others = Vec::from_iter(parts.map(|part| scope.spawn(move || run(part))));
+        let own = own.map_or(Ok(()), run);
+        let others = others.into_iter().map(|other| match other.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        });
+        others.fold(own, Result::and)
+    })
+}
+
 impl<S: Precision> Worker<S> {
-    /// Linearizes consecutive environments, from `first` on.
-    fn run(
+    /// Calls a function for consecutive environments, from `first` on.
+    fn run<R>(
         &mut self,
         batch: &Mutex<&mut Batch<S>>,
-        request: &Request,
         first: usize,
-        results: &mut [Linearization],
+        results: &mut [R],
+        each: &impl Fn(&mut Linearizer, &Sim<f64>, usize, &mut R) -> Result<(), SimError>,
     ) -> Result<(), (usize, SimError)> {
         for own in &mut self.own {
             own.sim = None;
@@ -107,9 +158,9 @@ impl<S: Precision> Worker<S> {
                 // Another thread panicked, which ends the call.
                 Err(_) => return Ok(()),
             };
-            let linearized =
-                copied.and_then(|(sim, linearizer)| linearizer.linearize(sim, request));
-            result.clone_from(linearized.map_err(|error| (env, error))?);
+            copied
+                .and_then(|(sim, linearizer)| each(linearizer, sim, env, result))
+                .map_err(|error| (env, error))?;
         }
         Ok(())
     }

@@ -13,9 +13,12 @@
 
 mod batch;
 mod direction;
+mod jvp;
 mod linearizer;
 mod pass;
+mod seed;
 mod tangent;
 
 pub use batch::BatchLinearizer;
+pub use jvp::{InputTangent, OutputTangent};
 pub use linearizer::{Linearization, Linearizer, Matrix, Request};

@@ -1,12 +1,15 @@
 //! The matrices of a linearized step.
 
 use crate::direction::{self, Direction, Start};
+use crate::jvp::OutputTangent;
 use crate::pass::{CreatePass, Pass, Source};
+use crate::seed::Seed;
 use clench_dynamics::StepSettings;
 use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
 use clench_rigid::{Output, Sim, SimError};
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Results to differentiate besides the next state and the sensors, and inputs to differentiate by besides state and
@@ -29,7 +32,7 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    fn reset(&mut self, shape: [usize; 2]) {
+    pub(crate) fn reset(&mut self, shape: [usize; 2]) {
         self.shape = shape;
         self.values.clear();
         self.values.resize(shape[0] * shape[1], 0.0);
@@ -86,13 +89,16 @@ fn general(
 
 /// Computes the derivatives of steps of a model, and reuses its memory.
 pub struct Linearizer {
-    pass: Box<dyn Pass>,
+    pub(crate) pass: Box<dyn Pass>,
     /// The parameters of the last passes.
     params: Params<f64>,
     directions: Vec<Direction>,
+    /// The directions of a pass.
+    pub(crate) seeds: Vec<Seed>,
     /// All derivatives, one row for each number of x⁺ and y, one column for each direction.
-    all: Vec<f64>,
+    pub(crate) all: Vec<f64>,
     result: Linearization,
+    pub(crate) along: OutputTangent,
 }
 
 impl fmt::Debug for Linearizer {
@@ -112,8 +118,10 @@ impl Linearizer {
             pass: pass.map_err(SimError::Instructions)?,
             params: model.params.clone(),
             directions: Vec::new(),
+            seeds: Vec::new(),
             all: Vec::new(),
             result: Linearization::default(),
+            along: OutputTangent::default(),
         })
     }
 
@@ -129,50 +137,64 @@ impl Linearizer {
         sim: &Sim<f64>,
         request: &Request,
     ) -> Result<&Linearization, SimError> {
+        let model = self.prepare(sim, &request.parameters)?;
+        let mut source = source(&model, sim, &request.outputs);
+        direction::list(&model, &request.parameters, &mut self.directions);
+        let columns = self.directions.len();
+        let mut end = 0;
+        let mut reuses = false;
+        while end < columns {
+            let first = end;
+            end += self.pass_len(source, first);
+            self.seeds.clear();
+            self.seeds.extend(Seed::units(&self.directions[first..end]));
+            reuses = self.run_pass(&mut source, columns, first..end, reuses)?;
+        }
+        self.pass.switching(&mut self.result.switching);
+        self.split(sim.model(), request.parameters.len());
+        Ok(&self.result)
+    }
+
+    /// Prepares for the passes of a simulation. Returns the model for them.
+    pub(crate) fn prepare(
+        &mut self,
+        sim: &Sim<f64>,
+        parameters: &[(ParamField, usize)],
+    ) -> Result<Arc<Model>, SimError> {
         sim.check_state()?;
         if self.params != *sim.params() {
             self.params.clone_from(sim.params());
             self.pass.set_params(&self.params);
         }
-        let model = general(sim.model(), sim.params(), &request.parameters);
-        let mut source = Source {
-            model: &model,
-            settings: sim.settings(),
-            state: &sim.state,
-            outputs: &request.outputs,
-            first: true,
-            start: Start::Positions,
-            constant_factor: has_constant_factor(&model, sim.settings()),
-        };
-        direction::list(source.model, &request.parameters, &mut self.directions);
-        let columns = self.directions.len();
         self.all.clear();
-        let mut end = 0;
-        let mut reuses = false;
-        while end < columns {
-            let first = end;
-            source.first = first == 0;
-            end += self.pass_len(source, first);
-            let directions = &self.directions[first..end];
-            let earliest = directions.iter().map(|direction| direction.start()).min();
-            let earliest = earliest.unwrap_or(Start::Positions);
-            source.start = match reuses {
-                true => earliest,
-                false => Start::Positions,
-            };
-            reuses =
-                keeps_positions(source) && (source.constant_factor || earliest > Start::Positions);
-            self.pass.run(source, directions, &mut |row, values| {
+        Ok(general(sim.model(), sim.params(), parameters))
+    }
+
+    /// Runs a pass along `seeds`, which fills some of the columns of all derivatives. `reuses` is true if it can reuse
+    /// results of the last pass. Returns true if the next one can.
+    pub(crate) fn run_pass(
+        &mut self,
+        source: &mut Source<'_>,
+        columns: usize,
+        filled: Range<usize>,
+        reuses: bool,
+    ) -> Result<bool, SimError> {
+        let earliest = Seed::earliest(&self.seeds);
+        source.first = filled.start == 0;
+        source.start = match reuses {
+            true => earliest,
+            false => Start::Positions,
+        };
+        let (first, all) = (filled.start, &mut self.all);
+        self.pass
+            .run(*source, filled.len(), &self.seeds, &mut |row, values| {
                 let start = row * columns + first;
-                if self.all.len() < (row + 1) * columns {
-                    self.all.resize((row + 1) * columns, 0.0);
+                if all.len() < (row + 1) * columns {
+                    all.resize((row + 1) * columns, 0.0);
                 }
-                self.all[start..start + values.len()].copy_from_slice(values);
+                all[start..start + values.len()].copy_from_slice(values);
             })?;
-        }
-        self.pass.switching(&mut self.result.switching);
-        self.split(sim.model(), request.parameters.len());
-        Ok(&self.result)
+        Ok(keeps_positions(*source) && (source.constant_factor || earliest > Start::Positions))
     }
 
     /// Returns the number of directions of the pass that starts with direction `first`. A pass
@@ -217,6 +239,19 @@ impl Linearizer {
                 }
             }
         }
+    }
+}
+
+/// Returns the input of the first pass of a simulation.
+pub(crate) fn source<'a>(model: &'a Model, sim: &'a Sim<f64>, outputs: &'a [Output]) -> Source<'a> {
+    Source {
+        model,
+        settings: sim.settings(),
+        state: &sim.state,
+        outputs,
+        first: true,
+        start: Start::Positions,
+        constant_factor: has_constant_factor(model, sim.settings()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
-use crate::direction::{Direction, Start};
+use crate::direction::Start;
+use crate::seed::{self, Seed};
 use crate::tangent;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace, check, pipeline};
@@ -33,12 +34,13 @@ pub(crate) trait Pass: Send {
     fn switching(&self, out: &mut Vec<f64>);
     /// Prepares for passes with these parameters.
     fn set_params(&mut self, params: &Params<f64>);
-    /// Runs the step along some directions. `write(row, values)` receives the derivatives of each number of the result:
-    /// the next state, the sensors, the outputs.
+    /// Runs the step along the first `count` directions, which `seeds` define. `write(row, values)` receives the
+    /// derivatives of each number of the result: the next state, the sensors, the outputs.
     fn run(
         &mut self,
         source: Source<'_>,
-        directions: &[Direction],
+        count: usize,
+        seeds: &[Seed],
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), SimError>;
 }
@@ -78,32 +80,6 @@ struct DualPass<L: Real<Scalar = f64>> {
 }
 
 impl<L: Real<Scalar = f64>> DualPass<L> {
-    /// Sets the derivatives of the input.
-    fn seed(&mut self, model: &Model, directions: &[Direction]) {
-        let state = &mut self.before;
-        for (k, &direction) in directions.iter().enumerate() {
-            match direction {
-                Direction::Position(dof) => tangent::move_along(model, dof, k, &mut state.qpos),
-                Direction::Velocity(dof) => state.qvel[dof].set_derivative(k, 1.0),
-                Direction::Activation(a) => state.act[a].set_derivative(k, 1.0),
-                Direction::Control(u) => state.ctrl[u].set_derivative(k, 1.0),
-                Direction::Parameter(field, index) => {
-                    let mut row = self.params.read_lane(field, 0);
-                    row[index].set_derivative(k, 1.0);
-                    if let Some(size) = field.direction_size() {
-                        // A direction is normalized when it is set.
-                        let part = row[index].value;
-                        for x in &mut row[index / size * size..][..size] {
-                            x.set_derivative(k, x.derivative(k) - part * x.value);
-                        }
-                    }
-                    self.params.write_lane(field, 0, &row);
-                    self.params.derive(model, field);
-                }
-            }
-        }
-    }
-
     /// Removes the derivatives of the state.
     fn clear_state(&mut self) {
         let State {
@@ -115,20 +91,6 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
         } = &mut self.before;
         for number in [qpos, qvel, act, ctrl].into_iter().flatten() {
             *number = Real::new(number.value);
-        }
-    }
-
-    /// Removes the derivatives of the parameters.
-    fn clear_params(&mut self, model: &Model, directions: &[Direction]) {
-        for &direction in directions {
-            if let Direction::Parameter(field, _) = direction {
-                let mut row = self.params.read_lane(field, 0);
-                for number in &mut row {
-                    *number = Real::new(number.value);
-                }
-                self.params.write_lane(field, 0, &row);
-                self.params.derive(model, field);
-            }
         }
     }
 }
@@ -149,7 +111,8 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
     fn run(
         &mut self,
         source: Source<'_>,
-        directions: &[Direction],
+        count: usize,
+        seeds: &[Seed],
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), SimError> {
         let Source {
@@ -160,7 +123,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         } else {
             self.clear_state();
         }
-        self.seed(model, directions);
+        seed::set(model, seeds, &mut self.before, &mut self.params);
         let DualPass {
             params,
             before,
@@ -200,7 +163,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             }
             let mut row = 0;
             let mut next = |values: &[f64]| {
-                write(row, &values[..directions.len()]);
+                write(row, &values[..count]);
                 row += 1;
             };
             tangent::each_motion(model, &state.qpos, &mut next);
@@ -211,7 +174,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         }
         let fault =
             (!good).then(|| check::result_fault(model, source.state.time, state, ws, 0).into());
-        self.clear_params(model, directions);
+        seed::clear_params(model, seeds, params);
         fault.map_or(Ok(()), Err)
     }
 }

@@ -1,14 +1,15 @@
 //! Derivatives of positions in the tangent space: one number a dof, with rotations about the axes of the child.
 
+use crate::seed::add;
 use clench_dynamics::Model;
 use clench_dynamics::model::JointKind;
 use clench_math::{Dual, Quat, Real};
 
-/// Sets the derivative of `qpos` along a dof in one direction.
+/// Adds to the derivative of `qpos` in one slot: motion along a dof at a rate.
 pub(crate) fn move_along<L: Real<Scalar = f64>, const K: usize>(
     model: &Model,
     dof: usize,
-    direction: usize,
+    (slot, rate): (usize, f64),
     qpos: &mut [Dual<L, K>],
 ) {
     let joint = &model.joints[model.joints.partition_point(|joint| joint.dof <= dof) - 1];
@@ -17,16 +18,16 @@ pub(crate) fn move_along<L: Real<Scalar = f64>, const K: usize>(
         JointKind::Ball => (q, k),
         JointKind::Free if k >= 3 => (q + 3, k - 3),
         JointKind::Free | JointKind::Slide | JointKind::Hinge => {
-            qpos[q + k].set_derivative(direction, 1.0);
+            add(&mut qpos[q + k], slot, rate);
             return;
         }
     };
     // d/dε q exp(ε e / 2) = ½ q e.
     let mut half = [0.0; 4];
-    half[1 + axis] = 0.5;
-    let rate = quaternion(&qpos[q..]) * Quat::from_f64(half);
-    for (x, rate) in qpos[q..].iter_mut().zip(rate.to_array()) {
-        x.set_derivative(direction, rate);
+    half[1 + axis] = 0.5 * rate;
+    let rates = quaternion(&qpos[q..]) * Quat::from_f64(half);
+    for (x, rate) in qpos[q..].iter_mut().zip(rates.to_array()) {
+        add(x, slot, rate);
     }
 }
 

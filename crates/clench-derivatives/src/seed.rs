@@ -1,0 +1,119 @@
+//! The derivatives of the input of a step, with which a pass starts.
+
+use crate::direction::{Direction, Start};
+use crate::tangent;
+use clench_dynamics::State;
+use clench_dynamics::model::{Model, Params};
+use clench_math::{Dual, Real};
+
+/// A part of a direction of a pass: the input changes along `direction` at the rate `rate`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seed {
+    /// The index of the direction of the pass.
+    pub slot: usize,
+    pub direction: Direction,
+    pub rate: f64,
+}
+
+impl Seed {
+    /// Returns the seeds of a pass along some directions, one in each slot.
+    pub(crate) fn units(directions: &[Direction]) -> impl Iterator<Item = Seed> {
+        let directions = directions.iter().enumerate();
+        directions.map(|(slot, &direction)| Seed {
+            slot,
+            direction,
+            rate: 1.0,
+        })
+    }
+
+    /// Returns the first stage whose results change along a seed.
+    pub(crate) fn earliest(seeds: &[Seed]) -> Start {
+        let starts = seeds.iter().map(|seed| seed.direction.start());
+        starts.min().unwrap_or(Start::Positions)
+    }
+}
+
+/// Adds the derivatives of the seeds to a state and to parameters that have none.
+pub(crate) fn set<L: Real<Scalar = f64>, const K: usize>(
+    model: &Model,
+    seeds: &[Seed],
+    state: &mut State<Dual<L, K>>,
+    params: &mut Params<Dual<L, K>>,
+) {
+    for seeds in of_one_field(seeds) {
+        for &Seed {
+            slot,
+            direction,
+            rate,
+        } in seeds
+        {
+            match direction {
+                Direction::Position(dof) => {
+                    tangent::move_along(model, dof, (slot, rate), &mut state.qpos);
+                }
+                Direction::Velocity(dof) => add(&mut state.qvel[dof], slot, rate),
+                Direction::Activation(a) => add(&mut state.act[a], slot, rate),
+                Direction::Control(u) => add(&mut state.ctrl[u], slot, rate),
+                Direction::Parameter(..) => {}
+            }
+        }
+        let Direction::Parameter(field, _) = seeds[0].direction else {
+            continue;
+        };
+        let mut row = params.read_lane(field, 0);
+        for seed in seeds {
+            let Direction::Parameter(_, index) = seed.direction else {
+                continue;
+            };
+            add(&mut row[index], seed.slot, seed.rate);
+            if let Some(size) = field.direction_size() {
+                // A direction is normalized when it is set.
+                let part = seed.rate * row[index].value;
+                for x in &mut row[index / size * size..][..size] {
+                    add(x, seed.slot, -part * x.value);
+                }
+            }
+        }
+        params.write_lane(field, 0, &row);
+        params.derive(model, field);
+    }
+}
+
+/// Removes the derivatives of the seeds from the parameters.
+pub(crate) fn clear_params<L: Real<Scalar = f64>, const K: usize>(
+    model: &Model,
+    seeds: &[Seed],
+    params: &mut Params<Dual<L, K>>,
+) {
+    for seeds in of_one_field(seeds) {
+        if let Direction::Parameter(field, _) = seeds[0].direction {
+            let mut row = params.read_lane(field, 0);
+            for number in &mut row {
+                *number = Real::new(number.value);
+            }
+            params.write_lane(field, 0, &row);
+            params.derive(model, field);
+        }
+    }
+}
+
+/// Splits seeds into runs of one parameter and runs of others.
+fn of_one_field(seeds: &[Seed]) -> impl Iterator<Item = &[Seed]> {
+    let field = |seed: &Seed| match seed.direction {
+        Direction::Parameter(field, _) => Some(field),
+        Direction::Position(_)
+        | Direction::Velocity(_)
+        | Direction::Activation(_)
+        | Direction::Control(_) => None,
+    };
+    seeds.chunk_by(move |seed, next| field(seed) == field(next))
+}
+
+/// Adds to the derivative in one slot.
+pub(crate) fn add<L: Real<Scalar = f64>, const K: usize>(
+    x: &mut Dual<L, K>,
+    slot: usize,
+    rate: f64,
+) {
+    x.set_derivative(slot, x.derivative(slot) + rate);
+}
