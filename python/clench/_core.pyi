@@ -909,6 +909,13 @@ class Sim(_Outputs):
     def linearize(
         self, outputs: Sequence[str] = (), parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
     ) -> Linearization: ...
+    def jvp(
+        self,
+        x: ArrayLike | None = None,  # (2 nv + na,) or (2 nv + na, k)
+        u: ArrayLike | None = None,  # (nu,) or (nu, k)
+        parameters: Mapping[str, ArrayLike] | None = None,  # (numbers,) or (numbers, k)
+        outputs: Sequence[str] = (),
+    ) -> tuple[_Floats, _Floats]: ...  # (2 nv + na,) and (nsensordata + outputs,), or with k columns
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
     def render(
         self,
@@ -1109,6 +1116,13 @@ class Batch(_Outputs):
     def linearize(
         self, outputs: Sequence[str] = (), parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
     ) -> Linearization: ...
+    def jvp(
+        self,
+        x: ArrayLike | None = None,  # (n, 2 nv + na) or (n, 2 nv + na, k)
+        u: ArrayLike | None = None,  # (n, nu) or (n, nu, k)
+        parameters: Mapping[str, ArrayLike] | None = None,  # (n, numbers) or (n, numbers, k)
+        outputs: Sequence[str] = (),
+    ) -> tuple[_Floats, _Floats]: ...  # (n, 2 nv + na) and (n, nsensordata + outputs), or with k columns
     def record(self, *names: str) -> None: ...
     @property
     def outputs(self) -> tuple[str, ...]: ...

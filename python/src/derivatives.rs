@@ -1,12 +1,14 @@
 //! The derivatives of a step, from Python.
 
+pub(crate) use crate::tangents::Tangents;
+
 use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
-use clench::Output;
 use clench::derivatives::{self, BatchLinearizer, Linearizer, Matrix, Request};
 use clench::rigid::batch::Precision;
 use clench::rigid::model::ParamField;
+use clench::{Output, SimError};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -88,20 +90,10 @@ impl Chosen {
         sim: &mut AnySim,
     ) -> PyResult<Linearization> {
         let request = &self.request;
-        let result = py.detach(move || {
-            let double;
-            let sim = match sim {
-                AnySim::F64(own) => &*own.current()?,
-                AnySim::F32(own) => {
-                    double = own.current()?.in_double_precision()?;
-                    &double
-                }
-            };
-            let linearizer = match memory {
-                Some(linearizer) => linearizer,
-                empty => empty.insert(Linearizer::new(sim.model())?),
-            };
-            linearizer.linearize(sim, request)
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                linearizer.linearize(sim, request)
+            })
         });
         self.export(py, from_ref(result.map_err(sim_error)?), &[])
     }
@@ -118,11 +110,7 @@ impl Chosen {
             let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
             linearizer.linearize(batch, &self.request)
         });
-        let results = results.map_err(|(env, error)| {
-            let error = sim_error(error);
-            let text = format!("environment {env}: {}", error.value(py));
-            PyErr::from_type(error.get_type(py), text)
-        })?;
+        let results = results.map_err(|error| in_env(py, error))?;
         self.export(py, results, &[count])
     }
 
@@ -172,4 +160,32 @@ impl Chosen {
             switching: switching.unbind(),
         })
     }
+}
+
+/// Calls a function with the memory for the derivatives of a simulation and with the simulation in double precision.
+pub(crate) fn with_linearizer<'a, R>(
+    memory: &'a mut Memory,
+    sim: &mut AnySim,
+    call: impl FnOnce(&'a mut Linearizer, &clench::Sim<f64>) -> Result<R, SimError>,
+) -> Result<R, SimError> {
+    let double;
+    let sim = match sim {
+        AnySim::F64(own) => &*own.current()?,
+        AnySim::F32(own) => {
+            double = own.current()?.in_double_precision()?;
+            &double
+        }
+    };
+    let linearizer = match memory {
+        Some(linearizer) => linearizer,
+        empty => empty.insert(Linearizer::new(sim.model())?),
+    };
+    call(linearizer, sim)
+}
+
+/// Returns the error of an environment of a batch.
+pub(crate) fn in_env(py: Python<'_>, (env, error): (usize, SimError)) -> PyErr {
+    let error = sim_error(error);
+    let text = format!("environment {env}: {}", error.value(py));
+    PyErr::from_type(error.get_type(py), text)
 }

@@ -29,6 +29,7 @@ mod given_models;
 mod ik;
 mod ik_targets;
 mod inertia_queries;
+mod jvp;
 mod kind;
 mod linearization;
 mod linearize;
@@ -55,6 +56,8 @@ mod solve;
 mod state_views;
 mod stats;
 mod table;
+#[cfg(feature = "derivatives")]
+mod tangents;
 mod target;
 mod view;
 mod viewed;

@@ -187,6 +187,48 @@ def test_sensors_and_outputs_match_differences() -> None:
     assert_near(linear.output_parameters["body_mass"][:, 0], by_mass, float(np.abs(by_mass).max()))
 
 
+@pytest.mark.parametrize(
+    ("name", "keyframe", "steps"), [("humanoid", "standing", 195), ("quadruped", "crouching", 300)]
+)
+def test_directional_derivatives_are_products(name: str, keyframe: str, steps: int) -> None:
+    sim, rng = moving(name, keyframe, steps), np.random.default_rng(1)
+    linear = sim.linearize(["subtree_com"], ["body_mass", "gravity"])
+    columns = 3
+    x, u = rng.normal(size=(linear.A.shape[1], columns)), rng.normal(size=(sim.model.nu, columns))
+    mass = rng.normal(size=(sim.model.nbody, columns))
+    mass[2] = 0.0
+    following, reading = sim.jvp(x, u, {"body_mass": mass}, ["subtree_com"])
+    expected = linear.A @ x + linear.B @ u + linear.parameters["body_mass"] @ mass
+    np.testing.assert_allclose(following, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    expected = linear.C @ x + linear.D @ u + linear.output_parameters["body_mass"] @ mass
+    np.testing.assert_allclose(reading, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    # A vector is a direction without a column.
+    for column in range(columns):
+        parts = sim.jvp(x[:, column], u[:, column], {"body_mass": mass[:, column]}, ["subtree_com"])
+        assert parts[0].shape == (len(x),)
+        np.testing.assert_allclose(parts[0], following[:, column], rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(parts[1], reading[:, column], rtol=1e-9, atol=1e-12)
+    falling, _ = sim.jvp(parameters={"gravity": [0, 0, 1]})
+    np.testing.assert_allclose(falling, linear.parameters["gravity"][:, 2], rtol=1e-9, atol=1e-12)
+    assert not sim.jvp()[0].any()
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_directional_derivatives_of_a_batch(precision: Any) -> None:
+    batch = clench.Batch(example("quadruped"), 3, precision=precision, threads=2)
+    rng = np.random.default_rng(0)
+    batch.qvel[:] = rng.normal(size=batch.qvel.shape)
+    linear = batch.linearize(parameters=["gravity"])
+    x, u, gravity = (rng.normal(size=(3, n, 2)) for n in (linear.A.shape[2], batch.model.nu, 3))
+    following, reading = batch.jvp(x, u, {"gravity": gravity})
+    expected = linear.A @ x + linear.B @ u + linear.parameters["gravity"] @ gravity
+    np.testing.assert_allclose(following, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    assert reading.shape == (3, linear.C.shape[1], 2)
+    assert batch.jvp(x[:, :, 0])[0].shape == following.shape[:2]
+    alone = batch.sim(2).jvp(x[2], u[2], {"gravity": gravity[2]})[0]
+    np.testing.assert_array_equal(following[2], alone)
+
+
 def test_a_driven_mass() -> None:
     sim = clench.Sim(
         clench.Model.from_xml(
@@ -264,6 +306,16 @@ def test_invalid_requests() -> None:
         sim.linearize(["xposs"])
     with pytest.raises(IndexError, match="body_mass has 2 numbers"):
         sim.linearize(parameters={"body_mass": [2]})
+    with pytest.raises(ValueError, match=r"x has shape \(2,\), but must have \(12,\)"):
+        sim.jvp([0, 1])
+    with pytest.raises(ValueError, match=r"gravity has shape \(3,\), but must have \(3, 2\)"):
+        sim.jvp(np.zeros((12, 2)), parameters={"gravity": [0, 0, 1]})
+    with pytest.raises(ValueError, match="x is not finite"):
+        sim.jvp(np.full(12, np.nan))
+    with pytest.raises(ValueError, match="body_subtreemass"):
+        sim.jvp(parameters={"body_subtreemass": [0, 1]})
     sim.qvel[0] = np.nan
     with pytest.raises(clench.SimulationError):
         sim.linearize()
+    with pytest.raises(clench.SimulationError):
+        sim.jvp()

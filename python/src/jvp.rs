@@ -1,0 +1,125 @@
+//! Directional derivatives of a step: methods of `Sim` and `Batch`.
+
+use crate::batch::{AnyBatch, Batch};
+use crate::busy::lock;
+use crate::derivatives::Tangents;
+use crate::sim::Sim;
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+
+/// dx⁺ and dy.
+pub(crate) type Results = (Py<PyArrayDyn<f64>>, Py<PyArrayDyn<f64>>);
+
+/// The changes of the input that a user chose.
+pub(crate) struct Changes<'a, 'py> {
+    pub(crate) x: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) u: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) parameters: Option<&'a Bound<'py, PyAny>>,
+}
+
+#[pymethods]
+impl Sim {
+    /// Computes the directional derivative of the next step: A dx + B du and C dx + D du of `linearize`, without the
+    /// matrices, at the cost of one of the passes that compute them.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like, shape (2 nv + na,) or (2 nv + na, k), optional
+    ///     Change of x: motion of the positions along the dofs, then changes of the velocities and the activations.
+    ///     With k columns, all are computed together, in one pass up to 8 or 16 of them.
+    /// u : array_like, shape (nu,) or (nu, k), optional
+    ///     Change of the controls.
+    /// parameters : mapping of str to array_like, optional
+    ///     Changes of parameters (see `clench.PARAMETERS`): of all numbers of the flattened field, or with k columns.
+    /// outputs : sequence of str
+    ///     Outputs that follow the sensors in y; see `clench.OUTPUTS`.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of numpy.ndarray
+    ///     The change of the next x, shape (2 nv + na,), and that of y; or both with k columns.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a name is unknown, a parameter follows from another, or an array has another shape or is not finite.
+    /// SimulationError
+    ///     If `step` would raise it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import clench
+    /// >>> sim = clench.Sim(clench.Model.from_xml(
+    /// ...     "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/>"
+    /// ...     "<geom size='0.1' mass='2'/></body></worldbody></mujoco>"))
+    /// >>> sim.jvp([0, 1])[0].tolist()
+    /// [0.01, 1.0]
+    #[pyo3(signature = (x = None, u = None, parameters = None, outputs = Vec::new()),
+           text_signature = "($self, x=None, u=None, parameters=None, outputs=())")]
+    fn jvp(
+        &self,
+        py: Python<'_>,
+        x: Option<&Bound<'_, PyAny>>,
+        u: Option<&Bound<'_, PyAny>>,
+        parameters: Option<&Bound<'_, PyAny>>,
+        outputs: Vec<String>,
+    ) -> PyResult<Results> {
+        let changes = Changes { x, u, parameters };
+        let tangents = Tangents::new(self.described(), &outputs, changes, &[])?;
+        let mut memory = lock(self.linearizer(), "simulation")?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        tangents.of_sim(py, &mut memory, &mut guard)
+    }
+}
+
+#[pymethods]
+impl Batch {
+    /// Computes the directional derivative of the next step of every environment, each along its own change; see
+    /// `Sim.jvp`.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like, shape (n, 2 nv + na) or (n, 2 nv + na, k), optional
+    ///     Changes of x.
+    /// u : array_like, shape (n, nu) or (n, nu, k), optional
+    ///     Changes of the controls.
+    /// parameters : mapping of str to array_like, optional
+    ///     Changes of parameters, shape (n, numbers) or (n, numbers, k).
+    /// outputs : sequence of str
+    ///     Outputs that follow the sensors in y.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of numpy.ndarray
+    ///     The changes of the next x, shape (n, 2 nv + na), and those of y; or both with k columns.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a name is unknown, a parameter follows from another, or an array has another shape or is not finite.
+    /// SimulationError
+    ///     If the step of an environment fails.
+    #[pyo3(signature = (x = None, u = None, parameters = None, outputs = Vec::new()),
+           text_signature = "($self, x=None, u=None, parameters=None, outputs=())")]
+    fn jvp(
+        &self,
+        py: Python<'_>,
+        x: Option<&Bound<'_, PyAny>>,
+        u: Option<&Bound<'_, PyAny>>,
+        parameters: Option<&Bound<'_, PyAny>>,
+        outputs: Vec<String>,
+    ) -> PyResult<Results> {
+        let mut memory = lock(self.linearizer(), "batch")?;
+        let mut guard = lock(self.inner(), "batch")?;
+        let count = match &*guard {
+            AnyBatch::F64(batch) => batch.count(),
+            AnyBatch::F32(batch) => batch.count(),
+        };
+        let changes = Changes { x, u, parameters };
+        let tangents = Tangents::new(self.described(), &outputs, changes, &[count])?;
+        match &mut *guard {
+            AnyBatch::F64(batch) => tangents.of_batch(py, &mut memory.double, batch),
+            AnyBatch::F32(batch) => tangents.of_batch(py, &mut memory.single, batch),
+        }
+    }
+}
