@@ -907,7 +907,11 @@ class Sim(_Outputs):
     @property
     def contact_overflow(self) -> bool: ...
     def linearize(
-        self, outputs: Sequence[str] = (), parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
+        self,
+        outputs: Sequence[str] = (),
+        parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
+        *,
+        errors: bool | np.bool_ = False,
     ) -> Linearization: ...
     def jvp(
         self,
@@ -1114,7 +1118,11 @@ class Batch(_Outputs):
     def set_constants(self, mask: ArrayLike | None = None) -> None: ...
     def param(self, field: str) -> NDArray[Any]: ...  # (n, ...)
     def linearize(
-        self, outputs: Sequence[str] = (), parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None
+        self,
+        outputs: Sequence[str] = (),
+        parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
+        *,
+        errors: bool | np.bool_ = False,
     ) -> Linearization: ...
     def jvp(
         self,
@@ -1437,6 +1445,12 @@ class Linearization:
     def output_parameters(self) -> dict[str, _Floats]: ...  # (nsensordata + outputs, numbers) each
     @property
     def switching(self) -> Any: ...  # an array, or a list of arrays of a batch
+    @property
+    def qacc_error(self) -> _Floats | None: ...  # (nv,)
+    @property
+    def error(self) -> _Floats | None: ...  # (nv, 2 nv + na + nu + numbers of parameters)
+    @property
+    def reach(self) -> Any: ...  # as switching, or None
 
 @final
 class Separation:

@@ -5,7 +5,7 @@ pub(crate) use crate::tangents::Tangents;
 use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
-use clench::derivatives::{self, BatchLinearizer, Linearizer, Matrix, Request};
+use clench::derivatives::{self, BatchLinearizer, ErrorBound, Linearizer, Matrix, Request};
 use clench::rigid::batch::Precision;
 use clench::rigid::model::ParamField;
 use clench::{Output, SimError};
@@ -29,6 +29,7 @@ pub(crate) struct BatchMemory {
 pub(crate) struct Chosen {
     request: Request,
     fields: Vec<(ParamField, usize)>,
+    nv: usize,
 }
 
 impl Chosen {
@@ -36,14 +37,17 @@ impl Chosen {
         model: &clench::Model,
         outputs: &[String],
         parameters: Option<&Bound<'_, PyAny>>,
+        errors: bool,
     ) -> PyResult<Self> {
         let outputs = outputs.iter().map(|name| Output::find(name));
         let mut chosen = Chosen {
             request: Request {
                 outputs: outputs.collect::<Result<_, _>>().map_err(sim_error)?,
                 parameters: Vec::new(),
+                errors,
             },
             fields: Vec::new(),
+            nv: model.nv,
         };
         let Some(parameters) = parameters else {
             return Ok(chosen);
@@ -143,13 +147,35 @@ impl Chosen {
             by_output.set_item(field.name(), array(|result| &result.f, Some(columns))?)?;
             start += count;
         }
-        let switching = results.iter();
-        let mut switching =
-            switching.map(|result| PyArray1::from_slice(py, &result.switching).into_any());
-        let switching = match stack {
-            [] => switching.next().unwrap_or_else(|| py.None().into_bound(py)),
-            _ => PyList::new(py, switching)?.into_any(),
+        // Numbers of rows, of which environments have different counts.
+        let rows = |of: fn(&derivatives::Linearization) -> &[f64]| {
+            let rows = results.iter();
+            let mut rows = rows.map(|result| PyArray1::from_slice(py, of(result)).into_any());
+            Ok::<_, PyErr>(match stack {
+                [] => rows.next().unwrap_or_else(|| py.None().into_bound(py)),
+                _ => PyList::new(py, rows)?.into_any(),
+            })
         };
+        // The largest components of vectors whose norms are bounded.
+        let bounds = |of: fn(&ErrorBound) -> &[f64], shape: &[usize]| {
+            let components = |result: &derivatives::Linearization| {
+                let bound = &result.errors;
+                let component = |&dof: &f64| of(bound).iter().map(move |norm| dof * norm);
+                Vec::from_iter(bound.dofs.iter().flat_map(component))
+            };
+            let values = results.iter().flat_map(components);
+            let shape = [stack, shape].concat();
+            Ok::<_, PyErr>(PyArray1::from_iter(py, values).reshape(shape)?.into_any())
+        };
+        let none = py.None().into_bound(py);
+        let (mut qacc_error, mut error, mut reach) = (none.clone(), none.clone(), none);
+        if self.request.errors {
+            let columns = |result: &derivatives::Linearization| result.errors.directions.len();
+            let (nv, columns) = (self.nv, results.first().map_or(0, columns));
+            qacc_error = bounds(|bound| std::slice::from_ref(&bound.acceleration), &[nv])?;
+            error = bounds(|bound| &bound.directions, &[nv, columns])?;
+            reach = rows(|result| &result.errors.reach)?;
+        }
         Ok(Linearization {
             A: array(|result| &result.a, None)?,
             B: array(|result| &result.b, None)?,
@@ -157,7 +183,10 @@ impl Chosen {
             D: array(|result| &result.d, None)?,
             parameters: by_state.unbind(),
             output_parameters: by_output.unbind(),
-            switching: switching.unbind(),
+            switching: rows(|result| &result.switching)?.unbind(),
+            qacc_error: qacc_error.unbind(),
+            error: error.unbind(),
+            reach: reach.unbind(),
         })
     }
 }

@@ -10,12 +10,8 @@ use pyo3::prelude::*;
 /// dx⁺ and dy.
 pub(crate) type Results = (Py<PyArrayDyn<f64>>, Py<PyArrayDyn<f64>>);
 
-/// The changes of the input that a user chose.
-pub(crate) struct Changes<'a, 'py> {
-    pub(crate) x: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) u: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) parameters: Option<&'a Bound<'py, PyAny>>,
-}
+/// The changes of x, of u and of parameters that a user chose.
+pub(crate) type Changes<'a, 'py> = [Option<&'a Bound<'py, PyAny>>; 3];
 
 #[pymethods]
 impl Sim {
@@ -64,7 +60,7 @@ impl Sim {
         parameters: Option<&Bound<'_, PyAny>>,
         outputs: Vec<String>,
     ) -> PyResult<Results> {
-        let changes = Changes { x, u, parameters };
+        let changes = [x, u, parameters];
         let tangents = Tangents::new(self.described(), &outputs, changes, &[])?;
         let mut memory = lock(self.linearizer(), "simulation")?;
         let mut guard = lock(self.inner(), "simulation")?;
@@ -115,7 +111,7 @@ impl Batch {
             AnyBatch::F64(batch) => batch.count(),
             AnyBatch::F32(batch) => batch.count(),
         };
-        let changes = Changes { x, u, parameters };
+        let changes = [x, u, parameters];
         let tangents = Tangents::new(self.described(), &outputs, changes, &[count])?;
         match &mut *guard {
             AnyBatch::F64(batch) => tangents.of_batch(py, &mut memory.double, batch),

@@ -29,4 +29,15 @@ pub(crate) struct Linearization {
     /// state (a contact that begins to slip, a limit that lets go), where its force has no derivative; m/s² or rad/s²,
     /// infinite for rows that always act. Of a batch, a list of arrays.
     pub(crate) switching: Py<PyAny>,
+    /// numpy.ndarray or None : The bound of the error of each acceleration (the output ``qacc``), (nv,), from the
+    /// duality gap that the solver leaves; None unless requested. Bounds are infinite with RK4, noslip, sleep or
+    /// Coulomb's law, and do not contain rounding errors of the constraints and the mass matrix.
+    pub(crate) qacc_error: Py<PyAny>,
+    /// numpy.ndarray or None : The bounds of the errors of the derivatives of the accelerations, (nv, columns): by x, by
+    /// u, then by the parameters; infinite at a switch. Times the time step, those of the rows of velocities of A and B
+    /// with semi-implicit Euler without implicit damping.
+    pub(crate) error: Py<PyAny>,
+    /// numpy.ndarray or None : The bounds of the errors of ``switching``. A row whose ``switching`` is smaller may have
+    /// another state than in an exact solution. Of a batch, a list of arrays.
+    pub(crate) reach: Py<PyAny>,
 }

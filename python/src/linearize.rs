@@ -23,6 +23,8 @@ impl Sim {
     ///     Parameters to differentiate by (see `clench.PARAMETERS`): all numbers, or those at the given indices of the
     ///     flattened field. ``body_subtreemass`` follows ``body_mass``; other derived constants stay the same, as in
     ///     `set_param`.
+    /// errors : bool
+    ///     True to bound the errors that the tolerance of the solver leaves; takes a second solve.
     ///
     /// Returns
     /// -------
@@ -47,16 +49,17 @@ impl Sim {
     /// ...     "<actuator><motor joint='x'/></actuator></mujoco>"))
     /// >>> sim.linearize().B.tolist()
     /// [[5e-05], [0.005]]
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None),
-           text_signature = "($self, outputs=(), parameters=None)")]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, errors = false),
+           text_signature = "($self, outputs=(), parameters=None, *, errors=False)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
+        errors: bool,
     ) -> PyResult<Linearization> {
         let model = self.described();
-        let chosen = derivatives::Chosen::new(model, &outputs, parameters)?;
+        let chosen = derivatives::Chosen::new(model, &outputs, parameters, errors)?;
         let mut memory = lock(self.linearizer(), "simulation")?;
         let mut guard = lock(self.inner(), "simulation")?;
         chosen.of_sim(py, &mut memory, &mut guard)
@@ -73,6 +76,8 @@ impl Batch {
     ///     Outputs that follow the sensors in y.
     /// parameters : sequence of str, or mapping of str to sequence of int
     ///     Parameters to differentiate by.
+    /// errors : bool
+    ///     True to bound the errors that the tolerance of the solver leaves.
     ///
     /// Returns
     /// -------
@@ -87,16 +92,17 @@ impl Batch {
     ///     If a parameter does not have a number.
     /// SimulationError
     ///     If the step of an environment fails.
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None),
-           text_signature = "($self, outputs=(), parameters=None)")]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, errors = false),
+           text_signature = "($self, outputs=(), parameters=None, *, errors=False)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
+        errors: bool,
     ) -> PyResult<Linearization> {
         let model = self.described();
-        let chosen = derivatives::Chosen::new(model, &outputs, parameters)?;
+        let chosen = derivatives::Chosen::new(model, &outputs, parameters, errors)?;
         let mut memory = lock(self.linearizer(), "batch")?;
         let mut guard = lock(self.inner(), "batch")?;
         match &mut *guard {

@@ -26,6 +26,7 @@ impl Chosen {
         _: &clench::Model,
         _: &[String],
         _: Option<&Bound<'_, PyAny>>,
+        _: bool,
     ) -> PyResult<Self> {
         Err(without())
     }
@@ -57,7 +58,7 @@ impl Tangents {
     pub(crate) fn new(
         _: &clench::Model,
         _: &[String],
-        Changes { .. }: Changes<'_, '_>,
+        _: Changes<'_, '_>,
         _: &[usize],
     ) -> PyResult<Self> {
         Err(without())

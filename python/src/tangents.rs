@@ -28,20 +28,20 @@ impl Tangents {
     pub(crate) fn new(
         model: &clench::Model,
         outputs: &[String],
-        changes: Changes<'_, '_>,
+        [x, u, parameters]: Changes<'_, '_>,
         lead: &[usize],
     ) -> PyResult<Self> {
         let outputs = outputs.iter().map(|name| Output::find(name));
         let mut request = Request {
             outputs: outputs.collect::<Result<_, _>>().map_err(sim_error)?,
-            parameters: Vec::new(),
+            ..Request::default()
         };
         let (nx, nu) = (2 * model.nv + model.na, model.nu());
         let mut shape = Shape { lead, trail: None };
-        let x = changes.x.map(|x| shape.read("x", x, nx)).transpose()?;
-        let u = changes.u.map(|u| shape.read("u", u, nu)).transpose()?;
+        let x = x.map(|x| shape.read("x", x, nx)).transpose()?;
+        let u = u.map(|u| shape.read("u", u, nu)).transpose()?;
         let mut fields = Vec::new();
-        if let Some(parameters) = changes.parameters {
+        if let Some(parameters) = parameters {
             for item in parameters.cast::<PyMapping>()?.items()? {
                 let (name, values): (String, Bound<'_, PyAny>) = item.extract()?;
                 let field = ParamField::settable(&name).map_err(sim_error)?;

@@ -283,6 +283,39 @@ def test_each_constraint_row_has_its_distance_from_a_switch() -> None:
     assert (switching >= 0.0).all()
 
 
+@pytest.mark.parametrize("cone", ["pyramidal", "elliptic"])
+def test_errors_of_a_coarse_solve_are_within_their_bounds(cone: Any) -> None:
+    exact = moving("quadruped", "crouching", 300)
+    state, rows = exact.state, slice(-exact.model.nv, None)
+    state.qacc_warmstart = np.zeros(exact.model.nv)
+    coarse: dict[str, Any] = {"constraint_solver": "cg", "tolerance": 1e-2, "friction_cone": cone}
+    precise: dict[str, Any] = {"tolerance": 0, "iterations": 200, "friction_cone": cone}
+    found, expected = [], []
+    for options, kept in ((coarse, found), (precise, expected)):
+        sim = clench.Sim(exact.model, clench.RigidOptions(**options))
+        sim.state = state
+        linear = sim.linearize(["qacc"], {"gravity": [2]}, errors=True)
+        by_gravity = linear.output_parameters["gravity"]
+        kept += [linear, np.hstack([linear.C, linear.D, by_gravity])[rows], np.array(sim.output("qacc"))]
+    bound, scale = found[0].error, np.abs(expected[1]).max()
+    difference = np.abs(found[1] - expected[1])
+    assert bound.shape == difference.shape and difference.max() > 1e-6 * scale
+    assert (difference <= bound + 1e-10 * scale).all()
+    assert (np.abs(found[2] - expected[2]) <= found[0].qacc_error).all()
+    assert found[0].reach.shape == found[0].switching.shape
+    assert expected[0].error.max() < 1e-10 * scale and bound.max() < 1e3 * difference.max()
+
+
+def test_bounds_are_stacked_on_demand() -> None:
+    batch = clench.Batch(example("quadruped"), 3)
+    linear = batch.linearize(errors=True)
+    assert linear.error is not None and linear.qacc_error is not None
+    nv, columns = batch.model.nv, linear.A.shape[2] + linear.B.shape[2]
+    assert linear.error.shape == (3, nv, columns) and linear.qacc_error.shape == (3, nv) and len(linear.reach) == 3
+    linear = batch.linearize()
+    assert linear.error is None and linear.qacc_error is None and linear.reach is None
+
+
 def test_single_precision() -> None:
     single, double = (clench.Sim(ball(), precision=bits) for bits in ("32", "64"))
     np.testing.assert_allclose(single.linearize().A, double.linearize().A, rtol=1e-6)

@@ -20,5 +20,6 @@ mod seed;
 mod tangent;
 
 pub use batch::BatchLinearizer;
+pub use clench_solver::ErrorBound;
 pub use jvp::{InputTangent, OutputTangent};
 pub use linearizer::{Linearization, Linearizer, Matrix, Request};

@@ -8,6 +8,7 @@ use clench_dynamics::StepSettings;
 use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
 use clench_rigid::{Output, Sim, SimError};
+use clench_solver::ErrorBound;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ pub struct Request {
     pub outputs: Vec<Output>,
     /// Numbers of parameters: a field, and the index in its numbers, element after element.
     pub parameters: Vec<(ParamField, usize)>,
+    /// True if a linearization also bounds the errors that the solver leaves.
+    pub errors: bool,
 }
 
 /// A row-major matrix.
@@ -67,6 +70,10 @@ pub struct Linearization {
     /// derivative: see [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are
     /// those of the last solve of the step.
     pub switching: Vec<f64>,
+    /// Bounds of the errors that the tolerance of the solver leaves in the acceleration `qacc` and in its derivatives,
+    /// by x, u and p; empty unless requested. Infinite with RK4, noslip, sleep or Coulomb's law, whose accelerations are
+    /// not the minimiser of one problem.
+    pub errors: ErrorBound,
 }
 
 /// Returns the model for a step that skips no parameter to differentiate by because it is zero or trivial.
@@ -143,14 +150,26 @@ impl Linearizer {
         let columns = self.directions.len();
         let mut end = 0;
         let mut reuses = false;
+        let bounds = request.errors && minimises(source);
+        self.result.errors = ErrorBound::default();
         while end < columns {
             let first = end;
             end += self.pass_len(source, first);
             self.seeds.clear();
             self.seeds.extend(Seed::units(&self.directions[first..end]));
             reuses = self.run_pass(&mut source, columns, first..end, reuses)?;
+            if bounds {
+                let errors = &mut self.result.errors;
+                self.pass.bound_errors(source, end - first, errors);
+            }
         }
-        self.pass.switching(&mut self.result.switching);
+        let Linearization {
+            switching, errors, ..
+        } = &mut self.result;
+        self.pass.switching(switching);
+        if request.errors && !bounds {
+            errors.set_unknown(model.nv, columns, switching.len());
+        }
         self.split(sim.model(), request.parameters.len());
         Ok(&self.result)
     }
@@ -259,6 +278,13 @@ pub(crate) fn source<'a>(model: &'a Model, sim: &'a Sim<f64>, outputs: &'a [Outp
 fn has_constant_factor(model: &Model, settings: &StepSettings) -> bool {
     let others = settings.flags.diagexact || settings.solver.noslip_iterations > 0;
     !others && model.integrator != Integrator::Discrete
+}
+
+/// Returns true if the acceleration of a step is the minimiser of its last problem.
+fn minimises(source: Source<'_>) -> bool {
+    let StepSettings { flags, solver, .. } = source.settings;
+    let changes = flags.sleep || solver.noslip_iterations > 0;
+    !changes && source.model.integrator != Integrator::Rk4
 }
 
 /// Returns true if the workspace holds the positions and contacts of the start of a step after it.

@@ -7,6 +7,7 @@ use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace, check, pipeline};
 use clench_math::{Dual, LaneTask, Real};
 use clench_rigid::{Output, OutputSource, SimError, evaluate_sensors};
+use clench_solver::{ErrorBound, ErrorBounds};
 
 /// The number of registers of derivatives in a dual number. With one or four, a humanoid takes 20% longer.
 const REGISTERS: usize = 2;
@@ -32,6 +33,8 @@ pub(crate) trait Pass: Send {
     fn directions(&self) -> usize;
     /// Writes the distances of constraints from a change of their piece in the last pass.
     fn switching(&self, out: &mut Vec<f64>);
+    /// Adds bounds of the errors that the solver leaves in the last pass, along `count` directions.
+    fn bound_errors(&mut self, source: Source<'_>, count: usize, bound: &mut ErrorBound);
     /// Prepares for passes with these parameters.
     fn set_params(&mut self, params: &Params<f64>);
     /// Runs the step along the first `count` directions, which `seeds` define. `write(row, values)` receives the
@@ -62,6 +65,7 @@ impl LaneTask<f64> for CreatePass<'_> {
             state,
             ws,
             outputs: Vec::new(),
+            bounds: ErrorBounds::default(),
             last: Start::Positions,
         })
     }
@@ -75,6 +79,7 @@ struct DualPass<L: Real<Scalar = f64>> {
     state: State<Number<L>>,
     ws: Workspace<Number<L>>,
     outputs: Vec<Number<L>>,
+    bounds: ErrorBounds<Number<L>>,
     /// The start of the last pass.
     last: Start,
 }
@@ -104,6 +109,15 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         self.ws.problem.switching_distances(&self.ws.qacc, out);
     }
 
+    fn bound_errors(&mut self, source: Source<'_>, count: usize, bound: &mut ErrorBound) {
+        let (problem, qacc) = (&self.ws.problem, &self.ws.qacc);
+        if source.first {
+            let settings = &source.settings.solver;
+            self.bounds.start(problem, settings, qacc, bound);
+        }
+        self.bounds.push_directions(problem, qacc, count, bound);
+    }
+
     fn set_params(&mut self, params: &Params<f64>) {
         self.params = params.broadcast();
     }
@@ -131,6 +145,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             ws,
             outputs,
             last,
+            ..
         } = self;
         if source.first {
             state.copy_from(before);

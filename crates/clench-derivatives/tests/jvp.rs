@@ -106,6 +106,7 @@ fn check(model: Model, options: RigidOptions, steps: usize) {
     let request = Request {
         outputs: Vec::from(outputs.map(|name| Output::find(name).expect("an output"))),
         parameters: parameters(&sim),
+        ..Request::default()
     };
     let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
     let linear = linearizer.linearize(&sim, &request).expect("derivatives");

@@ -54,6 +54,7 @@ mod workspace;
 pub use constants::METHOD_CONSTANTS;
 pub use costs::Cost;
 pub use error::ProblemError;
+pub use implicit::{ErrorBound, ErrorBounds};
 pub use options::{ConstraintSolver, Settings, SolverOptions, Switch};
 pub use partition::{Island, Partition};
 pub use plain::PlainBlock;

@@ -19,6 +19,7 @@
 //! ```
 
 mod coulomb;
+mod error_bound;
 
 use crate::cg::Cg;
 use crate::descent::{Direction, SolverState, minimise};
@@ -31,6 +32,7 @@ use crate::transfer::Transfer;
 use crate::tree::Tree;
 use clench_math::{Mask, Real, kernel};
 use coulomb::Sliding;
+pub use error_bound::{ErrorBound, ErrorBounds};
 use std::any::Any;
 use std::sync::Arc;
 

@@ -4,6 +4,7 @@
 
 mod common;
 mod coulomb;
+mod error_bounds;
 mod input;
 mod islands;
 mod lanes;
