@@ -1,7 +1,5 @@
 //! The derivatives of a step, from Python.
 
-pub(crate) use crate::tangents::Tangents;
-
 use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;

@@ -2,16 +2,10 @@
 
 use crate::batch::{AnyBatch, Batch};
 use crate::busy::lock;
-use crate::derivatives::Tangents;
+use crate::changes::Results;
 use crate::sim::Sim;
-use numpy::PyArrayDyn;
+use crate::tangents::Tangents;
 use pyo3::prelude::*;
-
-/// dx⁺ and dy.
-pub(crate) type Results = (Py<PyArrayDyn<f64>>, Py<PyArrayDyn<f64>>);
-
-/// The changes of x, of u and of parameters that a user chose.
-pub(crate) type Changes<'a, 'py> = [Option<&'a Bound<'py, PyAny>>; 3];
 
 #[pymethods]
 impl Sim {

@@ -10,6 +10,7 @@ mod batch;
 mod batch_queries;
 mod block;
 mod busy;
+mod changes;
 mod constraints;
 mod contact;
 mod contacts;
@@ -56,7 +57,7 @@ mod solve;
 mod state_views;
 mod stats;
 mod table;
-#[cfg(feature = "derivatives")]
+#[cfg_attr(not(feature = "derivatives"), path = "no_tangents.rs")]
 mod tangents;
 mod target;
 mod view;

@@ -33,9 +33,9 @@ pub(crate) struct Linearization {
     /// duality gap that the solver leaves; None unless requested. Bounds are infinite with RK4, noslip, sleep or
     /// Coulomb's law, and do not contain rounding errors of the constraints and the mass matrix.
     pub(crate) qacc_error: Py<PyAny>,
-    /// numpy.ndarray or None : The bounds of the errors of the derivatives of the accelerations, (nv, columns): by x, by
-    /// u, then by the parameters; infinite at a switch. Times the time step, those of the rows of velocities of A and B
-    /// with semi-implicit Euler without implicit damping.
+    /// numpy.ndarray or None : The bounds of the errors of the derivatives of the accelerations, (nv, columns): by x,
+    /// by u, then by the parameters; infinite at a switch. With semi-implicit Euler without implicit damping, the
+    /// errors of the rows of velocities of A and B are those times the time step.
     pub(crate) error: Py<PyAny>,
     /// numpy.ndarray or None : The bounds of the errors of ``switching``. A row whose ``switching`` is smaller may have
     /// another state than in an exact solution. Of a batch, a list of arrays.

@@ -1,7 +1,6 @@
 //! Replacement of `derivatives` in a package that is built without them.
 
 use crate::error::classes::ClenchError;
-use crate::jvp::{Changes, Results};
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
 use clench::rigid::batch::Precision;
@@ -50,39 +49,7 @@ impl Chosen {
     }
 }
 
-/// The changes of the input, which cannot exist.
-pub(crate) struct Tangents(Infallible);
-
-impl Tangents {
-    /// Returns an error that says how to build a package with derivatives.
-    pub(crate) fn new(
-        _: &clench::Model,
-        _: &[String],
-        _: Changes<'_, '_>,
-        _: &[usize],
-    ) -> PyResult<Self> {
-        Err(without())
-    }
-
-    pub(crate) fn of_sim(
-        &self,
-        _: Python<'_>,
-        (): &mut Memory,
-        _: &mut AnySim,
-    ) -> PyResult<Results> {
-        match self.0 {}
-    }
-
-    pub(crate) fn of_batch<S: Precision>(
-        &self,
-        _: Python<'_>,
-        (): &mut (),
-        _: &mut clench::Batch<S>,
-    ) -> PyResult<Results> {
-        match self.0 {}
-    }
-}
-
-fn without() -> PyErr {
+/// Returns an error that says how to build a package with derivatives.
+pub(crate) fn without() -> PyErr {
     ClenchError::new_err(crate::device::without("derivatives", "derivatives"))
 }

@@ -1,9 +1,9 @@
 //! Directional derivatives of a step, from Python.
 
 use crate::arrays::{numbers, require_finite, require_shape};
+use crate::changes::{Changes, Results};
 use crate::derivatives::{Memory, in_env, with_linearizer};
 use crate::error::sim_error;
-use crate::jvp::{Changes, Results};
 use crate::row_sim::AnySim;
 use clench::Output;
 use clench::derivatives::{BatchLinearizer, InputTangent, Matrix, OutputTangent, Request};

@@ -1,31 +1,11 @@
 //! Directional derivatives: products of a vector, or of several, with the Jacobian of a step, without its matrices.
 
 use crate::direction::Direction;
-use crate::linearizer::{Linearizer, Matrix, Request, source};
+use crate::linearizer::{Linearizer, Request, source};
+use crate::matrix::{InputTangent, Matrix, OutputTangent};
 use crate::seed::Seed;
 use clench_rigid::{Model, Sim, SimError};
 use std::ops::Range;
-
-/// Changes dx, du and dp of the input of a step, one column for each direction; see
-/// [`Linearization`](crate::Linearization).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct InputTangent {
-    /// dx, 2 nv + na rows.
-    pub x: Matrix,
-    /// du, nu rows.
-    pub u: Matrix,
-    /// dp, one row for each requested parameter.
-    pub p: Matrix,
-}
-
-/// Changes dx⁺ and dy of the results of a step, one column for each direction.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct OutputTangent {
-    /// dx⁺, 2 nv + na rows.
-    pub x: Matrix,
-    /// dy, nsensordata rows, then those of the requested outputs.
-    pub y: Matrix,
-}
 
 impl Linearizer {
     /// Returns the directional derivatives of the next step of a simulation of the model, whose state does not change:

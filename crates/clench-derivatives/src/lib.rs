@@ -15,11 +15,12 @@ mod batch;
 mod direction;
 mod jvp;
 mod linearizer;
+mod matrix;
 mod pass;
 mod seed;
 mod tangent;
 
 pub use batch::BatchLinearizer;
 pub use clench_solver::ErrorBound;
-pub use jvp::{InputTangent, OutputTangent};
-pub use linearizer::{Linearization, Linearizer, Matrix, Request};
+pub use linearizer::{Linearization, Linearizer, Request};
+pub use matrix::{InputTangent, Matrix, OutputTangent};

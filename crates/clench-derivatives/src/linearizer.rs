@@ -1,7 +1,7 @@
 //! The matrices of a linearized step.
 
 use crate::direction::{self, Direction, Start};
-use crate::jvp::OutputTangent;
+use crate::matrix::{Matrix, OutputTangent};
 use crate::pass::{CreatePass, Pass, Source};
 use crate::seed::Seed;
 use clench_dynamics::StepSettings;
@@ -23,23 +23,6 @@ pub struct Request {
     pub parameters: Vec<(ParamField, usize)>,
     /// True if a linearization also bounds the errors that the solver leaves.
     pub errors: bool,
-}
-
-/// A row-major matrix.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Matrix {
-    /// The number of rows and of columns.
-    pub shape: [usize; 2],
-    /// The numbers, row after row.
-    pub values: Vec<f64>,
-}
-
-impl Matrix {
-    pub(crate) fn reset(&mut self, shape: [usize; 2]) {
-        self.shape = shape;
-        self.values.clear();
-        self.values.resize(shape[0] * shape[1], 0.0);
-    }
 }
 
 /// The linear model of a step about a state:
@@ -70,9 +53,9 @@ pub struct Linearization {
     /// derivative: see [`Problem::switching_distances`](clench_solver::Problem::switching_distances). The rows are
     /// those of the last solve of the step.
     pub switching: Vec<f64>,
-    /// Bounds of the errors that the tolerance of the solver leaves in the acceleration `qacc` and in its derivatives,
-    /// by x, u and p; empty unless requested. Infinite with RK4, noslip, sleep or Coulomb's law, whose accelerations are
-    /// not the minimiser of one problem.
+    /// Bounds of the errors that the tolerance of the solver leaves in the acceleration `qacc` and in its derivatives
+    /// by x, u and p; empty unless requested. They are infinite with RK4, noslip, sleep or Coulomb's law, whose
+    /// accelerations are not the minimiser of one problem.
     pub errors: ErrorBound,
 }
 

@@ -1,7 +1,7 @@
 //! The derivatives of the input of a step, with which a pass starts.
 
 use crate::direction::{Direction, Start};
-use crate::tangent;
+use crate::tangent::{add, move_along};
 use clench_dynamics::State;
 use clench_dynamics::model::{Model, Params};
 use clench_math::{Dual, Real};
@@ -49,7 +49,7 @@ pub(crate) fn set<L: Real<Scalar = f64>, const K: usize>(
         {
             match direction {
                 Direction::Position(dof) => {
-                    tangent::move_along(model, dof, (slot, rate), &mut state.qpos);
+                    move_along(model, dof, (slot, rate), &mut state.qpos);
                 }
                 Direction::Velocity(dof) => add(&mut state.qvel[dof], slot, rate),
                 Direction::Activation(a) => add(&mut state.act[a], slot, rate),
@@ -107,13 +107,4 @@ fn of_one_field(seeds: &[Seed]) -> impl Iterator<Item = &[Seed]> {
         | Direction::Control(_) => None,
     };
     seeds.chunk_by(move |seed, next| field(seed) == field(next))
-}
-
-/// Adds to the derivative in one slot.
-pub(crate) fn add<L: Real<Scalar = f64>, const K: usize>(
-    x: &mut Dual<L, K>,
-    slot: usize,
-    rate: f64,
-) {
-    x.set_derivative(slot, x.derivative(slot) + rate);
 }

@@ -1,6 +1,5 @@
 //! Derivatives of positions in the tangent space: one number a dof, with rotations about the axes of the child.
 
-use crate::seed::add;
 use clench_dynamics::Model;
 use clench_dynamics::model::JointKind;
 use clench_math::{Dual, Quat, Real};
@@ -67,4 +66,13 @@ pub(crate) fn each_motion<L: Real<Scalar = f64>, const K: usize>(
 /// Returns the values of a quaternion.
 fn quaternion<L: Real<Scalar = f64>, const K: usize>(q: &[Dual<L, K>]) -> Quat<f64> {
     Quat::new(q[0].value, q[1].value, q[2].value, q[3].value)
+}
+
+/// Adds to the derivative in one slot.
+pub(crate) fn add<L: Real<Scalar = f64>, const K: usize>(
+    x: &mut Dual<L, K>,
+    slot: usize,
+    rate: f64,
+) {
+    x.set_derivative(slot, x.derivative(slot) + rate);
 }
