@@ -288,9 +288,10 @@ def test_errors_of_a_coarse_solve_are_within_their_bounds(cone: Any) -> None:
     exact = moving("quadruped", "crouching", 300)
     state, rows = exact.state, slice(-exact.model.nv, None)
     state.qacc_warmstart = np.zeros(exact.model.nv)
-    coarse: dict[str, Any] = {"constraint_solver": "cg", "tolerance": 1e-2, "friction_cone": cone}
+    coarse: dict[str, Any] = {"constraint_solver": "CG", "tolerance": 1e-2, "friction_cone": cone}
     precise: dict[str, Any] = {"tolerance": 0, "iterations": 200, "friction_cone": cone}
-    found, expected = [], []
+    found: list[Any] = []
+    expected: list[Any] = []
     for options, kept in ((coarse, found), (precise, expected)):
         sim = clench.Sim(exact.model, clench.RigidOptions(**options))
         sim.state = state
