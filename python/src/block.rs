@@ -7,14 +7,6 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-const COSTS: [(&str, Cost); 5] = [
-    ("quadratic", Cost::Quadratic),
-    ("one_sided", Cost::OneSided),
-    ("huber", Cost::Huber),
-    ("pyramid", Cost::Pyramid),
-    ("elliptic", Cost::Elliptic),
-];
-
 /// One constraint of a bare convex problem: the cost of a value of ``y = jacobian @ qacc - aref``.
 ///
 /// Parameters
@@ -48,6 +40,7 @@ const COSTS: [(&str, Cost); 5] = [
 /// Block(cost='one_sided', dim=1, nv=2)
 #[pyclass(frozen, module = "clench")]
 pub(crate) struct Block {
+    name: &'static str,
     plain: PlainBlock<f64>,
     nv: usize,
 }
@@ -76,20 +69,21 @@ impl Block {
         R: &Bound<'_, PyAny>,
         shape: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let found = COSTS.iter().find(|(name, _)| *name == cost);
-        let Some(&(_, kind)) = found else {
-            return Err(unknown("cost", cost, &COSTS.map(|(name, _)| name)));
+        let named = |&kind: &Cost| name(kind).map(|name| (name, kind));
+        let (names, kinds): (Vec<&str>, Vec<Cost>) = Cost::ALL.iter().filter_map(named).unzip();
+        let Some(found) = names.iter().position(|&name| name == cost) else {
+            return Err(unknown("cost", cost, &names));
         };
+        let (name, kind) = (names[found], kinds[found]);
         let (jacobian, dim, nv) = matrix(jacobian)?;
         let r = rows("R", R, dim)?;
         if let Some(&refused) = r.iter().find(|&&r| !(r > 0.0 && (1.0 / r).is_finite())) {
             let text = format!("R has {refused:e}, but must be positive, its inverse finite");
             return Err(PyValueError::new_err(text));
         }
-        let shapeless = matches!(kind, Cost::Quadratic | Cost::OneSided);
         let shape = match shape {
-            Some(shape) if !shapeless => rows("shape", shape, dim)?,
-            None if shapeless => Vec::new(),
+            Some(shape) if kind.has_shape() => rows("shape", shape, dim)?,
+            None if !kind.has_shape() => Vec::new(),
             Some(_) => return Err(PyValueError::new_err(format!("a {cost} cost has no shape"))),
             None => {
                 return Err(PyValueError::new_err(format!(
@@ -104,14 +98,13 @@ impl Block {
             r,
             shape,
         };
-        Ok(Block { plain, nv })
+        Ok(Block { name, plain, nv })
     }
 
     /// str : The kind of cost.
     #[getter]
     fn cost(&self) -> &'static str {
-        let found = COSTS.iter().find(|(_, cost)| *cost == self.plain.cost);
-        found.expect("every cost has a name").0
+        self.name
     }
 
     /// int : Number of rows.
@@ -152,6 +145,18 @@ impl Block {
             self.dim(),
             self.nv
         )
+    }
+}
+
+/// Returns the name of a cost; `None` for Coulomb's law, whose problem is not convex.
+fn name(cost: Cost) -> Option<&'static str> {
+    match cost {
+        Cost::Quadratic => Some("quadratic"),
+        Cost::OneSided => Some("one_sided"),
+        Cost::Huber => Some("huber"),
+        Cost::Pyramid => Some("pyramid"),
+        Cost::Elliptic => Some("elliptic"),
+        Cost::Coulomb => None,
     }
 }
 

@@ -54,14 +54,11 @@ pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Constrain
     for (index, block) in active_blocks(ws, lane) {
         let record = &ws.record.blocks[index];
         let number = |x: T| x.lane(lane).to_f64();
-        let forces = match block.cost {
-            Cost::Pyramid => ws.solver.edge_forces(&ws.problem, index),
-            Cost::Quadratic | Cost::OneSided | Cost::Huber | Cost::Elliptic | Cost::Coulomb => {
-                &ws.solver.force()[block.rows()]
-            }
+        let forces = match block.cost.has_edges() {
+            true => ws.solver.edge_forces(&ws.problem, index),
+            false => &ws.solver.force()[block.rows()],
         };
         let pos = |i: usize| ws.record.pos[block.row + i];
-        let is_friction = matches!(block.cost, Cost::Elliptic | Cost::Coulomb);
         for (row, edge) in edges(&block, lane).enumerate() {
             let combine = |values: &[T]| edge.combine(values, lane);
             rows.push(ConstraintRow {
@@ -69,7 +66,7 @@ pub fn constraint_rows<T: Real>(ws: &Workspace<T>, lane: usize) -> Vec<Constrain
                 cost: block.cost,
                 row,
                 pos: number(pos(edge.base)),
-                margin: if is_friction && row > 0 {
+                margin: if block.cost.is_cone() && edge.base > 0 {
                     0.0
                 } else {
                     number(record.margin)
@@ -218,7 +215,7 @@ impl PyramidEdge {
 }
 
 fn edges<T: Real>(block: &Block<'_, T>, lane: usize) -> impl Iterator<Item = PyramidEdge> {
-    let pyramid = block.cost == Cost::Pyramid;
+    let pyramid = block.cost.has_edges();
     let count = if pyramid {
         2 * (block.dim - 1)
     } else {

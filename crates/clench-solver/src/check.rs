@@ -80,44 +80,47 @@ fn check_block<T: Real>(block: &Block<T>) -> Result<(), &'static str> {
     for lane in 0..T::LANES {
         let at = |values: &[T], row: usize| values[row].lane(lane).to_f64();
         for row in 0..block.dim {
-            let (r, d, shape) = (at(block.r, row), at(block.d, row), at(block.shape, row));
+            let (r, d) = (at(block.r, row), at(block.d, row));
             if d < 0.0 {
                 return Err("D is negative");
             }
             if d > 0.0 && (d * r - 1.0).abs() > CONSISTENT {
                 return Err("D is not 1 / R");
             }
-            if block.cost == Cost::Huber && shape < 0.0 {
-                return Err("a friction loss is negative");
-            }
         }
-        if at(block.d, 0) == 0.0 {
-            continue;
-        }
-        if matches!(block.cost, Cost::Pyramid | Cost::Elliptic | Cost::Coulomb)
-            && (1..block.dim).any(|j| at(block.shape, j) <= 0.0)
-        {
+        let (d, shape) = (|row| at(block.d, row), |row| at(block.shape, row));
+        let exists = d(0) != 0.0;
+        if exists && block.cost.is_cone() && (1..block.dim).any(|j| shape(j) <= 0.0) {
             return Err("a friction coefficient is not positive");
         }
-        if block.cost == Cost::Pyramid && (1..block.dim).any(|j| at(block.d, j) != at(block.d, 0)) {
-            return Err("the rows of a pyramid need the same D");
-        }
-        // Returns true if the friction rows have D_j = scale μ_j².
-        let consistent = |scale: f64| {
-            let expected = |j| scale * at(block.shape, j).powi(2);
-            (1..block.dim).all(|j| (at(block.d, j) / expected(j) - 1.0).abs() < CONSISTENT)
+        // Returns true if the friction rows have D_j = D_row (μ_j / μ_row)².
+        let consistent = |row: usize| {
+            let scale = d(row) / shape(row).powi(2);
+            let expected = |j| scale * shape(j).powi(2);
+            (1..block.dim).all(|j| (d(j) / expected(j) - 1.0).abs() < CONSISTENT)
         };
-        if block.cost == Cost::Elliptic {
-            let mu = at(block.shape, 0);
-            if mu <= 0.0 {
+        match block.cost {
+            Cost::Huber if (0..block.dim).any(|row| shape(row) < 0.0) => {
+                return Err("a friction loss is negative");
+            }
+            Cost::Pyramid if exists && (1..block.dim).any(|j| d(j) != d(0)) => {
+                return Err("the rows of a pyramid need the same D");
+            }
+            Cost::Elliptic if exists && shape(0) <= 0.0 => {
                 return Err("the regularized friction coefficient is not positive");
             }
-            if !consistent(at(block.d, 0) / (mu * mu)) {
+            Cost::Elliptic if exists && !consistent(0) => {
                 return Err("the rows of an elliptic cone need D_j = D_0 (mu_j / mu)²");
             }
-        }
-        if block.cost == Cost::Coulomb && !consistent(at(block.d, 1) / at(block.shape, 1).powi(2)) {
-            return Err("the friction rows of a Coulomb contact need D_j = D_1 (mu_j / mu_1)²");
+            Cost::Coulomb if exists && !consistent(1) => {
+                return Err("the friction rows of a Coulomb contact need D_j = D_1 (mu_j / mu_1)²");
+            }
+            Cost::Quadratic
+            | Cost::OneSided
+            | Cost::Huber
+            | Cost::Pyramid
+            | Cost::Elliptic
+            | Cost::Coulomb => {}
         }
     }
     Ok(())

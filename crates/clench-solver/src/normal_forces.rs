@@ -157,7 +157,9 @@ impl<T: Real> NormalForces<T> {
     pub(crate) fn of(&self, b: &BlockIndex) -> T {
         match b.cost {
             Cost::Coulomb => self.given[b.active_start],
-            _ => T::ZERO,
+            Cost::Quadratic | Cost::OneSided | Cost::Huber | Cost::Pyramid | Cost::Elliptic => {
+                T::ZERO
+            }
         }
     }
 }

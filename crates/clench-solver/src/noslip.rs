@@ -126,13 +126,9 @@ impl<T: Real> Noslip<T> {
     fn prepare(&mut self, problem: &Problem<T>) {
         self.frictions.clear();
         self.responses.clear();
-        for contact in [false, true] {
-            for block in &problem.jacobian.blocks {
-                let first = match block.cost {
-                    Cost::Huber if !contact => 0,
-                    Cost::Pyramid | Cost::Elliptic | Cost::Coulomb if contact => 1,
-                    _ => continue,
-                };
+        for first in [0, 1] {
+            let blocks = problem.jacobian.blocks.iter();
+            for block in blocks.filter(|b| b.cost.first_friction() == Some(first)) {
                 self.push(problem, block, first);
             }
         }
@@ -232,19 +228,20 @@ impl<T: Real> Friction<T> {
             block, first, a, ..
         } = self;
         let shape = problem.rows(block).shape;
-        if let Cost::Elliptic | Cost::Coulomb = block.cost {
-            return on_ellipse(a, &residual, &force[1..], &shape[1..], force[0]);
-        }
+        let edges = match block.cost {
+            Cost::Elliptic | Cost::Coulomb => {
+                return on_ellipse(a, &residual, &force[1..], &shape[1..], force[0]);
+            }
+            Cost::Pyramid => Some(&edges[block.active_start..]),
+            Cost::Quadratic | Cost::OneSided | Cost::Huber => None,
+        };
         // Rows are solved one after the other, each with the changes of those before it.
         let mut target = [T::ZERO; MAX_DIM];
         let count = block.dim - first;
         for j in 0..count {
-            let bound = match block.cost {
-                Cost::Pyramid => {
-                    let pair = &edges[block.active_start + 2 * j..];
-                    shape[j + 1] * (pair[0] + pair[1])
-                }
-                _ => shape[j],
+            let bound = match edges {
+                Some(edges) => shape[j + 1] * (edges[2 * j] + edges[2 * j + 1]),
+                None => shape[j],
             };
             let old = force[first + j];
             target[j] = within(old, residual[j], a[j][j], bound);
@@ -409,7 +406,7 @@ fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) 
     let mut sum = T::ZERO;
     let (constraints, _) = problem.constraints_and_terms();
     for b in constraints {
-        if b.cost == Cost::Pyramid {
+        if b.cost.has_edges() {
             let edges = &edges[b.active_start..b.active_start + 2 * (b.dim - 1)];
             sum += problem.r[b.row] * dot(edges, edges);
         } else {
@@ -424,12 +421,8 @@ fn regularization_cost<T: Real>(problem: &Problem<T>, force: &[T], edges: &[T]) 
 /// Splits the friction of each pyramid row over its two edges, whose sum does not change.
 #[inline(always)]
 fn write_edges<T: Real>(problem: &Problem<T>, force: &[T], edges: &mut [T]) {
-    for b in problem
-        .jacobian
-        .blocks
-        .iter()
-        .filter(|b| b.cost == Cost::Pyramid)
-    {
+    let blocks = problem.jacobian.blocks.iter();
+    for b in blocks.filter(|b| b.cost.has_edges()) {
         let rows = problem.rows(b);
         let exists = rows.d[0].gt(T::ZERO);
         for j in 1..b.dim {

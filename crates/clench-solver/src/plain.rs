@@ -19,7 +19,7 @@ pub struct PlainBlock<T> {
     pub aref: Vec<T>,
     /// R > 0, length dim.
     pub r: Vec<T>,
-    /// Huber: η. Pyramid: unused, then μ_j. Elliptic: regularized μ, then μ_j. Otherwise empty.
+    /// Huber: η. Pyramid and Coulomb: unused, then μ_j. Elliptic: regularized μ, then μ_j. Otherwise empty.
     pub shape: Vec<T>,
 }
 
@@ -54,7 +54,7 @@ impl<T: Real> Problem<T> {
         let (nv, dim) = (self.nv(), plain.aref.len());
         check_length("jacobian", plain.jacobian.len(), dim * nv)?;
         check_length("r", plain.r.len(), dim)?;
-        if !plain.shape.is_empty() || !matches!(plain.cost, Cost::Quadratic | Cost::OneSided) {
+        if !plain.shape.is_empty() || plain.cost.has_shape() {
             check_length("shape", plain.shape.len(), dim)?;
         }
         let acts = |dof: &u32| {

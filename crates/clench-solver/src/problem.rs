@@ -365,11 +365,10 @@ pub(crate) fn check_size(
     dofs: &[u32],
     nv: usize,
 ) -> Result<(), &'static str> {
-    let cone = matches!(cost, Cost::Pyramid | Cost::Elliptic | Cost::Coulomb);
     if !(1..=MAX_DIM).contains(&dim) {
         return Err("a block has 1 to 6 rows");
     }
-    if cone && dim < 2 {
+    if cost.is_cone() && dim < 2 {
         return Err("a cone has 2 to 6 rows");
     }
     if dofs.windows(2).any(|w| w[0] >= w[1]) {

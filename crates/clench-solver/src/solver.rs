@@ -3,7 +3,6 @@
 //! Solves are compiled with this crate; a crate that steps simulations calls them without compiling them again.
 
 use crate::check::check_length;
-use crate::costs::Cost;
 use crate::descent::SolverState;
 use crate::error::ProblemError;
 use crate::islands::{Islands, Job};
@@ -159,7 +158,7 @@ impl<T: Real> Solver<T> {
     /// μ₁y₁, y₀ − μ₁y₁, y₀ + μ₂y₂, ...; empty for other costs.
     pub fn edge_forces(&self, problem: &Problem<T>, block: usize) -> &[T] {
         let b = &problem.jacobian.blocks[block];
-        if b.cost == Cost::Pyramid {
+        if b.cost.has_edges() {
             &self.results.edges[b.active_range()]
         } else {
             &[]

@@ -144,18 +144,18 @@ fn raise_regularization<T: Real>(
     }
     let mut factor = T::ONE;
     for i in 0..rows.len() {
-        let a = match cost {
+        let a = match cost.has_edges() {
             // R is that of the edge y₀ + μ y_i.
-            Cost::Pyramid => inertia[0] + rows[i].shape * rows[i].shape * inertia[i],
-            _ => inertia[i],
+            true => inertia[0] + rows[i].shape * rows[i].shape * inertia[i],
+            false => inertia[i],
         };
         let least = least_regularization(a);
         factor = factor.max(least / r[i]);
-        if let Cost::Quadratic | Cost::OneSided | Cost::Huber = cost {
+        if !cost.is_cone() {
             r[i] = r[i].max(least);
         }
     }
-    if let Cost::Pyramid | Cost::Elliptic | Cost::Coulomb = cost {
+    if cost.is_cone() {
         r.iter_mut().for_each(|r| *r *= factor);
     }
 }

@@ -25,7 +25,6 @@ use crate::stages::Positions;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Quat, Real, Vec3, kernel};
-use clench_solver::Cost;
 
 /// The rotation from which a reference is replaced, rad.
 const MAX_ROTATION: f64 = 0.01;
@@ -81,7 +80,7 @@ impl<T: Real> LoadedContact<T> {
         let first = block.rows().start;
         let active = ws.record.blocks[block_index].active;
         let force = ws.solver.force()[first];
-        let pyramid = block.cost == Cost::Pyramid;
+        let pyramid = block.cost.has_edges();
         let mut displacement = [T::ZERO; 5];
         let mut demand = T::ZERO;
         let mut stiffness = T::ZERO;

@@ -19,7 +19,7 @@ use clench_dynamics::model::{Model, Params};
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
-use clench_solver::{Cost, Status};
+use clench_solver::Status;
 use std::f64::consts::E;
 use std::ops::AddAssign;
 
@@ -273,7 +273,7 @@ fn explained<T: Real>(
     let block = results.ws.problem.block(block);
     let force = number(results.ws.solver.force()[block.rows()][row]).abs();
     // Each edge of a pyramid carries an equal part of the normal force.
-    let shares = if block.cost == Cost::Pyramid {
+    let shares = if block.cost.has_edges() {
         2 * (block.dim - 1)
     } else {
         1

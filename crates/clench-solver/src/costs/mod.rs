@@ -57,9 +57,23 @@ pub(crate) fn active_len(cost: Cost, dim: usize) -> usize {
     with_cost!(cost, C => <C as BlockCost<f64>>::active_len(dim))
 }
 
-/// The shape of a constraint's cost s(y), y = J a − aref.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Cost {
+/// Declares the enumeration of costs and the list of all.
+macro_rules! costs {
+    ($($(#[$attribute:meta])* $name:ident,)*) => {
+        /// The shape of a constraint's cost s(y), y = J a − aref.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        pub enum Cost {
+            $($(#[$attribute])* $name,)*
+        }
+
+        impl Cost {
+            /// All costs.
+            pub const ALL: &[Cost] = &[$(Cost::$name),*];
+        }
+    };
+}
+
+costs! {
     /// ½ D y² always: equalities.
     #[default]
     Quadratic,
@@ -74,4 +88,45 @@ pub enum Cost {
     /// One-sided in the normal; friction within a disc whose radius is the normal force: frictional contact by
     /// Coulomb's law.
     Coulomb,
+}
+
+impl Cost {
+    /// Returns true for a frictional contact: its first row is normal, and the ratios of its R describe its friction.
+    #[inline(always)]
+    pub fn is_cone(self) -> bool {
+        match self {
+            Cost::Quadratic | Cost::OneSided | Cost::Huber => false,
+            Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => true,
+        }
+    }
+
+    /// Returns the index of the first row with friction; `None` if there is none.
+    #[inline(always)]
+    pub(crate) fn first_friction(self) -> Option<usize> {
+        match self {
+            Cost::Quadratic | Cost::OneSided => None,
+            Cost::Huber => Some(0),
+            Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => Some(1),
+        }
+    }
+
+    /// Returns true if its forces act along the edges y₀ ± μ_j y_j, not along the rows.
+    #[inline(always)]
+    pub fn has_edges(self) -> bool {
+        match self {
+            Cost::Pyramid => true,
+            Cost::Quadratic | Cost::OneSided | Cost::Huber | Cost::Elliptic | Cost::Coulomb => {
+                false
+            }
+        }
+    }
+
+    /// Returns true if its rows have numbers `shape`: losses or friction coefficients.
+    #[inline(always)]
+    pub fn has_shape(self) -> bool {
+        match self {
+            Cost::Quadratic | Cost::OneSided => false,
+            Cost::Huber | Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => true,
+        }
+    }
 }

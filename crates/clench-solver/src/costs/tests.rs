@@ -4,15 +4,6 @@
 use super::*;
 use crate::costs::Cost;
 
-const COSTS: [Cost; 6] = [
-    Cost::Quadratic,
-    Cost::OneSided,
-    Cost::Huber,
-    Cost::Pyramid,
-    Cost::Elliptic,
-    Cost::Coulomb,
-];
-
 struct Sample {
     cost: Cost,
     d: Vec<f64>,
@@ -93,10 +84,10 @@ fn samples() -> Vec<Sample> {
     };
     let mut samples = Vec::new();
     for k in 0..6000 {
-        let cost = COSTS[k % 6];
-        let dim = match cost {
-            Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => 2 + k / 6 % 5,
-            _ => 1 + k / 6 % 3,
+        let (round, cost) = (k / Cost::ALL.len(), Cost::ALL[k % Cost::ALL.len()]);
+        let dim = match cost.is_cone() {
+            true => 2 + round % 5,
+            false => 1 + round % 3,
         };
         let d0 = 0.5 + 3.0 * unit();
         let mut shape: Vec<f64> = (0..dim).map(|_| 0.3 + unit()).collect();
@@ -111,7 +102,7 @@ fn samples() -> Vec<Sample> {
             Cost::Coulomb => 2.0 * unit() - 0.2,
             _ => 0.0,
         };
-        if cost == Cost::Quadratic || cost == Cost::OneSided {
+        if !cost.has_shape() {
             shape.fill(0.0);
         }
         let r = d.iter().map(|d| 1.0 / d).collect();
