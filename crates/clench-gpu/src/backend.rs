@@ -63,14 +63,14 @@ fn word(output: Output) -> Option<&'static str> {
 }
 
 impl<S: GpuReal> GpuBatch<S> {
-    /// Collects the outcome of each running environment from the report field `verdict`.
+    /// Collects the outcome of each running environment from the field `report` of the reports.
     fn outcomes(
         &self,
-        verdict: &str,
+        report: &str,
         running: &[bool],
         outcomes: &mut [Outcome],
     ) -> Result<(), GpuError> {
-        let (steps, faults) = (self.report("steps")?, self.faults(verdict)?);
+        let (steps, faults) = (self.report("steps")?, self.faults(report)?);
         let none = faults.iter().all(Option::is_none);
         let details = if none {
             None
@@ -192,7 +192,7 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
 
     fn forward(&mut self, running: &[bool], outcomes: &mut [Outcome]) -> Result<(), SimError> {
         self.choose(running);
-        self.forward_with_verdict()?;
+        self.forward_and_check()?;
         Ok(self.outcomes("failure", running, outcomes)?)
     }
 }

@@ -211,11 +211,15 @@ impl<S: GpuReal> GpuBatch<S> {
     ///
     /// # Errors
     /// Returns an error if the device was lost.
-    pub(crate) fn forward_with_verdict(&mut self) -> Result<(), GpuError> {
+    pub(crate) fn forward_and_check(&mut self) -> Result<(), GpuError> {
         self.submit(|batch, encoder| {
             batch.clear_failures(encoder);
             let forward = batch.pipelines.forward_and_observed();
-            batch.encode(encoder, None, forward.chain([&batch.pipelines.verdict]));
+            batch.encode(
+                encoder,
+                None,
+                forward.chain([&batch.pipelines.check_forward]),
+            );
         })
     }
 

@@ -80,48 +80,48 @@ kernels! {
     RESTART = "restart", Thread: "restart";
     /// Computes poses, spatial inertias, the mass matrix and its factor, tendons and moment arms of actuators.
     POSITIONS = "positions", Team: "team", "kinematics", "com", "tree", "substitution", "chains", "wrap", "tendon",
-        "outputs", "transmission", "articulated", "outer", "mass_factor", "inertia";
+        "outputs", "transmission", "articulated", "outer", "factor_m", "inertia";
     /// Finds near pairs.
     BROAD_PHASE = "broad_phase", Team: "team", "broad_phase";
     /// Finds the contacts of near pairs.
-    NARROW_PHASE = "narrow_phase", NarrowPhase: "near", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
+    NARROW_PHASE = "narrow_phase", NarrowPhase: "near_pairs", "shape_data", "contact_pool", "plane", "plane_mesh", "round", "cylinder", "penetration", "box_round",
         "outline", "convex/body", "convex/hull", "convex/cylinder_polyhedron", "convex/cylinders", "convex/pair", "convex/simplex", "convex/refine", "convex/gjk", "convex/polytope", "convex/epa", "convex/feature", "convex/clipping", "convex/patch", "convex/terrain/prism", "convex/terrain/grid", "convex/terrain/bounds", "convex/terrain/manifold", "convex/terrain/face_clip", "convex/terrain/terrain", "convex/convex", "box_box", "narrow_phase";
     /// Gathers contacts.
-    CONTACTS = "contacts", Team: "team", "near", "contacts";
+    CONTACTS = "contacts", Team: "team", "near_pairs", "contacts";
     /// Computes smooth forces and the resulting acceleration.
-    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_armature", "adhesive", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
+    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Finds active constraints and their softness.
-    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "adhesive", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "constraints";
     /// Computes their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/elliptic", "costs/costs", "costs/hessian",
-        "continuation", "tiles", "cholesky", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
+        "continuation", "tiles", "factor_h", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
     /// Computes the duality gap of the solve, on request.
-    GAP = "gap", Team: "team", "tree", "substitution", "articulated", "mass_factor", "gap";
+    GAP = "gap", Team: "team", "tree", "substitution", "articulated", "factor_m", "gap";
     /// Computes camera poses, on request.
     CAMERAS = "cameras", Thread: "cameras";
     /// Computes accelerations of bodies, forces between them and the energy, on request.
-    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "tendon_forces", "wrap", "adhesive", "wrench", "external", "spring", "energy", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "tendon_forces", "wrap", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
     /// Traces the rays of sensors, on request.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// Reads sensors, on request.
-    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "adhesive", "wrench", "contact_sensor", "distance_sensor", "clock", "due", "history", "sensor_delay", "optics", "sensors";
-    /// Checks that the results are within limits.
-    VERDICT = "verdict", Team: "team", "verdict", "judge";
+    SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "contact_adhesion", "wrench", "contact_sensor", "distance_sensor", "clock", "sample_times", "history", "sensor_delay", "optics", "sensors";
+    /// Checks that the results of a forward pass outside a step are within limits.
+    CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
     /// Advances the state by semi-implicit Euler.
-    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "euler";
+    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "gyroscopic", "implicit_fast";
     /// Does the same with Coriolis forces.
     IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "derivatives", "coriolis", "lu", "implicit";
     /// Does the same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "verdict", "plastic", "clock", "due", "history_push", "outputs", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "rk4";
 }
 
 /// The inputs of the constants before every kernel, besides the tables.

@@ -31,7 +31,7 @@ pub(crate) struct Pipelines {
     /// The duality gap of the last solve.
     pub gap: Pipeline,
     /// Checks the results of a forward pass outside a step.
-    pub verdict: Pipeline,
+    pub check_forward: Pipeline,
     /// The integrator: one for each forward pass of a step.
     pub advance: Vec<Pipeline>,
 }
@@ -121,7 +121,7 @@ impl Pipelines {
             sensors: Vec::new(),
             restart: compile(&kernels::RESTART)?,
             gap: compile(&kernels::GAP)?,
-            verdict: compile(&kernels::VERDICT)?,
+            check_forward: compile(&kernels::CHECK_FORWARD)?,
             forward,
             advance,
             preface,

@@ -89,7 +89,7 @@ fn advance_activations(rates: u32, velocities: u32) {
 // lengths and gradients of tendons at the start (all in work).
 fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     end_in_team();
-    judge_results();
+    check_results();
     let fault = reports[FAILURE * envs + env];
     if (fault == RUNNING) {
         for (var i = member; i < bound(NV); i += TEAM) {

@@ -1,4 +1,4 @@
-// The factor of the mass matrix M. CPU counterpart: `clench-solver/src/tree/factor.rs`. `cholesky.wgsl` factors the
+// The factor of the mass matrix M. CPU counterpart: `clench-solver/src/tree/factor.rs`. `factor_h.wgsl` factors the
 // Hessian H.
 
 // Returns zero: nothing is added to the diagonal of M.

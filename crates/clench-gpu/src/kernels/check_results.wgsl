@@ -5,7 +5,7 @@ fn is_far(x: f32) -> bool {
 }
 
 // A checked number: its field, its index, its value, and whether it is beyond its limits.
-struct Judged {
+struct Checked {
     field: u32,
     index: u32,
     x: f32,
@@ -13,44 +13,44 @@ struct Judged {
 }
 
 // Returns the k-th checked number.
-fn judged(k: u32) -> Judged {
+fn checked(k: u32) -> Checked {
     var index = k;
     if (index < NV) {
         let x = fetch(QACC + index);
-        return Judged(OF_QACC, index, x, is_far(x));
+        return Checked(OF_QACC, index, x, is_far(x));
     }
     index -= NV;
     if (index < NV) {
         let x = fetch(QFRC_CONSTRAINT + index);
-        return Judged(OF_QFRC_CONSTRAINT, index, x, is_wild(x));
+        return Checked(OF_QFRC_CONSTRAINT, index, x, is_wild(x));
     }
     index -= NV;
     if (index < NV) {
         let x = given(QVEL + index);
-        return Judged(OF_QVEL, index, x, is_far(x));
+        return Checked(OF_QVEL, index, x, is_far(x));
     }
     index -= NV;
     if (index < NQ) {
         let x = given(QPOS + index);
-        return Judged(OF_QPOS, index, x, is_far(x));
+        return Checked(OF_QPOS, index, x, is_far(x));
     }
     index -= NQ;
     let x = given(ACT + index);
-    return Judged(OF_ACT, index, x, is_wild(x));
+    return Checked(OF_ACT, index, x, is_wild(x));
 }
 
 // Records the first number beyond its limits, and its location.
-fn judge_results() {
+fn check_results() {
     join();
     var worst = NONE;
     for (var k = member; k < 3u * NV + NQ + NA; k += TEAM) {
-        if (judged(k).beyond) {
+        if (checked(k).beyond) {
             worst = min(worst, k);
         }
     }
     worst = least_of_team(worst);
     if (is_first() && worst != NONE && reports[FAILURE * envs + env] == RUNNING) {
-        let number = judged(worst);
+        let number = checked(worst);
         reports[FAULT_FIELD * envs + env] = number.field;
         reports[FAULT_INDEX * envs + env] = number.index;
         reports[FAULT_VALUE * envs + env] = report_bits(number.x);
