@@ -30,7 +30,6 @@
 mod actuators;
 mod added_mass;
 mod appearance;
-mod assets;
 mod bodies;
 mod budget;
 mod build;
@@ -48,6 +47,7 @@ mod equalities;
 mod error;
 mod fuse;
 mod geoms;
+mod height_field_spec;
 mod histories;
 mod inertia;
 mod joints;
@@ -74,7 +74,6 @@ mod uses;
 mod visuals;
 
 pub use appearance::{AppearanceSpec, MaterialSpec};
-pub use assets::HeightFieldSpec;
 pub use camera_spec::{CameraLens, CameraSpec, CameraTracking};
 pub use clench_dynamics::constraint::{DEFAULT_SOLIMP, DEFAULT_SOLREF};
 pub use clench_dynamics::model::{MeshInertia, MeshSpec, Origin};
@@ -84,6 +83,7 @@ pub use elements::{
     InertiaSpec, InertialSpec, JOINT_NUMBERS, JointSpec, SiteSpec,
 };
 pub use error::{BuildError, shorten};
+pub use height_field_spec::HeightFieldSpec;
 pub use light_spec::LightSpec;
 pub use model_builder::ModelBuilder;
 pub use physics::{

@@ -4,8 +4,8 @@
 use crate::contact::{Contact, Excess};
 use crate::error::{Fault, SimError};
 pub use crate::error::{check_count, check_length};
+use crate::joint_description::{joint_of, massless};
 use crate::model::Model;
-use crate::place::{joint_of, massless};
 use crate::state::bounds::{Bound, OCCASIONAL, each_input, first_beyond, within};
 pub use crate::state::bounds::{beyond_bounds, has_occasional};
 use crate::state::{FIELDS, State};

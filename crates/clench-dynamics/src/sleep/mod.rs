@@ -10,13 +10,13 @@
 //! one lane does not affect the others.
 
 mod fall;
-mod idle;
 mod parts;
+mod skipped_work;
 mod wake;
 
 pub use fall::fall_asleep;
 pub(crate) use fall::hold;
-pub(crate) use idle::{is_idle, rests};
+pub(crate) use skipped_work::{is_idle, rests};
 pub use wake::wake_in_state;
 pub(crate) use wake::{wake_coupled, wake_pulled, wake_touched, wake_touching};
 

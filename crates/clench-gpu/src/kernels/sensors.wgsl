@@ -1,4 +1,4 @@
-// Sensors: one thread per environment, on request. CPU counterparts: `sensor/reading.rs`, `frame.rs`, `limit.rs` and
+// Sensors: one thread per environment, on request. CPU counterparts: `sensor/read.rs`, `frame.rs`, `limit.rs` and
 // `volume.rs`. A sensor is a row of SENSOR_SIZE words and one of SENSOR_PRM_SIZE numbers.
 
 // Returns the position of an object.

@@ -10,8 +10,8 @@ use super::{Batch, BatchOptions, Controls, EnvStatus, Precision, StateRows, Summ
 use crate::output::Output;
 use clench_dynamics::check::{beyond_bounds, input_fault};
 use clench_dynamics::error::{Fault, SimError};
+use clench_dynamics::joint_description::joint_of;
 use clench_dynamics::model::{Model, Sensor, SensorKind};
-use clench_dynamics::place::joint_of;
 use clench_dynamics::state::FIELDS;
 use std::mem::{swap, take};
 use std::sync::Arc;

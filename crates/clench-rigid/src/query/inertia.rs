@@ -9,7 +9,7 @@ use clench_dynamics::Step;
 use clench_dynamics::check::{check_length, check_values};
 use clench_dynamics::dynamics::jacobian::add_point_forces;
 use clench_dynamics::error::{Fault, SimError};
-use clench_dynamics::place::massless;
+use clench_dynamics::joint_description::massless;
 use clench_math::{Mask, Real, Vec3};
 
 impl<T: Precision> Sim<T> {

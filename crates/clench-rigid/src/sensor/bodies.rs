@@ -4,7 +4,7 @@
 //! acceleration a requires the force I a + v ×* I v. External forces supply one part, the joints to its parent and
 //! children the remainder.
 
-use super::reading::Reading;
+use super::read::Reading;
 use crate::output::forces::external_forces;
 use crate::output::source::Source;
 use clench_dynamics::model::{Model, Params};

@@ -4,7 +4,7 @@
 //! the right of and f_y y / −z above the optical axis. With a field of view φ and an image height of h pixels, f = ½ h
 //! / tan(½ φ).
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_collide::Ray;
 use clench_dynamics::dynamics::camera::camera_pose;
 use clench_math::{Real, Vec3, kernel};

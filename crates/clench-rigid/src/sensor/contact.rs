@@ -5,7 +5,7 @@
 //! sign. The force is negated as well, so that in the new frame only its component along the second tangent changes its
 //! sign. The same holds for the torque and the velocities.
 
-use super::reading::Reading;
+use super::read::Reading;
 use crate::output::forces::of_contact;
 use clench_dynamics::contact::Contact;
 use clench_dynamics::model::{ContactField, ContactQuery, ContactReduction, ContactSide};

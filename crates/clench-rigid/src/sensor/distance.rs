@@ -1,6 +1,6 @@
 //! The smallest distance between two sets of geoms. Each lane is searched separately.
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_collide::{Pose, Separation, Shape, distance};
 use clench_dynamics::model::{Sensor, SensorKind};
 use clench_dynamics::sensor_group;

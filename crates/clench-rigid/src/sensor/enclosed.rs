@@ -1,6 +1,6 @@
 //! Protrusion of objects from the volume of a site. Each lane is searched separately.
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_collide::{Ascent, Pose, Shape, protrusion, protrusion_of_points};
 use clench_dynamics::model::FrameObject;
 use clench_math::{Real, Scalar};

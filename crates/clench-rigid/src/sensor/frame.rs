@@ -3,7 +3,7 @@
 //! Given R, p, ω, v of the reference frame, an object at p' that moves with ω', v' has the relative position Rᵀ(p' −
 //! p), angular velocity Rᵀ(ω' − ω) and linear velocity Rᵀ(v' − v − ω × (p' − p)).
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_dynamics::model::{FrameObject, SensorKind};
 use clench_dynamics::sensor_group;
 use clench_math::{Mat3, Motion, Quat, Real, Vec3, kernel};

@@ -1,6 +1,6 @@
 //! Sensors of joint and tendon limits.
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_dynamics::constraint::ConstraintSource;
 use clench_math::{Mask, Real, kernel};
 

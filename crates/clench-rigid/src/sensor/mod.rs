@@ -11,7 +11,7 @@ pub(crate) mod enclosed;
 mod frame;
 mod limit;
 mod ray;
-mod reading;
+mod read;
 pub(crate) mod tactile;
 mod volume;
 
@@ -20,7 +20,7 @@ use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
-use reading::Reading;
+use read::Reading;
 
 /// Evaluates all sensors of the model if they are read now or later.
 #[kernel]

@@ -1,6 +1,6 @@
 //! Rangefinders: the nearest geom along rays from a site or a camera, without geoms of its own body and invisible ones.
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_collide::Ray;
 use clench_dynamics::dynamics::camera::camera_pose;
 use clench_dynamics::geometry::RayFilter;

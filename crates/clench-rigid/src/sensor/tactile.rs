@@ -2,7 +2,7 @@
 //! and the sliding velocity there. Depths are those of MuJoCo's signed distance functions (`engine_collision_sdf.c`),
 //! which inside a box or an ellipsoid are not the distance to the surface.
 
-use super::reading::Reading;
+use super::read::Reading;
 use clench_collide::ShapeKind;
 use clench_math::{Mask, Real, Vec3, kernel};
 
@@ -15,7 +15,7 @@ impl<T: Real> Reading<'_, T> {
         let body = self.model.bodies[self.model.geoms[geom].body].weld;
         let mut next = 0;
         while let Some((other, lanes)) = self.next_touched(body, next) {
-            self.feel(mesh, geom, other, lanes, out);
+            self.add_readings(mesh, geom, other, lanes, out);
             next = other + 1;
         }
     }
@@ -43,7 +43,7 @@ impl<T: Real> Reading<'_, T> {
 
     /// Adds the readings of the vertices due to one geom.
     #[kernel]
-    fn feel(&self, mesh: usize, geom: usize, other: usize, lanes: T::Mask, out: &mut [T]) {
+    fn add_readings(&self, mesh: usize, geom: usize, other: usize, lanes: T::Mask, out: &mut [T]) {
         let mesh = &self.model.meshes[mesh];
         let kind = self.model.geoms[other].kind;
         let size = self.params.geom_size[other];

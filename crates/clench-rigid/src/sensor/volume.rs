@@ -1,6 +1,6 @@
 //! Volumes of sites: touch sensors and containment.
 
-use super::reading::Reading;
+use super::read::Reading;
 use crate::output::forces::of_contact;
 use clench_collide::{Mesh, Pose, Ray, Shape, ray};
 use clench_dynamics::model;
