@@ -154,15 +154,12 @@ pub(crate) fn force_stage<T: Real>(
     let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
     actuation(model, params, state, pos, vel, ws.integration.offset, force);
     smooth_forces(model, ws.sleep.computed(), state, pos, force);
-    for part in ws.sleep.computed() {
-        let forces = &force.qfrc_smooth[part.dofs.clone()];
-        ws.problem.qacc_smooth[part.dofs.clone()].copy_from_slice(forces);
-    }
     if ws.metric.acts() {
         enter_metric(model, params, settings, state, ws);
     }
-    let rows = ws.sleep.rows(model);
-    smooth_acceleration(rows, &mut ws.problem, ws.constant_factor);
+    let parts = (ws.sleep.computed(), ws.sleep.rows(model));
+    let forces = (&ws.force.qfrc_smooth[..], &ws.metric.shift[..]);
+    smooth_acceleration(parts, forces, &mut ws.problem, ws.constant_factor);
     ws.clock.lap(Stage::Force as usize);
 }
 

@@ -21,8 +21,7 @@ use clench_solver::{ConstraintSolver, Cost, Problem, Settings};
 /// The number of Newton steps for a quadratic cost: one reaches its minimum, more remove rounding errors.
 const EXACT_STEPS: usize = 4;
 
-/// Replaces the mass matrix with the metric of the state, and adds −h K v to the forces in `qacc_smooth`, after
-/// actuators have their forces.
+/// Replaces the mass matrix with the metric of the state, after actuators have their forces.
 #[kernel]
 pub(crate) fn enter_metric<T: Real>(
     model: &Model,
@@ -40,7 +39,6 @@ pub(crate) fn enter_metric<T: Real>(
     if settings.flags.diagexact || settings.solver.noslip_iterations > 0 {
         ws.singular |= !ws.metric.factor_backbone(&model.tree, &ws.solver);
     }
-    add_scaled(&mut ws.problem.qacc_smooth, &ws.metric.shift, T::ONE);
 }
 
 /// Computes `qacc_smooth`, the acceleration without constraints, in a metric that couples branches. The problem

@@ -1,5 +1,6 @@
 //! The sum of all forces except constraints, and the resulting acceleration.
 
+use crate::dynamics::integrate::add_scaled;
 use crate::dynamics::project::{force_at, project_forces};
 use crate::model::Model;
 use crate::part::Part;
@@ -39,13 +40,20 @@ pub(crate) fn smooth_forces<T: Real>(
     project_forces(model, parts, pos, cfrc_body, qfrc_smooth);
 }
 
-/// Replaces the forces in `qacc_smooth` with their acceleration, by the factor of the problem, in the rows of `tree`.
+/// Computes `qacc_smooth`, the acceleration of smooth forces and of the metric's −h K v (empty without a metric), by
+/// the factor of the problem, in some parts, of which `tree` has the rows.
+#[kernel]
 pub(crate) fn smooth_acceleration<T: Real>(
-    tree: &Tree,
+    (parts, tree): (&[Part], &Tree),
+    (qfrc_smooth, shift): (&[T], &[T]),
     problem: &mut Problem<T>,
     constant_factor: bool,
 ) {
     let qacc = &mut problem.qacc_smooth;
+    for part in parts {
+        qacc[part.dofs.clone()].copy_from_slice(&qfrc_smooth[part.dofs.clone()]);
+    }
+    add_scaled(qacc, shift, T::ONE);
     if T::IS_DUAL && constant_factor {
         solve_differentiated(tree, &problem.mass, qacc);
         return;
