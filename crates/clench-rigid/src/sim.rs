@@ -3,9 +3,9 @@
 mod checks;
 mod computed_state;
 mod dynamic;
-mod given_contacts;
 mod halves;
 mod parameters;
+mod provided_contacts;
 mod pushes;
 mod quality;
 mod rest;

@@ -137,12 +137,12 @@ impl<T: Real> Iterate<T> {
         blend(mask, &mut self.residual, &ray.rows);
     }
 
-    /// Returns the cost parameters of a block for the current stage of continuation and the given normal forces.
+    /// Returns the cost parameters of a block for the current stage of continuation and the limiting normal forces λ.
     #[inline(always)]
     pub(crate) fn rows<'a>(&self, problem: &'a Problem<T>, b: &BlockIndex) -> Rows<'a, T> {
         Rows {
             softer: self.continuation.of(b),
-            given: self.normal_forces.of(b),
+            lambda: self.normal_forces.of(b),
             ..problem.rows(b)
         }
     }

@@ -34,7 +34,7 @@ const CYCLE: f64 = 3.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NormalForces<T> {
     /// λ.
-    given: Vec<T>,
+    lambda: Vec<T>,
     /// f and r of the last update, and f − f₋.
     force: Vec<T>,
     residual: Vec<T>,
@@ -54,7 +54,7 @@ impl<T: Real> NormalForces<T> {
         self.rounds = T::ZERO;
         self.predictions = T::ZERO;
         for v in [
-            &mut self.given,
+            &mut self.lambda,
             &mut self.force,
             &mut self.residual,
             &mut self.change,
@@ -63,7 +63,7 @@ impl<T: Real> NormalForces<T> {
             v.resize(if self.exist { problem.nactive } else { 0 }, T::ZERO);
         }
         for b in blocks(problem) {
-            self.given[b.active_start] = -(problem.d[b.row] * y[b.row].min(T::ZERO));
+            self.lambda[b.active_start] = -(problem.d[b.row] * y[b.row].min(T::ZERO));
         }
     }
 
@@ -86,7 +86,7 @@ impl<T: Real> NormalForces<T> {
         let mut moves = T::Mask::splat(false);
         for b in blocks(problem) {
             let (k, force) = (b.active_start, force[b.row]);
-            let residual = force - self.given[k];
+            let residual = force - self.lambda[k];
             moves |= !residual.eq(T::ZERO);
             let growth = residual - self.residual[k];
             overlap += residual * growth;
@@ -95,7 +95,7 @@ impl<T: Real> NormalForces<T> {
                 (&mut self.change[k], force - self.force[k]),
                 (&mut self.force[k], force),
                 (&mut self.residual[k], residual),
-                (&mut self.given[k], force),
+                (&mut self.lambda[k], force),
             ] {
                 *to = T::select(mask, from, *to);
             }
@@ -110,9 +110,9 @@ impl<T: Real> NormalForces<T> {
     #[kernel]
     pub fn mix(&mut self, problem: &Problem<T>, gamma: T, mask: T::Mask) {
         for b in blocks(problem) {
-            let given = &mut self.given[b.active_start];
-            let mixed = *given - gamma * self.change[b.active_start];
-            *given = T::select(mask, mixed.max(T::ZERO), *given);
+            let lambda = &mut self.lambda[b.active_start];
+            let mixed = *lambda - gamma * self.change[b.active_start];
+            *lambda = T::select(mask, mixed.max(T::ZERO), *lambda);
         }
     }
 
@@ -134,13 +134,13 @@ impl<T: Real> NormalForces<T> {
         let share = T::select(damped, T::new(0.5), T::ONE);
         let mut exact = mask & !damped;
         for (b, &delta) in blocks.iter().zip(delta) {
-            let given = &mut self.given[b.active_start];
-            let moved = *given + delta;
+            let lambda = &mut self.lambda[b.active_start];
+            let moved = *lambda + delta;
             let jams = moved.lt(T::ZERO);
             exact &= !jams;
             let target = T::select(jams, force[b.row], moved);
-            let moved = *given + share * (target - *given);
-            *given = T::select(mask, moved, *given);
+            let moved = *lambda + share * (target - *lambda);
+            *lambda = T::select(mask, moved, *lambda);
         }
         exact
     }
@@ -156,7 +156,7 @@ impl<T: Real> NormalForces<T> {
     #[inline(always)]
     pub(crate) fn of(&self, b: &BlockIndex) -> T {
         match b.cost {
-            Cost::Coulomb => self.given[b.active_start],
+            Cost::Coulomb => self.lambda[b.active_start],
             Cost::Quadratic | Cost::OneSided | Cost::Huber | Cost::Pyramid | Cost::Elliptic => {
                 T::ZERO
             }

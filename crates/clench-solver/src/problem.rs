@@ -256,7 +256,7 @@ impl<T: Real> Problem<T> {
             r: &self.r[rows.clone()],
             shape: &self.shape[rows],
             softer: T::ZERO,
-            given: T::ZERO,
+            lambda: T::ZERO,
         }
     }
 

@@ -70,7 +70,7 @@ impl Excess {
 #[derive(Clone, Debug)]
 pub struct Collision<T: Real> {
     /// True if the user provided the workspace's contacts: detection leaves them unchanged.
-    pub given: bool,
+    pub contacts_provided: bool,
     /// The lanes in which the last step found more contacts than the options allow.
     pub overflow: T::Mask,
     /// The quantity of the last step that exceeds the model's budget, as the code of an [`Excess`], or 0. Lanes with an
@@ -109,7 +109,7 @@ impl<T: Real> Collision<T> {
             .then(|| Box::new(DynamicBroadPhase::new(model)));
         let candidates = listed.unwrap_or_default();
         Collision {
-            given: false,
+            contacts_provided: false,
             overflow: T::Mask::splat(false),
             excess: T::ZERO,
             body_pairs: BodyPairs::new(model, &candidates),

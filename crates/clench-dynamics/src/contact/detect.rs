@@ -53,7 +53,7 @@ pub fn detect<T: Real>(
         sleep: settings.flags.sleep.then_some(&ws.sleep),
     };
     collision.excess = T::ZERO;
-    if collision.given {
+    if collision.contacts_provided {
         return;
     }
     contacts.clear();

@@ -26,7 +26,7 @@ pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> boo
         && model.equalities.is_empty()
         && model.nhistory == 0
         && state.plastic.is_empty();
-    bare && !ws.collision.given
+    bare && !ws.collision.contacts_provided
         && sleep.rests_as_before(model, state)
         && all_same(&state.tree_asleep, &sleep.counters)
         && all_same(&state.pose_asleep, &sleep.pose)
@@ -41,7 +41,7 @@ pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> boo
 /// past values. Mocap bodies must not have moved.
 #[kernel]
 pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspace<T>) -> bool {
-    if !model.actuators.is_empty() || model.nhistory > 0 || ws.collision.given {
+    if !model.actuators.is_empty() || model.nhistory > 0 || ws.collision.contacts_provided {
         return false;
     }
     wake_touched(model, state, ws);

@@ -5,7 +5,7 @@
 fn actuator_velocity(o: u32) {
     var velocity: f32 = 0.0;
     for (var k = words[ACTUATOR_ROW + o]; ACTUATION && k < words[ACTUATOR_ROW + o + 1u]; k++) {
-        velocity += fetch(ACTUATOR_MOMENT + k) * given(QVEL + words[ACTUATOR_DOF + k]);
+        velocity += fetch(ACTUATOR_MOMENT + k) * fetch_state(QVEL + words[ACTUATOR_DOF + k]);
     }
     put(ACTUATOR_VELOCITY + o, velocity);
 }

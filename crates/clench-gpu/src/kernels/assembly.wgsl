@@ -94,7 +94,7 @@ fn limit_entry(source: u32, i: u32) -> f32 {
     if (i < dof || i >= dof + 3u) {
         return 0.0;
     }
-    let rotation = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
+    let rotation = quat_normalize(fetch_state4(QPOS + words[JNT_QPOS + c]));
     return -direction(quat_rotation_vector(rotation))[i - dof];
 }
 
@@ -126,7 +126,7 @@ fn finish_row(a: u32) {
     var inertia: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
         let j = row(COLUMNS + i * MAX_ROWS + a);
-        velocity += j * given(QVEL + i);
+        velocity += j * fetch_state(QVEL + i);
         inertia += j * j * parameter(DOF_INVWEIGHT0 + i);
     }
     put_row(VELOCITY + a, velocity);

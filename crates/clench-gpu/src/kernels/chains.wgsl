@@ -36,7 +36,7 @@ fn bias_acceleration(b: u32, point: vec3f) -> Spatial {
     var sum = Spatial(vec3f(), vec3f());
     for (var i = 0u; i < bound(NV); i++) {
         if (moves(b, i)) {
-            sum = plus(sum, times(fetch_spatial(CDOF_DOT + 6u * i), given(QVEL + i)));
+            sum = plus(sum, times(fetch_spatial(CDOF_DOT + 6u * i), fetch_state(QVEL + i)));
         }
     }
     let velocity = velocity_at(b, point);

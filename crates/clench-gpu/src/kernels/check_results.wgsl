@@ -26,16 +26,16 @@ fn checked(k: u32) -> Checked {
     }
     index -= NV;
     if (index < NV) {
-        let x = given(QVEL + index);
+        let x = fetch_state(QVEL + index);
         return Checked(OF_QVEL, index, x, is_far(x));
     }
     index -= NV;
     if (index < NQ) {
-        let x = given(QPOS + index);
+        let x = fetch_state(QPOS + index);
         return Checked(OF_QPOS, index, x, is_far(x));
     }
     index -= NQ;
-    let x = given(ACT + index);
+    let x = fetch_state(ACT + index);
     return Checked(OF_ACT, index, x, is_wild(x));
 }
 

@@ -17,7 +17,7 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
         let a = state_of(u, STATE_INTEGRAL);
         var integral: f32 = 0.0;
         if (a != NONE) {
-            integral = given(ACT + a);
+            integral = fetch_state(ACT + a);
         }
         let kd = controller(u, CONTROLLER_GAIN + 6u);
         let torque = controller(u, CONTROLLER_GAIN + 4u) * (setpoints.position - length) + kd * (setpoints.velocity - velocity)
@@ -34,7 +34,7 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
     var resistance = cold;
     let a = state_of(u, STATE_TEMPERATURE);
     if (a != NONE) {
-        let temperature = given(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 4u);
+        let temperature = fetch_state(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 4u);
         resistance = cold * (1.0 + controller(u, CONTROLLER_GAIN + 2u) * (temperature - controller(u, CONTROLLER_GAIN + 3u)));
     }
     return Circuit(resistance, constant, voltage + setpoints.voltage, slope);
@@ -53,17 +53,17 @@ fn motor_rates(u: u32, setpoints: Setpoints, circuit: Circuit, length: f32, velo
     if (temperature != NONE) {
         var flows = steady;
         if (current != NONE) {
-            flows = given(ACT + current);
+            flows = fetch_state(ACT + current);
         }
-        let loss = given(ACT + temperature) / controller(u, CONTROLLER_DYNAMICS + 2u);
+        let loss = fetch_state(ACT + temperature) / controller(u, CONTROLLER_DYNAMICS + 2u);
         put(ACT_DOT + temperature, (circuit.resistance * flows * flows - loss) / controller(u, CONTROLLER_DYNAMICS + 3u));
     }
     let bristle = state_of(u, STATE_BRISTLE);
     if (bristle != NONE) {
-        put(ACT_DOT + bristle, bristle_decay(u, velocity) * given(ACT + bristle) + velocity);
+        put(ACT_DOT + bristle, bristle_decay(u, velocity) * fetch_state(ACT + bristle) + velocity);
     }
     if (current != NONE) {
-        let rate = (steady - given(ACT + current)) / controller(u, CONTROLLER_DYNAMICS);
+        let rate = (steady - fetch_state(ACT + current)) / controller(u, CONTROLLER_DYNAMICS);
         let limit = controller(u, CONTROLLER_DYNAMICS + 1u);
         put(ACT_DOT + current, select(rate, clamp(rate, -limit, limit), limit > 0.0));
     }
@@ -118,7 +118,7 @@ fn mechanical_force(u: u32, length: f32) -> f32 {
     if (a == NONE) {
         return cogging;
     }
-    return cogging - (controller(u, CONTROLLER_DYNAMICS + 5u) * given(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 6u) * fetch(ACT_DOT + a));
+    return cogging - (controller(u, CONTROLLER_DYNAMICS + 5u) * fetch_state(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 6u) * fetch(ACT_DOT + a));
 }
 
 // Returns ∂force/∂velocity of friction, with the deflection's decay constant.

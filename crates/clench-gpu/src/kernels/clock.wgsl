@@ -1,5 +1,5 @@
 // The simulation time of an environment, s.
 
 fn clock() -> f32 {
-    return given(START_TIME) + f32(reports[STEPS * envs + env]) * TIMESTEP;
+    return fetch_state(START_TIME) + f32(reports[STEPS * envs + env]) * TIMESTEP;
 }

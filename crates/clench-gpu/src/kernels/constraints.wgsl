@@ -70,7 +70,7 @@ fn push_limits(k: u32) {
     let low = parameter(prm + LIMIT_LOW);
     let high = parameter(prm + LIMIT_HIGH);
     if (is_ball(c)) {
-        let rotation = quat_normalize(given4(QPOS + words[JNT_QPOS + c]));
+        let rotation = quat_normalize(fetch_state4(QPOS + words[JNT_QPOS + c]));
         let angle = length(quat_rotation_vector(rotation));
         push_limit(prm, max(low, high) - angle, 2u * c);
         return;

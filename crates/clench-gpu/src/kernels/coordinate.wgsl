@@ -3,7 +3,7 @@
 
 fn coordinate_value(c: u32) -> f32 {
     if (c < NJNT) {
-        return given(QPOS + words[JNT_QPOS + c]);
+        return fetch_state(QPOS + words[JNT_QPOS + c]);
     }
     return fetch(TEN_LENGTH + c - NJNT);
 }

@@ -42,7 +42,7 @@ fn drifts() {
                 let first = select(start, rotations, part == 1u);
                 let last = select(rotations, end, part == 1u);
                 for (var i = first; i < last; i++) {
-                    carried = plus(carried, times(fetch_spatial(CDOF + 6u * i), given(QVEL + i)));
+                    carried = plus(carried, times(fetch_spatial(CDOF + 6u * i), fetch_state(QVEL + i)));
                 }
                 for (var i = first; i < last; i++) {
                     let swept = cross_motion(fetch_spatial(CDOF + 6u * i), carried);

@@ -12,7 +12,7 @@ fn add_actuators() {
 
 fn add_dampers() {
     for (var i = 0u; i < bound(NV); i++) {
-        let slope = damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
+        let slope = damping_slope(DOF_DAMPER + 3u * i, fetch_state(QVEL + i));
         add(QLD + words[TREE_START + i + 1u] - 1u, TIMESTEP * slope);
     }
     for (var t = 0u; t < NTENDON; t++) {

@@ -51,7 +51,7 @@ fn place(round: u32) {
             put_vector(CONSTRAINT_AT + i, 0.0);
         }
         if (round == AT_WARMSTART) {
-            put_vector(QACC_AT + i, given(QACC_WARMSTART + i));
+            put_vector(QACC_AT + i, fetch_state(QACC_WARMSTART + i));
         } else if (round != REFRESH) {
             put_vector(QACC_AT + i, vector(SMOOTH_AT + i));
         }

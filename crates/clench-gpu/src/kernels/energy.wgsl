@@ -42,11 +42,11 @@ fn kinetic_energy() -> f32 {
     var sum: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
         let last = words[TREE_START + i + 1u] - 1u;
-        var momentum = 0.5 * fetch(QM + last) * given(QVEL + i);
+        var momentum = 0.5 * fetch(QM + last) * fetch_state(QVEL + i);
         for (var p = words[TREE_START + i]; p < last; p++) {
-            momentum += fetch(QM + p) * given(QVEL + words[TREE_DOF + p]);
+            momentum += fetch(QM + p) * fetch_state(QVEL + words[TREE_DOF + p]);
         }
-        sum += momentum * given(QVEL + i);
+        sum += momentum * fetch_state(QVEL + i);
     }
     return sum;
 }

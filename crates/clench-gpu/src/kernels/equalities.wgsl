@@ -61,7 +61,7 @@ fn push_frames(equality: u32, prm: u32, is_weld: bool) {
 }
 
 fn push_equality(equality: u32) {
-    if (given(EQ_ACTIVE + equality) == 0.0) {
+    if (fetch_state(EQ_ACTIVE + equality) == 0.0) {
         return;
     }
     let kind = words[EQ_KIND + equality];

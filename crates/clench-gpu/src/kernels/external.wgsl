@@ -92,7 +92,7 @@ fn external_forces() {
         put3(CONTACT_FORCE + 6u * b, vec3f());
         put3(CONTACT_FORCE + 6u * b + 3u, vec3f());
         put_spatial(CFRC_EXT + 6u * b, Spatial(vec3f(), vec3f()));
-        push(b, 1.0, given3(place), given3(place + 3u), fetch3(XIPOS + 3u * b));
+        push(b, 1.0, fetch_state3(place), fetch_state3(place + 3u), fetch3(XIPOS + 3u * b));
     }
     for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         let kind = block(b, BLOCK_KIND);

@@ -4,8 +4,8 @@
 fn applied_to_bodies(i: u32) -> f32 {
     var sum: f32 = 0.0;
     for (var b = words[DOF_BODY + i]; b < bound(NBODY); b++) {
-        let force = given3(XFRC_APPLIED + 6u * b);
-        let torque = given3(XFRC_APPLIED + 6u * b + 3u);
+        let force = fetch_state3(XFRC_APPLIED + 6u * b);
+        let torque = fetch_state3(XFRC_APPLIED + 6u * b + 3u);
         if (moves(b, i) && (any(force != vec3f()) || any(torque != vec3f()))) {
             sum += spatial_dot(fetch_spatial(CDOF + 6u * i), force_at_com(b, force, torque));
         }
@@ -17,7 +17,7 @@ fn applied_to_bodies(i: u32) -> f32 {
 fn any_applied_to_bodies() -> bool {
     var any_applied: f32 = 0.0;
     for (var k = 6u + member; k < bound(6u * NBODY); k += TEAM) {
-        let applied = given(XFRC_APPLIED + k);
+        let applied = fetch_state(XFRC_APPLIED + k);
         any_applied = select(any_applied, 1.0, applied != 0.0);
     }
     return least_of_team(select(1u, 0u, any_applied > 0.0)) == 0u;
@@ -26,7 +26,7 @@ fn any_applied_to_bodies() -> bool {
 fn smooth_acceleration() {
     let any_applied = any_applied_to_bodies();
     for (var i = member; i < bound(NV); i += TEAM) {
-        let applied = given(QFRC_APPLIED + i) + fetch(QFRC_ACTUATOR + i);
+        let applied = fetch_state(QFRC_APPLIED + i) + fetch(QFRC_ACTUATOR + i);
         var force = fetch(QFRC_PASSIVE + i) - fetch(QFRC_BIAS + i) + applied;
         if (any_applied) {
             force += applied_to_bodies(i);

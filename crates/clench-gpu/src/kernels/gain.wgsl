@@ -11,7 +11,7 @@ fn affine(place: u32, length: f32, velocity: f32) -> f32 {
 
 // Returns control `c` of actuator `u` after its delay, clamped to its range.
 fn acting_control(u: u32, c: u32) -> f32 {
-    var ctrl = given(CTRL + c);
+    var ctrl = fetch_state(CTRL + c);
     if (ANY_DELAY && words[ACTUATOR_HISTORY + u] != NONE) {
         let delay = parameter(ACTUATOR_DELAY + u);
         if (delay > 0.0) {
@@ -23,7 +23,7 @@ fn acting_control(u: u32, c: u32) -> f32 {
 
 // Returns activation `a` of actuator `u` as its gain uses it.
 fn acting(u: u32, a: u32, velocity: f32) -> f32 {
-    let act = given(ACT + a);
+    let act = fetch_state(ACT + a);
     if (words[ACTUATOR_EARLY + u] == 1u) {
         return next_activation(u, a, act, fetch(ACT_DOT + a), velocity);
     }
@@ -81,7 +81,7 @@ fn unlimited_force(u: u32) -> f32 {
         motor_rates(u, setpoints, circuit, length, velocity);
     } else if (ANY_ACTIVATION && words[ACTUATOR_ACT + u] != NONE) {
         let a = words[ACTUATOR_ACT + u];
-        put(ACT_DOT + a, activation_rate(u, acting_control(u, words[ACTUATOR_CTRL + u]), given(ACT + a)));
+        put(ACT_DOT + a, activation_rate(u, acting_control(u, words[ACTUATOR_CTRL + u]), fetch_state(ACT + a)));
     }
     if (words[ACTUATOR_OFF + u] == 1u) {
         return 0.0;

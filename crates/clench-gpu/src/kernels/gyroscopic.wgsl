@@ -20,7 +20,7 @@ fn add_bias_derivative(j: u32) {
     let axes = fetch_matrix(XMAT + 9u * b);
     let mass = fetch(CRB + 10u * b + 9u);
     let s = fetch3(SUBTREE_COM + 3u * b) - fetch3(XPOS + 3u * b);
-    let w = axes * given3(QVEL + words[JNT_DOF + j] + 3u);
+    let w = axes * fetch_state3(QVEL + words[JNT_DOF + j] + 3u);
     let spin = momentum(CRB + 10u * b, Spatial(w, vec3f())).angular;
     for (var k = 0u; k < bound(3u); k++) {
         let dw = axes[k];

@@ -2,11 +2,11 @@
 // values. CPU counterpart: `history.rs` of clench-dynamics. A buffer is a row of words at `h`.
 
 fn sample_time(h: u32, k: u32) -> f32 {
-    return given(HISTORY + words[h + HISTORY_START] + 1u + k);
+    return fetch_state(HISTORY + words[h + HISTORY_START] + 1u + k);
 }
 
 fn sample_value(h: u32, k: u32, part: u32) -> f32 {
-    return given(HISTORY + words[h + HISTORY_START] + 1u + words[h + HISTORY_SAMPLES] + k * words[h + HISTORY_WIDTH] + part);
+    return fetch_state(HISTORY + words[h + HISTORY_START] + 1u + words[h + HISTORY_SAMPLES] + k * words[h + HISTORY_WIDTH] + part);
 }
 
 // Returns the slope between two samples; one second replaces a zero time difference.

@@ -4,7 +4,7 @@
 // Moves `count` numbers of a buffer down by `by`.
 fn shift_down(first: u32, count: u32, by: u32) {
     for (var k = by; k < count; k++) {
-        keep(first + k - by, given(first + k));
+        put_state(first + k - by, fetch_state(first + k));
     }
 }
 
@@ -15,7 +15,7 @@ fn take_sample(h: u32) -> u32 {
     let times = HISTORY + words[h + HISTORY_START] + 1u;
     let values = times + samples;
     shift_down(times, samples, 1u);
-    keep(times + samples - 1u, 0.0);
+    put_state(times + samples - 1u, 0.0);
     shift_down(values, samples * width, width);
     return values + (samples - 1u) * width;
 }
@@ -24,7 +24,7 @@ fn take_sample(h: u32) -> u32 {
 fn age_samples(h: u32) {
     let times = HISTORY + words[h + HISTORY_START] + 1u;
     for (var k = 0u; k < words[h + HISTORY_SAMPLES]; k++) {
-        keep(times + k, given(times + k) - TIMESTEP);
+        put_state(times + k, fetch_state(times + k) - TIMESTEP);
     }
 }
 
@@ -36,7 +36,7 @@ fn push_controls() {
         }
         let sample = take_sample(h);
         for (var part = 0u; part < words[h + HISTORY_WIDTH]; part++) {
-            keep(sample + part, given(CTRL + words[ACTUATOR_CTRL + u] + part));
+            put_state(sample + part, fetch_state(CTRL + words[ACTUATOR_CTRL + u] + part));
         }
         age_samples(h);
     }
@@ -51,10 +51,10 @@ fn push_measurements() {
         }
         let period = parameter(SENSOR_PRM + SENSOR_PRM_SIZE * i + SENSOR_PRM_PERIOD);
         if (is_due(h, period)) {
-            keep(HISTORY + words[h + HISTORY_START], given(HISTORY + words[h + HISTORY_START]) + max(period, 0.0));
+            put_state(HISTORY + words[h + HISTORY_START], fetch_state(HISTORY + words[h + HISTORY_START]) + max(period, 0.0));
             let sample = take_sample(h);
             for (var part = 0u; part < words[h + HISTORY_WIDTH]; part++) {
-                keep(sample + part, fetch(UNDELAYED + words[s + SENSOR_OFFSET] + part));
+                put_state(sample + part, fetch(UNDELAYED + words[s + SENSOR_OFFSET] + part));
             }
         }
         age_samples(h);

@@ -7,19 +7,19 @@ fn integrate_positions(velocity: u32, time: f32) {
         var q = QPOS + words[JNT_QPOS + j];
         var v = velocity + words[JNT_DOF + j];
         if (kind == SLIDE || kind == HINGE) {
-            keep(q, given(q) + fetch(v) * time);
+            put_state(q, fetch_state(q) + fetch(v) * time);
             continue;
         }
         if (kind == FREE) {
             for (var k = 0u; k < 3u; k++) {
-                keep(q + k, given(q + k) + fetch(v + k) * time);
+                put_state(q + k, fetch_state(q + k) + fetch(v + k) * time);
             }
             q += 3u;
             v += 3u;
         }
-        let turned = quat_integrate(quat_normalize(given4(q)), fetch3(v), time);
+        let turned = quat_integrate(quat_normalize(fetch_state4(q)), fetch3(v), time);
         for (var k = 0u; k < 4u; k++) {
-            keep(q + k, turned[k]);
+            put_state(q + k, turned[k]);
         }
     }
 }
@@ -27,37 +27,37 @@ fn integrate_positions(velocity: u32, time: f32) {
 // Saves the state at the start of a step.
 fn save_start() {
     for (var i = member; i < bound(NQ); i += TEAM) {
-        put(START_QPOS + i, given(QPOS + i));
+        put(START_QPOS + i, fetch_state(QPOS + i));
     }
     for (var i = member; i < bound(NV); i += TEAM) {
-        put(START_QVEL + i, given(QVEL + i));
-        put(START_WARMSTART + i, given(QACC_WARMSTART + i));
+        put(START_QVEL + i, fetch_state(QVEL + i));
+        put(START_WARMSTART + i, fetch_state(QACC_WARMSTART + i));
     }
     for (var a = member; a < NA; a += TEAM) {
-        put(START_ACT + a, given(ACT + a));
+        put(START_ACT + a, fetch_state(ACT + a));
     }
 }
 
 fn restore_start() {
     for (var i = member; i < bound(NQ); i += TEAM) {
-        keep(QPOS + i, fetch(START_QPOS + i));
+        put_state(QPOS + i, fetch(START_QPOS + i));
     }
     for (var i = member; i < bound(NV); i += TEAM) {
-        keep(QVEL + i, fetch(START_QVEL + i));
+        put_state(QVEL + i, fetch(START_QVEL + i));
     }
     for (var a = member; a < NA; a += TEAM) {
-        keep(ACT + a, fetch(START_ACT + a));
+        put_state(ACT + a, fetch(START_ACT + a));
     }
 }
 
 // Reduces a rotation vector of more than half a turn by full turns to the same orientation.
 fn shorten(place: u32) {
-    let vector = given3(place);
+    let vector = fetch_state3(place);
     let angle = length(vector);
     if (angle > PI) {
         let share = (angle - TWO_PI * floor(angle / TWO_PI + 0.5)) / angle;
         for (var k = 0u; k < 3u; k++) {
-            keep(place + k, vector[k] * share);
+            put_state(place + k, vector[k] * share);
         }
     }
 }
@@ -68,11 +68,11 @@ fn advance_activations(rates: u32, velocities: u32) {
     for (var a = member; ACTUATION && a < NA; a += TEAM) {
         let u = words[ACT_ACTUATOR + a];
         let rate = select(fetch(rates + a), 0.0, words[ACTUATOR_OFF + u] == 1u);
-        var next = next_activation(u, a, given(ACT + a), rate, fetch(velocities + output_of(u)));
+        var next = next_activation(u, a, fetch_state(ACT + a), rate, fetch(velocities + output_of(u)));
         if (words[ACTUATOR_SERVO + u] == 1u) {
             next = nearest_setpoint(u, next, fetch(ACTUATOR_LENGTH + output_of(u)));
         }
-        keep(ACT + a, next);
+        put_state(ACT + a, next);
     }
     if (!ANY_ORIENTATION || !ACTUATION) {
         return;
@@ -93,7 +93,7 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     let fault = reports[FAILURE * envs + env];
     if (fault == RUNNING) {
         for (var i = member; i < bound(NV); i += TEAM) {
-            keep(QACC_WARMSTART + i, fetch(QACC + i));
+            put_state(QACC_WARMSTART + i, fetch(QACC + i));
         }
         if (ANY_PLASTIC) {
             yield_springs(velocity, length, jacobian);
@@ -107,7 +107,7 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     } else {
         restore_start();
         for (var i = member; i < bound(NV); i += TEAM) {
-            keep(QACC_WARMSTART + i, fetch(START_WARMSTART + i));
+            put_state(QACC_WARMSTART + i, fetch(START_WARMSTART + i));
         }
     }
     // The time advances after its last use.
@@ -127,7 +127,7 @@ fn damping_slope(law: u32, velocity: f32) -> f32 {
 
 // Returns the damping term of M's diagonal.
 fn added_inertia(i: u32) -> f32 {
-    return TIMESTEP * damping_slope(DOF_DAMPER + 3u * i, given(QVEL + i));
+    return TIMESTEP * damping_slope(DOF_DAMPER + 3u * i, fetch_state(QVEL + i));
 }
 
 // Factors M + h B.
@@ -169,8 +169,8 @@ fn advance_semi_implicit() {
     advance_activations(ACT_DOT, ACTUATOR_VELOCITY);
     join();
     for (var i = member; i < bound(NV); i += TEAM) {
-        let v = given(QVEL + i) + fetch(RATE + i) * TIMESTEP;
-        keep(QVEL + i, v);
+        let v = fetch_state(QVEL + i) + fetch(RATE + i) * TIMESTEP;
+        put_state(QVEL + i, v);
         put(RATE + i, v);
     }
     join();

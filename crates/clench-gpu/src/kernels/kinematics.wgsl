@@ -4,13 +4,13 @@
 // Returns the rotation by a joint from its position at qpos0; the whole orientation of a ball or free joint.
 fn joint_rotation(joint: u32, kind: u32, q: u32) -> vec4f {
     if (kind == HINGE) {
-        let angle = given(QPOS + q) - parameter(QPOS0 + q);
+        let angle = fetch_state(QPOS + q) - parameter(QPOS0 + q);
         return quat_from_axis_angle(parameter3(JNT_AXIS + 3u * joint), angle);
     }
     if (kind == BALL) {
-        return quat_normalize(given4(QPOS + q));
+        return quat_normalize(fetch_state4(QPOS + q));
     }
-    return quat_normalize(given4(QPOS + q + 3u));
+    return quat_normalize(fetch_state4(QPOS + q + 3u));
 }
 
 fn body_pose(b: u32) {
@@ -18,8 +18,8 @@ fn body_pose(b: u32) {
     var xquat = parameter4(BODY_QUAT + 4u * b);
     let mocap = words[BODY_MOCAP + b];
     if (mocap != NONE) {
-        xpos = given3(MOCAP_POS + 3u * mocap);
-        xquat = quat_normalize(given4(MOCAP_QUAT + 4u * mocap));
+        xpos = fetch_state3(MOCAP_POS + 3u * mocap);
+        xquat = quat_normalize(fetch_state4(MOCAP_QUAT + 4u * mocap));
     }
     let parent = words[BODY_PARENT + b];
     if (parent != 0u) {
@@ -33,7 +33,7 @@ fn body_pose(b: u32) {
         let anchor = parameter3(JNT_POS + 3u * j);
         let axis = parameter3(JNT_AXIS + 3u * j);
         if (kind == FREE) {
-            xpos = given3(QPOS + q);
+            xpos = fetch_state3(QPOS + q);
             xquat = joint_rotation(j, kind, q);
             put3(XANCHOR + 3u * j, xpos);
             put3(XAXIS + 3u * j, axis);
@@ -42,7 +42,7 @@ fn body_pose(b: u32) {
         let xanchor = xpos + quat_rotate(xquat, anchor);
         let xaxis = quat_rotate(xquat, axis);
         if (kind == SLIDE) {
-            xpos += xaxis * (given(QPOS + q) - parameter(QPOS0 + q));
+            xpos += xaxis * (fetch_state(QPOS + q) - parameter(QPOS0 + q));
         } else {
             xquat = quat_product(xquat, joint_rotation(j, kind, q));
             xpos = xanchor - quat_rotate(xquat, anchor);

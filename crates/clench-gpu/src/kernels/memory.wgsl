@@ -99,19 +99,19 @@ fn put_matrix(place: u32, m: mat3x3f) {
     put3(place + 6u, t[2]);
 }
 
-fn given(place: u32) -> f32 {
+fn fetch_state(place: u32) -> f32 {
     return state[place * envs + env];
 }
 
-fn given3(place: u32) -> vec3f {
-    return vec3f(given(place), given(place + 1u), given(place + 2u));
+fn fetch_state3(place: u32) -> vec3f {
+    return vec3f(fetch_state(place), fetch_state(place + 1u), fetch_state(place + 2u));
 }
 
-fn given4(place: u32) -> vec4f {
-    return vec4f(given3(place), given(place + 3u));
+fn fetch_state4(place: u32) -> vec4f {
+    return vec4f(fetch_state3(place), fetch_state(place + 3u));
 }
 
-fn keep(place: u32, x: f32) {
+fn put_state(place: u32, x: f32) {
     state[place * envs + env] = x;
 }
 

@@ -34,7 +34,7 @@ fn springs() {
 // Computes the first force on dofs.
 fn dampers() {
     for (var i = member; i < bound(NV); i += TEAM) {
-        let v = given(QVEL + i);
+        let v = fetch_state(QVEL + i);
         put(QFRC_PASSIVE + i, -v * stiffness(parameter3(DOF_DAMPER + 3u * i), abs(v)));
     }
 }

@@ -10,13 +10,13 @@ fn beyond(elongation: f32, limit: f32) -> f32 {
 
 // Rotates the rest orientation of a ball joint's spring about the axis of its elongation, until that equals the yield.
 fn yield_rotation(rest: u32, rotation: vec4f, limit: f32) {
-    let old = given4(rest);
+    let old = fetch_state4(rest);
     let elongation = direction(quat_difference(quat_normalize(rotation), old));
     let too_far = beyond(elongation.w, limit);
     if (too_far > 0.0) {
         let turned = quat_normalize(quat_product(old, quat_from_axis_angle(elongation.xyz, too_far)));
         for (var k = 0u; k < 4u; k++) {
-            keep(rest + k, turned[k]);
+            put_state(rest + k, turned[k]);
         }
     }
 }
@@ -32,9 +32,9 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
         let q = QPOS + words[JNT_QPOS + j];
         let limit = parameter(JNT_YIELD + j);
         if (words[JNT_KIND + j] == BALL) {
-            yield_rotation(rest, given4(q), limit);
+            yield_rotation(rest, fetch_state4(q), limit);
         } else {
-            keep(rest, given(rest) + beyond(given(q) - given(rest), limit));
+            put_state(rest, fetch_state(rest) + beyond(fetch_state(q) - fetch_state(rest), limit));
         }
     }
     for (var t = member; t < NTENDON; t += TEAM) {
@@ -47,8 +47,8 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
             rate += fetch(jacobian + k) * fetch(velocity + words[TENDON_DOF + k]);
         }
         let end = fetch(length + t) + TIMESTEP * rate;
-        let moved = beyond(end - clamp(end, given(band), given(band + 1u)), parameter(TENDON_YIELD + t));
-        keep(band, given(band) + moved);
-        keep(band + 1u, given(band + 1u) + moved);
+        let moved = beyond(end - clamp(end, fetch_state(band), fetch_state(band + 1u)), parameter(TENDON_YIELD + t));
+        put_state(band, fetch_state(band) + moved);
+        put_state(band + 1u, fetch_state(band + 1u) + moved);
     }
 }

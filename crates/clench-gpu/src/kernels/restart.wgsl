@@ -7,7 +7,7 @@ fn restart(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     for (var k = 0u; k < STATE; k++) {
-        keep(k, numbers[INITIAL_STATE + k]);
+        put_state(k, numbers[INITIAL_STATE + k]);
     }
     reports[RESTART * envs + env] = 0u;
     reports[STATUS * envs + env] = RUNNING;

@@ -37,10 +37,10 @@ fn collect_rates() {
             increment = fetch3(RATE + end - 3u) * reach(max(stage, 1u) - 1u);
         }
         for (var i = first; i < end; i++) {
-            put(RATE + i, given(QVEL + i));
+            put(RATE + i, fetch_state(QVEL + i));
         }
         if ((kind == BALL || kind == FREE) && stage > 0u) {
-            put3(RATE + end - 3u, increment_rate(increment, given3(QVEL + end - 3u)));
+            put3(RATE + end - 3u, increment_rate(increment, fetch_state3(QVEL + end - 3u)));
         }
     }
 }
@@ -60,7 +60,7 @@ fn add_to_mean() {
 // Advances the state by `time` seconds, with the rates in `rate` (in work) and accelerations in `qacc`.
 fn go(rate: u32, qacc: u32, time: f32) {
     for (var i = member; i < bound(NV); i += TEAM) {
-        keep(QVEL + i, given(QVEL + i) + fetch(qacc + i) * time);
+        put_state(QVEL + i, fetch_state(QVEL + i) + fetch(qacc + i) * time);
     }
     integrate_positions(rate, time);
 }
@@ -99,11 +99,11 @@ fn runge_kutta(@builtin(global_invocation_id) id: vec3u) {
     if (stage < 3u) {
         go(RATE, QACC, reach(stage));
         for (var a = member; a < NA; a += TEAM) {
-            keep(ACT + a, given(ACT + a) + fetch(ACT_DOT + a) * reach(stage));
+            put_state(ACT + a, fetch_state(ACT + a) + fetch(ACT_DOT + a) * reach(stage));
         }
         // The previous stage is closer than the last step.
         for (var i = member; i < bound(NV); i += TEAM) {
-            keep(QACC_WARMSTART + i, fetch(QACC + i));
+            put_state(QACC_WARMSTART + i, fetch(QACC + i));
         }
         // The remaining work is for the last stage only. Excluded environments have no stage, so this thread waits as
         // theirs do.

@@ -266,10 +266,10 @@ fn read_scalar(kind: u32, s: u32, prm: u32) -> f32 {
             return fetch(MECHANICAL_ENERGY + 1u);
         }
         case SENSE_JOINTPOS: {
-            return given(QPOS + words[JNT_QPOS + e]);
+            return fetch_state(QPOS + words[JNT_QPOS + e]);
         }
         case SENSE_JOINTVEL: {
-            return given(QVEL + words[JNT_DOF + e]);
+            return fetch_state(QVEL + words[JNT_DOF + e]);
         }
         case SENSE_JOINTACTUATORFRC: {
             return fetch(QFRC_ACTUATOR + words[JNT_DOF + e]);
@@ -318,10 +318,10 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
         case OF_BALL: {
             switch kind {
                 case SENSE_BALLQUAT: {
-                    put4(out, quat_normalize(given4(QPOS + words[JNT_QPOS + e])));
+                    put4(out, quat_normalize(fetch_state4(QPOS + words[JNT_QPOS + e])));
                 }
                 case SENSE_BALLANGVEL, default: {
-                    put3(out, given3(QVEL + words[JNT_DOF + e]));
+                    put3(out, fetch_state3(QVEL + words[JNT_DOF + e]));
                 }
             }
         }

@@ -19,7 +19,7 @@ fn setpoints_of(u: u32) -> Setpoints {
             if (a != NONE) {
                 let is_pid = words[ACTUATOR_DYNAMICS + u] == DYN_PID;
                 let rate = controller(u, CONTROLLER_DYNAMICS + select(7u, 1u, is_pid));
-                let before = given(ACT + a);
+                let before = fetch_state(ACT + a);
                 let limit = rate * TIMESTEP;
                 value = clamp(nearest_setpoint(u, value, before), before - limit, before + limit);
             }
@@ -60,11 +60,11 @@ fn integral_rate(error: f32, integral: f32, bound: f32) -> f32 {
 fn controller_rates(u: u32, setpoints: Setpoints, error: f32, bound: f32) {
     let slew = state_of(u, STATE_SLEW);
     if (slew != NONE) {
-        put(ACT_DOT + slew, (setpoints.first - given(ACT + slew)) / TIMESTEP);
+        put(ACT_DOT + slew, (setpoints.first - fetch_state(ACT + slew)) / TIMESTEP);
     }
     let integral = state_of(u, STATE_INTEGRAL);
     if (integral != NONE) {
-        put(ACT_DOT + integral, integral_rate(error, given(ACT + integral), bound));
+        put(ACT_DOT + integral, integral_rate(error, fetch_state(ACT + integral), bound));
     }
 }
 

@@ -5,7 +5,7 @@ fn fixed_tendon(t: u32) -> f32 {
     var length: f32 = 0.0;
     for (var k = words[TENDON_TERM + t]; k < words[TENDON_TERM + t + 1u]; k++) {
         let coef = parameter(TERM_COEF + k);
-        length += coef * given(QPOS + words[TERM_QPOS + k]);
+        length += coef * fetch_state(QPOS + words[TERM_QPOS + k]);
         put(TEN_JACOBIAN + words[TERM_ENTRY + k], coef);
     }
     return length;

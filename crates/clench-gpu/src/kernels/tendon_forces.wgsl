@@ -5,7 +5,7 @@ fn tendon_stretch(t: u32) -> f32 {
     let length = fetch(TEN_LENGTH + t);
     if (ANY_PLASTIC && words[TENDON_PLASTIC + t] != NONE) {
         let band = PLASTIC + words[TENDON_PLASTIC + t];
-        return length - clamp(length, given(band), given(band + 1u));
+        return length - clamp(length, fetch_state(band), fetch_state(band + 1u));
     }
     return length - clamp(length, parameter(TENDON_SPRING + 5u * t), parameter(TENDON_SPRING + 5u * t + 1u));
 }

@@ -40,16 +40,16 @@ fn on_joint(u: u32, j: u32) -> f32 {
     let kind = words[ACTUATOR_ON + u];
     if (!ANY_ON_ROTATION || kind == ON_SCALAR) {
         put(arms, parameter(gear));
-        return given(q) * parameter(gear);
+        return fetch_state(q) * parameter(gear);
     }
     if (kind == ON_BALL) {
-        let rotation = quat_normalize(given4(q));
+        let rotation = quat_normalize(fetch_state4(q));
         let axis = to_child(u, rotation, parameter3(gear));
         put3(arms, axis);
         return dot(quat_rotation_vector(rotation), axis);
     }
     put3(arms, parameter3(gear));
-    put3(arms + 3u, to_child(u, quat_normalize(given4(q + 3u)), parameter3(gear + 3u)));
+    put3(arms + 3u, to_child(u, quat_normalize(fetch_state4(q + 3u)), parameter3(gear + 3u)));
     return 0.0;
 }
 
@@ -110,7 +110,7 @@ fn on_rotation(u: u32, element: u32, frame: u32) {
     let output = output_of(u);
     switch words[ACTUATOR_ON + u] {
         case ON_ROTATION: {
-            put3(ACTUATOR_LENGTH + output, quat_rotation_vector(quat_normalize(given4(QPOS + words[JNT_QPOS + element]))));
+            put3(ACTUATOR_LENGTH + output, quat_rotation_vector(quat_normalize(fetch_state4(QPOS + words[JNT_QPOS + element]))));
             put3(ACTUATOR_MOMENT + first_arm(u), vec3f(1.0));
         }
         case ON_ROTATION_IN_FRAME, default: {

@@ -12,7 +12,7 @@ fn velocity_and_bias(b: u32) {
         if (words[JNT_KIND + j] == FREE) {
             for (var k = 0u; k < 3u; k++) {
                 put_spatial(CDOF_DOT + 6u * i, Spatial(vec3f(), vec3f()));
-                cvel = plus(cvel, times(fetch_spatial(CDOF + 6u * i), given(QVEL + i)));
+                cvel = plus(cvel, times(fetch_spatial(CDOF + 6u * i), fetch_state(QVEL + i)));
                 i++;
             }
         }
@@ -20,7 +20,7 @@ fn velocity_and_bias(b: u32) {
         let before = cvel;
         for (; i < end; i++) {
             let axis = fetch_spatial(CDOF + 6u * i);
-            let v = given(QVEL + i);
+            let v = fetch_state(QVEL + i);
             let rate = cross_motion(before, axis);
             put_spatial(CDOF_DOT + 6u * i, rate);
             cvel = plus(cvel, times(axis, v));
@@ -85,7 +85,7 @@ fn tendon_velocities() {
     for (var t = member; t < NTENDON; t += TEAM) {
         var velocity: f32 = 0.0;
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
-            velocity += fetch(TEN_JACOBIAN + k) * given(QVEL + words[TENDON_DOF + k]);
+            velocity += fetch(TEN_JACOBIAN + k) * fetch_state(QVEL + words[TENDON_DOF + k]);
         }
         put(TEN_VELOCITY + t, velocity);
     }

@@ -14,7 +14,7 @@ pub(crate) struct Rows<'a, T> {
     /// The number added to R by a stage of [continuation](crate::continuation); used only by elliptic cones.
     pub softer: T,
     /// The normal force λ that limits the friction of a Coulomb block; see [`normal_forces`](crate::normal_forces).
-    pub given: T,
+    pub lambda: T,
 }
 
 /// The sums over all evaluated blocks.

@@ -40,8 +40,8 @@ impl<T: Real> Disc<T> {
         let mu = T::select(rows.d[1].gt(T::ZERO), rows.shape[1], T::ONE);
         Disc {
             k: rows.d[1] / (mu * mu),
-            radius: rows.given,
-            bound: rows.given * rows.r[1] * mu * mu,
+            radius: rows.lambda,
+            bound: rows.lambda * rows.r[1] * mu * mu,
         }
     }
 

@@ -9,7 +9,7 @@ struct Sample {
     d: Vec<f64>,
     r: Vec<f64>,
     shape: Vec<f64>,
-    given: f64,
+    lambda: f64,
     y: Vec<f64>,
     dy: Vec<f64>,
 }
@@ -21,7 +21,7 @@ impl Sample {
             r: &self.r,
             shape: &self.shape,
             softer: 0.0,
-            given: self.given,
+            lambda: self.lambda,
         }
     }
 
@@ -98,7 +98,7 @@ fn samples() -> Vec<Sample> {
         if cost == Cost::Coulomb {
             (2..dim).for_each(|j| d[j] = d[1] * (shape[j] / shape[1]).powi(2));
         }
-        let given = match cost {
+        let lambda = match cost {
             Cost::Coulomb => 2.0 * unit() - 0.2,
             _ => 0.0,
         };
@@ -113,7 +113,7 @@ fn samples() -> Vec<Sample> {
             d,
             r,
             shape,
-            given: given.max(0.0),
+            lambda: lambda.max(0.0),
             y,
             dy,
         });
@@ -258,7 +258,7 @@ fn forces_lie_in_their_cones() {
             }
             Cost::Coulomb => {
                 let sum: f64 = (1..f.len()).map(|j| (f[j] / s.shape[j]).powi(2)).sum();
-                assert!(f[0] >= 0.0 && sum.sqrt() <= s.given + 1e-14);
+                assert!(f[0] >= 0.0 && sum.sqrt() <= s.lambda + 1e-14);
             }
         }
     }
@@ -270,7 +270,7 @@ fn a_lane_without_the_constraint_adds_nothing() {
         s.d.fill(0.0);
         s.r.fill(1.0);
         s.shape.fill(0.0);
-        s.given = 0.0;
+        s.lambda = 0.0;
         let (cost, force, piece) = s.at(&s.y);
         assert!(
             cost == 0.0 && force.iter().all(|&f| f == 0.0) && piece.iter().all(|&p| p == 0.0),

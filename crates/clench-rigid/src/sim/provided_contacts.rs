@@ -36,10 +36,10 @@ impl<T: Precision> Sim<T> {
         }
         self.ws.contacts.clear();
         self.ws.contacts.extend(contacts.iter().map(Contact::splat));
-        self.ws.collision.given = true;
+        self.ws.collision.contacts_provided = true;
         self.ws.collision.overflow = Mask::splat(false);
         let result = compute(self);
-        self.ws.collision.given = false;
+        self.ws.collision.contacts_provided = false;
         result
     }
 }
