@@ -3,8 +3,8 @@
 //! Space is divided into cubes about as large as the larger boxes. Each box is listed in every cube that it overlaps,
 //! in a hash table (Teschner et al. 2003), so empty space and distant boxes cost nothing. Boxes in the same cube are
 //! compared. Two that share several cubes are reported in the one with the lower corner of their intersection. The few
-//! much larger boxes would be in too many cubes; they are compared with all. So the work grows with the number of boxes
-//! and pairs, not with the square.
+//! much larger boxes would be in too many cubes; they are compared with all, as are all moving boxes if there are few.
+//! So the work grows with the number of boxes and pairs, not with the square.
 
 use super::aabb::Aabb;
 
@@ -14,6 +14,8 @@ const SMALL_SHARE: f64 = 0.9;
 const MAX_CELLS: f64 = 4.0;
 /// The maximum cube coordinate along an axis; shapes beyond are compared with all others.
 const MAX_CELL: f64 = 1e9;
+/// The number of moving boxes up to which each is compared with all others.
+const FEW: usize = 16;
 /// The number of hash table buckets per shape.
 const BUCKETS_PER_SHAPE: usize = 4;
 
@@ -89,6 +91,10 @@ fn floor(x: f64) -> i32 {
 impl Grid {
     /// Calls `check` once for every pair of overlapping boxes.
     pub(super) fn pairs(&mut self, boxes: Boxes, check: &mut impl FnMut(u32, u32)) {
+        let moving = (0..boxes.all.len()).filter(|&index| !boxes.fixed[index]);
+        if moving.clone().nth(FEW).is_none() {
+            return few(boxes, moving, check);
+        }
         let per_metre = self.part_by_size(boxes.all);
         self.list(boxes, per_metre);
         self.in_cubes(boxes, per_metre, check);
@@ -207,6 +213,20 @@ impl Grid {
                     check(one, other);
                 }
             }
+        }
+    }
+}
+
+/// Compares the moving boxes with all others.
+fn few(
+    Boxes { all, fixed }: Boxes,
+    moving: impl Iterator<Item = usize>,
+    check: &mut impl FnMut(u32, u32),
+) {
+    for one in moving {
+        let others = (0..all.len()).filter(|&other| fixed[other] || other > one);
+        for other in others.filter(|&other| all[one].overlaps(&all[other])) {
+            check(one as u32, other as u32);
         }
     }
 }

@@ -43,6 +43,8 @@ struct Clusters {
     members: Vec<Range<usize>>,
     boxes: Vec<Aabb>,
     placed: Vec<bool>,
+    /// True for the clusters that make no pairs among themselves in the current search.
+    fixed: Vec<bool>,
 }
 
 /// The maximum size of a cluster; larger ones are split. Shapes in the same or neighbouring clusters are compared
@@ -68,20 +70,24 @@ impl Clusters {
         clusters
     }
 
-    /// Updates the boxes of the clusters.
-    fn update(&mut self, boxes: &[Aabb]) {
+    /// Updates the boxes of the clusters, and finds those without a shape that is `awake`.
+    fn update(&mut self, boxes: &[Aabb], awake: impl Fn(usize) -> bool) {
         let around = |members: &Range<usize>| {
             let members = boxes[members.clone()].iter();
             members.fold(Aabb::EMPTY, |all, one| all.union(one))
         };
         self.boxes.clear();
         self.boxes.extend(self.members.iter().map(around));
+        self.fixed.clear();
+        let members = self.members.iter().cloned();
+        self.fixed
+            .extend(members.map(|mut members| !members.any(&awake)));
     }
 
-    /// Calls `check` once for every pair of mobile shapes whose boxes overlap, except for two placed ones.
+    /// Calls `check` once for every pair of mobile shapes whose boxes overlap, except for two in fixed clusters.
     fn pairs(&self, grid: &mut Grid, boxes: &[Aabb], check: &mut impl FnMut(usize, usize)) {
-        for (members, &placed) in self.members.iter().zip(&self.placed) {
-            if placed {
+        for (members, &fixed) in self.members.iter().zip(&self.fixed) {
+            if fixed {
                 continue;
             }
             for a in members.clone() {
@@ -91,7 +97,7 @@ impl Clusters {
         }
         let all = Boxes {
             all: &self.boxes,
-            fixed: &self.placed,
+            fixed: &self.fixed,
         };
         grid.pairs(all, &mut |one, other| {
             let (one, other) = (one as usize, other as usize);
@@ -142,12 +148,14 @@ impl BroadPhase {
 
     /// Replaces `pairs` by those (i, j), i < j, ascending, that `allowed` admits and that are [`near`] in any
     /// environment with the margin `margins[i] + margins[j]`. Returns the environments that have more than `limit`
-    /// pairs; some of their pairs are omitted.
+    /// pairs; some of their pairs are omitted. With `awake`, pairs of moving shapes that sleep, with each other or with
+    /// static ones, may be omitted.
     #[kernel]
     pub fn pairs<T: Real>(
         &mut self,
         bounds: &[Bound<T>],
         margins: &[T],
+        awake: Option<&dyn Fn(u32) -> bool>,
         mut allowed: impl FnMut(u32, u32) -> bool,
         limit: u64,
         pairs: &mut Vec<(u32, u32)>,
@@ -173,12 +181,16 @@ impl BroadPhase {
             }
         };
         let (mobile, placed) = (&self.mobile, &self.placed);
-        self.clusters.update(&self.boxes);
+        let moves = |index: usize| !placed[index] && awake.is_none_or(|awake| awake(mobile[index]));
+        // Placed shapes make pairs with those that sleep.
+        let searches = |index: usize| moves(index) || (awake.is_some() && placed[index]);
+        self.clusters.update(&self.boxes, searches);
         (self.clusters).pairs(&mut self.grid, &self.boxes, &mut |i, j| {
-            check(mobile[i], mobile[j]);
+            if !(placed[i] && placed[j]) {
+                check(mobile[i], mobile[j]);
+            }
         });
-        let moving = (0..mobile.len()).filter(|&index| !placed[index]);
-        for index in moving {
+        for index in (0..mobile.len()).filter(|&index| moves(index)) {
             (self.tree).overlapping(&self.boxes[index], |shape| check(mobile[index], shape));
         }
         pairs.sort_unstable();

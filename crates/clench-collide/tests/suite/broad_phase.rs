@@ -88,7 +88,14 @@ fn nothing_is_missed<T: Real>(seed: u64) {
     for count in [0, 1, 2, 60, 150] {
         let world = World::<T>::random(&mut random, count);
         let mut broad_phase = all_moving(count);
-        broad_phase.pairs(&world.bounds, &world.margins, allowed, u64::MAX, &mut pairs);
+        broad_phase.pairs(
+            &world.bounds,
+            &world.margins,
+            None,
+            allowed,
+            u64::MAX,
+            &mut pairs,
+        );
         assert!(pairs.is_sorted() && pairs.iter().all(|&(i, j)| i < j && allowed(i, j)));
 
         let list: Vec<(u32, u32)> = (0..count as u32)
@@ -133,6 +140,7 @@ fn a_warm_broad_phase_does_not_grow() {
         broad_phase.pairs(
             &world.bounds,
             &world.margins,
+            None,
             |_, _| true,
             u64::MAX,
             &mut pairs,
@@ -211,6 +219,7 @@ fn asked(bounds: &[Bound<f64>]) -> (usize, usize) {
     all_moving(bounds.len()).pairs(
         bounds,
         &vec![0.0; bounds.len()],
+        None,
         &mut count,
         u64::MAX,
         &mut pairs,
@@ -273,13 +282,30 @@ fn pairs_of_mixed_scenes_are_those_of_which_one_moves() {
         let (mut by_turns, mut all, mut again) = (Vec::new(), Vec::new(), Vec::new());
         let mut broad_phase = BroadPhase::new(&mobility, |shape| shape / cluster);
         let (bounds, margins) = (&world.bounds, &world.margins);
-        broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut by_turns);
-        broad_phase.pairs(bounds, margins, allowed, u64::MAX, &mut again);
-        all_moving(count).pairs(bounds, margins, allowed, u64::MAX, &mut all);
+        broad_phase.pairs(bounds, margins, None, allowed, u64::MAX, &mut by_turns);
+        broad_phase.pairs(bounds, margins, None, allowed, u64::MAX, &mut again);
+        all_moving(count).pairs(bounds, margins, None, allowed, u64::MAX, &mut all);
         all.retain(|&(i, j)| is(i, Mobility::Moving) || is(j, Mobility::Moving));
         all.retain(|&(i, j)| !is(i, Mobility::Excluded) && !is(j, Mobility::Excluded));
         assert_eq!(by_turns, all);
         assert_eq!(again, all);
+
+        // Every third shape is awake: pairs of one that is, or of a placed one with another, are found.
+        let awake = |i: u32| i.is_multiple_of(3);
+        broad_phase.pairs(
+            bounds,
+            margins,
+            Some(&awake),
+            allowed,
+            u64::MAX,
+            &mut by_turns,
+        );
+        assert!(by_turns.iter().all(|pair| all.contains(pair)));
+        let moves = |i: u32| is(i, Mobility::Placed) || (is(i, Mobility::Moving) && awake(i));
+        let sleeps = |i: u32| is(i, Mobility::Moving) && !awake(i);
+        all.retain(|&(i, j)| moves(i) || moves(j));
+        all.retain(|&(i, j)| !(sleeps(i) && is(j, Mobility::Static)));
+        assert!(all.iter().all(|pair| by_turns.contains(pair)));
     }
 }
 
@@ -297,7 +323,7 @@ fn moved_static_shapes_are_checked_again_after_invalidation() {
     let mut pairs = Vec::new();
     let mut find = |broad_phase: &mut BroadPhase, static_at: f64| {
         let bounds = [at(static_at), at(0.0)];
-        broad_phase.pairs(&bounds, &[0.0; 2], |_, _| true, u64::MAX, &mut pairs);
+        broad_phase.pairs(&bounds, &[0.0; 2], None, |_, _| true, u64::MAX, &mut pairs);
         pairs.len()
     };
     assert_eq!(find(&mut broad_phase, 5.0), 0);

@@ -60,19 +60,24 @@ pub fn detect<T: Real>(
     collision.overflow = T::Mask::splat(false);
     (collision.contact_count, collision.jacobian_size) = (T::ZERO, T::ZERO);
     if !settings.flags.constraint || !settings.flags.contact {
+        if let Some(broad_phase) = &mut collision.broad_phase {
+            broad_phase.invalidate();
+        }
         return;
     }
     collision.near.clear();
     let spheres = &mut collision.spheres;
+    let trees = awake.sleep.map(Sleep::trees);
     if let Some(broad_phase) = &mut collision.broad_phase {
-        broad_phase.update(model, params, pos, ws.fixed.version(), spheres);
-        let too_many = broad_phase.find(model, &mut collision.candidates);
+        let version = ws.fixed.version();
+        broad_phase.update(model, params, pos, version, ws.sleep.trees(), spheres);
+        let too_many = broad_phase.find(model, trees, &mut collision.candidates);
         collision.record_excess(too_many, Excess::Pairs);
     } else {
         let body_pairs = &mut collision.body_pairs;
         bounding_sphere::update(model, params, pos, body_pairs.geoms(), spheres);
         body_pairs.update(spheres);
-        collision.awake_pairs.mark(awake.sleep.map(Sleep::trees));
+        collision.awake_pairs.mark(trees);
     }
     let (listed, runs) = match collision.broad_phase {
         None => (true, collision.body_pairs.len()),

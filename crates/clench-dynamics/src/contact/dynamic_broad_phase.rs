@@ -5,6 +5,7 @@ use super::bounding_sphere::{self, BoundingSphere, own_margin};
 use super::placed_shape::{pose, shape};
 use super::select::{explicit, geoms_may_collide, match_any, sort};
 use crate::model::{Geom, Model, Params};
+use crate::sleep::Parts;
 use crate::stages::Positions;
 use clench_collide::{Bound, BroadPhase, Mobility, Pose};
 use clench_math::{Mask, Real, Vec3, kernel};
@@ -101,7 +102,14 @@ impl<T: Real> DynamicBroadPhase<T> {
         }
     }
 
-    /// Updates the bounds and bounding spheres for the poses of geoms; `version` is that of the fixed poses.
+    /// Makes the next update recompute all bounds. Call it in a pass without an update.
+    pub(super) fn invalidate(&mut self) {
+        self.placements.clear();
+        self.bounds.clear();
+    }
+
+    /// Updates the bounds and bounding spheres for the poses of geoms; `version` is that of the fixed poses. Those of
+    /// trees that the pass omits are valid.
     #[kernel]
     pub fn update(
         &mut self,
@@ -109,6 +117,7 @@ impl<T: Real> DynamicBroadPhase<T> {
         params: &Params<T>,
         pos: &Positions<T>,
         version: u64,
+        trees: &Parts,
         spheres: &mut Vec<BoundingSphere<T>>,
     ) {
         let placement = |geom: usize| Placement::of(model, params, pos, geom);
@@ -119,12 +128,13 @@ impl<T: Real> DynamicBroadPhase<T> {
         self.version = version;
         let bound = |g: usize| Bound::new(&shape(model, params, g), &pose(pos, g));
         if unchanged {
-            for &g in self.broad_phase.mobile() {
-                let g = g as usize;
+            let computed = |&g: &usize| !trees.omits(model.tree_of_body(model.geoms[g].body));
+            let mobile = self.broad_phase.mobile().iter().map(|&g| g as usize);
+            let mobile = mobile.filter(computed);
+            for g in mobile.clone() {
                 self.bounds[g] = bound(g);
                 self.margins[g] = own_margin(model, params, g);
             }
-            let mobile = self.broad_phase.mobile().iter().map(|&g| g as usize);
             let geoms = mobile.chain(self.in_pairs.iter().copied());
             bounding_sphere::update(model, params, pos, geoms, spheres);
         } else {
@@ -140,14 +150,26 @@ impl<T: Real> DynamicBroadPhase<T> {
         }
     }
 
-    /// Replaces `candidates` with the explicit pairs and the pairs that are near in any lane. Returns the lanes in
-    /// which they exceed the budget.
+    /// Replaces `candidates` with the explicit pairs and the pairs that are near in any lane. Pairs of which both sleep,
+    /// by `trees`, may be missing. Returns the lanes in which they exceed the budget.
     #[kernel]
-    pub fn find(&mut self, model: &Model, candidates: &mut Vec<Candidate>) -> T::Mask {
+    pub fn find(
+        &mut self,
+        model: &Model,
+        trees: Option<&Parts>,
+        candidates: &mut Vec<Candidate>,
+    ) -> T::Mask {
+        let is_awake = trees.map(|trees| {
+            move |geom: u32| {
+                let tree = model.tree_of_body(model.geoms[geom as usize].body);
+                tree.is_none_or(|tree| trees.is_awake(tree))
+            }
+        });
+        let awake = is_awake.as_ref().map(|awake| awake as &dyn Fn(u32) -> bool);
         let allowed = |g1: u32, g2: u32| geoms_may_collide(model, g1 as usize, g2 as usize);
         let (bounds, margins, hits) = (&self.bounds, &self.margins, &mut self.hits);
         let limit = model.budget.pairs();
-        let too_many = (self.broad_phase).pairs(bounds, margins, allowed, limit, hits);
+        let too_many = (self.broad_phase).pairs(bounds, margins, awake, allowed, limit, hits);
         candidates.clear();
         candidates.extend((0..model.pairs.len()).map(|p| explicit(model, p as u32)));
         let found =

@@ -87,6 +87,11 @@ impl Parts {
         self.trees[tree].awake
     }
 
+    /// Returns true if the pass omits a tree; false for bodies of no tree.
+    pub(crate) fn omits(&self, tree: Option<usize>) -> bool {
+        !self.all && tree.is_some_and(|tree| self.trees[tree].valid)
+    }
+
     /// Records that a pass ends.
     pub(super) fn note(&mut self) {
         for tree in &mut self.trees {
