@@ -911,6 +911,7 @@ class Sim(_Outputs):
         outputs: Sequence[str] = (),
         parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
         *,
+        memory: bool | np.bool_ = False,
         errors: bool | np.bool_ = False,
     ) -> Linearization: ...
     def jvp(
@@ -1122,6 +1123,7 @@ class Batch(_Outputs):
         outputs: Sequence[str] = (),
         parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
         *,
+        memory: bool | np.bool_ = False,
         errors: bool | np.bool_ = False,
     ) -> Linearization: ...
     def jvp(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from clench._core import Model, Sim
 from clench._state import State
-from clench._tangent import Floats, Tangent
+from clench._tangent import Floats, Tangent, state_size
 
 _MEASURED = ("qpos", "qvel", "sensordata")
 
@@ -65,9 +65,9 @@ class Recorded:
         Those of the state obey S⁺ = A S + E, those of the sensors are C S + F.
         """
         nv, rows, n = sim.model.nv, [], sum(map(len, parameters.values()))
-        state = np.zeros((2 * nv + sim.model.na, n))
+        state = np.zeros((state_size(sim), n))
         for k in self._each_step(sim):
-            linear = sim.linearize(parameters=parameters)
+            linear = sim.linearize(parameters=parameters, memory=True)
             sensors = linear.C @ state + np.hstack([*linear.output_parameters.values()])
             state = linear.A @ state + np.hstack([*linear.parameters.values()])
             sim.step()

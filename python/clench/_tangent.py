@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from clench._core import Model
+from clench._core import Model, Sim
 
 Floats = NDArray[np.float64]
 
@@ -55,3 +55,9 @@ class Tangent:
             if others[q : q + 4] @ qpos[q : q + 4] < 0.0:
                 others[q : q + 4] *= -1.0
         return others
+
+
+def state_size(sim: Sim) -> int:
+    """Returns the length of x in ``sim.linearize(memory=True)``."""
+    memory = (sim.plastic, sim.history, sim.stick_references, sim.stick_friction)
+    return 2 * sim.model.nv + sim.model.na + sum(field.size for field in memory)

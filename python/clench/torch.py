@@ -27,7 +27,7 @@ from torch import Tensor
 from torch.autograd.function import once_differentiable
 
 from clench._core import Sim
-from clench._tangent import Tangent
+from clench._tangent import Tangent, state_size
 
 __all__ = ["rollout", "state", "step"]
 
@@ -147,22 +147,22 @@ class _Rollout(torch.autograd.Function):
     def backward(ctx: Any, *gradients: Tensor) -> tuple[Tensor | None, ...]:
         sim, (first, ctrl) = ctx.sim, ctx.saved_tensors
         by_qpos, by_qvel, by_act = (gradient.numpy() for gradient in gradients)
-        nv, tangent, present = sim.model.nv, Tangent(sim.model), sim.state
-        by_state, by_ctrl = np.zeros(2 * nv + sim.model.na), np.zeros(ctrl.shape)
+        nv, na, tangent, present = sim.model.nv, sim.model.na, Tangent(sim.model), sim.state
+        by_state, by_ctrl = np.zeros(state_size(sim)), np.zeros(ctrl.shape)
         try:
             for segment, start in reversed([*enumerate(ctx.saved)]):
                 sim.state = start
                 begin, linear = segment * ctx.every, []
                 for sim.ctrl in ctrl[begin : begin + ctx.every].numpy():
-                    matrices = sim.linearize()
+                    matrices = sim.linearize(memory=True)
                     sim.step()
                     linear.append((matrices.A, matrices.B, tangent.basis(sim.qpos)))
                 for k, (a, b, basis) in reversed([*enumerate(linear, begin)]):
-                    by_state += np.concatenate([by_qpos[k] @ basis, by_qvel[k], by_act[k]])
+                    by_state[: 2 * nv + na] += np.concatenate([by_qpos[k] @ basis, by_qvel[k], by_act[k]])
                     by_ctrl[k] = by_state @ b
                     by_state = by_state @ a
         finally:
             sim.state = present
-        by_first, by_qvel, by_act = np.split(by_state, [nv, 2 * nv])
+        by_first, by_qvel, by_act = np.split(by_state[: 2 * nv + na], [nv, 2 * nv])
         by_qpos = by_first @ tangent.inverse(first.numpy())
         return None, *(torch.from_numpy(array) for array in (by_qpos, by_qvel, by_act, by_ctrl))

@@ -3,7 +3,9 @@
 use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
-use clench::derivatives::{self, BatchLinearizer, ErrorBound, Linearizer, Matrix, Request};
+use clench::derivatives::{
+    self, BatchLinearizer, ErrorBound, Linearizer, Matrix, Request, StateField,
+};
 use clench::rigid::batch::Precision;
 use clench::rigid::model::ParamField;
 use clench::{Output, SimError};
@@ -23,10 +25,54 @@ pub(crate) struct BatchMemory {
     pub(crate) single: Option<BatchLinearizer<f32>>,
 }
 
-/// The chosen outputs and parameters.
+/// A field by whose numbers a step has derivatives.
+#[derive(Clone, Copy)]
+pub(crate) enum Variable {
+    Parameter(ParamField),
+    Input(StateField),
+}
+
+impl Variable {
+    /// Returns the variable with a name.
+    pub(crate) fn find(name: &str) -> PyResult<Self> {
+        let mut inputs = StateField::INPUTS.into_iter();
+        match inputs.find(|input| input.name() == name) {
+            Some(input) => Ok(Variable::Input(input)),
+            None => Ok(Variable::Parameter(
+                ParamField::settable(name).map_err(sim_error)?,
+            )),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Variable::Parameter(field) => field.name(),
+            Variable::Input(field) => field.name(),
+        }
+    }
+
+    /// Returns the number of its numbers.
+    pub(crate) fn count(self, model: &clench::Model) -> usize {
+        match self {
+            Variable::Parameter(field) => field.shape(model).iter().product(),
+            Variable::Input(field) => field.count(model),
+        }
+    }
+
+    /// Adds one of its numbers to a request.
+    pub(crate) fn request(self, number: usize, request: &mut Request) {
+        match self {
+            Variable::Parameter(field) => request.parameters.push((field, number)),
+            Variable::Input(field) => request.inputs.push((field, number)),
+        }
+    }
+}
+
+/// The chosen outputs and variables.
 pub(crate) struct Chosen {
     request: Request,
-    fields: Vec<(ParamField, usize)>,
+    /// The variables, and how many of their numbers are chosen.
+    fields: Vec<(Variable, usize)>,
     nv: usize,
 }
 
@@ -35,14 +81,15 @@ impl Chosen {
         model: &clench::Model,
         outputs: &[String],
         parameters: Option<&Bound<'_, PyAny>>,
-        errors: bool,
+        [memory, errors]: [bool; 2],
     ) -> PyResult<Self> {
         let outputs = outputs.iter().map(|name| Output::find(name));
         let mut chosen = Chosen {
             request: Request {
                 outputs: outputs.collect::<Result<_, _>>().map_err(sim_error)?,
-                parameters: Vec::new(),
+                memory,
                 errors,
+                ..Request::default()
             },
             fields: Vec::new(),
             nv: model.nv,
@@ -63,15 +110,15 @@ impl Chosen {
         Ok(chosen)
     }
 
-    /// Adds numbers of a parameter, by default all.
+    /// Adds numbers of a variable, by default all.
     fn add(
         &mut self,
         model: &clench::Model,
         name: &str,
         numbers: Option<Vec<usize>>,
     ) -> PyResult<()> {
-        let field = ParamField::settable(name).map_err(sim_error)?;
-        let count = field.shape(model).iter().product();
+        let field = Variable::find(name)?;
+        let count = field.count(model);
         let numbers = numbers.unwrap_or_else(|| (0..count).collect());
         if let Some(number) = numbers.iter().find(|&&number| number >= count) {
             return Err(PyIndexError::new_err(format!(
@@ -79,8 +126,9 @@ impl Chosen {
             )));
         }
         self.fields.push((field, numbers.len()));
-        let numbers = numbers.into_iter().map(|number| (field, number));
-        self.request.parameters.extend(numbers);
+        for number in numbers {
+            field.request(number, &mut self.request);
+        }
         Ok(())
     }
 
@@ -135,15 +183,19 @@ impl Chosen {
             Ok::<_, PyErr>(PyArray1::from_iter(py, values).reshape(shape)?.unbind())
         };
         let (by_state, by_output) = (PyDict::new(py), PyDict::new(py));
-        let mut start = 0;
+        let (mut of_parameters, mut of_inputs) = (0, self.request.parameters.len());
         for &(field, count) in &self.fields {
-            let columns = start..start + count;
+            let start = match field {
+                Variable::Parameter(_) => &mut of_parameters,
+                Variable::Input(_) => &mut of_inputs,
+            };
+            let columns = *start..*start + count;
             by_state.set_item(
                 field.name(),
                 array(|result| &result.e, Some(columns.clone()))?,
             )?;
             by_output.set_item(field.name(), array(|result| &result.f, Some(columns))?)?;
-            start += count;
+            *start += count;
         }
         // Numbers of rows, of which environments have different counts.
         let rows = |of: fn(&derivatives::Linearization) -> &[f64]| {

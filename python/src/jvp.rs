@@ -20,7 +20,8 @@ impl Sim {
     /// u : array_like, shape (nu,) or (nu, k), optional
     ///     Change of the controls.
     /// parameters : mapping of str to array_like, optional
-    ///     Changes of parameters (see `clench.PARAMETERS`): of all numbers of the flattened field, or with k columns.
+    ///     Changes of parameters (see `clench.PARAMETERS`) or inputs, as in `linearize`: of all numbers of the
+    ///     flattened field, or with k columns.
     /// outputs : sequence of str
     ///     Outputs that follow the sensors in y; see `clench.OUTPUTS`.
     ///

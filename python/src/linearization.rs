@@ -7,9 +7,9 @@ use pyo3::types::PyDict;
 /// The linear model of a step about a state: x⁺ changes by A dx + B du, y by C dx + D du.
 ///
 /// x holds the motion of the positions along the dofs (nv; rotations about the axes of the child, rad), then the
-/// velocities (nv) and the activations (na). u holds the controls (nu). y holds the sensors (nsensordata), then the
-/// outputs that were asked for, row after row, of the state before the step. The matrices of a batch are stacked, (n,
-/// rows, columns).
+/// velocities (nv) and the activations (na), and with ``memory`` all else that a step changes. u holds the controls
+/// (nu). y holds the sensors (nsensordata), then the chosen outputs, row after row, of the state before the step. The
+/// matrices of a batch are stacked, (n, rows, columns).
 #[pyclass(frozen, get_all, module = "clench")]
 #[allow(non_snake_case)] // Named as in control theory.
 pub(crate) struct Linearization {

@@ -20,9 +20,13 @@ impl Sim {
     /// outputs : sequence of str
     ///     Outputs that follow the sensors in y; see `clench.OUTPUTS`.
     /// parameters : sequence of str, or mapping of str to sequence of int
-    ///     Parameters to differentiate by (see `clench.PARAMETERS`): all numbers, or those at the given indices of the
-    ///     flattened field. ``body_subtreemass`` follows ``body_mass``; other derived constants stay the same, as in
-    ///     `set_param`.
+    ///     Parameters to differentiate by (see `clench.PARAMETERS`), or inputs of the state: ``qfrc_applied``,
+    ///     ``xfrc_applied``, ``mocap_pos``, ``mocap_quat``. All numbers, or those at the given indices of the flattened
+    ///     field. ``body_subtreemass`` follows ``body_mass``; other derived constants stay the same, as in `set_param`.
+    /// memory : bool
+    ///     True to extend x by the other fields that a step changes, in this order: ``plastic``, ``history``,
+    ///     ``stick_references``, ``stick_friction``. Products of matrices over several steps then contain delays,
+    ///     springs that yield, and stiction.
     /// errors : bool
     ///     True to bound the errors that the tolerance of the solver leaves; takes a second solve.
     ///
@@ -49,20 +53,21 @@ impl Sim {
     /// ...     "<actuator><motor joint='x'/></actuator></mujoco>"))
     /// >>> sim.linearize().B.tolist()
     /// [[5e-05], [0.005]]
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, errors = false),
-           text_signature = "($self, outputs=(), parameters=None, *, errors=False)")]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, errors = false),
+           text_signature = "($self, outputs=(), parameters=None, *, memory=False, errors=False)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
+        memory: bool,
         errors: bool,
     ) -> PyResult<Linearization> {
         let model = self.described();
-        let chosen = derivatives::Chosen::new(model, &outputs, parameters, errors)?;
-        let mut memory = lock(self.linearizer(), "simulation")?;
+        let chosen = derivatives::Chosen::new(model, &outputs, parameters, [memory, errors])?;
+        let mut linearizer = lock(self.linearizer(), "simulation")?;
         let mut guard = lock(self.inner(), "simulation")?;
-        chosen.of_sim(py, &mut memory, &mut guard)
+        chosen.of_sim(py, &mut linearizer, &mut guard)
     }
 }
 
@@ -75,7 +80,9 @@ impl Batch {
     /// outputs : sequence of str
     ///     Outputs that follow the sensors in y.
     /// parameters : sequence of str, or mapping of str to sequence of int
-    ///     Parameters to differentiate by.
+    ///     Parameters or inputs to differentiate by.
+    /// memory : bool
+    ///     True to extend x by the other fields that a step changes.
     /// errors : bool
     ///     True to bound the errors that the tolerance of the solver leaves.
     ///
@@ -92,22 +99,23 @@ impl Batch {
     ///     If a parameter does not have a number.
     /// SimulationError
     ///     If the step of an environment fails.
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, errors = false),
-           text_signature = "($self, outputs=(), parameters=None, *, errors=False)")]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, errors = false),
+           text_signature = "($self, outputs=(), parameters=None, *, memory=False, errors=False)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
+        memory: bool,
         errors: bool,
     ) -> PyResult<Linearization> {
         let model = self.described();
-        let chosen = derivatives::Chosen::new(model, &outputs, parameters, errors)?;
-        let mut memory = lock(self.linearizer(), "batch")?;
+        let chosen = derivatives::Chosen::new(model, &outputs, parameters, [memory, errors])?;
+        let mut linearizer = lock(self.linearizer(), "batch")?;
         let mut guard = lock(self.inner(), "batch")?;
         match &mut *guard {
-            AnyBatch::F64(batch) => chosen.of_batch(py, &mut memory.double, batch),
-            AnyBatch::F32(batch) => chosen.of_batch(py, &mut memory.single, batch),
+            AnyBatch::F64(batch) => chosen.of_batch(py, &mut linearizer.double, batch),
+            AnyBatch::F32(batch) => chosen.of_batch(py, &mut linearizer.single, batch),
         }
     }
 }

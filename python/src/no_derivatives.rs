@@ -25,7 +25,7 @@ impl Chosen {
         _: &clench::Model,
         _: &[String],
         _: Option<&Bound<'_, PyAny>>,
-        _: bool,
+        _: [bool; 2],
     ) -> PyResult<Self> {
         Err(without())
     }

@@ -2,13 +2,12 @@
 
 use crate::arrays::{numbers, require_finite, require_shape};
 use crate::changes::{Changes, Results};
-use crate::derivatives::{Memory, in_env, with_linearizer};
+use crate::derivatives::{Memory, Variable, in_env, with_linearizer};
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
 use clench::Output;
 use clench::derivatives::{BatchLinearizer, InputTangent, Matrix, OutputTangent, Request};
 use clench::rigid::batch::Precision;
-use clench::rigid::model::ParamField;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
@@ -44,11 +43,13 @@ impl Tangents {
         if let Some(parameters) = parameters {
             for item in parameters.cast::<PyMapping>()?.items()? {
                 let (name, values): (String, Bound<'_, PyAny>) = item.extract()?;
-                let field = ParamField::settable(&name).map_err(sim_error)?;
-                let count = field.shape(model).iter().product();
+                let field = Variable::find(&name)?;
+                let count = field.count(model);
                 fields.push((field, count, shape.read(&name, &values, count)?));
             }
         }
+        // Inputs follow the parameters.
+        fields.sort_by_key(|(field, ..)| matches!(field, Variable::Input(_)));
         let trail = shape.trail.unwrap_or_default();
         let columns = trail.iter().product();
         let envs = lead.iter().product();
@@ -73,14 +74,14 @@ impl Tangents {
                 if (0..envs).all(|env| row(env, number).iter().all(|&x| x == 0.0)) {
                     continue;
                 }
-                request.parameters.push((*field, number));
+                field.request(number, &mut request);
                 for (env, tangent) in each.iter_mut().enumerate() {
                     tangent.p.values.extend_from_slice(row(env, number));
                 }
             }
         }
         for tangent in &mut each {
-            tangent.p.shape = [request.parameters.len(), columns];
+            tangent.p.shape = [request.parameters.len() + request.inputs.len(), columns];
         }
         Ok(Tangents {
             request,

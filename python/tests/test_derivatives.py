@@ -244,6 +244,33 @@ def test_a_driven_mass() -> None:
     np.testing.assert_allclose(linear.parameters["body_mass"][:, 1], [-0.01 * 0.01 * 3.0 / 4.0, -0.01 * 3.0 / 4.0])
 
 
+def test_applied_forces_are_inputs() -> None:
+    sim = clench.Sim(
+        clench.Model.from_xml(
+            "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/>"
+            "<geom size='0.1' mass='2'/></body></worldbody></mujoco>"
+        )
+    )
+    linear = sim.linearize(parameters={"qfrc_applied": [0], "xfrc_applied": [6, 8]})
+    np.testing.assert_allclose(linear.parameters["qfrc_applied"], [[5e-5], [0.005]])
+    np.testing.assert_allclose(linear.parameters["xfrc_applied"], [[0.0, 5e-5], [0.0, 0.005]])
+    with pytest.raises(IndexError, match="mocap_pos has 0 numbers"):
+        sim.linearize(parameters={"mocap_pos": [0]})
+
+
+def test_delayed_controls_are_in_the_extended_state() -> None:
+    text = (
+        "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/><geom size='0.1' mass='2'/>"
+        "</body></worldbody><actuator><motor joint='x' nsample='3' delay='0.02'/></actuator></mujoco>"
+    )
+    batch = clench.Batch(clench.Model.from_xml(text), 2)
+    linear = batch.linearize(memory=True)
+    size = 2 + batch.history.shape[1]
+    assert linear.A.shape == (2, size, size) and linear.B.shape == (2, size, 1)
+    assert not linear.B[:, :2].any()
+    np.testing.assert_allclose((linear.A @ linear.A @ linear.B)[:, 1, 0], 0.005)
+
+
 def test_only_a_contact_that_touches_has_derivatives() -> None:
     sim = clench.Sim(ball())
     for height, touches in ((0.1001, False), (0.0999, True)):

@@ -81,6 +81,19 @@ def test_a_rollout_is_its_steps() -> None:
         torch.testing.assert_close(one, other, rtol=1e-9, atol=1e-12)
 
 
+def test_gradients_pass_through_delays() -> None:
+    text = (
+        "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/><geom size='0.1' mass='2'/>"
+        "</body></worldbody><actuator><motor joint='x' nsample='3' delay='0.02'/></actuator></mujoco>"
+    )
+    sim = clench.Sim(clench.Model.from_xml(text))
+    ctrl = torch.zeros(5, 1, dtype=torch.float64, requires_grad=True)
+    _, qvel, _ = gradients.rollout(sim, gradients.state(sim), ctrl)
+    qvel[-1].sum().backward()
+    # Each control acts two steps later, and changes the velocity by h / m.
+    assert ctrl.grad.ravel().tolist() == pytest.approx([0.005, 0.005, 0.005, 0.0, 0.0])
+
+
 def test_a_plan_improves() -> None:
     sim = clench.Sim(example("pendulum"))
     start = gradients.state(sim)

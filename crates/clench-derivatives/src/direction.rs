@@ -1,7 +1,9 @@
 //! The directions of derivatives: one for each column of a matrix.
 
-use clench_dynamics::Model;
+use crate::field::StateField;
+use crate::request::Request;
 use clench_dynamics::model::ParamField;
+use clench_dynamics::{Model, State};
 
 /// A stage of a step, with all that follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,6 +26,8 @@ pub(crate) enum Direction {
     Control(usize),
     /// A number of a parameter.
     Parameter(ParamField, usize),
+    /// A number of another field of the state.
+    Number(StateField, usize),
 }
 
 impl Direction {
@@ -33,17 +37,43 @@ impl Direction {
             Direction::Position(_) | Direction::Parameter(..) => Start::Positions,
             Direction::Velocity(_) => Start::Velocities,
             Direction::Activation(_) | Direction::Control(_) => Start::Forces,
+            Direction::Number(field, _) => match field {
+                StateField::History | StateField::QfrcApplied | StateField::XfrcApplied => {
+                    Start::Forces
+                }
+                StateField::Plastic
+                | StateField::StickReferences
+                | StateField::StickFriction
+                | StateField::MocapPos
+                | StateField::MocapQuat => Start::Positions,
+            },
         }
     }
 }
 
-/// Lists the directions of the state, then of the controls, then of parameters.
-pub(crate) fn list(model: &Model, parameters: &[(ParamField, usize)], out: &mut Vec<Direction>) {
+/// Lists the directions of a request, and the index of each among the numbers of x, u and p.
+pub(crate) fn list(
+    model: &Model,
+    state: &State<f64>,
+    request: &Request,
+    out: &mut Vec<(Direction, usize)>,
+) {
     out.clear();
-    out.extend((0..model.nv).map(Direction::Position));
-    out.extend((0..model.nv).map(Direction::Velocity));
-    out.extend((0..model.na).map(Direction::Activation));
-    out.extend((0..model.nu()).map(Direction::Control));
-    let parameters = parameters.iter();
-    out.extend(parameters.map(|&(field, index)| Direction::Parameter(field, index)));
+    let (nv, na, nu) = (model.nv, model.na, model.nu());
+    let nx = request.x_len(model);
+    out.extend((0..nv).map(Direction::Position).zip(0..));
+    out.extend((0..nv).map(Direction::Velocity).zip(nv..));
+    out.extend((0..na).map(Direction::Activation).zip(2 * nv..));
+    out.extend((0..nu).map(Direction::Control).zip(nx..));
+    let mut first = 2 * nv + na;
+    for field in request.memory_fields() {
+        let used = field.directions(model, state);
+        out.extend(used.map(|i| (Direction::Number(field, i), first + i)));
+        first += field.count(model);
+    }
+    let parameters = request.parameters.iter();
+    let parameters = parameters.map(|&(field, index)| Direction::Parameter(field, index));
+    let inputs = request.inputs.iter();
+    let inputs = inputs.map(|&(field, index)| Direction::Number(field, index));
+    out.extend(parameters.chain(inputs).zip(nx + nu..));
 }

@@ -1,8 +1,9 @@
 //! Directional derivatives: products of a vector, or of several, with the Jacobian of a step, without its matrices.
 
-use crate::direction::Direction;
-use crate::linearizer::{Linearizer, Request, source};
-use crate::matrix::{InputTangent, Matrix, OutputTangent};
+use crate::direction::{self, Direction};
+use crate::linearizer::{Linearizer, source};
+use crate::matrix::{InputTangent, OutputTangent, split_index};
+use crate::request::Request;
 use crate::seed::Seed;
 use clench_rigid::{Model, Sim, SimError};
 use std::ops::Range;
@@ -26,17 +27,18 @@ impl Linearizer {
     ) -> Result<&OutputTangent, SimError> {
         let columns = tangent.columns(sim.model(), request);
         let model = self.prepare(sim, &request.parameters)?;
-        let mut source = source(&model, sim, &request.outputs);
+        let mut source = source(&model, sim, request);
+        direction::list(&model, &sim.state, request, &mut self.directions);
         let mut end = 0;
         let mut reuses = false;
         while end < columns {
             let first = end;
             end = columns.min(first + self.pass.directions());
             self.seeds.clear();
-            tangent.push_seeds(&model, request, first..end, &mut self.seeds);
+            tangent.push_seeds(&self.directions, first..end, &mut self.seeds);
             reuses = self.run_pass(&mut source, columns, first..end, reuses)?;
         }
-        let nx = 2 * model.nv + model.na;
+        let nx = request.x_len(&model);
         let widths = request.outputs.iter().map(|output| output.width(&model));
         let ny = model.nsensordata() + widths.sum::<usize>();
         let OutputTangent { x, y } = &mut self.along;
@@ -54,9 +56,9 @@ impl InputTangent {
     fn columns(&self, model: &Model, request: &Request) -> usize {
         let columns = self.x.shape[1];
         for (matrix, rows) in [
-            (&self.x, 2 * model.nv + model.na),
+            (&self.x, request.x_len(model)),
             (&self.u, model.nu()),
-            (&self.p, request.parameters.len()),
+            (&self.p, request.p_len()),
         ] {
             assert_eq!(matrix.shape, [rows, columns], "the shape of a tangent");
             assert_eq!(matrix.values.len(), rows * columns, "a complete matrix");
@@ -64,44 +66,23 @@ impl InputTangent {
         columns
     }
 
-    /// Appends the seeds of some columns: numbers of one parameter follow each other.
+    /// Appends the seeds of some columns, by the directions of the rows of x, u and p.
     fn push_seeds(
         &self,
-        model: &Model,
-        request: &Request,
+        directions: &[(Direction, usize)],
         columns: Range<usize>,
         seeds: &mut Vec<Seed>,
     ) {
-        let nv = model.nv;
-        let state = |row: usize| match row {
-            row if row < nv => Direction::Position(row),
-            row if row < 2 * nv => Direction::Velocity(row - nv),
-            row => Direction::Activation(row - 2 * nv),
-        };
-        let parameter = |row: usize| {
-            let (field, index) = request.parameters[row];
-            Direction::Parameter(field, index)
-        };
-        let mut push = |matrix: &Matrix, direction: &dyn Fn(usize) -> Direction| {
-            let width = matrix.shape[1].max(1);
-            for (row, values) in matrix.values.chunks_exact(width).enumerate() {
-                let rates = values[columns.clone()].iter().enumerate();
-                seeds.extend(
-                    rates
-                        .filter(|&(_, &rate)| rate != 0.0)
-                        .map(|(slot, &rate)| {
-                            let direction = direction(row);
-                            Seed {
-                                slot,
-                                direction,
-                                rate,
-                            }
-                        }),
-                );
-            }
-        };
-        push(&self.x, &state);
-        push(&self.u, &Direction::Control);
-        push(&self.p, &parameter);
+        for &(direction, row) in directions {
+            let (part, row) = split_index(row, [&self.x, &self.u].map(|matrix| matrix.shape[0]));
+            let matrix = [&self.x, &self.u, &self.p][part];
+            let rates = &matrix.values[row * matrix.shape[1]..][columns.clone()];
+            let rates = rates.iter().enumerate().filter(|&(_, &rate)| rate != 0.0);
+            seeds.extend(rates.map(|(slot, &rate)| Seed {
+                slot,
+                direction,
+                rate,
+            }));
+        }
     }
 }

@@ -13,14 +13,18 @@
 
 mod batch;
 mod direction;
+mod field;
 mod jvp;
 mod linearizer;
 mod matrix;
 mod pass;
+mod request;
 mod seed;
 mod tangent;
 
 pub use batch::BatchLinearizer;
 pub use clench_solver::ErrorBound;
-pub use linearizer::{Linearization, Linearizer, Request};
+pub use field::StateField;
+pub use linearizer::{Linearization, Linearizer};
 pub use matrix::{InputTangent, Matrix, OutputTangent};
+pub use request::Request;

@@ -1,29 +1,18 @@
 //! The matrices of a linearized step.
 
 use crate::direction::{self, Direction, Start};
-use crate::matrix::{Matrix, OutputTangent};
+use crate::matrix::{Matrix, OutputTangent, split_index};
 use crate::pass::{CreatePass, Pass, Source};
+use crate::request::Request;
 use crate::seed::Seed;
 use clench_dynamics::StepSettings;
 use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
-use clench_rigid::{Output, Sim, SimError};
+use clench_rigid::{Sim, SimError};
 use clench_solver::ErrorBound;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Results to differentiate besides the next state and the sensors, and inputs to differentiate by besides state and
-/// controls.
-#[derive(Clone, Debug, Default)]
-pub struct Request {
-    /// Outputs that follow the sensors in y.
-    pub outputs: Vec<Output>,
-    /// Numbers of parameters: a field, and the index in its numbers, element after element.
-    pub parameters: Vec<(ParamField, usize)>,
-    /// True if a linearization also bounds the errors that the solver leaves.
-    pub errors: bool,
-}
 
 /// The linear model of a step about a state:
 ///
@@ -32,9 +21,10 @@ pub struct Request {
 /// dy  = C dx + D du + F dp
 /// ```
 ///
-/// x holds the motion of the positions along the dofs (nv; rotations about the axes of the child, rad), then the
-/// velocities (nv) and the activations (na). u holds the controls (nu), p the chosen parameters. y holds the sensors
-/// (nsensordata), then the chosen outputs, both of the state before the step.
+/// x holds the motion of the positions along the dofs (nv; rotations about the axes of the child, rad), the velocities
+/// (nv), the activations (na), and on request the numbers of [`StateField::MEMORY`](crate::StateField::MEMORY). u holds
+/// the controls (nu), p the chosen parameters and inputs. y holds the sensors (nsensordata), then the chosen outputs,
+/// both of the state before the step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Linearization {
     /// ∂x⁺/∂x.
@@ -82,7 +72,8 @@ pub struct Linearizer {
     pub(crate) pass: Box<dyn Pass>,
     /// The parameters of the last passes.
     params: Params<f64>,
-    directions: Vec<Direction>,
+    /// The directions of the columns that are not zero, and their columns.
+    pub(crate) directions: Vec<(Direction, usize)>,
     /// The directions of a pass.
     pub(crate) seeds: Vec<Seed>,
     /// All derivatives, one row for each number of x⁺ and y, one column for each direction.
@@ -128,8 +119,8 @@ impl Linearizer {
         request: &Request,
     ) -> Result<&Linearization, SimError> {
         let model = self.prepare(sim, &request.parameters)?;
-        let mut source = source(&model, sim, &request.outputs);
-        direction::list(&model, &request.parameters, &mut self.directions);
+        let mut source = source(&model, sim, request);
+        direction::list(&model, &sim.state, request, &mut self.directions);
         let columns = self.directions.len();
         let mut end = 0;
         let mut reuses = false;
@@ -153,7 +144,7 @@ impl Linearizer {
         if request.errors && !bounds {
             errors.set_unknown(model.nv, columns, switching.len());
         }
-        self.split(sim.model(), request.parameters.len());
+        self.split([request.x_len(&model), model.nu(), request.p_len()]);
         Ok(&self.result)
     }
 
@@ -213,44 +204,50 @@ impl Linearizer {
         }
     }
 
-    /// Copies the derivatives into the matrices.
-    fn split(&mut self, model: &Model, np: usize) {
-        let (nx, nu) = (2 * model.nv + model.na, model.nu());
-        let columns = nx + nu + np;
-        let ny = self.all.len().checked_div(columns).unwrap_or(nx) - nx;
+    /// Copies the derivatives, and the bounds of their errors, to the columns of the matrices.
+    fn split(&mut self, [nx, nu, np]: [usize; 3]) {
+        let columns = self.directions.len().max(1);
+        let ny = (self.all.len() / columns).max(nx) - nx;
         let Linearization {
-            a, b, c, d, e, f, ..
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            errors,
+            ..
         } = &mut self.result;
-        let mut rows = self.all.chunks_exact(columns.max(1));
-        for (rows_of, matrices) in [(nx, [a, b, e]), (ny, [c, d, f])] {
-            let [by_state, by_control, by_parameter] = matrices;
-            by_state.reset([rows_of, nx]);
-            by_control.reset([rows_of, nu]);
-            by_parameter.reset([rows_of, np]);
-            for row in 0..rows_of {
-                let Some(values) = rows.next() else { break };
-                let (state, rest) = values.split_at(nx);
-                let (control, parameter) = rest.split_at(nu);
-                for (matrix, part) in [
-                    (&mut *by_state, state),
-                    (by_control, control),
-                    (by_parameter, parameter),
-                ] {
-                    let width = part.len();
-                    matrix.values[row * width..][..width].copy_from_slice(part);
+        let mut rows = self.all.chunks_exact(columns);
+        for (rows_of, mut matrices) in [(nx, [a, b, e]), (ny, [c, d, f])] {
+            for (matrix, columns) in matrices.iter_mut().zip([nx, nu, np]) {
+                matrix.reset([rows_of, columns]);
+            }
+            for (row, values) in rows.by_ref().take(rows_of).enumerate() {
+                for (&value, &(_, column)) in values.iter().zip(&self.directions) {
+                    let (part, column) = split_index(column, [nx, nu]);
+                    let matrix = &mut matrices[part];
+                    matrix.values[row * matrix.shape[1] + column] = value;
                 }
             }
+        }
+        let bounds = std::mem::take(&mut errors.directions);
+        if !bounds.is_empty() {
+            errors.directions.resize(nx + nu + np, 0.0);
+        }
+        for (bound, &(_, column)) in bounds.into_iter().zip(&self.directions) {
+            errors.directions[column] = bound;
         }
     }
 }
 
 /// Returns the input of the first pass of a simulation.
-pub(crate) fn source<'a>(model: &'a Model, sim: &'a Sim<f64>, outputs: &'a [Output]) -> Source<'a> {
+pub(crate) fn source<'a>(model: &'a Model, sim: &'a Sim<f64>, request: &'a Request) -> Source<'a> {
     Source {
         model,
         settings: sim.settings(),
         state: &sim.state,
-        outputs,
+        request,
         first: true,
         start: Start::Positions,
         constant_factor: has_constant_factor(model, sim.settings()),

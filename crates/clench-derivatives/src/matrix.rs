@@ -21,19 +21,28 @@ impl Matrix {
 /// [`Linearization`](crate::Linearization).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InputTangent {
-    /// dx, 2 nv + na rows.
+    /// dx, 2 nv + na rows, more with [`Request::memory`](crate::Request::memory).
     pub x: Matrix,
     /// du, nu rows.
     pub u: Matrix,
-    /// dp, one row for each requested parameter.
+    /// dp, one row for each requested number of parameters, then of inputs.
     pub p: Matrix,
 }
 
 /// Changes dx⁺ and dy of the results of a step, one column for each direction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OutputTangent {
-    /// dx⁺, 2 nv + na rows.
+    /// dx⁺, as many rows as dx.
     pub x: Matrix,
     /// dy, nsensordata rows, then those of the requested outputs.
     pub y: Matrix,
+}
+
+/// Returns the part of (x, u, p) to which an index of all their numbers belongs, and its index there.
+pub(crate) fn split_index(index: usize, [nx, nu]: [usize; 2]) -> (usize, usize) {
+    match index.checked_sub(nx) {
+        None => (0, index),
+        Some(index) if index < nu => (1, index),
+        Some(index) => (2, index - nu),
+    }
 }

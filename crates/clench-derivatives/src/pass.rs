@@ -1,12 +1,13 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
 use crate::direction::Start;
+use crate::request::Request;
 use crate::seed::{self, Seed};
 use crate::tangent;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace, check, pipeline};
 use clench_math::{Dual, LaneTask, Real};
-use clench_rigid::{Output, OutputSource, SimError, evaluate_sensors};
+use clench_rigid::{OutputSource, SimError, evaluate_sensors};
 use clench_solver::{ErrorBound, ErrorBounds};
 
 /// The number of registers of derivatives in a dual number. With one or four, a humanoid takes 20% longer.
@@ -18,7 +19,7 @@ pub(crate) struct Source<'a> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
     pub state: &'a State<f64>,
-    pub outputs: &'a [Output],
+    pub request: &'a Request,
     /// True in the first pass from a state.
     pub first: bool,
     /// The first stage whose results change along the directions.
@@ -86,7 +87,7 @@ struct DualPass<L: Real<Scalar = f64>> {
 
 impl<L: Real<Scalar = f64>> DualPass<L> {
     /// Removes the derivatives of the state.
-    fn clear_state(&mut self) {
+    fn clear_state(&mut self, model: &Model, request: &Request) {
         let State {
             qpos,
             qvel,
@@ -95,6 +96,16 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
             ..
         } = &mut self.before;
         for number in [qpos, qvel, act, ctrl].into_iter().flatten() {
+            *number = Real::new(number.value);
+        }
+        for field in request.memory_fields() {
+            for i in 0..field.count(model) {
+                let number = field.number(&mut self.before, i);
+                *number = Real::new(number.value);
+            }
+        }
+        for &(field, index) in &request.inputs {
+            let number = field.number(&mut self.before, index);
             *number = Real::new(number.value);
         }
     }
@@ -130,12 +141,15 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), SimError> {
         let Source {
-            model, settings, ..
+            model,
+            settings,
+            request,
+            ..
         } = source;
         if source.first {
             self.before.set_values(source.state);
         } else {
-            self.clear_state();
+            self.clear_state(model, request);
         }
         seed::set(model, seeds, &mut self.before, &mut self.params);
         let DualPass {
@@ -152,6 +166,9 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         } else {
             state.copy_moving_from(before);
             state.ctrl.clone_from(&before.ctrl);
+            for &(field, index) in &request.inputs {
+                *field.number(state, index) = *field.number(before, index);
+            }
         }
         ws.constant_factor = source.constant_factor;
         hold(ws, std::mem::replace(last, source.start), source);
@@ -173,7 +190,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
                 state: before,
                 ws,
             };
-            for output in source.outputs {
+            for output in &request.outputs {
                 output.read(&mut from, outputs);
             }
             let mut row = 0;
@@ -182,8 +199,15 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
                 row += 1;
             };
             tangent::each_motion(model, &state.qpos, &mut next);
-            let numbers = [&state.qvel, &state.act, &ws.sensors.data, outputs];
-            for number in numbers.into_iter().flatten() {
+            for number in state.qvel.iter().chain(&state.act) {
+                next(L::as_scalars(&number.tangent));
+            }
+            for field in request.memory_fields() {
+                for i in 0..field.count(model) {
+                    next(L::as_scalars(&field.number(state, i).tangent));
+                }
+            }
+            for number in ws.sensors.data.iter().chain(&*outputs) {
                 next(L::as_scalars(&number.tangent));
             }
         }

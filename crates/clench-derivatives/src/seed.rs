@@ -17,9 +17,9 @@ pub(crate) struct Seed {
 
 impl Seed {
     /// Returns the seeds of a pass along some directions, one in each slot.
-    pub(crate) fn units(directions: &[Direction]) -> impl Iterator<Item = Seed> {
+    pub(crate) fn units(directions: &[(Direction, usize)]) -> impl Iterator<Item = Seed> {
         let directions = directions.iter().enumerate();
-        directions.map(|(slot, &direction)| Seed {
+        directions.map(|(slot, &(direction, _))| Seed {
             slot,
             direction,
             rate: 1.0,
@@ -54,6 +54,7 @@ pub(crate) fn set<L: Real<Scalar = f64>, const K: usize>(
                 Direction::Velocity(dof) => add(&mut state.qvel[dof], slot, rate),
                 Direction::Activation(a) => add(&mut state.act[a], slot, rate),
                 Direction::Control(u) => add(&mut state.ctrl[u], slot, rate),
+                Direction::Number(field, index) => add(field.number(state, index), slot, rate),
                 Direction::Parameter(..) => {}
             }
         }
@@ -104,7 +105,8 @@ fn of_one_field(seeds: &[Seed]) -> impl Iterator<Item = &[Seed]> {
         Direction::Position(_)
         | Direction::Velocity(_)
         | Direction::Activation(_)
-        | Direction::Control(_) => None,
+        | Direction::Control(_)
+        | Direction::Number(..) => None,
     };
     seeds.chunk_by(move |seed, next| field(seed) == field(next))
 }

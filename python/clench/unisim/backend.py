@@ -61,11 +61,6 @@ class ClenchBackend(Playback):
         If a name is unknown or a number out of range.
     NotImplementedError
         If the scene has parts that are not supported.
-
-    Attributes
-    ----------
-    batch : clench.Batch
-        The simulation. ``torch.from_dlpack(backend.batch.qpos)`` shares its memory.
     """
 
     def __init__(
@@ -121,7 +116,7 @@ class ClenchBackend(Playback):
 
     @property
     def batch(self) -> Batch:
-        """The simulation."""
+        """The simulation. ``torch.from_dlpack(backend.batch.qpos)`` shares its memory."""
         if self._batch is None:
             raise BackendError("the backend is closed")
         return self._batch

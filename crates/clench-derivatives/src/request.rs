@@ -1,0 +1,41 @@
+//! The choice of results and inputs.
+
+use crate::field::StateField;
+use clench_dynamics::Model;
+use clench_dynamics::model::ParamField;
+use clench_rigid::Output;
+
+/// Results to differentiate besides the next state and the sensors, and inputs to differentiate by besides state and
+/// controls.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// Outputs that follow the sensors in y.
+    pub outputs: Vec<Output>,
+    /// Numbers of parameters: a field, and the index in its numbers, element after element.
+    pub parameters: Vec<(ParamField, usize)>,
+    /// Numbers of the state to differentiate by, which follow the parameters in p.
+    pub inputs: Vec<(StateField, usize)>,
+    /// True if x ends with the other fields that a step changes, [`StateField::MEMORY`].
+    pub memory: bool,
+    /// True if a linearization also bounds the errors that the solver leaves.
+    pub errors: bool,
+}
+
+impl Request {
+    /// Returns the fields at the end of x.
+    pub(crate) fn memory_fields(&self) -> impl Iterator<Item = StateField> {
+        let wanted = self.memory;
+        StateField::MEMORY.into_iter().filter(move |_| wanted)
+    }
+
+    /// Returns the length of p.
+    pub(crate) fn p_len(&self) -> usize {
+        self.parameters.len() + self.inputs.len()
+    }
+
+    /// Returns the length of x.
+    pub(crate) fn x_len(&self, model: &Model) -> usize {
+        let memory = self.memory_fields().map(|field| field.count(model));
+        2 * model.nv + model.na + memory.sum::<usize>()
+    }
+}

@@ -1,0 +1,7 @@
+//! Compares the derivatives of steps with central differences.
+
+mod differences;
+mod error_bounds;
+mod jvp;
+mod state;
+mod steps;
