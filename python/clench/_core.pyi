@@ -912,6 +912,7 @@ class Sim(_Outputs):
         parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
         *,
         memory: bool | np.bool_ = False,
+        sensors: bool | np.bool_ = True,
         errors: bool | np.bool_ = False,
     ) -> Linearization: ...
     def jvp(
@@ -1124,6 +1125,7 @@ class Batch(_Outputs):
         parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
         *,
         memory: bool | np.bool_ = False,
+        sensors: bool | np.bool_ = True,
         errors: bool | np.bool_ = False,
     ) -> Linearization: ...
     def jvp(

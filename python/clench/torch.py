@@ -154,7 +154,7 @@ class _Rollout(torch.autograd.Function):
                 sim.state = start
                 begin, linear = segment * ctx.every, []
                 for sim.ctrl in ctrl[begin : begin + ctx.every].numpy():
-                    matrices = sim.linearize(memory=True)
+                    matrices = sim.linearize(memory=True, sensors=False)
                     sim.step()
                     linear.append((matrices.A, matrices.B, tangent.basis(sim.qpos)))
                 for k, (a, b, basis) in reversed([*enumerate(linear, begin)]):

@@ -81,13 +81,14 @@ impl Chosen {
         model: &clench::Model,
         outputs: &[String],
         parameters: Option<&Bound<'_, PyAny>>,
-        [memory, errors]: [bool; 2],
+        [memory, sensors, errors]: [bool; 3],
     ) -> PyResult<Self> {
         let outputs = outputs.iter().map(|name| Output::find(name));
         let mut chosen = Chosen {
             request: Request {
                 outputs: outputs.collect::<Result<_, _>>().map_err(sim_error)?,
                 memory,
+                omits_sensors: !sensors,
                 errors,
                 ..Request::default()
             },

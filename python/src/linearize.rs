@@ -27,6 +27,8 @@ impl Sim {
     ///     True to extend x by the other fields that a step changes, in this order: ``plastic``, ``history``,
     ///     ``stick_references``, ``stick_friction``. Products of matrices over several steps then contain delays,
     ///     springs that yield, and stiction.
+    /// sensors : bool
+    ///     False to omit the sensors from y, which most steps then do several times as fast.
     /// errors : bool
     ///     True to bound the errors that the tolerance of the solver leaves; takes a second solve.
     ///
@@ -53,18 +55,20 @@ impl Sim {
     /// ...     "<actuator><motor joint='x'/></actuator></mujoco>"))
     /// >>> sim.linearize().B.tolist()
     /// [[5e-05], [0.005]]
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, errors = false),
-           text_signature = "($self, outputs=(), parameters=None, *, memory=False, errors=False)")]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, sensors = true, errors = false),
+           text_signature = "($self, outputs=(), parameters=None, *, memory=False, sensors=True, errors=False)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
         memory: bool,
+        sensors: bool,
         errors: bool,
     ) -> PyResult<Linearization> {
         let model = self.described();
-        let chosen = derivatives::Chosen::new(model, &outputs, parameters, [memory, errors])?;
+        let chosen =
+            derivatives::Chosen::new(model, &outputs, parameters, [memory, sensors, errors])?;
         let mut linearizer = lock(self.linearizer(), "simulation")?;
         let mut guard = lock(self.inner(), "simulation")?;
         chosen.of_sim(py, &mut linearizer, &mut guard)
@@ -83,6 +87,8 @@ impl Batch {
     ///     Parameters or inputs to differentiate by.
     /// memory : bool
     ///     True to extend x by the other fields that a step changes.
+    /// sensors : bool
+    ///     False to omit the sensors from y.
     /// errors : bool
     ///     True to bound the errors that the tolerance of the solver leaves.
     ///
@@ -99,18 +105,20 @@ impl Batch {
     ///     If a parameter does not have a number.
     /// SimulationError
     ///     If the step of an environment fails.
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, errors = false),
-           text_signature = "($self, outputs=(), parameters=None, *, memory=False, errors=False)")]
+    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, sensors = true, errors = false),
+           text_signature = "($self, outputs=(), parameters=None, *, memory=False, sensors=True, errors=False)")]
     fn linearize(
         &self,
         py: Python<'_>,
         outputs: Vec<String>,
         parameters: Option<&Bound<'_, PyAny>>,
         memory: bool,
+        sensors: bool,
         errors: bool,
     ) -> PyResult<Linearization> {
         let model = self.described();
-        let chosen = derivatives::Chosen::new(model, &outputs, parameters, [memory, errors])?;
+        let chosen =
+            derivatives::Chosen::new(model, &outputs, parameters, [memory, sensors, errors])?;
         let mut linearizer = lock(self.linearizer(), "batch")?;
         let mut guard = lock(self.inner(), "batch")?;
         match &mut *guard {

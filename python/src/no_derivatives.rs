@@ -25,7 +25,7 @@ impl Chosen {
         _: &clench::Model,
         _: &[String],
         _: Option<&Bound<'_, PyAny>>,
-        _: [bool; 2],
+        _: [bool; 3],
     ) -> PyResult<Self> {
         Err(without())
     }

@@ -330,7 +330,7 @@ class Fuzz:
             "heights": lambda: owner.heights(name, self.numbers(2, 2), **thing),
             "render": lambda: owner.render(*sizes, camera=self.maybe(lambda: None), kind=self.maybe(lambda: kind), groups=self.maybe(lambda: [0, 1]), device=self.maybe(lambda: self.choose((None, "cpu"))), appearance=self.maybe(lambda: self.choose((None, looks)))),
             "ik": lambda: owner.ik(self.maybe(lambda: [clench.FrameTarget(**thing, position=point), clench.ComTarget(point)])),
-            "linearize": lambda: owner.linearize(self.maybe(lambda: ["xpos"]), self.maybe(lambda: {"body_mass": [1], "xfrc_applied": [6]}), memory=self.maybe(lambda: True), errors=self.maybe(lambda: True)),
+            "linearize": lambda: owner.linearize(self.maybe(lambda: ["xpos"]), self.maybe(lambda: {"body_mass": [1], "xfrc_applied": [6]}), memory=self.maybe(lambda: True), sensors=self.maybe(lambda: True), errors=self.maybe(lambda: True)),
             "jvp": lambda: owner.jvp(self.maybe(lambda: self.numbers(*lead, 2 * model.nv + model.na)), self.maybe(lambda: None), self.maybe(lambda: {"gravity": self.numbers(*lead, 3)})),
             "step1": lambda: owner.step1(),
             "step2": lambda: owner.step2(),

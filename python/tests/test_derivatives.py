@@ -180,6 +180,9 @@ def test_sensors_and_outputs_match_differences() -> None:
 
     scale = float(np.abs(linear.C).max())
     assert linear.C.shape == (model.nsensordata + 6 + 6, 12)
+    without = sim.linearize(sensors=False)
+    assert without.C.shape == (0, 12) and without.D.shape == (0, 1)
+    np.testing.assert_allclose(without.A, linear.A, rtol=1e-10, atol=1e-10 * float(np.abs(linear.A).max()))
     for column in range(12):
         assert_near(linear.C[:, column], differences(sim, change_state(column), read)[1], scale)
     assert_near(linear.D[:, 0], differences(sim, change_control(0), read)[1], 1.0)

@@ -74,6 +74,55 @@ pub(crate) fn collide_differentiated<T: Real>(
     POINTS.set(Some(points));
 }
 
+/// The number of directions in which two shapes move relative to each other, and turn in the world.
+const MOTIONS: usize = 9;
+
+/// A contact point, and its derivatives by the motion of the shapes: by a translation of the second along each axis of
+/// the world, then by a rotation of the first about each axis through its position, then by one of the second.
+/// (Tangents may follow the axes of the world, so the rotation of both together matters.)
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MovingPoint {
+    /// The point.
+    pub position: Vec3<f64>,
+    /// The derivatives of the distance.
+    pub distance_rates: [f64; MOTIONS],
+    /// The derivatives of the point.
+    pub position_rates: [Vec3<f64>; MOTIONS],
+    /// The derivatives of the rows of the contact frame.
+    pub frame_rates: [[Vec3<f64>; 3]; MOTIONS],
+}
+
+/// Replaces `out` by the points where two shapes are at most `margin` metres apart. Generic, so that the crate that
+/// differentiates compiles it.
+pub fn moving_points<T: Real>(
+    shapes: &[Shape<f64>; 2],
+    poses: &[Pose<f64>; 2],
+    margin: T,
+    out: &mut Vec<MovingPoint>,
+) {
+    let mut points = POINTS.take().unwrap_or_default();
+    find(shapes, poses, margin, &mut points);
+    out.clear();
+    out.extend(points.as_slice().iter().map(|point| {
+        let [normal, tangent, _] = point.frame.rows;
+        let [n, t] = [normal, tangent].map(|row| map(row, |x| x.value));
+        let mut moving = MovingPoint {
+            position: map(point.position, |x| x.value),
+            ..MovingPoint::default()
+        };
+        // The sizes follow these directions.
+        for k in TRANSLATION..MOTIONS {
+            let rate = |v: Vec3<PairDual>| map(v, |x| x.tangent[k]);
+            let (dn, dt) = (rate(normal), rate(tangent));
+            moving.distance_rates[k] = point.distance.tangent[k];
+            moving.position_rates[k] = rate(point.position);
+            moving.frame_rates[k] = [dn, dt, dn.cross(t) + n.cross(dt)];
+        }
+        moving
+    }));
+    POINTS.set(Some(points));
+}
+
 /// Returns a vector that changes by the change of each direction.
 #[inline(always)]
 fn chain<T: Real>(changes: &[T; DIRECTIONS], v: Vec3<PairDual>) -> Vec3<T> {

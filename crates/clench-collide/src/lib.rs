@@ -41,6 +41,7 @@ mod shape;
 pub use broad::{Bound, BroadPhase, Mobility, allowance, near};
 pub use compiled::compiled_collide;
 pub use contact::{ContactPoint, Contacts, MAX_POINTS, PATCH_POINTS};
+pub use differentiated::{MovingPoint, moving_points};
 pub use distance::{Separation, distance};
 pub use frame::{frame_along, frame_from_normal};
 pub use height_field::{HeightField, HeightFieldError};

@@ -40,7 +40,7 @@ impl Linearizer {
         }
         let nx = request.x_len(&model);
         let widths = request.outputs.iter().map(|output| output.width(&model));
-        let ny = model.nsensordata() + widths.sum::<usize>();
+        let ny = request.sensors_len(&model) + widths.sum::<usize>();
         let OutputTangent { x, y } = &mut self.along;
         let (by_state, by_output) = self.all.split_at(nx * columns);
         for (matrix, rows, values) in [(x, nx, by_state), (y, ny, by_output)] {

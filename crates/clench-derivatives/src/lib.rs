@@ -1,10 +1,11 @@
 //! Exact derivatives of a step.
 //!
-//! A [`Linearizer`] runs the step in [dual numbers](clench_math::Dual), several directions at a time. Every kernel of
-//! the step is generic over its number type, so no physics is written here, and every feature of the step has
-//! derivatives. Passes along velocities or controls alone keep the results of the stages that do not depend on them.
-//! Linear systems are solved with one factorization in plain numbers. The solution of the convex problem is
-//! differentiated by the implicit function theorem, with the Hessian that Newton's method factors.
+//! A [`Linearizer`] differentiates steps whose forces follow from joints and contacts by recursions over the tree (see
+//! `recursive`), and runs all others in [dual numbers](clench_math::Dual), several directions at a time. Every kernel
+//! of the step is generic over its number type, so every feature of the step has derivatives. Passes along velocities
+//! or controls alone keep the results of the stages that do not depend on them. Linear systems are solved with one
+//! factorization in plain numbers. The solution of the convex problem is differentiated by the implicit function
+//! theorem, with the Hessian that Newton's method factors.
 //!
 //! The derivative of a constraint that switches (a contact that begins, a limit that is reached) is that of the active
 //! side.
@@ -18,8 +19,10 @@ mod jvp;
 mod linearizer;
 mod matrix;
 mod pass;
+mod recursive;
 mod request;
 mod seed;
+mod source;
 mod tangent;
 
 pub use batch::BatchLinearizer;

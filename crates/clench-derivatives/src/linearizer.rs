@@ -2,9 +2,10 @@
 
 use crate::direction::{self, Direction, Start};
 use crate::matrix::{Matrix, OutputTangent, split_index};
-use crate::pass::{CreatePass, Pass, Source};
+use crate::pass::{CreatePass, Pass};
 use crate::request::Request;
 use crate::seed::Seed;
+use crate::source::Source;
 use clench_dynamics::StepSettings;
 use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
@@ -120,12 +121,15 @@ impl Linearizer {
     ) -> Result<&Linearization, SimError> {
         let model = self.prepare(sim, &request.parameters)?;
         let mut source = source(&model, sim, request);
+        self.result.errors = ErrorBound::default();
+        if request.is_of_state(&model) && self.recurse(source)? {
+            return Ok(&self.result);
+        }
         direction::list(&model, &sim.state, request, &mut self.directions);
         let columns = self.directions.len();
         let mut end = 0;
         let mut reuses = false;
         let bounds = request.errors && minimises(source);
-        self.result.errors = ErrorBound::default();
         while end < columns {
             let first = end;
             end += self.pass_len(source, first);
@@ -190,6 +194,31 @@ impl Linearizer {
         Ok(keeps_positions(*source) && (source.constant_factor || earliest > Start::Positions))
     }
 
+    /// Finds the derivatives by state and controls by recursions. Returns false if the step needs passes.
+    fn recurse(&mut self, source: Source<'_>) -> Result<bool, SimError> {
+        let (nx, nu) = (2 * source.model.nv + source.model.na, source.model.nu());
+        let Linearization {
+            a, b, c, d, e, f, ..
+        } = &mut self.result;
+        c.reset([0, nx]);
+        d.reset([0, nu]);
+        e.reset([nx, 0]);
+        f.reset([0, 0]);
+        for (matrix, columns) in [(&mut *a, nx), (&mut *b, nu)] {
+            matrix.shape = [nx, columns];
+            matrix.values.clear();
+        }
+        let recursed = self.pass.recurse(source, &mut |row| {
+            let (by_state, by_control) = row.split_at(nx);
+            a.values.extend_from_slice(by_state);
+            b.values.extend_from_slice(by_control);
+        })?;
+        if recursed {
+            self.pass.switching(&mut self.result.switching);
+        }
+        Ok(recursed)
+    }
+
     /// Returns the number of directions of the pass that starts with direction `first`. A pass
     /// contains no positions and other directions together if later passes can then reuse poses and contacts.
     fn pass_len(&self, source: Source<'_>, first: usize) -> usize {
@@ -246,6 +275,7 @@ pub(crate) fn source<'a>(model: &'a Model, sim: &'a Sim<f64>, request: &'a Reque
     Source {
         model,
         settings: sim.settings(),
+        params: sim.params(),
         state: &sim.state,
         request,
         first: true,

@@ -1,32 +1,19 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
 use crate::direction::Start;
+use crate::recursive::Recursive;
 use crate::request::Request;
 use crate::seed::{self, Seed};
+use crate::source::Source;
 use crate::tangent;
 use clench_dynamics::model::{Model, Params};
-use clench_dynamics::{State, StepSettings, Workspace, check, pipeline};
+use clench_dynamics::{State, Workspace, check, pipeline};
 use clench_math::{Dual, LaneTask, Real};
 use clench_rigid::{OutputSource, SimError, evaluate_sensors};
 use clench_solver::{ErrorBound, ErrorBounds};
 
 /// The number of registers of derivatives in a dual number. With one or four, a humanoid takes 20% longer.
 const REGISTERS: usize = 2;
-
-/// The input of a step.
-#[derive(Clone, Copy)]
-pub(crate) struct Source<'a> {
-    pub model: &'a Model,
-    pub settings: &'a StepSettings,
-    pub state: &'a State<f64>,
-    pub request: &'a Request,
-    /// True in the first pass from a state.
-    pub first: bool,
-    /// The first stage whose results change along the directions.
-    pub start: Start,
-    /// True if the factor of the mass matrix needs no derivatives.
-    pub constant_factor: bool,
-}
 
 /// A step in dual numbers of a type that is known only at run time.
 pub(crate) trait Pass: Send {
@@ -38,6 +25,13 @@ pub(crate) trait Pass: Send {
     fn bound_errors(&mut self, source: Source<'_>, count: usize, bound: &mut ErrorBound);
     /// Prepares for passes with these parameters.
     fn set_params(&mut self, params: &Params<f64>);
+    /// Passes the derivatives of the next state by state and controls, found by recursions, to `write`, row after row.
+    /// Returns false if the step needs passes.
+    fn recurse(
+        &mut self,
+        source: Source<'_>,
+        write: &mut dyn FnMut(&[f64]),
+    ) -> Result<bool, SimError>;
     /// Runs the step along the first `count` directions, which `seeds` define. `write(row, values)` receives the
     /// derivatives of each number of the result: the next state, the sensors, the outputs.
     fn run(
@@ -57,8 +51,7 @@ pub(crate) struct CreatePass<'a> {
 impl LaneTask<f64> for CreatePass<'_> {
     type Output = Box<dyn Pass>;
     fn run<T: Real<Scalar = f64>>(self) -> Box<dyn Pass> {
-        let mut ws = Workspace::new(self.model);
-        ws.sensors.wanted = true;
+        let ws = Workspace::new(self.model);
         let state = State::new(self.model);
         Box::new(DualPass::<T> {
             params: self.model.params.broadcast(),
@@ -68,6 +61,8 @@ impl LaneTask<f64> for CreatePass<'_> {
             outputs: Vec::new(),
             bounds: ErrorBounds::default(),
             last: Start::Positions,
+            recursive: Recursive::new(self.model),
+            recursed: false,
         })
     }
 }
@@ -83,6 +78,9 @@ struct DualPass<L: Real<Scalar = f64>> {
     bounds: ErrorBounds<Number<L>>,
     /// The start of the last pass.
     last: Start,
+    recursive: Recursive,
+    /// True if recursions found the last derivatives.
+    recursed: bool,
 }
 
 impl<L: Real<Scalar = f64>> DualPass<L> {
@@ -117,7 +115,12 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
     }
 
     fn switching(&self, out: &mut Vec<f64>) {
-        self.ws.problem.switching_distances(&self.ws.qacc, out);
+        if self.recursed {
+            let plain = &self.recursive.plain;
+            plain.problem.switching_distances(&plain.qacc, out);
+        } else {
+            self.ws.problem.switching_distances(&self.ws.qacc, out);
+        }
     }
 
     fn bound_errors(&mut self, source: Source<'_>, count: usize, bound: &mut ErrorBound) {
@@ -131,6 +134,16 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
 
     fn set_params(&mut self, params: &Params<f64>) {
         self.params = params.broadcast();
+        self.recursive.set_params(params);
+    }
+
+    fn recurse(
+        &mut self,
+        source: Source<'_>,
+        write: &mut dyn FnMut(&[f64]),
+    ) -> Result<bool, SimError> {
+        self.recursed = self.recursive.run(source, write)?;
+        Ok(self.recursed)
     }
 
     fn run(
@@ -170,6 +183,8 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
                 *field.number(state, index) = *field.number(before, index);
             }
         }
+        // Memory contains measurements.
+        ws.sensors.wanted = !request.omits_sensors || request.memory;
         ws.constant_factor = source.constant_factor;
         hold(ws, std::mem::replace(last, source.start), source);
         let step = match source.start {
@@ -207,7 +222,8 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
                     next(L::as_scalars(&field.number(state, i).tangent));
                 }
             }
-            for number in ws.sensors.data.iter().chain(&*outputs) {
+            let sensors = &ws.sensors.data[..request.sensors_len(model)];
+            for number in sensors.iter().chain(&*outputs) {
                 next(L::as_scalars(&number.tangent));
             }
         }

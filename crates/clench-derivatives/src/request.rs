@@ -17,6 +17,8 @@ pub struct Request {
     pub inputs: Vec<(StateField, usize)>,
     /// True if x ends with the other fields that a step changes, [`StateField::MEMORY`].
     pub memory: bool,
+    /// True if y has no sensors.
+    pub omits_sensors: bool,
     /// True if a linearization also bounds the errors that the solver leaves.
     pub errors: bool,
 }
@@ -26,6 +28,21 @@ impl Request {
     pub(crate) fn memory_fields(&self) -> impl Iterator<Item = StateField> {
         let wanted = self.memory;
         StateField::MEMORY.into_iter().filter(move |_| wanted)
+    }
+
+    /// Returns true if the results are the next positions, velocities and activations, the inputs those and controls.
+    pub(crate) fn is_of_state(&self, model: &Model) -> bool {
+        let no_outputs = self.outputs.is_empty() && self.sensors_len(model) == 0;
+        let no_memory = self.x_len(model) == 2 * model.nv + model.na;
+        no_outputs && no_memory && self.p_len() == 0 && !self.errors
+    }
+
+    /// Returns the number of sensor values in y.
+    pub(crate) fn sensors_len(&self, model: &Model) -> usize {
+        match self.omits_sensors {
+            true => 0,
+            false => model.nsensordata(),
+        }
     }
 
     /// Returns the length of p.

@@ -156,6 +156,11 @@ impl<T: Real> Newton<T> {
         self.hessian.solve(x);
     }
 
+    /// Computes `X ← H⁻¹ X` with the factor, for X of nv rows of `width` numbers.
+    pub(crate) fn solve_columns(&mut self, x: &mut [T], width: usize, scratch: &mut Vec<T>) {
+        self.hessian.solve_columns(x, width, scratch);
+    }
+
     /// Computes H⁻¹ times the derivatives of `x`.
     pub(crate) fn solve_tangents<N: Real<Value = T>>(&mut self, x: &mut [N], scratch: &mut Vec<T>) {
         self.hessian.solve_tangents(x, scratch);

@@ -3,5 +3,6 @@
 mod differences;
 mod error_bounds;
 mod jvp;
+mod recursion;
 mod state;
 mod steps;

@@ -41,15 +41,6 @@ impl<T: Real> ConstraintContext<'_, T> {
         awake
     }
 
-    /// Returns the softness of a limit or contact, with its stiffness limited to what a step resolves.
-    #[inline(always)]
-    pub(super) fn resolved(&self, soft: Softness<T>, solref: [T; 2]) -> Softness<T> {
-        match self.metric {
-            Some(_) if self.settings.flags.refsafe => soft.resolved(solref, self.params.timestep),
-            _ => soft,
-        }
-    }
-
     /// Returns the softness of an equality at a violation, and the record of its block.
     #[inline(always)]
     pub(super) fn equality(&self, equality: usize, violation: T) -> (Softness<T>, BlockRecord<T>) {

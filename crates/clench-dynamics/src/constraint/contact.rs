@@ -26,7 +26,7 @@
 
 use super::Softness;
 use super::assembly::Assembly;
-use super::context::ConstraintContext;
+use super::context::{ConstraintContext, SoftnessLimits};
 use super::row::Row;
 use crate::contact::Contact;
 use crate::dynamics::chains::{BodyPoint, Chains, Side};
@@ -59,16 +59,9 @@ pub(super) fn push<T: Real>(
     if out.dofs().is_empty() {
         return;
     }
-    let soft = Softness::new(
-        contact.solref,
-        contact.solimp,
-        contact.dist - contact.includemargin,
-        context.min_timeconst,
-    );
-    let resolved = context.resolved(soft, contact.solref);
     let weight = |body: usize| context.params.body_invweight0[body][0];
     let a0 = weight(bodies[0]) + weight(bodies[1]);
-    let (cost, mut rows) = rows(context, contact, [&soft, &resolved], a0);
+    let (soft, cost, mut rows) = soft_rows(&context.limits(), contact, a0);
     if let Some(stiction) = context.stiction {
         let displacement = stiction.displacement(index);
         for (row, phi) in rows[1..contact.dim].iter_mut().zip(displacement) {
@@ -91,11 +84,29 @@ pub(super) fn push<T: Real>(
     );
 }
 
+/// Computes the softness of a contact between bodies of inverse weight `a0`, its cost, and its rows.
+#[inline(always)]
+pub(super) fn soft_rows<T: Real>(
+    limits: &SoftnessLimits<'_, T>,
+    contact: &Contact<T>,
+    a0: T,
+) -> (Softness<T>, Cost, [Row<T>; MAX_DIM]) {
+    let soft = Softness::new(
+        contact.solref,
+        contact.solimp,
+        contact.dist - contact.includemargin,
+        limits.min_timeconst,
+    );
+    let resolved = limits.resolved(soft, contact.solref);
+    let (cost, rows) = rows(limits, contact, [&soft, &resolved], a0);
+    (soft, cost, rows)
+}
+
 /// Computes the rows of a contact from its softness before and after the limit of `resolved`. Friction of an elliptic
 /// cone has no spring and keeps its damping.
 #[inline(always)]
 fn rows<T: Real>(
-    context: &ConstraintContext<T>,
+    limits: &SoftnessLimits<'_, T>,
     contact: &Contact<T>,
     [soft, resolved]: [&Softness<T>; 2],
     a0: T,
@@ -115,10 +126,10 @@ fn rows<T: Real>(
     for (row, &drift) in rows[1..].iter_mut().zip(&contact.surfacevel) {
         row.drift = drift;
     }
-    let impratio = context.impratio;
+    let impratio = limits.impratio;
     let mu = contact.friction;
-    if context.settings.contact_model == ContactModel::Convex
-        && context.settings.friction_cone == FrictionCone::Pyramidal
+    if limits.settings.contact_model == ContactModel::Convex
+        && limits.settings.friction_cone == FrictionCone::Pyramidal
     {
         let mu2 = mu[0] * mu[0];
         let r = soft.regularization(a0 + mu2 * a0);
@@ -131,11 +142,11 @@ fn rows<T: Real>(
         return (Cost::Pyramid, rows);
     }
     let r1 = normal.r / impratio;
-    let sticks = context.stiction.is_some();
+    let sticks = limits.sticks;
     let (stiffness, damping) = if sticks { resolved } else { soft }.friction_spring(
         contact.solreffriction,
         contact.solimp,
-        context.min_timeconst,
+        limits.min_timeconst,
     );
     for (row, &mu_j) in rows[1..].iter_mut().zip(&mu) {
         row.stiffness = if sticks { stiffness } else { T::ZERO };
@@ -143,7 +154,7 @@ fn rows<T: Real>(
         row.r = r1 * mu[0] * mu[0] / (mu_j * mu_j);
         row.shape = mu_j;
     }
-    match context.settings.contact_model {
+    match limits.settings.contact_model {
         ContactModel::Convex => {
             rows[0].shape = mu[0] * (r1 / normal.r).sqrt();
             (Cost::Elliptic, rows)

@@ -62,6 +62,22 @@ pub(super) fn push_all<T: Real>(context: &ConstraintContext<T>, out: &mut Assemb
     }
 }
 
+/// Computes the softness and the row of a friction, without displacement, from its solref, solimp and inverse weight.
+#[inline(always)]
+pub(super) fn soft_row<T: Real>(
+    min_timeconst: T,
+    (solref, solimp, a0): ([T; 2], [T; 5], T),
+    loss: T,
+) -> (Softness<T>, Row<T>) {
+    let soft = Softness::new(solref, solimp, T::ZERO, min_timeconst);
+    let row = Row {
+        shape: loss,
+        stiffness: T::ZERO,
+        ..Row::new(&soft, T::ZERO, T::ZERO, a0)
+    };
+    (soft, row)
+}
+
 struct Friction<T: Real> {
     source: ConstraintSource,
     /// The index in `State::stick_friction`.
@@ -86,12 +102,8 @@ impl<T: Real> Friction<T> {
         if !active.any() {
             return;
         }
-        let soft = Softness::new(self.solref, self.solimp, T::ZERO, context.min_timeconst);
-        let mut row = Row {
-            shape: self.loss,
-            stiffness: T::ZERO,
-            ..Row::new(&soft, T::ZERO, T::ZERO, self.a0)
-        };
+        let numbers = (self.solref, self.solimp, self.a0);
+        let (soft, mut row) = soft_row(context.min_timeconst, numbers, self.loss);
         if context.stiction.is_some() {
             let displacement = context.state.stick_friction[self.index];
             row = Row {

@@ -11,7 +11,7 @@
 
 use super::Softness;
 use super::assembly::Assembly;
-use super::context::ConstraintContext;
+use super::context::{ConstraintContext, SoftnessLimits};
 use super::coordinate::Coordinate;
 use super::row::Row;
 use crate::model::JointKind;
@@ -78,6 +78,19 @@ pub(super) fn push_tendons<T: Real>(context: &ConstraintContext<T>, out: &mut As
         let coordinate = Coordinate::Tendon(i);
         limit.push_range(context, out, coordinate, params.tendon_range[i]);
     }
+}
+
+/// Computes the softness and the row of a limit at a distance, from its solref, solimp and inverse weight.
+#[inline(always)]
+pub(super) fn soft_row<T: Real>(
+    limits: &SoftnessLimits<'_, T>,
+    (solref, solimp, a0): ([T; 2], [T; 5], T),
+    dist: T,
+    margin: T,
+) -> (Softness<T>, Row<T>) {
+    let soft = Softness::new(solref, solimp, dist - margin, limits.min_timeconst);
+    let soft = limits.resolved(soft, solref);
+    (soft, Row::new(&soft, dist, margin, a0))
 }
 
 struct Limit<'a, T: Real> {
@@ -148,10 +161,8 @@ impl<T: Real> Limit<'_, T> {
         dist: T,
         fill: impl FnOnce(&[u32], &mut [T]),
     ) {
-        let violation = dist - self.margin;
-        let soft = Softness::new(*self.solref, *self.solimp, violation, context.min_timeconst);
-        let soft = context.resolved(soft, *self.solref);
-        let row = Row::new(&soft, dist, self.margin, self.a0);
+        let numbers = (*self.solref, *self.solimp, self.a0);
+        let (soft, row) = soft_row(&context.limits(), numbers, dist, self.margin);
         let block = BlockRecord {
             source: self.source,
             active: self.awake & dist.lt(self.margin),

@@ -7,6 +7,7 @@
 mod active;
 mod anchor_frames;
 pub(crate) mod assembly;
+pub mod at_distance;
 mod connect;
 mod contact;
 mod context;

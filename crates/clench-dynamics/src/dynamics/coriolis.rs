@@ -110,8 +110,17 @@ fn sum_rates<T: Real>(
 /// Computes the columns of B of one body.
 #[inline(always)]
 fn body_rate<T: Real>(inertia: &Inertia<T>, velocity: Motion<T>) -> [Force<T>; 6] {
+    body_rate_columns(inertia, velocity)
+}
+
+/// Computes the first columns of B of one body.
+#[inline(always)]
+pub(super) fn body_rate_columns<T: Real, const COUNT: usize>(
+    inertia: &Inertia<T>,
+    velocity: Motion<T>,
+) -> [Force<T>; COUNT] {
     let momentum = *inertia * velocity;
-    let mut columns = [Force::ZERO; 6];
+    let mut columns = [Force::ZERO; COUNT];
     for (c, column) in columns.iter_mut().enumerate() {
         let x = Motion::component(c);
         *column = *inertia * x.cross(velocity)
@@ -123,7 +132,7 @@ fn body_rate<T: Real>(inertia: &Inertia<T>, velocity: Motion<T>) -> [Force<T>; 6
 
 /// Computes ṡ − s × u of each dof. The axes of a ball joint and of a free joint's rotations turn with the whole joint.
 #[inline(always)]
-fn drifts<T: Real>(
+pub(super) fn drifts<T: Real>(
     model: &Model,
     pos: &Positions<T>,
     vel: &Velocities<T>,

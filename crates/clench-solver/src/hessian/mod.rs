@@ -132,6 +132,21 @@ impl<T: Real> Hessian<T> {
         }
     }
 
+    /// Computes `X ← H⁻¹ X` for X of nv rows of `width` numbers.
+    pub(crate) fn solve_columns(&mut self, x: &mut [T], width: usize, scratch: &mut Vec<T>) {
+        if !self.is_filled {
+            return self.paths.solve_columns(x, width);
+        }
+        for column in 0..width {
+            scratch.clear();
+            scratch.extend(x[column..].iter().step_by(width));
+            self.filled.solve(scratch);
+            for (x, &solution) in x[column..].iter_mut().step_by(width).zip(&*scratch) {
+                *x = solution;
+            }
+        }
+    }
+
     /// Computes H⁻¹ times the derivatives of `x`.
     pub(crate) fn solve_tangents<N: Real<Value = T>>(&mut self, x: &mut [N], scratch: &mut Vec<T>) {
         if self.is_filled {

@@ -106,6 +106,11 @@ impl<T: Real> PathForm<T> {
         self.factor.solve(&self.tree, x);
     }
 
+    /// See [`Hessian::solve_columns`](super::Hessian::solve_columns).
+    pub(super) fn solve_columns(&self, x: &mut [T], width: usize) {
+        self.factor.solve_columns(&self.tree, x, width);
+    }
+
     /// Does the same in numbers with derivatives.
     pub(super) fn solve_varying<N: Real<Value = T>>(&self, x: &mut [N]) {
         self.factor.solve_varying(&self.tree, x);

@@ -7,6 +7,7 @@
 //! A row lists a path from a root. So the row of an ancestor is a prefix of the row of each of its descendants, and a
 //! column has the same index in all of them. The kernels use this: they run over contiguous values, without indices.
 
+mod columns;
 mod differentiated;
 mod factor;
 mod lu;

@@ -1,0 +1,195 @@
+//! The derivatives of a step by recursions over the tree, for models whose forces permit it.
+//!
+//! A step in plain numbers finds the acceleration a. The gradient of the convex problem at this constant acceleration,
+//!
+//! ```text
+//! g = M a + bias − τ − Jᵀf
+//! ```
+//!
+//! has derivatives without matrices in dual numbers: those of inverse dynamics M a + bias follow from a recursion
+//! (`clench_dynamics::dynamics::inverse_derivatives`), those of τ from dual numbers of the coordinates of each joint
+//! alone (`local`), those of Jᵀf from the motion of each contact (`blocks`). Then da = −H⁻¹ dg, for all directions at
+//! once.
+
+mod blocks;
+mod local;
+mod scope;
+mod step;
+
+use crate::source::Source;
+use blocks::Blocks;
+use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
+use clench_dynamics::model::{Integrator, Model, Params};
+use clench_dynamics::{State, Workspace, check};
+use clench_rigid::SimError;
+use clench_solver::Response;
+use local::Local;
+use step::Step;
+
+/// The memory of derivatives by recursion.
+pub(crate) struct Recursive {
+    state: State<f64>,
+    pub(crate) plain: Workspace<f64>,
+    inverse: InverseDerivatives<f64>,
+    local: Local,
+    blocks: Blocks,
+    response: Response<f64>,
+    /// The gradient, then the acceleration, then the new velocity: nv rows.
+    columns: Vec<f64>,
+    /// The right side of an implicit step, then the difference of its acceleration.
+    implicit: Vec<f64>,
+}
+
+impl Recursive {
+    pub(crate) fn new(model: &Model) -> Self {
+        let compiled = clench_dynamics::Step::<f64>::compiled();
+        Recursive {
+            state: State::new(model),
+            plain: (compiled.workspace)(model),
+            inverse: InverseDerivatives::new(model),
+            local: Local::new(model),
+            blocks: Blocks::default(),
+            response: Response::default(),
+            columns: Vec::new(),
+            implicit: Vec::new(),
+        }
+    }
+
+    pub(crate) fn set_params(&mut self, params: &Params<f64>) {
+        self.plain.invalidate_poses();
+        self.local.set_params(params);
+    }
+
+    /// Passes the derivatives of the next state by state and controls to `write`, row after row. Returns false if the
+    /// step is of a kind that recursions do not cover.
+    pub(crate) fn run(
+        &mut self,
+        source: Source<'_>,
+        write: &mut dyn FnMut(&[f64]),
+    ) -> Result<bool, SimError> {
+        let (model, settings) = (source.model, source.settings);
+        if !scope::covers(model, source.params, settings, source.state) {
+            return Ok(false);
+        }
+        self.state.copy_from(source.state);
+        let step = clench_dynamics::Step::<f64>::compiled().step;
+        let (state, plain) = (&mut self.state, &mut self.plain);
+        step(
+            model,
+            source.params,
+            settings,
+            state,
+            plain,
+            |_, _, _, _, _| {},
+        );
+        if !check::good_results(state, plain) {
+            let fault = check::result_fault(model, source.state.time, state, plain, 0);
+            return Err(fault.into());
+        }
+        let step = Step {
+            model,
+            params: source.params,
+            settings,
+            before: source.state,
+            after: &self.state,
+            plain: &self.plain,
+        };
+        let columns = 2 * model.nv + model.na + model.nu();
+        // Rows fill whole registers.
+        let width = columns.max(1).next_multiple_of(16);
+        self.columns.clear();
+        self.columns.resize(model.nv * width, 0.0);
+        let mut gradient = Columns {
+            values: &mut self.columns,
+            width,
+        };
+        if !(self.response).factor(&step.plain.problem, &settings.solver, &step.plain.qacc) {
+            return Ok(false);
+        }
+        if !(self.blocks).run(&step, &self.response, &mut gradient) {
+            return Ok(false);
+        }
+        self.local.run(&step, &mut gradient);
+        let moving = Accelerated {
+            qacc: &step.plain.qacc,
+            moving: Some((&step.plain.velocity, &source.state.qvel)),
+        };
+        let pos = &step.plain.position;
+        self.inverse
+            .add(model, source.params, pos, moving, &mut gradient);
+        self.response.solve_columns(&mut self.columns, width);
+        accelerate(
+            &step,
+            &mut self.inverse,
+            &self.local,
+            (&mut self.columns, &mut self.implicit),
+            width,
+        );
+        let h = source.params.timestep;
+        for (i, row) in self.columns.chunks_exact_mut(width).enumerate() {
+            row.iter_mut().for_each(|x| *x *= h);
+            row[model.nv + i] += 1.0;
+        }
+        let velocity = self.columns.chunks_exact(width).map(|row| &row[..columns]);
+        self.local.write_positions(model, velocity.clone(), write);
+        velocity.for_each(&mut *write);
+        self.local.write_activations(model, columns, write);
+        Ok(true)
+    }
+}
+
+/// Replaces H⁻¹ dg in `columns` by the derivatives of the acceleration that advances the velocity.
+fn accelerate(
+    step: &Step<'_>,
+    inverse: &mut InverseDerivatives<f64>,
+    local: &Local,
+    (columns, implicit): (&mut [f64], &mut Vec<f64>),
+    width: usize,
+) {
+    columns.iter_mut().for_each(|x| *x = -*x);
+    let (model, plain) = (step.model, step.plain);
+    let implicitly = match model.integrator {
+        Integrator::Euler => plain.integration.damped.0,
+        Integrator::ImplicitFast
+        | Integrator::Implicit
+        | Integrator::Rk4
+        | Integrator::Discrete => true,
+    };
+    if !implicitly {
+        return;
+    }
+    // (M + h B) a′ = M a with a diagonal B, so e = a − a′ solves (M + h B) e = h B a, and
+    // (M + h B) de = h B da + h dB a′ − dM e.
+    let h = step.params.timestep;
+    let change = plain.qacc.iter().zip(&plain.integration.qacc);
+    let change = Vec::from_iter(change.map(|(a, implicit)| implicit - a));
+    implicit.clear();
+    implicit.resize(columns.len(), 0.0);
+    let mut right = Columns {
+        values: implicit,
+        width,
+    };
+    let resting = Accelerated {
+        qacc: &change,
+        moving: None,
+    };
+    inverse.add(model, step.params, &plain.position, resting, &mut right);
+    for &(dof, column, rate) in &local.slope_rates {
+        right.add(dof, column, h * rate);
+    }
+    let rows = implicit
+        .chunks_exact_mut(width)
+        .zip(columns.chunks_exact(width));
+    for ((right, row), slope) in rows.zip(&local.slopes) {
+        let scale = h * slope;
+        right
+            .iter_mut()
+            .zip(row)
+            .for_each(|(x, &y)| *x += scale * y);
+    }
+    (plain.integration.factor).solve_columns(&model.tree, implicit, width);
+    columns
+        .iter_mut()
+        .zip(&*implicit)
+        .for_each(|(x, &y)| *x -= y);
+}

@@ -1,0 +1,44 @@
+//! A step in plain numbers, and its actuators.
+
+use clench_dynamics::model::{Model, Params, Transmission};
+use clench_dynamics::{State, StepSettings, Workspace};
+
+/// A step in plain numbers, whose derivatives are wanted.
+pub(super) struct Step<'a> {
+    pub model: &'a Model,
+    pub params: &'a Params<f64>,
+    pub settings: &'a StepSettings,
+    pub before: &'a State<f64>,
+    pub after: &'a State<f64>,
+    pub plain: &'a Workspace<f64>,
+}
+
+impl Step<'_> {
+    /// Returns the dof that an actuator acts on, and its moment arm.
+    pub(super) fn arm(&self, actuator: usize) -> Option<(usize, f64)> {
+        let actuator = &self.model.actuators[actuator];
+        match actuator.transmission {
+            Transmission::Joint(j) | Transmission::JointInParent(j) => {
+                let arms = self.model.actuator_dofs.range(actuator.outputs.start);
+                let arm = self.plain.position.actuator_moment[arms.start];
+                Some((self.model.joints[j].dof, arm))
+            }
+            Transmission::Tendon(_)
+            | Transmission::Site(_)
+            | Transmission::SiteInFrame(_)
+            | Transmission::SliderCrank(_)
+            | Transmission::Body(_)
+            | Transmission::Rotation(_)
+            | Transmission::RotationInFrame(_) => None,
+        }
+    }
+
+    /// Returns 0 if the range of a joint holds the total force of its actuators, else 1.
+    pub(super) fn passed_share(&self, joint: usize) -> f64 {
+        let [low, high] = self.params.jnt_actfrcrange[joint];
+        let joint = &self.model.joints[joint];
+        let total = self.plain.force.qfrc_actuator[joint.dof];
+        let held = joint.actfrclimited && (total <= low || total >= high);
+        f64::from(u8::from(!held))
+    }
+}

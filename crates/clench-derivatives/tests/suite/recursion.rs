@@ -1,0 +1,136 @@
+//! Compares derivatives by recursion with those of passes in dual numbers, which a requested output needs.
+
+use clench_derivatives::{Linearizer, Matrix, Request};
+use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_rigid::{Model, Output, Sim};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The largest difference relative to 1 + the magnitude.
+const TOLERANCE: f64 = 1e-10;
+
+/// Random numbers in [−1, 1].
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = (self.0)
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 33) as f64 / f64::from(1 << 30) - 1.0
+    }
+}
+
+fn compare(recursive: &Matrix, passes: &Matrix) {
+    assert_eq!(recursive.shape, passes.shape);
+    for (k, (a, b)) in recursive.values.iter().zip(&passes.values).enumerate() {
+        let (row, column) = (k / passes.shape[1], k % passes.shape[1]);
+        assert!(
+            (a - b).abs() <= TOLERANCE * (1.0 + b.abs()),
+            "row {row}, column {column}: {a} by recursion, {b} by passes"
+        );
+    }
+}
+
+/// Compares all derivatives in every fifth step under random controls. Returns the most contacts of a state.
+fn check(model: Model, options: RigidOptions, steps: usize) -> usize {
+    let mut sim = Sim::<f64>::with_options(Arc::new(model), options).expect("a simulation");
+    let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
+    let mut random = Random(1);
+    let with_output = Request {
+        outputs: vec![Output::find("subtree_com").expect("an output")],
+        ..Request::default()
+    };
+    let mut contacts = 0;
+    for step in 0..steps {
+        if step % 10 == 0 {
+            for control in &mut sim.state.ctrl {
+                *control = 0.5 * random.next();
+            }
+        }
+        sim.step().expect("a step");
+        contacts = contacts.max(sim.workspace().contacts.len());
+        if step % 5 == 0 {
+            let recursive = linearizer.linearize(&sim, &Request::default());
+            let recursive = recursive.expect("derivatives").clone();
+            let passes = linearizer.linearize(&sim, &with_output);
+            let passes = passes.expect("derivatives");
+            compare(&recursive.a, &passes.a);
+            compare(&recursive.b, &passes.b);
+            assert_eq!(recursive.switching.len(), passes.switching.len());
+        }
+    }
+    contacts
+}
+
+fn load(name: &str) -> Model {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    clench_formats::load(models.join(name)).expect("a model of the repository")
+}
+
+#[test]
+fn robots_in_contact() {
+    for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
+        let options = RigidOptions::new().friction_cone(cone);
+        // The humanoid also touches itself, the arm a table and a box.
+        for name in ["humanoid.xml", "quadruped.xml", "arm_and_box.xml"] {
+            assert!(check(load(name), options, 150) > 1);
+        }
+        assert!(check(load("box_stack.xml"), options, 20) > 4);
+        check(load("rolling_sphere.xml"), options, 100);
+    }
+}
+
+/// A chain of all kinds of joints, with springs, curved dampers, dry friction and limits, and several actuators.
+fn mixed(integrator: &str, root: &str) -> Model {
+    let text = format!(
+        r#"<mujoco>
+          <option integrator="{integrator}" timestep="0.004"/>
+          <worldbody>
+            <geom type="plane" size="2 2 .1"/>
+            <geom type="box" size=".05 .3 .1" pos=".35 0 .1"/>
+            <body pos="0 0 .3">
+              {root}
+              <geom type="capsule" fromto="0 0 0 .2 0 -.1" size=".03" condim="6"/>
+              <body pos=".2 0 -.1">
+                <joint name="a" axis="0 1 .2" damping=".05 .02" armature=".01" frictionloss=".02" range="-60 20"/>
+                <joint name="b" type="slide" axis="1 0 .1" damping=".5" stiffness="30 5" frictionloss=".1"/>
+                <joint name="c" axis="1 0 0" pos=".02 .01 0" actuatorfrcrange="-.3 .3" actuatorfrclimited="true"/>
+                <geom type="ellipsoid" pos=".1 0 -.1" size=".1 .05 .04" condim="4"/>
+                <body pos=".2 0 -.1">
+                  <joint name="d" type="ball" pos=".01 .02 .03" stiffness=".3" damping=".02"/>
+                  <geom type="box" pos=".05 0 0" size=".05 .02 .03"/>
+                </body>
+              </body>
+            </body>
+          </worldbody>
+          <actuator>
+            <position joint="a" kp="2" kv=".1" forcerange="-.5 .5"/>
+            <general joint="b" dyntype="filter" dynprm=".05" gainprm="2" gear="1.5"/>
+            <damper joint="b" kv=".4" ctrlrange="0 1"/>
+            <motor joint="c" gear="3"/>
+            <motor joint="c" ctrlrange="-.1 .1" ctrllimited="true"/>
+          </actuator>
+        </mujoco>"#
+    );
+    clench_formats::load_str(&text).expect("a model")
+}
+
+#[test]
+fn joints_actuators_and_integrators() {
+    let ball = r#"<joint type="ball" damping=".1" stiffness=".2"/>"#;
+    let free = r#"<joint type="free" damping=".1" stiffness=".2"/>"#;
+    for (integrator, root) in [("Euler", ball), ("Euler", free), ("implicitfast", ball)] {
+        assert!(check(mixed(integrator, root), RigidOptions::new(), 200) > 1);
+    }
+}
+
+/// Kinds of steps that need passes: the results are the same because they are the same.
+#[test]
+fn other_steps_need_passes() {
+    check(load("four_bar.xml"), RigidOptions::new(), 20);
+    let free = r#"<joint type="free"/>"#;
+    for integrator in ["implicitfast", "implicit", "RK4", "discrete"] {
+        check(mixed(integrator, free), RigidOptions::new(), 20);
+    }
+}
