@@ -150,8 +150,8 @@ impl<T: Real> DynamicBroadPhase<T> {
         }
     }
 
-    /// Replaces `candidates` with the explicit pairs and the pairs that are near in any lane. Pairs of which both sleep,
-    /// by `trees`, may be missing. Returns the lanes in which they exceed the budget.
+    /// Replaces `candidates` with the explicit pairs and the pairs that are near in any lane; with `trees`, those of
+    /// geoms that sleep may be missing. Returns the lanes in which they exceed the budget.
     #[kernel]
     pub fn find(
         &mut self,
