@@ -85,7 +85,8 @@ impl Blocks {
         self.geoms = None;
         self.find_accelerations(step);
         for (block, record) in plain.problem.blocks().zip(&plain.record.blocks) {
-            if block.d[0] <= 0.0 || is_idle(&block, &response.force()[block.rows()]) {
+            let y = &response.residual()[block.rows()];
+            if block.d[0] <= 0.0 || is_idle(&block, y) {
                 continue;
             }
             let contact = match record.source {
@@ -101,7 +102,6 @@ impl Blocks {
                 return false;
             }
             let of = (record.source, contact);
-            let y = &response.residual()[block.rows()];
             let Some(slopes) = slopes(step, &block, of, y) else {
                 return false;
             };
@@ -277,13 +277,13 @@ impl Blocks {
     }
 }
 
-/// Returns true if the force of a block is on a piece of its cost on which it is zero.
-fn is_idle(block: &Block<'_, f64>, force: &[f64]) -> bool {
-    let pushes_only = match block.cost {
-        Cost::OneSided | Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => true,
-        Cost::Quadratic | Cost::Huber => false,
-    };
-    pushes_only && force.iter().all(|&f| f == 0.0)
+/// Returns true if a block at the residual `y` is within the piece of its cost on which the force is zero, as most
+/// limits are.
+fn is_idle(block: &Block<'_, f64>, y: &[f64]) -> bool {
+    match block.cost {
+        Cost::OneSided => y[0] > 0.0,
+        Cost::Quadratic | Cost::Huber | Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => false,
+    }
 }
 
 /// The change of a contact with a dof.
