@@ -1,5 +1,6 @@
 //! Central differences of steps.
 
+use crate::common::Random;
 use clench_derivatives::Matrix;
 use clench_dynamics::dynamics::integrate::differentiate_positions;
 use clench_rigid::options::RigidOptions;
@@ -8,18 +9,6 @@ use std::sync::Arc;
 
 /// The largest difference from the exact derivative, relative to 1 + its magnitude.
 const TOLERANCE: f64 = 1e-6;
-/// Random numbers in [−1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = (self.0)
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 33) as f64 / f64::from(1 << 30) - 1.0
-    }
-}
-
 /// A simulation and the differences of its steps.
 pub(crate) struct Differences {
     pub(crate) sim: Sim<f64>,

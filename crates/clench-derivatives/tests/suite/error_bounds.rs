@@ -1,25 +1,16 @@
 //! Compares derivatives after coarse solves with those after exact ones: their difference is within the bounds.
 
+use crate::common::{elliptic, load};
 use clench_derivatives::{ErrorBound, Linearization, Linearizer, Matrix, Request};
-use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
+use clench_rigid::options::{ContactModel, RigidOptions};
 use clench_rigid::{Model, Output, Sim, State};
 use clench_solver::ConstraintSolver;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The rounding errors of derivatives, relative to the largest.
 const ROUNDING: f64 = 1e-11;
 /// A geometric mean of bound / error that says nothing.
 const VACUOUS: f64 = 30.0;
-
-fn load(name: &str) -> Arc<Model> {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    Arc::new(clench_formats::load(models.join(name)).expect("a model of the repository"))
-}
-
-fn elliptic() -> RigidOptions {
-    RigidOptions::new().friction_cone(FrictionCone::Elliptic)
-}
 
 fn exact(options: RigidOptions) -> RigidOptions {
     options
@@ -189,10 +180,10 @@ fn check(model: Arc<Model>, options: RigidOptions) -> f64 {
 
 #[test]
 fn errors_of_coarse_solves_are_within_their_bounds() {
-    assert!(check(load("humanoid.xml"), RigidOptions::new()) > 100.0);
-    assert!(check(load("humanoid.xml"), elliptic()) > 100.0);
-    assert!(check(load("quadruped.xml"), RigidOptions::new()) > 100.0);
-    assert!(check(load("arm_and_box.xml"), elliptic()) > 100.0);
+    assert!(check(Arc::new(load("humanoid.xml")), RigidOptions::new()) > 100.0);
+    assert!(check(Arc::new(load("humanoid.xml")), elliptic()) > 100.0);
+    assert!(check(Arc::new(load("quadruped.xml")), RigidOptions::new()) > 100.0);
+    assert!(check(Arc::new(load("arm_and_box.xml")), elliptic()) > 100.0);
 }
 
 #[test]
@@ -229,7 +220,7 @@ fn integrators_and_metrics() {
 /// Accelerations that are not the minimiser of one problem have no bounds.
 #[test]
 fn unknown_errors_are_infinite() {
-    let model = load("quadruped.xml");
+    let model = Arc::new(load("quadruped.xml"));
     let coulomb = RigidOptions::new().contact_model(ContactModel::Coulomb);
     for options in [coulomb, elliptic().noslip_iterations(3)] {
         let states = states(&model, options, 20);
@@ -250,7 +241,7 @@ fn unknown_errors_are_infinite() {
 
 #[test]
 fn bounds_are_computed_on_demand() {
-    let sim = Sim::<f64>::new(load("quadruped.xml")).expect("a simulation");
+    let sim = Sim::<f64>::new(Arc::new(load("quadruped.xml"))).expect("a simulation");
     let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
     let linear = linearizer.linearize(&sim, &Request::default());
     assert_eq!(linear.expect("derivatives").errors, ErrorBound::default());

@@ -1,28 +1,18 @@
 //! Compares directional derivatives with products of the matrices of a linearization.
 
+use crate::common::{Random, elliptic, load};
 use clench_derivatives::{
     BatchLinearizer, InputTangent, Linearizer, Matrix, OutputTangent, Request,
 };
 use clench_dynamics::model::ParamField;
-use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
+use clench_rigid::options::{ContactModel, RigidOptions};
 use clench_rigid::{Batch, Model, Output, Sim};
-use std::path::Path;
 use std::sync::Arc;
 
 /// The largest difference, relative to the largest sum of the sizes of the terms of a number of the product.
 const TOLERANCE: f64 = 1e-12;
 
-/// Random numbers in [−1, 1].
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = (self.0)
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 33) as f64 / f64::from(1 << 30) - 1.0
-    }
-
     /// Returns a matrix, of which a third of the numbers are zero.
     fn matrix(&mut self, shape: [usize; 2]) -> Matrix {
         let number = |_| match self.next() {
@@ -122,15 +112,6 @@ fn check(model: Model, options: RigidOptions, steps: usize) {
     // The linearizer stores nothing that changes later results.
     let again = linearizer.linearize(&sim, &request).expect("derivatives");
     assert_eq!(&linear, again);
-}
-
-fn load(name: &str) -> Model {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    clench_formats::load(models.join(name)).expect("a model of the repository")
-}
-
-fn elliptic() -> RigidOptions {
-    RigidOptions::new().friction_cone(FrictionCone::Elliptic)
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Compares the derivatives of steps with central differences.
 
+mod common;
 mod differences;
 mod error_bounds;
 mod jvp;

@@ -1,25 +1,13 @@
 //! Compares derivatives by recursion with those of passes in dual numbers, which a requested output needs.
 
+use crate::common::{Random, load};
 use clench_derivatives::{Linearizer, Matrix, Request};
 use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Model, Output, Sim};
-use std::path::Path;
 use std::sync::Arc;
 
 /// The largest difference relative to 1 + the magnitude.
 const TOLERANCE: f64 = 1e-10;
-
-/// Random numbers in [−1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = (self.0)
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 33) as f64 / f64::from(1 << 30) - 1.0
-    }
-}
 
 fn compare(recursive: &Matrix, passes: &Matrix) {
     assert_eq!(recursive.shape, passes.shape);
@@ -61,11 +49,6 @@ fn check(model: Model, options: RigidOptions, steps: usize) -> usize {
         }
     }
     contacts
-}
-
-fn load(name: &str) -> Model {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    clench_formats::load(models.join(name)).expect("a model of the repository")
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! Derivatives by state, controls and parameters.
 
+use crate::common::{elliptic, load};
 use crate::differences::Differences;
 use clench_derivatives::{Linearizer, Request};
 use clench_dynamics::dynamics::integrate::integrate_positions;
 use clench_dynamics::model::{Integrator, ParamField};
-use clench_rigid::options::{ContactModel, FrictionCone, RigidOptions};
+use clench_rigid::options::{ContactModel, RigidOptions};
 use clench_rigid::readout::constraint_rows;
 use clench_rigid::{Model, Sim};
 use clench_solver::ConstraintSolver;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The largest share of entries whose differences disagree, because a constraint switches within the interval.
@@ -53,15 +53,6 @@ fn check(model: Model, options: RigidOptions, steps: usize) {
     let all = (result.a.values.len() + result.b.values.len()) as f64;
     let limit = (SWITCHING * all) as usize;
     assert!(switching <= limit, "{switching} of {all} entries switch");
-}
-
-fn load(name: &str) -> Model {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    clench_formats::load(models.join(name)).expect("a model of the repository")
-}
-
-fn elliptic() -> RigidOptions {
-    RigidOptions::new().friction_cone(FrictionCone::Elliptic)
 }
 
 #[test]
