@@ -35,6 +35,13 @@ def test_example_runs_and_plots(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+def test_feedback_balances_a_humanoid_on_one_foot() -> None:
+    heights = [float(height) for height in re.findall(r" s ([\d.]+)$", run("one_foot"), re.MULTILINE)]
+    assert len(heights) == 2
+    assert heights[0] > 1.3 and heights[1] < 0.5
+
+
+@pytest.mark.long
 def test_policy_learns(tmp_path: Path) -> None:
     plot = tmp_path / "curve.svg"
     printed = run("train_policy", "--plot", str(plot))
