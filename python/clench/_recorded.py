@@ -66,9 +66,10 @@ class Recorded:
         """
         nv, rows, n = sim.model.nv, [], sum(map(len, parameters.values()))
         state = np.zeros((state_size(sim), n))
+        sensors = not self._measured.keys() <= {"qpos", "qvel"}
         for k in self._each_step(sim):
-            linear = sim.linearize(parameters=parameters, memory=True)
-            sensors = linear.C @ state + np.hstack([*linear.output_parameters.values()])
+            linear = sim.linearize(parameters=parameters, memory=True, sensors=sensors)
+            readings = linear.C @ state + np.hstack([*linear.output_parameters.values()])
             state = linear.A @ state + np.hstack([*linear.parameters.values()])
             sim.step()
             for name in self._measured:
@@ -76,7 +77,7 @@ class Recorded:
                     inverse, qpos, _ = self._positions(sim, k)
                     rows.append(inverse @ self._tangent.basis(qpos) @ state[:nv])
                 else:
-                    rows.append(state[nv : 2 * nv] if name == "qvel" else sensors)
+                    rows.append(state[nv : 2 * nv] if name == "qvel" else readings)
         every = np.vstack([np.empty((0, n)), *rows])
         derivatives: Floats = self._weights[:, np.newaxis] * every[self._known]
         return derivatives

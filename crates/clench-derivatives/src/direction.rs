@@ -31,6 +31,18 @@ pub(crate) enum Direction {
 }
 
 impl Direction {
+    /// Returns true for motion of the position.
+    pub(crate) fn is_position(self) -> bool {
+        match self {
+            Direction::Position(_) => true,
+            Direction::Velocity(_)
+            | Direction::Activation(_)
+            | Direction::Control(_)
+            | Direction::Parameter(..)
+            | Direction::Number(..) => false,
+        }
+    }
+
     /// Returns the first stage whose results change along the direction.
     pub(crate) fn start(self) -> Start {
         match self {

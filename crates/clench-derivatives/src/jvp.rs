@@ -1,7 +1,7 @@
 //! Directional derivatives: products of a vector, or of several, with the Jacobian of a step, without its matrices.
 
 use crate::direction::{self, Direction};
-use crate::linearizer::{Linearizer, source};
+use crate::linearizer::{Linearization, Linearizer, source};
 use crate::matrix::{InputTangent, OutputTangent, split_index};
 use crate::request::Request;
 use crate::seed::Seed;
@@ -10,8 +10,8 @@ use std::ops::Range;
 
 impl Linearizer {
     /// Returns the directional derivatives of the next step of a simulation of the model, whose state does not change:
-    /// A dx + B du + E dp and C dx + D du + F dp of its [`Linearization`](crate::Linearization), at the cost of the
-    /// passes that the columns of the tangent need. A pass has 8 to 16 columns.
+    /// A dx + B du + E dp and C dx + D du + F dp of its [`Linearization`](crate::Linearization), at the cost of A and
+    /// B if recursions give them, else of the passes that the columns of the tangent need. A pass has 8 to 16 columns.
     ///
     /// # Errors
     /// Returns an error if [`Sim::step`] would return one.
@@ -28,6 +28,17 @@ impl Linearizer {
         let columns = tangent.columns(sim.model(), request);
         let model = self.prepare(sim, &request.parameters)?;
         let mut source = source(&model, sim, request);
+        let (nx, ny) = (request.x_len(&model), request.y_len(&model));
+        self.along.x.reset([nx, columns]);
+        self.along.y.reset([ny, columns]);
+        let permits = request.permits_recursion(&model) && request.p_len() == 0;
+        if permits && self.recurse(source)? {
+            // The matrices are found in less time than a pass needs.
+            let Linearization { a, b, .. } = &self.result;
+            self.along.x.add_product(a, &tangent.x);
+            self.along.x.add_product(b, &tangent.u);
+            return Ok(&self.along);
+        }
         direction::list(&model, &sim.state, request, &mut self.directions);
         let mut end = 0;
         let mut reuses = false;
@@ -38,15 +49,9 @@ impl Linearizer {
             tangent.push_seeds(&self.directions, first..end, &mut self.seeds);
             reuses = self.run_pass(&mut source, columns, first..end, reuses)?;
         }
-        let nx = request.x_len(&model);
-        let widths = request.outputs.iter().map(|output| output.width(&model));
-        let ny = request.sensors_len(&model) + widths.sum::<usize>();
-        let OutputTangent { x, y } = &mut self.along;
         let (by_state, by_output) = self.all.split_at(nx * columns);
-        for (matrix, rows, values) in [(x, nx, by_state), (y, ny, by_output)] {
-            matrix.reset([rows, columns]);
-            matrix.values.copy_from_slice(values);
-        }
+        self.along.x.values.copy_from_slice(by_state);
+        self.along.y.values.copy_from_slice(by_output);
         Ok(&self.along)
     }
 }

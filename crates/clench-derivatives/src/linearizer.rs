@@ -79,7 +79,7 @@ pub struct Linearizer {
     pub(crate) seeds: Vec<Seed>,
     /// All derivatives, one row for each number of x⁺ and y, one column for each direction.
     pub(crate) all: Vec<f64>,
-    result: Linearization,
+    pub(crate) result: Linearization,
     pub(crate) along: OutputTangent,
 }
 
@@ -122,10 +122,14 @@ impl Linearizer {
         let model = self.prepare(sim, &request.parameters)?;
         let mut source = source(&model, sim, request);
         self.result.errors = ErrorBound::default();
-        if request.is_of_state(&model) && self.recurse(source)? {
-            return Ok(&self.result);
-        }
+        let sizes = [request.x_len(&model), model.nu(), request.p_len()];
+        let recursed = request.permits_recursion(&model) && self.recurse(source)?;
+        self.reset(sizes, request.y_len(&model), recursed);
         direction::list(&model, &sim.state, request, &mut self.directions);
+        if recursed {
+            let [nx, nu, _] = sizes;
+            self.directions.retain(|&(_, column)| column >= nx + nu);
+        }
         let columns = self.directions.len();
         let mut end = 0;
         let mut reuses = false;
@@ -148,7 +152,7 @@ impl Linearizer {
         if request.errors && !bounds {
             errors.set_unknown(model.nv, columns, switching.len());
         }
-        self.split([request.x_len(&model), model.nu(), request.p_len()]);
+        self.split(sizes);
         Ok(&self.result)
     }
 
@@ -194,29 +198,34 @@ impl Linearizer {
         Ok(keeps_positions(*source) && (source.constant_factor || earliest > Start::Positions))
     }
 
-    /// Finds the derivatives by state and controls by recursions. Returns false if the step needs passes.
-    fn recurse(&mut self, source: Source<'_>) -> Result<bool, SimError> {
+    /// Computes A and B by recursions. Returns false if the step needs passes.
+    pub(crate) fn recurse(&mut self, source: Source<'_>) -> Result<bool, SimError> {
         let (nx, nu) = (2 * source.model.nv + source.model.na, source.model.nu());
-        let Linearization {
-            a, b, c, d, e, f, ..
-        } = &mut self.result;
-        c.reset([0, nx]);
-        d.reset([0, nu]);
-        e.reset([nx, 0]);
-        f.reset([0, 0]);
+        let Linearization { a, b, .. } = &mut self.result;
         for (matrix, columns) in [(&mut *a, nx), (&mut *b, nu)] {
             matrix.shape = [nx, columns];
             matrix.values.clear();
         }
-        let recursed = self.pass.recurse(source, &mut |row| {
+        self.pass.recurse(source, &mut |row| {
             let (by_state, by_control) = row.split_at(nx);
             a.values.extend_from_slice(by_state);
             b.values.extend_from_slice(by_control);
-        })?;
-        if recursed {
-            self.pass.switching(&mut self.result.switching);
+        })
+    }
+
+    /// Sets the matrices to zero, but A and B if recursions found them.
+    fn reset(&mut self, [nx, nu, np]: [usize; 3], ny: usize, recursed: bool) {
+        let Linearization {
+            a, b, c, d, e, f, ..
+        } = &mut self.result;
+        if !recursed {
+            a.reset([nx, nx]);
+            b.reset([nx, nu]);
         }
-        Ok(recursed)
+        c.reset([ny, nx]);
+        d.reset([ny, nu]);
+        e.reset([nx, np]);
+        f.reset([ny, np]);
     }
 
     /// Returns the number of directions of the pass that starts with direction `first`. A pass
@@ -224,7 +233,9 @@ impl Linearizer {
     fn pass_len(&self, source: Source<'_>, first: usize) -> usize {
         let most = self.pass.directions();
         let count = most.min(self.directions.len() - first);
-        let moving = source.model.nv.saturating_sub(first);
+        let directions = self.directions[first..].iter();
+        let moving = directions.take_while(|(direction, _)| direction.is_position());
+        let moving = moving.count();
         let others = self.directions.len() - first - moving;
         let pays = others > 2 * most && keeps_positions(source);
         match pays && moving > 0 {
@@ -235,8 +246,6 @@ impl Linearizer {
 
     /// Copies the derivatives, and the bounds of their errors, to the columns of the matrices.
     fn split(&mut self, [nx, nu, np]: [usize; 3]) {
-        let columns = self.directions.len().max(1);
-        let ny = (self.all.len() / columns).max(nx) - nx;
         let Linearization {
             a,
             b,
@@ -247,17 +256,16 @@ impl Linearizer {
             errors,
             ..
         } = &mut self.result;
-        let mut rows = self.all.chunks_exact(columns);
-        for (rows_of, mut matrices) in [(nx, [a, b, e]), (ny, [c, d, f])] {
-            for (matrix, columns) in matrices.iter_mut().zip([nx, nu, np]) {
-                matrix.reset([rows_of, columns]);
-            }
-            for (row, values) in rows.by_ref().take(rows_of).enumerate() {
-                for (&value, &(_, column)) in values.iter().zip(&self.directions) {
-                    let (part, column) = split_index(column, [nx, nu]);
-                    let matrix = &mut matrices[part];
-                    matrix.values[row * matrix.shape[1] + column] = value;
-                }
+        let rows = self.all.chunks_exact(self.directions.len().max(1));
+        for (row, values) in rows.enumerate() {
+            let (row, matrices) = match row.checked_sub(nx) {
+                None => (row, [&mut *a, &mut *b, &mut *e]),
+                Some(row) => (row, [&mut *c, &mut *d, &mut *f]),
+            };
+            for (&value, &(_, column)) in values.iter().zip(&self.directions) {
+                let (part, column) = split_index(column, [nx, nu]);
+                let width = matrices[part].shape[1];
+                matrices[part].values[row * width + column] = value;
             }
         }
         let bounds = std::mem::take(&mut errors.directions);

@@ -15,6 +15,19 @@ impl Matrix {
         self.values.clear();
         self.values.resize(shape[0] * shape[1], 0.0);
     }
+
+    /// Adds the product of two matrices.
+    pub(crate) fn add_product(&mut self, a: &Matrix, b: &Matrix) {
+        let ([_, inner], [_, columns]) = (a.shape, b.shape);
+        let rows = self.values.chunks_exact_mut(columns.max(1));
+        for (out, factors) in rows.zip(a.values.chunks_exact(inner.max(1))) {
+            for (&factor, row) in factors.iter().zip(b.values.chunks_exact(columns.max(1))) {
+                for (out, &x) in out.iter_mut().zip(row) {
+                    *out += factor * x;
+                }
+            }
+        }
+    }
 }
 
 /// Changes dx, du and dp of the input of a step, one column for each direction; see

@@ -159,6 +159,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             request,
             ..
         } = source;
+        self.recursed = false;
         if source.first {
             self.before.set_values(source.state);
         } else {

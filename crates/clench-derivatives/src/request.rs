@@ -30,11 +30,16 @@ impl Request {
         StateField::MEMORY.into_iter().filter(move |_| wanted)
     }
 
-    /// Returns true if the results are the next positions, velocities and activations, the inputs those and controls.
-    pub(crate) fn is_of_state(&self, model: &Model) -> bool {
-        let no_outputs = self.outputs.is_empty() && self.sensors_len(model) == 0;
+    /// Returns true if the results are the next positions, velocities and activations, and x is the present ones.
+    pub(crate) fn permits_recursion(&self, model: &Model) -> bool {
         let no_memory = self.x_len(model) == 2 * model.nv + model.na;
-        no_outputs && no_memory && self.p_len() == 0 && !self.errors
+        self.y_len(model) == 0 && no_memory && !self.errors
+    }
+
+    /// Returns the length of y.
+    pub(crate) fn y_len(&self, model: &Model) -> usize {
+        let outputs = self.outputs.iter().map(|output| output.width(model));
+        self.sensors_len(model) + outputs.sum::<usize>()
     }
 
     /// Returns the number of sensor values in y.

@@ -1,7 +1,8 @@
 //! Compares derivatives by recursion with those of passes in dual numbers, which a requested output needs.
 
 use crate::common::{Random, load};
-use clench_derivatives::{Linearizer, Matrix, Request};
+use clench_derivatives::{InputTangent, Linearizer, Matrix, Request};
+use clench_dynamics::model::ParamField;
 use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Model, Output, Sim};
 use std::sync::Arc;
@@ -46,9 +47,39 @@ fn check(model: Model, options: RigidOptions, steps: usize) -> usize {
             compare(&recursive.a, &passes.a);
             compare(&recursive.b, &passes.b);
             assert_eq!(recursive.switching.len(), passes.switching.len());
+            compare_parameters(&mut linearizer, &sim);
         }
     }
     contacts
+}
+
+/// Compares derivatives by parameters, and those along a tangent, with and without passes along the state.
+fn compare_parameters(linearizer: &mut Linearizer, sim: &Sim<f64>) {
+    let field = ParamField::find("body_mass").expect("a parameter");
+    let mut request = Request {
+        parameters: vec![(field, 1)],
+        ..Request::default()
+    };
+    let apart = linearizer.linearize(sim, &request);
+    let apart = apart.expect("derivatives").clone();
+    request.outputs = vec![Output::find("subtree_com").expect("an output")];
+    let together = linearizer.linearize(sim, &request).expect("derivatives");
+    compare(&apart.a, &together.a);
+    compare(&apart.e, &together.e);
+    let ones = |rows: usize| Matrix {
+        shape: [rows, 1],
+        values: vec![1.0; rows],
+    };
+    let tangent = InputTangent {
+        x: ones(apart.a.shape[0]),
+        u: ones(apart.b.shape[1]),
+        p: ones(0),
+    };
+    request.parameters.clear();
+    let passes = linearizer.jvp(sim, &request, &tangent);
+    let passes = passes.expect("a directional derivative").x.clone();
+    let product = linearizer.jvp(sim, &Request::default(), &tangent);
+    compare(&product.expect("a directional derivative").x, &passes);
 }
 
 #[test]
