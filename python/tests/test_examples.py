@@ -42,6 +42,14 @@ def test_feedback_balances_a_humanoid_on_one_foot() -> None:
 
 
 @pytest.mark.long
+def test_gradients_teach_a_hopper_to_leap() -> None:
+    costs = dict(re.findall(r"^(\w+): cost (-?[\d.]+)", run("leap"), re.MULTILINE))
+    # The untrained policy has a cost of 0.17. Without penalties the cost is minus the distance in metres.
+    assert float(costs["gradients"]) < -1.2
+    assert float(costs["evolution"]) < -0.3
+
+
+@pytest.mark.long
 def test_policy_learns(tmp_path: Path) -> None:
     plot = tmp_path / "curve.svg"
     printed = run("train_policy", "--plot", str(plot))
