@@ -31,15 +31,19 @@ impl Linearizer {
         let (nx, ny) = (request.x_len(&model), request.y_len(&model));
         self.along.x.reset([nx, columns]);
         self.along.y.reset([ny, columns]);
-        let permits = request.permits_recursion(&model) && request.p_len() == 0;
-        if permits && self.recurse(source)? {
-            // The matrices are found in less time than a pass needs.
+        // The matrices are found in less time than a pass needs.
+        let recursed = request.permits_recursion(&model) && self.recurse(source)?;
+        direction::list(&model, &sim.state, request, &mut self.directions);
+        if recursed {
             let Linearization { a, b, .. } = &self.result;
             self.along.x.add_product(a, &tangent.x);
             self.along.x.add_product(b, &tangent.u);
-            return Ok(&self.along);
+            let others = nx + model.nu();
+            self.directions.retain(|&(_, row)| row >= others);
+            if self.directions.is_empty() {
+                return Ok(&self.along);
+            }
         }
-        direction::list(&model, &sim.state, request, &mut self.directions);
         let mut end = 0;
         let mut reuses = false;
         while end < columns {
@@ -50,7 +54,9 @@ impl Linearizer {
             reuses = self.run_pass(&mut source, columns, first..end, reuses)?;
         }
         let (by_state, by_output) = self.all.split_at(nx * columns);
-        self.along.x.values.copy_from_slice(by_state);
+        for (x, rate) in self.along.x.values.iter_mut().zip(by_state) {
+            *x += rate;
+        }
         self.along.y.values.copy_from_slice(by_output);
         Ok(&self.along)
     }
