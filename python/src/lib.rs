@@ -57,7 +57,7 @@ mod solve;
 mod state_views;
 mod stats;
 mod table;
-#[cfg_attr(not(feature = "derivatives"), path = "no_tangents.rs")]
+#[cfg(feature = "derivatives")]
 mod tangents;
 mod target;
 mod view;
@@ -65,6 +65,9 @@ mod viewed;
 mod viewer;
 
 use pyo3::prelude::*;
+
+#[cfg(not(feature = "derivatives"))]
+use derivatives as tangents;
 
 #[pymodule]
 mod _core {

@@ -1,11 +1,13 @@
-//! Replacement of `derivatives` in a package that is built without them.
+//! Replacement of `derivatives` and `tangents` in a package that is built without them.
 
+use crate::changes::{Changes, Results};
 use crate::error::classes::ClenchError;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
 use clench::rigid::batch::Precision;
 use pyo3::prelude::*;
 use std::convert::Infallible;
+use std::marker::PhantomData;
 
 /// The memory of a simulation's derivatives: none.
 pub(crate) type Memory = ();
@@ -16,11 +18,15 @@ pub(crate) struct BatchMemory {
     pub(crate) single: (),
 }
 
-/// The chosen outputs and parameters, which cannot exist.
-pub(crate) struct Chosen(Infallible);
+/// A request for derivatives, which cannot exist.
+pub(crate) struct Absent<R>(Infallible, PhantomData<R>);
+
+/// The chosen outputs and parameters.
+pub(crate) type Chosen = Absent<Linearization>;
+/// The changes of the input.
+pub(crate) type Tangents = Absent<Results>;
 
 impl Chosen {
-    /// Returns an error that says how to build a package with derivatives.
     pub(crate) fn new(
         _: &clench::Model,
         _: &[String],
@@ -29,13 +35,21 @@ impl Chosen {
     ) -> PyResult<Self> {
         Err(without())
     }
+}
 
-    pub(crate) fn of_sim(
-        &self,
-        _: Python<'_>,
-        (): &mut Memory,
-        _: &mut AnySim,
-    ) -> PyResult<Linearization> {
+impl Tangents {
+    pub(crate) fn new(
+        _: &clench::Model,
+        _: &[String],
+        _: Changes<'_, '_>,
+        _: &[usize],
+    ) -> PyResult<Self> {
+        Err(without())
+    }
+}
+
+impl<R> Absent<R> {
+    pub(crate) fn of_sim(&self, _: Python<'_>, (): &mut Memory, _: &mut AnySim) -> PyResult<R> {
         match self.0 {}
     }
 
@@ -44,12 +58,12 @@ impl Chosen {
         _: Python<'_>,
         (): &mut (),
         _: &mut clench::Batch<S>,
-    ) -> PyResult<Linearization> {
+    ) -> PyResult<R> {
         match self.0 {}
     }
 }
 
 /// Returns an error that says how to build a package with derivatives.
-pub(crate) fn without() -> PyErr {
+fn without() -> PyErr {
     ClenchError::new_err(crate::device::without("derivatives", "derivatives"))
 }

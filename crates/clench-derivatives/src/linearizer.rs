@@ -228,8 +228,8 @@ impl Linearizer {
         f.reset([ny, np]);
     }
 
-    /// Returns the number of directions of the pass that starts with direction `first`. A pass
-    /// contains no positions and other directions together if later passes can then reuse poses and contacts.
+    /// Returns the number of directions of the pass that starts with direction `first`. A pass contains no positions
+    /// and other directions together if later passes can then reuse poses and contacts.
     fn pass_len(&self, source: Source<'_>, first: usize) -> usize {
         let most = self.pass.directions();
         let count = most.min(self.directions.len() - first);

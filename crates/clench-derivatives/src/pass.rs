@@ -184,7 +184,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
                 *field.number(state, index) = *field.number(before, index);
             }
         }
-        // Memory contains measurements.
+        // Buffers of delayed sensors store measurements.
         ws.sensors.wanted = !request.omits_sensors || request.memory;
         ws.constant_factor = source.constant_factor;
         hold(ws, std::mem::replace(last, source.start), source);

@@ -42,7 +42,6 @@ pub struct BroadPhase {
 struct Clusters {
     members: Vec<Range<usize>>,
     boxes: Vec<Aabb>,
-    placed: Vec<bool>,
     /// True for the clusters that make no pairs among themselves in the current search.
     fixed: Vec<bool>,
 }
@@ -61,10 +60,7 @@ impl Clusters {
                 Some(last) if last.len() < MAX_CLUSTER && key(last.start) == key(index) => {
                     last.end += 1;
                 }
-                _ => {
-                    clusters.members.push(index..index + 1);
-                    clusters.placed.push(placed[index]);
-                }
+                _ => clusters.members.push(index..index + 1),
             }
         }
         clusters

@@ -1,6 +1,6 @@
 //! A step in plain numbers, and its actuators.
 
-use clench_dynamics::model::{Model, Params, Transmission};
+use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace};
 
 /// A step in plain numbers, whose derivatives are wanted.
@@ -17,20 +17,10 @@ impl Step<'_> {
     /// Returns the dof that an actuator acts on, and its moment arm.
     pub(super) fn arm(&self, actuator: usize) -> Option<(usize, f64)> {
         let actuator = &self.model.actuators[actuator];
-        match actuator.transmission {
-            Transmission::Joint(j) | Transmission::JointInParent(j) => {
-                let arms = self.model.actuator_dofs.range(actuator.outputs.start);
-                let arm = self.plain.position.actuator_moment[arms.start];
-                Some((self.model.joints[j].dof, arm))
-            }
-            Transmission::Tendon(_)
-            | Transmission::Site(_)
-            | Transmission::SiteInFrame(_)
-            | Transmission::SliderCrank(_)
-            | Transmission::Body(_)
-            | Transmission::Rotation(_)
-            | Transmission::RotationInFrame(_) => None,
-        }
+        let joint = actuator.transmission.joint()?;
+        let arms = self.model.actuator_dofs.range(actuator.outputs.start);
+        let arm = self.plain.position.actuator_moment[arms.start];
+        Some((self.model.joints[joint].dof, arm))
     }
 
     /// Returns 0 if the range of a joint holds the total force of its actuators, else 1.

@@ -97,7 +97,7 @@ impl<T: Real> Assembly<'_, T> {
             }
             let asked = match &self.implicit {
                 Some(implicit) => implicit.reference(row, velocity),
-                None => row.aref - row.damping * velocity,
+                None => row.at_velocity(velocity),
             };
             target.aref[i] = asked + r[i] * row.pull;
             target.r[i] = r[i];

@@ -1,5 +1,5 @@
-//! The rows of single constraints whose distance is given, for derivatives by it: J depends on the pose too, but R,
-//! aref and the shape of the cost follow from the distance and the velocity alone.
+//! The rows of one constraint as functions of its distance and velocity, for derivatives. R, aref and the shape of the
+//! cost depend on these alone; J is missing.
 
 use super::contact::soft_rows;
 use super::context::SoftnessLimits;
@@ -92,7 +92,7 @@ pub fn rows_at_distance<T: Real<Value = f64>>(
         shape: rows.map(|row| row.shape),
     };
     for ((aref, row), &velocity) in found.aref.iter_mut().zip(&rows).zip(velocities) {
-        *aref = row.aref - row.damping * velocity + row.r * row.pull;
+        *aref = row.at_velocity(velocity) + row.r * row.pull;
     }
     Some(found)
 }

@@ -39,4 +39,10 @@ impl<T: Real> Row<T> {
             shape: T::ZERO,
         }
     }
+
+    /// Returns the reference acceleration at a velocity of the row, without that of adhesion.
+    #[inline(always)]
+    pub(super) fn at_velocity(&self, velocity: T) -> T {
+        self.aref - self.damping * velocity
+    }
 }

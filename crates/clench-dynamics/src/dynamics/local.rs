@@ -8,7 +8,7 @@ use super::integrate::advance_activations;
 use super::passive::passive_forces;
 use super::reflected::dof_damper;
 use super::spring::joint_spring;
-use crate::model::{JointKind, Model, Params, Transmission};
+use crate::model::{JointKind, Model, Params};
 use crate::part::Part;
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
@@ -18,18 +18,9 @@ use clench_math::{Mask, Real};
 /// forces except inertial ones then follow from these coordinates. Forces of contacts and applied ones do not count.
 pub fn is_local<T: Real>(model: &Model, params: &Params<T>) -> bool {
     let zero = |x: &T| x.eq(T::ZERO).all();
-    let on_joint = |transmission| match transmission {
-        Transmission::Joint(j) | Transmission::JointInParent(j) => match model.joints[j].kind {
-            JointKind::Hinge | JointKind::Slide => true,
-            JointKind::Ball | JointKind::Free => false,
-        },
-        Transmission::Tendon(_)
-        | Transmission::Site(_)
-        | Transmission::SiteInFrame(_)
-        | Transmission::SliderCrank(_)
-        | Transmission::Body(_)
-        | Transmission::Rotation(_)
-        | Transmission::RotationInFrame(_) => false,
+    let of_one_dof = |joint: usize| match model.joints[joint].kind {
+        JointKind::Hinge | JointKind::Slide => true,
+        JointKind::Ball | JointKind::Free => false,
     };
     model.tendons.is_empty()
         && !fluid_acts(model, params)
@@ -37,7 +28,7 @@ pub fn is_local<T: Real>(model: &Model, params: &Params<T>) -> bool {
         && model
             .actuators
             .iter()
-            .all(|actuator| on_joint(actuator.transmission))
+            .all(|actuator| actuator.transmission.joint().is_some_and(of_one_dof))
 }
 
 /// Returns true if a joint has a spring or a damper.
