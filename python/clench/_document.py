@@ -346,10 +346,20 @@ class Document:
             place = Path(file) if node.tag == "model" else Path(places[node.tag]) / file
             self.add_files({file: _read(folder / place, str(folder / place))})
             self.folders[Path(file.replace("\\", "/")).name] = (folder / place).parent
-            if node.tag == "model":
+            if node.tag == "model" and is_urdf(folder / place):
+                self._read_meshes_of_urdf(folder / place)
+            elif node.tag == "model":
                 other = Document.from_file(folder / place)
                 self.add_files(other.assets)
                 self.assets[Path(file).name] = other.text().encode()
+
+    def _read_meshes_of_urdf(self, path: Path) -> None:
+        """Reads the meshes that lie where an attached URDF file says, or beside it. The build reports others."""
+        for mesh in ET.fromstring(self.assets[path.name]).iter("mesh"):
+            file = mesh.get("filename", "").replace("\\", "/")
+            places = (path.parent / file, path.parent / Path(file).name)
+            if place := next((place for place in places if place.is_file()), None):
+                self.add_files({file: _read(place, str(place))})
 
 
 def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None:

@@ -35,6 +35,9 @@ class SpecElement:
         The enclosing elements, the section first; by default they are looked up when first needed.
     """
 
+    # Without a dictionary of attributes, ``element.pos = ...`` raises an error.
+    __slots__ = ("_ancestors", "_document", "_node")
+
     def __init__(self, document: Document, node: ET.Element, ancestors: tuple[ET.Element, ...] | None = None) -> None:
         self._document = document
         self._node = node

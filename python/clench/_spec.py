@@ -46,6 +46,8 @@ class ModelSpec:
         Name of the model.
     """
 
+    __slots__ = ("_document",)
+
     def __init__(self, name: str = "model") -> None:
         self._document = Document(ET.Element("mujoco", model=name))
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scenes import ROOT
 
-EXAMPLES = sorted((ROOT / "models").glob("*.xml"))
+EXAMPLES = [*sorted((ROOT / "models").glob("*.xml")), ROOT / "parity/models/attached.xml"]
 FINGER = """
 <mujoco model="finger">
   <worldbody>
@@ -387,6 +387,14 @@ def test_mistakes_are_told_where_they_are_written(mistake: Callable[[clench.Mode
     # The model is unchanged.
     assert before == {tag: spec.to_xml().count(f"<{tag}") for tag in before}
     assert spec.geom("tip")["type"] == "capsule"
+
+
+def test_an_attribute_that_is_not_an_item_is_refused() -> None:
+    spec = clench.ModelSpec.from_xml(FINGER)
+    with pytest.raises(AttributeError, match="timestep"):
+        setattr(spec.section("option"), "timestep", 0.01)
+    with pytest.raises(AttributeError, match="gravity"):
+        setattr(spec, "gravity", 0)
 
 
 def test_what_an_element_lacks_can_be_said_later() -> None:
