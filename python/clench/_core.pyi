@@ -922,6 +922,15 @@ class Sim(_Outputs):
         parameters: Mapping[str, ArrayLike] | None = None,  # (numbers,) or (numbers, k)
         outputs: Sequence[str] = (),
     ) -> tuple[_Floats, _Floats]: ...  # (2 nv + na,) and (nsensordata + outputs,), or with k columns
+    def vjp(
+        self,
+        x: ArrayLike | None = None,  # (2 nv + na,)
+        y: ArrayLike | None = None,  # (nsensordata + outputs,)
+        parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
+        outputs: Sequence[str] = (),
+        *,
+        memory: bool | np.bool_ = False,
+    ) -> tuple[_Floats, _Floats, dict[str, _Floats]]: ...  # (2 nv + na,), (nu,) and (numbers,)
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
     def render(
         self,
@@ -1135,6 +1144,15 @@ class Batch(_Outputs):
         parameters: Mapping[str, ArrayLike] | None = None,  # (n, numbers) or (n, numbers, k)
         outputs: Sequence[str] = (),
     ) -> tuple[_Floats, _Floats]: ...  # (n, 2 nv + na) and (n, nsensordata + outputs), or with k columns
+    def vjp(
+        self,
+        x: ArrayLike | None = None,  # (n, 2 nv + na)
+        y: ArrayLike | None = None,  # (n, nsensordata + outputs)
+        parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
+        outputs: Sequence[str] = (),
+        *,
+        memory: bool | np.bool_ = False,
+    ) -> tuple[_Floats, _Floats, dict[str, _Floats]]: ...  # (n, 2 nv + na), (n, nu) and (n, numbers)
     def record(self, *names: str) -> None: ...
     @property
     def outputs(self) -> tuple[str, ...]: ...

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from clench._core import Model, Sim
+from clench._core import Batch, Model, Sim
+from clench.errors import SimulationError
 
 Floats = NDArray[np.float64]
 
@@ -34,18 +35,20 @@ class Tangent:
         self._constant[np.flatnonzero(coordinates), np.flatnonzero(dofs)] = 1.0
 
     def basis(self, qpos: Floats) -> Floats:
-        """Returns the derivatives of the coordinates by the motion (nq, nv)."""
-        matrix = self._constant.copy()
+        """Returns the derivatives of coordinates (..., nq) by their motion, (..., nq, nv)."""
+        matrix = np.broadcast_to(self._constant, (*qpos.shape[:-1], *self._shape)).copy()
         for q, v in zip(self._quats, self._rotations):
-            w, x, y, z = 0.5 * qpos[q : q + 4]
-            matrix[q : q + 4, v : v + 3] = [[-x, -y, -z], [w, -z, y], [z, w, -x], [-y, x, w]]
+            w, x, y, z = np.moveaxis(0.5 * qpos[..., q : q + 4], -1, 0)
+            block = np.stack([-x, -y, -z, w, -z, y, z, w, -x, -y, x, w], axis=-1)
+            matrix[..., q : q + 4, v : v + 3] = block.reshape(*x.shape, 4, 3)
         return matrix
 
     def inverse(self, qpos: Floats) -> Floats:
-        """Returns the derivatives of the motion by the coordinates (nv, nq), zero along the length of a quaternion."""
-        matrix = self.basis(qpos).T
+        """Returns the derivatives of a motion by coordinates (..., nq), zero along a quaternion's length, (..., nv, nq)."""
+        matrix = np.swapaxes(self.basis(qpos), -1, -2)
         for q, v in zip(self._quats, self._rotations):
-            matrix[v : v + 3] *= 4.0 / np.square(qpos[q : q + 4]).sum()
+            squares = np.square(qpos[..., q : q + 4]).sum(axis=-1)
+            matrix[..., v : v + 3, :] *= 4.0 / squares[..., None, None]
         return matrix
 
     def nearest(self, qpos: Floats, others: Floats) -> Floats:
@@ -57,7 +60,22 @@ class Tangent:
         return others
 
 
-def state_size(sim: Sim) -> int:
+def state_size(sim: Sim | Batch) -> int:
     """Returns the length of x in ``sim.linearize(memory=True)``."""
     memory = (sim.plastic, sim.history, sim.stick_references, sim.stick_friction)
-    return 2 * sim.model.nv + sim.model.na + sum(field.size for field in memory)
+    envs = sim.n_envs if isinstance(sim, Batch) else 1
+    return 2 * sim.model.nv + sim.model.na + sum(field.size for field in memory) // max(envs, 1)
+
+
+def rows(vectors: Floats, matrices: Floats) -> Floats:
+    """Returns the products of row vectors (..., n) and matrices (..., n, m)."""
+    product: Floats = (vectors[..., None, :] @ matrices)[..., 0, :]
+    return product
+
+
+def advance_all(sim: Sim | Batch) -> None:
+    """Steps once. Raises a `SimulationError` if an environment of a batch fails."""
+    sim.step()
+    if isinstance(sim, Batch) and not sim.running.all():
+        env = int(np.argmin(sim.running))
+        raise SimulationError(f"environment {env}: {sim.fault(env)}")

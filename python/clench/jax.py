@@ -17,8 +17,8 @@
 
 `view` shares outputs with JAX without a copy: ``clench.jax.view(batch.xpos)``.
 
-Gradients are exact: they are products with the matrices of `clench.Sim.linearize`. Only reverse mode is supported, once.
-Steps run on the processor, in double precision.
+A batch works like a simulation, with a row for each environment. Gradients are exact, those of steps in double precision:
+`clench.Sim.vjp` computes them. Only reverse mode is supported, once. Steps run on the processor.
 """
 
 from __future__ import annotations
@@ -29,41 +29,42 @@ import jax
 import numpy as np
 from numpy.typing import NDArray
 
-from clench._core import Sim
-from clench._tangent import Tangent
+from clench._core import Batch, Sim
+from clench._tangent import Tangent, advance_all, rows
 
 __all__ = ["state", "step", "view"]
 
 _State = tuple[Any, Any, Any]
 
 
-def state(sim: Sim) -> _State:
-    """Returns copies of the positions (nq), velocities (nv) and activations (na) of a simulation.
+def state(sim: Sim | Batch) -> _State:
+    """Returns copies of the positions (nq), velocities (nv) and activations (na) of a simulation, or of a batch.
 
     Parameters
     ----------
-    sim : Sim
+    sim : Sim or Batch
         The simulation.
 
     Returns
     -------
     tuple of jax.Array
+        With a row for each environment of a batch.
     """
     return jax.numpy.array(sim.qpos), jax.numpy.array(sim.qvel), jax.numpy.array(sim.act)
 
 
-def step(sim: Sim) -> Any:
+def step(sim: Sim | Batch) -> Any:
     """Returns a pure function that steps, with a gradient: ``step(state, ctrl)`` is the next state.
 
-    A state has positions (nq), velocities (nv) and activations (na). All else that a step depends on, such as
-    parameters, mocap poses and applied forces, is that of the simulation now. The function works in `jax.jit` and
-    `jax.lax.scan`; `jax.vmap` calls it one environment at a time. It uses the simulation, so that one thread at a time
-    may call it.
+    A state has positions (nq), velocities (nv) and activations (na), with a row for each environment of a batch. All
+    else that a step depends on, such as parameters, mocap poses and applied forces, is that of the simulation now. The
+    function works in `jax.jit` and `jax.lax.scan`; `jax.vmap` calls it one element at a time. It uses the simulation,
+    so that one thread at a time may call it.
 
     Parameters
     ----------
-    sim : Sim
-        A simulation in double precision.
+    sim : Sim or Batch
+        A simulation.
 
     Returns
     -------
@@ -72,16 +73,13 @@ def step(sim: Sim) -> Any:
     Raises
     ------
     ValueError
-        If the simulation has single precision, or JAX is not set to double precision.
+        If the simulation has double precision, and JAX is not set to it.
     """
-    if sim.precision != "64":
-        raise ValueError('gradients need a simulation in double precision: create it with precision="64"')
-    if not jax.config.jax_enable_x64:
-        raise ValueError('gradients need double precision: call jax.config.update("jax_enable_x64", True) first')
+    if sim.precision == "64" and not jax.config.jax_enable_x64:
+        raise ValueError('the simulation needs double precision: call jax.config.update("jax_enable_x64", True) first')
     model, base, tangent = sim.model, sim.state, Tangent(sim.model)
-    sizes = model.nq, model.nv, model.na
-    parts = tuple(jax.ShapeDtypeStruct((size,), np.float64) for size in sizes)
-    controls = jax.ShapeDtypeStruct((model.nu,), np.float64)
+    *parts, controls = (jax.ShapeDtypeStruct(part.shape, part.dtype) for part in (sim.qpos, sim.qvel, sim.act, sim.ctrl))
+    parts = tuple(parts)
 
     def write(qpos: Any, qvel: Any, act: Any, ctrl: Any) -> None:
         sim.state = base
@@ -89,17 +87,18 @@ def step(sim: Sim) -> Any:
 
     def advance(*arguments: Any) -> tuple[Any, ...]:
         write(*arguments)
-        sim.step()
+        advance_all(sim)
         return sim.qpos.copy(), sim.qvel.copy(), sim.act.copy()
 
     def multiply(qpos: Any, qvel: Any, act: Any, ctrl: Any, *gradients: Any) -> tuple[Any, ...]:
+        by_qpos, by_qvel, by_act = (np.asarray(gradient, dtype=np.float64) for gradient in gradients)
+        after, *_ = advance(qpos, qvel, act, ctrl)
+        by_motion = rows(by_qpos, tangent.basis(after))
         write(qpos, qvel, act, ctrl)
-        linear = sim.linearize(sensors=False)
-        sim.step()
-        by_qpos, by_qvel, by_act = (np.asarray(gradient) for gradient in gradients)
-        by_next = np.concatenate([by_qpos @ tangent.basis(sim.qpos), by_qvel, by_act])
-        by_motion, by_qvel, by_act = np.split(by_next @ linear.A, [model.nv, 2 * model.nv])
-        return by_motion @ tangent.inverse(np.asarray(qpos)), by_qvel, by_act, by_next @ linear.B
+        by_state, by_ctrl, _ = sim.vjp(np.concatenate([by_motion, by_qvel, by_act], axis=-1))
+        by_motion, by_qvel, by_act = np.split(by_state, [model.nv, 2 * model.nv], axis=-1)
+        by_qpos = rows(by_motion, tangent.inverse(np.asarray(qpos, dtype=np.float64)))
+        return tuple(part.astype(sim.qpos.dtype) for part in (by_qpos, by_qvel, by_act, by_ctrl))
 
     def call(state: _State, ctrl: Any) -> Any:
         return jax.pure_callback(advance, parts, *state, ctrl, vmap_method="sequential")

@@ -5,15 +5,16 @@
     import clench.torch
     import torch
 
-    sim = clench.Sim(model)
-    ctrl = torch.zeros(100, model.nu, dtype=torch.float64, requires_grad=True)
-    qpos, qvel, act = clench.torch.rollout(sim, clench.torch.state(sim), ctrl)
-    qpos[-1, 0].backward()
-    ctrl.grad                                   # (100, nu)
+    batch = clench.Batch(model, 64)
+    ctrl = torch.zeros(100, 64, model.nu, dtype=torch.float64, requires_grad=True)
+    qpos, qvel, act = clench.torch.rollout(batch, clench.torch.state(batch), ctrl)
+    qpos[-1, :, 0].sum().backward()
+    ctrl.grad                                   # (100, 64, nu)
 
-Gradients are exact: they are products with the matrices of `clench.Sim.linearize`. Double backward is not supported. A
-simulation and its tensors have double precision, on the processor. All else that a step depends on, such as parameters,
-mocap poses and applied forces, is that of the simulation and has no gradient.
+A simulation works like a batch, without the dimension of environments. Tensors have the precision of the simulation or
+batch, on the processor. Gradients are exact, those of steps in double precision: `clench.Sim.vjp` computes them. Double
+backward is not supported. All else that a step depends on, such as parameters, mocap poses and applied forces, is that
+of the simulation and has no gradient.
 """
 
 from __future__ import annotations
@@ -26,30 +27,31 @@ import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-from clench._core import Sim
-from clench._tangent import Tangent, state_size
+from clench._core import Batch, Sim
+from clench._tangent import Tangent, advance_all, rows, state_size
 
 __all__ = ["rollout", "state", "step"]
 
 _State = tuple[Tensor, Tensor, Tensor]
 
 
-def state(sim: Sim) -> _State:
-    """Returns copies of the positions (nq), velocities (nv) and activations (na) of a simulation.
+def state(sim: Sim | Batch) -> _State:
+    """Returns copies of the positions (nq), velocities (nv) and activations (na) of a simulation, or of a batch.
 
     Parameters
     ----------
-    sim : Sim
+    sim : Sim or Batch
         The simulation.
 
     Returns
     -------
     tuple of torch.Tensor
+        With a row for each environment of a batch.
     """
     return torch.tensor(sim.qpos), torch.tensor(sim.qvel), torch.tensor(sim.act)
 
 
-def step(sim: Sim, state: _State, ctrl: Tensor) -> _State:
+def step(sim: Sim | Batch, state: _State, ctrl: Tensor) -> _State:
     """Steps once from a state.
 
     The simulation moves to the new state. The backward pass repeats the step, so parameters and options must not change
@@ -57,12 +59,12 @@ def step(sim: Sim, state: _State, ctrl: Tensor) -> _State:
 
     Parameters
     ----------
-    sim : Sim
-        A simulation in double precision.
+    sim : Sim or Batch
+        The simulation.
     state : tuple of torch.Tensor
-        Positions (nq), velocities (nv) and activations (na).
+        Positions (nq), velocities (nv) and activations (na), with a row for each environment of a batch.
     ctrl : torch.Tensor
-        (nu,) Controls.
+        (nu,) or (n, nu) Controls.
 
     Returns
     -------
@@ -72,17 +74,17 @@ def step(sim: Sim, state: _State, ctrl: Tensor) -> _State:
     Raises
     ------
     ValueError
-        If a shape is wrong, or the simulation has single precision.
+        If a shape is wrong.
     TypeError
-        If a tensor is not one of float64 on the processor.
+        If a tensor has another precision than the simulation, or is not on the processor.
     SimulationError
-        If the simulation cannot make the step.
+        If the simulation, or an environment, cannot make the step.
     """
     qpos, qvel, act = rollout(sim, state, ctrl.unsqueeze(0))
     return qpos[0], qvel[0], act[0]
 
 
-def rollout(sim: Sim, state: _State, ctrl: Tensor) -> _State:
+def rollout(sim: Sim | Batch, state: _State, ctrl: Tensor) -> _State:
     """Steps T times from a state.
 
     The simulation moves to the last state. The memory for gradients grows with √T: the backward pass restores every
@@ -91,78 +93,80 @@ def rollout(sim: Sim, state: _State, ctrl: Tensor) -> _State:
 
     Parameters
     ----------
-    sim : Sim
-        A simulation in double precision.
+    sim : Sim or Batch
+        The simulation.
     state : tuple of torch.Tensor
-        Positions (nq), velocities (nv) and activations (na).
+        Positions (nq), velocities (nv) and activations (na), with a row for each environment of a batch.
     ctrl : torch.Tensor
-        (T, nu) Controls of each step.
+        (T, nu) or (T, n, nu) Controls of each step.
 
     Returns
     -------
     tuple of torch.Tensor
-        Positions (T, nq), velocities (T, nv) and activations (T, na) after each step.
+        Positions (T, nq), velocities (T, nv) and activations (T, na) after each step; of a batch (T, n, nq) and so on.
 
     Raises
     ------
     ValueError
-        If a shape is wrong, or the simulation has single precision.
+        If a shape is wrong.
     TypeError
-        If a tensor is not one of float64 on the processor.
+        If a tensor has another precision than the simulation, or is not on the processor.
     SimulationError
-        If the simulation cannot make a step.
+        If the simulation, or an environment, cannot make a step.
     """
-    if sim.precision != "64":
-        raise ValueError('gradients need a simulation in double precision: create it with precision="64"')
+    precision = torch.from_numpy(sim.qpos).dtype
     for tensor in (*state, ctrl):
-        if tensor.dtype != torch.float64 or tensor.device.type != "cpu":
-            raise TypeError(f"gradients need float64 on the processor, not {tensor.dtype} on {tensor.device}")
-    if ctrl.ndim != 2 or ctrl.shape[1] != sim.model.nu:
-        raise ValueError(f"controls have shape {tuple(ctrl.shape)}, not (steps, {sim.model.nu})")
-    rows: _State = _Rollout.apply(sim, *state, ctrl)
-    return rows
+        if tensor.dtype != precision or tensor.device.type != "cpu":
+            raise TypeError(f"the simulation has {precision} on the processor, not {tensor.dtype} on {tensor.device}")
+    if ctrl.shape[1:] != sim.ctrl.shape:
+        raise ValueError(f"controls have shape {tuple(ctrl.shape)}, not {('steps', *sim.ctrl.shape)}")
+    after: _State = _Rollout.apply(sim, *state, ctrl)
+    return after
 
 
 class _Rollout(torch.autograd.Function):
-    """A rollout; its backward pass multiplies the gradients by the matrices of each step, the last one first."""
+    """A rollout; its backward pass computes the gradients of each step, the last one first."""
 
     @staticmethod
-    def forward(ctx: Any, sim: Sim, qpos: Tensor, qvel: Tensor, act: Tensor, ctrl: Tensor) -> _State:
+    def forward(ctx: Any, sim: Sim | Batch, qpos: Tensor, qvel: Tensor, act: Tensor, ctrl: Tensor) -> _State:
         sim.qpos, sim.qvel, sim.act = qpos.numpy(), qvel.numpy(), act.numpy()
-        steps = len(ctrl)
-        ctx.sim, ctx.every, ctx.saved = sim, math.isqrt(max(steps - 1, 0)) + 1, []
-        ctx.save_for_backward(qpos, ctrl)
-        rows = tuple(np.empty((steps, size)) for size in (sim.model.nq, sim.model.nv, sim.model.na))
-        for k, controls in enumerate(ctrl.numpy()):
+        ctx.sim, ctx.every, ctx.saved = sim, math.isqrt(max(len(ctrl) - 1, 0)) + 1, []
+        after = tuple(torch.empty((len(ctrl), *part.shape), dtype=part.dtype) for part in (qpos, qvel, act))
+        for k, controls in enumerate(ctrl):
             if k % ctx.every == 0:
                 ctx.saved.append(sim.state)
-            sim.ctrl = controls
-            sim.step()
-            for row, values in zip(rows, (sim.qpos, sim.qvel, sim.act)):
-                row[k] = values
-        return torch.from_numpy(rows[0]), torch.from_numpy(rows[1]), torch.from_numpy(rows[2])
+            sim.ctrl = controls.numpy()
+            advance_all(sim)
+            for values, part in zip(after, (sim.qpos, sim.qvel, sim.act)):
+                values[k] = torch.from_numpy(part)
+        ctx.save_for_backward(qpos, ctrl, after[0])
+        return after[0], after[1], after[2]
 
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, *gradients: Tensor) -> tuple[Tensor | None, ...]:
-        sim, (first, ctrl) = ctx.sim, ctx.saved_tensors
-        by_qpos, by_qvel, by_act = (gradient.numpy() for gradient in gradients)
-        nv, na, tangent, present = sim.model.nv, sim.model.na, Tangent(sim.model), sim.state
-        by_state, by_ctrl = np.zeros(state_size(sim)), np.zeros(ctrl.shape)
+        sim, (first, ctrl, after) = ctx.sim, ctx.saved_tensors
+        nv, tangent, present = sim.model.nv, Tangent(sim.model), sim.state
+        by_qpos, by_qvel, by_act = (gradient.double().numpy() for gradient in gradients)
+        by_motion = rows(by_qpos, tangent.basis(after.double().numpy()))
+        by_rows = np.concatenate([by_motion, by_qvel, by_act], axis=-1)
+        by_state, by_ctrl = np.zeros((*first.shape[:-1], state_size(sim))), np.zeros(ctrl.shape)
         try:
             for segment, start in reversed([*enumerate(ctx.saved)]):
-                sim.state = start
-                begin, linear = segment * ctx.every, []
-                for sim.ctrl in ctrl[begin : begin + ctx.every].numpy():
-                    matrices = sim.linearize(memory=True, sensors=False)
-                    sim.step()
-                    linear.append((matrices.A, matrices.B, tangent.basis(sim.qpos)))
-                for k, (a, b, basis) in reversed([*enumerate(linear, begin)]):
-                    by_state[: 2 * nv + na] += np.concatenate([by_qpos[k] @ basis, by_qvel[k], by_act[k]])
-                    by_ctrl[k] = by_state @ b
-                    by_state = by_state @ a
+                steps = range(segment * ctx.every, min((segment + 1) * ctx.every, len(ctrl)))
+                sim.state, states = start, []
+                for k in steps:
+                    states.append(sim.state)
+                    if k != steps[-1]:
+                        sim.ctrl = ctrl[k].numpy()
+                        advance_all(sim)
+                for k in reversed(steps):
+                    by_state[..., : by_rows.shape[-1]] += by_rows[k]
+                    sim.state, sim.ctrl = states.pop(), ctrl[k].numpy()
+                    by_state, by_ctrl[k], _ = sim.vjp(by_state, memory=True)
         finally:
             sim.state = present
-        by_first, by_qvel, by_act = np.split(by_state[: 2 * nv + na], [nv, 2 * nv])
-        by_qpos = by_first @ tangent.inverse(first.numpy())
-        return None, *(torch.from_numpy(array) for array in (by_qpos, by_qvel, by_act, by_ctrl))
+        by_first, by_qvel, by_act = np.split(by_state[..., : by_rows.shape[-1]], [nv, 2 * nv], axis=-1)
+        by_qpos = rows(by_first, tangent.inverse(first.double().numpy()))
+        arrays = (by_qpos, by_qvel, by_act, by_ctrl)
+        return None, *(torch.from_numpy(array).to(first.dtype) for array in arrays)

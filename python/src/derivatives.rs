@@ -70,7 +70,7 @@ impl Variable {
 
 /// The chosen outputs and variables.
 pub(crate) struct Chosen {
-    request: Request,
+    pub(crate) request: Request,
     /// The variables, and how many of their numbers are chosen.
     fields: Vec<(Variable, usize)>,
     nv: usize,
@@ -165,6 +165,20 @@ impl Chosen {
         self.export(py, results, &[count])
     }
 
+    /// Returns the names of the variables, and the columns of their numbers in p: inputs follow the parameters.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = (&'static str, Range<usize>)> {
+        let (mut of_parameters, mut of_inputs) = (0, self.request.parameters.len());
+        self.fields.iter().map(move |&(field, count)| {
+            let start = match field {
+                Variable::Parameter(_) => &mut of_parameters,
+                Variable::Input(_) => &mut of_inputs,
+            };
+            let columns = *start..*start + count;
+            *start += count;
+            (field.name(), columns)
+        })
+    }
+
     /// Copies results to arrays, stacked in the shape `stack`.
     fn export(
         &self,
@@ -176,27 +190,19 @@ impl Chosen {
                      columns: Option<Range<usize>>| {
             let shape = results.first().map_or([0, 0], |first| of(first).shape);
             let columns = columns.unwrap_or(0..shape[1]);
-            let rows = results
-                .iter()
-                .flat_map(|result| of(result).values.chunks_exact(shape[1].max(1)));
-            let values = rows.flat_map(|row| &row[columns.clone()]).copied();
             let shape = [stack, &[shape[0], columns.len()]].concat();
-            Ok::<_, PyErr>(PyArray1::from_iter(py, values).reshape(shape)?.unbind())
+            let mut values = Vec::with_capacity(shape.iter().product());
+            for matrix in results.iter().map(of) {
+                for row in matrix.values.chunks_exact(matrix.shape[1].max(1)) {
+                    values.extend_from_slice(&row[columns.clone()]);
+                }
+            }
+            Ok::<_, PyErr>(PyArray1::from_vec(py, values).reshape(shape)?.unbind())
         };
         let (by_state, by_output) = (PyDict::new(py), PyDict::new(py));
-        let (mut of_parameters, mut of_inputs) = (0, self.request.parameters.len());
-        for &(field, count) in &self.fields {
-            let start = match field {
-                Variable::Parameter(_) => &mut of_parameters,
-                Variable::Input(_) => &mut of_inputs,
-            };
-            let columns = *start..*start + count;
-            by_state.set_item(
-                field.name(),
-                array(|result| &result.e, Some(columns.clone()))?,
-            )?;
-            by_output.set_item(field.name(), array(|result| &result.f, Some(columns))?)?;
-            *start += count;
+        for (name, columns) in self.columns() {
+            by_state.set_item(name, array(|result| &result.e, Some(columns.clone()))?)?;
+            by_output.set_item(name, array(|result| &result.f, Some(columns))?)?;
         }
         // Numbers of rows, of which environments have different counts.
         let rows = |of: fn(&derivatives::Linearization) -> &[f64]| {

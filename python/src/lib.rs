@@ -27,6 +27,8 @@ mod field;
 mod fields;
 mod free_camera;
 mod given_models;
+#[cfg(feature = "derivatives")]
+mod gradients;
 mod ik;
 mod ik_targets;
 mod inertia_queries;
@@ -63,11 +65,12 @@ mod target;
 mod view;
 mod viewed;
 mod viewer;
+mod vjp;
 
 use pyo3::prelude::*;
 
 #[cfg(not(feature = "derivatives"))]
-use derivatives as tangents;
+use {derivatives as gradients, derivatives as tangents};
 
 #[pymodule]
 mod _core {

@@ -1,6 +1,6 @@
-//! Replacement of `derivatives` and `tangents` in a package that is built without them.
+//! Replacement of `derivatives`, `tangents` and `gradients` in a package that is built without them.
 
-use crate::changes::{Changes, Results};
+use crate::changes::{Changes, InputGradients, OutputGradients, Results};
 use crate::error::classes::ClenchError;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
@@ -25,6 +25,8 @@ pub(crate) struct Absent<R>(Infallible, PhantomData<R>);
 pub(crate) type Chosen = Absent<Linearization>;
 /// The changes of the input.
 pub(crate) type Tangents = Absent<Results>;
+/// The gradients by the results.
+pub(crate) type Gradients = Absent<InputGradients>;
 
 impl Chosen {
     pub(crate) fn new(
@@ -42,6 +44,19 @@ impl Tangents {
         _: &clench::Model,
         _: &[String],
         _: Changes<'_, '_>,
+        _: &[usize],
+    ) -> PyResult<Self> {
+        Err(without())
+    }
+}
+
+impl Gradients {
+    pub(crate) fn new(
+        _: &clench::Model,
+        _: &[String],
+        _: Option<&Bound<'_, PyAny>>,
+        _: bool,
+        _: OutputGradients<'_, '_>,
         _: &[usize],
     ) -> PyResult<Self> {
         Err(without())

@@ -232,6 +232,40 @@ def test_directional_derivatives_of_a_batch(precision: Any) -> None:
     np.testing.assert_array_equal(following[2], alone)
 
 
+def test_gradients_are_products() -> None:
+    sim, rng = moving("quadruped", "crouching", 300), np.random.default_rng(1)
+    chosen: Any = {"body_mass": [1, 2], "qfrc_applied": [3]}
+    linear = sim.linearize(["subtree_com"], chosen)
+    x, y = rng.normal(size=linear.A.shape[0]), rng.normal(size=linear.C.shape[0])
+    found = sim.vjp(x, y, chosen, ["subtree_com"])
+    for gradient, of_state, of_output in (
+        (found[0], linear.A, linear.C),
+        (found[1], linear.B, linear.D),
+        (found[2]["body_mass"], linear.parameters["body_mass"], linear.output_parameters["body_mass"]),
+        (found[2]["qfrc_applied"], linear.parameters["qfrc_applied"], linear.output_parameters["qfrc_applied"]),
+    ):
+        expected = x @ of_state + y @ of_output
+        np.testing.assert_allclose(gradient, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    by_state = sim.vjp(x)[0]
+    np.testing.assert_allclose(by_state, x @ linear.A, rtol=0, atol=1e-10 * np.abs(by_state).max())
+    assert not sim.vjp()[0].any()
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_gradients_of_a_batch(precision: Any) -> None:
+    batch = clench.Batch(example("quadruped"), 3, precision=precision, threads=2)
+    rng = np.random.default_rng(0)
+    batch.qvel[:] = rng.normal(size=batch.qvel.shape)
+    x = rng.normal(size=(3, 2 * batch.model.nv + batch.model.na))
+    by_state, by_control, by_parameters = batch.vjp(x, parameters=["gravity"])
+    assert by_state.shape == x.shape and by_control.shape == batch.ctrl.shape
+    for env in range(3):
+        alone = batch.sim(env).vjp(x[env], parameters=["gravity"])
+        np.testing.assert_array_equal(by_state[env], alone[0])
+        np.testing.assert_array_equal(by_control[env], alone[1])
+        np.testing.assert_array_equal(by_parameters["gravity"][env], alone[2]["gravity"])
+
+
 def test_a_driven_mass() -> None:
     sim = clench.Sim(
         clench.Model.from_xml(
@@ -378,6 +412,10 @@ def test_invalid_requests() -> None:
         sim.jvp(np.full(12, np.nan))
     with pytest.raises(ValueError, match="body_subtreemass"):
         sim.jvp(parameters={"body_subtreemass": [0, 1]})
+    with pytest.raises(ValueError, match=r"x has shape \(2,\), but must have \(12,\)"):
+        sim.vjp([0, 1])
+    with pytest.raises(ValueError, match="x is not finite"):
+        sim.vjp(np.full(12, np.inf))
     sim.qvel[0] = np.nan
     with pytest.raises(clench.SimulationError):
         sim.linearize()

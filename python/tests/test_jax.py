@@ -60,8 +60,23 @@ def test_steps_are_those_of_the_simulation_and_pure() -> None:
         np.testing.assert_array_equal(one, expected)
 
 
-def test_single_precision_is_refused() -> None:
-    with pytest.raises(ValueError, match="double precision"):
-        gradients.step(clench.Sim(ball(), precision="32"))
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_environments_of_a_batch_have_the_gradients_of_simulations(precision: Any) -> None:
+    batch = clench.Batch(example("quadruped"), 3, precision, options=EXACT)
+    batch.qvel[:] = 0.1 * np.random.default_rng(0).normal(size=batch.qvel.shape)
+    step, state, ctrl = gradients.step(batch), gradients.state(batch), jax.numpy.array(batch.ctrl)
+    simulations = [batch.sim(env) for env in range(3)]
+
+    def size(step: Any) -> Any:
+        return jax.grad(lambda state, ctrl: sum((part**2).sum() for part in step(state, ctrl)), (0, 1))
+
+    by_state, by_ctrl = size(step)(state, ctrl)
+    for env, sim in enumerate(simulations):
+        alone, by_own = size(gradients.step(sim))(gradients.state(sim), ctrl[env])
+        for one, other in zip((*by_state, by_ctrl), (*alone, by_own)):
+            np.testing.assert_allclose(one[env], other, rtol=1e-5 if precision == "32" else 1e-12, atol=1e-12)
+
+
+def test_double_precision_is_refused_without_x64() -> None:
     with jax.enable_x64(False), pytest.raises(ValueError, match="jax_enable_x64"):
         gradients.step(clench.Sim(ball()))

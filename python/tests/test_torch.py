@@ -81,6 +81,40 @@ def test_a_rollout_is_its_steps() -> None:
         torch.testing.assert_close(one, other, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.parametrize("precision", ["64", "32"])
+def test_environments_of_a_batch_have_the_gradients_of_simulations(precision: Any) -> None:
+    sim, _, _ = prepared()
+    batch = clench.Batch(sim.model, 3, precision, options=EXACT, threads=2)
+    for env in range(3):
+        sim.step()
+        batch.set_state(sim.state, [env])
+    start = batch.state
+    ctrl = torch.tensor(0.1 * np.random.default_rng(0).normal(size=(5, *batch.ctrl.shape)), requires_grad=True)
+    state, ctrl = gradients.state(batch), ctrl.to(gradients.state(batch)[0].dtype)
+    inputs = [part.detach().requires_grad_() for part in (*state, ctrl)]
+    rows = gradients.rollout(batch, inputs[:3], inputs[3])
+    after = batch.state
+    whole = torch.autograd.grad(sum(row.square().sum() for row in rows), inputs)
+    assert batch.state == after
+    batch.state = start
+    for env in range(3):
+        own = batch.sim(env)
+        alone = [part[..., env, :].detach().requires_grad_() for part in inputs]
+        parts = gradients.rollout(own, alone[:3], alone[3])
+        for row, part in zip(rows, parts):
+            assert torch.equal(row[:, env], part)
+        for one, other in zip(whole, torch.autograd.grad(sum(part.square().sum() for part in parts), alone)):
+            torch.testing.assert_close(one[..., env, :], other, rtol=1e-9, atol=1e-12)
+
+
+def test_an_environment_that_fails_raises_an_error() -> None:
+    batch = clench.Batch(ball(), 2)
+    state = gradients.state(batch)
+    state[1][1, 0] = torch.nan
+    with pytest.raises(clench.SimulationError, match="environment 1"):
+        gradients.step(batch, state, torch.zeros(2, 0, dtype=torch.float64))
+
+
 def test_gradients_pass_through_delays() -> None:
     text = (
         "<mujoco><option timestep='0.01'/><worldbody><body><joint name='x' type='slide'/><geom size='0.1' mass='2'/>"
@@ -120,8 +154,8 @@ def test_refusals() -> None:
     with pytest.raises(ValueError, match="qpos|shape"):
         gradients.step(sim, (qpos[1:], qvel, act), ctrl[0])
     single = clench.Sim(ball(), precision="32")
-    with pytest.raises(ValueError, match="double precision"):
-        gradients.step(single, gradients.state(single), torch.zeros(0))
+    with pytest.raises(TypeError, match="float32"):
+        gradients.step(single, gradients.state(single), torch.zeros(0, dtype=torch.float64))
     loss = gradients.step(sim, state, ctrl[0])[0].square().sum()
     (slope,) = torch.autograd.grad(loss, ctrl, create_graph=True)
     with pytest.raises(RuntimeError, match="once_differentiable"):

@@ -1,6 +1,8 @@
 //! The derivatives of every environment of a batch.
 
-use crate::{InputTangent, Linearization, Linearizer, OutputTangent, Request};
+use crate::{
+    InputGradient, InputTangent, Linearization, Linearizer, OutputGradient, OutputTangent, Request,
+};
 use clench_rigid::batch::Precision;
 use clench_rigid::{Batch, Model, Output, Sim, SimError};
 use std::any::Any;
@@ -13,6 +15,7 @@ pub struct BatchLinearizer<S: Precision = f64> {
     workers: Vec<Worker<S>>,
     results: Vec<Linearization>,
     along: Vec<OutputTangent>,
+    gradients: Vec<InputGradient>,
 }
 
 /// The memory of a thread, which serves its environments in turn: for each model of the batch, once it is needed.
@@ -54,6 +57,7 @@ impl<S: Precision> BatchLinearizer<S> {
             workers: workers.collect(),
             results: vec![Linearization::default(); batch.count()],
             along: vec![OutputTangent::default(); batch.count()],
+            gradients: vec![InputGradient::default(); batch.count()],
         }
     }
 
@@ -75,7 +79,8 @@ impl<S: Precision> BatchLinearizer<S> {
             batch,
             results,
             |linearizer, sim, _, result| {
-                result.clone_from(linearizer.linearize(sim, request)?);
+                linearizer.linearize(sim, request)?;
+                std::mem::swap(result, &mut linearizer.result);
                 Ok(())
             },
         )?;
@@ -104,7 +109,42 @@ impl<S: Precision> BatchLinearizer<S> {
             batch,
             results,
             |linearizer, sim, env, result| {
-                result.clone_from(linearizer.jvp(sim, request, &tangents[env])?);
+                linearizer.jvp(sim, request, &tangents[env])?;
+                std::mem::swap(result, &mut linearizer.along);
+                Ok(())
+            },
+        )?;
+        Ok(results)
+    }
+
+    /// Returns the gradients of functions of the next step of every environment, each of its own functions; see
+    /// [`Linearizer::vjp`].
+    ///
+    /// # Errors
+    /// Returns the errors of [`linearize`](Self::linearize).
+    ///
+    /// # Panics
+    /// Panics if the number of gradients is not that of environments, or if a matrix has another shape.
+    pub fn vjp(
+        &mut self,
+        batch: &mut Batch<S>,
+        request: &Request,
+        gradients: &[OutputGradient],
+    ) -> Result<&[InputGradient], (usize, SimError)> {
+        check_alike(batch, request).map_err(|error| (0, error))?;
+        let results = &mut self.gradients;
+        assert_eq!(
+            gradients.len(),
+            results.len(),
+            "one gradient an environment"
+        );
+        run(
+            &mut self.workers,
+            batch,
+            results,
+            |linearizer, sim, env, result| {
+                linearizer.vjp(sim, request, &gradients[env])?;
+                std::mem::swap(result, &mut linearizer.gradient);
                 Ok(())
             },
         )?;

@@ -24,10 +24,11 @@ mod request;
 mod seed;
 mod source;
 mod tangent;
+mod vjp;
 
 pub use batch::BatchLinearizer;
 pub use clench_solver::ErrorBound;
 pub use field::StateField;
 pub use linearizer::{Linearization, Linearizer};
-pub use matrix::{InputTangent, Matrix, OutputTangent};
+pub use matrix::{InputGradient, InputTangent, Matrix, OutputGradient, OutputTangent};
 pub use request::Request;

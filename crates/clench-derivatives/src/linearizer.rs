@@ -1,7 +1,7 @@
 //! The matrices of a linearized step.
 
 use crate::direction::{self, Direction, Start};
-use crate::matrix::{Matrix, OutputTangent, split_index};
+use crate::matrix::{InputGradient, Matrix, OutputTangent, split_index};
 use crate::pass::{CreatePass, Pass};
 use crate::request::Request;
 use crate::seed::Seed;
@@ -81,6 +81,7 @@ pub struct Linearizer {
     pub(crate) all: Vec<f64>,
     pub(crate) result: Linearization,
     pub(crate) along: OutputTangent,
+    pub(crate) gradient: InputGradient,
 }
 
 impl fmt::Debug for Linearizer {
@@ -104,6 +105,7 @@ impl Linearizer {
             all: Vec::new(),
             result: Linearization::default(),
             along: OutputTangent::default(),
+            gradient: InputGradient::default(),
         })
     }
 

@@ -51,6 +51,26 @@ pub struct OutputTangent {
     pub y: Matrix,
 }
 
+/// The derivatives of functions by the results of a step, one row for each function.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OutputGradient {
+    /// By x⁺, 2 nv + na columns, more with [`Request::memory`](crate::Request::memory).
+    pub x: Matrix,
+    /// By y, nsensordata columns, then those of the requested outputs.
+    pub y: Matrix,
+}
+
+/// The derivatives of functions by the input of a step, one row for each function.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InputGradient {
+    /// By x, as many columns as by x⁺.
+    pub x: Matrix,
+    /// By u, nu columns.
+    pub u: Matrix,
+    /// By p, one column for each requested number of parameters, then of inputs.
+    pub p: Matrix,
+}
+
 /// Returns the part of (x, u, p) to which an index of all their numbers belongs, and its index there.
 pub(crate) fn split_index(index: usize, [nx, nu]: [usize; 2]) -> (usize, usize) {
     match index.checked_sub(nx) {

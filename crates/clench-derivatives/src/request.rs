@@ -37,7 +37,7 @@ impl Request {
     }
 
     /// Returns the length of y.
-    pub(crate) fn y_len(&self, model: &Model) -> usize {
+    pub fn y_len(&self, model: &Model) -> usize {
         let outputs = self.outputs.iter().map(|output| output.width(model));
         self.sensors_len(model) + outputs.sum::<usize>()
     }
@@ -51,12 +51,12 @@ impl Request {
     }
 
     /// Returns the length of p.
-    pub(crate) fn p_len(&self) -> usize {
+    pub fn p_len(&self) -> usize {
         self.parameters.len() + self.inputs.len()
     }
 
     /// Returns the length of x.
-    pub(crate) fn x_len(&self, model: &Model) -> usize {
+    pub fn x_len(&self, model: &Model) -> usize {
         let memory = self.memory_fields().map(|field| field.count(model));
         2 * model.nv + model.na + memory.sum::<usize>()
     }

@@ -1,8 +1,9 @@
-//! Compares directional derivatives with products of the matrices of a linearization.
+//! Compares directional derivatives, and gradients, with products of the matrices of a linearization.
 
 use crate::common::{Random, elliptic, load};
 use clench_derivatives::{
-    BatchLinearizer, InputTangent, Linearizer, Matrix, OutputTangent, Request,
+    BatchLinearizer, InputGradient, InputTangent, Linearizer, Matrix, OutputGradient,
+    OutputTangent, Request,
 };
 use clench_dynamics::model::ParamField;
 use clench_rigid::options::{ContactModel, RigidOptions};
@@ -33,10 +34,10 @@ impl Random {
 }
 
 /// Checks that `product` is the sum of the products of some matrices.
-fn assert_product(terms: [(&Matrix, &Matrix); 3], product: &Matrix) {
+fn assert_product(terms: &[(&Matrix, &Matrix)], product: &Matrix) {
     let columns = product.shape[1];
     let (mut largest, mut error) = (1.0_f64, 0.0_f64);
-    for (row, values) in product.values.chunks_exact(columns).enumerate() {
+    for (row, values) in product.values.chunks_exact(columns.max(1)).enumerate() {
         for (column, &found) in values.iter().enumerate() {
             let (mut sum, mut size) = (0.0, 0.0);
             for (left, right) in terms {
@@ -78,6 +79,28 @@ fn parameters(sim: &Sim<f64>) -> Vec<(ParamField, usize)> {
     chosen
 }
 
+fn check_gradient(
+    linearizer: &mut Linearizer,
+    sim: &Sim<f64>,
+    request: &Request,
+    random: &mut Random,
+) {
+    let linear = linearizer.linearize(sim, request).expect("derivatives");
+    let linear = linear.clone();
+    for rows in [1, 3] {
+        let gradient = OutputGradient {
+            x: random.matrix([rows, request.x_len(sim.model())]),
+            y: random.matrix([rows, request.y_len(sim.model())]),
+        };
+        let found = linearizer.vjp(sim, request, &gradient);
+        let InputGradient { x, u, p } = found.expect("derivatives");
+        let OutputGradient { x: by_x, y: by_y } = &gradient;
+        assert_product(&[(by_x, &linear.a), (by_y, &linear.c)], x);
+        assert_product(&[(by_x, &linear.b), (by_y, &linear.d)], u);
+        assert_product(&[(by_x, &linear.e), (by_y, &linear.f)], p);
+    }
+}
+
 fn check(model: Model, options: RigidOptions, steps: usize) {
     let mut sim = Sim::with_options(Arc::new(model), options).expect("a simulation");
     let mut random = Random(1);
@@ -106,9 +129,15 @@ fn check(model: Model, options: RigidOptions, steps: usize) {
         let found = linearizer.jvp(&sim, &request, &tangent);
         let OutputTangent { x, y } = found.expect("derivatives");
         let of = |[a, b, e]: [_; 3]| [(a, &tangent.x), (b, &tangent.u), (e, &tangent.p)];
-        assert_product(of([&linear.a, &linear.b, &linear.e]), x);
-        assert_product(of([&linear.c, &linear.d, &linear.f]), y);
+        assert_product(&of([&linear.a, &linear.b, &linear.e]), x);
+        assert_product(&of([&linear.c, &linear.d, &linear.f]), y);
     }
+    check_gradient(&mut linearizer, &sim, &request, &mut random);
+    let states = Request {
+        omits_sensors: true,
+        ..Request::default()
+    };
+    check_gradient(&mut linearizer, &sim, &states, &mut random);
     // The linearizer stores nothing that changes later results.
     let again = linearizer.linearize(&sim, &request).expect("derivatives");
     assert_eq!(&linear, again);
@@ -192,7 +221,7 @@ fn a_tangent_without_columns_has_no_derivatives() {
 }
 
 #[test]
-fn environments_of_a_batch_have_their_own_tangents() {
+fn environments_of_a_batch_have_their_own_tangents_and_gradients() {
     let model = Arc::new(load("quadruped.xml"));
     let mut batch = Batch::<f64>::new(model.clone(), 3).expect("a batch");
     let mut random = Random(2);
@@ -210,6 +239,18 @@ fn environments_of_a_batch_have_their_own_tangents() {
     for (env, found) in found.iter().enumerate() {
         let sim = batch.sim(env).expect("an environment");
         let alone = linearizer.jvp(&sim, &request, &tangents[env]);
+        assert_eq!(found, alone.expect("derivatives"));
+    }
+    let mut gradient = || OutputGradient {
+        x: random.matrix([1, request.x_len(&model)]),
+        y: random.matrix([1, request.y_len(&model)]),
+    };
+    let gradients = [gradient(), gradient(), gradient()];
+    let found = together.vjp(&mut batch, &request, &gradients);
+    let found = found.expect("derivatives").to_vec();
+    for (env, found) in found.iter().enumerate() {
+        let sim = batch.sim(env).expect("an environment");
+        let alone = linearizer.vjp(&sim, &request, &gradients[env]);
         assert_eq!(found, alone.expect("derivatives"));
     }
 }

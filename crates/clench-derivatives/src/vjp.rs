@@ -1,0 +1,45 @@
+//! Gradients of functions of a step's results: products of a row vector, or of several, with the Jacobian of the step.
+
+use crate::linearizer::{Linearization, Linearizer};
+use crate::matrix::{InputGradient, OutputGradient};
+use crate::request::Request;
+use clench_rigid::{Sim, SimError};
+
+impl Linearizer {
+    /// Returns the gradients of functions of the next state and y by the input of the step: gₓ A + g_y C, gₓ B + g_y D
+    /// and gₓ E + g_y F for gradients gₓ by x⁺ and g_y by y, with the matrices of the
+    /// [`Linearization`](crate::Linearization). The state of the simulation does not change.
+    ///
+    /// # Errors
+    /// Returns an error if [`Sim::step`] would return one.
+    ///
+    /// # Panics
+    /// Panics if the simulation has another model, if a parameter does not have a requested number, or if a matrix has
+    /// another shape.
+    pub fn vjp(
+        &mut self,
+        sim: &Sim<f64>,
+        request: &Request,
+        gradient: &OutputGradient,
+    ) -> Result<&InputGradient, SimError> {
+        let rows = gradient.x.shape[0];
+        for (matrix, columns) in [
+            (&gradient.x, request.x_len(sim.model())),
+            (&gradient.y, request.y_len(sim.model())),
+        ] {
+            assert_eq!(matrix.shape, [rows, columns], "the shape of a gradient");
+            assert_eq!(matrix.values.len(), rows * columns, "a complete matrix");
+        }
+        self.linearize(sim, request)?;
+        let Linearization {
+            a, b, c, d, e, f, ..
+        } = &self.result;
+        let InputGradient { x, u, p } = &mut self.gradient;
+        for (product, by_state, by_output) in [(x, a, c), (u, b, d), (p, e, f)] {
+            product.reset([rows, by_state.shape[1]]);
+            product.add_product(&gradient.x, by_state);
+            product.add_product(&gradient.y, by_output);
+        }
+        Ok(&self.gradient)
+    }
+}

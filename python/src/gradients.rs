@@ -1,0 +1,115 @@
+//! Gradients of functions of a step, from Python.
+
+use crate::arrays::{numbers, require_finite, require_shape};
+use crate::changes::{InputGradients, OutputGradients};
+use crate::derivatives::{Chosen, Memory, in_env, with_linearizer};
+use crate::error::sim_error;
+use crate::row_sim::AnySim;
+use clench::derivatives::{BatchLinearizer, InputGradient, Matrix, OutputGradient};
+use clench::rigid::batch::Precision;
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::slice::from_ref;
+
+/// The gradients by the results: one for each environment.
+pub(crate) struct Gradients {
+    chosen: Chosen,
+    each: Vec<OutputGradient>,
+    /// The shape of the results before the dimension of their numbers.
+    lead: Vec<usize>,
+}
+
+impl Gradients {
+    /// Converts gradients of the shape (`lead`, numbers).
+    pub(crate) fn new(
+        model: &clench::Model,
+        outputs: &[String],
+        parameters: Option<&Bound<'_, PyAny>>,
+        memory: bool,
+        [x, y]: OutputGradients<'_, '_>,
+        lead: &[usize],
+    ) -> PyResult<Self> {
+        // Derivatives of sensors take time.
+        let sensors = y.is_some();
+        let chosen = Chosen::new(model, outputs, parameters, [memory, sensors, false])?;
+        let envs = lead.iter().product();
+        let read = |name: &str, given: Option<&Bound<'_, PyAny>>, columns: usize| {
+            let values = match given {
+                Some(given) => {
+                    let array = numbers::<f64>(name, given)?;
+                    let array = array.as_array();
+                    require_shape(name, array.shape(), &[lead, &[columns]].concat())?;
+                    Vec::from_iter(array.iter().copied())
+                }
+                None => vec![0.0; envs * columns],
+            };
+            require_finite(name, &values)?;
+            let row = |env: usize| Matrix {
+                shape: [1, columns],
+                values: values[env * columns..][..columns].to_vec(),
+            };
+            Ok::<_, PyErr>(Vec::from_iter((0..envs).map(row)))
+        };
+        let x = read("x", x, chosen.request.x_len(model))?;
+        let y = read("y", y, chosen.request.y_len(model))?;
+        let each = x.into_iter().zip(y);
+        Ok(Gradients {
+            each: each.map(|(x, y)| OutputGradient { x, y }).collect(),
+            chosen,
+            lead: lead.to_vec(),
+        })
+    }
+
+    /// Differentiates the next step of a simulation.
+    pub(crate) fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<InputGradients> {
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                linearizer.vjp(sim, &self.chosen.request, &self.each[0])
+            })
+        });
+        self.export(py, from_ref(result.map_err(sim_error)?))
+    }
+
+    /// Differentiates the next step of every environment of a batch.
+    pub(crate) fn of_batch<S: Precision>(
+        &self,
+        py: Python<'_>,
+        memory: &mut Option<BatchLinearizer<S>>,
+        batch: &mut clench::Batch<S>,
+    ) -> PyResult<InputGradients> {
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            linearizer.vjp(batch, &self.chosen.request, &self.each)
+        });
+        self.export(py, results.map_err(|error| in_env(py, error))?)
+    }
+
+    /// Copies results to arrays.
+    fn export(&self, py: Python<'_>, results: &[InputGradient]) -> PyResult<InputGradients> {
+        let array = |of: &dyn Fn(&InputGradient) -> &[f64]| {
+            let mut values = Vec::new();
+            for result in results {
+                values.extend_from_slice(of(result));
+            }
+            let columns = results.first().map_or(0, |first| of(first).len());
+            let shape = [&self.lead[..], &[columns]].concat();
+            Ok::<_, PyErr>(PyArray1::from_vec(py, values).reshape(shape)?.unbind())
+        };
+        let by_parameters = PyDict::new(py);
+        for (name, columns) in self.chosen.columns() {
+            let by = array(&|result| &result.p.values[columns.clone()])?;
+            by_parameters.set_item(name, by)?;
+        }
+        Ok((
+            array(&|result| &result.x.values)?,
+            array(&|result| &result.u.values)?,
+            by_parameters.unbind(),
+        ))
+    }
+}
