@@ -59,6 +59,8 @@ Commands:
                       models      compare 20,000 random models with MuJoCo; those that differ are minimized and stored in
                                   parity/differences
                       device      compare 5,000 random models on a GPU, or Mesa's device, with the processor
+                      derivatives compare derivatives of 20 states of each public model with MuJoCo's differences, for all
+                                  integrators
                       batch       step 10,000 environments 1,000 times under random controls, resets and poison; none may
                                   be lost, disturb another, or leak
                       endurance   the same, 10,000 times

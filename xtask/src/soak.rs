@@ -1,6 +1,7 @@
 //! `cargo xtask soak`: long searches for rare failures.
 
 use crate::gpu;
+use crate::package;
 use crate::python;
 use crate::run::{Profile, cargo, command, run};
 use crate::stages::build;
@@ -51,6 +52,11 @@ const SOAKS: [Soak; 5] = [
 const MODELS: &str = "models";
 /// The soak of random models on a GPU.
 const DEVICE: &str = "device";
+/// The soak of the Python package: derivatives of public models.
+const DERIVATIVES: &str = "derivatives";
+
+/// The variable of the environment that tests read the seed from.
+const SEED: &str = "SOAK_SEED";
 
 /// Runs all soaks. `args` may select one by `--only`, and contain a seed.
 ///
@@ -72,10 +78,10 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
         .filter(|soak| only.is_none_or(|only| only == soak.name))
         .collect();
     let is_chosen = |name: &str| only.is_none_or(|only| only == name);
-    if chosen.is_empty() && !is_chosen(MODELS) && !is_chosen(DEVICE) {
+    if chosen.is_empty() && ![MODELS, DEVICE, DERIVATIVES].into_iter().any(is_chosen) {
         let names = SOAKS.map(|soak| soak.name).join(", ");
         return Err(format!(
-            "soak accepts --only with one of {MODELS}, {DEVICE}, {names}"
+            "soak accepts --only with one of {MODELS}, {DEVICE}, {DERIVATIVES}, {names}"
         ));
     }
     if is_chosen(MODELS) {
@@ -84,13 +90,21 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
     if is_chosen(DEVICE) {
         gpu::soak(seed)?;
     }
+    if is_chosen(DERIVATIVES) {
+        package::install(Profile::Release)?;
+        let mut test = python::tests(
+            Profile::Release,
+            &["python/tests/test_public_derivatives.py"],
+        );
+        run(test.env(SEED, seed.to_string()))?;
+    }
     for soak in chosen {
         let mut test = cargo(&["test", "--release", "--package", soak.package]);
         test.args(["--test", soak.test, "--", "--ignored", "--nocapture"]);
         if !soak.case.is_empty() {
             test.args(["--exact", soak.case]);
         }
-        test.env("SOAK_SEED", seed.to_string());
+        test.env(SEED, seed.to_string());
         run(test)?;
     }
     Ok(())
