@@ -1,279 +1,90 @@
 //! The derivatives of constraint forces at a constant acceleration.
 //!
 //! The residual of a row is y = J a − aref, in which aref depends on the distance r and the velocity of the row. So the
-//! force f(y, r) of a block changes by ∂f/∂y dy + ∂f/∂r dr, both found in dual numbers.
-//!
-//! The rows of a joint have a constant J. Those of a contact move with the point p and the axes of its frame, which
-//! follow from the motion of both shapes. In world axes about p, with W the wrench of the contact and s_i the axis of a
-//! dof that moves the second body, a dof j changes the force along i by
-//!
-//! ```text
-//! s_i · (dW − s_j ×* W)    if s_i turns with j        s_i · dW    otherwise
-//! ```
-//!
-//! A dof that moves both bodies moves the contact with them, but for the tangents, which may follow the world's axes.
+//! force f(y, r) of a block changes by ∂f/∂y dy + ∂f/∂r dr, both found in dual numbers (`slopes`). The motion of the rows
+//! is that of a contact (`contact`), of two frames (`frames`) or of a coordinate of joints and tendons (`rows`).
 
+use super::contact::Contacts;
+use super::frames::Frames;
+use super::rows::Rows;
+use super::slopes::Slopes;
 use super::step::Step;
-use clench_collide::{MovingPoint, Pose, moving_points};
-use clench_dynamics::constraint::at_distance::{MAX_DIM, rows_at_distance};
-use clench_dynamics::contact::{Contact, shape};
-use clench_dynamics::dynamics::chains::{BodyPoint, Chains, Side};
-use clench_dynamics::dynamics::inverse_derivatives::{Columns, first_turning};
+use clench_dynamics::dynamics::inverse_derivatives::{Columns, InverseDerivatives};
+use clench_dynamics::model::EqualityTarget;
 use clench_dynamics::record::ConstraintSource;
-use clench_math::{Dual, Force, Motion, Real, Vec3};
-use clench_solver::{Block, Cost, Response, block_force};
+use clench_solver::{Block, Cost, Response};
 
 /// Scratch memory of these derivatives.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
-    /// The accelerations J a of bodies (nbody), and of what carries each dof (nv).
-    body: Vec<Motion<f64>>,
-    carrier: Vec<Motion<f64>>,
-    /// The velocities of what carries each dof (nv).
-    carrier_velocity: Vec<Motion<f64>>,
-    /// The geoms of the last contact, and the points between them.
-    geoms: Option<[usize; 2]>,
-    points: Vec<MovingPoint>,
-    arms: Vec<Arm>,
+    contacts: Contacts,
+    frames: Frames,
+    rows: Rows,
 }
 
-/// The effect of a dof on a contact.
+/// A kind of constraint by the motion of its rows.
 #[derive(Clone, Copy, Debug)]
-struct Arm {
-    dof: usize,
-    side: Side,
-    /// The motion of the second body relative to the first, about the point.
-    motion: Motion<f64>,
-    /// The change of the wrench on the second body, about the fixed point, as such and with the axes of the dof.
-    wrench: [Force<f64>; 2],
-    /// The change of the forces by position and by velocity.
-    force: [[f64; MAX_DIM]; 2],
-}
-
-/// The derivatives of the force of a block.
-#[derive(Clone, Copy, Debug)]
-struct Slopes {
-    by_distance: [f64; MAX_DIM],
-    by_residual: [[f64; MAX_DIM]; MAX_DIM],
-    damping: [f64; MAX_DIM],
-}
-
-impl Slopes {
-    /// Returns the change of the force with the distance and the residual.
-    fn force(&self, dim: usize, distance: f64, residual: &[f64; MAX_DIM]) -> [f64; MAX_DIM] {
-        let mut force = [0.0; MAX_DIM];
-        for (k, force) in force[..dim].iter_mut().enumerate() {
-            *force = self.by_distance[k] * distance;
-            for (slope, y) in self.by_residual[k][..dim].iter().zip(residual) {
-                *force += slope * y;
-            }
-        }
-        force
-    }
+enum Kind {
+    Contact(usize),
+    /// Points or frames of two bodies.
+    Frames,
+    Row,
 }
 
 impl Blocks {
-    /// Subtracts the derivatives of constraint forces by position and velocity from `gradient`. Returns false if a
-    /// constraint is of a kind that is not covered.
+    /// Subtracts the derivatives of constraint forces by position and velocity from `gradient`. `inverse` holds the
+    /// motion of the step. Returns false if a constraint is of a kind that is not covered.
     pub(super) fn run(
         &mut self,
         step: &Step<'_>,
-        response: &Response<f64>,
+        (response, inverse): (&Response<f64>, &InverseDerivatives<f64>),
         gradient: &mut Columns<'_, f64>,
     ) -> bool {
         let plain = step.plain;
-        self.geoms = None;
-        self.find_accelerations(step);
+        self.contacts.find_accelerations(step);
         for (block, record) in plain.problem.blocks().zip(&plain.record.blocks) {
             let y = &response.residual()[block.rows()];
             if block.d[0] <= 0.0 || is_idle(&block, y) {
                 continue;
             }
-            let contact = match record.source {
-                ConstraintSource::Contact(i) => Some(&plain.contacts[i]),
-                ConstraintSource::Equality(_)
-                | ConstraintSource::Dynamic { .. }
-                | ConstraintSource::DofFriction(_)
-                | ConstraintSource::TendonFriction(_)
-                | ConstraintSource::JointLimit(_)
-                | ConstraintSource::TendonLimit(_) => None,
-            };
-            if contact.is_some_and(|contact| contact.adhesion != 0.0) {
-                return false;
-            }
-            let of = (record.source, contact);
-            let Some(slopes) = slopes(step, &block, of, y) else {
-                return false;
-            };
-            match contact {
-                Some(contact) => {
-                    let force = &response.force()[block.rows()];
-                    self.add_contact(step, &block, contact, force, &slopes, gradient);
+            let (source, force) = (record.source, &response.force()[block.rows()]);
+            match kind(step, source) {
+                Kind::Contact(i) => {
+                    let contact = &plain.contacts[i];
+                    let slopes = Slopes::new(step, &block, (source, Some(contact)), y);
+                    let (Some(slopes), 0.0) = (slopes, contact.adhesion) else {
+                        return false;
+                    };
+                    (self.contacts).subtract(step, &block, contact, force, &slopes, gradient);
                 }
-                None => add_row(step, &block, &slopes, gradient),
+                Kind::Frames => {
+                    (self.frames).subtract((step, inverse), &block, source, (y, force), gradient);
+                }
+                Kind::Row => {
+                    let Some(slopes) = Slopes::new(step, &block, (source, None), y) else {
+                        return false;
+                    };
+                    (self.rows).subtract(step, &block, source, (force[0], &slopes), gradient);
+                }
             }
         }
         true
     }
+}
 
-    /// Computes J a of bodies, and of what carries each dof, and the velocities of what carries each dof.
-    fn find_accelerations(&mut self, step: &Step<'_>) {
-        let (model, pos) = (step.model, &step.plain.position);
-        let (qvel, qacc) = (&step.before.qvel, &step.plain.qacc);
-        self.body.resize(model.nbody(), Motion::ZERO);
-        self.carrier.resize(model.nv, Motion::ZERO);
-        self.carrier_velocity.resize(model.nv, Motion::ZERO);
-        for (b, body) in model.bodies.iter().enumerate().skip(1) {
-            let mut acceleration = self.body[body.parent];
-            let mut velocity = step.plain.velocity.cvel[body.parent];
-            for i in body.dofs.clone() {
-                let first = first_turning(model, i);
-                match first < i {
-                    true => {
-                        self.carrier[i] = self.carrier[first];
-                        self.carrier_velocity[i] = self.carrier_velocity[first];
-                    }
-                    false => {
-                        self.carrier[i] = acceleration;
-                        self.carrier_velocity[i] = velocity;
-                    }
-                }
-                acceleration += pos.cdof[i] * qacc[i];
-                velocity += pos.cdof[i] * qvel[i];
-            }
-            self.body[b] = acceleration;
-        }
-    }
-
-    fn add_contact(
-        &mut self,
-        step: &Step<'_>,
-        block: &Block<'_, f64>,
-        contact: &Contact<f64>,
-        force: &[f64],
-        slopes: &Slopes,
-        gradient: &mut Columns<'_, f64>,
-    ) {
-        let point = self.moving_point(step, contact);
-        self.find_arms(step, block, (contact, &point), force, slopes);
-        let (dim, nv) = (block.dim, step.model.nv);
-        let columns = |arm: usize| block.jacobian[arm..].iter().step_by(block.dofs.len());
-        let common = self.arms.len() - block.dofs.len();
-        for by in &self.arms {
-            let [fixed, turned] = by.wrench;
-            for (row, of) in self.arms[common..].iter().enumerate() {
-                let precedes = by.dof <= of.dof || first_turning(step.model, by.dof) <= of.dof;
-                let turns = by.side == Side::Both || by.side == of.side && precedes;
-                let mut change = of.motion.dot(if turns { turned } else { fixed });
-                let mut by_velocity = 0.0;
-                for (k, j) in columns(row).take(dim).enumerate() {
-                    change += j * by.force[0][k];
-                    by_velocity += j * by.force[1][k];
-                }
-                gradient.add(of.dof, by.dof, -change);
-                gradient.add(of.dof, nv + by.dof, -by_velocity);
-            }
-        }
-    }
-
-    /// Returns the point of a contact with its derivatives.
-    fn moving_point(&mut self, step: &Step<'_>, contact: &Contact<f64>) -> MovingPoint {
-        if self.geoms != Some(contact.geoms) {
-            self.geoms = Some(contact.geoms);
-            let pos = &step.plain.position;
-            let shapes = contact
-                .geoms
-                .map(|geom| shape(step.model, step.params, geom));
-            let poses = contact.geoms.map(|geom| Pose {
-                position: pos.geom_xpos[geom],
-                rotation: pos.geom_xmat[geom],
-            });
-            moving_points(&shapes, &poses, contact.includemargin, &mut self.points);
-        }
-        let distance = |point: &&MovingPoint| {
-            let apart = point.position - contact.pos;
-            apart.dot(apart)
-        };
-        let nearest = self
-            .points
-            .iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.copied().unwrap_or_default()
-    }
-
-    /// Computes the effect of each dof of a contact.
-    fn find_arms(
-        &mut self,
-        step: &Step<'_>,
-        block: &Block<'_, f64>,
-        (contact, point): (&Contact<f64>, &MovingPoint),
-        force: &[f64],
-        slopes: &Slopes,
-    ) {
-        let (model, plain) = (step.model, step.plain);
-        let bodies = contact.geoms.map(|geom| model.geoms[geom].body);
-        let about = |body: usize| BodyPoint::new(model, &plain.position, body, contact.pos).offset;
-        let offsets = bodies.map(about);
-        let at = |motion: Motion<f64>, side: usize| {
-            Motion::new(motion.angular, motion.velocity_at(offsets[side]))
-        };
-        let cvel = &plain.velocity.cvel;
-        let [acceleration, velocity] =
-            [&self.body, cvel].map(|motions| [0, 1].map(|side| at(motions[bodies[side]], side)));
-        let centres = contact
-            .geoms
-            .map(|geom| plain.position.geom_xpos[geom] - contact.pos);
-        let axes = contact.frame.rows;
-        let wrench = wrench(&axes, force);
-        self.arms.clear();
-        let chains = Chains::new(model, bodies);
-        let common = chains
-            .iter()
-            .take_while(|(_, side)| *side == Side::Both)
-            .count();
-        for (index, (dof, side)) in chains.iter().enumerate() {
-            // The bodies of a dof that moves both have the same reference point.
-            let (moves, own) = match side {
-                Side::Both => ([1.0, 1.0], 1),
-                Side::First => ([1.0, 0.0], 0),
-                Side::Second => ([0.0, 1.0], 1),
-            };
-            let axis = at(plain.position.cdof[dof], own);
-            let change = Change::new(point, axis, moves, centres);
-            let motion = axis * (moves[1] - moves[0]);
-            let field = |carrier: &[Motion<f64>], of: &[Motion<f64>; 2]| match side {
-                Side::Both => axis.cross(of[1] - of[0]),
-                Side::First | Side::Second => motion.cross(of[own] - at(carrier[dof], own)),
-            };
-            let mut residual = [0.0; MAX_DIM];
-            let accelerated = field(&self.carrier, &acceleration);
-            change.add_rates(
-                &axes,
-                (acceleration, accelerated),
-                &[1.0; MAX_DIM],
-                &mut residual,
-            );
-            let moved = field(&self.carrier_velocity, &velocity);
-            change.add_rates(&axes, (velocity, moved), &slopes.damping, &mut residual);
-            let mut rate = [0.0; MAX_DIM];
-            if let Some(column) = index.checked_sub(common) {
-                for (k, rate) in rate[..block.dim].iter_mut().enumerate() {
-                    *rate = slopes.damping[k] * block.jacobian[k * block.dofs.len() + column];
-                }
-            }
-            let changed = change.wrench(force, wrench);
-            let turned = changed - axis.cross_force(wrench);
-            self.arms.push(Arm {
-                dof,
-                side,
-                motion,
-                wrench: [changed, turned],
-                force: [
-                    slopes.force(block.dim, change.distance, &residual),
-                    slopes.force(block.dim, 0.0, &rate),
-                ],
-            });
-        }
+/// Returns the kind of a constraint.
+fn kind(step: &Step<'_>, source: ConstraintSource) -> Kind {
+    match source {
+        ConstraintSource::Contact(i) => Kind::Contact(i),
+        ConstraintSource::Dynamic { .. } => Kind::Frames,
+        ConstraintSource::Equality(equality) => match step.model.equalities[equality].target {
+            EqualityTarget::Connect { .. } | EqualityTarget::Weld { .. } => Kind::Frames,
+            EqualityTarget::Joint { .. } | EqualityTarget::Tendon { .. } => Kind::Row,
+        },
+        ConstraintSource::DofFriction(_)
+        | ConstraintSource::TendonFriction(_)
+        | ConstraintSource::JointLimit(_)
+        | ConstraintSource::TendonLimit(_) => Kind::Row,
     }
 }
 
@@ -284,132 +95,4 @@ fn is_idle(block: &Block<'_, f64>, y: &[f64]) -> bool {
         Cost::OneSided => y[0] > 0.0,
         Cost::Quadratic | Cost::Huber | Cost::Pyramid | Cost::Elliptic | Cost::Coulomb => false,
     }
-}
-
-/// The change of a contact with a dof.
-struct Change {
-    distance: f64,
-    position: Vec3<f64>,
-    axes: [Vec3<f64>; 3],
-}
-
-impl Change {
-    /// Computes the change with a motion of the first and of the second shape, each times a factor. The shapes'
-    /// positions are at `centres` from the point.
-    fn new(
-        point: &MovingPoint,
-        motion: Motion<f64>,
-        factors: [f64; 2],
-        centres: [Vec3<f64>; 2],
-    ) -> Self {
-        let turn = motion.angular;
-        let [first, second] = [0, 1].map(|k| motion.velocity_at(centres[k]) * factors[k]);
-        let motions = [second - first, turn * factors[0], turn * factors[1]];
-        let mut change = Change {
-            distance: 0.0,
-            position: first,
-            axes: [Vec3::ZERO; 3],
-        };
-        for (k, x) in motions.into_iter().flat_map(Vec3::to_array).enumerate() {
-            change.distance += point.distance_rates[k] * x;
-            change.position += point.position_rates[k] * x;
-            for (axis, &rate) in change.axes.iter_mut().zip(&point.frame_rates[k]) {
-                *axis += rate * x;
-            }
-        }
-        change
-    }
-
-    /// Adds the changes of the rows of the second body's motion minus the first's, times a factor for each row.
-    /// `changed` is the change of this difference about the fixed point.
-    fn add_rates(
-        &self,
-        axes: &[Vec3<f64>; 3],
-        ([first, second], changed): ([Motion<f64>; 2], Motion<f64>),
-        factors: &[f64; MAX_DIM],
-        rates: &mut [f64; MAX_DIM],
-    ) {
-        let relative = second - first;
-        let linear = changed.linear + relative.angular.cross(self.position);
-        for k in 0..3 {
-            let translation = self.axes[k].dot(relative.linear) + axes[k].dot(linear);
-            let rotation = self.axes[k].dot(relative.angular) + axes[k].dot(changed.angular);
-            rates[k] += factors[k] * translation;
-            rates[k + 3] += factors[k + 3] * rotation;
-        }
-    }
-
-    /// Returns the change of the wrench of constant forces about the fixed point.
-    fn wrench(&self, force: &[f64], wrench: Force<f64>) -> Force<f64> {
-        let turned = self::wrench(&self.axes, force);
-        let moment = turned.angular + self.position.cross(wrench.linear);
-        Force::new(moment, turned.linear)
-    }
-}
-
-/// Returns the wrench of the forces along the rows of a contact on the second body.
-fn wrench(axes: &[Vec3<f64>; 3], force: &[f64]) -> Force<f64> {
-    let mut wrench = Force::ZERO;
-    for (k, &f) in force.iter().enumerate() {
-        match k < 3 {
-            true => wrench.linear += axes[k] * f,
-            false => wrench.angular += axes[k - 3] * f,
-        }
-    }
-    wrench
-}
-
-/// Subtracts the derivatives of the force of one row over one dof.
-fn add_row(
-    step: &Step<'_>,
-    block: &Block<'_, f64>,
-    slopes: &Slopes,
-    gradient: &mut Columns<'_, f64>,
-) {
-    let (dof, j) = (block.dofs[0] as usize, block.jacobian[0]);
-    let damping = slopes.damping[0] * slopes.by_residual[0][0];
-    gradient.add(dof, dof, -j * slopes.by_distance[0] * j);
-    gradient.add(dof, step.model.nv + dof, -j * damping * j);
-}
-
-/// A number with its derivatives by the distance and by the residual of each row.
-type RowDual = Dual<f64, { 1 + MAX_DIM }>;
-
-/// Computes the derivatives of the force of a block at the residual `y`. Returns `None` if it is not covered.
-fn slopes(
-    step: &Step<'_>,
-    block: &Block<'_, f64>,
-    of: (ConstraintSource, Option<&Contact<f64>>),
-    y: &[f64],
-) -> Option<Slopes> {
-    let (dim, record) = (block.dim, &step.plain.record);
-    let mut velocities = [RowDual::ZERO; MAX_DIM];
-    for (velocity, &value) in velocities.iter_mut().zip(&record.vel[block.rows()]) {
-        velocity.value = value;
-    }
-    let mut distance = RowDual::new(record.pos[block.row]);
-    distance.tangent[0] = 1.0;
-    let of_model = (step.model, step.params, step.settings);
-    let rows = rows_at_distance(of_model, of, distance, &velocities[..dim])?;
-    let mut residual = [RowDual::ZERO; MAX_DIM];
-    let mut d = [RowDual::ZERO; MAX_DIM];
-    for k in 0..dim {
-        d[k] = RowDual::ONE / rows.r[k];
-        residual[k] = -rows.aref[k];
-        residual[k].value = y[k];
-        residual[k].tangent[1 + k] = 1.0;
-    }
-    let mut force = [RowDual::ZERO; MAX_DIM];
-    let numbers = [&d[..dim], &rows.r[..dim], &rows.shape[..dim]];
-    block_force(rows.cost, numbers, &residual[..dim], &mut force[..dim]);
-    let mut slopes = Slopes {
-        by_distance: [0.0; MAX_DIM],
-        by_residual: [[0.0; MAX_DIM]; MAX_DIM],
-        damping: rows.damping.map(|damping| damping.value),
-    };
-    for (k, force) in force[..dim].iter().enumerate() {
-        let [by_distance, by_residual @ ..] = force.tangent;
-        (slopes.by_distance[k], slopes.by_residual[k]) = (by_distance, by_residual);
-    }
-    Some(slopes)
 }

@@ -1,12 +1,14 @@
-//! Derivatives of the forces of joints and actuators, of activations and of the integration of positions.
+//! Derivatives of the forces of joints, tendons and actuators, and of activations.
 //!
-//! Each depends on the coordinates of one joint or actuator. So all joints change at once along one direction, which
-//! stands for the k-th dof of each: a single pass in dual numbers serves them all.
+//! Each depends on the coordinates of one joint, tendon or actuator. So all change at once along one direction, which
+//! stands for the k-th dof of each joint and the length of each actuator: a single pass in dual numbers serves them all.
 
+use super::coordinate::{AlongForce, Coordinate};
+use super::implicit::Implicit;
 use super::step::Step;
+use super::tendons;
 use crate::tangent;
 use clench_dynamics::State;
-use clench_dynamics::dynamics::integrate::integrate_positions;
 use clench_dynamics::dynamics::inverse_derivatives::Columns;
 use clench_dynamics::dynamics::local::{LocalStages, dof_damping_slope, is_sprung};
 use clench_dynamics::model::{Integrator, Model, Params};
@@ -14,7 +16,7 @@ use clench_math::{Dual, Real};
 
 /// The number of directions of a pass: as many as fill a register. Most models need no more.
 const DIRECTIONS: usize = 8;
-type Number = Dual<f64, DIRECTIONS>;
+pub(super) type Number = Dual<f64, DIRECTIONS>;
 
 /// The coordinates of which the k-th of every joint or actuator changes along a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,13 +27,6 @@ enum Kind {
     Control,
 }
 
-/// The derivatives of the motion of a dof by the k-th positions and new velocities of its joint.
-#[derive(Clone, Copy, Debug, Default)]
-struct Motion {
-    by_position: [f64; 6],
-    by_velocity: [f64; 6],
-}
-
 /// Memory of these derivatives, and those that are not forces.
 #[derive(Debug)]
 pub(super) struct Local {
@@ -39,60 +34,68 @@ pub(super) struct Local {
     before: State<Number>,
     stages: LocalStages<Number>,
     directions: Vec<(Kind, usize)>,
-    /// The derivatives of the motion of each dof (nv).
-    motion: Vec<Motion>,
     /// The derivatives of the new activations: an activation, a column and the derivative.
     activations: Vec<(usize, usize, f64)>,
-    /// Minus the derivative of the force along each dof by its velocity, as an implicit step adds it to M (nv).
-    pub slopes: Vec<f64>,
-    /// The derivatives of these slopes times the acceleration of the step: the dof, a column and the derivative.
-    pub slope_rates: Vec<(usize, usize, f64)>,
+    /// The slopes of damping.
+    pub implicit: Implicit,
     /// Scratch: a row of the result.
     row: Vec<f64>,
 }
 
 impl Local {
     pub(super) fn new(model: &Model) -> Self {
-        Local {
+        let mut local = Local {
             params: model.params.broadcast(),
             before: State::new(model),
             stages: LocalStages::new(model),
             directions: Vec::new(),
-            motion: vec![Motion::default(); model.nv],
             activations: Vec::new(),
-            slopes: Vec::new(),
-            slope_rates: Vec::new(),
+            implicit: Implicit::default(),
             row: Vec::new(),
-        }
+        };
+        local.set_params(&model.params);
+        local
     }
 
     pub(super) fn set_params(&mut self, params: &Params<f64>) {
         self.params = params.broadcast();
+        // The module `weight` differentiates gravity compensation.
+        self.params.body_gravcomp.fill(Number::ZERO);
     }
 
     /// Subtracts the derivatives of the forces from `gradient`, and computes all others.
     pub(super) fn run(&mut self, step: &Step<'_>, gradient: &mut Columns<'_, f64>) {
+        let model = step.model;
         self.activations.clear();
-        self.slopes.clear();
-        self.slope_rates.clear();
+        self.implicit.clear(model.nv);
         self.list_directions(step);
         let directions = std::mem::take(&mut self.directions);
-        for part in directions.chunks(DIRECTIONS) {
+        for (index, part) in directions.chunks(DIRECTIONS).enumerate() {
             self.before.set_values(step.before);
             self.seed(step, part);
-            self.slopes.clear();
-            self.stages.run(step.model, &self.params, &self.before);
+            self.stages.run(model, &self.params, &self.before);
+            // With gravity compensation.
+            set_values(
+                &mut self.stages.force.qfrc_actuator,
+                &step.plain.force.qfrc_actuator,
+            );
+            if index == 0 {
+                self.add_slopes(step);
+            }
             self.subtract_passive(step, part, gradient);
-            if step.model.flags.actuation {
+            if model.flags.actuation {
                 self.subtract_actuation(step, part, gradient);
             }
             self.stages
-                .advance(step.model, &self.params, &mut self.before.act);
+                .advance(model, &self.params, &mut self.before.act);
             self.read_activations(step, part);
         }
         self.directions = directions;
-        self.slopes.resize(step.model.nv, 0.0);
-        self.integrate(step);
+        if !model.tendons.is_empty() {
+            self.before.set_values(step.before);
+            let numbers = (&self.params, &self.before);
+            tendons::subtract(step, numbers, &mut self.implicit, gradient);
+        }
     }
 
     /// Lists the directions along which a force changes.
@@ -101,7 +104,7 @@ impl Local {
         let joints = model.joints.iter().enumerate();
         let sprung = joints.filter(|&(j, _)| is_sprung(model, params, j));
         let dofs = sprung.map(|(_, joint)| joint.kind.nv()).max();
-        // Actuators act on joints of one dof.
+        // Actuators have one length.
         let dofs = dofs
             .unwrap_or(0)
             .max(usize::from(!model.actuators.is_empty()));
@@ -119,47 +122,62 @@ impl Local {
         }
     }
 
-    /// Sets the derivatives of positions, velocities, activations and controls.
+    /// Sets the derivatives of positions, velocities, activations and controls, and of the lengths of actuators.
     fn seed(&mut self, step: &Step<'_>, part: &[(Kind, usize)]) {
-        let (model, plain) = (step.model, step.plain);
+        let (model, pos, vel) = (step.model, &step.plain.position, &step.plain.velocity);
         let LocalStages {
             position, velocity, ..
         } = &mut self.stages;
-        for (to, from) in [
-            (
-                &mut position.actuator_length,
-                &plain.position.actuator_length,
-            ),
-            (
-                &mut position.actuator_moment,
-                &plain.position.actuator_moment,
-            ),
-            (
-                &mut velocity.actuator_velocity,
-                &plain.velocity.actuator_velocity,
-            ),
-        ] {
-            for (to, &from) in to.iter_mut().zip(from) {
-                *to = Number::new(from);
-            }
-        }
-        let state = &mut self.before;
+        set_values(&mut position.ten_length, &pos.ten_length);
+        set_values(&mut position.ten_jacobian, &pos.ten_jacobian);
+        set_values(&mut position.actuator_length, &pos.actuator_length);
+        set_values(&mut position.actuator_moment, &pos.actuator_moment);
+        set_values(&mut velocity.ten_velocity, &vel.ten_velocity);
+        set_values(&mut velocity.actuator_velocity, &vel.actuator_velocity);
         for (direction, &(kind, k)) in part.iter().enumerate() {
-            seed_state(model, state, (kind, k), direction);
+            seed_state(model, &mut self.before, (kind, k), direction);
             let moved = match (kind, k) {
                 (Kind::Position, 0) => &mut position.actuator_length,
                 (Kind::Velocity, 0) => &mut velocity.actuator_velocity,
                 (Kind::Position | Kind::Velocity | Kind::Activation | Kind::Control, _) => continue,
             };
-            for (u, actuator) in model.actuators.iter().enumerate() {
-                if let Some((_, arm)) = step.arm(u) {
-                    moved[actuator.outputs.start].set_derivative(direction, arm);
-                }
+            for number in moved {
+                number.set_derivative(direction, 1.0);
             }
         }
     }
 
-    /// Subtracts the derivatives of passive forces, and reads those of dampers' slopes.
+    /// Adds the slopes of damping.
+    fn add_slopes(&mut self, step: &Step<'_>) {
+        let model = step.model;
+        if model.flags.damper {
+            for i in 0..model.nv {
+                let damping = dof_damping_slope(model, &self.params, i, self.before.qvel[i]);
+                self.implicit.add(i, damping.value);
+            }
+        }
+        for u in 0..model.actuators.len() {
+            let slope = self.actuator_slope(step, u).value;
+            let along = Coordinate::of_actuator(step, u);
+            self.implicit.add_along(step, along, -slope);
+        }
+    }
+
+    /// Returns the derivative of the force of an actuator by its velocity, as far as it acts at the end of the step.
+    fn actuator_slope(&self, step: &Step<'_>, u: usize) -> Number {
+        match step.model.integrator {
+            Integrator::ImplicitFast if step.model.flags.actuation => {
+                (self.stages).velocity_slope(step.model, &self.params, &self.before, u)
+            }
+            Integrator::Euler
+            | Integrator::ImplicitFast
+            | Integrator::Implicit
+            | Integrator::Rk4
+            | Integrator::Discrete => Number::ZERO,
+        }
+    }
+
+    /// Subtracts the derivatives of passive forces of joints, and reads those of dampers' slopes.
     fn subtract_passive(
         &mut self,
         step: &Step<'_>,
@@ -174,7 +192,6 @@ impl Local {
                 true => dof_damping_slope(model, &self.params, i, self.before.qvel[i]),
                 false => Number::ZERO,
             };
-            self.slopes.push(damping.value);
             for (direction, &(kind, k)) in part.iter().enumerate() {
                 let column = match kind {
                     Kind::Position => joint.dof + k,
@@ -185,10 +202,8 @@ impl Local {
                     continue;
                 }
                 gradient.add(i, column, -force.tangent[direction]);
-                let rate = damping.tangent[direction] * step.plain.integration.qacc[i];
-                if rate != 0.0 {
-                    self.slope_rates.push((i, column, rate));
-                }
+                let rate = damping.tangent[direction];
+                self.implicit.add_rate(step, i, (column, rate));
             }
         }
     }
@@ -201,112 +216,70 @@ impl Local {
         gradient: &mut Columns<'_, f64>,
     ) {
         let model = step.model;
+        let passed = |dof: usize| step.passed_share(model.dofs[dof].joint);
         for (u, actuator) in model.actuators.iter().enumerate() {
-            let Some((dof, arm)) = step.arm(u) else {
-                continue;
-            };
-            let slope = match model.integrator {
-                Integrator::ImplicitFast => {
-                    (self.stages).velocity_slope(model, &self.params, &self.before, u)
-                }
-                Integrator::Euler
-                | Integrator::Implicit
-                | Integrator::Rk4
-                | Integrator::Discrete => Number::ZERO,
-            };
-            self.slopes[dof] -= arm * arm * slope.value;
-            let passed = step.passed_share(model.dofs[dof].joint);
             let force = self.stages.force.actuator_force[actuator.outputs.start];
+            let slope = self.actuator_slope(step, u);
+            let along = Coordinate::of_actuator(step, u);
+            let mut of_motion = AlongForce::default();
             for (direction, &local) in part.iter().enumerate() {
-                let Some(column) = column(model, u, dof, local) else {
-                    continue;
-                };
-                gradient.add(dof, column, -arm * passed * force.tangent[direction]);
-                let slope = -arm * arm * slope.tangent[direction];
-                if slope != 0.0 {
-                    let rate = slope * step.plain.integration.qacc[dof];
-                    self.slope_rates.push((dof, column, rate));
+                let (by, rate) = (force.tangent[direction], -slope.tangent[direction]);
+                match local {
+                    (Kind::Position, 0) => {
+                        (of_motion.value, of_motion.by_length) = (force.value, by);
+                        self.implicit.add_length_rate(step, along, rate);
+                    }
+                    (Kind::Velocity, 0) => {
+                        of_motion.by_velocity = by;
+                        self.implicit.add_velocity_rate(step, along, rate);
+                    }
+                    (Kind::Position | Kind::Velocity, _) => {}
+                    (Kind::Activation | Kind::Control, _) => {
+                        let Some(column) = column(model, u, local) else {
+                            continue;
+                        };
+                        for (dof, arm) in along.iter() {
+                            gradient.add(dof, column, -arm * passed(dof) * by);
+                        }
+                        self.implicit.add_rate_along(step, along, (column, rate));
+                    }
                 }
             }
+            let moving = |dof: usize| of_motion.by_velocity * step.before.qvel[dof];
+            along.subtract((model.nv, gradient), of_motion, moving, passed);
         }
     }
 
+    /// Reads the derivatives of the new activations.
     fn read_activations(&mut self, step: &Step<'_>, part: &[(Kind, usize)]) {
-        for (u, actuator) in step.model.actuators.iter().enumerate() {
-            let Some((dof, _)) = step.arm(u) else {
-                continue;
-            };
+        let (model, nv) = (step.model, step.model.nv);
+        for (u, actuator) in model.actuators.iter().enumerate() {
+            let along = Coordinate::of_actuator(step, u);
             for a in actuator.acts.clone() {
                 for (direction, &local) in part.iter().enumerate() {
-                    if let Some(column) = column(step.model, u, dof, local) {
-                        let rate = self.before.act[a].tangent[direction];
+                    let rate = self.before.act[a].tangent[direction];
+                    let mut push = |column: usize, rate: f64| {
                         self.activations.push((a, column, rate));
+                    };
+                    match local {
+                        (Kind::Position, 0) => {
+                            along.lengths().for_each(|(dof, by)| push(dof, rate * by));
+                        }
+                        (Kind::Velocity, 0) => {
+                            let changes = along.velocity_changes(&step.before.qvel);
+                            changes.for_each(|(dof, by)| push(dof, rate * by));
+                            along
+                                .iter()
+                                .for_each(|(dof, arm)| push(nv + dof, rate * arm));
+                        }
+                        (Kind::Position | Kind::Velocity, _) => {}
+                        (Kind::Activation | Kind::Control, _) => {
+                            if let Some(column) = column(model, u, local) {
+                                push(column, rate);
+                            }
+                        }
                     }
                 }
-            }
-        }
-    }
-
-    /// Differentiates the integration of positions by the positions before and the velocities after the step.
-    fn integrate(&mut self, step: &Step<'_>) {
-        let (model, h) = (step.model, step.params.timestep);
-        for motion in &mut self.motion {
-            motion.by_position[0] = 1.0;
-            motion.by_velocity[0] = h;
-        }
-        // Only rotations are not linear.
-        if model.joints.iter().all(|joint| joint.kind.nv() == 1) {
-            return;
-        }
-        for kind in [Kind::Position, Kind::Velocity] {
-            let State { qpos, qvel, .. } = &mut self.before;
-            for (to, from) in [(qpos, &step.before.qpos), (qvel, &step.after.qvel)] {
-                for (to, &from) in to.iter_mut().zip(from) {
-                    *to = Number::new(from);
-                }
-            }
-            for k in 0..6 {
-                seed_state(model, &mut self.before, (kind, k), k);
-            }
-            let State { qpos, qvel, .. } = &mut self.before;
-            integrate_positions(model, qpos, qvel, Number::new(h));
-            let mut motion = self.motion.iter_mut();
-            tangent::each_motion(model, qpos, |rates| {
-                let Some(motion) = motion.next() else { return };
-                let to = match kind {
-                    Kind::Position => &mut motion.by_position,
-                    Kind::Velocity | Kind::Activation | Kind::Control => &mut motion.by_velocity,
-                };
-                to.copy_from_slice(&rates[..6]);
-            });
-        }
-    }
-}
-
-impl Local {
-    /// Passes the derivatives of the new positions to `write`, dof after dof, from those of the new velocities.
-    pub(super) fn write_positions<'a>(
-        &mut self,
-        model: &Model,
-        velocities: impl Iterator<Item = &'a [f64]> + Clone,
-        write: &mut dyn FnMut(&[f64]),
-    ) {
-        for joint in &model.joints {
-            let dofs = joint.dof..joint.dof + joint.kind.nv();
-            let velocities = velocities.clone().skip(joint.dof).take(dofs.len());
-            for motion in &self.motion[dofs] {
-                self.row.clear();
-                for (velocity, slope) in velocities.clone().zip(motion.by_velocity) {
-                    self.row.resize(velocity.len(), 0.0);
-                    if slope != 0.0 {
-                        let row = self.row.iter_mut().zip(velocity);
-                        row.for_each(|(x, &velocity)| *x += slope * velocity);
-                    }
-                }
-                let row = self.row[joint.dof..].iter_mut();
-                let own = row.zip(&motion.by_position[..joint.kind.nv()]);
-                own.for_each(|(x, &by_position)| *x += by_position);
-                write(&self.row);
             }
         }
     }
@@ -369,16 +342,22 @@ fn seed_state(
     }
 }
 
-/// Returns the column of the k-th coordinate of some kind of actuator `u`, which acts on a dof.
-fn column(model: &Model, u: usize, dof: usize, (kind, k): (Kind, usize)) -> Option<usize> {
+/// Returns the column of the k-th activation or control of actuator `u`.
+fn column(model: &Model, u: usize, (kind, k): (Kind, usize)) -> Option<usize> {
     let (actuator, nv, na) = (&model.actuators[u], model.nv, model.na);
     match kind {
-        Kind::Position => (k == 0).then_some(dof),
-        Kind::Velocity => (k == 0).then_some(nv + dof),
+        Kind::Position | Kind::Velocity => None,
         Kind::Activation => (k < actuator.acts.len()).then(|| 2 * nv + actuator.acts.start + k),
         Kind::Control => {
             let given = k < actuator.controls.len();
             given.then(|| 2 * nv + na + actuator.controls.start + k)
         }
+    }
+}
+
+/// Sets numbers to values without derivatives.
+fn set_values(numbers: &mut [Number], values: &[f64]) {
+    for (number, &value) in numbers.iter_mut().zip(values) {
+        *number = Number::new(value);
     }
 }

@@ -11,20 +11,33 @@
 //! alone (`local`), those of Jᵀf from the motion of each contact (`blocks`). Then da = −H⁻¹ dg, for all directions at
 //! once.
 
+mod advance;
 mod blocks;
+mod contact;
+mod coordinate;
+mod frames;
+mod implicit;
 mod local;
+mod pair;
+mod rows;
 mod scope;
+mod slopes;
 mod step;
+mod tendons;
+mod weight;
 
 use crate::source::Source;
+use advance::Advance;
 use blocks::Blocks;
 use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
-use clench_dynamics::model::{Integrator, Model, Params};
+use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, Workspace, check};
 use clench_rigid::SimError;
 use clench_solver::Response;
+use implicit::is_implicit;
 use local::Local;
 use step::Step;
+use weight::Weight;
 
 /// The memory of derivatives by recursion.
 pub(crate) struct Recursive {
@@ -32,12 +45,12 @@ pub(crate) struct Recursive {
     pub(crate) plain: Workspace<f64>,
     inverse: InverseDerivatives<f64>,
     local: Local,
+    weight: Weight,
     blocks: Blocks,
+    advance: Advance,
     response: Response<f64>,
     /// The gradient, then the acceleration, then the new velocity: nv rows.
     columns: Vec<f64>,
-    /// The right side of an implicit step, then the difference of its acceleration.
-    implicit: Vec<f64>,
 }
 
 impl Recursive {
@@ -48,10 +61,11 @@ impl Recursive {
             plain: (compiled.workspace)(model),
             inverse: InverseDerivatives::new(model),
             local: Local::new(model),
+            weight: Weight::default(),
             blocks: Blocks::default(),
+            advance: Advance::default(),
             response: Response::default(),
             columns: Vec::new(),
-            implicit: Vec::new(),
         }
     }
 
@@ -68,7 +82,7 @@ impl Recursive {
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError> {
         let (model, settings) = (source.model, source.settings);
-        if !scope::covers(model, source.params, settings, source.state) {
+        if !scope::covers(model, source.params, settings) {
             return Ok(false);
         }
         self.state.copy_from(source.state);
@@ -106,10 +120,6 @@ impl Recursive {
         if !(self.response).factor(&step.plain.problem, &settings.solver, &step.plain.qacc) {
             return Ok(false);
         }
-        if !(self.blocks).run(&step, &self.response, &mut gradient) {
-            return Ok(false);
-        }
-        self.local.run(&step, &mut gradient);
         let moving = Accelerated {
             qacc: &step.plain.qacc,
             moving: Some((&step.plain.velocity, &source.state.qvel)),
@@ -117,79 +127,28 @@ impl Recursive {
         let pos = &step.plain.position;
         self.inverse
             .add(model, source.params, pos, moving, &mut gradient);
+        let solution = (&self.response, &self.inverse);
+        if !(self.blocks).run(&step, solution, &mut gradient) {
+            return Ok(false);
+        }
+        self.local.run(&step, &mut gradient);
+        self.weight.subtract(&step, &mut gradient);
         self.response.solve_columns(&mut self.columns, width);
-        accelerate(
-            &step,
-            &mut self.inverse,
-            &self.local,
-            (&mut self.columns, &mut self.implicit),
-            width,
-        );
+        self.columns.iter_mut().for_each(|x| *x = -*x);
+        if is_implicit(&step) {
+            let implicit = &mut self.local.implicit;
+            implicit.replace(&step, &mut self.inverse, &mut self.columns, width);
+        }
+        self.advance.run(&step);
         let h = source.params.timestep;
         for (i, row) in self.columns.chunks_exact_mut(width).enumerate() {
             row.iter_mut().for_each(|x| *x *= h);
             row[model.nv + i] += 1.0;
         }
         let velocity = self.columns.chunks_exact(width).map(|row| &row[..columns]);
-        self.local.write_positions(model, velocity.clone(), write);
+        self.advance.write_positions(model, velocity.clone(), write);
         velocity.for_each(&mut *write);
         self.local.write_activations(model, columns, write);
         Ok(true)
     }
-}
-
-/// Replaces H⁻¹ dg in `columns` by the derivatives of the acceleration that advances the velocity.
-fn accelerate(
-    step: &Step<'_>,
-    inverse: &mut InverseDerivatives<f64>,
-    local: &Local,
-    (columns, implicit): (&mut [f64], &mut Vec<f64>),
-    width: usize,
-) {
-    columns.iter_mut().for_each(|x| *x = -*x);
-    let (model, plain) = (step.model, step.plain);
-    let implicitly = match model.integrator {
-        Integrator::Euler => plain.integration.damped.0,
-        Integrator::ImplicitFast
-        | Integrator::Implicit
-        | Integrator::Rk4
-        | Integrator::Discrete => true,
-    };
-    if !implicitly {
-        return;
-    }
-    // (M + h B) a′ = M a with a diagonal B, so e = a − a′ solves (M + h B) e = h B a, and
-    // (M + h B) de = h B da + h dB a′ − dM e.
-    let h = step.params.timestep;
-    let change = plain.qacc.iter().zip(&plain.integration.qacc);
-    let change = Vec::from_iter(change.map(|(a, implicit)| implicit - a));
-    implicit.clear();
-    implicit.resize(columns.len(), 0.0);
-    let mut right = Columns {
-        values: implicit,
-        width,
-    };
-    let resting = Accelerated {
-        qacc: &change,
-        moving: None,
-    };
-    inverse.add(model, step.params, &plain.position, resting, &mut right);
-    for &(dof, column, rate) in &local.slope_rates {
-        right.add(dof, column, h * rate);
-    }
-    let rows = implicit
-        .chunks_exact_mut(width)
-        .zip(columns.chunks_exact(width));
-    for ((right, row), slope) in rows.zip(&local.slopes) {
-        let scale = h * slope;
-        right
-            .iter_mut()
-            .zip(row)
-            .for_each(|(x, &y)| *x += scale * y);
-    }
-    (plain.integration.factor).solve_columns(&model.tree, implicit, width);
-    columns
-        .iter_mut()
-        .zip(&*implicit)
-        .for_each(|(x, &y)| *x -= y);
 }

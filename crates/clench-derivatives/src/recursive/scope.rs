@@ -3,18 +3,12 @@
 use clench_dynamics::Model;
 use clench_dynamics::StepSettings;
 use clench_dynamics::dynamics::local::is_local;
-use clench_dynamics::model::{Integrator, JointKind, Params};
+use clench_dynamics::model::{Actuator, Integrator, JointKind, Params, Transmission};
 use clench_dynamics::options::ContactModel;
-use clench_rigid::State;
 
 /// Returns true if the step of a state, without its sensors, is of a kind that recursions differentiate, as far as its
 /// constraints are too.
-pub(super) fn covers(
-    model: &Model,
-    params: &Params<f64>,
-    settings: &StepSettings,
-    state: &State<f64>,
-) -> bool {
+pub(super) fn covers(model: &Model, params: &Params<f64>, settings: &StepSettings) -> bool {
     let integrates = match model.integrator {
         Integrator::Euler => true,
         // The forces of a free body are integrated with their own matrix.
@@ -30,12 +24,32 @@ pub(super) fn covers(
     };
     let plain = !settings.flags.sleep && !settings.stiction && !settings.flags.diagexact;
     let still = params.geom_surfacevel.iter().flatten().all(|&v| v == 0.0);
-    let unforced = (state.xfrc_applied.iter()).all(|force| force.to_array() == [0.0; 6]);
     integrates
         && convex
         && plain
         && still
-        && unforced
         && settings.solver.noslip_iterations == 0
         && is_local(model, params)
+        && model.tendons.iter().all(|tendon| !tendon.is_spatial())
+        && model
+            .actuators
+            .iter()
+            .all(|actuator| is_straight(model, actuator))
+}
+
+/// Returns true if the arms of an actuator are constant.
+fn is_straight(model: &Model, actuator: &Actuator) -> bool {
+    match actuator.transmission {
+        Transmission::Joint(j) | Transmission::JointInParent(j) => match model.joints[j].kind {
+            JointKind::Hinge | JointKind::Slide => true,
+            JointKind::Ball | JointKind::Free => false,
+        },
+        Transmission::Tendon(_) => true,
+        Transmission::Site(_)
+        | Transmission::SiteInFrame(_)
+        | Transmission::SliderCrank(_)
+        | Transmission::Body(_)
+        | Transmission::Rotation(_)
+        | Transmission::RotationInFrame(_) => false,
+    }
 }

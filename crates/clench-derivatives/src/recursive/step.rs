@@ -14,15 +14,6 @@ pub(super) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Returns the dof that an actuator acts on, and its moment arm.
-    pub(super) fn arm(&self, actuator: usize) -> Option<(usize, f64)> {
-        let actuator = &self.model.actuators[actuator];
-        let joint = actuator.transmission.joint()?;
-        let arms = self.model.actuator_dofs.range(actuator.outputs.start);
-        let arm = self.plain.position.actuator_moment[arms.start];
-        Some((self.model.joints[joint].dof, arm))
-    }
-
     /// Returns 0 if the range of a joint holds the total force of its actuators, else 1.
     pub(super) fn passed_share(&self, joint: usize) -> f64 {
         let [low, high] = self.params.jnt_actfrcrange[joint];

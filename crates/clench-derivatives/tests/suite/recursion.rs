@@ -3,8 +3,10 @@
 use crate::common::{Random, load};
 use clench_derivatives::{InputTangent, Linearizer, Matrix, Request};
 use clench_dynamics::model::ParamField;
+use clench_math::Vec3;
 use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Model, Output, Sim};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The largest difference relative to 1 + the magnitude.
@@ -24,13 +26,28 @@ fn compare(recursive: &Matrix, passes: &Matrix) {
 /// Compares all derivatives in every fifth step under random controls. Returns the most contacts of a state.
 fn check(model: Model, options: RigidOptions, steps: usize) -> usize {
     let mut sim = Sim::<f64>::with_options(Arc::new(model), options).expect("a simulation");
+    check_sim(&mut sim, steps).contacts
+}
+
+/// The events of a comparison.
+#[derive(Debug, Default)]
+struct Seen {
+    /// The most contacts of a state.
+    contacts: usize,
+    /// True if recursions found derivatives: they round otherwise than passes.
+    recursed: bool,
+    /// The kinds of constraints whose force was not zero.
+    forces: BTreeSet<&'static str>,
+}
+
+fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
     let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
     let mut random = Random(1);
     let with_output = Request {
         outputs: vec![Output::find("subtree_com").expect("an output")],
         ..Request::default()
     };
-    let mut contacts = 0;
+    let mut seen = Seen::default();
     for step in 0..steps {
         if step % 10 == 0 {
             for control in &mut sim.state.ctrl {
@@ -38,19 +55,26 @@ fn check(model: Model, options: RigidOptions, steps: usize) -> usize {
             }
         }
         sim.step().expect("a step");
-        contacts = contacts.max(sim.workspace().contacts.len());
+        let ws = sim.workspace();
+        seen.contacts = seen.contacts.max(ws.contacts.len());
+        for (block, record) in ws.problem.blocks().zip(&ws.record.blocks) {
+            if ws.solver.force()[block.rows()].iter().any(|&f| f != 0.0) {
+                seen.forces.insert(record.source.kind());
+            }
+        }
         if step % 5 == 0 {
-            let recursive = linearizer.linearize(&sim, &Request::default());
+            let recursive = linearizer.linearize(sim, &Request::default());
             let recursive = recursive.expect("derivatives").clone();
-            let passes = linearizer.linearize(&sim, &with_output);
+            let passes = linearizer.linearize(sim, &with_output);
             let passes = passes.expect("derivatives");
             compare(&recursive.a, &passes.a);
             compare(&recursive.b, &passes.b);
+            seen.recursed |= recursive.a != passes.a;
             assert_eq!(recursive.switching.len(), passes.switching.len());
-            compare_parameters(&mut linearizer, &sim);
+            compare_parameters(&mut linearizer, sim);
         }
     }
-    contacts
+    seen
 }
 
 /// Compares derivatives by parameters, and those along a tangent, with and without passes along the state.
@@ -139,10 +163,198 @@ fn joints_actuators_and_integrators() {
     }
 }
 
+/// Compares steps of a model in text, in which constraints of the kinds `forces` must act. `prepare` changes the first
+/// state.
+fn check_text(text: &str, forces: &[&str], prepare: impl Fn(&mut Sim<f64>)) {
+    let model = clench_formats::load_str(text).expect("a model");
+    let mut sim = Sim::<f64>::new(Arc::new(model)).expect("a simulation");
+    prepare(&mut sim);
+    let seen = check_sim(&mut sim, 200);
+    assert!(seen.recursed, "recursions cover the step");
+    for kind in forces {
+        assert!(seen.forces.contains(kind), "{kind} among {:?}", seen.forces);
+    }
+}
+
+/// Fixed tendons with springs, dampers, inertia, friction and limits, with actuators, on branches of a tree, and
+/// equalities that make joints and tendons follow others by curves.
+fn fingers(integrator: &str) -> String {
+    let finger = |name: &str, y: f64| {
+        format!(
+            r#"<body pos=".1 {y} 0">
+              <joint name="{name}0" axis="0 1 .1" range="-40 60" frictionloss=".002"/>
+              <geom type="capsule" fromto="0 0 0 .06 0 0" size=".01"/>
+              <body pos=".06 0 0">
+                <joint name="{name}1" axis="0 1 0"/>
+                <geom type="capsule" fromto="0 0 0 .04 0 0" size=".01"/>
+                <body pos=".04 0 0">
+                  <joint name="{name}2" axis="0 1 0" actuatorfrcrange="-.02 .02" actuatorfrclimited="true"/>
+                  <geom type="capsule" fromto="0 0 0 .03 0 0" size=".01"/>
+                </body>
+              </body>
+            </body>"#
+        )
+    };
+    format!(
+        r#"<mujoco>
+          <option integrator="{integrator}" timestep="0.004"/>
+          <default><joint damping=".001" armature=".0005"/></default>
+          <worldbody>
+            <body>
+              <joint name="palm" axis="0 1 0" damping=".1"/>
+              <geom type="box" size=".1 .05 .02"/>
+              {}{}
+            </body>
+          </worldbody>
+          <tendon>
+            <fixed name="flexor" stiffness=".4 .3" damping=".004 .002" springlength=".1 .2" frictionloss=".003">
+              <joint joint="a0" coef="1"/><joint joint="a1" coef=".8"/><joint joint="a2" coef=".5"/>
+            </fixed>
+            <fixed name="spread" armature=".0002" damping=".003" limited="true" range="-.1 .15">
+              <joint joint="a0" coef="1"/><joint joint="b0" coef="-1"/><joint joint="palm" coef=".2"/>
+            </fixed>
+            <fixed name="leader"><joint joint="b0" coef="1"/><joint joint="b1" coef="1"/></fixed>
+            <fixed name="follower"><joint joint="b2" coef="1"/><joint joint="b1" coef=".2"/></fixed>
+          </tendon>
+          <equality>
+            <joint joint1="a2" joint2="a1" polycoef=".1 .6 .5 -.2 .3"/>
+            <joint joint1="palm" polycoef=".05"/>
+            <tendon tendon1="follower" tendon2="leader" polycoef=".02 .5 -.4 .1 .2"/>
+          </equality>
+          <actuator>
+            <position tendon="flexor" kp="1" kv=".02" forcerange="-.4 .4"/>
+            <general tendon="spread" dyntype="filter" dynprm=".05" gainprm=".1" biastype="affine" biasprm="0 -.3 -.01" gear="1.5"/>
+            <damper tendon="leader" kv=".02" ctrlrange="0 1"/>
+            <velocity joint="a2" kv=".01"/>
+            <intvelocity tendon="follower" kp=".1" actrange="-.5 .5"/>
+          </actuator>
+        </mujoco>"#,
+        finger("a", 0.04),
+        finger("b", -0.04)
+    )
+}
+
+#[test]
+fn fixed_tendons_and_equalities_of_coordinates() {
+    let forces = [
+        "equality",
+        "friction_dof",
+        "friction_tendon",
+        "limit_tendon",
+    ];
+    for integrator in ["Euler", "implicitfast"] {
+        check_text(&fingers(integrator), &forces, |_| {});
+    }
+}
+
+/// Connects and welds between bodies of one tree, of two trees, and of a tree and the world.
+fn tied(integrator: &str) -> String {
+    format!(
+        r#"<mujoco>
+          <option integrator="{integrator}" timestep="0.004"/>
+          <worldbody>
+            <body name="mocap" mocap="true" pos="-.4 .1 .3" quat="1 .2 .1 0"/>
+            <body name="a" pos="0 0 .5">
+              <joint type="ball" damping=".01"/>
+              <geom type="capsule" fromto="0 0 0 .2 0 0" size=".03"/>
+              <body name="b" pos=".2 0 0">
+                <joint axis="0 1 0" pos=".01 0 0"/><joint type="slide" axis="1 0 .2" damping="1"/>
+                <geom type="capsule" fromto="0 0 0 .2 .1 0" size=".02"/>
+              </body>
+              <body name="c" pos=".1 .1 0">
+                <joint axis="0 .1 1"/>
+                <geom type="box" size=".05 .03 .02"/>
+                <body name="d" pos=".1 0 0"><joint axis="1 1 0"/><geom type="box" size=".05 .03 .02"/></body>
+              </body>
+            </body>
+            <body name="e" pos=".3 0 .2">
+              <joint type="ball"/><geom type="ellipsoid" pos=".1 0 0" size=".1 .05 .03"/>
+            </body>
+            <body name="f" pos="-.3 0 .2">
+              <joint axis="1 0 .3"/><joint type="ball" pos=".1 0 0"/><geom type="box" pos=".1 .1 0" size=".1 .05 .03"/>
+            </body>
+          </worldbody>
+          <contact><exclude body1="b" body2="e"/><exclude body1="c" body2="b"/><exclude body1="b" body2="d"/></contact>
+          <equality>
+            <connect body1="b" body2="d" anchor=".1 .1 0"/>
+            <connect body1="e" body2="a" anchor=".12 0 .1"/>
+            <weld body1="d" body2="e" torquescale=".3" relpose=".1 .1 .2 1 .3 .2 .1" solref=".1 1"/>
+            <weld body1="f" body2="mocap" solimp=".8 .95 .5 .5 2" solref=".2 1"/>
+            <weld body1="f" relpose="-.4 .1 .2 1 .4 0 .3" solref=".1 .5"/>
+          </equality>
+        </mujoco>"#
+    )
+}
+
+#[test]
+fn connects_and_welds() {
+    for integrator in ["Euler", "implicitfast"] {
+        check_text(&tied(integrator), &["equality"], |_| {});
+    }
+    check_text(&tied("Euler"), &["equality", "dynamic"], |sim| {
+        let bodies = &sim.model().bodies;
+        let body = |name: &str| bodies.iter().position(|body| body.name == name);
+        let [a, b, c, f] = ["a", "b", "c", "f"].map(|name| body(name).expect("a body"));
+        sim.add_weld(c, b).expect("a slot");
+        sim.add_connect(f, a, Vec3::new(0.1, 0.0, 0.3))
+            .expect("a slot");
+    });
+    check(load("four_bar.xml"), RigidOptions::new(), 100);
+}
+
+/// Gravity compensation, in part by actuators, and forces and torques that a user applies.
+#[test]
+fn forces_on_bodies() {
+    let text = r#"<mujoco>
+      <option timestep="0.004" gravity="1 2 -9"/>
+      <worldbody>
+        <body gravcomp=".7" pos="0 0 .5">
+          <joint type="free" damping=".5"/><geom type="box" size=".1 .05 .03"/>
+          <body pos=".1 0 0" gravcomp="1.2">
+            <joint name="a" axis="0 1 .2" pos="-.02 .01 0" actuatorgravcomp="true"/>
+            <geom type="capsule" fromto="0 0 0 .2 0 .1" size=".03"/>
+            <body pos=".2 0 .1" gravcomp="1">
+              <joint name="b" type="slide" axis="1 0 0" actuatorgravcomp="true" actuatorfrcrange="-1 1"
+                actuatorfrclimited="true"/>
+              <joint type="ball" pos="0 .05 0" damping=".02"/>
+              <geom type="capsule" fromto="0 0 0 .1 .1 .1" size=".02"/>
+              <body pos=".1 .1 .1" gravcomp="-.5"><geom size=".03"/></body>
+            </body>
+          </body>
+        </body>
+      </worldbody>
+      <actuator><motor joint="a"/><position joint="b" kp="10" kv="1"/></actuator>
+    </mujoco>"#;
+    check_text(text, &[], |_| {});
+    check_text(text, &[], |sim| {
+        for (b, wrench) in sim.state.xfrc_applied.iter_mut().enumerate() {
+            let x = b as f64;
+            (wrench.linear.x, wrench.linear.y, wrench.linear.z) = (0.5 - x, 0.3, 0.2 * x);
+            (wrench.angular.x, wrench.angular.y, wrench.angular.z) = (0.02, -0.03 * x, 0.01);
+        }
+    });
+}
+
+#[test]
+fn limits_of_ball_joints() {
+    let text = r#"<mujoco>
+      <option timestep="0.004"/>
+      <worldbody>
+        <body>
+          <joint type="ball" range="0 40" limited="true"/><geom type="capsule" fromto="0 0 0 .2 0 0" size=".03"/>
+          <body pos=".2 0 0">
+            <joint type="ball" range="0 20" limited="true" solreflimit=".05 1"/>
+            <geom type="capsule" fromto="0 0 0 .2 .1 0" size=".03"/>
+          </body>
+        </body>
+      </worldbody>
+    </mujoco>"#;
+    check_text(text, &["limit_joint"], |sim| sim.state.qvel[0] = 3.0);
+}
+
 /// Kinds of steps that need passes: the results are the same because they are the same.
 #[test]
 fn other_steps_need_passes() {
-    check(load("four_bar.xml"), RigidOptions::new(), 20);
     let free = r#"<joint type="free"/>"#;
     for integrator in ["implicitfast", "implicit", "RK4", "discrete"] {
         check(mixed(integrator, free), RigidOptions::new(), 20);

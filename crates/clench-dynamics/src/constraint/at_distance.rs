@@ -3,9 +3,10 @@
 
 use super::contact::soft_rows;
 use super::context::SoftnessLimits;
-use super::{friction, limit, min_timeconst};
+use super::row::Row;
+use super::{Softness, dynamic, friction, limit, min_timeconst};
 use crate::contact::Contact;
-use crate::model::{JointKind, Model, Params};
+use crate::model::{Coupled, JointKind, Model, Params};
 use crate::record::ConstraintSource;
 use crate::settings::StepSettings;
 use clench_math::{Mat3, Real, Vec3};
@@ -32,8 +33,8 @@ pub struct RowsAtDistance<T> {
 }
 
 /// Returns the rows of a constraint at a distance, whose rows have the given velocities; `None` for a constraint with
-/// more than one coordinate, or of coordinates that are not those of joints. `contact` is that of a contact. The
-/// integrator must not evaluate constraints at the end of the step, and friction must not stick.
+/// more than one coordinate. `contact` is that of a contact. The integrator must not evaluate constraints at the end of
+/// the step, and friction must not stick.
 pub fn rows_at_distance<T: Real<Value = f64>>(
     (model, params, settings): (&Model, &Params<f64>, &StepSettings),
     (source, contact): (ConstraintSource, Option<&Contact<f64>>),
@@ -48,6 +49,16 @@ pub fn rows_at_distance<T: Real<Value = f64>>(
         sticks: false,
         timestep: None,
     };
+    let limited = |(solref, solimp, a0): ([f64; 2], [f64; 5], f64), margin: f64| {
+        let of = (solref.map(number), solimp.map(number), number(a0));
+        let (_, row) = limit::soft_row(&limits, of, distance, number(margin));
+        (Cost::OneSided, 1, [row; MAX_DIM])
+    };
+    let rubbing = |(solref, solimp, a0): ([f64; 2], [f64; 5], f64), loss: f64| {
+        let of = (solref.map(number), solimp.map(number), number(a0));
+        let (_, row) = friction::soft_row(limits.min_timeconst, of, number(loss));
+        (Cost::Huber, 1, [row; MAX_DIM])
+    };
     let (cost, dim, rows) = match source {
         ConstraintSource::Contact(_) => {
             let contact = Contact {
@@ -60,28 +71,41 @@ pub fn rows_at_distance<T: Real<Value = f64>>(
             (cost, contact.dim, rows)
         }
         ConstraintSource::JointLimit(j) => match model.joints[j].kind {
-            JointKind::Hinge | JointKind::Slide => {
-                let solref = params.jnt_solref[j].map(number);
-                let solimp = params.jnt_solimp[j].map(number);
-                let a0 = number(params.dof_invweight0[model.joints[j].dof]);
-                let margin = number(params.jnt_margin[j]);
-                let (_, row) = limit::soft_row(&limits, (solref, solimp, a0), distance, margin);
-                (Cost::OneSided, 1, [row; MAX_DIM])
+            JointKind::Hinge | JointKind::Slide | JointKind::Ball => {
+                let a0 = params.dof_invweight0[model.joints[j].dof];
+                let of = (params.jnt_solref[j], params.jnt_solimp[j], a0);
+                limited(of, params.jnt_margin[j])
             }
-            JointKind::Ball | JointKind::Free => return None,
+            JointKind::Free => return None,
         },
-        ConstraintSource::DofFriction(i) => {
-            let solref = params.dof_solref[i].map(number);
-            let solimp = params.dof_solimp[i].map(number);
-            let a0 = number(params.dof_invweight0[i]);
-            let loss = number(params.dof_frictionloss[i]);
-            let (_, row) = friction::soft_row(limits.min_timeconst, (solref, solimp, a0), loss);
-            (Cost::Huber, 1, [row; MAX_DIM])
+        ConstraintSource::TendonLimit(t) => {
+            let (solref, solimp) = (params.tendon_solref_lim[t], params.tendon_solimp_lim[t]);
+            let of = (solref, solimp, params.tendon_invweight0[t]);
+            limited(of, params.tendon_margin[t])
         }
-        ConstraintSource::Equality(_)
-        | ConstraintSource::Dynamic { .. }
-        | ConstraintSource::TendonFriction(_)
-        | ConstraintSource::TendonLimit(_) => return None,
+        ConstraintSource::DofFriction(i) => {
+            let a0 = params.dof_invweight0[i];
+            let of = (params.dof_solref[i], params.dof_solimp[i], a0);
+            rubbing(of, params.dof_frictionloss[i])
+        }
+        ConstraintSource::TendonFriction(t) => {
+            let (solref, solimp) = (params.tendon_solref_fri[t], params.tendon_solimp_fri[t]);
+            let of = (solref, solimp, params.tendon_invweight0[t]);
+            rubbing(of, params.tendon_frictionloss[t])
+        }
+        ConstraintSource::Equality(equality) => {
+            let joint = |j: usize| params.dof_invweight0[model.joints[j].dof];
+            let tendon = |t: usize| params.tendon_invweight0[t];
+            let a0 = match model.equalities[equality].target.coupled() {
+                Coupled::Joints(follower, leader) => joint(follower) + leader.map_or(0.0, joint),
+                Coupled::Tendons(follower, leader) => tendon(follower) + leader.map_or(0.0, tendon),
+                Coupled::Points(_) | Coupled::Frames(_) => return None,
+            };
+            let soft = equality_softness((params, settings), source, distance)?;
+            let row = Row::new(&soft, distance, T::ZERO, number(a0));
+            (Cost::Quadratic, 1, [row; MAX_DIM])
+        }
+        ConstraintSource::Dynamic { .. } => return None,
     };
     let mut found = RowsAtDistance {
         cost,
@@ -95,6 +119,28 @@ pub fn rows_at_distance<T: Real<Value = f64>>(
         *aref = row.at_velocity(velocity) + row.r * row.pull;
     }
     Some(found)
+}
+
+/// Returns the softness of an equality, or of a constraint that was added at run time, at a violation; `None` for other
+/// constraints.
+pub fn equality_softness<T: Real<Value = f64>>(
+    (params, settings): (&Params<f64>, &StepSettings),
+    source: ConstraintSource,
+    violation: T,
+) -> Option<Softness<T>> {
+    let number = T::from_value;
+    let (solref, solimp) = match source {
+        ConstraintSource::Equality(e) => (params.eq_solref[e], params.eq_solimp[e]),
+        ConstraintSource::Dynamic { .. } => dynamic::softness(),
+        ConstraintSource::DofFriction(_)
+        | ConstraintSource::TendonFriction(_)
+        | ConstraintSource::JointLimit(_)
+        | ConstraintSource::TendonLimit(_)
+        | ConstraintSource::Contact(_) => return None,
+    };
+    let min_timeconst = number(min_timeconst(params, settings, false));
+    let (solref, solimp) = (solref.map(number), solimp.map(number));
+    Some(Softness::new(solref, solimp, violation, min_timeconst))
 }
 
 impl<T: Real> Contact<T> {

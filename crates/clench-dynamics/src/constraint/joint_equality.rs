@@ -66,6 +66,14 @@ pub fn equality_slope<T: Real>(
     evaluate(params.eq_polycoef[equality], error).1
 }
 
+/// Computes P′ and P″ of an equality at the error `e` of its leader.
+pub fn equality_rates(params: &Params<f64>, equality: usize, e: f64) -> [f64; 2] {
+    let polynomial = params.eq_polycoef[equality];
+    let [_, _, second, third, fourth] = polynomial;
+    let curvature = 2.0 * second + e * (6.0 * third + e * (12.0 * fourth));
+    [evaluate(polynomial, e).1, curvature]
+}
+
 /// Computes P(e) and P′(e).
 #[inline(always)]
 fn evaluate<T: Real>(polynomial: [T; 5], e: T) -> (T, T) {

@@ -25,7 +25,7 @@ mod weld;
 pub use crate::record::{BlockRecord, ConstraintRecord, ConstraintSource};
 pub use anchor_frames::AnchorFrames;
 use context::ConstraintContext;
-pub use joint_equality::equality_slope;
+pub use joint_equality::{equality_rates, equality_slope};
 pub use softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF, Softness, impedance};
 pub use weld::weld_torque;
 

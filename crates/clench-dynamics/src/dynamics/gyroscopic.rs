@@ -20,7 +20,7 @@ use clench_solver::TreeMatrix;
 
 /// Returns true if `j` is the free joint of a body that, with welded bodies, forms a tree.
 #[inline(always)]
-pub(crate) fn is_free_tree(model: &Model, j: usize) -> bool {
+pub fn is_free_tree(model: &Model, j: usize) -> bool {
     let joint = &model.joints[j];
     let (tree, after) = (&model.tree, joint.dof + 6);
     joint.kind == JointKind::Free
@@ -30,7 +30,7 @@ pub(crate) fn is_free_tree(model: &Model, j: usize) -> bool {
 /// Computes the joint's part of the acceleration (nv) due to `force` along its dofs, with M − h D in `matrix`. `fluid`
 /// selects whether the fluid's non-symmetric part of D is included.
 #[kernel]
-pub(crate) fn solve_gyroscopic<T: Real>(
+pub fn solve_gyroscopic<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,
@@ -56,7 +56,7 @@ pub(crate) fn solve_gyroscopic<T: Real>(
 
 /// Computes the joint's part of h ∂bias/∂v, minus the non-symmetric part of h D if selected, times `x` (nv).
 #[inline(always)]
-pub(crate) fn gyroscopic_product<T: Real>(
+pub fn gyroscopic_product<T: Real>(
     model: &Model,
     params: &Params<T>,
     j: usize,

@@ -99,6 +99,16 @@ impl<T: Real> InverseDerivatives<T> {
         }
     }
 
+    /// Returns the accelerations of bodies, gravity included, of the last call of [`add`](Self::add) (nbody).
+    pub fn accelerations(&self) -> &[Motion<T>] {
+        &self.cacc
+    }
+
+    /// Returns w × s − ṡ × u, then ṡ − s × u′ of a dof, likewise, in motion.
+    pub fn changes(&self, dof: usize) -> [Motion<T>; 2] {
+        [self.swing[dof], self.drift[dof]]
+    }
+
     /// Adds the entries of dof `i` with itself and the dofs above it.
     #[inline(always)]
     fn add_moving(

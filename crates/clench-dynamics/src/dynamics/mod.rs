@@ -29,7 +29,7 @@ pub(crate) mod euler;
 pub(crate) mod fluid;
 pub mod frames;
 pub(crate) mod gain;
-pub(crate) mod gyroscopic;
+pub mod gyroscopic;
 pub(crate) mod implicit;
 pub mod inertia;
 pub mod integrate;
