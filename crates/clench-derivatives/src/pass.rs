@@ -142,7 +142,14 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         source: Source<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError> {
-        self.recursed = self.recursive.run(source, write)?;
+        self.recursed = Recursive::covers(source);
+        if self.recursed {
+            let curves = &mut self.recursive.curves;
+            let numbers = (source.model, &self.params);
+            let memory = (&mut self.before, &mut self.ws.position);
+            curves.find(numbers, source.state, memory);
+            self.recursed = self.recursive.run(source, write)?;
+        }
         Ok(self.recursed)
     }
 

@@ -14,6 +14,8 @@ pub(super) struct Coordinate<'a> {
     pub dofs: &'a [u32],
     /// J: the arm of its force along each dof.
     pub arms: &'a [f64],
+    /// The derivative of the coordinate by the position of each dof: J, but for some actuators.
+    pub by_position: &'a [f64],
     /// The derivative of each arm by the position of each dof, row after row; empty if all are zero.
     pub rates: &'a [f64],
 }
@@ -30,10 +32,12 @@ impl<'a> Coordinate<'a> {
     /// Returns the length of a tendon.
     pub(super) fn of_tendon(step: &Step<'a>, tendon: usize) -> Self {
         let pattern = &step.model.tendon_dofs;
+        let arms = &step.plain.position.ten_jacobian[pattern.range(tendon)];
         Coordinate {
             dofs: pattern.dofs(tendon),
-            arms: &step.plain.position.ten_jacobian[pattern.range(tendon)],
-            rates: &[],
+            arms,
+            by_position: arms,
+            rates: step.curves.of_tendon(tendon),
         }
     }
 
@@ -41,10 +45,16 @@ impl<'a> Coordinate<'a> {
     pub(super) fn of_actuator(step: &Step<'a>, actuator: usize) -> Self {
         let output = step.model.actuators[actuator].outputs.start;
         let pattern = &step.model.actuator_dofs;
+        let arms = &step.plain.position.actuator_moment[pattern.range(output)];
+        let rates = step.curves.of_actuator(actuator);
         Coordinate {
             dofs: pattern.dofs(output),
-            arms: &step.plain.position.actuator_moment[pattern.range(output)],
-            rates: &[],
+            arms,
+            by_position: match rates.is_empty() {
+                true => arms,
+                false => &step.curves.lengths[pattern.range(output)],
+            },
+            rates,
         }
     }
 
@@ -56,7 +66,8 @@ impl<'a> Coordinate<'a> {
 
     /// Returns the change of the coordinate with the position of each dof.
     pub(super) fn lengths(self) -> impl Iterator<Item = (usize, f64)> + Clone + 'a {
-        self.iter()
+        let dofs = self.dofs.iter().map(|&dof| dof as usize);
+        dofs.zip(self.by_position.iter().copied())
     }
 
     /// Returns the change of the velocity J v with the position of each dof, at constant v.

@@ -5,6 +5,7 @@
 //! adds to B the slope G of its gyroscopic forces, which is linear in the angular velocity.
 
 use super::coordinate::Coordinate;
+use super::gyroscopic::Gyroscopic;
 use super::step::Step;
 use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
 use clench_dynamics::model::{Integrator, Model};
@@ -160,7 +161,15 @@ impl Implicit {
         for &(i, j, slope) in &self.couplings {
             add_row(i, j, h * slope);
         }
+        let free = Gyroscopic::of_all(step);
+        for body in &free {
+            body.add_rates(columns, &mut self.right, width);
+        }
+        let solved = Vec::from_iter(free.iter().map(|body| body.solve(&self.right, width)));
         (plain.integration.factor).solve_columns(&model.tree, &mut self.right, width);
+        for (body, rows) in free.iter().zip(&solved) {
+            self.right[body.rows(width)].copy_from_slice(rows);
+        }
         columns
             .iter_mut()
             .zip(&self.right)

@@ -15,7 +15,9 @@ mod advance;
 mod blocks;
 mod contact;
 mod coordinate;
+mod curves;
 mod frames;
+mod gyroscopic;
 mod implicit;
 mod local;
 mod pair;
@@ -34,6 +36,7 @@ use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, Workspace, check};
 use clench_rigid::SimError;
 use clench_solver::Response;
+use curves::Curves;
 use implicit::is_implicit;
 use local::Local;
 use step::Step;
@@ -48,6 +51,7 @@ pub(crate) struct Recursive {
     weight: Weight,
     blocks: Blocks,
     advance: Advance,
+    pub(crate) curves: Curves,
     response: Response<f64>,
     /// The gradient, then the acceleration, then the new velocity: nv rows.
     columns: Vec<f64>,
@@ -64,6 +68,7 @@ impl Recursive {
             weight: Weight::default(),
             blocks: Blocks::default(),
             advance: Advance::default(),
+            curves: Curves::new(model),
             response: Response::default(),
             columns: Vec::new(),
         }
@@ -74,17 +79,19 @@ impl Recursive {
         self.local.set_params(params);
     }
 
-    /// Passes the derivatives of the next state by state and controls to `write`, row after row. Returns false if the
-    /// step is of a kind that recursions do not cover.
+    /// Returns true if the step is of a kind that recursions cover, as far as its contacts are too.
+    pub(crate) fn covers(source: Source<'_>) -> bool {
+        scope::covers(source.model, source.params, source.settings)
+    }
+
+    /// Passes the derivatives of the next state by state and controls to `write`, row after row. The [curves](Curves)
+    /// are those of the state, and recursions [cover](Self::covers) it. Returns false if they do not cover its contacts.
     pub(crate) fn run(
         &mut self,
         source: Source<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError> {
         let (model, settings) = (source.model, source.settings);
-        if !scope::covers(model, source.params, settings) {
-            return Ok(false);
-        }
         self.state.copy_from(source.state);
         let step = clench_dynamics::Step::<f64>::compiled().step;
         let (state, plain) = (&mut self.state, &mut self.plain);
@@ -107,6 +114,7 @@ impl Recursive {
             before: source.state,
             after: &self.state,
             plain: &self.plain,
+            curves: &self.curves,
         };
         let columns = 2 * model.nv + model.na + model.nu();
         // Rows fill whole registers.

@@ -31,6 +31,7 @@ impl Rows {
         let row = Coordinate {
             dofs: block.dofs,
             arms: block.jacobian,
+            by_position: block.jacobian,
             rates: &self.rates,
         };
         let (by_residual, damping) = (slopes.by_residual[0][0], slopes.damping[0]);
@@ -57,13 +58,16 @@ impl Rows {
                     let gradient = [(joint.dof, 1.0)].into_iter();
                     self.add_outer(block.dofs, gradient, -curvature);
                 }
-                EqualityTarget::Tendon { tendon2, .. } => {
+                EqualityTarget::Tendon { tendon1, tendon2 } => {
+                    let follower = Coordinate::of_tendon(step, tendon1);
+                    self.add(block.dofs, follower, 1.0);
                     let Some(leader) = tendon2 else { return };
                     let length = step.plain.position.ten_length[leader];
                     let x = length - step.params.tendon_length0[leader];
-                    let [_, curvature] = equality_rates(step.params, e, x);
-                    let gradient = Coordinate::of_tendon(step, leader).iter();
-                    self.add_outer(block.dofs, gradient, -curvature);
+                    let [slope, curvature] = equality_rates(step.params, e, x);
+                    let leader = Coordinate::of_tendon(step, leader);
+                    self.add(block.dofs, leader, -slope);
+                    self.add_outer(block.dofs, leader.iter(), -curvature);
                 }
                 EqualityTarget::Connect { .. } | EqualityTarget::Weld { .. } => {}
             },
@@ -71,11 +75,32 @@ impl Rows {
                 JointKind::Ball => self.set_cone(step, j),
                 JointKind::Hinge | JointKind::Slide | JointKind::Free => {}
             },
+            ConstraintSource::TendonFriction(t) | ConstraintSource::TendonLimit(t) => {
+                let tendon = Coordinate::of_tendon(step, t);
+                // An upper limit is the negative length.
+                let upper = block.jacobian != tendon.arms;
+                self.add(block.dofs, tendon, if upper { -1.0 } else { 1.0 });
+            }
             ConstraintSource::DofFriction(_)
-            | ConstraintSource::TendonFriction(_)
-            | ConstraintSource::TendonLimit(_)
             | ConstraintSource::Dynamic { .. }
             | ConstraintSource::Contact(_) => {}
+        }
+    }
+
+    /// Adds the rates of a coordinate times a factor.
+    fn add(&mut self, dofs: &[u32], coordinate: Coordinate<'_>, factor: f64) {
+        if coordinate.rates.is_empty() {
+            return;
+        }
+        self.rates.resize(dofs.len() * dofs.len(), 0.0);
+        let rows = coordinate.rates.chunks_exact(coordinate.dofs.len());
+        for (dof, rates) in coordinate.dofs.iter().zip(rows) {
+            for (other, rate) in coordinate.dofs.iter().zip(rates) {
+                let found = (dofs.binary_search(dof), dofs.binary_search(other));
+                if let (Ok(row), Ok(column)) = found {
+                    self.rates[row * dofs.len() + column] += factor * rate;
+                }
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 //! A step in plain numbers, and its actuators.
 
+use super::curves::Curves;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace};
 
@@ -11,6 +12,7 @@ pub(super) struct Step<'a> {
     pub before: &'a State<f64>,
     pub after: &'a State<f64>,
     pub plain: &'a Workspace<f64>,
+    pub curves: &'a Curves,
 }
 
 impl Step<'_> {
