@@ -31,8 +31,9 @@ impl Linearizer {
         let (nx, ny) = (request.x_len(&model), request.y_len(&model));
         self.along.x.reset([nx, columns]);
         self.along.y.reset([ny, columns]);
-        // The matrices are found in less time than a pass needs.
-        let recursed = request.permits_recursion(&model) && self.recurse(source)?;
+        // The matrices are found in less time than a pass needs, but sensors need a pass.
+        let permitted = ny == 0 && request.permits_recursion(&model);
+        let recursed = permitted && self.recurse(source)?;
         direction::list(&model, &sim.state, request, &mut self.directions);
         if recursed {
             let Linearization { a, b, .. } = &self.result;

@@ -22,6 +22,7 @@ mod pass;
 mod recursive;
 mod request;
 mod seed;
+mod sensing;
 mod source;
 mod tangent;
 mod vjp;

@@ -130,6 +130,9 @@ impl Linearizer {
         direction::list(&model, &sim.state, request, &mut self.directions);
         if recursed {
             let [nx, nu, _] = sizes;
+            if request.sensors_len(&model) > 0 {
+                self.sense(source, [nx, nu]);
+            }
             self.directions.retain(|&(_, column)| column >= nx + nu);
         }
         let columns = self.directions.len();
@@ -213,6 +216,31 @@ impl Linearizer {
             a.values.extend_from_slice(by_state);
             b.values.extend_from_slice(by_control);
         })
+    }
+
+    /// Computes C and D after recursions.
+    fn sense(&mut self, mut source: Source<'_>, [nx, nu]: [usize; 2]) {
+        let directions = &self.directions[..nx + nu];
+        let Linearization { c, d, .. } = &mut self.result;
+        let mut columns = Vec::new();
+        source.first = true;
+        for part in directions.chunks(self.pass.directions()) {
+            self.seeds.clear();
+            self.seeds.extend(Seed::units(part));
+            source.start = Seed::earliest(&self.seeds);
+            columns.clear();
+            columns.extend(part.iter().map(|&(_, column)| column));
+            let directions = (&self.seeds[..], &columns[..]);
+            self.pass.sense(source, directions, &mut |row, values| {
+                for (&column, &value) in columns.iter().zip(values) {
+                    match column.checked_sub(nx) {
+                        None => c.values[row * nx + column] = value,
+                        Some(column) => d.values[row * nu + column] = value,
+                    }
+                }
+            });
+            source.first = false;
+        }
     }
 
     /// Sets the matrices to zero, but A and B if recursions found them.

@@ -32,6 +32,13 @@ pub(crate) trait Pass: Send {
         source: Source<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError>;
+    /// Computes the derivatives of kinematic sensors along directions, after recursions: see [`DualPass::read_sensors`].
+    fn sense(
+        &mut self,
+        source: Source<'_>,
+        directions: (&[Seed], &[usize]),
+        write: &mut dyn FnMut(usize, &[f64]),
+    );
     /// Runs the step along the first `count` directions, which `seeds` define. `write(row, values)` receives the
     /// derivatives of each number of the result: the next state, the sensors, the outputs.
     fn run(
@@ -69,23 +76,23 @@ impl LaneTask<f64> for CreatePass<'_> {
 
 type Number<L> = Dual<L, REGISTERS>;
 
-struct DualPass<L: Real<Scalar = f64>> {
-    params: Params<Number<L>>,
-    before: State<Number<L>>,
+pub(crate) struct DualPass<L: Real<Scalar = f64>> {
+    pub params: Params<Number<L>>,
+    pub before: State<Number<L>>,
     state: State<Number<L>>,
-    ws: Workspace<Number<L>>,
+    pub ws: Workspace<Number<L>>,
     outputs: Vec<Number<L>>,
     bounds: ErrorBounds<Number<L>>,
     /// The start of the last pass.
-    last: Start,
-    recursive: Recursive,
+    pub last: Start,
+    pub recursive: Recursive,
     /// True if recursions found the last derivatives.
     recursed: bool,
 }
 
 impl<L: Real<Scalar = f64>> DualPass<L> {
     /// Removes the derivatives of the state.
-    fn clear_state(&mut self, model: &Model, request: &Request) {
+    pub(crate) fn clear_state(&mut self, model: &Model, request: &Request) {
         let State {
             qpos,
             qvel,
@@ -151,6 +158,15 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             self.recursed = self.recursive.run(source, write)?;
         }
         Ok(self.recursed)
+    }
+
+    fn sense(
+        &mut self,
+        source: Source<'_>,
+        directions: (&[Seed], &[usize]),
+        write: &mut dyn FnMut(usize, &[f64]),
+    ) {
+        self.read_sensors(source, directions, write);
     }
 
     fn run(

@@ -1,6 +1,7 @@
 //! The choice of results and inputs.
 
 use crate::field::StateField;
+use crate::sensing::is_kinematic;
 use clench_dynamics::Model;
 use clench_dynamics::model::ParamField;
 use clench_rigid::Output;
@@ -30,10 +31,12 @@ impl Request {
         StateField::MEMORY.into_iter().filter(move |_| wanted)
     }
 
-    /// Returns true if the results are the next positions, velocities and activations, and x is the present ones.
+    /// Returns true if the results are the next positions, velocities and activations, and sensors that follow from
+    /// motion, and x is the present positions, velocities and activations.
     pub(crate) fn permits_recursion(&self, model: &Model) -> bool {
         let no_memory = self.x_len(model) == 2 * model.nv + model.na;
-        self.y_len(model) == 0 && no_memory && !self.errors
+        let sensed = self.omits_sensors || model.sensors.iter().all(is_kinematic);
+        self.y_len(model) == self.sensors_len(model) && sensed && no_memory && !self.errors
     }
 
     /// Returns the length of y.

@@ -126,7 +126,7 @@ pub fn state_energy<T: Real>(
 
 /// Computes the quantities that also depend on velocities: velocities of bodies, tendons and actuators, passive and
 /// bias forces.
-pub(crate) fn velocity_stage<T: Real>(
+pub fn velocity_stage<T: Real>(
     model: &Model,
     params: &Params<T>,
     state: &State<T>,

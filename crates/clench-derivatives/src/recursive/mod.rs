@@ -55,6 +55,8 @@ pub(crate) struct Recursive {
     response: Response<f64>,
     /// The gradient, then the acceleration, then the new velocity: nv rows.
     columns: Vec<f64>,
+    /// The derivatives of the acceleration, likewise; only with sensors.
+    acceleration: Vec<f64>,
 }
 
 impl Recursive {
@@ -71,7 +73,14 @@ impl Recursive {
             curves: Curves::new(model),
             response: Response::default(),
             columns: Vec::new(),
+            acceleration: Vec::new(),
         }
+    }
+
+    /// Returns the derivatives of the acceleration of a dof by state and controls, before the step makes it implicit.
+    pub(crate) fn acceleration(&self, dof: usize) -> &[f64] {
+        let width = self.acceleration.len() / self.plain.qacc.len();
+        &self.acceleration[dof * width..][..width]
     }
 
     pub(crate) fn set_params(&mut self, params: &Params<f64>) {
@@ -143,6 +152,10 @@ impl Recursive {
         self.weight.subtract(&step, &mut gradient);
         self.response.solve_columns(&mut self.columns, width);
         self.columns.iter_mut().for_each(|x| *x = -*x);
+        self.acceleration.clear();
+        if source.request.sensors_len(model) > 0 {
+            self.acceleration.extend_from_slice(&self.columns);
+        }
         if is_implicit(&step) {
             let implicit = &mut self.local.implicit;
             implicit.replace(&step, &mut self.inverse, &mut self.columns, width);

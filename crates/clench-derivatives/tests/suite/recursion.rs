@@ -69,12 +69,22 @@ fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
             let passes = passes.expect("derivatives");
             compare(&recursive.a, &passes.a);
             compare(&recursive.b, &passes.b);
+            compare_sensors(&recursive.c, &passes.c);
+            compare_sensors(&recursive.d, &passes.d);
             seen.recursed |= recursive.a != passes.a;
             assert_eq!(recursive.switching.len(), passes.switching.len());
             compare_parameters(&mut linearizer, sim);
         }
     }
     seen
+}
+
+/// Compares the derivatives of sensors, which precede those of outputs.
+fn compare_sensors(recursive: &Matrix, passes: &Matrix) {
+    let mut passes = passes.clone();
+    passes.shape[0] = recursive.shape[0];
+    passes.values.truncate(recursive.values.len());
+    compare(recursive, &passes);
 }
 
 /// Compares derivatives by parameters, and those along a tangent, with and without passes along the state.
@@ -420,7 +430,7 @@ fn curved(integrator: &str) -> String {
             <motor joint="free" gear=".3 .2 .5 .01 .02 .03"/>
             <velocity jointinparent="free" gear=".1 .2 .3 .1 .02 .03" kv=".1"/>
             <general site="f" gear=".2 .1 .4 .02 .03 .01" biastype="affine" biasprm="0 0 -.1" dyntype="filter" dynprm=".1"/>
-            <position site="a2" refsite="a0" gear=".4 .2 .3 .1 0 .2" kp="2" kv=".1"/>
+            <position name="pose" site="a2" refsite="a0" gear=".4 .2 .3 .1 0 .2" kp="2" kv=".1"/>
             <intvelocity site="f" refsite="root" gear="0 .1 .2 0 .1 0" kp=".3" actrange="-1 1"/>
             <position cranksite="crank" slidersite="slider" cranklength=".3" kp="5" kv=".2"/>
           </actuator>
@@ -433,6 +443,30 @@ fn spatial_tendons_and_curved_transmissions() {
     let forces = ["equality", "friction_tendon", "limit_tendon"];
     for integrator in ["Euler", "implicitfast"] {
         check_text(&curved(integrator), &forces, |sim| sim.state.qvel[1] = 2.0);
+    }
+}
+
+/// Sensors that follow from motion and actuators need no passes of the whole step.
+#[test]
+fn sensors_of_motion() {
+    let sensors = r#"
+      <accelerometer site="a1"/><velocimeter site="a1"/><gyro site="f"/><magnetometer site="a1"/>
+      <jointpos joint="knee"/><jointvel joint="knee"/><jointactuatorfrc joint="slider"/>
+      <ballquat joint="ball"/><ballangvel joint="ball"/>
+      <tendonpos tendon="wrapped"/><tendonvel tendon="long"/><tendonactuatorfrc tendon="long"/>
+      <actuatorpos actuator="pose"/><actuatorvel actuator="pose"/><actuatorfrc actuator="pose"/>
+      <subtreecom body="free"/><subtreelinvel body="free"/><subtreeangmom body="free"/>
+      <framepos objtype="site" objname="a2" reftype="site" refname="f"/><framequat objtype="site" objname="a2"/>
+      <framexaxis objtype="site" objname="a2"/><framelinvel objtype="site" objname="a2"/>
+      <frameangvel objtype="site" objname="a2"/><framelinacc objtype="site" objname="a2" cutoff="3"/>
+      <frameangacc objtype="body" objname="free"/><distance geom1="tip" geom2="knee" cutoff="1"/>
+      <rangefinder site="a1"/><clock/>"#;
+    for integrator in ["Euler", "implicitfast"] {
+        let text = curved(integrator).replace(
+            "</actuator>",
+            &format!("</actuator><sensor>{sensors}</sensor>"),
+        );
+        check_text(&text, &[], |sim| sim.state.qvel[1] = 2.0);
     }
 }
 
@@ -457,6 +491,13 @@ fn limits_of_ball_joints() {
 #[test]
 fn other_steps_need_passes() {
     let free = r#"<joint type="free"/>"#;
+    // The site of a force sensor.
+    let sensed = curved("Euler").replace(
+        "</actuator>",
+        r#"</actuator><sensor><accelerometer site="a1"/><force site="a1"/></sensor>"#,
+    );
+    let sensed = clench_formats::load_str(&sensed).expect("a model");
+    check(sensed, RigidOptions::new(), 20);
     for integrator in ["implicit", "RK4", "discrete"] {
         check(mixed(integrator, free), RigidOptions::new(), 20);
     }

@@ -9,7 +9,7 @@
 
 pub(crate) mod activation;
 pub(crate) mod activation_rates;
-pub(crate) mod actuation;
+pub mod actuation;
 pub(crate) mod actuator;
 pub(crate) mod actuator_derivatives;
 pub(crate) mod adhesion;
