@@ -931,6 +931,13 @@ class Sim(_Outputs):
         *,
         memory: bool | np.bool_ = False,
     ) -> tuple[_Floats, _Floats, dict[str, _Floats]]: ...  # (2 nv + na,), (nu,) and (numbers,)
+    def rollout_vjp(
+        self,
+        ctrl: ArrayLike,  # (T, nu)
+        x: ArrayLike,  # (T, 2 nv + na)
+        *,
+        memory: bool | np.bool_ = False,
+    ) -> tuple[_Floats, _Floats]: ...  # (2 nv + na,) and (T, nu)
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
     def render(
         self,
@@ -1153,6 +1160,13 @@ class Batch(_Outputs):
         *,
         memory: bool | np.bool_ = False,
     ) -> tuple[_Floats, _Floats, dict[str, _Floats]]: ...  # (n, 2 nv + na), (n, nu) and (n, numbers)
+    def rollout_vjp(
+        self,
+        ctrl: ArrayLike,  # (T, n, nu)
+        x: ArrayLike,  # (T, n, 2 nv + na)
+        *,
+        memory: bool | np.bool_ = False,
+    ) -> tuple[_Floats, _Floats]: ...  # (n, 2 nv + na) and (T, n, nu)
     def record(self, *names: str) -> None: ...
     @property
     def outputs(self) -> tuple[str, ...]: ...

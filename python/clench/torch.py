@@ -12,7 +12,7 @@
     ctrl.grad                                   # (100, 64, nu)
 
 A simulation works like a batch, without the dimension of environments. Tensors have the precision of the simulation or
-batch, on the processor. Gradients are exact, those of steps in double precision: `clench.Sim.vjp` computes them. Double
+batch, on the processor. Gradients are exact, those of steps in double precision: `clench.Sim.rollout_vjp` computes them. Double
 backward is not supported. All else that a step depends on, such as parameters, mocap poses and applied forces, is that
 of the simulation and has no gradient.
 """
@@ -149,24 +149,20 @@ class _Rollout(torch.autograd.Function):
         nv, tangent, present = sim.model.nv, Tangent(sim.model), sim.state
         by_qpos, by_qvel, by_act = (gradient.double().numpy() for gradient in gradients)
         by_motion = rows(by_qpos, tangent.basis(after.double().numpy()))
-        by_rows = np.concatenate([by_motion, by_qvel, by_act], axis=-1)
-        by_state, by_ctrl = np.zeros((*first.shape[:-1], state_size(sim))), np.zeros(ctrl.shape)
+        known = np.concatenate([by_motion, by_qvel, by_act], axis=-1)
+        # A function depends on no other fields than these.
+        by_rows = np.zeros((*known.shape[:-1], state_size(sim)))
+        by_rows[..., : known.shape[-1]] = known
+        by_state, by_ctrl = np.zeros(by_rows.shape[1:]), np.zeros(ctrl.shape)
         try:
             for segment, start in reversed([*enumerate(ctx.saved)]):
-                steps = range(segment * ctx.every, min((segment + 1) * ctx.every, len(ctrl)))
-                sim.state, states = start, []
-                for k in steps:
-                    states.append(sim.state)
-                    if k != steps[-1]:
-                        sim.ctrl = ctrl[k].numpy()
-                        advance_all(sim)
-                for k in reversed(steps):
-                    by_state[..., : by_rows.shape[-1]] += by_rows[k]
-                    sim.state, sim.ctrl = states.pop(), ctrl[k].numpy()
-                    by_state, by_ctrl[k], _ = sim.vjp(by_state, memory=True)
+                steps = slice(segment * ctx.every, (segment + 1) * ctx.every)
+                sim.state = start
+                by_rows[steps][-1] += by_state
+                by_state, by_ctrl[steps] = sim.rollout_vjp(ctrl[steps].numpy(), by_rows[steps], memory=True)
         finally:
             sim.state = present
-        by_first, by_qvel, by_act = np.split(by_state[..., : by_rows.shape[-1]], [nv, 2 * nv], axis=-1)
+        by_first, by_qvel, by_act = np.split(by_state[..., : known.shape[-1]], [nv, 2 * nv], axis=-1)
         by_qpos = rows(by_first, tangent.inverse(first.double().numpy()))
         arrays = (by_qpos, by_qvel, by_act, by_ctrl)
         return None, *(torch.from_numpy(array).to(first.dtype) for array in arrays)

@@ -1,11 +1,13 @@
 //! Gradients of functions of a step, from Python.
 
 use crate::arrays::{numbers, require_finite, require_shape};
-use crate::changes::{InputGradients, OutputGradients};
+use crate::changes::{InputGradients, OutputGradients, Results};
 use crate::derivatives::{Chosen, Memory, in_env, with_linearizer};
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
-use clench::derivatives::{BatchLinearizer, InputGradient, Matrix, OutputGradient};
+use clench::derivatives::{
+    BatchLinearizer, InputGradient, Matrix, OutputGradient, RolloutGradient,
+};
 use clench::rigid::batch::Precision;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -110,6 +112,105 @@ impl Gradients {
             array(&|result| &result.x.values)?,
             array(&|result| &result.u.values)?,
             by_parameters.unbind(),
+        ))
+    }
+}
+
+/// The controls of rollouts, and the gradients by their states: a matrix for each environment.
+pub(crate) struct Rollouts {
+    memory: bool,
+    controls: Vec<Matrix>,
+    gradients: Vec<Matrix>,
+    /// The shape of the results between the dimensions of steps and of numbers.
+    envs: Vec<usize>,
+}
+
+impl Rollouts {
+    /// Converts arrays of the shape (steps, `envs`, numbers).
+    pub(crate) fn of_arrays(
+        model: &clench::Model,
+        ctrl: &Bound<'_, PyAny>,
+        x: &Bound<'_, PyAny>,
+        memory: bool,
+        envs: &[usize],
+    ) -> PyResult<Self> {
+        let request = Chosen::new(model, &[], None, [memory, false, false])?.request;
+        let mut steps = None;
+        let mut read = |name: &str, given: &Bound<'_, PyAny>, columns: usize| {
+            let array = numbers::<f64>(name, given)?;
+            let array = array.as_array();
+            let found = array.shape();
+            let steps = *steps.get_or_insert(found.first().copied().unwrap_or(0));
+            require_shape(name, found, &[&[steps], envs, &[columns]].concat())?;
+            let values = Vec::from_iter(array.iter().copied());
+            require_finite(name, &values)?;
+            let count: usize = envs.iter().product();
+            let matrix = |env: usize| {
+                let rows = (0..steps).flat_map(|step| {
+                    let start = (step * count + env) * columns;
+                    &values[start..start + columns]
+                });
+                Matrix {
+                    shape: [steps, columns],
+                    values: rows.copied().collect(),
+                }
+            };
+            Ok::<_, PyErr>(Vec::from_iter((0..count).map(matrix)))
+        };
+        Ok(Rollouts {
+            memory,
+            controls: read("ctrl", ctrl, model.nu())?,
+            gradients: read("x", x, request.x_len(model))?,
+            envs: envs.to_vec(),
+        })
+    }
+
+    /// Differentiates a rollout of a simulation.
+    pub(crate) fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<Results> {
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                linearizer.rollout_vjp(sim, self.memory, &self.controls[0], &self.gradients[0])
+            })
+        });
+        self.export(py, from_ref(result.map_err(sim_error)?))
+    }
+
+    /// Differentiates a rollout of every environment of a batch.
+    pub(crate) fn of_batch<S: Precision>(
+        &self,
+        py: Python<'_>,
+        memory: &mut Option<BatchLinearizer<S>>,
+        batch: &mut clench::Batch<S>,
+    ) -> PyResult<Results> {
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            linearizer.rollout_vjp(batch, self.memory, &self.controls, &self.gradients)
+        });
+        self.export(py, results.map_err(|error| in_env(py, error))?)
+    }
+
+    /// Copies results to arrays.
+    fn export(&self, py: Python<'_>, results: &[RolloutGradient]) -> PyResult<Results> {
+        let array = |of: fn(&RolloutGradient) -> &Matrix, lead: &[usize]| {
+            let [rows, columns] = results.first().map_or([0, 0], |first| of(first).shape);
+            let mut values = Vec::with_capacity(results.len() * rows * columns);
+            for row in 0..rows {
+                for result in results {
+                    values.extend_from_slice(&of(result).values[row * columns..][..columns]);
+                }
+            }
+            let shape = [lead, &self.envs, &[columns]].concat();
+            Ok::<_, PyErr>(PyArray1::from_vec(py, values).reshape(shape)?.unbind())
+        };
+        let steps = self.controls.first().map_or(0, |first| first.shape[0]);
+        Ok((
+            array(|result| &result.x, &[])?,
+            array(|result| &result.u, &[steps])?,
         ))
     }
 }

@@ -27,6 +27,8 @@ pub(crate) type Chosen = Absent<Linearization>;
 pub(crate) type Tangents = Absent<Results>;
 /// The gradients by the results.
 pub(crate) type Gradients = Absent<InputGradients>;
+/// The controls of rollouts, and the gradients by their states.
+pub(crate) type Rollouts = Absent<Results>;
 
 impl Chosen {
     pub(crate) fn new(
@@ -57,6 +59,18 @@ impl Gradients {
         _: Option<&Bound<'_, PyAny>>,
         _: bool,
         _: OutputGradients<'_, '_>,
+        _: &[usize],
+    ) -> PyResult<Self> {
+        Err(without())
+    }
+}
+
+impl Rollouts {
+    pub(crate) fn of_arrays(
+        _: &clench::Model,
+        _: &Bound<'_, PyAny>,
+        _: &Bound<'_, PyAny>,
+        _: bool,
         _: &[usize],
     ) -> PyResult<Self> {
         Err(without())

@@ -2,8 +2,8 @@
 
 use crate::batch::{AnyBatch, Batch};
 use crate::busy::lock;
-use crate::changes::InputGradients;
-use crate::gradients::Gradients;
+use crate::changes::{InputGradients, Results};
+use crate::gradients::{Gradients, Rollouts};
 use crate::sim::Sim;
 use pyo3::prelude::*;
 
@@ -65,6 +65,43 @@ impl Sim {
         let mut guard = lock(self.inner(), "simulation")?;
         gradients.of_sim(py, &mut memory, &mut guard)
     }
+
+    /// Computes the gradient of a function of the states after each of the next T steps. The state does not change. The
+    /// memory is that of A and B of each step.
+    ///
+    /// Parameters
+    /// ----------
+    /// ctrl : array_like, shape (T, nu)
+    ///     Controls of each step.
+    /// x : array_like, shape (T, 2 nv + na)
+    ///     Gradient by x after each step; see `vjp`.
+    /// memory : bool
+    ///     True to extend x as in `linearize`.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of numpy.ndarray
+    ///     The gradients by the first x, shape (2 nv + na,), and by the controls, (T, nu).
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If an array has another shape or is not finite.
+    /// SimulationError
+    ///     If `step` would raise it in any step.
+    #[pyo3(signature = (ctrl, x, *, memory = false), text_signature = "($self, ctrl, x, *, memory=False)")]
+    fn rollout_vjp(
+        &self,
+        py: Python<'_>,
+        ctrl: &Bound<'_, PyAny>,
+        x: &Bound<'_, PyAny>,
+        memory: bool,
+    ) -> PyResult<Results> {
+        let rollouts = Rollouts::of_arrays(self.described(), ctrl, x, memory, &[])?;
+        let mut memory = lock(self.linearizer(), "simulation")?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        rollouts.of_sim(py, &mut memory, &mut guard)
+    }
 }
 
 #[pymethods]
@@ -120,6 +157,49 @@ impl Batch {
         match &mut *guard {
             AnyBatch::F64(batch) => gradients.of_batch(py, &mut linearizer.double, batch),
             AnyBatch::F32(batch) => gradients.of_batch(py, &mut linearizer.single, batch),
+        }
+    }
+    /// Computes the gradients of functions of the states after each of the next T steps of every environment; see
+    /// `Sim.rollout_vjp`.
+    ///
+    /// Parameters
+    /// ----------
+    /// ctrl : array_like, shape (T, n, nu)
+    ///     Controls of each step.
+    /// x : array_like, shape (T, n, 2 nv + na)
+    ///     Gradients by x after each step.
+    /// memory : bool
+    ///     True to extend x.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of numpy.ndarray
+    ///     The gradients by the first x, shape (n, 2 nv + na), and by the controls, (T, n, nu).
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If an array has another shape or is not finite.
+    /// SimulationError
+    ///     If a step of an environment fails.
+    #[pyo3(signature = (ctrl, x, *, memory = false), text_signature = "($self, ctrl, x, *, memory=False)")]
+    fn rollout_vjp(
+        &self,
+        py: Python<'_>,
+        ctrl: &Bound<'_, PyAny>,
+        x: &Bound<'_, PyAny>,
+        memory: bool,
+    ) -> PyResult<Results> {
+        let mut linearizer = lock(self.linearizer(), "batch")?;
+        let mut guard = lock(self.inner(), "batch")?;
+        let count = match &*guard {
+            AnyBatch::F64(batch) => batch.count(),
+            AnyBatch::F32(batch) => batch.count(),
+        };
+        let rollouts = Rollouts::of_arrays(self.described(), ctrl, x, memory, &[count])?;
+        match &mut *guard {
+            AnyBatch::F64(batch) => rollouts.of_batch(py, &mut linearizer.double, batch),
+            AnyBatch::F32(batch) => rollouts.of_batch(py, &mut linearizer.single, batch),
         }
     }
 }

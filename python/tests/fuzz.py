@@ -333,6 +333,7 @@ class Fuzz:
             "linearize": lambda: owner.linearize(self.maybe(lambda: ["xpos"]), self.maybe(lambda: {"body_mass": [1], "xfrc_applied": [6]}), memory=self.maybe(lambda: True), sensors=self.maybe(lambda: True), errors=self.maybe(lambda: True)),
             "jvp": lambda: owner.jvp(self.maybe(lambda: self.numbers(*lead, 2 * model.nv + model.na)), self.maybe(lambda: None), self.maybe(lambda: {"gravity": self.numbers(*lead, 3)})),
             "vjp": lambda: owner.vjp(self.maybe(lambda: self.numbers(*lead, 2 * model.nv + model.na)), self.maybe(lambda: None), self.maybe(lambda: ["gravity"]), memory=self.maybe(lambda: False)),
+            "rollout_vjp": lambda: owner.rollout_vjp(self.numbers(2, *lead, model.nu), self.numbers(2, *lead, 2 * model.nv + model.na), memory=self.maybe(lambda: False)),
             "step1": lambda: owner.step1(),
             "step2": lambda: owner.step2(),
             "add_weld": lambda: owner.add_weld(name, self.maybe(lambda: 0)),

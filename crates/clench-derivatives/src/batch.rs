@@ -1,7 +1,8 @@
 //! The derivatives of every environment of a batch.
 
 use crate::{
-    InputGradient, InputTangent, Linearization, Linearizer, OutputGradient, OutputTangent, Request,
+    InputGradient, InputTangent, Linearization, Linearizer, Matrix, OutputGradient, OutputTangent,
+    Request, RolloutGradient,
 };
 use clench_rigid::batch::Precision;
 use clench_rigid::{Batch, Model, Output, Sim, SimError};
@@ -16,6 +17,7 @@ pub struct BatchLinearizer<S: Precision = f64> {
     results: Vec<Linearization>,
     along: Vec<OutputTangent>,
     gradients: Vec<InputGradient>,
+    rollouts: Vec<RolloutGradient>,
 }
 
 /// The memory of a thread, which serves its environments in turn: for each model of the batch, once it is needed.
@@ -58,6 +60,7 @@ impl<S: Precision> BatchLinearizer<S> {
             results: vec![Linearization::default(); batch.count()],
             along: vec![OutputTangent::default(); batch.count()],
             gradients: vec![InputGradient::default(); batch.count()],
+            rollouts: vec![RolloutGradient::default(); batch.count()],
         }
     }
 
@@ -145,6 +148,39 @@ impl<S: Precision> BatchLinearizer<S> {
             |linearizer, sim, env, result| {
                 linearizer.vjp(sim, request, &gradients[env])?;
                 std::mem::swap(result, &mut linearizer.gradient);
+                Ok(())
+            },
+        )?;
+        Ok(results)
+    }
+}
+
+impl<S: Precision> BatchLinearizer<S> {
+    /// Returns the gradients of functions of the states of rollouts, one from every environment with its own controls;
+    /// see [`Linearizer::rollout_vjp`].
+    ///
+    /// # Errors
+    /// Returns the error of the first environment that has one, with its index.
+    ///
+    /// # Panics
+    /// Panics if the number of matrices is not that of environments, or if a matrix has another shape.
+    pub fn rollout_vjp(
+        &mut self,
+        batch: &mut Batch<S>,
+        memory: bool,
+        controls: &[Matrix],
+        gradients: &[Matrix],
+    ) -> Result<&[RolloutGradient], (usize, SimError)> {
+        let results = &mut self.rollouts;
+        let counts = [controls.len(), gradients.len()];
+        assert_eq!(counts, [results.len(); 2], "one matrix an environment");
+        run(
+            &mut self.workers,
+            batch,
+            results,
+            |linearizer, sim, env, result| {
+                linearizer.rollout_vjp(sim, memory, &controls[env], &gradients[env])?;
+                std::mem::swap(result, &mut linearizer.rollout.gradient);
                 Ok(())
             },
         )?;

@@ -4,6 +4,7 @@ use crate::direction::{self, Direction, Start};
 use crate::matrix::{InputGradient, Matrix, OutputTangent, split_index};
 use crate::pass::{CreatePass, Pass};
 use crate::request::Request;
+use crate::rollout::Rollout;
 use crate::seed::Seed;
 use crate::source::Source;
 use clench_dynamics::StepSettings;
@@ -82,6 +83,7 @@ pub struct Linearizer {
     pub(crate) result: Linearization,
     pub(crate) along: OutputTangent,
     pub(crate) gradient: InputGradient,
+    pub(crate) rollout: Rollout,
 }
 
 impl fmt::Debug for Linearizer {
@@ -106,6 +108,7 @@ impl Linearizer {
             result: Linearization::default(),
             along: OutputTangent::default(),
             gradient: InputGradient::default(),
+            rollout: Rollout::default(),
         })
     }
 
@@ -122,15 +125,22 @@ impl Linearizer {
         request: &Request,
     ) -> Result<&Linearization, SimError> {
         let model = self.prepare(sim, &request.parameters)?;
-        let mut source = source(&model, sim, request);
+        self.differentiate(source(&model, sim, request))?;
+        Ok(&self.result)
+    }
+
+    /// Linearizes a step, after [`prepare`](Self::prepare).
+    pub(crate) fn differentiate(&mut self, mut source: Source<'_>) -> Result<(), SimError> {
+        let (model, request) = (source.model, source.request);
+        self.all.clear();
         self.result.errors = ErrorBound::default();
-        let sizes = [request.x_len(&model), model.nu(), request.p_len()];
-        let recursed = request.permits_recursion(&model) && self.recurse(source)?;
-        self.reset(sizes, request.y_len(&model), recursed);
-        direction::list(&model, &sim.state, request, &mut self.directions);
+        let sizes = [request.x_len(model), model.nu(), request.p_len()];
+        let recursed = request.permits_recursion(model) && self.recurse(source)?;
+        self.reset(sizes, request.y_len(model), recursed);
+        direction::list(model, source.state, request, &mut self.directions);
         if recursed {
             let [nx, nu, _] = sizes;
-            if request.sensors_len(&model) > 0 {
+            if request.sensors_len(model) > 0 {
                 self.sense(source, [nx, nu]);
             }
             self.directions.retain(|&(_, column)| column >= nx + nu);
@@ -158,7 +168,7 @@ impl Linearizer {
             errors.set_unknown(model.nv, columns, switching.len());
         }
         self.split(sizes);
-        Ok(&self.result)
+        Ok(())
     }
 
     /// Prepares for the passes of a simulation. Returns the model for them.

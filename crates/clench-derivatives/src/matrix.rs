@@ -21,10 +21,16 @@ impl Matrix {
         let ([_, inner], [_, columns]) = (a.shape, b.shape);
         let rows = self.values.chunks_exact_mut(columns.max(1));
         for (out, factors) in rows.zip(a.values.chunks_exact(inner.max(1))) {
-            for (&factor, row) in factors.iter().zip(b.values.chunks_exact(columns.max(1))) {
-                for (out, &x) in out.iter_mut().zip(row) {
-                    *out += factor * x;
-                }
+            b.add_row_product(factors, out);
+        }
+    }
+
+    /// Adds the product of a row vector and this matrix to `out`.
+    pub(crate) fn add_row_product(&self, factors: &[f64], out: &mut [f64]) {
+        let rows = self.values.chunks_exact(self.shape[1].max(1));
+        for (&factor, row) in factors.iter().zip(rows) {
+            for (out, &x) in out.iter_mut().zip(row) {
+                *out += factor * x;
             }
         }
     }

@@ -39,6 +39,11 @@ pub(crate) trait Pass: Send {
         directions: (&[Seed], &[usize]),
         write: &mut dyn FnMut(usize, &[f64]),
     );
+    /// Writes the state after the step that was differentiated last, without measurements of delayed sensors.
+    ///
+    /// # Errors
+    /// Returns an error if the step fails.
+    fn advance(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError>;
     /// Runs the step along the first `count` directions, which `seeds` define. `write(row, values)` receives the
     /// derivatives of each number of the result: the next state, the sensors, the outputs.
     fn run(
@@ -158,6 +163,14 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             self.recursed = self.recursive.run(source, write)?;
         }
         Ok(self.recursed)
+    }
+
+    fn advance(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError> {
+        if !self.recursed {
+            self.recursive.step(source)?;
+        }
+        next.copy_from(&self.recursive.state);
+        Ok(())
     }
 
     fn sense(

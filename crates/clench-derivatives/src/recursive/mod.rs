@@ -44,7 +44,8 @@ use weight::Weight;
 
 /// The memory of derivatives by recursion.
 pub(crate) struct Recursive {
-    state: State<f64>,
+    /// The state after the step.
+    pub(crate) state: State<f64>,
     pub(crate) plain: Workspace<f64>,
     inverse: InverseDerivatives<f64>,
     local: Local,
@@ -93,6 +94,23 @@ impl Recursive {
         scope::covers(source.model, source.params, source.settings)
     }
 
+    /// Makes the step in plain numbers, without its sensors, on which no motion depends.
+    ///
+    /// # Errors
+    /// Returns an error if the step fails.
+    pub(crate) fn step(&mut self, source: Source<'_>) -> Result<(), SimError> {
+        let (model, params, settings) = (source.model, source.params, source.settings);
+        self.state.copy_from(source.state);
+        let step = clench_dynamics::Step::<f64>::compiled().step;
+        let (state, plain) = (&mut self.state, &mut self.plain);
+        step(model, params, settings, state, plain, |_, _, _, _, _| {});
+        if check::good_results(state, plain) {
+            return Ok(());
+        }
+        let fault = check::result_fault(model, source.state.time, state, plain, 0);
+        Err(fault.into())
+    }
+
     /// Passes the derivatives of the next state by state and controls to `write`, row after row. The [curves](Curves)
     /// are those of the state, and recursions [cover](Self::covers) it. Returns false if they do not cover its contacts.
     pub(crate) fn run(
@@ -100,22 +118,8 @@ impl Recursive {
         source: Source<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError> {
+        self.step(source)?;
         let (model, settings) = (source.model, source.settings);
-        self.state.copy_from(source.state);
-        let step = clench_dynamics::Step::<f64>::compiled().step;
-        let (state, plain) = (&mut self.state, &mut self.plain);
-        step(
-            model,
-            source.params,
-            settings,
-            state,
-            plain,
-            |_, _, _, _, _| {},
-        );
-        if !check::good_results(state, plain) {
-            let fault = check::result_fault(model, source.state.time, state, plain, 0);
-            return Err(fault.into());
-        }
         let step = Step {
             model,
             params: source.params,

@@ -5,5 +5,6 @@ mod differences;
 mod error_bounds;
 mod jvp;
 mod recursion;
+mod rollout;
 mod state;
 mod steps;

@@ -1,0 +1,86 @@
+//! Gradients of functions of the states of a rollout.
+
+use crate::linearizer::{Linearizer, source};
+use crate::matrix::Matrix;
+use crate::request::Request;
+use crate::source::Source;
+use clench_rigid::{Sim, SimError};
+use std::mem::{swap, take};
+
+/// The gradient of a function of the states after each step of a rollout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RolloutGradient {
+    /// By the first x, with one row.
+    pub x: Matrix,
+    /// By the controls, one row for each step.
+    pub u: Matrix,
+}
+
+/// The memory of a rollout.
+#[derive(Default)]
+pub(crate) struct Rollout {
+    /// A and B of each step.
+    steps: Vec<[Matrix; 2]>,
+    pub gradient: RolloutGradient,
+}
+
+impl Linearizer {
+    /// Returns the gradient of a function of the states after each of the next steps of a simulation of the model,
+    /// whose state does not change. `controls` holds a row for each step, `gradient` the derivatives of the function by
+    /// x after each step. With `memory`, x is that of [`Request::memory`]. The memory is that of A and B of each step.
+    ///
+    /// # Errors
+    /// Returns an error if [`Sim::step`] would return one in any step.
+    ///
+    /// # Panics
+    /// Panics if the simulation has another model, or if a matrix has another shape.
+    pub fn rollout_vjp(
+        &mut self,
+        sim: &Sim<f64>,
+        memory: bool,
+        controls: &Matrix,
+        gradient: &Matrix,
+    ) -> Result<&RolloutGradient, SimError> {
+        let request = Request {
+            memory,
+            omits_sensors: true,
+            ..Request::default()
+        };
+        let (nx, nu) = (request.x_len(sim.model()), sim.model().nu());
+        let count = controls.shape[0];
+        for (matrix, columns) in [(controls, nu), (gradient, nx)] {
+            assert_eq!(matrix.shape, [count, columns], "the shape of a rollout");
+            assert_eq!(matrix.values.len(), count * columns, "a complete matrix");
+        }
+        let model = self.prepare(sim, &[])?;
+        let (mut state, mut next) = (sim.state.clone(), sim.state.clone());
+        let mut steps = take(&mut self.rollout.steps);
+        steps.resize_with(count.max(steps.len()), Default::default);
+        for (step, [a, b]) in steps[..count].iter_mut().enumerate() {
+            (state.ctrl).copy_from_slice(&controls.values[step * nu..][..nu]);
+            let source = Source {
+                state: &state,
+                ..source(&model, sim, &request)
+            };
+            self.differentiate(source)?;
+            swap(a, &mut self.result.a);
+            swap(b, &mut self.result.b);
+            self.pass.advance(source, &mut next)?;
+            swap(&mut state, &mut next);
+        }
+        let RolloutGradient { x, u } = &mut self.rollout.gradient;
+        x.reset([1, nx]);
+        u.reset([count, nu]);
+        let mut last = Matrix::default();
+        for (step, [a, b]) in steps[..count].iter().enumerate().rev() {
+            let own = &gradient.values[step * nx..][..nx];
+            x.values.iter_mut().zip(own).for_each(|(x, own)| *x += own);
+            swap(x, &mut last);
+            b.add_row_product(&last.values, &mut u.values[step * nu..][..nu]);
+            x.reset([1, nx]);
+            a.add_row_product(&last.values, &mut x.values);
+        }
+        self.rollout.steps = steps;
+        Ok(&self.rollout.gradient)
+    }
+}
