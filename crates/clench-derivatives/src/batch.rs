@@ -180,7 +180,7 @@ impl<S: Precision> BatchLinearizer<S> {
             results,
             |linearizer, sim, env, result| {
                 linearizer.rollout_vjp(sim, memory, &controls[env], &gradients[env])?;
-                std::mem::swap(result, &mut linearizer.rollout.gradient);
+                std::mem::swap(result, &mut linearizer.rollout);
                 Ok(())
             },
         )?;

@@ -2,16 +2,9 @@
 
 use crate::field::StateField;
 use crate::request::Request;
+use crate::stage::Stage;
 use clench_dynamics::model::ParamField;
 use clench_dynamics::{Model, State};
-
-/// A stage of a step, with all that follow it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Start {
-    Positions,
-    Velocities,
-    Forces,
-}
 
 /// A direction in which the input of a step changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,20 +37,20 @@ impl Direction {
     }
 
     /// Returns the first stage whose results change along the direction.
-    pub(crate) fn start(self) -> Start {
+    pub(crate) fn start(self) -> Stage {
         match self {
-            Direction::Position(_) | Direction::Parameter(..) => Start::Positions,
-            Direction::Velocity(_) => Start::Velocities,
-            Direction::Activation(_) | Direction::Control(_) => Start::Forces,
+            Direction::Position(_) | Direction::Parameter(..) => Stage::Positions,
+            Direction::Velocity(_) => Stage::Velocities,
+            Direction::Activation(_) | Direction::Control(_) => Stage::Forces,
             Direction::Number(field, _) => match field {
                 StateField::History | StateField::QfrcApplied | StateField::XfrcApplied => {
-                    Start::Forces
+                    Stage::Forces
                 }
                 StateField::Plastic
                 | StateField::StickReferences
                 | StateField::StickFriction
                 | StateField::MocapPos
-                | StateField::MocapQuat => Start::Positions,
+                | StateField::MocapQuat => Stage::Positions,
             },
         }
     }

@@ -16,6 +16,7 @@ mod batch;
 mod direction;
 mod field;
 mod jvp;
+mod kinematic;
 mod linearizer;
 mod matrix;
 mod pass;
@@ -25,6 +26,7 @@ mod rollout;
 mod seed;
 mod sensing;
 mod source;
+mod stage;
 mod tangent;
 mod vjp;
 
@@ -32,6 +34,7 @@ pub use batch::BatchLinearizer;
 pub use clench_solver::ErrorBound;
 pub use field::StateField;
 pub use linearizer::{Linearization, Linearizer};
-pub use matrix::{InputGradient, InputTangent, Matrix, OutputGradient, OutputTangent};
+pub use matrix::{
+    InputGradient, InputTangent, Matrix, OutputGradient, OutputTangent, RolloutGradient,
+};
 pub use request::Request;
-pub use rollout::RolloutGradient;

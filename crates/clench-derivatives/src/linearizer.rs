@@ -1,12 +1,13 @@
 //! The matrices of a linearized step.
 
-use crate::direction::{self, Direction, Start};
-use crate::matrix::{InputGradient, Matrix, OutputTangent, split_index};
+use crate::direction::{self, Direction};
+use crate::kinematic::last_stage;
+use crate::matrix::{InputGradient, Matrix, OutputTangent, RolloutGradient, split_index};
 use crate::pass::{CreatePass, Pass};
 use crate::request::Request;
-use crate::rollout::Rollout;
 use crate::seed::Seed;
 use crate::source::Source;
+use crate::stage::Stage;
 use clench_dynamics::StepSettings;
 use clench_dynamics::model::{Integrator, Model, ParamField, Params};
 use clench_math::Instructions;
@@ -83,7 +84,9 @@ pub struct Linearizer {
     pub(crate) result: Linearization,
     pub(crate) along: OutputTangent,
     pub(crate) gradient: InputGradient,
-    pub(crate) rollout: Rollout,
+    pub(crate) rollout: RolloutGradient,
+    /// A and B of each step of a rollout.
+    pub(crate) steps: Vec<[Matrix; 2]>,
 }
 
 impl fmt::Debug for Linearizer {
@@ -108,7 +111,8 @@ impl Linearizer {
             result: Linearization::default(),
             along: OutputTangent::default(),
             gradient: InputGradient::default(),
-            rollout: Rollout::default(),
+            rollout: RolloutGradient::default(),
+            steps: Vec::new(),
         })
     }
 
@@ -199,7 +203,7 @@ impl Linearizer {
         source.first = filled.start == 0;
         source.start = match reuses {
             true => earliest,
-            false => Start::Positions,
+            false => Stage::Positions,
         };
         let (first, all) = (filled.start, &mut self.all);
         self.pass
@@ -210,7 +214,7 @@ impl Linearizer {
                 }
                 all[start..start + values.len()].copy_from_slice(values);
             })?;
-        Ok(keeps_positions(*source) && (source.constant_factor || earliest > Start::Positions))
+        Ok(keeps_positions(*source) && (source.constant_factor || earliest > Stage::Positions))
     }
 
     /// Computes A and B by recursions. Returns false if the step needs passes.
@@ -230,7 +234,11 @@ impl Linearizer {
 
     /// Computes C and D after recursions.
     fn sense(&mut self, mut source: Source<'_>, [nx, nu]: [usize; 2]) {
-        let directions = &self.directions[..nx + nu];
+        let last = source.model.sensors.iter().filter_map(last_stage).max();
+        // Other directions change no sensor.
+        let directions = self.directions[..nx + nu].iter().copied();
+        let changes = |&(direction, _): &(Direction, usize)| Some(direction.start()) <= last;
+        let directions = Vec::from_iter(directions.filter(changes));
         let Linearization { c, d, .. } = &mut self.result;
         let mut columns = Vec::new();
         source.first = true;
@@ -327,7 +335,7 @@ pub(crate) fn source<'a>(model: &'a Model, sim: &'a Sim<f64>, request: &'a Reque
         state: &sim.state,
         request,
         first: true,
-        start: Start::Positions,
+        start: Stage::Positions,
         constant_factor: has_constant_factor(model, sim.settings()),
     }
 }

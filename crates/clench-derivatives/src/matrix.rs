@@ -77,6 +77,15 @@ pub struct InputGradient {
     pub p: Matrix,
 }
 
+/// The gradient of a function of the states after each step of a rollout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RolloutGradient {
+    /// By the first x, with one row.
+    pub x: Matrix,
+    /// By the controls, one row for each step.
+    pub u: Matrix,
+}
+
 /// Returns the part of (x, u, p) to which an index of all their numbers belongs, and its index there.
 pub(crate) fn split_index(index: usize, [nx, nu]: [usize; 2]) -> (usize, usize) {
     match index.checked_sub(nx) {

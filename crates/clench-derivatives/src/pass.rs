@@ -1,10 +1,10 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
-use crate::direction::Start;
 use crate::recursive::Recursive;
 use crate::request::Request;
 use crate::seed::{self, Seed};
 use crate::source::Source;
+use crate::stage::Stage;
 use crate::tangent;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, Workspace, check, pipeline};
@@ -32,7 +32,7 @@ pub(crate) trait Pass: Send {
         source: Source<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError>;
-    /// Computes the derivatives of kinematic sensors along directions, after recursions: see [`DualPass::read_sensors`].
+    /// Computes the derivatives of kinematic sensors, after recursions: see [`DualPass::read_sensors`].
     fn sense(
         &mut self,
         source: Source<'_>,
@@ -72,7 +72,7 @@ impl LaneTask<f64> for CreatePass<'_> {
             ws,
             outputs: Vec::new(),
             bounds: ErrorBounds::default(),
-            last: Start::Positions,
+            last: Stage::Positions,
             recursive: Recursive::new(self.model),
             recursed: false,
         })
@@ -89,7 +89,7 @@ pub(crate) struct DualPass<L: Real<Scalar = f64>> {
     outputs: Vec<Number<L>>,
     bounds: ErrorBounds<Number<L>>,
     /// The start of the last pass.
-    pub last: Start,
+    pub last: Stage,
     pub recursive: Recursive,
     /// True if recursions found the last derivatives.
     recursed: bool,
@@ -225,12 +225,12 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         ws.constant_factor = source.constant_factor;
         hold(ws, std::mem::replace(last, source.start), source);
         let step = match source.start {
-            Start::Positions => {
+            Stage::Positions => {
                 ws.invalidate_poses();
                 pipeline::step
             }
-            Start::Velocities => pipeline::step_from_velocities,
-            Start::Forces => pipeline::step_from_forces,
+            Stage::Velocities => pipeline::step_from_velocities,
+            Stage::Forces => pipeline::step_from_forces,
         };
         step(model, params, settings, state, ws, evaluate_sensors);
         let good = check::good_results(state, ws);
@@ -272,17 +272,17 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
 }
 
 /// Removes the derivatives of the stages that the pass reuses from the last one, which began with stage `last`.
-fn hold<T: Real>(ws: &mut Workspace<T>, last: Start, source: Source<'_>) {
+fn hold<T: Real>(ws: &mut Workspace<T>, last: Stage, source: Source<'_>) {
     let held = last..source.start;
-    if held.contains(&Start::Positions) && source.constant_factor {
+    if held.contains(&Stage::Positions) && source.constant_factor {
         ws.hold_positions();
     }
-    if held.contains(&Start::Velocities) {
+    if held.contains(&Stage::Velocities) {
         ws.hold_velocities();
     }
     // Displacements of friction that sticks are found with the constraints.
     ws.keep_constraints =
-        source.start == Start::Forces && source.constant_factor && !source.settings.stiction;
+        source.start == Stage::Forces && source.constant_factor && !source.settings.stiction;
     if ws.keep_constraints && !held.is_empty() {
         ws.hold_constraints();
     }

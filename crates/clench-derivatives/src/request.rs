@@ -1,7 +1,7 @@
 //! The choice of results and inputs.
 
 use crate::field::StateField;
-use crate::sensing::is_kinematic;
+use crate::kinematic::last_stage;
 use clench_dynamics::Model;
 use clench_dynamics::model::ParamField;
 use clench_rigid::Output;
@@ -35,7 +35,8 @@ impl Request {
     /// motion, and x is the present positions, velocities and activations.
     pub(crate) fn permits_recursion(&self, model: &Model) -> bool {
         let no_memory = self.x_len(model) == 2 * model.nv + model.na;
-        let sensed = self.omits_sensors || model.sensors.iter().all(is_kinematic);
+        let mut sensors = model.sensors.iter();
+        let sensed = self.omits_sensors || sensors.all(|sensor| last_stage(sensor).is_some());
         self.y_len(model) == self.sensors_len(model) && sensed && no_memory && !self.errors
     }
 

@@ -1,28 +1,11 @@
 //! Gradients of functions of the states of a rollout.
 
 use crate::linearizer::{Linearizer, source};
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, RolloutGradient};
 use crate::request::Request;
 use crate::source::Source;
 use clench_rigid::{Sim, SimError};
 use std::mem::{swap, take};
-
-/// The gradient of a function of the states after each step of a rollout.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RolloutGradient {
-    /// By the first x, with one row.
-    pub x: Matrix,
-    /// By the controls, one row for each step.
-    pub u: Matrix,
-}
-
-/// The memory of a rollout.
-#[derive(Default)]
-pub(crate) struct Rollout {
-    /// A and B of each step.
-    steps: Vec<[Matrix; 2]>,
-    pub gradient: RolloutGradient,
-}
 
 impl Linearizer {
     /// Returns the gradient of a function of the states after each of the next steps of a simulation of the model,
@@ -54,7 +37,7 @@ impl Linearizer {
         }
         let model = self.prepare(sim, &[])?;
         let (mut state, mut next) = (sim.state.clone(), sim.state.clone());
-        let mut steps = take(&mut self.rollout.steps);
+        let mut steps = take(&mut self.steps);
         steps.resize_with(count.max(steps.len()), Default::default);
         for (step, [a, b]) in steps[..count].iter_mut().enumerate() {
             (state.ctrl).copy_from_slice(&controls.values[step * nu..][..nu]);
@@ -68,7 +51,7 @@ impl Linearizer {
             self.pass.advance(source, &mut next)?;
             swap(&mut state, &mut next);
         }
-        let RolloutGradient { x, u } = &mut self.rollout.gradient;
+        let RolloutGradient { x, u } = &mut self.rollout;
         x.reset([1, nx]);
         u.reset([count, nu]);
         let mut last = Matrix::default();
@@ -80,7 +63,7 @@ impl Linearizer {
             x.reset([1, nx]);
             a.add_row_product(&last.values, &mut x.values);
         }
-        self.rollout.steps = steps;
-        Ok(&self.rollout.gradient)
+        self.steps = steps;
+        Ok(&self.rollout)
     }
 }

@@ -1,6 +1,7 @@
 //! The derivatives of the input of a step, with which a pass starts.
 
-use crate::direction::{Direction, Start};
+use crate::direction::Direction;
+use crate::stage::Stage;
 use crate::tangent::{add, move_along};
 use clench_dynamics::State;
 use clench_dynamics::model::{Model, Params};
@@ -27,9 +28,9 @@ impl Seed {
     }
 
     /// Returns the first stage whose results change along a seed.
-    pub(crate) fn earliest(seeds: &[Seed]) -> Start {
+    pub(crate) fn earliest(seeds: &[Seed]) -> Stage {
         let starts = seeds.iter().map(|seed| seed.direction.start());
-        starts.min().unwrap_or(Start::Positions)
+        starts.min().unwrap_or(Stage::Positions)
     }
 }
 

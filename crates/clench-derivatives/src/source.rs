@@ -1,7 +1,7 @@
 //! The input of a step to differentiate.
 
-use crate::direction::Start;
 use crate::request::Request;
+use crate::stage::Stage;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings};
 
@@ -16,7 +16,7 @@ pub(crate) struct Source<'a> {
     /// True in the first pass from a state.
     pub first: bool,
     /// The first stage whose results change along the directions.
-    pub start: Start,
+    pub start: Stage,
     /// True if the factor of the mass matrix needs no derivatives.
     pub constant_factor: bool,
 }

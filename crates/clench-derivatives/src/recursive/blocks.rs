@@ -1,8 +1,8 @@
 //! The derivatives of constraint forces at a constant acceleration.
 //!
 //! The residual of a row is y = J a − aref, in which aref depends on the distance r and the velocity of the row. So the
-//! force f(y, r) of a block changes by ∂f/∂y dy + ∂f/∂r dr, both found in dual numbers (`slopes`). The motion of the rows
-//! is that of a contact (`contact`), of two frames (`frames`) or of a coordinate of joints and tendons (`rows`).
+//! force f(y, r) of a block changes by ∂f/∂y dy + ∂f/∂r dr, both found in dual numbers (`slopes`). The motion of the
+//! rows is that of a contact (`contact`), of two frames (`frames`) or of a coordinate of joints and tendons (`rows`).
 
 use super::contact::Contacts;
 use super::frames::Frames;

@@ -1,8 +1,8 @@
 //! The derivatives of the forces of contacts at a constant acceleration.
 //!
 //! The rows of a contact move with the point p and the axes of its frame, which follow from the motion of both shapes.
-//! In world axes about p, with W the wrench of the contact and s_i the axis of a dof that moves the second body, a dof j
-//! changes the force along i by
+//! In world axes about p, with W the wrench of the contact and s_i the axis of a dof that moves the second body, a dof
+//! j changes the force along i by
 //!
 //! ```text
 //! s_i · (dW − s_j ×* W)    if s_i turns with j        s_i · dW    otherwise

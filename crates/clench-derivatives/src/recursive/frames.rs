@@ -1,10 +1,10 @@
 //! The derivatives of the forces of connects and welds at a constant acceleration.
 //!
-//! Each row is r of a spring-damper: y = r̈ + b ṙ + k d r, with the force f = −D y along it; d and D depend on the norm of
-//! r. The module `pair` gives the rows and their changes.
+//! Each row is the position r of a spring-damper: y = r̈ + b ṙ + k d r, with the force f = −D y along it. Both d and D
+//! depend on the norm of r. The module `pair` gives the rows and their changes.
 //!
-//! With W the wrench on a body about its anchor and s_i the axis of a dof that moves it, a dof j changes the force along
-//! i by
+//! With W the wrench on a body about its anchor and s_i the axis of a dof that moves it, a dof j changes the force
+//! along i by
 //!
 //! ```text
 //! s_i · (dW − s_j ×* W)    if s_i turns with j        s_i · dW    otherwise

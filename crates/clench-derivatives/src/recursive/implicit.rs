@@ -1,8 +1,8 @@
 //! Implicit steps: the acceleration a′ that advances the velocity solves (M + h B) a′ = M a, with the slopes B of
 //! damping.
 //!
-//! So e = a − a′ solves (M + h B) e = h B a, and (M + h B) de = h B da + h dB a′ − dM e. A free body that is its own tree
-//! adds to B the slope G of its gyroscopic forces, which is linear in the angular velocity.
+//! So e = a − a′ solves (M + h B) e = h B a, and (M + h B) de = h B da + h dB a′ − dM e. A free body that is its own
+//! tree adds to B the slope G of its gyroscopic forces (`gyroscopic`).
 
 use super::coordinate::Coordinate;
 use super::gyroscopic::Gyroscopic;

@@ -1,7 +1,7 @@
 //! Derivatives of the forces of joints, tendons and actuators, and of activations.
 //!
 //! Each depends on the coordinates of one joint, tendon or actuator. So all change at once along one direction, which
-//! stands for the k-th dof of each joint and the length of each actuator: a single pass in dual numbers serves them all.
+//! stands for the k-th dof of each joint and the length of each actuator: a single pass serves them all.
 
 use super::coordinate::{AlongForce, Coordinate};
 use super::implicit::Implicit;
@@ -16,7 +16,7 @@ use clench_math::{Dual, Real};
 
 /// The number of directions of a pass: as many as fill a register. Most models need no more.
 const DIRECTIONS: usize = 8;
-pub(super) type Number = Dual<f64, DIRECTIONS>;
+type Number = Dual<f64, DIRECTIONS>;
 
 /// The coordinates of which the k-th of every joint or actuator changes along a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@
 //!
 //! has derivatives without matrices in dual numbers: those of inverse dynamics M a + bias follow from a recursion
 //! (`clench_dynamics::dynamics::inverse_derivatives`), those of τ from dual numbers of the coordinates of each joint
-//! alone (`local`), those of Jᵀf from the motion of each contact (`blocks`). Then da = −H⁻¹ dg, for all directions at
-//! once.
+//! alone (`local`) and from the motion of weights (`weight`), those of Jᵀf from the motion of each constraint
+//! (`blocks`). Then da = −H⁻¹ dg, for all directions at once.
 
 mod advance;
 mod blocks;
@@ -112,7 +112,8 @@ impl Recursive {
     }
 
     /// Passes the derivatives of the next state by state and controls to `write`, row after row. The [curves](Curves)
-    /// are those of the state, and recursions [cover](Self::covers) it. Returns false if they do not cover its contacts.
+    /// must be those of the state, and recursions must [cover](Self::covers) the step. Returns false if they do not
+    /// cover its contacts.
     pub(crate) fn run(
         &mut self,
         source: Source<'_>,

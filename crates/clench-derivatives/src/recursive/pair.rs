@@ -2,8 +2,12 @@
 //! change with the motion of both bodies.
 //!
 //! A dof with axis s that moves a body changes its velocity v and acceleration a as in the module
-//! `clench_dynamics::dynamics::inverse_derivatives`: in a frame that moves with the body by ṡ and by w × s − ṡ × u + ṡ × v
-//! with the position, in the world by s and by ṡ − s × u′ + s × v with the velocity.
+//! `clench_dynamics::dynamics::inverse_derivatives`:
+//!
+//! ```text
+//! by q:   δv = ṡ    δa = w × s − ṡ × u + ṡ × v    in a frame that moves with the body
+//! by v:   δv = s    δa = ṡ − s × u′ + s × v       in the world
+//! ```
 
 use super::step::Step;
 use clench_dynamics::constraint::AnchorFrames;

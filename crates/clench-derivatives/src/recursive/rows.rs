@@ -125,12 +125,13 @@ impl Rows {
         }
     }
 
-    /// Sets the rates of the limit of a ball joint's angle φ. J is minus the axis u of its rotation, which changes with a
-    /// rotation ω by ½ cot(φ/2) (ω − u u·ω) + ½ u × ω.
+    /// Sets the rates of the limit of a ball joint's angle φ. J is minus the axis u of its rotation, which changes with
+    /// a rotation ω by ½ cot(φ/2) (ω − u u·ω) + ½ u × ω.
     fn set_cone(&mut self, step: &Step<'_>, joint: usize) {
         let rotation = Quat::from_slice(&step.before.qpos[step.model.joints[joint].qpos..]);
         let (axis, angle) = rotation.normalize().to_rotation_vector().normalize();
-        if angle == 0.0 {
+        // No axis.
+        if angle < 1e-15 {
             return;
         }
         let cotangent = 1.0 / (0.5 * angle).tan();

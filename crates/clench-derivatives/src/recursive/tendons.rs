@@ -2,25 +2,24 @@
 
 use super::coordinate::{AlongForce, Coordinate};
 use super::implicit::Implicit;
-use super::local::Number;
 use super::step::Step;
 use clench_dynamics::State;
 use clench_dynamics::dynamics::inverse_derivatives::Columns;
 use clench_dynamics::dynamics::local::{tendon_damping_slope, tendon_tension};
 use clench_dynamics::model::{Integrator, Params};
-use clench_math::Real;
+use clench_math::{Dual, Real};
 
 /// Subtracts the derivatives of the tensions of all tendons from the gradient, and adds the slopes of their dampers.
-pub(super) fn subtract(
+pub(super) fn subtract<const K: usize>(
     step: &Step<'_>,
-    (params, state): (&Params<Number>, &State<Number>),
+    (params, state): (&Params<Dual<f64, K>>, &State<Dual<f64, K>>),
     implicit: &mut Implicit,
     gradient: &mut Columns<'_, f64>,
 ) {
     let (model, plain) = (step.model, step.plain);
     for t in 0..model.tendons.len() {
-        let mut length = Number::new(plain.position.ten_length[t]);
-        let mut velocity = Number::new(plain.velocity.ten_velocity[t]);
+        let mut length = Dual::<f64, K>::new(plain.position.ten_length[t]);
+        let mut velocity = Dual::<f64, K>::new(plain.velocity.ten_velocity[t]);
         length.set_derivative(0, 1.0);
         velocity.set_derivative(1, 1.0);
         let tension = tendon_tension(model, params, &state.plastic, t, (length, velocity));
@@ -29,7 +28,7 @@ pub(super) fn subtract(
             by_length: tension.derivative(0),
             by_velocity: tension.derivative(1),
         };
-        if tension == Number::ZERO {
+        if tension == Dual::ZERO {
             continue;
         }
         let along = Coordinate::of_tendon(step, t);

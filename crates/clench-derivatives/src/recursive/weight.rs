@@ -2,8 +2,8 @@
 //! forces and torques that a user applies.
 //!
 //! A dof j of axis s moves the forces f, at the offsets o, and the torques t on all bodies below it, but does not turn
-//! them. In a frame that moves with the dof they turn back. With F = Σ f, N = Σ f oᵀ and T = Σ t of the bodies below the
-//! later of two dofs, the force along i changes by
+//! them. In a frame that moves with the dof they turn back. With F = Σ f, N = Σ f oᵀ and T = Σ t of the bodies below
+//! the later of two dofs, the force along i changes by
 //!
 //! ```text
 //! s_i · (N ω − ω tr N − ω × T, −ω × F)         ω = s.angular, if s_i turns with j

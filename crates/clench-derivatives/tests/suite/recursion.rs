@@ -446,27 +446,31 @@ fn spatial_tendons_and_curved_transmissions() {
     }
 }
 
-/// Sensors that follow from motion and actuators need no passes of the whole step.
+/// Sensors that follow from positions, also from velocities, and also from accelerations and actuators.
 #[test]
 fn sensors_of_motion() {
-    let sensors = r#"
-      <accelerometer site="a1"/><velocimeter site="a1"/><gyro site="f"/><magnetometer site="a1"/>
-      <jointpos joint="knee"/><jointvel joint="knee"/><jointactuatorfrc joint="slider"/>
-      <ballquat joint="ball"/><ballangvel joint="ball"/>
-      <tendonpos tendon="wrapped"/><tendonvel tendon="long"/><tendonactuatorfrc tendon="long"/>
-      <actuatorpos actuator="pose"/><actuatorvel actuator="pose"/><actuatorfrc actuator="pose"/>
-      <subtreecom body="free"/><subtreelinvel body="free"/><subtreeangmom body="free"/>
-      <framepos objtype="site" objname="a2" reftype="site" refname="f"/><framequat objtype="site" objname="a2"/>
-      <framexaxis objtype="site" objname="a2"/><framelinvel objtype="site" objname="a2"/>
-      <frameangvel objtype="site" objname="a2"/><framelinacc objtype="site" objname="a2" cutoff="3"/>
-      <frameangacc objtype="body" objname="free"/><distance geom1="tip" geom2="knee" cutoff="1"/>
-      <rangefinder site="a1"/><clock/>"#;
-    for integrator in ["Euler", "implicitfast"] {
-        let text = curved(integrator).replace(
-            "</actuator>",
-            &format!("</actuator><sensor>{sensors}</sensor>"),
-        );
-        check_text(&text, &[], |sim| sim.state.qvel[1] = 2.0);
+    let positions = r#"
+      <magnetometer site="a1"/><jointpos joint="knee"/><ballquat joint="ball"/><tendonpos tendon="wrapped"/>
+      <actuatorpos actuator="pose"/><subtreecom body="free"/><framequat objtype="site" objname="a2"/>
+      <framepos objtype="site" objname="a2" reftype="site" refname="f"/><framexaxis objtype="site" objname="a2"/>
+      <distance geom1="tip" geom2="knee" cutoff="1"/><rangefinder site="a1"/><clock/>"#;
+    let velocities = r#"
+      <velocimeter site="a1"/><gyro site="f"/><jointvel joint="knee"/><ballangvel joint="ball"/>
+      <tendonvel tendon="long"/><actuatorvel actuator="pose"/><subtreelinvel body="free"/>
+      <subtreeangmom body="free"/><framelinvel objtype="site" objname="a2"/>
+      <frameangvel objtype="site" objname="a2" reftype="site" refname="f"/>"#;
+    let forces = r#"
+      <accelerometer site="a1"/><jointactuatorfrc joint="slider"/><tendonactuatorfrc tendon="long"/>
+      <actuatorfrc actuator="pose"/><framelinacc objtype="site" objname="a2" cutoff="3"/>
+      <frameangacc objtype="body" objname="free"/>"#;
+    let mut sensors = String::new();
+    for more in [positions, velocities, forces] {
+        sensors += more;
+        for integrator in ["Euler", "implicitfast"] {
+            let sensors = format!("</actuator><sensor>{sensors}</sensor>");
+            let text = curved(integrator).replace("</actuator>", &sensors);
+            check_text(&text, &[], |sim| sim.state.qvel[1] = 2.0);
+        }
     }
 }
 
