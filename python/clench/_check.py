@@ -10,7 +10,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from xml.parsers import expat
 
-from clench._document import Document, described, file_of, named, reference_kind
+from clench._document import Document, described, file_of, reference_kind
+from clench._files import named
 from clench.errors import LoadError
 
 # Sections that an element is read with. An element of one of these sections is checked alone.

@@ -19,7 +19,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from clench.errors import LoadError
+from clench._files import Files, named, parsed, read
 
 Value: TypeAlias = str | bool | ArrayLike
 
@@ -73,15 +73,11 @@ def written(value: Value) -> str:
     return " ".join(repr(number) for number in array.ravel().tolist())
 
 
-class Document:
-    """A document with the files that it names."""
+class Document(Files):
+    """A document with the files that it names, which the first document of a family stores."""
 
     def __init__(self, root: ET.Element) -> None:
-        self.root = root
-        # The files of the family, stored by its first document.
-        self.assets: dict[str, bytes] = {}
-        # The folders of those that were read from the disk.
-        self.folders: dict[str, Path] = {}
+        super().__init__(root)
         # The attached documents by the names of their `model` elements, and the document that this one is attached to.
         self.attached: dict[str, Document] = {}
         self._outer: Document | None = None
@@ -94,17 +90,20 @@ class Document:
     @staticmethod
     def from_text(text: str, assets: Mapping[str, bytes]) -> Document:
         """Creates a document from its text and the files that it includes or names."""
-        document = Document(_parsed(text, ""))
+        document = Document(parsed(text, ""))
         document.add_files(assets)
-        document._expand(Path(), "")
+        document.expand(Path(), "")
         return document
 
     @staticmethod
     def from_file(path: Path) -> Document:
         """Reads a document from a file, with everything that it includes and names."""
-        document = Document(_parsed(_read(path, str(path)).decode("utf-8", "replace"), str(path)))
-        document._expand(path.parent, str(path))
-        document._read_assets(path.parent)
+        document = Document(parsed(read(path, str(path)).decode("utf-8", "replace"), str(path)))
+        origins = document.expand(path.parent, str(path))
+        for name, model in document.read_assets(path.parent, origins).items():
+            other = Document.from_file(model)
+            document.add_files(other.assets)
+            document.assets[name] = other.text().encode()
         return document
 
     def text(self) -> str:
@@ -309,58 +308,6 @@ class Document:
                     node = parents[node]
                 document.remove(node)
 
-    # Files.
-
-    def add_files(self, files: Mapping[str, bytes]) -> None:
-        for file, data in files.items():
-            name = Path(file.replace("\\", "/")).name
-            if self.assets.get(name, data) != data:
-                raise ValueError(f"there are two files {name!r} of different contents")
-        self.assets.update({Path(file.replace("\\", "/")).name: bytes(data) for file, data in files.items()})
-
-    def _expand(self, folder: Path, source: str) -> None:
-        """Inserts the files that the document includes."""
-        for _ in range(100):
-            parents = self.parents()
-            include = next(self.root.iter("include"), None)
-            if include is None:
-                return
-            file = include.get("file", "")
-            data = self.assets.get(Path(file).name)
-            included = _parsed((_read(folder / file, source) if data is None else data).decode("utf-8", "replace"), file)
-            parent = parents[include]
-            place = list(parent).index(include)
-            parent[place : place + 1] = list(included)
-        raise LoadError("files include each other in a cycle", source)
-
-    def _read_assets(self, folder: Path) -> None:
-        compiler: dict[str, str] = {}
-        for node in self.root.findall("compiler"):
-            compiler.update(node.attrib)
-        assets = compiler.get("assetdir", "")
-        places = {tag: compiler.get("meshdir", assets) for tag in ("mesh", "hfield", "skin", "model")}
-        for node, section in self.nodes():
-            file = node.get("file")
-            if section != "asset" or file is None or node.tag not in places:
-                continue
-            place = Path(file) if node.tag == "model" else Path(places[node.tag]) / file
-            self.add_files({file: _read(folder / place, str(folder / place))})
-            self.folders[Path(file.replace("\\", "/")).name] = (folder / place).parent
-            if node.tag == "model" and is_urdf(folder / place):
-                self._read_meshes_of_urdf(folder / place)
-            elif node.tag == "model":
-                other = Document.from_file(folder / place)
-                self.add_files(other.assets)
-                self.assets[Path(file).name] = other.text().encode()
-
-    def _read_meshes_of_urdf(self, path: Path) -> None:
-        """Reads the meshes that lie where an attached URDF file says, or beside it. The build reports others."""
-        for mesh in ET.fromstring(self.assets[path.name]).iter("mesh"):
-            file = mesh.get("filename", "").replace("\\", "/")
-            places = (path.parent / file, path.parent / Path(file).name)
-            if place := next((place for place in places if place.is_file()), None):
-                self.add_files({file: _read(place, str(place))})
-
 
 def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None:
     """Returns the kind of element that an attribute refers to; None if it refers to none, or to none that is
@@ -406,15 +353,6 @@ def _prefix(node: ET.Element, prefix: str) -> None:
             node.set(attribute, prefix + name)
 
 
-def named(node: ET.Element) -> str:
-    """Returns the name of an element, or that of its file if it has none, which is the default name of meshes and
-    textures."""
-    if name := node.get("name"):
-        return name
-    file = node.get("file", "").replace("\\", "/").rpartition("/")[2]
-    return file.rpartition(".")[0] or file
-
-
 def _kind(node: ET.Element, section: str | None) -> str | None:
     """Returns the kind of an element in a section of the document."""
     if section is None or section in _NO_REFERENCES:
@@ -426,28 +364,3 @@ def _kind(node: ET.Element, section: str | None) -> str | None:
     if section in ("worldbody", "asset", "keyframe", "contact"):
         return next((kind for kind, tags in _TAGS.items() if node.tag in tags), None)
     return None
-
-
-def _read(path: Path, source: str) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise LoadError(f"{path}: {error.strerror}", source) from None
-
-
-def _parsed(text: str, source: str) -> ET.Element:
-    try:
-        root = ET.fromstring(text)
-    except ET.ParseError as error:
-        raise LoadError(str(error), source, error.position[0]) from None
-    if root.tag not in ("mujoco", "mujocoinclude"):
-        raise LoadError(f"the root element is <{root.tag}>, and <mujoco> was expected", source, 1, root.tag)
-    return root
-
-
-def is_urdf(path: Path) -> bool:
-    """Returns true if a file describes a robot in URDF."""
-    try:
-        return ET.fromstring(_read(path, str(path)).decode("utf-8", "replace")).tag == "robot"
-    except ET.ParseError:
-        return False

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clench._check import located
-from clench._document import Document, Value, is_urdf, written
+from clench._document import Document, Value, written
+from clench._files import is_urdf
 from clench._element import SpecElement
 from clench.errors import LoadError
 

@@ -78,8 +78,7 @@ def step(sim: Sim | Batch) -> Any:
     if sim.precision == "64" and not jax.config.jax_enable_x64:
         raise ValueError('the simulation needs double precision: call jax.config.update("jax_enable_x64", True) first')
     model, base, tangent = sim.model, sim.state, Tangent(sim.model)
-    *parts, controls = (jax.ShapeDtypeStruct(part.shape, part.dtype) for part in (sim.qpos, sim.qvel, sim.act, sim.ctrl))
-    parts = tuple(parts)
+    parts = tuple(jax.ShapeDtypeStruct(part.shape, part.dtype) for part in (sim.qpos, sim.qvel, sim.act, sim.ctrl))
 
     def write(qpos: Any, qvel: Any, act: Any, ctrl: Any) -> None:
         sim.state = base
@@ -101,13 +100,13 @@ def step(sim: Sim | Batch) -> Any:
         return tuple(part.astype(sim.qpos.dtype) for part in (by_qpos, by_qvel, by_act, by_ctrl))
 
     def call(state: _State, ctrl: Any) -> Any:
-        return jax.pure_callback(advance, parts, *state, ctrl, vmap_method="sequential")
+        return jax.pure_callback(advance, parts[:3], *state, ctrl, vmap_method="sequential")
 
     def forward(state: _State, ctrl: Any) -> tuple[Any, Any]:
         return call(state, ctrl), (*state, ctrl)
 
     def backward(saved: Any, gradients: Any) -> tuple[Any, Any]:
-        products = jax.pure_callback(multiply, (*parts, controls), *saved, *gradients, vmap_method="sequential")
+        products = jax.pure_callback(multiply, parts, *saved, *gradients, vmap_method="sequential")
         return tuple(products[:3]), products[3]
 
     function: Any = jax.custom_vjp(call)

@@ -26,6 +26,13 @@ FINGER = """
   <sensor><jointpos name="bend" joint="bend"/><framepos objtype="body" objname="tip"/></sensor>
 </mujoco>"""
 
+# The faces of a box in an OBJ file, and a PNG of one grey pixel.
+OBJ_FACES = [f"f {face}" for face in ("1 3 2", "2 3 4", "5 6 7", "6 8 7", "1 2 5", "2 6 5", "3 7 4", "4 7 8", "1 5 3", "3 5 7", "2 4 6", "4 8 6")]
+PIXEL = bytes.fromhex(
+    "89504e470d0a1a0a0000000d49484452000000010000000108000000003a7e9b55"
+    "0000000a49444154789c636800000082008177cd72b60000000049454e44ae426082"
+)
+
 
 def ends(model: clench.Model, steps: int = 50) -> clench.State:
     sim = clench.Sim(model)
@@ -329,6 +336,30 @@ def test_files_are_read_once_and_travel_with_the_model(tmp_path: Path) -> None:
     assert ends(spec.build()) == expected
     with pytest.raises(clench.LoadError, match="No such file"):
         clench.ModelSpec.from_file(tmp_path / "main.xml")
+
+
+def test_files_are_found_as_in_a_model(tmp_path: Path) -> None:
+    """Beside an included file, in folders of textures, and with the name of another file."""
+    for folder, size in (("parts/a", 0.1), ("b", 0.2)):
+        (tmp_path / folder).mkdir(parents=True)
+        corners = [f"v {x} {y} {z}" for x in (0, size) for y in (0, size) for z in (0, size)]
+        (tmp_path / folder / "cube.obj").write_text("\n".join([*corners, *OBJ_FACES]))
+    (tmp_path / "images").mkdir()
+    (tmp_path / "images/grid.png").write_bytes(PIXEL)
+    (tmp_path / "parts/assets.xml").write_text(
+        '<mujoco><include file="more.xml"/><asset><mesh name="small" file="a/cube.obj"/></asset></mujoco>'
+    )
+    (tmp_path / "parts/more.xml").write_text('<mujoco><asset><mesh file="b/cube.obj"/></asset></mujoco>')
+    path = tmp_path / "model.xml"
+    path.write_text(
+        '<mujoco><compiler texturedir="images"/><include file="parts/assets.xml"/>'
+        '<asset><texture name="grid" type="2d" file="grid.png"/></asset><worldbody>'
+        '<body><freejoint/><geom type="mesh" mesh="small"/></body>'
+        '<body><freejoint/><geom type="mesh" mesh="cube"/></body></worldbody></mujoco>'
+    )
+    built, loaded = clench.ModelSpec.from_file(path).build(), clench.Model.from_file(path)
+    np.testing.assert_array_equal(built.body_mass, loaded.body_mass)
+    assert built.body_mass[2] == pytest.approx(8 * built.body_mass[1])
 
 
 def test_urdf_becomes_a_document() -> None:
