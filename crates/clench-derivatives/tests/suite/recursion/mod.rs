@@ -1,0 +1,207 @@
+//! Compares derivatives by recursion with those of passes in dual numbers, which a requested output needs.
+
+mod bodies;
+mod coordinates;
+
+use crate::common::{Random, load};
+use clench_derivatives::{InputTangent, Linearizer, Matrix, Request};
+use clench_dynamics::model::ParamField;
+use clench_rigid::options::{FrictionCone, RigidOptions};
+use clench_rigid::{Model, Output, Sim};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// The largest difference relative to 1 + the magnitude.
+const TOLERANCE: f64 = 1e-10;
+
+fn compare(recursive: &Matrix, passes: &Matrix) {
+    assert_eq!(recursive.shape, passes.shape);
+    for (k, (a, b)) in recursive.values.iter().zip(&passes.values).enumerate() {
+        let (row, column) = (k / passes.shape[1], k % passes.shape[1]);
+        assert!(
+            (a - b).abs() <= TOLERANCE * (1.0 + b.abs()),
+            "row {row}, column {column}: {a} by recursion, {b} by passes"
+        );
+    }
+}
+
+/// Compares all derivatives in every fifth step under random controls. Returns the most contacts of a state.
+fn check(model: Model, options: RigidOptions, steps: usize) -> usize {
+    let mut sim = Sim::<f64>::with_options(Arc::new(model), options).expect("a simulation");
+    check_sim(&mut sim, steps).contacts
+}
+
+/// The events of a comparison.
+#[derive(Debug, Default)]
+struct Seen {
+    /// The most contacts of a state.
+    contacts: usize,
+    /// True if recursions found derivatives: they round otherwise than passes.
+    recursed: bool,
+    /// The kinds of constraints whose force was not zero.
+    forces: BTreeSet<&'static str>,
+}
+
+fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
+    let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
+    let mut random = Random(1);
+    let with_output = Request {
+        outputs: vec![Output::find("subtree_com").expect("an output")],
+        ..Request::default()
+    };
+    let mut seen = Seen::default();
+    for step in 0..steps {
+        if step % 10 == 0 {
+            for control in &mut sim.state.ctrl {
+                *control = 0.5 * random.next();
+            }
+        }
+        sim.step().expect("a step");
+        let ws = sim.workspace();
+        seen.contacts = seen.contacts.max(ws.contacts.len());
+        for (block, record) in ws.problem.blocks().zip(&ws.record.blocks) {
+            if ws.solver.force()[block.rows()].iter().any(|&f| f != 0.0) {
+                seen.forces.insert(record.source.kind());
+            }
+        }
+        if step % 5 == 0 {
+            let recursive = linearizer.linearize(sim, &Request::default());
+            let recursive = recursive.expect("derivatives").clone();
+            let passes = linearizer.linearize(sim, &with_output);
+            let passes = passes.expect("derivatives");
+            compare(&recursive.a, &passes.a);
+            compare(&recursive.b, &passes.b);
+            compare_sensors(&recursive.c, &passes.c);
+            compare_sensors(&recursive.d, &passes.d);
+            seen.recursed |= recursive.a != passes.a;
+            assert_eq!(recursive.switching.len(), passes.switching.len());
+            compare_parameters(&mut linearizer, sim);
+        }
+    }
+    seen
+}
+
+/// Compares the derivatives of sensors, which precede those of outputs.
+fn compare_sensors(recursive: &Matrix, passes: &Matrix) {
+    let mut passes = passes.clone();
+    passes.shape[0] = recursive.shape[0];
+    passes.values.truncate(recursive.values.len());
+    compare(recursive, &passes);
+}
+
+/// Compares derivatives by parameters, and those along a tangent, with and without passes along the state.
+fn compare_parameters(linearizer: &mut Linearizer, sim: &Sim<f64>) {
+    let field = ParamField::find("body_mass").expect("a parameter");
+    let mut request = Request {
+        parameters: vec![(field, 1)],
+        ..Request::default()
+    };
+    let apart = linearizer.linearize(sim, &request);
+    let apart = apart.expect("derivatives").clone();
+    request.outputs = vec![Output::find("subtree_com").expect("an output")];
+    let together = linearizer.linearize(sim, &request).expect("derivatives");
+    compare(&apart.a, &together.a);
+    compare(&apart.e, &together.e);
+    let ones = |rows: usize| Matrix {
+        shape: [rows, 1],
+        values: vec![1.0; rows],
+    };
+    let tangent = InputTangent {
+        x: ones(apart.a.shape[0]),
+        u: ones(apart.b.shape[1]),
+        p: ones(0),
+    };
+    request.parameters.clear();
+    let passes = linearizer.jvp(sim, &request, &tangent);
+    let passes = passes.expect("a directional derivative").x.clone();
+    let product = linearizer.jvp(sim, &Request::default(), &tangent);
+    compare(&product.expect("a directional derivative").x, &passes);
+}
+
+#[test]
+fn robots_in_contact() {
+    for cone in [FrictionCone::Pyramidal, FrictionCone::Elliptic] {
+        let options = RigidOptions::new().friction_cone(cone);
+        // The humanoid also touches itself, the arm a table and a box.
+        for name in ["humanoid.xml", "quadruped.xml", "arm_and_box.xml"] {
+            assert!(check(load(name), options, 150) > 1);
+        }
+        assert!(check(load("box_stack.xml"), options, 20) > 4);
+        check(load("rolling_sphere.xml"), options, 100);
+    }
+}
+
+/// A chain of all kinds of joints, with springs, curved dampers, dry friction and limits, and several actuators.
+fn mixed(integrator: &str, root: &str) -> Model {
+    let text = format!(
+        r#"<mujoco>
+          <option integrator="{integrator}" timestep="0.004"/>
+          <worldbody>
+            <geom type="plane" size="2 2 .1"/>
+            <geom type="box" size=".05 .3 .1" pos=".35 0 .1"/>
+            <body pos="0 0 .3">
+              {root}
+              <geom type="capsule" fromto="0 0 0 .2 0 -.1" size=".03" condim="6"/>
+              <body pos=".2 0 -.1">
+                <joint name="a" axis="0 1 .2" damping=".05 .02" armature=".01" frictionloss=".02" range="-60 20"/>
+                <joint name="b" type="slide" axis="1 0 .1" damping=".5" stiffness="30 5" frictionloss=".1"/>
+                <joint name="c" axis="1 0 0" pos=".02 .01 0" actuatorfrcrange="-.3 .3" actuatorfrclimited="true"/>
+                <geom type="ellipsoid" pos=".1 0 -.1" size=".1 .05 .04" condim="4"/>
+                <body pos=".2 0 -.1">
+                  <joint name="d" type="ball" pos=".01 .02 .03" stiffness=".3" damping=".02"/>
+                  <geom type="box" pos=".05 0 0" size=".05 .02 .03"/>
+                </body>
+              </body>
+            </body>
+          </worldbody>
+          <actuator>
+            <position joint="a" kp="2" kv=".1" forcerange="-.5 .5"/>
+            <general joint="b" dyntype="filter" dynprm=".05" gainprm="2" gear="1.5"/>
+            <damper joint="b" kv=".4" ctrlrange="0 1"/>
+            <motor joint="c" gear="3"/>
+            <motor joint="c" ctrlrange="-.1 .1" ctrllimited="true"/>
+          </actuator>
+        </mujoco>"#
+    );
+    clench_formats::load_str(&text).expect("a model")
+}
+
+#[test]
+fn joints_actuators_and_integrators() {
+    let ball = r#"<joint type="ball" damping=".1" stiffness=".2"/>"#;
+    let free = r#"<joint type="free" damping=".1" stiffness=".2"/>"#;
+    for integrator in ["Euler", "implicitfast"] {
+        for root in [ball, free] {
+            assert!(check(mixed(integrator, root), RigidOptions::new(), 200) > 1);
+        }
+    }
+}
+
+/// Compares steps of a model in text, in which constraints of the kinds `forces` must act. `prepare` changes the first
+/// state.
+fn check_text(text: &str, forces: &[&str], prepare: impl Fn(&mut Sim<f64>)) {
+    let model = clench_formats::load_str(text).expect("a model");
+    let mut sim = Sim::<f64>::new(Arc::new(model)).expect("a simulation");
+    prepare(&mut sim);
+    let seen = check_sim(&mut sim, 200);
+    assert!(seen.recursed, "recursions cover the step");
+    for kind in forces {
+        assert!(seen.forces.contains(kind), "{kind} among {:?}", seen.forces);
+    }
+}
+
+/// Kinds of steps that need passes: the results are the same because they are the same.
+#[test]
+fn other_steps_need_passes() {
+    let free = r#"<joint type="free"/>"#;
+    // The site of a force sensor.
+    let sensed = coordinates::curved("Euler").replace(
+        "</actuator>",
+        r#"</actuator><sensor><accelerometer site="a1"/><force site="a1"/></sensor>"#,
+    );
+    let sensed = clench_formats::load_str(&sensed).expect("a model");
+    check(sensed, RigidOptions::new(), 20);
+    for integrator in ["implicit", "RK4", "discrete"] {
+        check(mixed(integrator, free), RigidOptions::new(), 20);
+    }
+}
