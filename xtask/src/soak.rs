@@ -96,7 +96,8 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
             Profile::Release,
             &["python/tests/test_public_derivatives.py"],
         );
-        run(test.env(SEED, seed.to_string()))?;
+        test.env(SEED, seed.to_string());
+        run(test)?;
     }
     for soak in chosen {
         let mut test = cargo(&["test", "--release", "--package", soak.package]);
