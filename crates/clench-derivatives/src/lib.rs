@@ -1,7 +1,7 @@
 //! Exact derivatives of a step.
 //!
-//! A [`Linearizer`] differentiates steps whose forces follow from joints and contacts by recursions over the tree (see
-//! `recursive`), and runs all others in [dual numbers](clench_math::Dual), several directions at a time. Every kernel
+//! A [`Linearizer`] differentiates most steps by recursions over the tree (see `recursive`, whose `scope` names them),
+//! and runs all others in [dual numbers](clench_math::Dual), several directions at a time. Every kernel
 //! of the step is generic over its number type, so every feature of the step has derivatives. Passes along velocities
 //! or controls alone keep the results of the stages that do not depend on them. Linear systems are solved with one
 //! factorization in plain numbers. The solution of the convex problem is differentiated by the implicit function
