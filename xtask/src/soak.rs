@@ -92,9 +92,11 @@ pub(crate) fn soak(args: &[String]) -> Result<(), String> {
     }
     if is_chosen(DERIVATIVES) {
         package::install(Profile::Release)?;
+        // A model takes minutes.
+        let patient = "--override-ini=faulthandler_timeout=0";
         let mut test = python::tests(
             Profile::Release,
-            &["python/tests/test_public_derivatives.py"],
+            &[patient, "python/tests/test_public_derivatives.py"],
         );
         test.env(SEED, seed.to_string());
         run(test)?;
