@@ -57,20 +57,16 @@ fn main() {
         _ => "scalar",
     };
     println!("cargo::rustc-cfg=single=\"{single}\"");
-    // Derivatives of a step are the longest to compile. They have no scalar form either where one set is compiled, and a
-    // debug build, which runs where it is built, has them for one set.
+    // Derivatives of a step are the longest to compile, and their scalar form takes five times as long as lanes. They are
+    // compiled for one set: in a debug build, which runs where it is built, for the widest; in a build for all sets for
+    // the narrowest.
     let is_debug = var("PROFILE").is_ok_and(|profile| profile == "debug");
-    let of_derivatives: Vec<&str> = match chosen {
-        [set] => vec![set],
-        _ if is_debug => {
-            let widest = chosen.iter().rfind(|set| is_available(set));
-            vec![widest.map_or("scalar", |set| set)]
-        }
-        _ => ["scalar"].iter().chain(chosen).copied().collect(),
+    let of_derivatives = match is_debug {
+        true => chosen.iter().rfind(|set| is_available(set)),
+        false => chosen.first(),
     };
-    for set in of_derivatives {
-        println!("cargo::rustc-cfg=derivatives=\"{set}\"");
-    }
+    let of_derivatives = of_derivatives.unwrap_or(&"scalar");
+    println!("cargo::rustc-cfg=derivatives=\"{of_derivatives}\"");
 }
 
 /// Returns whether the building processor has an instruction set, as `Avx2::detected` and `Avx512::detected` decide it.

@@ -102,14 +102,27 @@ impl Instructions {
             .unwrap_or(Instructions::Scalar)
     }
 
-    /// Runs a task in the widest lanes, for derivatives. A build may have them for fewer instruction sets than steps;
-    /// `build.rs` selects them.
+    /// Runs a task in the widest lanes for which derivatives were compiled. A build may have them for fewer instruction
+    /// sets than steps; `build.rs` selects them.
     ///
     /// # Errors
-    /// Returns the widest instruction set if derivatives were not compiled for it.
+    /// Returns the widest instruction set of steps if derivatives were not compiled for this processor.
     pub fn with_derivatives<K: LaneTask<f64>>(task: K) -> Result<K::Output, Instructions> {
-        let widest = Self::widest();
+        let mut available = Self::all_available::<f64>();
+        let widest = available.rfind(|set| set.has_derivatives());
+        let widest = widest.ok_or(Self::widest())?;
         derivatives(widest, task).ok_or(widest)
+    }
+
+    /// Returns true if derivatives were compiled for lanes of these instructions.
+    fn has_derivatives(self) -> bool {
+        match self {
+            Instructions::Scalar => cfg!(derivatives = "scalar"),
+            Instructions::Portable => cfg!(derivatives = "portable"),
+            Instructions::Neon => cfg!(derivatives = "neon"),
+            Instructions::Avx2 => cfg!(derivatives = "avx2"),
+            Instructions::Avx512 => cfg!(derivatives = "avx512"),
+        }
     }
 
     /// Returns the number of lanes of type `S`.
