@@ -57,9 +57,9 @@ fn main() {
         _ => "scalar",
     };
     println!("cargo::rustc-cfg=single=\"{single}\"");
-    // Derivatives of a step are the longest to compile, and their scalar form takes five times as long as lanes. They are
-    // compiled for one set: in a debug build, which runs where it is built, for the widest; in a build for all sets for
-    // the narrowest.
+    // Derivatives of a step are the longest to compile, and their scalar form takes almost three times as long as lanes.
+    // They are compiled for one set: in a debug build, which runs where it is built, for the widest; in a build for all
+    // sets for the narrowest.
     let is_debug = var("PROFILE").is_ok_and(|profile| profile == "debug");
     let of_derivatives = match is_debug {
         true => chosen.iter().rfind(|set| is_available(set)),
