@@ -61,8 +61,8 @@ class MujocoBatch:
         self._each(self.running if mask is None else mask, mujoco.mj_forward)
         return False
 
-    def reset(self, mask: Array) -> None:
-        """Reset environments."""
+    def reset(self, mask: Array, env_model: object = None) -> None:
+        """Reset environments, which have one model."""
         for env in np.flatnonzero(mask).tolist():
             mujoco.mj_resetData(self.simulated, self.datas[env])
             self.qpos[env], self.qvel[env], self.ctrl[env] = self.simulated.qpos0, 0.0, 0.0
