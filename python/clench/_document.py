@@ -1,7 +1,7 @@
-"""MJCF documents: named elements, references to them, and the files that a document names.
+"""MJCF documents: named elements, and references to them.
 
-Tables of MJCF's tags and attributes define what can be named and what refers to names. The user's API of a document is
-in `_spec.py`.
+Tables of MJCF's tags and attributes define what can be named and what refers to names. The files that a document names
+are read in `_files.py`. The user's API of a document is in `_spec.py`.
 
 An attached model remains a document of its own, since its elements are read with its own units and classes. Its names
 already have the prefix. A document and all documents attached to it, directly or indirectly, are a family, in which no

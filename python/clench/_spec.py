@@ -13,17 +13,15 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clench._check import located
+from clench._core import Model
 from clench._document import Document, Value, written
-from clench._files import is_urdf
 from clench._element import SpecElement
+from clench._files import is_urdf
+from clench._state import State
 from clench.errors import LoadError
-
-if TYPE_CHECKING:
-    from clench._core import Model
-    from clench._state import State
 
 __all__ = ["ModelSpec", "SpecElement"]
 
@@ -108,8 +106,6 @@ class ModelSpec:
             If the file cannot be read or is not well-formed, the robot has no base to free, or `floating` is used with
             an MJCF file.
         """
-        from clench._core import Model
-
         path = Path(path)
         if floating or is_urdf(path):
             return ModelSpec.from_xml(Model.from_file(path, floating=floating).to_xml())
@@ -437,8 +433,6 @@ class ModelSpec:
             If the document requests something impossible; the error names the element by its path, such as ``body "tip"
             / geom 2``, the third geom of that body.
         """
-        from clench._core import Model
-
         try:
             return Model.from_xml(self._document.text(), assets=self._document.files(), **options)
         except LoadError as error:

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clench._core import Batch, Model, Sim
-from clench.errors import SimulationError
 
 Floats = NDArray[np.float64]
 
@@ -65,17 +64,3 @@ def state_size(sim: Sim | Batch) -> int:
     memory = (sim.plastic, sim.history, sim.stick_references, sim.stick_friction)
     envs = sim.n_envs if isinstance(sim, Batch) else 1
     return 2 * sim.model.nv + sim.model.na + sum(field.size for field in memory) // max(envs, 1)
-
-
-def rows(vectors: Floats, matrices: Floats) -> Floats:
-    """Returns the products of row vectors (..., n) and matrices (..., n, m)."""
-    product: Floats = (vectors[..., None, :] @ matrices)[..., 0, :]
-    return product
-
-
-def advance_all(sim: Sim | Batch) -> None:
-    """Steps once. Raises a `SimulationError` if an environment of a batch fails."""
-    sim.step()
-    if isinstance(sim, Batch) and not sim.running.all():
-        env = int(np.argmin(sim.running))
-        raise SimulationError(f"environment {env}: {sim.fault(env)}")

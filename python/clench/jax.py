@@ -30,7 +30,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clench._core import Batch, Sim
-from clench._tangent import Tangent, advance_all, rows
+from clench._gradients import advance_all, rows
+from clench._tangent import Tangent
 
 __all__ = ["state", "step", "view"]
 
@@ -89,10 +90,9 @@ def step(sim: Sim | Batch) -> Any:
         advance_all(sim)
         return sim.qpos.copy(), sim.qvel.copy(), sim.act.copy()
 
-    def multiply(qpos: Any, qvel: Any, act: Any, ctrl: Any, *gradients: Any) -> tuple[Any, ...]:
+    def multiply(qpos: Any, qvel: Any, act: Any, ctrl: Any, after: Any, *gradients: Any) -> tuple[Any, ...]:
         by_qpos, by_qvel, by_act = (np.asarray(gradient, dtype=np.float64) for gradient in gradients)
-        after, *_ = advance(qpos, qvel, act, ctrl)
-        by_motion = rows(by_qpos, tangent.basis(after))
+        by_motion = rows(by_qpos, tangent.basis(np.asarray(after, dtype=np.float64)))
         write(qpos, qvel, act, ctrl)
         by_state, by_ctrl, _ = sim.vjp(np.concatenate([by_motion, by_qvel, by_act], axis=-1))
         by_motion, by_qvel, by_act = np.split(by_state, [model.nv, 2 * model.nv], axis=-1)
@@ -103,7 +103,8 @@ def step(sim: Sim | Batch) -> Any:
         return jax.pure_callback(advance, parts[:3], *state, ctrl, vmap_method="sequential")
 
     def forward(state: _State, ctrl: Any) -> tuple[Any, Any]:
-        return call(state, ctrl), (*state, ctrl)
+        following = call(state, ctrl)
+        return following, (*state, ctrl, following[0])
 
     def backward(saved: Any, gradients: Any) -> tuple[Any, Any]:
         products = jax.pure_callback(multiply, parts, *saved, *gradients, vmap_method="sequential")

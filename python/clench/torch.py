@@ -28,7 +28,8 @@ from torch import Tensor
 from torch.autograd.function import once_differentiable
 
 from clench._core import Batch, Sim
-from clench._tangent import Tangent, advance_all, rows, state_size
+from clench._gradients import advance_all, rows
+from clench._tangent import Tangent, state_size
 
 __all__ = ["rollout", "state", "step"]
 

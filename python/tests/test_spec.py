@@ -26,13 +26,6 @@ FINGER = """
   <sensor><jointpos name="bend" joint="bend"/><framepos objtype="body" objname="tip"/></sensor>
 </mujoco>"""
 
-# The faces of a box in an OBJ file, and a PNG of one grey pixel.
-OBJ_FACES = [f"f {face}" for face in ("1 3 2", "2 3 4", "5 6 7", "6 8 7", "1 2 5", "2 6 5", "3 7 4", "4 7 8", "1 5 3", "3 5 7", "2 4 6", "4 8 6")]
-PIXEL = bytes.fromhex(
-    "89504e470d0a1a0a0000000d49484452000000010000000108000000003a7e9b55"
-    "0000000a49444154789c636800000082008177cd72b60000000049454e44ae426082"
-)
-
 
 def ends(model: clench.Model, steps: int = 50) -> clench.State:
     sim = clench.Sim(model)
@@ -316,50 +309,6 @@ def test_what_refers_to_what_is_removed_goes_with_it() -> None:
         tip = spec.body("tip")
         tip.remove()
         tip.remove()
-
-
-def test_files_are_read_once_and_travel_with_the_model(tmp_path: Path) -> None:
-    (tmp_path / "meshes").mkdir()
-    corners = "\n".join(f"v {x} {y} {z}" for x in (0, 0.1) for y in (0, 0.1) for z in (0, 0.1))
-    faces = "f 1 2 3\nf 2 4 3\nf 5 7 6\nf 6 7 8\nf 1 5 2\nf 2 5 6\nf 3 4 7\nf 4 8 7\nf 1 3 5\nf 3 7 5\nf 2 6 4\nf 4 6 8"
-    (tmp_path / "meshes/block.obj").write_text(f"{corners}\n{faces}\n")
-    (tmp_path / "parts.xml").write_text('<mujocoinclude><geom name="part" type="mesh" mesh="block"/></mujocoinclude>')
-    (tmp_path / "main.xml").write_text(
-        '<mujoco><compiler meshdir="meshes"/><asset><mesh name="block" file="block.obj"/></asset>'
-        '<worldbody><body name="b"><freejoint/><include file="parts.xml"/></body></worldbody></mujoco>'
-    )
-    expected = ends(clench.Model.from_file(tmp_path / "main.xml"))
-    spec = clench.ModelSpec.from_file(tmp_path / "main.xml")
-    for file in ("meshes/block.obj", "parts.xml", "main.xml"):
-        (tmp_path / file).unlink()
-    assert spec.geom("part")["mesh"] == "block" and list(spec.assets) == ["block.obj"]
-    assert ends(spec.build()) == expected
-    with pytest.raises(clench.LoadError, match="No such file"):
-        clench.ModelSpec.from_file(tmp_path / "main.xml")
-
-
-def test_files_are_found_as_in_a_model(tmp_path: Path) -> None:
-    """Beside an included file, in folders of textures, and with the name of another file."""
-    for folder, size in (("parts/a", 0.1), ("b", 0.2)):
-        (tmp_path / folder).mkdir(parents=True)
-        corners = [f"v {x} {y} {z}" for x in (0, size) for y in (0, size) for z in (0, size)]
-        (tmp_path / folder / "cube.obj").write_text("\n".join([*corners, *OBJ_FACES]))
-    (tmp_path / "images").mkdir()
-    (tmp_path / "images/grid.png").write_bytes(PIXEL)
-    (tmp_path / "parts/assets.xml").write_text(
-        '<mujoco><include file="more.xml"/><asset><mesh name="small" file="a/cube.obj"/></asset></mujoco>'
-    )
-    (tmp_path / "parts/more.xml").write_text('<mujoco><asset><mesh file="b/cube.obj"/></asset></mujoco>')
-    path = tmp_path / "model.xml"
-    path.write_text(
-        '<mujoco><compiler texturedir="images"/><include file="parts/assets.xml"/>'
-        '<asset><texture name="grid" type="2d" file="grid.png"/></asset><worldbody>'
-        '<body><freejoint/><geom type="mesh" mesh="small"/></body>'
-        '<body><freejoint/><geom type="mesh" mesh="cube"/></body></worldbody></mujoco>'
-    )
-    built, loaded = clench.ModelSpec.from_file(path).build(), clench.Model.from_file(path)
-    np.testing.assert_array_equal(built.body_mass, loaded.body_mass)
-    assert built.body_mass[2] == pytest.approx(8 * built.body_mass[1])
 
 
 def test_urdf_becomes_a_document() -> None:

@@ -45,6 +45,7 @@ impl Linearizer {
                 return Ok(&self.along);
             }
         }
+        self.all.clear();
         let mut end = 0;
         let mut reuses = false;
         while end < columns {

@@ -186,7 +186,6 @@ impl Linearizer {
             self.params.clone_from(sim.params());
             self.pass.set_params(&self.params);
         }
-        self.all.clear();
         Ok(general(sim.model(), sim.params(), parameters))
     }
 

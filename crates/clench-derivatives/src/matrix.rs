@@ -1,4 +1,4 @@
-//! Matrices, and the tangents that consist of them.
+//! Matrices, and the tangents and gradients that consist of them.
 
 /// A row-major matrix.
 #[derive(Clone, Debug, Default, PartialEq)]

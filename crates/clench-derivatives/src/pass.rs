@@ -43,7 +43,7 @@ pub(crate) trait Pass: Send {
     ///
     /// # Errors
     /// Returns an error if the step fails.
-    fn advance(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError>;
+    fn write_next(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError>;
     /// Runs the step along the first `count` directions, which `seeds` define. `write(row, values)` receives the
     /// derivatives of each number of the result: the next state, the sensors, the outputs.
     fn run(
@@ -165,7 +165,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         Ok(self.recursed)
     }
 
-    fn advance(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError> {
+    fn write_next(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError> {
         if !self.recursed {
             self.recursive.step(source)?;
         }

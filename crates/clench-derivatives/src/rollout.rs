@@ -48,7 +48,7 @@ impl Linearizer {
             self.differentiate(source)?;
             swap(a, &mut self.result.a);
             swap(b, &mut self.result.b);
-            self.pass.advance(source, &mut next)?;
+            self.pass.write_next(source, &mut next)?;
             swap(&mut state, &mut next);
         }
         let RolloutGradient { x, u } = &mut self.rollout;

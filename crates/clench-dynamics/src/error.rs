@@ -127,8 +127,8 @@ pub enum SimError {
     /// The processor lacks the instructions, or this precision was not compiled for them.
     #[error(
         "this build has no kernels in this precision for {0:?} instructions on this processor; \
-         CLENCH_INSTRUCTIONS=all in the environment of the build compiles all kernels of steps, a build on this machine \
-         those of derivatives"
+         CLENCH_INSTRUCTIONS=all in the environment of the build compiles all kernels of steps; for derivatives, build \
+         on this machine"
     )]
     Instructions(Instructions),
     /// There is not enough memory.

@@ -62,7 +62,8 @@ impl Weight {
         }
     }
 
-    /// Does so for a force and a torque on each body. `passed` returns the share of the forces that acts along a dof.
+    /// Subtracts the derivatives of a force and a torque on each body. `passed` returns the share of the forces that
+    /// acts along a dof.
     fn run(
         &mut self,
         step: &Step<'_>,

@@ -34,7 +34,8 @@ fn assert_near(found: &[f64], expected: &[f64]) {
     }
 }
 
-fn check(model: Model, options: RigidOptions, before: usize, memory: bool) {
+/// Returns the simulation after the rollout.
+fn check(model: Model, options: RigidOptions, before: usize, memory: bool) -> Sim<f64> {
     let mut sim = Sim::with_options(Arc::new(model), options).expect("a simulation");
     let mut random = Random(3);
     for velocity in &mut sim.state.qvel {
@@ -75,6 +76,7 @@ fn check(model: Model, options: RigidOptions, before: usize, memory: bool) {
         by_state = product(&by_state, a);
     }
     assert_near(&found.x.values, &by_state);
+    sim
 }
 
 #[test]
@@ -88,6 +90,40 @@ fn steps_of_recursions_and_of_passes() {
         50,
         true,
     );
+}
+
+/// Returns a box on a plane beside a pendulum with a motor.
+fn box_and_pendulum(option: &str) -> Model {
+    let text = format!(
+        r#"<mujoco>
+          {option}
+          <worldbody>
+            <geom type="plane" size="2 2 .1"/>
+            <body pos="0 0 .1"><freejoint/><geom type="box" size=".1 .1 .1"/></body>
+            <body pos="1 0 1">
+              <joint name="swing" axis="0 1 0"/>
+              <geom type="capsule" fromto="0 0 0 .2 0 -.3" size=".03"/>
+            </body>
+          </worldbody>
+          <actuator><motor joint="swing"/></actuator>
+        </mujoco>"#
+    );
+    clench_formats::load_str(&text).expect("a model")
+}
+
+#[test]
+fn steps_in_which_a_body_sleeps_and_of_several_stages() {
+    let check = |option| check(box_and_pendulum(option), RigidOptions::new(), 1000, false);
+    let sleeping = check(r#"<option><flag sleep="enable"/></option>"#);
+    let asleep = Vec::from_iter(
+        sleeping
+            .state
+            .tree_asleep
+            .iter()
+            .map(|&counter| counter >= 0.0),
+    );
+    assert_eq!(asleep, [true, false]);
+    check(r#"<option integrator="RK4"/>"#);
 }
 
 #[test]

@@ -1,0 +1,64 @@
+"""The files of a `ModelSpec`: where they are found, and that the model keeps them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import clench
+import numpy as np
+import pytest
+from test_spec import ends
+
+# A PNG of one grey pixel.
+PIXEL = bytes.fromhex(
+    "89504e470d0a1a0a0000000d49484452000000010000000108000000003a7e9b55"
+    "0000000a49444154789c636800000082008177cd72b60000000049454e44ae426082"
+)
+
+
+def box(size: float) -> str:
+    """Returns the OBJ file of a cube."""
+    corners = [f"v {x} {y} {z}" for x in (0, size) for y in (0, size) for z in (0, size)]
+    faces = "1 2 3,2 4 3,5 7 6,6 7 8,1 5 2,2 5 6,3 4 7,4 8 7,1 3 5,3 7 5,2 6 4,4 6 8".split(",")
+    return "\n".join([*corners, *(f"f {face}" for face in faces)])
+
+
+def test_files_are_read_once_and_travel_with_the_model(tmp_path: Path) -> None:
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes/block.obj").write_text(box(0.1))
+    (tmp_path / "parts.xml").write_text('<mujocoinclude><geom name="part" type="mesh" mesh="block"/></mujocoinclude>')
+    (tmp_path / "main.xml").write_text(
+        '<mujoco><compiler meshdir="meshes"/><asset><mesh name="block" file="block.obj"/></asset>'
+        '<worldbody><body name="b"><freejoint/><include file="parts.xml"/></body></worldbody></mujoco>'
+    )
+    expected = ends(clench.Model.from_file(tmp_path / "main.xml"))
+    spec = clench.ModelSpec.from_file(tmp_path / "main.xml")
+    for file in ("meshes/block.obj", "parts.xml", "main.xml"):
+        (tmp_path / file).unlink()
+    assert spec.geom("part")["mesh"] == "block" and list(spec.assets) == ["block.obj"]
+    assert ends(spec.build()) == expected
+    with pytest.raises(clench.LoadError, match="No such file"):
+        clench.ModelSpec.from_file(tmp_path / "main.xml")
+
+
+def test_files_are_found_as_in_a_model(tmp_path: Path) -> None:
+    """Beside an included file, in folders of textures, and with the name of another file."""
+    for folder, size in (("parts/a", 0.1), ("b", 0.2)):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "cube.obj").write_text(box(size))
+    (tmp_path / "images").mkdir()
+    (tmp_path / "images/grid.png").write_bytes(PIXEL)
+    (tmp_path / "parts/assets.xml").write_text(
+        '<mujoco><include file="more.xml"/><asset><mesh name="small" file="a/cube.obj"/></asset></mujoco>'
+    )
+    (tmp_path / "parts/more.xml").write_text('<mujoco><asset><mesh file="b/cube.obj"/></asset></mujoco>')
+    path = tmp_path / "model.xml"
+    path.write_text(
+        '<mujoco><compiler texturedir="images"/><include file="parts/assets.xml"/>'
+        '<asset><texture name="grid" type="2d" file="grid.png"/></asset><worldbody>'
+        '<body><freejoint/><geom type="mesh" mesh="small"/></body>'
+        '<body><freejoint/><geom type="mesh" mesh="cube"/></body></worldbody></mujoco>'
+    )
+    built, loaded = clench.ModelSpec.from_file(path).build(), clench.Model.from_file(path)
+    np.testing.assert_array_equal(built.body_mass, loaded.body_mass)
+    assert built.body_mass[2] == pytest.approx(8 * built.body_mass[1])
