@@ -27,9 +27,9 @@ impl KernelTable for CollideTable {
     type Of<T: Real> = Collide<T>;
     fn of<T: Real>() -> Collide<T> {
         if T::IS_DUAL {
-            |a, pose_a, b, pose_b, margin, axis, out| {
+            |a, pose_a, b, pose_b, margin, memory, out| {
                 let pair = ([a, b], [pose_a, pose_b]);
-                collide_differentiated(compiled_collide(), pair, margin, axis, out);
+                collide_differentiated(compiled_collide(), pair, margin, memory.axis, out);
             }
         } else {
             collide_again

@@ -6,7 +6,7 @@
 //! vertices of polyhedra are differentiated as the features that they are, curved surfaces with their curvature.
 
 use crate::contact::Contacts;
-use crate::narrow::{Collide, SeparatingAxis, collide_again};
+use crate::narrow::{Collide, PairMemory, SeparatingAxis, collide_again};
 use crate::pose::Pose;
 use crate::shape::Shape;
 use clench_math::{Dual, Mask, Mat3, Real, Scalar, Vec3, kernel};
@@ -42,7 +42,7 @@ pub(crate) fn collide_differentiated<T: Real>(
         &plain_b,
         &at_b,
         f64_of(margin),
-        &mut plain_axis,
+        &mut PairMemory::of_axis(&mut plain_axis),
         &mut plain,
     );
     *axis = plain_axis.map(T::new);
@@ -170,7 +170,8 @@ fn find<T: Real>(
     });
     let mut axis = SeparatingAxis::default();
     let margin = PairDual::new(f64_of(margin));
-    collide_again(&a, &pose_a, &b, &pose_b, margin, &mut axis, points);
+    let memory = &mut PairMemory::of_axis(&mut axis);
+    collide_again(&a, &pose_a, &b, &pose_b, margin, memory, points);
 }
 
 /// Returns the value of a number. (Dual numbers have one lane.)

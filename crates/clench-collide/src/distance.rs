@@ -2,7 +2,7 @@
 
 use crate::compiled::compiled_collide;
 use crate::contact::Contacts;
-use crate::narrow::{Collide, SeparatingAxis, collide_again, supported};
+use crate::narrow::{Collide, PairMemory, SeparatingAxis, collide_again, supported};
 use crate::pose::Pose;
 use crate::shape::{Shape, Terrain};
 use clench_math::{Mat3, Real, Scalar, Vec3};
@@ -23,7 +23,7 @@ pub struct Separation<S> {
 /// metres (which may be infinite), if a number is not finite, or if the distance is undefined: between two planes, two
 /// height fields, or a plane and a height field.
 ///
-/// The distance is accurate to rounding or 1e-9 of the smaller shape's size, its points to 1e-6. A mesh is represented
+/// The distance is accurate to rounding or 1e-7 of the smaller shape's size, its points to 1e-6. A mesh is represented
 /// by its convex hull. The depth of a shape in a height field is at least its depth in the ground below any single
 /// triangle.
 ///
@@ -113,7 +113,8 @@ fn find<S: Scalar>(
     let mut contacts = Contacts::new();
     let search = |reach: S, contacts: &mut Contacts<S>| {
         let mut axis = SeparatingAxis::default();
-        collide(a, pose_a, b, pose_b, reach, &mut axis, contacts);
+        let memory = &mut PairMemory::of_axis(&mut axis);
+        collide(a, pose_a, b, pose_b, reach, memory, contacts);
     };
     let mut reach = Real::max(limit, S::ZERO);
     if let Shape::HeightField(Terrain {

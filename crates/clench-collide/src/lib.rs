@@ -48,7 +48,10 @@ pub use height_field::{HeightField, HeightFieldError};
 pub use hull::{Hull, HullError, HullSurface, convex_hull};
 #[doc(hidden)]
 pub use narrow::{CONVEX_CONSTANTS, CONVEX_COUNTS, SHAPE_CONSTANTS};
-pub use narrow::{Collide, SeparatingAxis, collide, collide_again, multiccd_applies, supported};
+pub use narrow::{
+    Collide, DepthProof, LaneProofs, PairMemory, SeparatingAxis, collide, collide_again,
+    multiccd_applies, supported,
+};
 pub use pose::Pose;
 pub use protrusion::{Ascent, protrusion, protrusion_of_points};
 pub use ray::{Hit, Ray, TriangleMesh, TriangleMeshError, TriangleNode, UnitRay, ray};

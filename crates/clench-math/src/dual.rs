@@ -383,6 +383,7 @@ impl<L: Real<Scalar = f64>, const K: usize> Real for Dual<L, K> {
 
 impl<L: Real<Scalar = f64>, const K: usize> Scalar for Dual<L, K> {
     type SingleEnv = Self;
+    type Double = Self;
     const SINGLE_ENV: Instructions = Instructions::Scalar;
     const EPSILON: Self = Self::constant(f64::EPSILON);
     const INFINITY: Self = Self::constant(f64::INFINITY);
@@ -392,6 +393,14 @@ impl<L: Real<Scalar = f64>, const K: usize> Scalar for Dual<L, K> {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.value
+    }
+    #[inline(always)]
+    fn to_double(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn from_double(value: Self) -> Self {
+        value
     }
     /// Runs a task one environment at a time: dual numbers have no lanes of environments.
     #[inline(always)]

@@ -81,6 +81,6 @@ pub use eigen::{principal_axes, rough_principal_axes};
 pub use lanes::{Instructions, LaneMask, LaneTask, Lanes, Portable};
 pub use matrix::Mat3;
 pub use quaternion::Quat;
-pub use real::{Clock, Mask, Real, Scalar};
+pub use real::{Clock, Double, Mask, Real, Scalar};
 pub use spatial::{Force, Inertia, Motion};
 pub use vector::Vec3;

@@ -130,6 +130,11 @@ pub trait Real:
     fn splat(value: Self::Scalar) -> Self;
     /// Returns the value of lane `i`.
     fn lane(self, i: usize) -> Self::Scalar;
+    /// Returns the value of lane `i` in double precision.
+    #[inline(always)]
+    fn lane_in_double(self, i: usize) -> Double<Self> {
+        self.lane(i).to_double()
+    }
     /// Sets the value of lane `i`.
     fn set_lane(&mut self, i: usize, value: Self::Scalar);
 
@@ -210,6 +215,9 @@ pub trait Real:
     }
 }
 
+/// The type of computations in double precision for one lane of a type.
+pub type Double<T> = <<T as Real>::Scalar as Scalar>::Double;
+
 /// A `Real` of one lane, which can also be compared and branched on directly.
 pub trait Scalar:
     Real<Scalar = Self, Mask = bool, Clock = f64> + PartialOrd + std::fmt::Display
@@ -217,6 +225,8 @@ pub trait Scalar:
     /// The number type for computing one environment: the scalar itself, or lanes of it that all hold the same numbers.
     /// Its values may exist only if the instructions [`SINGLE_ENV`](Self::SINGLE_ENV) are available.
     type SingleEnv: Real<Scalar = Self>;
+    /// The number type of computations for which single precision is too coarse: `f64` for `f32`, else the scalar.
+    type Double: Scalar;
     /// The instructions of [`SingleEnv`](Self::SingleEnv).
     const SINGLE_ENV: Instructions;
     /// The distance from 1 to the next larger number.
@@ -233,6 +243,10 @@ pub trait Scalar:
     const IS_SINGLE: bool = Self::DIGITS == f32::MANTISSA_DIGITS;
     /// Converts the value to `f64`.
     fn to_f64(self) -> f64;
+    /// Converts to [`Double`](Self::Double).
+    fn to_double(self) -> Self::Double;
+    /// Rounds a [`Double`](Self::Double).
+    fn from_double(value: Self::Double) -> Self;
     /// Returns true if the absolute values of all numbers are at most `limit`. It is compiled for speed in every crate.
     fn all_within(values: &[Self], limit: Self) -> bool {
         values.iter().all(|x| x.abs().le(limit))

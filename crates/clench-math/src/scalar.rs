@@ -154,6 +154,7 @@ macro_rules! scalar {
 
             impl Scalar for $t {
                 type SingleEnv = $alone;
+                type Double = f64;
                 const SINGLE_ENV: Instructions = $instructions;
                 const EPSILON: $t = $t::EPSILON;
                 const INFINITY: $t = $t::INFINITY;
@@ -163,6 +164,14 @@ macro_rules! scalar {
                 #[inline(always)]
                 fn to_f64(self) -> f64 {
                     self as f64
+                }
+                #[inline(always)]
+                fn to_double(self) -> f64 {
+                    self as f64
+                }
+                #[inline(always)]
+                fn from_double(value: f64) -> $t {
+                    value as $t
                 }
                 #[inline(never)]
                 fn all_within(values: &[$t], limit: $t) -> bool {

@@ -1,6 +1,7 @@
 //! Three-dimensional vectors.
 
-use crate::{Real, kernel};
+use crate::kernel;
+use crate::real::{Double, Real, Scalar};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 /// A vector in space; its unit depends on the context.
@@ -37,6 +38,12 @@ impl<T: Real> Vec3<T> {
     #[inline(always)]
     pub fn lane(self, i: usize) -> Vec3<T::Scalar> {
         Vec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
+    }
+    /// Returns the vector of lane `i` in double precision.
+    #[inline(always)]
+    pub fn lane_in_double(self, i: usize) -> Vec3<Double<T>> {
+        let [x, y, z] = [self.x, self.y, self.z].map(|x| x.lane_in_double(i));
+        Vec3::new(x, y, z)
     }
     /// Creates a vector from an array.
     #[inline(always)]
@@ -180,5 +187,13 @@ impl<T> IndexMut<usize> for Vec3<T> {
             2 => &mut self.z,
             _ => panic!("a Vec3 has no coordinate {i}"),
         }
+    }
+}
+
+impl<S: Scalar> Vec3<S> {
+    /// Rounds a vector in double precision.
+    #[inline(always)]
+    pub fn from_double(v: Vec3<S::Double>) -> Self {
+        Vec3::from_array(v.to_array().map(S::from_double))
     }
 }

@@ -83,7 +83,7 @@ fn points<S: Scalar>(
         TouchingFeature::Edges(..) => {}
     }
     points.clear();
-    convex::points(a.any(), b.any(), margin, points)
+    convex::points(a.any(), b.any(), margin, None, points)
 }
 
 /// One axis of each box.

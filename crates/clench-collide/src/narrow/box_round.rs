@@ -112,7 +112,7 @@ pub(super) fn capsule_box<T: Real>(
     if sunk.any() {
         per_lane_where(sunk, a, b, margin, out, |_, a, b, margin, points| {
             // The bodies overlap, so no direction separates them.
-            let _ = convex::points(a.any(), b.any(), margin, points);
+            let _ = convex::points(a.any(), b.any(), margin, None, points);
         });
     }
     let beside = near & !sunk;

@@ -12,6 +12,7 @@ mod constants;
 mod convex;
 mod cylinder;
 mod outline;
+mod pair_memory;
 mod penetration;
 mod per_lane;
 mod placed;
@@ -26,14 +27,15 @@ use crate::pose::Pose;
 use crate::shape::{Shape, ShapeKind};
 use clench_math::{Real, kernel};
 pub use constants::SHAPE_CONSTANTS;
-pub use convex::{CONVEX_CONSTANTS, CONVEX_COUNTS};
+pub use convex::{CONVEX_CONSTANTS, CONVEX_COUNTS, DepthProof, LaneProofs};
+pub use pair_memory::PairMemory;
 use placed::Placed;
 pub use separating_axis::SeparatingAxis;
 
 /// Defines the supported pairs of shapes: MuJoCo's algorithm, closed form or general, and the kernel used here. The
-/// names are the kernels' arguments: the two shapes, the margin, the last separating direction, and the output.
+/// names are the kernels' arguments: the two shapes, the margin, the memory of the pair, and the output.
 macro_rules! pairs {
-    ($a:ident, $b:ident, $margin:ident, $axis:ident, $out:ident:
+    ($a:ident, $b:ident, $margin:ident, $memory:ident, $out:ident:
      $(($first:ident, $second:ident) $mujoco:ident => $find:expr,)*) => {
         /// Returns true if [`collide`] supports the pair, in either order.
         pub fn supported(a: ShapeKind, b: ShapeKind) -> bool {
@@ -54,7 +56,8 @@ macro_rules! pairs {
         }
 
         /// Computes the same as [`collide`], for a pair that is queried repeatedly. It uses the direction that last
-        /// separated these shapes, or any others, to save searches. It changes no result.
+        /// separated these shapes, or any others, and the proofs of their last depths, to save searches. They change no
+        /// result.
         #[kernel]
         pub fn collide_again<T: Real>(
             a: &Shape<T>,
@@ -62,7 +65,7 @@ macro_rules! pairs {
             b: &Shape<T>,
             pose_b: &Pose<T>,
             $margin: T,
-            $axis: &mut SeparatingAxis<T>,
+            $memory: &mut PairMemory<T>,
             $out: &mut Contacts<T>,
         ) {
             $out.clear();
@@ -80,7 +83,7 @@ macro_rules! pairs {
 
 /// A pointer to [`collide_again`].
 pub type Collide<T> =
-    fn(&Shape<T>, &Pose<T>, &Shape<T>, &Pose<T>, T, &mut SeparatingAxis<T>, &mut Contacts<T>);
+    fn(&Shape<T>, &Pose<T>, &Shape<T>, &Pose<T>, T, &mut PairMemory<T>, &mut Contacts<T>);
 
 #[derive(PartialEq)]
 enum Algorithm {
@@ -88,7 +91,7 @@ enum Algorithm {
     General,
 }
 
-pairs! { a, b, margin, axis, out:
+pairs! { a, b, margin, memory, out:
     (Plane, Sphere) Closed => plane::plane_sphere(a, b, margin, out),
     (Plane, Capsule) Closed => plane::plane_capsule(a, b, margin, out),
     (Plane, Ellipsoid) Closed => plane::plane_ellipsoid(a, b, margin, out),
@@ -103,25 +106,25 @@ pairs! { a, b, margin, axis, out:
     (HeightField, Mesh) Closed => convex::terrain(a, b.any(), margin, out),
     (Sphere, Sphere) Closed => ball::sphere_sphere(a, b, margin, out),
     (Sphere, Capsule) Closed => ball::sphere_capsule(a, b, margin, out),
-    (Sphere, Ellipsoid) Closed => convex::convex(a.any(), b.any(), margin, axis, out),
+    (Sphere, Ellipsoid) Closed => convex::convex(a.any(), b.any(), margin, memory, out),
     (Sphere, Cylinder) Closed => cylinder::sphere_cylinder(a, b, margin, out),
     (Sphere, Box) Closed => box_round::sphere_box(a, b, margin, out),
-    (Sphere, Mesh) Closed => convex::convex(a.any(), b.any(), margin, axis, out),
+    (Sphere, Mesh) Closed => convex::convex(a.any(), b.any(), margin, memory, out),
     (Capsule, Capsule) Closed => capsule::capsule_capsule(a, b, margin, out),
-    (Capsule, Ellipsoid) General => convex::convex(a.any(), b.any(), margin, axis, out),
+    (Capsule, Ellipsoid) General => convex::convex(a.any(), b.any(), margin, memory, out),
     (Capsule, Cylinder) General => cylinder::capsule_cylinder(a, b, margin, out),
     (Capsule, Box) Closed => box_round::capsule_box(a, b, margin, out),
-    (Capsule, Mesh) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Ellipsoid, Ellipsoid) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Ellipsoid, Cylinder) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Ellipsoid, Box) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Ellipsoid, Mesh) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Cylinder, Cylinder) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Cylinder, Box) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Cylinder, Mesh) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Box, Box) Closed => box_box::box_box(a, b, margin, axis, out),
-    (Box, Mesh) General => convex::convex(a.any(), b.any(), margin, axis, out),
-    (Mesh, Mesh) General => convex::convex(a.any(), b.any(), margin, axis, out),
+    (Capsule, Mesh) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Ellipsoid, Ellipsoid) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Ellipsoid, Cylinder) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Ellipsoid, Box) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Ellipsoid, Mesh) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Cylinder, Cylinder) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Cylinder, Box) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Cylinder, Mesh) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Box, Box) Closed => box_box::box_box(a, b, margin, memory.axis, out),
+    (Box, Mesh) General => convex::convex(a.any(), b.any(), margin, memory, out),
+    (Mesh, Mesh) General => convex::convex(a.any(), b.any(), margin, memory, out),
 }
 
 /// Replaces `out` by the points where shape `a` at `pose_a` and shape `b` at `pose_b` are at most `margin` metres
@@ -143,7 +146,7 @@ pub fn collide<T: Real>(
         b,
         pose_b,
         margin,
-        &mut SeparatingAxis::default(),
+        &mut PairMemory::of_axis(&mut SeparatingAxis::default()),
         out,
     );
 }

@@ -1,11 +1,12 @@
-//! Pairs that branch too much for lanes: each lane is computed separately, in scalar code.
+//! Pairs that branch too much for lanes: each lane is computed separately, in scalar code and double precision.
 
 use super::placed::Placed;
 use crate::contact::{ContactPoint, Contacts, MAX_POINTS, set_lane};
 use crate::frame::frame_from_normal;
+use crate::pose::Pose;
 use crate::shape::Solid;
 use arrayvec::ArrayVec;
-use clench_math::{Mask, Mat3, Real, Vec3};
+use clench_math::{Double, Mask, Mat3, Real, Scalar, Vec3};
 
 /// A contact without a frame.
 #[derive(Clone, Copy, Debug)]
@@ -25,10 +26,10 @@ pub(super) fn per_lane<T: Real, A: Solid<T>, B: Solid<T>>(
     margin: T,
     out: &mut Contacts<T>,
     pair: impl Fn(
-        Placed<A::SingleEnv, T::Scalar>,
-        Placed<B::SingleEnv, T::Scalar>,
-        T::Scalar,
-        &mut Points<T::Scalar>,
+        Placed<A::InDouble, Double<T>>,
+        Placed<B::InDouble, Double<T>>,
+        Double<T>,
+        &mut Points<Double<T>>,
     ),
 ) {
     let all = T::Mask::splat(true);
@@ -46,25 +47,25 @@ pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
     out: &mut Contacts<T>,
     mut pair: impl FnMut(
         usize,
-        Placed<A::SingleEnv, T::Scalar>,
-        Placed<B::SingleEnv, T::Scalar>,
-        T::Scalar,
-        &mut Points<T::Scalar>,
+        Placed<A::InDouble, Double<T>>,
+        Placed<B::InDouble, Double<T>>,
+        Double<T>,
+        &mut Points<Double<T>>,
     ),
 ) {
     let mut points = Points::new();
     for lane in (0..T::LANES).filter(|lane| wanted.lane(*lane)) {
-        let (pose_a, pose_b) = (a.pose.lane(lane), b.pose.lane(lane));
+        let (pose_a, pose_b) = (in_double(a.pose, lane), in_double(b.pose, lane));
         let a = Placed {
-            shape: a.shape.lane(lane),
+            shape: a.shape.lane_in_double(lane),
             pose: &pose_a,
         };
         let b = Placed {
-            shape: b.shape.lane(lane),
+            shape: b.shape.lane_in_double(lane),
             pose: &pose_b,
         };
         points.clear();
-        pair(lane, a, b, margin.lane(lane), &mut points);
+        pair(lane, a, b, margin.lane_in_double(lane), &mut points);
         let mut frame = Mat3::IDENTITY;
         for (k, point) in points.iter().enumerate() {
             // Most points of a pair have the same normal.
@@ -76,16 +77,26 @@ pub(super) fn per_lane_where<T: Real, A: Solid<T>, B: Solid<T>>(
     }
 }
 
+/// Returns the pose of a lane in double precision.
+fn in_double<T: Real>(pose: &Pose<T>, lane: usize) -> Pose<Double<T>> {
+    let [x, y, z] = pose.rotation.rows.map(|row| row.lane_in_double(lane));
+    Pose {
+        position: pose.position.lane_in_double(lane),
+        rotation: Mat3::from_rows(x, y, z),
+    }
+}
+
 fn set_point<T: Real>(
     slot: &mut ContactPoint<T>,
     lane: usize,
-    point: &Point<T::Scalar>,
-    frame: &Mat3<T::Scalar>,
+    point: &Point<Double<T>>,
+    frame: &Mat3<Double<T>>,
 ) {
-    set_lane(&mut slot.position, lane, point.position);
+    set_lane(&mut slot.position, lane, Vec3::from_double(point.position));
     for (row, value) in slot.frame.rows.iter_mut().zip(frame.rows) {
-        set_lane(row, lane, value);
+        set_lane(row, lane, Vec3::from_double(value));
     }
-    slot.distance.set_lane(lane, point.distance);
+    slot.distance
+        .set_lane(lane, T::Scalar::from_double(point.distance));
     slot.active.set_lane(lane, true);
 }

@@ -6,9 +6,10 @@
 //! of a search. So a cached direction only skips a search that would find nothing, and changes no result.
 
 use super::placed::AnyPlaced;
+use crate::contact::set_lane;
 use crate::hull::Hull;
 use crate::shape::{Mesh, Shape, Solid};
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Double, Mask, Real, Scalar, Vec3};
 
 /// The error of a search relative to the smaller shape, twice what the search itself allows ...
 const SLACK: f64 = 4e-6;
@@ -72,13 +73,10 @@ impl<T: Real> SeparatingAxis<T> {
 
     /// Stores the direction found by a search for a lane, if it is a unit vector.
     #[inline(always)]
-    pub(super) fn set(&mut self, lane: usize, direction: Vec3<T::Scalar>) {
-        if !is_unit(direction).any() {
-            return;
+    pub(super) fn set(&mut self, lane: usize, direction: Vec3<Double<T>>) {
+        if is_unit(direction).any() {
+            set_lane(&mut self.direction, lane, Vec3::from_double(direction));
         }
-        self.direction.x.set_lane(lane, direction.x);
-        self.direction.y.set_lane(lane, direction.y);
-        self.direction.z.set_lane(lane, direction.z);
     }
 }
 

@@ -6,7 +6,7 @@ use super::feature::{EDGE_SINE, Feature};
 use super::solid::{Homogeneous, Solid, axial};
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Double, Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// The points within a radius of a segment on the local z axis.
@@ -19,13 +19,13 @@ pub struct Capsule<T> {
 }
 
 impl<T: Real> Solid<T> for Capsule<T> {
-    type SingleEnv = Capsule<T::Scalar>;
+    type InDouble = Capsule<Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Capsule {
-            radius: self.radius.lane(lane),
-            half_length: self.half_length.lane(lane),
+            radius: self.radius.lane_in_double(lane),
+            half_length: self.half_length.lane_in_double(lane),
         }
     }
 
@@ -77,6 +77,12 @@ impl<S: Scalar> Core<S> for Capsule<S> {
     #[inline]
     fn support(&self, _: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
         Vec3::new(S::ZERO, S::ZERO, self.half_length.copysign(side.z))
+    }
+
+    #[inline]
+    fn corner_along(&self, d: Vec3<S>, side: Vec3<S>) -> (Vec3<S>, u32) {
+        let end = self.support(d, side);
+        (end, u32::from(end.z < S::ZERO))
     }
 
     fn feature(&self, d: Vec3<S>) -> Feature<S> {

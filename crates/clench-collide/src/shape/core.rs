@@ -28,6 +28,12 @@ pub(crate) trait Core<S: Scalar> {
     /// ends, it returns the one further along `side`, which is `d` or near it.
     fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S>;
 
+    /// Returns the same with the number of the corner, if the core is a polyhedron, or 0.
+    #[inline]
+    fn corner_along(&self, d: Vec3<S>, side: Vec3<S>) -> (Vec3<S>, u32) {
+        (self.support(d, side), 0)
+    }
+
     /// Returns the feature of the core that is furthest along the unit direction `d`. The order of its corners depends
     /// only on the feature.
     fn feature(&self, d: Vec3<S>) -> Feature<S>;

@@ -6,7 +6,7 @@ use super::solid::{Homogeneous, Solid, about_axes, within};
 use crate::hull::FACE_COSINE;
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Double, Real, Scalar, Vec3};
 
 /// A box about the local axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,12 +16,12 @@ pub struct Cuboid<T> {
 }
 
 impl<T: Real> Solid<T> for Cuboid<T> {
-    type SingleEnv = Cuboid<T::Scalar>;
+    type InDouble = Cuboid<Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Cuboid {
-            half_lengths: self.half_lengths.lane(lane),
+            half_lengths: self.half_lengths.lane_in_double(lane),
         }
     }
 
@@ -71,6 +71,13 @@ impl<S: Scalar> Core<S> for Cuboid<S> {
             h.y.copysign(side.y),
             h.z.copysign(side.z),
         )
+    }
+
+    #[inline]
+    fn corner_along(&self, d: Vec3<S>, side: Vec3<S>) -> (Vec3<S>, u32) {
+        let corner = self.support(d, side);
+        let [x, y, z] = corner.to_array().map(|x| u32::from(x < S::ZERO));
+        (corner, x | y << 1 | z << 2)
     }
 
     fn feature(&self, d: Vec3<S>) -> Feature<S> {

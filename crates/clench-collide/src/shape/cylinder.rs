@@ -6,7 +6,7 @@ use super::solid::{Homogeneous, Solid, axial};
 use crate::hull::FACE_COSINE;
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Double, Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// The tilt below which a cap is level to rounding: all its corners are equally deep.
@@ -22,13 +22,13 @@ pub struct Cylinder<T> {
 }
 
 impl<T: Real> Solid<T> for Cylinder<T> {
-    type SingleEnv = Cylinder<T::Scalar>;
+    type InDouble = Cylinder<Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Cylinder {
-            radius: self.radius.lane(lane),
-            half_length: self.half_length.lane(lane),
+            radius: self.radius.lane_in_double(lane),
+            half_length: self.half_length.lane_in_double(lane),
         }
     }
 

@@ -5,7 +5,7 @@ use super::feature::Feature;
 use super::solid::{Homogeneous, Solid, about_axes};
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Double, Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// The exponent of Thomsen's formula for the surface of an ellipsoid, as in MuJoCo.
@@ -21,12 +21,12 @@ pub struct Ellipsoid<T> {
 }
 
 impl<T: Real> Solid<T> for Ellipsoid<T> {
-    type SingleEnv = Ellipsoid<T::Scalar>;
+    type InDouble = Ellipsoid<Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Ellipsoid {
-            semi_axes: self.semi_axes.lane(lane),
+            semi_axes: self.semi_axes.lane_in_double(lane),
         }
     }
 

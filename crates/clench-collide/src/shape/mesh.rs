@@ -6,7 +6,7 @@ use super::solid::Solid;
 use crate::hull::Hull;
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
-use clench_math::{Mask, Real, Scalar, Vec3};
+use clench_math::{Double, Mask, Real, Scalar, Vec3};
 
 /// The distance beyond the sampled corners, relative to the size, from which another corner is included.
 pub(crate) const NOTICEABLE: f64 = 1e-7;
@@ -23,13 +23,13 @@ pub struct Mesh<'a, T> {
 }
 
 impl<'a, T: Real> Solid<T> for Mesh<'a, T> {
-    type SingleEnv = Mesh<'a, T::Scalar>;
+    type InDouble = Mesh<'a, Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Mesh {
             hull: self.hull,
-            extent: self.extent.lane(lane),
+            extent: self.extent.lane_in_double(lane),
         }
     }
 
@@ -104,6 +104,12 @@ impl<S: Scalar> Core<S> for Mesh<'_, S> {
     #[inline]
     fn support(&self, _: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
         self.vertex(side).map_or(Vec3::ZERO, |(_, vertex)| vertex)
+    }
+
+    #[inline]
+    fn corner_along(&self, _: Vec3<S>, side: Vec3<S>) -> (Vec3<S>, u32) {
+        let found = self.vertex(side);
+        found.map_or((Vec3::ZERO, 0), |(number, vertex)| (vertex, number as u32))
     }
 
     /// Returns the most nearly level face or edge at the furthest vertex, or the vertex if none is level enough.

@@ -33,7 +33,7 @@ pub use terrain::Terrain;
 use crate::height_field::HeightField;
 use crate::hull::Hull;
 use crate::ray::line::Line;
-use clench_math::{Real, Vec3};
+use clench_math::{Double, Real, Vec3};
 
 /// The kinds of shape, in the order of the two shapes of a pair (MuJoCo's `mjtGeom`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -178,7 +178,7 @@ impl<'a, T: Real> Shape<'a, T> {
     /// Returns the shape of one lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> Shape<'a, T::Scalar> {
-        Solid::lane(self, lane)
+        self.resized(self.size().lane(lane))
     }
     /// Returns the radius in metres of a sphere about the origin that encloses the shape, the smallest if the size
     /// defines it; infinite for a plane.
@@ -227,11 +227,11 @@ impl Shape<'_, f64> {
 }
 
 impl<'a, T: Real> Solid<T> for Shape<'a, T> {
-    type SingleEnv = Shape<'a, T::Scalar>;
+    type InDouble = Shape<'a, Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
-        of_each!(self, solid => Shape::from(solid.lane(lane)))
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
+        of_each!(self, solid => Shape::from(solid.lane_in_double(lane)))
     }
     #[inline(always)]
     fn size(&self) -> Vec3<T> {

@@ -2,7 +2,7 @@
 
 use super::solid::Solid;
 use crate::ray::line::Line;
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Double, Mask, Real, Vec3};
 
 /// The unbounded half-space below the local xy plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,11 +12,11 @@ pub struct Plane<T> {
 }
 
 impl<T: Real> Solid<T> for Plane<T> {
-    type SingleEnv = Plane<T::Scalar>;
+    type InDouble = Plane<Double<T>>;
 
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Plane {
-            size: self.size.lane(lane),
+            size: self.size.lane_in_double(lane),
         }
     }
 

@@ -5,11 +5,11 @@ use clench_math::{Real, Vec3};
 
 /// A shape about its own origin, in one environment or several in parallel.
 pub(crate) trait Solid<T: Real>: Copy {
-    /// The same shape in one environment.
-    type SingleEnv: Copy;
+    /// The same shape of one environment, in double precision.
+    type InDouble: Copy;
 
-    /// Returns the shape of one lane.
-    fn lane(&self, lane: usize) -> Self::SingleEnv;
+    /// Returns the shape of one lane in double precision.
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble;
 
     /// Returns the size as defined by [`ShapeKind`](crate::ShapeKind), m.
     fn size(&self) -> Vec3<T>;

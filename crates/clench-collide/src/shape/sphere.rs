@@ -5,7 +5,7 @@ use super::feature::Feature;
 use super::solid::{Homogeneous, Solid};
 use crate::ray::chord::Chord;
 use crate::ray::line::Line;
-use clench_math::{Real, Scalar, Vec3};
+use clench_math::{Double, Real, Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// The points within a radius of the origin.
@@ -16,12 +16,12 @@ pub struct Sphere<T> {
 }
 
 impl<T: Real> Solid<T> for Sphere<T> {
-    type SingleEnv = Sphere<T::Scalar>;
+    type InDouble = Sphere<Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Sphere {
-            radius: self.radius.lane(lane),
+            radius: self.radius.lane_in_double(lane),
         }
     }
 

@@ -5,7 +5,7 @@ use super::solid::{Homogeneous, Solid};
 use crate::height_field::HeightField;
 use crate::ray::line::Line;
 use crate::ray::terrain::height_field;
-use clench_math::{Mask, Real, Vec3};
+use clench_math::{Double, Mask, Real, Vec3};
 
 /// Terrain over a rectangle, on a base, the same in every environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +17,13 @@ pub struct Terrain<'a, T> {
 }
 
 impl<'a, T: Real> Solid<T> for Terrain<'a, T> {
-    type SingleEnv = Terrain<'a, T::Scalar>;
+    type InDouble = Terrain<'a, Double<T>>;
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Self::SingleEnv {
+    fn lane_in_double(&self, lane: usize) -> Self::InDouble {
         Terrain {
             field: self.field,
-            size: self.size.lane(lane),
+            size: self.size.lane_in_double(lane),
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::common::placement::{Placement, placed};
 use crate::common::{PAIRS, Random, Scene, V};
 use clench_collide::{
-    ContactPoint, Contacts, Pose, SeparatingAxis, Shape, ShapeKind, compiled_collide,
+    ContactPoint, Contacts, PairMemory, Pose, SeparatingAxis, Shape, ShapeKind, compiled_collide,
 };
 use clench_math::{Dual, Mat3, Quat, Real, Vec3};
 use std::array::from_fn;
@@ -48,7 +48,8 @@ impl Motion {
         let mut points = Contacts::new();
         let mut axis = SeparatingAxis::default();
         let margin = T::new(scene.margin);
-        compiled_collide()(&a, &pose_a, &b, &pose_b, margin, &mut axis, &mut points);
+        let memory = &mut PairMemory::of_axis(&mut axis);
+        compiled_collide()(&a, &pose_a, &b, &pose_b, margin, memory, &mut points);
         points.as_slice().to_vec()
     }
 }

@@ -76,6 +76,8 @@ pub struct Collision<T: Real> {
     /// The quantity of the last step that exceeds the model's budget, as the code of an [`Excess`], or 0. Lanes with an
     /// excess have no contacts.
     pub excess: T,
+    /// The numbers of the environments in the lanes; empty if there is one environment. They change no result.
+    pub environments: Vec<u32>,
     /// The pairs to check, in canonical order.
     pub(super) candidates: Vec<Candidate>,
     /// The same pairs by body, if they are listed once.
@@ -112,6 +114,7 @@ impl<T: Real> Collision<T> {
             contacts_provided: false,
             overflow: T::Mask::splat(false),
             excess: T::ZERO,
+            environments: Vec::new(),
             body_pairs: BodyPairs::new(model, &candidates),
             awake_pairs: AwakePairs::new(model, &candidates),
             candidates,

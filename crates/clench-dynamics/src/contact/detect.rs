@@ -169,7 +169,8 @@ fn find_points<T: Real>(
     let finders = &mut finders[..count];
     for (k, finder) in finders.iter_mut().enumerate() {
         let pairs = near.len() * k / count..near.len() * (k + 1) / count;
-        finder.begin(&near[pairs], candidates, axes, &collision.clock);
+        let envs = &collision.environments;
+        finder.begin(&near[pairs], candidates, axes, envs, &collision.clock);
     }
     let multiccd = settings.flags.multiccd;
     threads.for_each(finders, |finder| {

@@ -6,6 +6,7 @@ mod body_pairs;
 mod bounding_box;
 mod bounding_sphere;
 pub(crate) mod collision;
+mod depth_proofs;
 mod detect;
 mod dynamic_broad_phase;
 mod mix;

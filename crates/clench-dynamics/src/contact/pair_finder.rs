@@ -1,5 +1,6 @@
 //! The narrow phase over one thread's share of the near pairs.
 
+use super::depth_proofs::{self, DepthProofs};
 use super::pair_clock::PairClock;
 use super::placed_shape::{ALL_LANES, AssetLanes, exists, mask_of, pose, shape_in};
 use super::separating_axes::SeparatingAxes;
@@ -7,7 +8,7 @@ use super::{Candidate, contact_range};
 use crate::model::{Model, Params};
 use crate::stages::Positions;
 use clench_collide::{
-    Collide, ContactPoint, Contacts, SeparatingAxis, compiled_collide, multiccd_applies,
+    Collide, ContactPoint, Contacts, PairMemory, SeparatingAxis, compiled_collide, multiccd_applies,
 };
 use clench_math::{Mask, Real, Scalar, kernel};
 
@@ -22,6 +23,7 @@ pub(super) struct PairFinder<T: Real> {
     scratch: Contacts<T>,
     /// Those of lanes with the same meshes.
     part: Contacts<T>,
+    proofs: DepthProofs,
     clock: PairClock,
     collide: Collide<T>,
 }
@@ -42,6 +44,7 @@ impl<T: Real> Default for PairFinder<T> {
             points: Vec::new(),
             scratch: Contacts::new(),
             part: Contacts::new(),
+            proofs: DepthProofs::default(),
             clock: PairClock::default(),
             collide: compiled_collide(),
         }
@@ -56,15 +59,17 @@ impl<T: Real> PairFinder<T> {
         self.points.clear();
     }
 
-    /// Adds the given candidates, and runs the clock if `clock` runs.
+    /// Adds the given candidates of the environments `envs`, and runs the clock if `clock` runs.
     pub(super) fn begin(
         &mut self,
         near: &[u32],
         candidates: &[Candidate],
         axes: &mut SeparatingAxes<T>,
+        envs: &[u32],
         clock: &PairClock,
     ) {
         self.clock.run_as(clock);
+        self.proofs.begin(envs);
         self.pairs.extend(near.iter().map(|&candidate| {
             let index = axes.index(candidates[candidate as usize].geoms);
             NearPair {
@@ -105,8 +110,10 @@ impl<T: Real> PairFinder<T> {
                         (Some(taken), &mut self.part, T::select(taken, margin, none))
                     }
                 };
+                let proofs = self.proofs.of(candidate.kinds, candidate.geoms);
                 let axis = &mut pair.axis;
-                collide(&shape_a, &pose_a, &shape_b, &pose_b, margin, axis, part);
+                let memory = &mut PairMemory { axis, proofs };
+                collide(&shape_a, &pose_a, &shape_b, &pose_b, margin, memory, part);
                 if let Some(taken) = taken {
                     points.merge(&self.part, taken, lane == 0);
                 }
@@ -121,6 +128,9 @@ impl<T: Real> PairFinder<T> {
                 points.keep_deepest();
             }
             if !points.as_slice().is_empty() {
+                if depth_proofs::applies(candidate.kinds) {
+                    self.proofs.count_touching();
+                }
                 self.points.extend_from_slice(points.as_slice());
                 self.touching.push((pair.candidate, self.points.len()));
             }

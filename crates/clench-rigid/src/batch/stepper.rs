@@ -80,7 +80,9 @@ where
     /// Copies the rows of a group into the lanes. All that a step uses is read here, once, and then checked: concurrent
     /// writes through pointers can only mix values.
     fn gather(&mut self, group: &Group<T>, rows: &EnvRows<T::Scalar>) {
+        self.ws.collision.environments.clear();
         for (lane, env) in group.fill() {
+            self.ws.collision.environments.push(env as u32);
             rows.motion.read(env, lane, &mut self.state);
             rows.inputs.read(env, lane, &mut self.state);
             if rows.models.are_several() {

@@ -1,5 +1,6 @@
 //! The bodies of the search for the largest gap: shapes, or the ground below a triangle of terrain.
 
+use super::polyhedron::Polyhedron;
 use super::prism::Prism;
 use crate::shape::{
     Capsule, Core, Cuboid, Curvature, Cylinder, EllipsoidCore, Feature, Mesh, Shape, Sphere,
@@ -73,6 +74,19 @@ impl<'a, S: Scalar> Body<'a, S> {
         body
     }
 
+    /// Returns the core if it is a polyhedron of which corners, edges and faces have numbers.
+    pub(super) fn polyhedron(&self) -> Option<Polyhedron<'a, S>> {
+        match self.core {
+            AnyCore::Segment(capsule) => Some(Polyhedron::Segment(capsule.half_length)),
+            AnyCore::Box(cuboid) => Some(Polyhedron::Box(cuboid.half_lengths)),
+            AnyCore::Hull(mesh) => mesh.hull.map(Polyhedron::Hull),
+            AnyCore::Point(_)
+            | AnyCore::Ellipsoid(_)
+            | AnyCore::Cylinder(_)
+            | AnyCore::Prism(_) => None,
+        }
+    }
+
     /// Returns the cylinder if the body is one.
     pub(super) fn as_cylinder(&self) -> Option<&Cylinder<S>> {
         match &self.core {
@@ -97,6 +111,11 @@ impl<'a, S: Scalar> Body<'a, S> {
     #[inline]
     pub(super) fn support(&self, d: Vec3<S>, side: Vec3<S>) -> Vec3<S> {
         of_core!(self, core => core.support(d, side))
+    }
+    /// See [`Core::corner_along`].
+    #[inline]
+    pub(super) fn corner_along(&self, d: Vec3<S>, side: Vec3<S>) -> (Vec3<S>, u32) {
+        of_core!(self, core => core.corner_along(d, side))
     }
     /// See [`Core::feature`].
     pub(super) fn feature(&self, d: Vec3<S>) -> Feature<S> {

@@ -15,10 +15,12 @@
 //! among nearly equal depths the smallest is there.
 
 use super::{
+    depth_proof::DepthProof,
     pair::{Gap, Pair, Vertex},
     polytope::{Polytope, VERTICES},
     refine::{ActiveEdges, refine},
     simplex::Simplex,
+    touching::Touching,
 };
 use clench_math::{Mat3, Scalar, Vec3};
 
@@ -34,13 +36,30 @@ pub(crate) const FAR: f64 = 0.05;
 
 /// Returns the largest gap of overlapping cores, which is negative. The simplex must contain the origin, and becomes
 /// the face of the difference that the gap belongs to.
-pub(super) fn epa<S: Scalar>(pair: &Pair<S>, start: Gap<S>, simplex: &mut Simplex<S>) -> Gap<S> {
+pub(super) fn epa<S: Scalar>(
+    pair: &Pair<S>,
+    start: Gap<S>,
+    simplex: &mut Simplex<S>,
+    proof: Option<&mut DepthProof>,
+) -> Gap<S> {
     let mut polytope = Polytope::empty(pair);
     match enclose(pair, simplex.vertices()) {
         Ok(vertices) => polytope.begin(&vertices),
         Err(flat) => return flat,
     }
-    expand(pair, start, &mut polytope, simplex)
+    let (found, triangle) = expand(pair, start, &mut polytope);
+    *simplex = Simplex::unsolved(&triangle);
+    let Some(bodies) = pair.polyhedra() else {
+        return found;
+    };
+    let Some((touching, (exact, between))) = Touching::of(pair, &bodies, &found, &triangle) else {
+        return found;
+    };
+    if let Some(proof) = proof {
+        proof.store(&polytope, touching);
+    }
+    *simplex = Simplex::new(between);
+    exact
 }
 
 /// Returns four vertices that span a volume, including the given ones if they span enough.
@@ -105,13 +124,12 @@ fn furthest<S: Scalar>(
     Err(gap)
 }
 
-/// Expands the polytope until the depth is known.
+/// Expands the polytope until the depth is known. Returns the largest gap and the triangle that it belongs to.
 fn expand<S: Scalar>(
     pair: &Pair<S>,
     start: Gap<S>,
     polytope: &mut Polytope<S>,
-    simplex: &mut Simplex<S>,
-) -> Gap<S> {
+) -> (Gap<S>, [Vertex<S>; 3]) {
     let mut best = start;
     let mut touching = polytope.corners(0);
     // True if Newton's method has refined the best direction.
@@ -168,6 +186,5 @@ fn expand<S: Scalar>(
             best.improve(pair.gap(normal), pair.tolerance);
         }
     }
-    *simplex = Simplex::unsolved(&touching);
-    best
+    (best, touching)
 }

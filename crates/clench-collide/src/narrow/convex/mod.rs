@@ -5,6 +5,7 @@ mod clipping;
 mod constants;
 mod cylinder_polyhedron;
 mod cylinders;
+mod depth_proof;
 mod ellipse;
 mod epa;
 mod gjk;
@@ -12,20 +13,23 @@ mod largest_gap;
 mod overlap;
 mod pair;
 mod patch;
+mod polyhedron;
 mod polytope;
 mod prism;
 mod refine;
 mod simplex;
 mod terrain;
+mod touching;
 
 use super::boxes::boxes_near;
+use super::pair_memory::PairMemory;
 use super::per_lane::{Points, per_lane_where};
 use super::placed::AnyPlaced;
-use super::separating_axis::SeparatingAxis;
 use crate::contact::Contacts;
 use crate::shape::Shape;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 pub use constants::{CONVEX_CONSTANTS, CONVEX_COUNTS};
+pub use depth_proof::{DepthProof, LaneProofs};
 use epa::epa;
 use gjk::{Cores, gjk};
 use pair::{Gap, Pair};
@@ -33,29 +37,30 @@ use patch::patch;
 use simplex::Simplex;
 pub(super) use terrain::terrain;
 
-/// Computes the contacts of two bounded convex shapes. `axis`, the last separating direction, may prove at once that
-/// there are none; a search that finds them apart updates it.
+/// Computes the contacts of two bounded convex shapes. The last separating direction in `memory` may prove at once that
+/// there are none, a proof of the last depth that only the features which touched then matter. Searches update both.
 #[kernel]
 pub(super) fn convex<T: Real>(
     a: AnyPlaced<T>,
     b: AnyPlaced<T>,
     margin: T,
-    axis: &mut SeparatingAxis<T>,
+    memory: &mut PairMemory<T>,
     out: &mut Contacts<T>,
 ) {
+    let PairMemory { axis, proofs } = memory;
     let mut near = !axis.separates(a, b, margin);
     if !near.any() {
         return;
     }
     near &= boxes_near(a, b, margin, axis);
     per_lane_where(near, a, b, margin, out, |lane, a, b, margin, found| {
-        if let Err(direction) = points(a, b, margin, found) {
+        if let Err(direction) = points(a, b, margin, proofs.of_lane(lane), found) {
             axis.set(lane, direction);
         }
     });
 }
 
-/// Computes the contacts of one environment.
+/// Computes the contacts of one environment, with a proof of the depth in the last step, which it replaces.
 ///
 /// # Errors
 /// Returns a separating direction in the frame of the first as an error if the bodies are more than `margin` apart.
@@ -63,9 +68,16 @@ pub(super) fn points<S: Scalar>(
     a: AnyPlaced<S>,
     b: AnyPlaced<S>,
     margin: S,
+    mut proof: Option<&mut DepthProof>,
     points: &mut Points<S>,
 ) -> Result<(), Vec3<S>> {
     let pair = Pair::new(a, b);
+    if let Some(proof) = &mut proof
+        && let Some((best, between)) = proof.confirm(&pair)
+    {
+        patch(&pair, a, best, Some(&Simplex::new(between)), margin, points);
+        return Ok(());
+    }
     let known = match (&a.shape, &b.shape) {
         (Shape::Cylinder(a), Shape::Box(b)) => {
             Some(cylinder_polyhedron::box_gap(&pair, a, b, margin))
@@ -87,7 +99,7 @@ pub(super) fn points<S: Scalar>(
         return Ok(());
     }
     let (start, mut simplex) = begin(&pair);
-    let best = nearest(&pair, start, margin, &mut simplex).map_err(|apart| apart.normal)?;
+    let best = nearest(&pair, start, margin, &mut simplex, proof).map_err(|apart| apart.normal)?;
     match known.filter(|known| known.gap > best.gap + pair.tolerance) {
         Some(known) => patch_along(&pair, a, known, margin, points),
         None => patch(&pair, a, best, Some(&simplex), margin, points),
@@ -109,18 +121,20 @@ fn begin<S: Scalar>(pair: &Pair<S>) -> (Gap<S>, Simplex<S>) {
 }
 
 /// Returns the largest gap between two cores, or as an error a separating one if the bodies are more than `margin`
-/// apart. The simplex must be the vertex along `start` and becomes the vertices of the nearest points.
+/// apart. The simplex must be the vertex along `start` and becomes the vertices of the nearest points. `proof` becomes
+/// that of the depth of overlapping polyhedra.
 fn nearest<S: Scalar>(
     pair: &Pair<S>,
     start: Gap<S>,
     margin: S,
     simplex: &mut Simplex<S>,
+    proof: Option<&mut DepthProof>,
 ) -> Result<Gap<S>, Gap<S>> {
     let radii = pair.a.radius + pair.b.radius;
     let best = match gjk(pair, start, margin + radii, simplex) {
         Cores::Apart(gap) => return Err(gap),
         Cores::Near(best) => best,
-        Cores::Overlap => epa(pair, start, simplex),
+        Cores::Overlap => epa(pair, start, simplex, proof),
     };
     if best.gap - radii <= margin {
         Ok(best)

@@ -203,7 +203,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
     /// Returns the support points along the normal if they face each other: then they are the nearest of the cores.
     fn facing(&self) -> Option<PatchPoint<S>> {
         let n = self.projection.rows[2];
-        let Vertex { w, a, b } = self.pair.vertex(n);
+        let Vertex { w, a, b, .. } = self.pair.vertex(n);
         let miss = (w - n * self.gap).norm();
         (miss <= self.pair.smallest * S::new(MAX_MISS)).then(|| self.witness((a, b)))
     }

@@ -6,6 +6,7 @@
 //! there −(H_A + H_B + g 1).
 
 use super::body::Body;
+use super::polyhedron::Polyhedra;
 use crate::narrow::placed::AnyPlaced;
 use arrayvec::ArrayVec;
 use clench_math::{Mat3, Real, Scalar, Vec3};
@@ -36,6 +37,8 @@ pub(super) struct Vertex<S> {
     pub a: Vec3<S>,
     /// The point on the second body, in its frame.
     pub b: Vec3<S>,
+    /// The numbers of these points if they are corners of polyhedra.
+    pub corners: [u32; 2],
 }
 
 /// A direction and the gap between the cores along it.
@@ -72,7 +75,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             (b.pose.rotation, b.pose.position - a.pose.position)
         } else {
             let rotation = a.pose.rotation.transpose() * b.pose.rotation;
-            (rotation, a.pose.local(b.pose.position))
+            (orthogonal(rotation), a.pose.local(b.pose.position))
         };
         Pair::between(body_a, body_b, rotation, offset)
     }
@@ -100,6 +103,11 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
     }
 
+    /// Returns both bodies as polyhedra, if they are.
+    pub(super) fn polyhedra(&self) -> Option<Polyhedra<'a, S>> {
+        Some([self.a.polyhedron()?, self.b.polyhedron()?])
+    }
+
     /// Returns the direction between nearby points of the cores.
     pub(super) fn start(&self) -> Vec3<S> {
         let from = self.a.nearest(|| self.offset).unwrap_or(Vec3::ZERO);
@@ -120,21 +128,22 @@ impl<'a, S: Scalar> Pair<'a, S> {
     #[inline]
     pub(super) fn vertex(&self, normal: Vec3<S>) -> Vertex<S> {
         let local = -self.rotation.transpose_mul(normal);
-        self.difference(self.a.support(normal, normal), self.b.support(local, local))
+        let a = self.a.corner_along(normal, normal);
+        self.difference(a, self.b.corner_along(local, local))
     }
 
     /// Returns the vertex, among several vertices w(n), that is furthest against `side`, which is near n.
     #[inline]
     pub(super) fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
         let local = |v| -self.rotation.transpose_mul(v);
-        let b = self.b.support(local(normal), local(side));
-        self.difference(self.a.support(normal, side), b)
+        let b = self.b.corner_along(local(normal), local(side));
+        self.difference(self.a.corner_along(normal, side), b)
     }
 
     #[inline]
-    fn difference(&self, a: Vec3<S>, b: Vec3<S>) -> Vertex<S> {
-        let w = self.offset + self.rotation * b - a;
-        Vertex { w, a, b }
+    fn difference(&self, (a, of_a): (Vec3<S>, u32), (b, of_b): (Vec3<S>, u32)) -> Vertex<S> {
+        let (w, corners) = (self.offset + self.rotation * b - a, [of_a, of_b]);
+        Vertex { w, a, b, corners }
     }
 
     /// Returns the gap g(n).
@@ -189,6 +198,19 @@ impl<'a, S: Scalar> Pair<'a, S> {
         }
         bends
     }
+}
+
+/// Returns a rotation that is orthogonal up to rounding. The product of rotations in single precision needs one step of
+/// Newton's iteration for the polar factor, R (3 − RᵀR) / 2. Normals of faces must turn as their corners do.
+fn orthogonal<S: Scalar>(rotation: Mat3<S>) -> Mat3<S> {
+    let rounding = S::EPSILON * S::new(64.0);
+    let is_unit = |row: Vec3<S>| (row.norm_squared() - S::ONE).abs() <= rounding;
+    if rotation.rows.into_iter().all(is_unit) {
+        return rotation;
+    }
+    let square = rotation.transpose() * rotation;
+    let row = |k: usize| Mat3::IDENTITY.rows[k] * S::new(1.5) - square.rows[k] * S::new(0.5);
+    rotation * Mat3::from_rows(row(0), row(1), row(2))
 }
 
 /// Returns two unit vectors that form a right-handed frame with the unit vector n as the third (Duff et al. 2017).

@@ -150,6 +150,14 @@ impl<S: Scalar> Polytope<S> {
     pub(super) fn close(&mut self, face: usize) {
         self.distances[face] = S::INFINITY;
     }
+    /// Returns the corners of both bodies at each vertex.
+    pub(super) fn corners_of_vertices(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.vertices.iter().map(|vertex| vertex.corners)
+    }
+    /// Returns the corners of each face.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = [u8; 3]> {
+        self.faces.iter().map(|face| face.corners)
+    }
     /// Returns true if the vertex capacity is reached.
     pub(super) fn is_full(&self) -> bool {
         self.vertices.is_full()

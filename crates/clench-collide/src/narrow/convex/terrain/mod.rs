@@ -230,7 +230,7 @@ impl<S: Scalar> Search<S> {
             }
         }
         let (start, mut simplex) = begin(pair);
-        nearest(pair, start, self.margin, &mut simplex).map(|best| (best, Some(simplex)))
+        nearest(pair, start, self.margin, &mut simplex, None).map(|best| (best, Some(simplex)))
     }
 
     /// Returns true if a direction separates a body from the ground below a triangle.
