@@ -182,8 +182,8 @@ class Document(Files):
         copies = dict(zip(self.root.iter(), less.root.iter(), strict=True))
         less.parents()[copies[body]].remove(copies[body])
         for world in less.root.findall("worldbody"):
-            for node in list(world):
-                less.remove(node)
+            while len(world):  # Removing a body also removes cameras and lights that follow it.
+                less.remove(world[0])
         left = {*less.root.iter(), *copies[body].iter()}
         self._hidden |= {node for node, other in copies.items() if other not in left}
 

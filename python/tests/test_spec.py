@@ -258,6 +258,17 @@ def test_the_source_goes_its_own_way() -> None:
         two.world.attach(two, prefix="")
 
 
+def test_a_body_is_attached_without_the_cameras_that_follow_others() -> None:
+    scene = clench.ModelSpec("scene")
+    for name in ("ball", "cube"):
+        scene.world.add_body(name=name).add_geom(size=0.1)
+        scene.world.add_camera(name=f"to_{name}", mode="targetbody", target=name)
+    room = clench.ModelSpec("room")
+    room.world.attach(scene, prefix="s_", body="cube")
+    assert (room.names("body"), room.names("camera")) == (["s_cube"], [])
+    assert room.build().nbody == 2
+
+
 def test_an_attached_model_moves_in_mujoco_as_here() -> None:
     text = armed().to_xml()
     model = armed().build()
