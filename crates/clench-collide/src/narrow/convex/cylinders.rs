@@ -31,8 +31,8 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) 
         axes[1].z,
         (axes[1].x.squared() + axes[1].y.squared()).sqrt(),
     );
-    // Such a tilt moves no point noticeably.
-    if sine * pair.largest <= pair.tolerance {
+    // Such a tilt moves no point noticeably, or is an error of the poses.
+    if sine * pair.largest <= pair.tolerance || sine <= pair.rotation_error * S::new(4.0) {
         return parallel(pair);
     }
     let least = pair.largest * S::EPSILON;

@@ -17,6 +17,8 @@ pub(super) struct Pair<'a, S> {
     pub b: Body<'a, S>,
     /// The axes of the second body as columns.
     pub rotation: Mat3<S>,
+    /// The error of these axes, rad: that of single precision if poses have it, else zero.
+    pub rotation_error: S,
     /// The origin of the second body.
     pub offset: Vec3<S>,
     /// The size of the smaller body, m: the scale of tolerances.
@@ -75,9 +77,13 @@ impl<'a, S: Scalar> Pair<'a, S> {
             (b.pose.rotation, b.pose.position - a.pose.position)
         } else {
             let rotation = a.pose.rotation.transpose() * b.pose.rotation;
-            (orthogonal(rotation), a.pose.local(b.pose.position))
+            (rotation, a.pose.local(b.pose.position))
         };
-        Pair::between(body_a, body_b, rotation, offset)
+        let (rotation, rotation_error) = orthogonal(rotation);
+        Pair {
+            rotation_error,
+            ..Pair::between(body_a, body_b, rotation, offset)
+        }
     }
 
     /// Creates a pair from two bodies and the axes and origin of the second in the frame of the first.
@@ -96,6 +102,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             a,
             b,
             rotation,
+            rotation_error: S::ZERO,
             offset,
             smallest,
             largest,
@@ -200,17 +207,19 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 }
 
-/// Returns a rotation that is orthogonal up to rounding. The product of rotations in single precision needs one step of
-/// Newton's iteration for the polar factor, R (3 − RᵀR) / 2. Normals of faces must turn as their corners do.
-fn orthogonal<S: Scalar>(rotation: Mat3<S>) -> Mat3<S> {
-    let rounding = S::EPSILON * S::new(64.0);
-    let is_unit = |row: Vec3<S>| (row.norm_squared() - S::ONE).abs() <= rounding;
-    if rotation.rows.into_iter().all(is_unit) {
-        return rotation;
+/// Returns a rotation that is orthogonal up to rounding, and its error, which is that of the given one. The product of
+/// rotations in single precision needs one step of Newton's iteration for the polar factor, R (3 − RᵀR) / 2: normals of
+/// faces must turn as their corners do.
+fn orthogonal<S: Scalar>(rotation: Mat3<S>) -> (Mat3<S>, S) {
+    let excess = |row: Vec3<S>| (row.norm_squared() - S::ONE).abs();
+    let [x, y, z] = rotation.rows.map(excess);
+    let error = x.max(y).max(z);
+    if error <= S::EPSILON * S::new(64.0) {
+        return (rotation, S::ZERO);
     }
     let square = rotation.transpose() * rotation;
     let row = |k: usize| Mat3::IDENTITY.rows[k] * S::new(1.5) - square.rows[k] * S::new(0.5);
-    rotation * Mat3::from_rows(row(0), row(1), row(2))
+    (rotation * Mat3::from_rows(row(0), row(1), row(2)), error)
 }
 
 /// Returns two unit vectors that form a right-handed frame with the unit vector n as the third (Duff et al. 2017).
