@@ -74,7 +74,7 @@ fn tests(profile: Profile, kind: &str) -> Command {
 
 /// Returns the arguments that select the packages of this stage.
 pub(crate) fn packages(profile: Profile) -> Vec<String> {
-    // `wgpu`, which three of them need, takes a minute and a half to compile, the step in dual numbers two.
+    // Three of them need `wgpu`, which takes a minute and a half to compile. The step in dual numbers takes two.
     let omitted: &[&str] = match profile {
         Profile::Quick => &[
             "clench-gpu",

@@ -3,6 +3,7 @@
 //! Like a separating axis, a proof saves a search and changes no result. It is large, so only pairs that touch have
 //! one. Pairs and environments may compete for an entry.
 
+use super::separating_axes::hash;
 use clench_collide::{DepthProof, LaneProofs, ShapeKind};
 
 /// The number of entries per touching pair of an environment.
@@ -56,7 +57,6 @@ impl DepthProofs {
             true => &mut self.proofs[..],
             false => &mut [],
         };
-        let pair = geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B);
-        LaneProofs::new(table, pair, &self.envs)
+        LaneProofs::new(table, hash(geoms), &self.envs)
     }
 }

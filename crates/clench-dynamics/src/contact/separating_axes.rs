@@ -12,6 +12,11 @@ const WAYS: usize = 4;
 /// The number of entries per near pair.
 const ENTRIES_PER_PAIR: usize = 4;
 
+/// Returns a number that distinguishes most pairs of geoms.
+pub(super) fn hash(geoms: [u32; 2]) -> u32 {
+    geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B)
+}
+
 /// A table of buckets without chains.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeparatingAxes<T> {
@@ -50,9 +55,8 @@ impl<T: Real> SeparatingAxes<T> {
     /// Returns the index of a pair's axis.
     #[inline(always)]
     pub(super) fn index(&mut self, geoms: [u32; 2]) -> usize {
-        let mixed = geoms[0].wrapping_mul(0x9E37_79B9) ^ geoms[1].wrapping_mul(0x85EB_CA6B);
-        let mixed = mixed ^ (mixed >> 15);
-        let bucket = mixed as usize & (self.buckets.len() - 1);
+        let mixed = hash(geoms);
+        let bucket = (mixed ^ (mixed >> 15)) as usize & (self.buckets.len() - 1);
         let (places, check) = (&mut self.buckets[bucket], self.check);
         let known = places.iter().position(|entry| entry.geoms == geoms);
         let way = known.unwrap_or_else(|| {

@@ -37,8 +37,8 @@ use patch::patch;
 use simplex::Simplex;
 pub(super) use terrain::terrain;
 
-/// Computes the contacts of two bounded convex shapes. The last separating direction in `memory` may prove at once that
-/// there are none, a proof of the last depth that only the features which touched then matter. Searches update both.
+/// Computes the contacts of two bounded convex shapes. The last separating direction in `memory` may show at once that
+/// there are none. The proof of the last depth may show that the same features still touch. A search updates either.
 #[kernel]
 pub(super) fn convex<T: Real>(
     a: AnyPlaced<T>,
