@@ -1,6 +1,6 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
-use crate::recursive::Recursive;
+use crate::recursive::{Curves, Recursive};
 use crate::request::Request;
 use crate::seed::{self, Seed};
 use crate::source::Source;
@@ -156,11 +156,11 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
     ) -> Result<bool, SimError> {
         self.recursed = Recursive::covers(source);
         if self.recursed {
-            let curves = &mut self.recursive.curves;
             let numbers = (source.model, &self.params);
-            let memory = (&mut self.before, &mut self.ws.position);
-            curves.find(numbers, source.state, memory);
-            self.recursed = self.recursive.run(source, write)?;
+            let mut find_curves = |state: &State<f64>, curves: &mut Curves| {
+                curves.find(numbers, state, (&mut self.before, &mut self.ws.position));
+            };
+            self.recursed = self.recursive.run(source, &mut find_curves, write)?;
         }
         Ok(self.recursed)
     }

@@ -74,7 +74,7 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
                 let (pos, vel) = (&ws.position, &ws.velocity);
                 actuation(model, params, before, pos, vel, Real::ZERO, &mut ws.force);
                 for (dof, qacc) in ws.qacc.iter_mut().enumerate() {
-                    *qacc = Real::new(recursive.plain.qacc[dof]);
+                    *qacc = Real::new(recursive.qacc[dof]);
                     let rates = recursive.acceleration(dof);
                     for (slot, &column) in columns.iter().enumerate() {
                         qacc.set_derivative(slot, rates[column]);

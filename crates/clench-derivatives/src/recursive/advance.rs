@@ -1,6 +1,5 @@
 //! Derivatives of the integration of positions: functions of the coordinates of each joint alone.
 
-use super::step::Step;
 use crate::tangent;
 use clench_dynamics::dynamics::integrate::integrate_positions;
 use clench_dynamics::model::Model;
@@ -28,9 +27,8 @@ pub(super) struct Advance {
 }
 
 impl Advance {
-    /// Differentiates by the positions before and the velocities after the step.
-    pub(super) fn run(&mut self, step: &Step<'_>) {
-        let (model, h) = (step.model, step.params.timestep);
+    /// Differentiates the positions after a time `h` by those before it, and by the velocities `qvel`.
+    pub(super) fn run(&mut self, model: &Model, qpos: &[f64], qvel: &[f64], h: f64) {
         let mut straight = Motion::default();
         (straight.by_position[0], straight.by_velocity[0]) = (1.0, h);
         self.motion.clear();
@@ -41,8 +39,8 @@ impl Advance {
         }
         for by_velocity in [false, true] {
             let numbers = |values: &[f64]| Vec::from_iter(values.iter().map(|&x| Number::new(x)));
-            self.qpos = numbers(&step.before.qpos);
-            self.qvel = numbers(&step.after.qvel);
+            self.qpos = numbers(qpos);
+            self.qvel = numbers(qvel);
             for joint in &model.joints {
                 for k in 0..joint.kind.nv() {
                     match by_velocity {

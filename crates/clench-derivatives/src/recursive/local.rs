@@ -8,10 +8,10 @@ use super::implicit::Implicit;
 use super::step::Step;
 use super::tendons;
 use crate::tangent;
-use clench_dynamics::State;
 use clench_dynamics::dynamics::inverse_derivatives::Columns;
 use clench_dynamics::dynamics::local::{LocalStages, dof_damping_slope, is_sprung};
 use clench_dynamics::model::{Integrator, Model, Params};
+use clench_dynamics::{State, Workspace};
 use clench_math::{Dual, Real};
 
 /// The number of directions of a pass: as many as fill a register. Most models need no more.
@@ -36,6 +36,8 @@ pub(super) struct Local {
     directions: Vec<(Kind, usize)>,
     /// The derivatives of the new activations: an activation, a column and the derivative.
     activations: Vec<(usize, usize, f64)>,
+    /// Likewise those of their rates, for an integrator of several stages.
+    pub activation_rates: Vec<(usize, usize, f64)>,
     /// The slopes of damping.
     pub implicit: Implicit,
     /// Scratch: a row of the result.
@@ -50,6 +52,7 @@ impl Local {
             stages: LocalStages::new(model),
             directions: Vec::new(),
             activations: Vec::new(),
+            activation_rates: Vec::new(),
             implicit: Implicit::default(),
             row: Vec::new(),
         };
@@ -67,6 +70,7 @@ impl Local {
     pub(super) fn run(&mut self, step: &Step<'_>, gradient: &mut Columns<'_, f64>) {
         let model = step.model;
         self.activations.clear();
+        self.activation_rates.clear();
         self.implicit.clear(model.nv);
         self.list_directions(step);
         let directions = std::mem::take(&mut self.directions);
@@ -86,9 +90,14 @@ impl Local {
             if model.flags.actuation {
                 self.subtract_actuation(step, part, gradient);
             }
-            self.stages
-                .advance(model, &self.params, &mut self.before.act);
-            self.read_activations(step, part);
+            if model.integrator == Integrator::Rk4 {
+                let rates = &self.stages.force.act_dot;
+                read_activations(step, part, rates, &mut self.activation_rates);
+                continue;
+            }
+            let act = &mut self.before.act;
+            self.stages.advance(model, &self.params, act);
+            read_activations(step, part, act, &mut self.activations);
         }
         self.directions = directions;
         if !model.tendons.is_empty() {
@@ -250,38 +259,25 @@ impl Local {
         }
     }
 
-    /// Reads the derivatives of the new activations.
-    fn read_activations(&mut self, step: &Step<'_>, part: &[(Kind, usize)]) {
-        let (model, nv) = (step.model, step.model.nv);
-        for (u, actuator) in model.actuators.iter().enumerate() {
-            let along = Coordinate::of_actuator(step, u);
-            for a in actuator.acts.clone() {
-                for (direction, &local) in part.iter().enumerate() {
-                    let rate = self.before.act[a].tangent[direction];
-                    let mut push = |column: usize, rate: f64| {
-                        self.activations.push((a, column, rate));
-                    };
-                    match local {
-                        (Kind::Position, 0) => {
-                            along.lengths().for_each(|(dof, by)| push(dof, rate * by));
-                        }
-                        (Kind::Velocity, 0) => {
-                            let changes = along.velocity_changes(&step.before.qvel);
-                            changes.for_each(|(dof, by)| push(dof, rate * by));
-                            along
-                                .iter()
-                                .for_each(|(dof, arm)| push(nv + dof, rate * arm));
-                        }
-                        (Kind::Position | Kind::Velocity, _) => {}
-                        (Kind::Activation | Kind::Control, _) => {
-                            if let Some(column) = column(model, u, local) {
-                                push(column, rate);
-                            }
-                        }
-                    }
-                }
-            }
+    /// Returns the derivatives of each new activation by itself before the step and by its rate: the mean of all stages
+    /// in `plain`.
+    pub(super) fn advance_slopes(
+        &mut self,
+        model: &Model,
+        before: &State<f64>,
+        plain: &Workspace<f64>,
+    ) -> Vec<[f64; 2]> {
+        let rates = &mut self.stages.force.act_dot;
+        set_values(rates, &plain.integration.mean.activation);
+        set_values(&mut self.before.act, &before.act);
+        for (act, rate) in self.before.act.iter_mut().zip(rates) {
+            act.set_derivative(0, 1.0);
+            rate.set_derivative(1, 1.0);
         }
+        let act = &mut self.before.act;
+        self.stages.advance(model, &self.params, act);
+        let slopes = act.iter().map(|act| [0, 1].map(|k| act.tangent[k]));
+        slopes.collect()
     }
 
     /// Passes the derivatives of the new activations to `write`.
@@ -300,6 +296,44 @@ impl Local {
                 }
             }
             write(&self.row);
+        }
+    }
+}
+
+/// Reads the derivatives of activations, or of their rates, along the directions of a pass: appends the activation, the
+/// column and the derivative.
+fn read_activations(
+    step: &Step<'_>,
+    part: &[(Kind, usize)],
+    numbers: &[Number],
+    to: &mut Vec<(usize, usize, f64)>,
+) {
+    let (model, nv) = (step.model, step.model.nv);
+    for (u, actuator) in model.actuators.iter().enumerate() {
+        let along = Coordinate::of_actuator(step, u);
+        for a in actuator.acts.clone() {
+            for (direction, &local) in part.iter().enumerate() {
+                let rate = numbers[a].tangent[direction];
+                let mut push = |column: usize, rate: f64| to.push((a, column, rate));
+                match local {
+                    (Kind::Position, 0) => {
+                        along.lengths().for_each(|(dof, by)| push(dof, rate * by));
+                    }
+                    (Kind::Velocity, 0) => {
+                        let changes = along.velocity_changes(&step.before.qvel);
+                        changes.for_each(|(dof, by)| push(dof, rate * by));
+                        along
+                            .iter()
+                            .for_each(|(dof, arm)| push(nv + dof, rate * arm));
+                    }
+                    (Kind::Position | Kind::Velocity, _) => {}
+                    (Kind::Activation | Kind::Control, _) => {
+                        if let Some(column) = column(model, u, local) {
+                            push(column, rate);
+                        }
+                    }
+                }
+            }
         }
     }
 }

@@ -17,11 +17,13 @@ mod contact;
 mod coordinate;
 mod curves;
 mod frames;
+mod gradient;
 mod gyroscopic;
 mod implicit;
 mod local;
 mod pair;
 mod rows;
+mod runge_kutta;
 mod scope;
 mod slopes;
 mod step;
@@ -30,35 +32,32 @@ mod weight;
 
 use crate::source::Source;
 use advance::Advance;
-use blocks::Blocks;
-use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
-use clench_dynamics::model::{Model, Params};
+use clench_dynamics::model::{Integrator, Model, Params};
 use clench_dynamics::{State, Workspace, check};
 use clench_rigid::SimError;
-use clench_solver::Response;
-use curves::Curves;
+pub(crate) use curves::Curves;
+use gradient::Gradient;
 use implicit::is_implicit;
-use local::Local;
+use runge_kutta::RungeKutta;
 use step::Step;
-use weight::Weight;
 
 /// The memory of derivatives by recursion.
 pub(crate) struct Recursive {
     /// The state after the step.
     pub(crate) state: State<f64>,
     pub(crate) plain: Workspace<f64>,
-    inverse: InverseDerivatives<f64>,
-    local: Local,
-    weight: Weight,
-    blocks: Blocks,
+    gradient: Gradient,
     advance: Advance,
-    pub(crate) curves: Curves,
-    response: Response<f64>,
-    /// The gradient, then the acceleration, then the new velocity: nv rows.
-    columns: Vec<f64>,
-    /// The derivatives of the acceleration, likewise; only with sensors.
+    runge_kutta: RungeKutta,
+    curves: Curves,
+    /// The acceleration at the start of the step (nv), and its derivatives by state and controls, nv rows; only with
+    /// sensors.
+    pub(crate) qacc: Vec<f64>,
     acceleration: Vec<f64>,
 }
+
+/// Computes the [curves](Curves) of a state.
+pub(crate) type FindCurves<'a> = dyn FnMut(&State<f64>, &mut Curves) + 'a;
 
 impl Recursive {
     pub(crate) fn new(model: &Model) -> Self {
@@ -66,27 +65,23 @@ impl Recursive {
         Recursive {
             state: State::new(model),
             plain: (compiled.workspace)(model),
-            inverse: InverseDerivatives::new(model),
-            local: Local::new(model),
-            weight: Weight::default(),
-            blocks: Blocks::default(),
+            gradient: Gradient::new(model),
             advance: Advance::default(),
+            runge_kutta: RungeKutta::default(),
             curves: Curves::new(model),
-            response: Response::default(),
-            columns: Vec::new(),
+            qacc: Vec::new(),
             acceleration: Vec::new(),
         }
     }
 
-    /// Returns the derivatives of the acceleration of a dof by state and controls, before the step makes it implicit.
+    /// Returns the derivatives of the acceleration of a dof by state and controls, at the start of the step.
     pub(crate) fn acceleration(&self, dof: usize) -> &[f64] {
-        let width = self.acceleration.len() / self.plain.qacc.len();
-        &self.acceleration[dof * width..][..width]
+        &self.acceleration[dof * self.gradient.width..][..self.gradient.width]
     }
 
     pub(crate) fn set_params(&mut self, params: &Params<f64>) {
         self.plain.invalidate_poses();
-        self.local.set_params(params);
+        self.gradient.local.set_params(params);
     }
 
     /// Returns true if the step is of a kind that recursions cover, as far as its contacts are too.
@@ -104,77 +99,84 @@ impl Recursive {
         let step = clench_dynamics::Step::<f64>::compiled().step;
         let (state, plain) = (&mut self.state, &mut self.plain);
         step(model, params, settings, state, plain, |_, _, _, _, _| {});
-        if check::good_results(state, plain) {
+        self.check(source)
+    }
+
+    /// Returns an error if the step failed.
+    fn check(&self, source: Source<'_>) -> Result<(), SimError> {
+        if check::good_results(&self.state, &self.plain) {
             return Ok(());
         }
-        let fault = check::result_fault(model, source.state.time, state, plain, 0);
+        let (state, plain) = (&self.state, &self.plain);
+        let fault = check::result_fault(source.model, source.state.time, state, plain, 0);
         Err(fault.into())
     }
 
-    /// Passes the derivatives of the next state by state and controls to `write`, row after row. The [curves](Curves)
-    /// must be those of the state, and recursions must [cover](Self::covers) the step. Returns false if they do not
-    /// cover its contacts.
+    /// Passes the derivatives of the next state by state and controls to `write`, row after row. Recursions must
+    /// [cover](Self::covers) the step. Returns false if they do not cover its contacts.
+    ///
+    /// # Errors
+    /// Returns an error if the step fails.
     pub(crate) fn run(
         &mut self,
         source: Source<'_>,
+        find_curves: &mut FindCurves<'_>,
+        write: &mut dyn FnMut(&[f64]),
+    ) -> Result<bool, SimError> {
+        match source.model.integrator {
+            Integrator::Rk4 => self.run_stages(source, find_curves, write),
+            Integrator::Euler
+            | Integrator::ImplicitFast
+            | Integrator::Implicit
+            | Integrator::Discrete => self.run_stage(source, find_curves, write),
+        }
+    }
+
+    /// Differentiates a step of one stage.
+    fn run_stage(
+        &mut self,
+        source: Source<'_>,
+        find_curves: &mut FindCurves<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError> {
         self.step(source)?;
-        let (model, settings) = (source.model, source.settings);
+        find_curves(source.state, &mut self.curves);
+        let model = source.model;
         let step = Step {
             model,
             params: source.params,
-            settings,
+            settings: source.settings,
             before: source.state,
-            after: &self.state,
             plain: &self.plain,
             curves: &self.curves,
         };
-        let columns = 2 * model.nv + model.na + model.nu();
-        // Rows fill whole registers.
-        let width = columns.max(1).next_multiple_of(16);
-        self.columns.clear();
-        self.columns.resize(model.nv * width, 0.0);
-        let mut gradient = Columns {
-            values: &mut self.columns,
-            width,
-        };
-        if !(self.response).factor(&step.plain.problem, &settings.solver, &step.plain.qacc) {
+        if !self.gradient.find(&step) {
             return Ok(false);
         }
-        let moving = Accelerated {
-            qacc: &step.plain.qacc,
-            moving: Some((&step.plain.velocity, &source.state.qvel)),
-        };
-        let pos = &step.plain.position;
-        self.inverse
-            .add(model, source.params, pos, moving, &mut gradient);
-        let solution = (&self.response, &self.inverse);
-        if !(self.blocks).run(&step, solution, &mut gradient) {
-            return Ok(false);
-        }
-        self.local.run(&step, &mut gradient);
-        self.weight.subtract(&step, &mut gradient);
-        self.response.solve_columns(&mut self.columns, width);
-        self.columns.iter_mut().for_each(|x| *x = -*x);
-        self.acceleration.clear();
+        // The derivatives of the acceleration, then of the new velocity.
+        let mut columns = std::mem::take(&mut self.gradient.columns);
+        self.gradient.solve(&mut columns);
+        let width = self.gradient.width;
         if source.request.sensors_len(model) > 0 {
-            self.acceleration.extend_from_slice(&self.columns);
+            self.qacc.clone_from(&step.plain.qacc);
+            self.acceleration.clone_from(&columns);
         }
         if is_implicit(&step) {
-            let implicit = &mut self.local.implicit;
-            implicit.replace(&step, &mut self.inverse, &mut self.columns, width);
+            let Gradient { inverse, local, .. } = &mut self.gradient;
+            local.implicit.replace(&step, inverse, &mut columns, width);
         }
-        self.advance.run(&step);
         let h = source.params.timestep;
-        for (i, row) in self.columns.chunks_exact_mut(width).enumerate() {
+        for (i, row) in columns.chunks_exact_mut(width).enumerate() {
             row.iter_mut().for_each(|x| *x *= h);
             row[model.nv + i] += 1.0;
         }
-        let velocity = self.columns.chunks_exact(width).map(|row| &row[..columns]);
+        let len = 2 * model.nv + model.na + model.nu();
+        let velocity = columns.chunks_exact(width).map(|row| &row[..len]);
+        (self.advance).run(model, &source.state.qpos, &self.state.qvel, h);
         self.advance.write_positions(model, velocity.clone(), write);
         velocity.for_each(&mut *write);
-        self.local.write_activations(model, columns, write);
+        (self.gradient.local).write_activations(model, len, write);
+        self.gradient.columns = columns;
         Ok(true)
     }
 }

@@ -4,7 +4,7 @@ use clench_dynamics::Model;
 use clench_dynamics::StepSettings;
 use clench_dynamics::dynamics::local::is_local;
 use clench_dynamics::dynamics::reflected::tendon_armature;
-use clench_dynamics::model::{Integrator, Params};
+use clench_dynamics::model::{Actuator, GainKind, Integrator, Params};
 use clench_dynamics::options::ContactModel;
 
 /// Returns true if the step of a state, without its sensors, is of a kind that recursions differentiate, as far as its
@@ -12,7 +12,8 @@ use clench_dynamics::options::ContactModel;
 pub(super) fn covers(model: &Model, params: &Params<f64>, settings: &StepSettings) -> bool {
     let integrates = match model.integrator {
         Integrator::Euler | Integrator::ImplicitFast => true,
-        Integrator::Implicit | Integrator::Rk4 | Integrator::Discrete => false,
+        Integrator::Rk4 => model.actuators.iter().all(advances_by_rates),
+        Integrator::Implicit | Integrator::Discrete => false,
     };
     let convex = match settings.contact_model {
         ContactModel::Convex => true,
@@ -30,4 +31,10 @@ pub(super) fn covers(model: &Model, params: &Params<f64>, settings: &StepSetting
         && settings.solver.noslip_iterations == 0
         && is_local(model, params)
         && constant_inertia
+}
+
+/// Returns true if the activations of an actuator after several stages follow from their mean rates, and no stage reads
+/// delayed controls. Bristles of a motor deflect by the velocity at the start of the step.
+fn advances_by_rates(actuator: &Actuator) -> bool {
+    actuator.history.is_none() && (actuator.acts.is_empty() || actuator.gain != GainKind::DcMotor)
 }

@@ -10,7 +10,6 @@ pub(super) struct Step<'a> {
     pub params: &'a Params<f64>,
     pub settings: &'a StepSettings,
     pub before: &'a State<f64>,
-    pub after: &'a State<f64>,
     pub plain: &'a Workspace<f64>,
     pub curves: &'a Curves,
 }

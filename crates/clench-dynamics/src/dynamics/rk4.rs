@@ -26,7 +26,7 @@ use std::mem::swap;
 /// The times of stages 1, 2 and 3, in time steps.
 const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 /// Weights of stages 0 to 3.
-const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+pub const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 /// The squared angle, rad², below which c is computed from its series: the closed form loses digits there, and four
 /// terms of the series are exact to 1e-15.
 const SMALL: f64 = 0.01;
@@ -39,7 +39,7 @@ pub fn rk4<T: Real>(
     params: &Params<T>,
     state: &mut State<T>,
     ws: &mut Workspace<T>,
-    forward: impl Fn(&State<T>, &mut Workspace<T>),
+    mut forward: impl FnMut(&State<T>, &mut Workspace<T>),
 ) {
     let h = params.timestep;
     begin(state, ws);
@@ -157,7 +157,7 @@ fn collect<T: Real>(model: &Model, state: &State<T>, step: T, weight: T, ws: &mu
 
 /// Computes u̇ of the rotation vector u for the angular velocity ω (see above).
 #[inline(always)]
-fn increment_rate<T: Real>(u: Vec3<T>, omega: Vec3<T>) -> Vec3<T> {
+pub fn increment_rate<T: Real>(u: Vec3<T>, omega: Vec3<T>) -> Vec3<T> {
     let squared = u.norm_squared();
     let series = T::new(1.0 / 12.0)
         + squared

@@ -46,7 +46,7 @@ fn tied(integrator: &str) -> String {
 
 #[test]
 fn connects_and_welds() {
-    for integrator in ["Euler", "implicitfast"] {
+    for integrator in ["Euler", "implicitfast", "RK4"] {
         check_text(&tied(integrator), &["equality"], |_| {});
     }
     check_text(&tied("Euler"), &["equality", "dynamic"], |sim| {

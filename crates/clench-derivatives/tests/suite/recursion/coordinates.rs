@@ -68,7 +68,7 @@ fn fixed_tendons_and_equalities_of_coordinates() {
         "friction_tendon",
         "limit_tendon",
     ];
-    for integrator in ["Euler", "implicitfast"] {
+    for integrator in ["Euler", "implicitfast", "RK4"] {
         check_text(&fingers(integrator), &forces, |_| {});
     }
 }
@@ -140,7 +140,7 @@ pub(super) fn curved(integrator: &str) -> String {
 #[test]
 fn spatial_tendons_and_curved_transmissions() {
     let forces = ["equality", "friction_tendon", "limit_tendon"];
-    for integrator in ["Euler", "implicitfast"] {
+    for integrator in ["Euler", "implicitfast", "RK4"] {
         check_text(&curved(integrator), &forces, |sim| sim.state.qvel[1] = 2.0);
     }
 }
@@ -165,7 +165,7 @@ fn sensors_of_motion() {
     let mut sensors = String::new();
     for more in [positions, velocities, forces] {
         sensors += more;
-        for integrator in ["Euler", "implicitfast"] {
+        for integrator in ["Euler", "implicitfast", "RK4"] {
             let sensors = format!("</actuator><sensor>{sensors}</sensor>");
             let text = curved(integrator).replace("</actuator>", &sensors);
             check_text(&text, &[], |sim| sim.state.qvel[1] = 2.0);
