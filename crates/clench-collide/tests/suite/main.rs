@@ -5,7 +5,6 @@ mod broad_phase;
 mod closed_forms;
 mod common;
 mod cylinder_edges;
-mod differentiated;
 mod distance;
 mod hulls;
 mod invariance;

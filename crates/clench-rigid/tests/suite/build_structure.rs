@@ -1,5 +1,6 @@
 //! Numbering, completion and validation of models by the builder.
 
+use clench_dynamics::model::RowPattern;
 use clench_math::{Quat, Vec3};
 use clench_rigid::builder::{
     ActuatorSpec, BodySpec, ConnectAnchor, EqualityKind, EqualitySpec, ExcludeSpec, GeomSpec,
@@ -370,4 +371,17 @@ fn a_mass_matrix_without_inverse_is_refused() {
     );
     let error = builder.build().unwrap_err();
     assert!(error.message.contains("mass matrix"), "{error}");
+}
+
+#[test]
+fn rows_are_ascending_and_name_each_dof_once() {
+    let mut pattern = RowPattern::default();
+    pattern.push([5, 2, 5, 0]);
+    pattern.push([]);
+    pattern.push([5]);
+    assert_eq!(pattern.dofs(0), [0, 2, 5]);
+    assert_eq!(pattern.dofs(1), [0; 0]);
+    assert_eq!(pattern.range(2), 3..4);
+    let row: Vec<_> = pattern.row(&[1.0, 2.0, 3.0, 4.0], 0).collect();
+    assert_eq!(row, [(0, 1.0), (2, 2.0), (5, 3.0)]);
 }

@@ -35,6 +35,7 @@ mod jacobians;
 mod lanes;
 mod machines;
 mod muscles;
+mod options;
 mod orientation_servos;
 mod queries;
 mod reflected;

@@ -66,21 +66,3 @@ impl RowPattern {
         dofs.zip(entries[self.range(row)].iter().copied())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::RowPattern;
-
-    #[test]
-    fn rows_are_ascending_and_name_each_dof_once() {
-        let mut pattern = RowPattern::default();
-        pattern.push([5, 2, 5, 0]);
-        pattern.push([]);
-        pattern.push([5]);
-        assert_eq!(pattern.dofs(0), [0, 2, 5]);
-        assert_eq!(pattern.dofs(1), [0; 0]);
-        assert_eq!(pattern.range(2), 3..4);
-        let row: Vec<_> = pattern.row(&[1.0, 2.0, 3.0, 4.0], 0).collect();
-        assert_eq!(row, [(0, 1.0), (2, 2.0), (5, 3.0)]);
-    }
-}

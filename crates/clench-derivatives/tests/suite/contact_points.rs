@@ -1,7 +1,7 @@
 //! Compares the derivatives of contact points with central differences.
 
-use crate::common::placement::{Placement, placed};
-use crate::common::{PAIRS, Random, Scene, V};
+use crate::scenes::placement::{Placement, placed};
+use crate::scenes::{PAIRS, Random, Scene, V};
 use clench_collide::{
     ContactPoint, Contacts, PairMemory, Pose, SeparatingAxis, Shape, ShapeKind, compiled_collide,
 };
