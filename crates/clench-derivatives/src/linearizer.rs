@@ -73,8 +73,9 @@ fn general(
 /// Computes the derivatives of steps of a model, and reuses its memory.
 pub struct Linearizer {
     pub(crate) pass: Box<dyn Pass>,
-    /// The parameters of the last passes.
+    /// The parameters of the last passes, and their version in the last simulation.
     params: Params<f64>,
+    version: Option<u64>,
     /// The directions of the columns that are not zero, and their columns.
     pub(crate) directions: Vec<(Direction, usize)>,
     /// The directions of a pass.
@@ -105,6 +106,7 @@ impl Linearizer {
         Ok(Linearizer {
             pass: pass.map_err(SimError::Instructions)?,
             params: model.params.clone(),
+            version: None,
             directions: Vec::new(),
             seeds: Vec::new(),
             all: Vec::new(),
@@ -182,10 +184,12 @@ impl Linearizer {
         parameters: &[(ParamField, usize)],
     ) -> Result<Arc<Model>, SimError> {
         sim.check_state()?;
-        if self.params != *sim.params() {
+        let version = Some(sim.params_version());
+        if self.version != version && self.params != *sim.params() {
             self.params.clone_from(sim.params());
             self.pass.set_params(&self.params);
         }
+        self.version = version;
         Ok(general(sim.model(), sim.params(), parameters))
     }
 

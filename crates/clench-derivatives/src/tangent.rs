@@ -1,7 +1,7 @@
 //! Derivatives of positions in the tangent space: one number a dof, with rotations about the axes of the child.
 
 use clench_dynamics::Model;
-use clench_dynamics::model::JointKind;
+use clench_dynamics::model::{Joint, JointKind};
 use clench_math::{Dual, Quat, Real};
 
 /// Adds to the derivative of `qpos` in one slot: motion along a dof at a rate.
@@ -12,7 +12,17 @@ pub(crate) fn move_along<L: Real<Scalar = f64>, const K: usize>(
     qpos: &mut [Dual<L, K>],
 ) {
     let joint = &model.joints[model.joints.partition_point(|joint| joint.dof <= dof) - 1];
-    let (q, k) = (joint.qpos, dof - joint.dof);
+    move_joint(joint, dof - joint.dof, (slot, rate), qpos);
+}
+
+/// Does the same along the k-th dof of a joint.
+pub(crate) fn move_joint<L: Real<Scalar = f64>, const K: usize>(
+    joint: &Joint,
+    k: usize,
+    (slot, rate): (usize, f64),
+    qpos: &mut [Dual<L, K>],
+) {
+    let q = joint.qpos;
     let (q, axis) = match joint.kind {
         JointKind::Ball => (q, k),
         JointKind::Free if k >= 3 => (q + 3, k - 3),
@@ -21,11 +31,20 @@ pub(crate) fn move_along<L: Real<Scalar = f64>, const K: usize>(
             return;
         }
     };
+    turn_along(&mut qpos[q..q + 4], axis, (slot, rate));
+}
+
+/// Adds to the derivative of an orientation in one slot: rotation about an axis of the child at a rate, rad.
+pub(crate) fn turn_along<L: Real<Scalar = f64>, const K: usize>(
+    orientation: &mut [Dual<L, K>],
+    axis: usize,
+    (slot, rate): (usize, f64),
+) {
     // d/dε q exp(ε e / 2) = ½ q e.
     let mut half = [0.0; 4];
     half[1 + axis] = 0.5 * rate;
-    let rates = quaternion(&qpos[q..]) * Quat::from_f64(half);
-    for (x, rate) in qpos[q..].iter_mut().zip(rates.to_array()) {
+    let rates = quaternion(orientation) * Quat::from_f64(half);
+    for (x, rate) in orientation.iter_mut().zip(rates.to_array()) {
         add(x, slot, rate);
     }
 }
@@ -47,20 +66,29 @@ pub(crate) fn each_motion<L: Real<Scalar = f64>, const K: usize>(
             write(L::as_scalars(&x.tangent));
         }
         if rotation {
-            // 2 Im(q⁻¹ dq), linear in dq.
-            let inverse = quaternion(turned).conjugate();
-            for axis in 1..4 {
-                let mut motion = Dual::<L, K>::ZERO;
-                for (part, &x) in turned[..4].iter().enumerate() {
-                    let mut unit = [0.0; 4];
-                    unit[part] = 2.0;
-                    let slope = (inverse * Quat::from_f64(unit)).to_array()[axis];
-                    motion += x.scale(slope);
-                }
+            for motion in turn(&turned[..4]) {
                 write(L::as_scalars(&motion.tangent));
             }
         }
     }
+}
+
+/// Returns numbers whose derivatives are those of the rotation of an orientation about each axis of the child, rad.
+pub(crate) fn turn<L: Real<Scalar = f64>, const K: usize>(
+    orientation: &[Dual<L, K>],
+) -> [Dual<L, K>; 3] {
+    // 2 Im(q⁻¹ dq), linear in dq.
+    let inverse = quaternion(orientation).conjugate();
+    [1, 2, 3].map(|axis| {
+        let mut motion = Dual::ZERO;
+        for (part, &x) in orientation.iter().enumerate() {
+            let mut unit = [0.0; 4];
+            unit[part] = 2.0;
+            let slope = (inverse * Quat::from_f64(unit)).to_array()[axis];
+            motion += x.scale(slope);
+        }
+        motion
+    })
 }
 
 /// Returns the values of a quaternion.

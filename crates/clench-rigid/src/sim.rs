@@ -31,6 +31,7 @@ use clench_math::{Mask, Real, read_lane};
 use clench_solver::LaneStats;
 use computed_state::LaneCopy;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A model and its state, with the results computed from them.
 ///
@@ -43,6 +44,8 @@ pub struct Sim<T: Precision = f64> {
     pub state: State<T>,
     model: Arc<Model>,
     params: Params<T::SingleEnv>,
+    /// A number that is that of no other parameters.
+    params_version: u64,
     options: RigidOptions,
     settings: StepSettings,
     ws: Workspace<T::SingleEnv>,
@@ -89,6 +92,7 @@ impl<T: Precision> Sim<T> {
         Ok(Sim {
             state: initial.clone(),
             params: T::params(&model),
+            params_version: next_params_version(),
             options,
             settings,
             ws,
@@ -208,6 +212,7 @@ impl<T: Precision> Sim<T> {
     /// Marks all results as stale, because parameters changed.
     fn invalidate(&mut self) {
         self.halfway = false;
+        self.params_version = next_params_version();
         self.validity.invalidate();
         self.ws.invalidate_poses();
     }
@@ -430,4 +435,10 @@ impl<T: Precision> Sim<T> {
             kinetic: energy.kinetic.lane(0),
         })
     }
+}
+
+/// Returns a number that no call returned before.
+fn next_params_version() -> u64 {
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    LAST.fetch_add(1, Relaxed)
 }

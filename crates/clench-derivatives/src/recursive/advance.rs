@@ -1,94 +1,113 @@
 //! Derivatives of the integration of positions: functions of the coordinates of each joint alone.
 
 use crate::tangent;
-use clench_dynamics::dynamics::integrate::integrate_positions;
-use clench_dynamics::model::Model;
-use clench_math::{Dual, Real};
+use clench_dynamics::model::{Joint, JointKind, Model};
+use clench_math::{Dual, Quat, Real, Vec3};
+use std::ops::Range;
 
-/// A number with its derivatives by the dofs of a joint.
-type Number = Dual<f64, 8>;
+/// A number with its derivatives by a rotation and by an angular velocity.
+type Number = Dual<f64, 6>;
 
-/// The derivatives of the motion of a dof by the k-th positions and new velocities of its joint.
-#[derive(Clone, Copy, Debug, Default)]
-struct Motion {
-    by_position: [f64; 6],
-    by_velocity: [f64; 6],
+/// The derivatives of the rotation of a joint about each axis of the child by the rotation before and by the angular
+/// velocity.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    by_position: [[f64; 3]; 3],
+    by_velocity: [[f64; 3]; 3],
 }
 
-/// The derivatives of the motion of each dof.
+/// The derivatives of the new positions.
 #[derive(Debug, Default)]
 pub(super) struct Advance {
-    /// nv.
-    motion: Vec<Motion>,
-    qpos: Vec<Number>,
-    qvel: Vec<Number>,
+    /// The time between the positions, s.
+    time: f64,
+    /// Those of ball and free joints, in order. All other motion is straight.
+    turns: Vec<Turn>,
     /// Scratch: a row of the result.
     row: Vec<f64>,
 }
 
 impl Advance {
-    /// Differentiates the positions after a time `h` by those before it, and by the velocities `qvel`.
-    pub(super) fn run(&mut self, model: &Model, qpos: &[f64], qvel: &[f64], h: f64) {
-        let mut straight = Motion::default();
-        (straight.by_position[0], straight.by_velocity[0]) = (1.0, h);
-        self.motion.clear();
-        self.motion.resize(model.nv, straight);
-        // Only rotations are not linear.
-        if model.joints.iter().all(|joint| joint.kind.nv() == 1) {
-            return;
-        }
-        for by_velocity in [false, true] {
-            let numbers = |values: &[f64]| Vec::from_iter(values.iter().map(|&x| Number::new(x)));
-            self.qpos = numbers(qpos);
-            self.qvel = numbers(qvel);
-            for joint in &model.joints {
-                for k in 0..joint.kind.nv() {
-                    match by_velocity {
-                        true => self.qvel[joint.dof + k].set_derivative(k, 1.0),
-                        false => {
-                            let dof = joint.dof + k;
-                            tangent::move_along(model, dof, (k, 1.0), &mut self.qpos);
-                        }
-                    }
-                }
+    /// Differentiates the positions after a time, s, by those before it, and by the velocities `qvel`.
+    pub(super) fn run(&mut self, model: &Model, qpos: &[f64], qvel: &[f64], time: f64) {
+        self.time = time;
+        self.turns.clear();
+        for joint in &model.joints {
+            let rotation = rotation(joint);
+            if !rotation.is_empty() {
+                let q = joint.qpos + joint.kind.nv() - 3;
+                let turn = Turn::new(&qpos[q..q + 4], &qvel[rotation], time);
+                self.turns.push(turn);
             }
-            integrate_positions(model, &mut self.qpos, &self.qvel, Number::new(h));
-            let mut motion = self.motion.iter_mut();
-            tangent::each_motion(model, &self.qpos, |rates| {
-                let Some(motion) = motion.next() else { return };
-                let to = match by_velocity {
-                    true => &mut motion.by_velocity,
-                    false => &mut motion.by_position,
-                };
-                to.copy_from_slice(&rates[..6]);
-            });
         }
     }
 
-    /// Passes the derivatives of the new positions to `write`, dof after dof, from those of the new velocities.
+    /// Passes the derivatives of the new positions to `write`, dof after dof, from those of the velocities.
     pub(super) fn write_positions<'a>(
         &mut self,
         model: &Model,
         velocities: impl Iterator<Item = &'a [f64]> + Clone,
         write: &mut dyn FnMut(&[f64]),
     ) {
+        let mut turns = self.turns.iter();
         for joint in &model.joints {
-            let dofs = joint.dof..joint.dof + joint.kind.nv();
-            let velocities = velocities.clone().skip(joint.dof).take(dofs.len());
-            for motion in &self.motion[dofs] {
+            let rotation = rotation(joint);
+            let mut rows = velocities.clone().skip(joint.dof);
+            for dof in joint.dof..rotation.start {
+                let Some(velocity) = rows.next() else { return };
                 self.row.clear();
-                for (velocity, slope) in velocities.clone().zip(motion.by_velocity) {
-                    self.row.resize(velocity.len(), 0.0);
-                    if slope != 0.0 {
-                        let row = self.row.iter_mut().zip(velocity);
-                        row.for_each(|(x, &velocity)| *x += slope * velocity);
-                    }
+                self.row.extend(velocity.iter().map(|x| self.time * x));
+                self.row[dof] += 1.0;
+                write(&self.row);
+            }
+            if rotation.is_empty() {
+                continue;
+            }
+            let (Some(turn), Some(x), Some(y), Some(z)) =
+                (turns.next(), rows.next(), rows.next(), rows.next())
+            else {
+                return;
+            };
+            for (by_position, [a, b, c]) in turn.by_position.iter().zip(turn.by_velocity) {
+                self.row.clear();
+                let columns = x.iter().zip(y).zip(z);
+                self.row
+                    .extend(columns.map(|((x, y), z)| a * x + b * y + c * z));
+                for (sum, by_position) in self.row[rotation.clone()].iter_mut().zip(by_position) {
+                    *sum += by_position;
                 }
-                let row = self.row[joint.dof..].iter_mut();
-                let own = row.zip(&motion.by_position[..joint.kind.nv()]);
-                own.for_each(|(x, &by_position)| *x += by_position);
                 write(&self.row);
             }
         }
+    }
+}
+
+impl Turn {
+    fn new(orientation: &[f64], omega: &[f64], time: f64) -> Self {
+        let mut q = [Number::ZERO; 4];
+        for (number, &x) in q.iter_mut().zip(orientation) {
+            *number = Number::new(x);
+        }
+        let mut rate = [Number::ZERO; 3];
+        for (axis, (number, &x)) in rate.iter_mut().zip(omega).enumerate() {
+            tangent::turn_along(&mut q, axis, (axis, 1.0));
+            *number = Number::new(x);
+            number.set_derivative(3 + axis, 1.0);
+        }
+        let advanced = Quat::from_slice(&q).integrate(Vec3::from_slice(&rate), Number::new(time));
+        let turn = tangent::turn(&advanced.to_array());
+        Turn {
+            by_position: turn.map(|axis| [0, 1, 2].map(|k| axis.tangent[k])),
+            by_velocity: turn.map(|axis| [3, 4, 5].map(|k| axis.tangent[k])),
+        }
+    }
+}
+
+/// Returns the dofs of the rotation of a ball or free joint; of another, an empty range after its dof.
+pub(super) fn rotation(joint: &Joint) -> Range<usize> {
+    let end = joint.dof + joint.kind.nv();
+    match joint.kind {
+        JointKind::Slide | JointKind::Hinge => end..end,
+        JointKind::Ball | JointKind::Free => end - 3..end,
     }
 }

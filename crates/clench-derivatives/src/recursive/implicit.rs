@@ -27,10 +27,8 @@ pub(super) struct Implicit {
 pub(super) fn is_implicit(step: &Step<'_>) -> bool {
     match step.model.integrator {
         Integrator::Euler => step.plain.integration.damped.0,
-        Integrator::ImplicitFast
-        | Integrator::Implicit
-        | Integrator::Rk4
-        | Integrator::Discrete => true,
+        Integrator::ImplicitFast | Integrator::Implicit | Integrator::Discrete => true,
+        Integrator::Rk4 => false,
     }
 }
 

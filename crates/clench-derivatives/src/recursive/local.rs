@@ -4,7 +4,7 @@
 //! stands for the k-th dof of each joint and the length of each actuator: a single pass serves them all.
 
 use super::coordinate::{AlongForce, Coordinate};
-use super::implicit::Implicit;
+use super::implicit::{Implicit, is_implicit};
 use super::step::Step;
 use super::tendons;
 use crate::tangent;
@@ -83,10 +83,10 @@ impl Local {
                 &mut self.stages.force.qfrc_actuator,
                 &step.plain.force.qfrc_actuator,
             );
-            if index == 0 {
-                self.add_slopes(step);
-            }
             self.subtract_passive(step, part, gradient);
+            if is_implicit(step) {
+                self.add_damping(step, part, index == 0);
+            }
             if model.flags.actuation {
                 self.subtract_actuation(step, part, gradient);
             }
@@ -156,16 +156,24 @@ impl Local {
         }
     }
 
-    /// Adds the slopes of damping.
-    fn add_slopes(&mut self, step: &Step<'_>) {
+    /// Adds the derivatives of the slopes of damping and, if `values`, these slopes.
+    fn add_damping(&mut self, step: &Step<'_>, part: &[(Kind, usize)], values: bool) {
         let model = step.model;
         if model.flags.damper {
             for i in 0..model.nv {
                 let damping = dof_damping_slope(model, &self.params, i, self.before.qvel[i]);
-                self.implicit.add(i, damping.value);
+                if values {
+                    self.implicit.add(i, damping.value);
+                }
+                for (direction, &local) in part.iter().enumerate() {
+                    if let Some(column) = motion_column(model, i, local) {
+                        let rate = damping.tangent[direction];
+                        self.implicit.add_rate(step, i, (column, rate));
+                    }
+                }
             }
         }
-        for u in 0..model.actuators.len() {
+        for u in (0..model.actuators.len()).filter(|_| values) {
             let slope = self.actuator_slope(step, u).value;
             let along = Coordinate::of_actuator(step, u);
             self.implicit.add_along(step, along, -slope);
@@ -186,33 +194,18 @@ impl Local {
         }
     }
 
-    /// Subtracts the derivatives of passive forces of joints, and reads those of dampers' slopes.
+    /// Subtracts the derivatives of passive forces of joints.
     fn subtract_passive(
-        &mut self,
+        &self,
         step: &Step<'_>,
         part: &[(Kind, usize)],
         gradient: &mut Columns<'_, f64>,
     ) {
-        let model = step.model;
-        for (i, dof) in model.dofs.iter().enumerate() {
-            let joint = &model.joints[dof.joint];
-            let force = self.stages.force.qfrc_passive[i];
-            let damping = match model.flags.damper {
-                true => dof_damping_slope(model, &self.params, i, self.before.qvel[i]),
-                false => Number::ZERO,
-            };
-            for (direction, &(kind, k)) in part.iter().enumerate() {
-                let column = match kind {
-                    Kind::Position => joint.dof + k,
-                    Kind::Velocity => model.nv + joint.dof + k,
-                    Kind::Activation | Kind::Control => continue,
-                };
-                if k >= joint.kind.nv() {
-                    continue;
+        for (i, force) in self.stages.force.qfrc_passive.iter().enumerate() {
+            for (direction, &local) in part.iter().enumerate() {
+                if let Some(column) = motion_column(step.model, i, local) {
+                    gradient.add(i, column, -force.tangent[direction]);
                 }
-                gradient.add(i, column, -force.tangent[direction]);
-                let rate = damping.tangent[direction];
-                self.implicit.add_rate(step, i, (column, rate));
             }
         }
     }
@@ -349,7 +342,7 @@ fn seed_state(
     match kind {
         Kind::Position => {
             for joint in joints {
-                tangent::move_along(model, joint.dof + k, (direction, 1.0), &mut state.qpos);
+                tangent::move_joint(joint, k, (direction, 1.0), &mut state.qpos);
             }
         }
         Kind::Velocity => {
@@ -374,6 +367,17 @@ fn seed_state(
             }
         }
     }
+}
+
+/// Returns the column of the k-th position or velocity of the joint of dof `i`.
+fn motion_column(model: &Model, i: usize, (kind, k): (Kind, usize)) -> Option<usize> {
+    let joint = &model.joints[model.dofs[i].joint];
+    let column = match kind {
+        Kind::Position => joint.dof + k,
+        Kind::Velocity => model.nv + joint.dof + k,
+        Kind::Activation | Kind::Control => return None,
+    };
+    (k < joint.kind.nv()).then_some(column)
 }
 
 /// Returns the column of the k-th activation or control of actuator `u`.

@@ -9,14 +9,14 @@
 //!
 //! in which dq, dv, dα and du are by the state at the start of the step and by the controls.
 
-use super::advance::Advance;
+use super::advance::{Advance, rotation};
 use super::gradient::Gradient;
 use super::step::Step;
 use super::{FindCurves, Recursive};
 use crate::source::Source;
 use clench_dynamics::dynamics::integration::Integration;
 use clench_dynamics::dynamics::rk4::{WEIGHTS, increment_rate, rk4};
-use clench_dynamics::model::{JointKind, Model};
+use clench_dynamics::model::Model;
 use clench_math::{Dual, Real, Vec3};
 use clench_rigid::SimError;
 use std::mem::swap;
@@ -178,12 +178,8 @@ impl RungeKutta {
     fn find_position_rates(&mut self, model: &Model, qvel: &[f64]) {
         let velocity = &self.state[model.nv * self.width..];
         for joint in &model.joints {
-            let dofs = joint.dof..joint.dof + joint.kind.nv();
-            let rotation = match joint.kind {
-                JointKind::Slide | JointKind::Hinge => dofs.end..dofs.end,
-                JointKind::Ball | JointKind::Free => dofs.end - 3..dofs.end,
-            };
-            let translation = dofs.start * self.width..rotation.start * self.width;
+            let rotation = rotation(joint);
+            let translation = joint.dof * self.width..rotation.start * self.width;
             self.rates[translation.clone()].copy_from_slice(&velocity[translation]);
             if rotation.is_empty() {
                 continue;

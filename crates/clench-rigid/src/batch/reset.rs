@@ -1,6 +1,6 @@
 //! Operations on individual environments: reset, revive, extract as a simulation.
 
-use super::{Batch, EnvStatus, Precision, StateRows};
+use super::{Batch, EnvStatus, Precision};
 use crate::sim::Sim;
 use clench_dynamics::check::check_length;
 use clench_dynamics::error::{SimError, no_such};
@@ -85,12 +85,10 @@ impl<S: Precision> Batch<S> {
     pub fn copy_to_sim(&self, env: usize, sim: &mut Sim<S>) -> Result<(), SimError> {
         self.check_env(env)?;
         self.check_state()?;
-        let mut row = StateRows::new(&self.model, 1)?;
-        row.copy_row(0, &self.state, env);
         if let Some(other) = self.other_sim(env, sim)? {
             *sim = other;
         }
-        row.read(0, &mut sim.state)?;
+        self.state.copy_to(env, &mut sim.state)?;
         self.copy_params(env, sim);
         Ok(())
     }

@@ -101,6 +101,22 @@ macro_rules! declare_rows {
                 $(self.$occasional.row_mut(to).copy_from_slice(other.$occasional.row(from));)*
             }
 
+            /// Copies row `env` into a state of the same model.
+            ///
+            /// # Errors
+            /// Returns an error if the row does not exist or the state has other lengths.
+            pub(super) fn copy_to(&self, env: usize, state: &mut State<S>) -> Result<(), SimError> {
+                self.check_row(env, state)?;
+                state.time = self.time.row(env)[0];
+                $(copy_cells::<kind::$moving_kind, S>(self.$moving.row(env), &mut state.$moving);)*
+                $(copy_cells::<kind::$input_kind, S>(self.$input.row(env), &mut state.$input);)*
+                $(copy_cells::<kind::$occasional_kind, S>(
+                    self.$occasional.row(env),
+                    &mut state.$occasional,
+                );)*
+                Ok(())
+            }
+
             /// Copies the values of a field of [`FIELDS`], row by row, to `out`.
             pub(super) fn read_field(&mut self, name: &str, out: &mut Vec<S>) {
                 let (motion, inputs) = self.share();
@@ -203,6 +219,17 @@ macro_rules! declare_rows {
     };
 }
 clench_dynamics::state_fields!(declare_rows);
+
+/// Copies the cells of a row to its elements.
+#[inline(never)] // Every field calls it.
+fn copy_cells<K: Kind, S: Scalar>(row: &[Cell<K, S>], elements: &mut [K::Of<S>])
+where
+    Cell<K, S>: Copy,
+{
+    for (element, cells) in elements.iter_mut().zip(row.chunks_exact(K::WIDTH)) {
+        K::set_cells::<S>(element, 0, cells.iter().copied());
+    }
+}
 
 impl<S: Scalar + Shared> StateRows<S> {
     /// Returns the number of states.

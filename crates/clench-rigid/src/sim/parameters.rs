@@ -86,6 +86,10 @@ impl<T: Precision> Sim<T> {
     pub fn params(&self) -> &Params<T::SingleEnv> {
         &self.params
     }
+    /// Returns a number that changes with the parameters. It is that of no other parameters, also in other simulations.
+    pub fn params_version(&self) -> u64 {
+        self.params_version
+    }
     /// Returns the parameters for modification in this simulation. Arrays keep their lengths. Unlike
     /// [`set_param`](Self::set_param), it checks and updates nothing.
     pub fn params_mut(&mut self) -> &mut Params<T::SingleEnv> {
