@@ -41,10 +41,11 @@ struct Arm {
     side: Side,
     /// The motion of the second body relative to the first, about the point.
     motion: Motion<f64>,
-    /// The change of the wrench on the second body, about the fixed point, as such and with the axes of the dof.
+    /// The change of the wrench on the second body about the fixed point by position, as such and with the axes of the
+    /// dof.
     wrench: [Force<f64>; 2],
-    /// The change of the forces by position and by velocity.
-    force: [[f64; MAX_DIM]; 2],
+    /// Its change by velocity.
+    by_velocity: Force<f64>,
 }
 
 impl Contacts {
@@ -90,22 +91,16 @@ impl Contacts {
     ) {
         let point = self.moving_point(step, contact);
         self.find_arms(step, block, (contact, &point), force, slopes);
-        let (dim, nv) = (block.dim, step.model.nv);
-        let columns = |arm: usize| block.jacobian[arm..].iter().step_by(block.dofs.len());
+        let nv = step.model.nv;
         let common = self.arms.len() - block.dofs.len();
         for by in &self.arms {
             let [fixed, turned] = by.wrench;
-            for (row, of) in self.arms[common..].iter().enumerate() {
-                let precedes = by.dof <= of.dof || first_turning(step.model, by.dof) <= of.dof;
-                let turns = by.side == Side::Both || by.side == of.side && precedes;
-                let mut change = of.motion.dot(if turns { turned } else { fixed });
-                let mut by_velocity = 0.0;
-                for (k, j) in columns(row).take(dim).enumerate() {
-                    change += j * by.force[0][k];
-                    by_velocity += j * by.force[1][k];
-                }
+            let together = first_turning(step.model, by.dof);
+            for of in &self.arms[common..] {
+                let turns = by.side == Side::Both || by.side == of.side && together <= of.dof;
+                let change = of.motion.dot(if turns { turned } else { fixed });
                 gradient.add(of.dof, by.dof, -change);
-                gradient.add(of.dof, nv + by.dof, -by_velocity);
+                gradient.add(of.dof, nv + by.dof, -of.motion.dot(by.by_velocity));
             }
         }
     }
@@ -195,17 +190,15 @@ impl Contacts {
                     *rate = slopes.damping[k] * block.jacobian[k * block.dofs.len() + column];
                 }
             }
-            let changed = change.wrench(force, wrench);
-            let turned = changed - axis.cross_force(wrench);
+            let by_position = slopes.force(block.dim, change.distance, &residual);
+            let by_velocity = slopes.force(block.dim, 0.0, &rate);
+            let changed = change.wrench(force, wrench) + self::wrench(&axes, &by_position);
             self.arms.push(Arm {
                 dof,
                 side,
                 motion,
-                wrench: [changed, turned],
-                force: [
-                    slopes.force(block.dim, change.distance, &residual),
-                    slopes.force(block.dim, 0.0, &rate),
-                ],
+                wrench: [changed, changed - axis.cross_force(wrench)],
+                by_velocity: self::wrench(&axes, &by_velocity),
             });
         }
     }
