@@ -32,6 +32,7 @@ mod weight;
 
 use crate::source::Source;
 use advance::Advance;
+use clench_dynamics::dynamics::rk4::rk4;
 use clench_dynamics::model::{Integrator, Model, Params};
 use clench_dynamics::{State, Workspace, check};
 use clench_rigid::SimError;
@@ -178,5 +179,62 @@ impl Recursive {
         (self.gradient.local).write_activations(model, len, write);
         self.gradient.columns = columns;
         Ok(true)
+    }
+
+    /// Differentiates a step of several stages, as [`run`](Self::run).
+    fn run_stages(
+        &mut self,
+        source: Source<'_>,
+        find_curves: &mut FindCurves<'_>,
+        write: &mut dyn FnMut(&[f64]),
+    ) -> Result<bool, SimError> {
+        let (model, params, settings) = (source.model, source.params, source.settings);
+        let forward = clench_dynamics::Step::<f64>::compiled().forward;
+        let Recursive {
+            state,
+            plain,
+            gradient,
+            runge_kutta,
+            curves,
+            qacc,
+            acceleration,
+            ..
+        } = self;
+        runge_kutta.begin(model, gradient.width);
+        let mut add_stage = |runge_kutta: &mut RungeKutta, state: &_, plain: &_| {
+            find_curves(state, curves);
+            let step = Step {
+                model,
+                params,
+                settings,
+                before: state,
+                plain,
+                curves,
+            };
+            runge_kutta.add_stage(&step, gradient)
+        };
+        state.copy_from(source.state);
+        forward(model, params, settings, state, plain, |_, _, _, _, _| {});
+        let mut covered = add_stage(runge_kutta, state, plain);
+        if source.request.sensors_len(model) > 0 {
+            qacc.clone_from(&plain.qacc);
+            acceleration.clear();
+            acceleration.extend_from_slice(runge_kutta.accelerations(model.nv));
+        }
+        rk4(model, params, state, plain, |state, plain| {
+            let from = &plain.integration;
+            let (start, rates) = (&from.start.position, &from.stage.position);
+            runge_kutta.reach(model, start, rates, from.offset);
+            forward(model, params, settings, state, plain, |_, _, _, _, _| {});
+            covered = covered && add_stage(runge_kutta, state, plain);
+        });
+        state.qacc_warmstart.copy_from_slice(&plain.qacc);
+        self.check(source)?;
+        if covered {
+            let slopes = (self.gradient.local).advance_slopes(model, source.state, &self.plain);
+            let integration = (&self.plain.integration, &slopes[..]);
+            (self.runge_kutta).write(model, integration, params.timestep, write);
+        }
+        Ok(covered)
     }
 }

@@ -1,7 +1,8 @@
 //! Runge–Kutta: the derivatives of a step by the chain rule over its stages.
 //!
-//! A stage starts at the positions q₀ exp(c r), the velocities v₀ + c a and the activations α₀ + c ρ, which the rates r,
-//! a and ρ of the stage before reach in the time c. Each stage has its own gradient g of the convex problem and its own Hessian,
+//! A stage starts at the positions q₀ exp(c r), the velocities v₀ + c a and the activations α₀ + c ρ, which the rates
+//! r, a and ρ of the stage before reach in the time c. Each stage has its own gradient g of the convex problem and its
+//! own Hessian,
 //!
 //! ```text
 //! da = −H⁻¹ (∂g/∂q dq + ∂g/∂v dv + ∂g/∂α dα + ∂g/∂u du),
@@ -12,13 +13,10 @@
 use super::advance::{Advance, rotation};
 use super::gradient::Gradient;
 use super::step::Step;
-use super::{FindCurves, Recursive};
-use crate::source::Source;
 use clench_dynamics::dynamics::integration::Integration;
-use clench_dynamics::dynamics::rk4::{WEIGHTS, increment_rate, rk4};
+use clench_dynamics::dynamics::rk4::{WEIGHTS, increment_rate};
 use clench_dynamics::model::Model;
 use clench_math::{Dual, Real, Vec3};
-use clench_rigid::SimError;
 use std::mem::swap;
 
 /// A number with its derivatives by the increment of an orientation and by the angular velocity.
@@ -38,74 +36,15 @@ pub(super) struct RungeKutta {
     advance: Advance,
     /// Those of the state of the stage.
     state: Vec<f64>,
-    /// Those of its rates, before they are computed of the last stage's.
+    /// Those of its rates; of the stage before, until they are computed.
     rates: Vec<f64>,
-    /// Those of the mean rates, weighted.
+    /// Those of the weighted mean of all rates.
     mean: Vec<f64>,
-}
-
-impl Recursive {
-    /// Differentiates a step of several stages, as [`run`](Self::run).
-    pub(super) fn run_stages(
-        &mut self,
-        source: Source<'_>,
-        find_curves: &mut FindCurves<'_>,
-        write: &mut dyn FnMut(&[f64]),
-    ) -> Result<bool, SimError> {
-        let (model, params, settings) = (source.model, source.params, source.settings);
-        let forward = clench_dynamics::Step::<f64>::compiled().forward;
-        let Recursive {
-            state,
-            plain,
-            gradient,
-            runge_kutta,
-            curves,
-            qacc,
-            acceleration,
-            ..
-        } = self;
-        runge_kutta.begin(model, gradient.width);
-        let mut add_stage = |runge_kutta: &mut RungeKutta, state: &_, plain: &_| {
-            find_curves(state, curves);
-            let step = Step {
-                model,
-                params,
-                settings,
-                before: state,
-                plain,
-                curves,
-            };
-            runge_kutta.add_stage(&step, gradient)
-        };
-        state.copy_from(source.state);
-        forward(model, params, settings, state, plain, |_, _, _, _, _| {});
-        let mut covered = add_stage(runge_kutta, state, plain);
-        if source.request.sensors_len(model) > 0 {
-            qacc.clone_from(&plain.qacc);
-            acceleration.clear();
-            acceleration.extend_from_slice(runge_kutta.accelerations(model.nv));
-        }
-        rk4(model, params, state, plain, |state, plain| {
-            let from = &plain.integration;
-            let (start, rates) = (&from.start.position, &from.stage.position);
-            runge_kutta.reach(model, start, rates, from.offset);
-            forward(model, params, settings, state, plain, |_, _, _, _, _| {});
-            covered = covered && add_stage(runge_kutta, state, plain);
-        });
-        state.qacc_warmstart.copy_from_slice(&plain.qacc);
-        self.check(source)?;
-        if covered {
-            let slopes = (self.gradient.local).advance_slopes(model, source.state, &self.plain);
-            let integration = (&self.plain.integration, &slopes[..]);
-            (self.runge_kutta).write(model, integration, params.timestep, write);
-        }
-        Ok(covered)
-    }
 }
 
 impl RungeKutta {
     /// Starts a step.
-    fn begin(&mut self, model: &Model, width: usize) {
+    pub(super) fn begin(&mut self, model: &Model, width: usize) {
         (self.width, self.stage, self.time) = (width, 0, 0.0);
         self.increment.clear();
         self.increment.resize(model.nv, 0.0);
@@ -118,12 +57,12 @@ impl RungeKutta {
     }
 
     /// Returns the derivatives of the accelerations.
-    fn accelerations(&self, nv: usize) -> &[f64] {
+    pub(super) fn accelerations(&self, nv: usize) -> &[f64] {
         &self.rates[nv * self.width..][..nv * self.width]
     }
 
     /// Goes to the stage that the rates of the last one reach in a time, from the positions `start`.
-    fn reach(&mut self, model: &Model, start: &[f64], rates: &[f64], time: f64) {
+    pub(super) fn reach(&mut self, model: &Model, start: &[f64], rates: &[f64], time: f64) {
         self.time = time;
         self.increment.clear();
         self.increment.extend(rates.iter().map(|rate| time * rate));
@@ -139,7 +78,7 @@ impl RungeKutta {
     }
 
     /// Adds a stage, a step whose state is reached. Returns false if recursions do not cover its contacts.
-    fn add_stage(&mut self, step: &Step<'_>, gradient: &mut Gradient) -> bool {
+    pub(super) fn add_stage(&mut self, step: &Step<'_>, gradient: &mut Gradient) -> bool {
         if !gradient.find(step) {
             return false;
         }
@@ -217,7 +156,7 @@ impl RungeKutta {
 
     /// Passes the derivatives of the next state to `write`. It follows from the state at the start of the step and the
     /// mean rates, in a time `h`: an activation by `slopes`, its derivatives by both.
-    fn write(
+    pub(super) fn write(
         &mut self,
         model: &Model,
         (from, slopes): (&Integration<f64>, &[[f64; 2]]),
