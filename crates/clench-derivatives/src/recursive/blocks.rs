@@ -41,6 +41,10 @@ impl Blocks {
         gradient: &mut Columns<'_, f64>,
     ) -> bool {
         let plain = step.plain;
+        // It also acts within the gap, where the force of the constraint is zero.
+        if plain.contacts.iter().any(|contact| contact.adhesion != 0.0) {
+            return false;
+        }
         self.contacts.find_accelerations(step);
         for (block, record) in plain.problem.blocks().zip(&plain.record.blocks) {
             let y = &response.residual()[block.rows()];
@@ -52,7 +56,7 @@ impl Blocks {
                 Kind::Contact(i) => {
                     let contact = &plain.contacts[i];
                     let slopes = Slopes::new(step, &block, (source, Some(contact)), y);
-                    let (Some(slopes), 0.0) = (slopes, contact.adhesion) else {
+                    let Some(slopes) = slopes else {
                         return false;
                     };
                     (self.contacts).subtract(step, &block, contact, force, &slopes, gradient);

@@ -206,3 +206,17 @@ fn other_steps_need_passes() {
         check(model, RigidOptions::new(), 20);
     }
 }
+
+/// An adhesive contact acts within its gap, where the force of its constraint is zero. Its steps need passes.
+#[test]
+fn adhesion_within_the_gap() {
+    let text = r#"<mujoco><worldbody>
+      <geom pos=".06 -.08 -.14" adhesion=".8" size=".08"/>
+      <body>
+        <joint axis="-.2 1 .3"/>
+        <geom margin=".03" gap=".03" type="cylinder" size=".04 .04"/>
+      </body>
+    </worldbody></mujoco>"#;
+    let model = clench_formats::load_str(text).expect("a model");
+    assert!(check(model, RigidOptions::new(), 20) > 0);
+}
