@@ -20,16 +20,17 @@ const SECONDS: [(&str, f64, f64); 13] = [
     ("gpu", 1500.0, 0.0),
     ("package", 100.0, 70.0),
     ("pytest", 350.0, 0.0),
-    ("parity", 330.0, 0.0),
+    ("parity", 450.0, 0.0),
 ];
-/// The share of that duration for a quick run.
-const QUICK: f64 = 0.5;
+/// The share of that duration for a quick run, of stages of which it omits a part.
+const QUICK: [(&str, f64); 2] = [("unit", 0.65), ("parity", 0.9)];
 
 /// The records of earlier runs, and the kind of this run.
 pub(crate) struct Times {
     /// The profile, and whether anything was compiled before: runs that differ in these have different durations.
     kind: String,
-    guess: f64,
+    cores: f64,
+    quick: bool,
     cold: bool,
     /// The kind of run, the stage and its duration, s.
     known: Vec<(String, String, f64)>,
@@ -44,15 +45,10 @@ impl Times {
         let (last, now) = (known.last(), format!("{profile:?}").to_lowercase());
         let has_other_sets = last.is_some_and(|(kind, ..)| all_sets(kind) != all_sets(&now));
         let cold = has_other_sets || !has_kernels(profile);
-        let share = if profile == Profile::Quick {
-            QUICK
-        } else {
-            1.0
-        };
-        let cores = available_parallelism().map_or(1, usize::from);
         Times {
             kind: format!("{now}-{}", if cold { "cold" } else { "warm" }),
-            guess: share / cores as f64,
+            cores: available_parallelism().map_or(1, usize::from) as f64,
+            quick: profile == Profile::Quick,
             cold,
             known,
         }
@@ -66,9 +62,13 @@ impl Times {
         {
             return *seconds;
         }
+        let mut shares = QUICK
+            .iter()
+            .filter(|(name, _)| self.quick && *name == stage);
+        let share = shares.next().map_or(1.0, |(_, share)| *share);
         let mut all = SECONDS.iter().filter(|(name, ..)| *name == stage);
         all.next().map_or(0.0, |(_, warm, more)| {
-            self.guess * (warm + if self.cold { *more } else { 0.0 })
+            share / self.cores * (warm + if self.cold { *more } else { 0.0 })
         })
     }
 
@@ -140,7 +140,8 @@ mod tests {
     fn times(text: &str) -> Times {
         Times {
             kind: "dev-warm".to_owned(),
-            guess: 0.5,
+            cores: 2.0,
+            quick: false,
             cold: false,
             known: parse(text),
         }
@@ -162,7 +163,10 @@ mod tests {
         assert!(warm > 0.0);
         times.cold = true;
         assert!(times.seconds("unit") > warm);
-        times.guess = 0.25;
+        let all = times.seconds("unit");
+        times.quick = true;
+        assert!(times.seconds("unit") < all);
+        times.cores = 4.0;
         assert!(times.seconds("fmt") > 0.0 && times.seconds("fmt") < 4.0);
     }
 
