@@ -44,7 +44,7 @@ pub struct Sim<T: Precision = f64> {
     pub state: State<T>,
     model: Arc<Model>,
     params: Params<T::SingleEnv>,
-    /// A number that is that of no other parameters.
+    /// A number that no other parameters have. [`invalidate`](Self::invalidate) replaces it.
     params_version: u64,
     options: RigidOptions,
     settings: StepSettings,

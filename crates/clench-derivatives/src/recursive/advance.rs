@@ -103,7 +103,7 @@ impl Turn {
     }
 }
 
-/// Returns the dofs of the rotation of a ball or free joint; of another, an empty range after its dof.
+/// Returns the dofs of the rotation of a ball or free joint, and an empty range after the dof of another joint.
 pub(super) fn rotation(joint: &Joint) -> Range<usize> {
     let end = joint.dof + joint.kind.nv();
     match joint.kind {

@@ -34,10 +34,9 @@ pub(super) struct Local {
     before: State<Number>,
     stages: LocalStages<Number>,
     directions: Vec<(Kind, usize)>,
-    /// The derivatives of the new activations: an activation, a column and the derivative.
-    activations: Vec<(usize, usize, f64)>,
-    /// Likewise those of their rates, for an integrator of several stages.
-    pub activation_rates: Vec<(usize, usize, f64)>,
+    /// The derivatives of the new activations, or of their rates for Runge–Kutta: an activation, a column and the
+    /// derivative.
+    pub activations: Vec<(usize, usize, f64)>,
     /// The slopes of damping.
     pub implicit: Implicit,
     /// Scratch: a row of the result.
@@ -52,7 +51,6 @@ impl Local {
             stages: LocalStages::new(model),
             directions: Vec::new(),
             activations: Vec::new(),
-            activation_rates: Vec::new(),
             implicit: Implicit::default(),
             row: Vec::new(),
         };
@@ -70,7 +68,6 @@ impl Local {
     pub(super) fn run(&mut self, step: &Step<'_>, gradient: &mut Columns<'_, f64>) {
         let model = step.model;
         self.activations.clear();
-        self.activation_rates.clear();
         self.implicit.clear(model.nv);
         self.list_directions(step);
         let directions = std::mem::take(&mut self.directions);
@@ -90,14 +87,18 @@ impl Local {
             if model.flags.actuation {
                 self.subtract_actuation(step, part, gradient);
             }
-            if model.integrator == Integrator::Rk4 {
-                let rates = &self.stages.force.act_dot;
-                read_activations(step, part, rates, &mut self.activation_rates);
-                continue;
-            }
-            let act = &mut self.before.act;
-            self.stages.advance(model, &self.params, act);
-            read_activations(step, part, act, &mut self.activations);
+            let numbers = match model.integrator {
+                Integrator::Rk4 => &self.stages.force.act_dot,
+                Integrator::Euler
+                | Integrator::ImplicitFast
+                | Integrator::Implicit
+                | Integrator::Discrete => {
+                    let act = &mut self.before.act;
+                    self.stages.advance(model, &self.params, act);
+                    act
+                }
+            };
+            read_activations(step, part, numbers, &mut self.activations);
         }
         self.directions = directions;
         if !model.tendons.is_empty() {
@@ -252,8 +253,8 @@ impl Local {
         }
     }
 
-    /// Returns the derivatives of each new activation by itself before the step and by its rate: the mean of all stages
-    /// in `plain`.
+    /// Returns the derivatives of each new activation by itself before the step, and by the mean of its rates in all
+    /// stages. `plain` contains the means.
     pub(super) fn advance_slopes(
         &mut self,
         model: &Model,

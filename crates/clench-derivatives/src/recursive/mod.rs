@@ -143,14 +143,7 @@ impl Recursive {
         self.step(source)?;
         find_curves(source.state, &mut self.curves);
         let model = source.model;
-        let step = Step {
-            model,
-            params: source.params,
-            settings: source.settings,
-            before: source.state,
-            plain: &self.plain,
-            curves: &self.curves,
-        };
+        let step = Step::new(source, source.state, &self.plain, &self.curves);
         if !self.gradient.find(&step) {
             return Ok(false);
         }
@@ -203,19 +196,15 @@ impl Recursive {
         runge_kutta.begin(model, gradient.width);
         let mut add_stage = |runge_kutta: &mut RungeKutta, state: &_, plain: &_| {
             find_curves(state, curves);
-            let step = Step {
-                model,
-                params,
-                settings,
-                before: state,
-                plain,
-                curves,
-            };
+            let step = Step::new(source, state, plain, curves);
             runge_kutta.add_stage(&step, gradient)
         };
         state.copy_from(source.state);
         forward(model, params, settings, state, plain, |_, _, _, _, _| {});
         let mut covered = add_stage(runge_kutta, state, plain);
+        if !covered {
+            return Ok(false);
+        }
         if source.request.sensors_len(model) > 0 {
             qacc.clone_from(&plain.qacc);
             acceleration.clear();

@@ -34,11 +34,11 @@ pub(super) struct RungeKutta {
     /// The rates that reached this stage, times this time (nv).
     increment: Vec<f64>,
     advance: Advance,
-    /// Those of the state of the stage.
+    /// The derivatives of the state of the stage.
     state: Vec<f64>,
-    /// Those of its rates; of the stage before, until they are computed.
+    /// The derivatives of its rates. Until they are computed, those of the stage before.
     rates: Vec<f64>,
-    /// Those of the weighted mean of all rates.
+    /// The derivatives of the weighted mean of the rates.
     mean: Vec<f64>,
 }
 
@@ -61,7 +61,8 @@ impl RungeKutta {
         &self.rates[nv * self.width..][..nv * self.width]
     }
 
-    /// Goes to the stage that the rates of the last one reach in a time, from the positions `start`.
+    /// Begins the next stage. The last rates reach it in a time, s, from the positions `start` and the other numbers of
+    /// the state at the start of the step.
     pub(super) fn reach(&mut self, model: &Model, start: &[f64], rates: &[f64], time: f64) {
         self.time = time;
         self.increment.clear();
@@ -77,7 +78,7 @@ impl RungeKutta {
         );
     }
 
-    /// Adds a stage, a step whose state is reached. Returns false if recursions do not cover its contacts.
+    /// Adds the present stage, as a step from its state. Returns false if recursions do not cover its contacts.
     pub(super) fn add_stage(&mut self, step: &Step<'_>, gradient: &mut Gradient) -> bool {
         if !gradient.find(step) {
             return false;
@@ -100,7 +101,7 @@ impl RungeKutta {
         });
         gradient.solve(accelerations);
         activations.fill(0.0);
-        for &(a, column, rate) in &gradient.local.activation_rates {
+        for &(a, column, rate) in &gradient.local.activations {
             let sum = &mut activations[a * width..][..width];
             match column < rows {
                 true => add_row(sum, rate, &self.state[column * width..][..width]),
@@ -154,8 +155,8 @@ impl RungeKutta {
         self.advance.write_positions(model, rates, write);
     }
 
-    /// Passes the derivatives of the next state to `write`. It follows from the state at the start of the step and the
-    /// mean rates, in a time `h`: an activation by `slopes`, its derivatives by both.
+    /// Passes the derivatives of the next state, which the mean rates reach in a time `h`, to `write`. `slopes` holds
+    /// those of each new activation by itself before the step and by its mean rate.
     pub(super) fn write(
         &mut self,
         model: &Model,
@@ -193,7 +194,7 @@ fn add_identity(matrix: &mut [f64], width: usize, column: usize) {
 /// Computes `sum += factor · row`.
 #[inline(always)]
 fn add_row(sum: &mut [f64], factor: f64, row: &[f64]) {
-    // The dofs of different branches have no part in each other's forces.
+    // Dofs of different branches do not affect each other.
     if factor != 0.0 {
         sum.iter_mut().zip(row).for_each(|(x, &y)| *x += factor * y);
     }

@@ -1,6 +1,7 @@
 //! A step in plain numbers, and its actuators.
 
 use super::curves::Curves;
+use crate::source::Source;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::{State, StepSettings, Workspace};
 
@@ -14,7 +15,24 @@ pub(super) struct Step<'a> {
     pub curves: &'a Curves,
 }
 
-impl Step<'_> {
+impl<'a> Step<'a> {
+    /// Creates the step from the state `before`, whose results `plain` contains.
+    pub(super) fn new(
+        source: Source<'a>,
+        before: &'a State<f64>,
+        plain: &'a Workspace<f64>,
+        curves: &'a Curves,
+    ) -> Self {
+        Step {
+            model: source.model,
+            params: source.params,
+            settings: source.settings,
+            before,
+            plain,
+            curves,
+        }
+    }
+
     /// Returns 0 if the range of a joint holds the total force of its actuators, else 1.
     pub(super) fn passed_share(&self, joint: usize) -> f64 {
         let [low, high] = self.params.jnt_actfrcrange[joint];

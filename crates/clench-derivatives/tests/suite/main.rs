@@ -9,7 +9,7 @@ mod jvp;
 mod recursion;
 mod rollout;
 /// The random scenes of the tests of collision.
-#[allow(dead_code, unused_imports)] // A part is used here.
+#[expect(dead_code, unused_imports, reason = "the tests here use a part")]
 #[path = "../../../clench-collide/tests/suite/common/mod.rs"]
 mod scenes;
 mod state;

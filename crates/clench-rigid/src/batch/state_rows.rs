@@ -101,7 +101,8 @@ macro_rules! declare_rows {
                 $(self.$occasional.row_mut(to).copy_from_slice(other.$occasional.row(from));)*
             }
 
-            /// Copies row `env` into a state of the same model.
+            /// Copies row `env` into a state of the same model. Unlike [`read`](Self::read), it needs no exclusive
+            /// access.
             ///
             /// # Errors
             /// Returns an error if the row does not exist or the state has other lengths.

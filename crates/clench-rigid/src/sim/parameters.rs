@@ -86,7 +86,7 @@ impl<T: Precision> Sim<T> {
     pub fn params(&self) -> &Params<T::SingleEnv> {
         &self.params
     }
-    /// Returns a number that changes with the parameters. It is that of no other parameters, also in other simulations.
+    /// Returns a number that changes with the parameters. No other parameters have it, in any simulation.
     pub fn params_version(&self) -> u64 {
         self.params_version
     }
