@@ -40,6 +40,7 @@ mod ray;
 mod response;
 mod results;
 mod runs;
+mod sliding;
 mod slot;
 mod solver;
 mod sparse;

@@ -18,13 +18,14 @@ use crate::costs::Cost;
 use crate::problem::Problem;
 use clench_math::{Mask, Real, kernel};
 
-/// The limits of γ. From 1 on, the last two changes point away from a repelling fixed point; λ then moves to f, which
-/// leads to an attracting one. A very negative γ extrapolates too far from two iterates that are close.
+/// The limits of γ. A very negative γ extrapolates too far from two iterates that are close. From 1 on, the last two
+/// changes point away from a repelling fixed point; the lower limit then replaces γ, and λ soon reaches an attracting
+/// one.
 const MIXING: (f64, f64) = (-10.0, 1.0);
 
 /// The numbers of predictions and of updates after which λ is no longer predicted. Newton's method on pieces can cycle,
 /// and where friction jams it can move away from the solution.
-const MAX_PREDICTIONS: f64 = 30.0;
+const MAX_PREDICTIONS: f64 = 20.0;
 const MAX_ROUNDS: f64 = 3.0;
 /// The number of predictions after which every third one moves λ only half of the way, which leaves most cycles.
 const MAX_FULL: f64 = 8.0;
@@ -101,7 +102,8 @@ impl<T: Real> NormalForces<T> {
             }
         }
         let gamma = (overlap / square).max(T::new(MIXING.0));
-        let mixes = self.rounds.gt(T::ZERO) & square.gt(T::ZERO) & gamma.lt(T::new(MIXING.1));
+        let gamma = T::select(gamma.lt(T::new(MIXING.1)), gamma, T::new(MIXING.0));
+        let mixes = self.rounds.gt(T::ZERO) & square.gt(T::ZERO);
         self.rounds += T::select(mask, T::ONE, T::ZERO);
         (T::select(mixes, gamma, T::ZERO), moves & mask)
     }
@@ -116,15 +118,13 @@ impl<T: Real> NormalForces<T> {
         }
     }
 
-    /// Adds `delta`, one number for each of `blocks`, to λ in the lanes of `mask`. A sum below zero predicts a solution
-    /// that does not exist, where friction jams; λ then becomes the normal force of `force`. Returns the lanes of
-    /// `mask` in which λ moves by `delta` exactly.
+    /// Adds `delta`, one number for each of `blocks`, to λ in the lanes of `mask`; `lowest` replaces a sum below zero.
+    /// Returns the lanes of `mask` in which λ moves by `delta` exactly.
     #[kernel]
     pub fn move_by(
         &mut self,
         blocks: &[BlockIndex],
-        delta: &[T],
-        force: &[T],
+        [delta, lowest]: [&[T]; 2],
         mask: T::Mask,
     ) -> T::Mask {
         self.predictions += T::select(mask, T::ONE, T::ZERO);
@@ -133,12 +133,12 @@ impl<T: Real> NormalForces<T> {
         let damped = count.gt(T::ZERO) & phase.eq(T::ZERO);
         let share = T::select(damped, T::new(0.5), T::ONE);
         let mut exact = mask & !damped;
-        for (b, &delta) in blocks.iter().zip(delta) {
+        for ((b, &delta), &lowest) in blocks.iter().zip(delta).zip(lowest) {
             let lambda = &mut self.lambda[b.active_start];
             let moved = *lambda + delta;
-            let jams = moved.lt(T::ZERO);
-            exact &= !jams;
-            let target = T::select(jams, force[b.row], moved);
+            let below = moved.lt(T::ZERO);
+            exact &= !below;
+            let target = T::select(below, lowest, moved);
             let moved = *lambda + share * (target - *lambda);
             *lambda = T::select(mask, moved, *lambda);
         }

@@ -9,17 +9,26 @@
 //! (I − D J_n H⁻¹ B) δ = f − λ + D J_n H⁻¹ g
 //! ```
 //!
-//! One unknown a sliding contact, solved by the generalized conjugate residual method (Eisenstat, Elman & Schultz
-//! 1983); δ of the other contacts follows from d. If the limits λ + δ change no piece, the gradient with them is
-//! g + B δ. So d is also Newton's step for the convex problem with these limits, along which the line search decreases
-//! the cost; otherwise that step is computed.
+//! The system has one unknown a sliding contact. Elimination solves it for few contacts ([`SlidingSystem`]), the
+//! generalized conjugate residual method for many (Eisenstat, Elman & Schultz 1983). δ of the other contacts follows
+//! from d. If the limits λ + δ change no piece, the gradient with them is g + B δ. So d is also Newton's step for the
+//! convex problem with these limits, along which the line search decreases the cost; otherwise that step is computed.
+//!
+//! A contact jams if its normal force grows faster than the limit of its friction: then its pivot is not positive. Its
+//! λ becomes f, which moves it away from the solution that repels. Any other λ + δ below zero means that a contact
+//! opens.
 
 use crate::block_index::BlockIndex;
 use crate::costs::{Cost, Coulomb};
 use crate::hessian::Hessian;
 use crate::iterate::{Iterate, add_scaled, dot};
 use crate::problem::Problem;
+use crate::sliding::SlidingSystem;
 use clench_math::{Mask, Real, kernel};
+
+/// The maximum number of sliding contacts whose system is solved by elimination. In heaps of hundreds it takes longer,
+/// and solves need as many iterations.
+const MAX_ELIMINATED: f64 = 16.0;
 
 /// The maximum number of directions, and the residual, relative to the right-hand side, at which the method stops. The
 /// next Newton step corrects the remaining error.
@@ -31,12 +40,18 @@ const RESIDUAL: f64 = 1e-2;
 pub(crate) struct Prediction<T> {
     /// The Coulomb blocks.
     blocks: Vec<BlockIndex>,
+    system: SlidingSystem<T>,
+    /// The blocks of its unknowns, and D of those that slide.
+    unknowns: Vec<usize>,
+    pressing: Vec<T>,
     /// The entries μ_j u_j of B for each row; for each block D, and 1 where it slides, else 0.
     friction: Vec<T>,
     weights: Vec<T>,
     slides: Vec<T>,
     /// δ, the residual, and pairs of a direction and its image, one number a block.
     delta: Vec<T>,
+    /// The λ of each block if λ + δ is below zero: zero after elimination, else f, since the contact may jam.
+    lowest: Vec<T>,
     residual: Vec<T>,
     directions: Vec<T>,
     /// H⁻¹ B times each direction, and −d; one number a dof.
@@ -63,19 +78,100 @@ impl<T: Real> Prediction<T> {
         if !mask.any() {
             return mask;
         }
+        self.delta.clear();
+        self.delta.resize(self.blocks.len(), T::ZERO);
+        self.step.clear();
+        self.step.extend_from_slice(&iterate.gradient);
+        self.lowest.clear();
+        (self.lowest).extend(self.blocks.iter().map(|b| iterate.force[b.row]));
+        let sliding = (self.slides.iter()).fold(T::ZERO, |sum, &slides| sum + slides);
+        let many = mask & sliding.gt(T::new(MAX_ELIMINATED));
+        if many.any() {
+            self.iterate(problem, hessian, iterate, many);
+        }
+        let mut jammed = T::Mask::splat(false);
+        if (mask & !many).any() {
+            jammed = self.eliminate(problem, hessian, iterate, mask & !many);
+        }
+        for (k, b) in self.blocks.iter().enumerate() {
+            if self.slides[k].eq(T::ZERO).any() {
+                let predicted = self.predicted(problem, iterate, k, b, mask);
+                self.delta[k] += (T::ONE - self.slides[k]) * predicted;
+            }
+        }
+        let exact =
+            (iterate.normal_forces).move_by(&self.blocks, [&self.delta, &self.lowest], mask);
+        let changes = iterate.evaluate(problem).changes;
+        iterate.differentiate(problem);
+        exact & !jammed & changes.eq(T::ZERO)
+    }
+
+    /// Computes δ of the sliding contacts and −d by elimination, in the lanes of `mask`. Returns the lanes in which a
+    /// contact jams, which d ignores.
+    #[inline(always)]
+    fn eliminate(
+        &mut self,
+        problem: &Problem<T>,
+        hessian: &mut Hessian<T>,
+        iterate: &Iterate<T>,
+        mask: T::Mask,
+    ) -> T::Mask {
+        self.system.clear();
+        self.unknowns.clear();
+        self.residual.clear();
+        self.pressing.clear();
+        let rows = &problem.jacobian;
+        for (k, b) in self.blocks.iter().enumerate() {
+            let slides = T::select(mask, self.slides[k], T::ZERO);
+            if slides.gt(T::ZERO).any() {
+                self.unknowns.push(k);
+                let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
+                self.residual.push(slides * missing);
+                self.pressing.push(slides * self.weights[k]);
+                let friction = &self.friction[b.rows()];
+                (self.system).push(hessian, rows.dofs(b), rows.values(b), friction);
+            }
+        }
+        self.dofs.clear();
+        self.dofs.extend_from_slice(&iterate.gradient);
+        (self.system).solve(hessian, &self.pressing, &mut self.residual, &mut self.dofs);
+        let mut jammed = T::Mask::splat(false);
+        for (i, (&k, &delta)) in self.unknowns.iter().zip(&self.residual).enumerate() {
+            let b = &self.blocks[k];
+            let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
+            let jams = self.system.jams(i);
+            jammed |= jams & mask;
+            let delta = T::select(jams, missing, delta);
+            self.delta[k] = T::select(mask, delta, self.delta[k]);
+        }
+        for lowest in &mut self.lowest {
+            *lowest = T::select(mask, T::ZERO, *lowest);
+        }
+        for (step, &x) in self.step.iter_mut().zip(&self.dofs) {
+            *step = T::select(mask, x, *step);
+        }
+        jammed
+    }
+
+    /// Computes the same by generalized conjugate residuals.
+    #[inline(always)]
+    fn iterate(
+        &mut self,
+        problem: &Problem<T>,
+        hessian: &mut Hessian<T>,
+        iterate: &Iterate<T>,
+        mask: T::Mask,
+    ) {
         let count = self.blocks.len();
         self.dofs.clear();
         self.dofs.extend_from_slice(&iterate.gradient);
         self.solve(hessian);
-        self.step.clear();
-        self.step.extend_from_slice(&self.dofs);
+        self.step.copy_from_slice(&self.dofs);
         self.residual.clear();
         for (k, b) in self.blocks.iter().enumerate() {
             let predicted = self.predicted(problem, iterate, k, b, mask);
             self.residual.push(self.slides[k] * predicted);
         }
-        self.delta.clear();
-        self.delta.resize(count, T::ZERO);
         self.directions.clear();
         self.responses.clear();
         let small = T::new(RESIDUAL * RESIDUAL) * dot(&self.residual, &self.residual);
@@ -102,17 +198,6 @@ impl<T: Real> Prediction<T> {
                 &self.responses[i * self.dofs.len()..],
             );
         }
-        for (k, b) in self.blocks.iter().enumerate() {
-            if self.slides[k].eq(T::ZERO).any() {
-                let predicted = self.predicted(problem, iterate, k, b, mask);
-                self.delta[k] += (T::ONE - self.slides[k]) * predicted;
-            }
-        }
-        let exact =
-            (iterate.normal_forces).move_by(&self.blocks, &self.delta, &iterate.force, mask);
-        let changes = iterate.evaluate(problem).changes;
-        iterate.differentiate(problem);
-        exact & changes.eq(T::ZERO)
     }
 
     /// Computes δ = f − λ − D J_n d of the `k`-th block; zero outside the lanes of `mask`.

@@ -1,5 +1,6 @@
 //! The Hessian stored as the entries that elimination fills.
 
+use super::path_pairs::PathPairs;
 use super::rank_one::each_of_change;
 use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
@@ -20,6 +21,8 @@ pub(super) struct FilledForm<T: 'static> {
     spare: SparseFactor<T>,
     /// The vector of a rank-one update; zero between updates.
     direction: Vec<T>,
+    /// The pair of vectors of a partial solve; zero between solves.
+    pair: Vec<[T; 2]>,
 }
 
 /// Calls `work` for `count` windows of about the same size, with their values. (More windows than threads do not pay:
@@ -52,6 +55,8 @@ impl<T: Real> FilledForm<T> {
         self.factor.resize(&self.pattern);
         self.direction.clear();
         self.direction.resize(tree.nv(), T::ZERO);
+        self.pair.clear();
+        self.pair.resize(tree.nv(), [T::ZERO; 2]);
         true
     }
 
@@ -121,5 +126,36 @@ impl<T: Real> FilledForm<T> {
     #[inline(always)]
     pub(super) fn solve(&mut self, x: &mut [T]) {
         self.factor.solve(&self.pattern, x);
+    }
+
+    /// See [`Hessian::solve_transposed`](super::Hessian::solve_transposed).
+    #[inline(always)]
+    pub(super) fn solve_transposed(&mut self, x: &mut [T]) {
+        self.factor.solve_transposed(&self.pattern, x);
+    }
+
+    /// See [`Hessian::solve_rest`](super::Hessian::solve_rest).
+    #[inline(always)]
+    pub(super) fn solve_rest(&mut self, x: &mut [T]) {
+        self.factor.solve_rest(&self.pattern, x);
+    }
+
+    /// See [`Hessian::push_pair`](super::Hessian::push_pair).
+    #[inline(always)]
+    pub(super) fn push_pair(&mut self, dofs: &[u32], entries: &[[T; 2]], pairs: &mut PathPairs<T>) {
+        let Some(&last) = dofs.last() else {
+            return pairs.end();
+        };
+        for (&dof, &entry) in dofs.iter().zip(entries) {
+            self.pair[dof as usize] = entry;
+        }
+        self.factor.solve_pairs_along(
+            &self.pattern,
+            last as usize,
+            &mut self.pair,
+            #[inline(always)]
+            |dof, entry| pairs.push_entry(dof, entry),
+        );
+        pairs.end_reversed();
     }
 }

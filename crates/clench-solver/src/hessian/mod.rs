@@ -8,6 +8,7 @@
 //! choices agree to the bit**.
 
 mod filled;
+mod path_pairs;
 mod paths;
 mod rank_one;
 
@@ -20,6 +21,7 @@ use crate::threads::Threads;
 use crate::tree::Tree;
 use clench_math::Real;
 use filled::FilledForm;
+pub(crate) use path_pairs::PathPairs;
 use paths::PathForm;
 
 /// H and its factor.
@@ -129,6 +131,36 @@ impl<T: Real> Hessian<T> {
             self.filled.solve(x);
         } else {
             self.paths.solve(x);
+        }
+    }
+
+    /// Computes `x ← L⁻ᵀ x`, the first part of [`solve`](Self::solve).
+    #[inline(always)]
+    pub(crate) fn solve_transposed(&mut self, x: &mut [T]) {
+        if self.is_filled {
+            self.filled.solve_transposed(x);
+        } else {
+            self.paths.solve_transposed(x);
+        }
+    }
+
+    /// Computes `x ← L⁻¹ D⁻¹ x`, the rest of [`solve`](Self::solve).
+    #[inline(always)]
+    pub(crate) fn solve_rest(&mut self, x: &mut [T]) {
+        if self.is_filled {
+            self.filled.solve_rest(x);
+        } else {
+            self.paths.solve_rest(x);
+        }
+    }
+
+    /// Appends D⁻¹ L⁻ᵀ x and L⁻ᵀ y for vectors x and y with these `entries` at the dofs of a block.
+    #[inline(always)]
+    pub(crate) fn push_pair(&mut self, dofs: &[u32], entries: &[[T; 2]], pairs: &mut PathPairs<T>) {
+        if self.is_filled {
+            self.filled.push_pair(dofs, entries, pairs);
+        } else {
+            self.paths.push_pair(dofs, entries, pairs);
         }
     }
 

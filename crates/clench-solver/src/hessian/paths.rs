@@ -1,5 +1,6 @@
 //! The Hessian stored as whole paths of its elimination tree.
 
+use super::path_pairs::PathPairs;
 use super::rank_one::each_of_change;
 use crate::block_index::BlockIndex;
 use crate::costs::{Form, RankOne, Weight};
@@ -104,6 +105,31 @@ impl<T: Real> PathForm<T> {
     #[inline(always)]
     pub(super) fn solve(&self, x: &mut [T]) {
         self.factor.solve(&self.tree, x);
+    }
+
+    /// See [`Hessian::solve_transposed`](super::Hessian::solve_transposed).
+    #[inline(always)]
+    pub(super) fn solve_transposed(&self, x: &mut [T]) {
+        self.factor.solve_transposed(&self.tree, x);
+    }
+
+    /// See [`Hessian::solve_rest`](super::Hessian::solve_rest).
+    #[inline(always)]
+    pub(super) fn solve_rest(&self, x: &mut [T]) {
+        self.factor.solve_rest(&self.tree, x);
+    }
+
+    /// See [`Hessian::push_pair`](super::Hessian::push_pair).
+    #[inline(always)]
+    pub(super) fn push_pair(&self, dofs: &[u32], entries: &[[T; 2]], pairs: &mut PathPairs<T>) {
+        let Some(&last) = dofs.last() else {
+            return pairs.end();
+        };
+        let x = pairs.push_zeros(self.tree.row(last as usize));
+        for (&dof, &entry) in dofs.iter().zip(entries) {
+            x[self.tree.depth(dof as usize)] = entry;
+        }
+        self.factor.solve_pairs_along(&self.tree, last as usize, x);
     }
 
     /// See [`Hessian::solve_columns`](super::Hessian::solve_columns).

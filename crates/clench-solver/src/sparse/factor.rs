@@ -81,12 +81,8 @@ impl<T: Real> SparseFactor<T> {
         let mut next = Some(last);
         while let Some(dof) = next {
             let s = pattern.supernode_of(dof);
-            let (m, columns) = (dof - s.first, pattern.columns(s));
-            next = if m > 0 {
-                Some(dof - 1)
-            } else {
-                columns.last().map(|&c| c as usize)
-            };
+            let columns = pattern.row(s, dof);
+            next = columns.clone().next_back().map(|c| c as usize);
             let p = std::mem::replace(&mut x[dof], T::ZERO);
             if p.eq(T::ZERO).all() {
                 continue;
@@ -99,9 +95,8 @@ impl<T: Real> SparseFactor<T> {
             sigma *= old / new;
             self.diagonal[dof] = new;
             self.inverse[dof] = inverse;
-            let row = &mut self.values[s.start + m * s.width()..][..s.shared() + m];
-            let own = s.first as u32..dof as u32;
-            for (l, column) in row.iter_mut().zip(columns.iter().copied().chain(own)) {
+            let row = &mut self.values[s.row(dof)];
+            for (l, column) in row.iter_mut().zip(columns) {
                 let x = &mut x[column as usize];
                 *x -= p * *l;
                 *l += beta * *x;

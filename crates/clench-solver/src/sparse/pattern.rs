@@ -52,6 +52,13 @@ impl Supernode {
     pub(crate) fn width(&self) -> usize {
         self.shared() + self.len
     }
+    /// Returns the range of the row of one of its dofs in the values, without the diagonal.
+    #[inline(always)]
+    pub(crate) fn row(&self, dof: usize) -> Range<usize> {
+        let m = dof - self.first;
+        let start = self.start + m * self.width();
+        start..start + self.shared() + m
+    }
     /// Returns the range of its block in the values.
     #[inline(always)]
     pub(crate) fn block(&self) -> Range<usize> {
@@ -283,6 +290,17 @@ impl SparsePattern {
     #[inline(always)]
     pub(crate) fn columns(&self, supernode: &Supernode) -> &[u32] {
         &self.columns[supernode.columns.clone()]
+    }
+    /// Returns the columns to the left of the diagonal in the row of a dof, ascending; the last is its parent in the
+    /// elimination tree.
+    #[inline(always)]
+    pub(crate) fn row(
+        &self,
+        supernode: &Supernode,
+        dof: usize,
+    ) -> impl DoubleEndedIterator<Item = u32> + Clone + use<'_> {
+        let own = supernode.first as u32..dof as u32;
+        self.columns(supernode).iter().copied().chain(own)
     }
     /// Returns the same columns as runs.
     #[inline(always)]

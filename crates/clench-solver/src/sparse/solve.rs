@@ -6,11 +6,23 @@ use clench_math::{Real, array, kernel};
 
 impl<T: Real> SparseFactor<T> {
     /// Computes `x ← A⁻¹ x`.
+    #[inline(always)]
+    pub(crate) fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
+        self.solve_transposed(pattern, x);
+        self.solve_rest(pattern, x);
+    }
+
+    /// Computes `x ← L^(-T) x`.
     #[kernel]
-    pub fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
+    pub(crate) fn solve_transposed(&mut self, pattern: &SparsePattern, x: &mut [T]) {
         for s in pattern.supernodes() {
-            self.solve_transposed(pattern, s, x);
+            self.solve_transposed_rows(pattern, s, x);
         }
+    }
+
+    /// Computes `x ← L⁻¹ D⁻¹ x`, which completes [`solve_transposed`](Self::solve_transposed).
+    #[kernel]
+    pub(crate) fn solve_rest(&mut self, pattern: &SparsePattern, x: &mut [T]) {
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
             *x *= inverse;
         }
@@ -19,9 +31,34 @@ impl<T: Real> SparseFactor<T> {
         }
     }
 
+    /// Computes `x ← L^(-T) x` for pairs x that are zero outside the path to dof `last`, then divides the first of each
+    /// pair by D. Calls `put` with each dof of the path, from the last, and sets its entry to zero.
+    #[inline(always)]
+    pub(crate) fn solve_pairs_along(
+        &self,
+        pattern: &SparsePattern,
+        last: usize,
+        x: &mut [[T; 2]],
+        mut put: impl FnMut(u32, [T; 2]),
+    ) {
+        let mut next = Some(last);
+        while let Some(dof) = next {
+            let s = pattern.supernode_of(dof);
+            let columns = pattern.row(s, dof);
+            next = columns.clone().next_back().map(|c| c as usize);
+            let [first, second] = std::mem::replace(&mut x[dof], [T::ZERO; 2]);
+            for (&l, column) in self.values[s.row(dof)].iter().zip(columns) {
+                let x = &mut x[column as usize];
+                x[0] -= l * first;
+                x[1] -= l * second;
+            }
+            put(dof as u32, [first * self.inverse[dof], second]);
+        }
+    }
+
     /// Subtracts the contributions of a supernode's rows, of which the rows below are done, from the rows above.
     #[inline(always)]
-    fn solve_transposed(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
+    fn solve_transposed_rows(&mut self, pattern: &SparsePattern, s: &Supernode, x: &mut [T]) {
         let (width, shared) = (s.width(), s.shared());
         self.gather(pattern.columns(s), x);
         let gathered = &mut self.gathered[..];

@@ -234,9 +234,15 @@ impl<T: Real> TreeFactor<T> {
     }
 
     /// Computes `x ← A⁻¹ x`.
-    #[kernel]
+    #[inline(always)]
     pub fn solve(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
+        self.solve_rest(tree, x);
+    }
+
+    /// Computes `x ← L⁻¹ D⁻¹ x`, which completes [`solve_transposed`](Self::solve_transposed).
+    #[kernel]
+    pub(crate) fn solve_rest(&self, tree: &Tree, x: &mut [T]) {
         for &TreeSupernode { first, len } in &tree.supernodes {
             with_len!(len, LEN => self.solve_supernode::<LEN>(tree, first, x));
         }
@@ -287,9 +293,25 @@ impl<T: Real> TreeFactor<T> {
         }
     }
 
-    /// Computes `x ← L^(-T) x`.
+    /// Computes `x ← L^(-T) x` for pairs x that are zero outside the path to dof `last`, then divides the first of each
+    /// pair by D. `x` holds the entries on the path, in the order of `tree.row(last)`.
     #[inline(always)]
-    fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
+    pub(crate) fn solve_pairs_along(&self, tree: &Tree, last: usize, x: &mut [[T; 2]]) {
+        for (place, &dof) in tree.row(last).iter().enumerate().rev() {
+            let row = &self.lower[tree.row_start(dof as usize)..][..place];
+            let (above, own) = x.split_at_mut(place);
+            let [first, second] = &mut own[0];
+            for (above, &multiplier) in above.iter_mut().zip(row) {
+                above[0] -= multiplier * *first;
+                above[1] -= multiplier * *second;
+            }
+            *first *= self.inverse[dof as usize];
+        }
+    }
+
+    /// Computes `x ← L^(-T) x`.
+    #[kernel]
+    pub(crate) fn solve_transposed(&self, tree: &Tree, x: &mut [T]) {
         for &TreeSupernode { first, len } in tree.supernodes.iter().rev() {
             with_len!(len, LEN => self.solve_transposed_supernode::<LEN>(tree, first, x));
         }

@@ -1,7 +1,7 @@
 //! Contacts by Coulomb's law: the solution satisfies it, whatever the normal forces do.
 
 use crate::common::*;
-use clench_solver::{ConstraintSolver, Cost, Problem, Solver, SolverOptions};
+use clench_solver::{Block, ConstraintSolver, Cost, Problem, Solver, SolverOptions, Switch};
 
 /// Returns problems of Coulomb contacts, half of them with other constraints.
 fn problems(count: usize, stiffness: f64) -> impl Iterator<Item = Problem<f64>> {
@@ -109,4 +109,68 @@ fn friction_does_not_change_the_normal_force() {
         assert!((pressed - normal).abs() < 1e-12 * normal);
         assert!((friction - 0.5 * normal * aref.signum()).abs() < 1e-12 * normal);
     }
+}
+
+#[test]
+fn every_form_of_the_hessian_gives_the_same_bits() {
+    let mut rng = Rng(5);
+    let mut many = 0;
+    for k in 0..30 {
+        // A heap of free bodies, whose Hessian is stored by filled entries or as a dense matrix.
+        let parent = |i: usize| (!i.is_multiple_of(6)).then(|| i - 1);
+        let mut shape = Shape::new((0..6 * 12).map(parent).collect(), 6 + 3 * k);
+        shape.cross = 0.9;
+        shape.costs = vec![Cost::Coulomb];
+        let problem = random_problem(&mut rng, &shape);
+        let [sparse, dense] = [Switch::On, Switch::Off].map(|choice| {
+            let options = SolverOptions::new()
+                .sparse_solve(choice)
+                .islands(Switch::Off);
+            let mut solver = Solver::new(problem.tree());
+            solver
+                .solve(&problem, &options.resolve::<f64>(), None)
+                .unwrap();
+            solver
+        });
+        assert_eq!(sparse.qacc(), dense.qacc(), "problem {k}");
+        assert_eq!(sparse.force(), dense.force(), "problem {k}");
+        let slides = |block: &Block<f64>| {
+            let force = &sparse.force()[block.rows()];
+            let shares = force[1..]
+                .iter()
+                .zip(&block.shape[1..])
+                .map(|(f, mu)| f / mu);
+            let friction = shares.map(|x| x * x).sum::<f64>().sqrt();
+            force[0] > 0.0 && friction > 0.999 * force[0]
+        };
+        let sliding = problem.blocks().filter(slides).count();
+        many += usize::from(sliding > 16);
+    }
+    assert!(many > 5, "{many} problems of many contacts");
+}
+
+#[test]
+fn a_contact_that_jams_sticks() {
+    // Two dofs, along a plane and away from it, coupled so that friction presses the contact more than it yields, like a
+    // rod that is pushed over a rough floor. While it slides, the normal force exceeds the limit of friction slightly
+    // more with each larger limit.
+    let tree = std::sync::Arc::new(clench_solver::Tree::new(&[None, Some(0)]).unwrap());
+    let mut problem = Problem::<f64>::new(tree);
+    problem.mass.values = vec![1.0, 0.8, 1.0];
+    problem.qacc_smooth = vec![-2000.0, -1.0];
+    assert!(problem.factor_mass());
+    let block = problem.push(Cost::Coulomb, 2, &[0, 1]);
+    block.jacobian.copy_from_slice(&[0.0, 1.0, 1.0, 0.0]);
+    block.r.copy_from_slice(&[0.05, 0.05]);
+    block.d.copy_from_slice(&[20.0, 20.0]);
+    block.shape[1] = 1.3;
+    problem.check().unwrap();
+    let mut solver = Solver::new(problem.tree());
+    let settings = SolverOptions::new().resolve::<f64>();
+    let stats = solver.solve(&problem, &settings, None).unwrap().lane(0);
+    assert_eq!(stats.status.name(), "converged", "{stats:?}");
+    assert!(stats.iterations <= 35, "{stats:?}");
+    assert_eq!(stats.normal_residual, 0.0);
+    let [normal, friction] = [solver.force()[0], solver.force()[1]];
+    assert!(friction.abs() < 1.3 * normal, "{normal} {friction}");
 }
