@@ -119,30 +119,20 @@ impl<T: Real> NormalForces<T> {
     }
 
     /// Adds `delta`, one number for each of `blocks`, to λ in the lanes of `mask`; `lowest` replaces a sum below zero.
-    /// Returns the lanes of `mask` in which λ moves by `delta` exactly.
     #[kernel]
-    pub fn move_by(
-        &mut self,
-        blocks: &[BlockIndex],
-        [delta, lowest]: [&[T]; 2],
-        mask: T::Mask,
-    ) -> T::Mask {
+    pub fn move_by(&mut self, blocks: &[BlockIndex], [delta, lowest]: [&[T]; 2], mask: T::Mask) {
         self.predictions += T::select(mask, T::ONE, T::ZERO);
         let count = self.predictions - T::new(MAX_FULL);
         let phase = count - T::new(CYCLE) * (count / T::new(CYCLE)).floor();
         let damped = count.gt(T::ZERO) & phase.eq(T::ZERO);
         let share = T::select(damped, T::new(0.5), T::ONE);
-        let mut exact = mask & !damped;
         for ((b, &delta), &lowest) in blocks.iter().zip(delta).zip(lowest) {
             let lambda = &mut self.lambda[b.active_start];
             let moved = *lambda + delta;
-            let below = moved.lt(T::ZERO);
-            exact &= !below;
-            let target = T::select(below, lowest, moved);
+            let target = T::select(moved.lt(T::ZERO), lowest, moved);
             let moved = *lambda + share * (target - *lambda);
             *lambda = T::select(mask, moved, *lambda);
         }
-        exact
     }
 
     /// Computes the largest |f − λ|.

@@ -11,8 +11,9 @@
 //!
 //! The system has one unknown a sliding contact. Elimination solves it for few contacts ([`SlidingSystem`]), the
 //! generalized conjugate residual method for many (Eisenstat, Elman & Schultz 1983). δ of the other contacts follows
-//! from d. If the limits λ + δ change no piece, the gradient with them is g + B δ. So d is also Newton's step for the
-//! convex problem with these limits, along which the line search decreases the cost; otherwise that step is computed.
+//! from d. If the limits λ + δ change no piece, the gradient with them is g + B δ, and d is also Newton's step for the
+//! convex problem with these limits. The line search decreases its cost along d wherever d descends; otherwise that
+//! Newton step is computed.
 //!
 //! A contact jams if its normal force grows faster than the limit of its friction: then its pivot is not positive. Its
 //! λ becomes f, which moves it away from the solution that repels. Any other λ + δ below zero means that a contact
@@ -29,6 +30,9 @@ use clench_math::{Mask, Real, kernel};
 /// The maximum number of sliding contacts whose system is solved by elimination. In heaps of hundreds it takes longer,
 /// and solves need as many iterations.
 const MAX_ELIMINATED: f64 = 16.0;
+
+/// The step d is taken if the cosine of its angle to the negative gradient exceeds this.
+const MIN_COSINE: f64 = 0.01;
 
 /// The maximum number of directions, and the residual, relative to the right-hand side, at which the method stops. The
 /// next Newton step corrects the remaining error.
@@ -64,7 +68,7 @@ pub(crate) struct Prediction<T> {
 
 impl<T: Real> Prediction<T> {
     /// Moves λ to the prediction in the lanes of `mask` in which a contact slides, and evaluates the iterate; `hessian`
-    /// is factored there. Returns the lanes in which Newton's step is d. If all contacts stick, their limits have no
+    /// is factored there. Returns the lanes in which d is the next step. If all contacts stick, their limits have no
     /// effect.
     #[kernel]
     pub fn run(
@@ -99,11 +103,12 @@ impl<T: Real> Prediction<T> {
                 self.delta[k] += (T::ONE - self.slides[k]) * predicted;
             }
         }
-        let exact =
-            (iterate.normal_forces).move_by(&self.blocks, [&self.delta, &self.lowest], mask);
-        let changes = iterate.evaluate(problem).changes;
-        iterate.differentiate(problem);
-        exact & !jammed & changes.eq(T::ZERO)
+        (iterate.normal_forces).move_by(&self.blocks, [&self.delta, &self.lowest], mask);
+        iterate.evaluate(problem);
+        let norm = iterate.differentiate(problem);
+        let descent = dot(&self.step, &iterate.gradient);
+        let length = dot(&self.step, &self.step).sqrt();
+        mask & !jammed & descent.gt(T::new(MIN_COSINE) * length * norm)
     }
 
     /// Computes δ of the sliding contacts and −d by elimination, in the lanes of `mask`. Returns the lanes in which a
