@@ -1,5 +1,6 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
+use crate::matrix::{InputGradient, Matrix};
 use crate::recursive::{Curves, Recursive};
 use crate::request::Request;
 use crate::seed::{self, Seed};
@@ -31,6 +32,14 @@ pub(crate) trait Pass: Send {
         &mut self,
         source: Source<'_>,
         write: &mut dyn FnMut(&[f64]),
+    ) -> Result<bool, SimError>;
+    /// Computes the gradients by state and controls of functions of the next state, by recursions: see
+    /// [`Recursive::pull_back`]. Returns false if the step needs its derivatives.
+    fn pull_back(
+        &mut self,
+        source: Source<'_>,
+        gradient: &Matrix,
+        result: &mut InputGradient,
     ) -> Result<bool, SimError>;
     /// Computes the derivatives of kinematic sensors, after recursions: see [`DualPass::read_sensors`].
     fn sense(
@@ -163,6 +172,22 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             self.recursed = self.recursive.run(source, &mut find_curves, write)?;
         }
         Ok(self.recursed)
+    }
+
+    fn pull_back(
+        &mut self,
+        source: Source<'_>,
+        gradient: &Matrix,
+        result: &mut InputGradient,
+    ) -> Result<bool, SimError> {
+        if !Recursive::covers(source) {
+            return Ok(false);
+        }
+        let numbers = (source.model, &self.params);
+        let mut find_curves = |state: &State<f64>, curves: &mut Curves| {
+            curves.find(numbers, state, (&mut self.before, &mut self.ws.position));
+        };
+        (self.recursive).pull_back(source, &mut find_curves, gradient, result)
     }
 
     fn write_next(&mut self, source: Source<'_>, next: &mut State<f64>) -> Result<(), SimError> {

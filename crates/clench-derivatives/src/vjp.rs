@@ -1,6 +1,6 @@
 //! Gradients of functions of a step's results: products of a row vector, or of several, with the Jacobian of the step.
 
-use crate::linearizer::{Linearization, Linearizer};
+use crate::linearizer::{Linearization, Linearizer, source};
 use crate::matrix::{InputGradient, OutputGradient};
 use crate::request::Request;
 use clench_rigid::{Sim, SimError};
@@ -30,7 +30,16 @@ impl Linearizer {
             assert_eq!(matrix.shape, [rows, columns], "the shape of a gradient");
             assert_eq!(matrix.values.len(), rows * columns, "a complete matrix");
         }
-        self.linearize(sim, request)?;
+        let model = self.prepare(sim, &request.parameters)?;
+        let source = source(&model, sim, request);
+        let of_state = request.y_len(&model) == 0 && request.p_len() == 0;
+        if of_state && request.permits_recursion(&model) {
+            let result = &mut self.gradient;
+            if self.pass.pull_back(source, &gradient.x, result)? {
+                return Ok(&self.gradient);
+            }
+        }
+        self.differentiate(source)?;
         let Linearization {
             a, b, c, d, e, f, ..
         } = &self.result;

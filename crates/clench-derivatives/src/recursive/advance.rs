@@ -80,6 +80,34 @@ impl Advance {
             }
         }
     }
+
+    /// Adds to gradients by the velocities and by the positions before what follows from that by the new positions.
+    pub(super) fn pull_back(
+        &self,
+        model: &Model,
+        by_position: &[f64],
+        velocities: &mut [f64],
+        positions: &mut [f64],
+    ) {
+        let mut turns = self.turns.iter();
+        for joint in &model.joints {
+            let rotation = rotation(joint);
+            for dof in joint.dof..rotation.start {
+                velocities[dof] += self.time * by_position[dof];
+                positions[dof] += by_position[dof];
+            }
+            if rotation.is_empty() {
+                continue;
+            }
+            let Some(turn) = turns.next() else { return };
+            for (axis, &by) in by_position[rotation.clone()].iter().enumerate() {
+                for k in 0..3 {
+                    velocities[rotation.start + k] += by * turn.by_velocity[axis][k];
+                    positions[rotation.start + k] += by * turn.by_position[axis][k];
+                }
+            }
+        }
+    }
 }
 
 impl Turn {

@@ -4,6 +4,7 @@ use super::blocks::Blocks;
 use super::local::Local;
 use super::step::Step;
 use super::weight::Weight;
+use crate::matrix::subtract_products;
 use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
 use clench_dynamics::model::Model;
 use clench_solver::Response;
@@ -59,6 +60,12 @@ impl Gradient {
         self.local.run(step, &mut gradient);
         self.weight.subtract(step, &mut gradient);
         true
+    }
+
+    /// Subtracts from `row` the part of a gradient `by_acceleration`, which is overwritten.
+    pub(super) fn pull_back(&mut self, by_acceleration: &mut [f64], row: &mut [f64]) {
+        self.response.solve_columns(by_acceleration, 1);
+        subtract_products(by_acceleration, &self.columns, row);
     }
 
     /// Replaces derivatives of the gradient, columns of `width` numbers a row, by those of the acceleration.

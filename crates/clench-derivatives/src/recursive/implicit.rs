@@ -7,6 +7,7 @@
 use super::coordinate::Coordinate;
 use super::gyroscopic::Gyroscopic;
 use super::step::Step;
+use crate::matrix::subtract_products;
 use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
 use clench_dynamics::model::{Integrator, Model};
 
@@ -122,12 +123,11 @@ impl Implicit {
         }
     }
 
-    /// Replaces the derivatives of a in `columns` by those of a′.
-    pub(super) fn replace(
+    /// Computes h dB a′ + dM (a′ − a), nv rows of `width` numbers.
+    pub(super) fn set_right(
         &mut self,
         step: &Step<'_>,
         inverse: &mut InverseDerivatives<f64>,
-        columns: &mut [f64],
         width: usize,
     ) {
         let (model, plain) = (step.model, step.plain);
@@ -135,7 +135,7 @@ impl Implicit {
         let change = plain.qacc.iter().zip(&plain.integration.qacc);
         let change = Vec::from_iter(change.map(|(a, implicit)| implicit - a));
         self.right.clear();
-        self.right.resize(columns.len(), 0.0);
+        self.right.resize(model.nv * width, 0.0);
         let mut right = Columns {
             values: &mut self.right,
             width,
@@ -148,6 +148,19 @@ impl Implicit {
         for &(dof, column, rate) in &self.rates {
             right.add(dof, column, h * rate);
         }
+    }
+
+    /// Replaces the derivatives of a in `columns` by those of a′.
+    pub(super) fn replace(
+        &mut self,
+        step: &Step<'_>,
+        inverse: &mut InverseDerivatives<f64>,
+        columns: &mut [f64],
+        width: usize,
+    ) {
+        self.set_right(step, inverse, width);
+        let (model, plain) = (step.model, step.plain);
+        let h = step.params.timestep;
         let rows = |i: usize| i * width..(i + 1) * width;
         let mut add_row = |to: usize, from: usize, scale: f64| {
             let row = self.right[rows(to)].iter_mut().zip(&columns[rows(from)]);
@@ -172,6 +185,21 @@ impl Implicit {
             .iter_mut()
             .zip(&self.right)
             .for_each(|(x, &y)| *x -= y);
+    }
+
+    /// Replaces the gradient by a′ of a function by that by a, and subtracts from `row` its product with the
+    /// [right side](Self::set_right), for a model without gyroscopic slopes.
+    pub(super) fn pull_back(&self, step: &Step<'_>, gradient: &mut [f64], row: &mut [f64]) {
+        let h = step.params.timestep;
+        let mut solved = gradient.to_vec();
+        (step.plain.integration.factor).solve(&step.model.tree, &mut solved);
+        subtract_products(&solved, &self.right, row);
+        for ((x, &slope), &y) in gradient.iter_mut().zip(&self.slopes).zip(&solved) {
+            *x -= h * slope * y;
+        }
+        for &(i, j, slope) in &self.couplings {
+            gradient[j] -= h * slope * solved[i];
+        }
     }
 }
 

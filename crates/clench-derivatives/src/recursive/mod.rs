@@ -22,6 +22,7 @@ mod gyroscopic;
 mod implicit;
 mod local;
 mod pair;
+mod pull_back;
 mod rows;
 mod runge_kutta;
 mod scope;

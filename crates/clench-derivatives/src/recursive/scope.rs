@@ -2,6 +2,7 @@
 
 use clench_dynamics::Model;
 use clench_dynamics::StepSettings;
+use clench_dynamics::dynamics::gyroscopic::is_free_tree;
 use clench_dynamics::dynamics::local::is_local;
 use clench_dynamics::dynamics::reflected::tendon_armature;
 use clench_dynamics::model::{Actuator, GainKind, Integrator, Params};
@@ -31,6 +32,18 @@ pub(super) fn covers(model: &Model, params: &Params<f64>, settings: &StepSetting
         && settings.solver.noslip_iterations == 0
         && is_local(model, params)
         && constant_inertia
+}
+
+/// Returns true if gradients of a step that recursions cover need no derivatives of the next state: it has one stage,
+/// and the slopes of its forces are symmetric.
+pub(super) fn pulls_back(model: &Model) -> bool {
+    match model.integrator {
+        Integrator::Euler => true,
+        Integrator::ImplicitFast => {
+            (0..model.joints.len()).all(|joint| !is_free_tree(model, joint))
+        }
+        Integrator::Rk4 | Integrator::Implicit | Integrator::Discrete => false,
+    }
 }
 
 /// Returns true if the activations of an actuator after several stages follow from their mean rates, and no stage reads

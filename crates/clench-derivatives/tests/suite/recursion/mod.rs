@@ -4,7 +4,9 @@ mod bodies;
 mod coordinates;
 
 use crate::common::{Random, load};
-use clench_derivatives::{InputTangent, Linearizer, Matrix, Request};
+use clench_derivatives::{
+    InputGradient, InputTangent, Linearizer, Matrix, OutputGradient, Request,
+};
 use clench_dynamics::model::ParamField;
 use clench_rigid::options::{FrictionCone, RigidOptions};
 use clench_rigid::{Model, Output, Sim};
@@ -75,6 +77,8 @@ fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
             compare_sensors(&recursive.d, &passes.d);
             seen.recursed |= recursive.a != passes.a;
             assert_eq!(recursive.switching.len(), passes.switching.len());
+            let [a, b] = [passes.a.clone(), passes.b.clone()];
+            compare_gradients(&mut linearizer, sim, [&a, &b]);
             compare_parameters(&mut linearizer, sim);
         }
     }
@@ -87,6 +91,47 @@ fn compare_sensors(recursive: &Matrix, passes: &Matrix) {
     passes.shape[0] = recursive.shape[0];
     passes.values.truncate(recursive.values.len());
     compare(recursive, &passes);
+}
+
+/// Compares the gradients of two functions of the next state with products of its derivatives by state and controls.
+fn compare_gradients(linearizer: &mut Linearizer, sim: &Sim<f64>, derivatives: [&Matrix; 2]) {
+    let request = Request {
+        omits_sensors: true,
+        ..Request::default()
+    };
+    let nx = derivatives[0].shape[0];
+    let mut random = Random(2);
+    let gradient = OutputGradient {
+        x: Matrix {
+            shape: [2, nx],
+            values: (0..2 * nx).map(|_| random.next()).collect(),
+        },
+        y: Matrix {
+            shape: [2, 0],
+            values: Vec::new(),
+        },
+    };
+    let found = linearizer.vjp(sim, &request, &gradient);
+    let InputGradient { x, u, .. } = found.expect("a gradient");
+    for (found, by) in [x, u].into_iter().zip(derivatives) {
+        assert_eq!(found.shape, [2, by.shape[1]]);
+        for row in 0..2 {
+            for column in 0..by.shape[1] {
+                let (mut sum, mut size) = (0.0, 1.0);
+                for k in 0..nx {
+                    let term =
+                        gradient.x.values[row * nx + k] * by.values[k * by.shape[1] + column];
+                    sum += term;
+                    size += term.abs();
+                }
+                let found = found.values[row * by.shape[1] + column];
+                assert!(
+                    (found - sum).abs() <= TOLERANCE * size,
+                    "function {row}, column {column}: {found}, {sum} by passes"
+                );
+            }
+        }
+    }
 }
 
 /// Compares derivatives by parameters, and those along a tangent, with and without passes along the state.
