@@ -257,6 +257,8 @@ pub(crate) fn bench(args: &[String]) -> Result<(), String> {
     if cfg!(target_os = "linux") && std::env::var_os("MUJOCO_GL").is_none() {
         script.env("MUJOCO_GL", "egl");
     }
+    // Mesa's device selection layer prints errors on stderr without a display.
+    script.env("NODEVICE_SELECT", "1");
     run(script)
 }
 
