@@ -31,7 +31,8 @@ use clench_math::{Mask, Real, kernel};
 /// and solves need as many iterations.
 const MAX_ELIMINATED: f64 = 16.0;
 
-/// The step d is taken if the cosine of its angle to the negative gradient exceeds this.
+/// The step d is taken if the cosine of its angle to the negative gradient exceeds this. With five times as much,
+/// solves take more iterations.
 const MIN_COSINE: f64 = 0.01;
 
 /// The maximum number of directions, and the residual, relative to the right-hand side, at which the method stops. The
@@ -44,18 +45,19 @@ const RESIDUAL: f64 = 1e-2;
 pub(crate) struct Prediction<T> {
     /// The Coulomb blocks.
     blocks: Vec<BlockIndex>,
-    system: SlidingSystem<T>,
-    /// The blocks of its unknowns, and D of those that slide.
-    unknowns: Vec<usize>,
-    pressing: Vec<T>,
     /// The entries μ_j u_j of B for each row; for each block D, and 1 where it slides, else 0.
     friction: Vec<T>,
     weights: Vec<T>,
     slides: Vec<T>,
-    /// δ, the residual, and pairs of a direction and its image, one number a block.
-    delta: Vec<T>,
     /// The λ of each block if λ + δ is below zero: zero after elimination, else f, since the contact may jam.
     lowest: Vec<T>,
+    /// Elimination: the system, the blocks of its unknowns, and D of those that slide.
+    system: SlidingSystem<T>,
+    unknowns: Vec<usize>,
+    pressing: Vec<T>,
+    /// δ of each block; the residual, one number an unknown of elimination or a block; pairs of a direction and its
+    /// image, one number a block.
+    delta: Vec<T>,
     residual: Vec<T>,
     directions: Vec<T>,
     /// H⁻¹ B times each direction, and −d; one number a dof.
@@ -91,11 +93,11 @@ impl<T: Real> Prediction<T> {
         let sliding = (self.slides.iter()).fold(T::ZERO, |sum, &slides| sum + slides);
         let many = mask & sliding.gt(T::new(MAX_ELIMINATED));
         if many.any() {
-            self.iterate(problem, hessian, iterate, many);
+            self.solve_by_residuals(problem, hessian, iterate, many);
         }
         let mut jammed = T::Mask::splat(false);
         if (mask & !many).any() {
-            jammed = self.eliminate(problem, hessian, iterate, mask & !many);
+            jammed = self.solve_by_elimination(problem, hessian, iterate, mask & !many);
         }
         for (k, b) in self.blocks.iter().enumerate() {
             if self.slides[k].eq(T::ZERO).any() {
@@ -114,7 +116,7 @@ impl<T: Real> Prediction<T> {
     /// Computes δ of the sliding contacts and −d by elimination, in the lanes of `mask`. Returns the lanes in which a
     /// contact jams, which d ignores.
     #[inline(always)]
-    fn eliminate(
+    fn solve_by_elimination(
         &mut self,
         problem: &Problem<T>,
         hessian: &mut Hessian<T>,
@@ -132,6 +134,7 @@ impl<T: Real> Prediction<T> {
                 self.unknowns.push(k);
                 let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
                 self.residual.push(slides * missing);
+                self.delta[k] = T::select(mask, slides * missing, self.delta[k]);
                 self.pressing.push(slides * self.weights[k]);
                 let friction = &self.friction[b.rows()];
                 (self.system).push(hessian, rows.dofs(b), rows.values(b), friction);
@@ -142,12 +145,10 @@ impl<T: Real> Prediction<T> {
         (self.system).solve(hessian, &self.pressing, &mut self.residual, &mut self.dofs);
         let mut jammed = T::Mask::splat(false);
         for (i, (&k, &delta)) in self.unknowns.iter().zip(&self.residual).enumerate() {
-            let b = &self.blocks[k];
-            let missing = iterate.force[b.row] - iterate.normal_forces.of(b);
+            // Where it jams, δ stays f − λ.
             let jams = self.system.jams(i);
             jammed |= jams & mask;
-            let delta = T::select(jams, missing, delta);
-            self.delta[k] = T::select(mask, delta, self.delta[k]);
+            self.delta[k] = T::select(mask & !jams, delta, self.delta[k]);
         }
         for lowest in &mut self.lowest {
             *lowest = T::select(mask, T::ZERO, *lowest);
@@ -160,7 +161,7 @@ impl<T: Real> Prediction<T> {
 
     /// Computes the same by generalized conjugate residuals.
     #[inline(always)]
-    fn iterate(
+    fn solve_by_residuals(
         &mut self,
         problem: &Problem<T>,
         hessian: &mut Hessian<T>,

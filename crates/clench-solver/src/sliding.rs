@@ -17,7 +17,7 @@ pub(crate) struct SlidingSystem<T> {
     pairs: PathPairs<T>,
     /// The entries of both at the dofs of the contact.
     entries: Vec<[T; 2]>,
-    /// Row-major.
+    /// The matrix of the system, row-major; elimination overwrites it.
     matrix: Vec<T>,
     /// 1 where a contact jams, else 0.
     jams: Vec<T>,

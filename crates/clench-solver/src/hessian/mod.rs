@@ -127,11 +127,8 @@ impl<T: Real> Hessian<T> {
     /// Computes `x ← H⁻¹ x`.
     #[inline(always)]
     pub(crate) fn solve(&mut self, x: &mut [T]) {
-        if self.is_filled {
-            self.filled.solve(x);
-        } else {
-            self.paths.solve(x);
-        }
+        self.solve_transposed(x);
+        self.solve_rest(x);
     }
 
     /// Computes `x ← L⁻ᵀ x`, the first part of [`solve`](Self::solve).

@@ -101,12 +101,6 @@ impl<T: Real> PathForm<T> {
         }
     }
 
-    /// Computes `x ← H⁻¹ x`.
-    #[inline(always)]
-    pub(super) fn solve(&self, x: &mut [T]) {
-        self.factor.solve(&self.tree, x);
-    }
-
     /// See [`Hessian::solve_transposed`](super::Hessian::solve_transposed).
     #[inline(always)]
     pub(super) fn solve_transposed(&self, x: &mut [T]) {

@@ -81,7 +81,7 @@ impl<T: Real> SparseFactor<T> {
         let mut next = Some(last);
         while let Some(dof) = next {
             let s = pattern.supernode_of(dof);
-            let columns = pattern.row(s, dof);
+            let columns = pattern.columns_of_row(s, dof);
             next = columns.clone().next_back().map(|c| c as usize);
             let p = std::mem::replace(&mut x[dof], T::ZERO);
             if p.eq(T::ZERO).all() {

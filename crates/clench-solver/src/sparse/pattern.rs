@@ -294,7 +294,7 @@ impl SparsePattern {
     /// Returns the columns to the left of the diagonal in the row of a dof, ascending; the last is its parent in the
     /// elimination tree.
     #[inline(always)]
-    pub(crate) fn row(
+    pub(crate) fn columns_of_row(
         &self,
         supernode: &Supernode,
         dof: usize,

@@ -44,7 +44,7 @@ impl<T: Real> SparseFactor<T> {
         let mut next = Some(last);
         while let Some(dof) = next {
             let s = pattern.supernode_of(dof);
-            let columns = pattern.row(s, dof);
+            let columns = pattern.columns_of_row(s, dof);
             next = columns.clone().next_back().map(|c| c as usize);
             let [first, second] = std::mem::replace(&mut x[dof], [T::ZERO; 2]);
             for (&l, column) in self.values[s.row(dof)].iter().zip(columns) {

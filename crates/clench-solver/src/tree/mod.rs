@@ -12,6 +12,7 @@ mod differentiated;
 mod factor;
 mod lu;
 mod matrix;
+mod solve;
 #[cfg(test)]
 mod tests;
 

@@ -1,7 +1,8 @@
 //! Contacts by Coulomb's law: the solution satisfies it, whatever the normal forces do.
 
 use crate::common::*;
-use clench_solver::{Block, ConstraintSolver, Cost, Problem, Solver, SolverOptions, Switch};
+use clench_solver::{Block, ConstraintSolver, Cost, Problem, Solver, SolverOptions, Switch, Tree};
+use std::sync::Arc;
 
 /// Returns problems of Coulomb contacts, half of them with other constraints.
 fn problems(count: usize, stiffness: f64) -> impl Iterator<Item = Problem<f64>> {
@@ -79,24 +80,34 @@ fn conjugate_gradients_obey_it_too() {
     assert!(done >= 80, "{done} of {count}");
 }
 
+/// Returns the problem of a contact with a plane, of two dofs, along it and away from it: with the lower triangle of
+/// the mass matrix, the unconstrained acceleration, D, the coefficient of friction, and aref along the plane.
+fn on_plane(
+    mass: [f64; 3],
+    qacc_smooth: [f64; 2],
+    (d, friction): (f64, f64),
+    aref: f64,
+) -> Problem<f64> {
+    let tree = Tree::new(&[None, Some(0)]).expect("a chain");
+    let mut problem = Problem::new(Arc::new(tree));
+    problem.mass.values.copy_from_slice(&mass);
+    problem.qacc_smooth.copy_from_slice(&qacc_smooth);
+    assert!(problem.factor_mass());
+    let block = problem.push(Cost::Coulomb, 2, &[0, 1]);
+    block.jacobian.copy_from_slice(&[0.0, 1.0, 1.0, 0.0]);
+    block.aref[1] = aref;
+    block.r.fill(1.0 / d);
+    block.d.fill(d);
+    block.shape[1] = friction;
+    problem.check().expect("well-formed");
+    problem
+}
+
 #[test]
 fn friction_does_not_change_the_normal_force() {
-    // A block that slides along x on a plane: two dofs, one contact, no coupling.
+    // A block that slides along x: no coupling.
     let sliding = |aref: f64| {
-        let tree = std::sync::Arc::new(clench_solver::Tree::new(&[None, Some(0)]).unwrap());
-        let mut problem = Problem::<f64>::new(tree);
-        for (i, entry) in [0, 2].into_iter().enumerate() {
-            problem.mass.values[entry] = 2.0;
-            problem.qacc_smooth[i] = [0.0, -10.0][i];
-        }
-        assert!(problem.factor_mass());
-        let block = problem.push(Cost::Coulomb, 2, &[0, 1]);
-        block.jacobian.copy_from_slice(&[0.0, 1.0, 1.0, 0.0]);
-        block.aref[1] = aref;
-        block.r.copy_from_slice(&[0.1, 0.1]);
-        block.d.copy_from_slice(&[10.0, 10.0]);
-        block.shape[1] = 0.5;
-        problem.check().unwrap();
+        let problem = on_plane([2.0, 0.0, 2.0], [0.0, -10.0], (10.0, 0.5), aref);
         let mut solver = Solver::new(problem.tree());
         let settings = SolverOptions::new().resolve::<f64>();
         solver.solve(&problem, &settings, None).unwrap();
@@ -116,10 +127,8 @@ fn every_form_of_the_hessian_gives_the_same_bits() {
     let mut rng = Rng(5);
     let mut many = 0;
     for k in 0..30 {
-        // A heap of free bodies, whose Hessian is stored by filled entries or as a dense matrix.
-        let parent = |i: usize| (!i.is_multiple_of(6)).then(|| i - 1);
-        let mut shape = Shape::new((0..6 * 12).map(parent).collect(), 6 + 3 * k);
-        shape.cross = 0.9;
+        // The Hessian is stored by filled entries or as a dense matrix.
+        let mut shape = Shape::heap(12, 6 + 3 * k);
         shape.costs = vec![Cost::Coulomb];
         let problem = random_problem(&mut rng, &shape);
         let [sparse, dense] = [Switch::On, Switch::Off].map(|choice| {
@@ -127,9 +136,8 @@ fn every_form_of_the_hessian_gives_the_same_bits() {
                 .sparse_solve(choice)
                 .islands(Switch::Off);
             let mut solver = Solver::new(problem.tree());
-            solver
-                .solve(&problem, &options.resolve::<f64>(), None)
-                .unwrap();
+            let solved = solver.solve(&problem, &options.resolve::<f64>(), None);
+            solved.expect("well-formed");
             solver
         });
         assert_eq!(sparse.qacc(), dense.qacc(), "problem {k}");
@@ -151,23 +159,13 @@ fn every_form_of_the_hessian_gives_the_same_bits() {
 
 #[test]
 fn a_contact_that_jams_sticks() {
-    // Two dofs, along a plane and away from it, coupled so that friction presses the contact more than it yields, like a
-    // rod that is pushed over a rough floor. While it slides, the normal force exceeds the limit of friction slightly
-    // more with each larger limit.
-    let tree = std::sync::Arc::new(clench_solver::Tree::new(&[None, Some(0)]).unwrap());
-    let mut problem = Problem::<f64>::new(tree);
-    problem.mass.values = vec![1.0, 0.8, 1.0];
-    problem.qacc_smooth = vec![-2000.0, -1.0];
-    assert!(problem.factor_mass());
-    let block = problem.push(Cost::Coulomb, 2, &[0, 1]);
-    block.jacobian.copy_from_slice(&[0.0, 1.0, 1.0, 0.0]);
-    block.r.copy_from_slice(&[0.05, 0.05]);
-    block.d.copy_from_slice(&[20.0, 20.0]);
-    block.shape[1] = 1.3;
-    problem.check().unwrap();
+    // Friction presses the contact more than it yields, like a rod that is pushed over a rough floor. While it slides, the
+    // normal force exceeds the limit of friction slightly more with each larger limit.
+    let problem = on_plane([1.0, 0.8, 1.0], [-2000.0, -1.0], (20.0, 1.3), 0.0);
     let mut solver = Solver::new(problem.tree());
     let settings = SolverOptions::new().resolve::<f64>();
-    let stats = solver.solve(&problem, &settings, None).unwrap().lane(0);
+    let stats = solver.solve(&problem, &settings, None);
+    let stats = stats.expect("well-formed").lane(0);
     assert_eq!(stats.status.name(), "converged", "{stats:?}");
     assert!(stats.iterations <= 35, "{stats:?}");
     assert_eq!(stats.normal_residual, 0.0);

@@ -1,15 +1,7 @@
 //! Sharing a solve among threads changes no bit of the result.
 
 use crate::common::*;
-use clench_solver::{Problem, Solver, SolverOptions, Threads};
-
-/// Returns a heap of free bodies, most of which touch; with few contacts it splits into several heaps.
-fn heap(rng: &mut Rng, bodies: usize, contacts: usize) -> Problem<f64> {
-    let parent = |i: usize| (!i.is_multiple_of(6)).then(|| i - 1);
-    let mut shape = Shape::new((0..6 * bodies).map(parent).collect(), contacts);
-    shape.cross = 0.9;
-    random_problem(rng, &shape)
-}
+use clench_solver::{Solver, SolverOptions, Threads};
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
@@ -18,7 +10,8 @@ fn any_number_of_threads_gives_the_same_bits() {
     let settings = SolverOptions::new().resolve::<f64>();
     let (mut several, mut large) = (0, 0);
     for k in 0..40 {
-        let problem = heap(&mut rng, 30, if k % 2 == 0 { 25 } else { 90 });
+        let shape = Shape::heap(30, if k % 2 == 0 { 25 } else { 90 });
+        let problem = random_problem(&mut rng, &shape);
         let mut alone = Solver::new(problem.tree());
         alone.solve(&problem, &settings, None).expect("well-formed");
         let stats = alone.stats().lane(0);

@@ -62,6 +62,15 @@ impl Shape {
             cross: 0.2,
         }
     }
+
+    /// A heap of free bodies, most of which touch; with few contacts it splits into several heaps.
+    pub fn heap(bodies: usize, contacts: usize) -> Self {
+        let parent = |i: usize| (!i.is_multiple_of(6)).then(|| i - 1);
+        Shape {
+            cross: 0.9,
+            ..Shape::new((0..6 * bodies).map(parent).collect(), contacts)
+        }
+    }
 }
 
 /// Returns a free root of six dofs, a spine of three, and four limbs: 23 dofs numbered depth first.
