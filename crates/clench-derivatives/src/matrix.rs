@@ -94,12 +94,3 @@ pub(crate) fn split_index(index: usize, [nx, nu]: [usize; 2]) -> (usize, usize) 
         Some(index) => (2, index - nu),
     }
 }
-
-/// Subtracts from `row` the product of `factors` with a matrix of rows of its length.
-pub(crate) fn subtract_products(factors: &[f64], matrix: &[f64], row: &mut [f64]) {
-    for (&factor, values) in factors.iter().zip(matrix.chunks_exact(row.len().max(1))) {
-        for (x, &value) in row.iter_mut().zip(values) {
-            *x -= factor * value;
-        }
-    }
-}

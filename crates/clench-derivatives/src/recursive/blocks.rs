@@ -9,7 +9,8 @@ use super::frames::Frames;
 use super::rows::Rows;
 use super::slopes::Slopes;
 use super::step::Step;
-use clench_dynamics::dynamics::inverse_derivatives::{Columns, InverseDerivatives};
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
+use clench_dynamics::dynamics::inverse_derivatives::InverseDerivatives;
 use clench_dynamics::model::EqualityTarget;
 use clench_dynamics::record::ConstraintSource;
 use clench_solver::{Block, Cost, Response};
@@ -38,7 +39,7 @@ impl Blocks {
         &mut self,
         step: &Step<'_>,
         (response, inverse): (&Response<f64>, &InverseDerivatives<f64>),
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) -> bool {
         let plain = step.plain;
         // It also acts within the gap, where the force of the constraint is zero.

@@ -16,7 +16,9 @@ use clench_collide::{MovingPoint, Pose, moving_points};
 use clench_dynamics::constraint::at_distance::MAX_DIM;
 use clench_dynamics::contact::{Contact, shape};
 use clench_dynamics::dynamics::chains::{BodyPoint, Chains, Side};
-use clench_dynamics::dynamics::inverse_derivatives::{Columns, first_turning};
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
+use clench_dynamics::dynamics::inverse_derivatives::first_turning;
+use clench_dynamics::model::Model;
 use clench_math::{Force, Motion, Vec3};
 use clench_solver::Block;
 
@@ -41,6 +43,8 @@ struct Arm {
     side: Side,
     /// The motion of the second body relative to the first, about the point.
     motion: Motion<f64>,
+    /// The sum of the motions of this and the later dofs of its side, times the factors of a product.
+    motion_below: Motion<f64>,
     /// The change of the wrench on the second body about the fixed point by position, as such and with the axes of the
     /// dof.
     wrench: [Force<f64>; 2],
@@ -87,21 +91,66 @@ impl Contacts {
         contact: &Contact<f64>,
         force: &[f64],
         slopes: &Slopes,
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         let point = self.moving_point(step, contact);
         self.find_arms(step, block, (contact, &point), force, slopes);
-        let nv = step.model.nv;
         let common = self.arms.len() - block.dofs.len();
+        match gradient {
+            ForceDerivatives::Product { factors, row } => {
+                self.subtract_product(step.model, common, factors, row);
+            }
+            ForceDerivatives::Matrix { .. } | ForceDerivatives::List(_) => {
+                self.subtract_entries(step.model, common, gradient);
+            }
+        }
+    }
+
+    /// Subtracts the derivatives from the entries. The first `common` dofs move both bodies.
+    fn subtract_entries(
+        &self,
+        model: &Model,
+        common: usize,
+        gradient: &mut ForceDerivatives<'_, f64>,
+    ) {
         for by in &self.arms {
             let [fixed, turned] = by.wrench;
-            let together = first_turning(step.model, by.dof);
+            let together = first_turning(model, by.dof);
             for of in &self.arms[common..] {
                 let turns = by.side == Side::Both || by.side == of.side && together <= of.dof;
                 let change = of.motion.dot(if turns { turned } else { fixed });
                 gradient.add(of.dof, by.dof, -change);
-                gradient.add(of.dof, nv + by.dof, -of.motion.dot(by.by_velocity));
+                gradient.add(of.dof, model.nv + by.dof, -of.motion.dot(by.by_velocity));
             }
+        }
+    }
+
+    /// Subtracts the product of the factors with the derivatives.
+    fn subtract_product(
+        &mut self,
+        model: &Model,
+        common: usize,
+        factors: &[f64],
+        product: &mut [f64],
+    ) {
+        let mut sums = [Motion::ZERO; 2];
+        for arm in self.arms[common..].iter_mut().rev() {
+            let sum = &mut sums[usize::from(arm.side == Side::Second)];
+            *sum += arm.motion * factors[arm.dof];
+            arm.motion_below = *sum;
+        }
+        let motion = sums[0] + sums[1];
+        for (k, by) in self.arms.iter().enumerate() {
+            let turning = match by.side {
+                Side::Both => motion,
+                Side::First | Side::Second => {
+                    let first = k - (by.dof - first_turning(model, by.dof));
+                    self.arms[first].motion_below
+                }
+            };
+            let [fixed, turned] = by.wrench;
+            product[by.dof] -= motion.dot(fixed) + turning.dot(turned - fixed);
+            product[model.nv + by.dof] -= motion.dot(by.by_velocity);
         }
     }
 
@@ -197,6 +246,7 @@ impl Contacts {
                 dof,
                 side,
                 motion,
+                motion_below: Motion::ZERO,
                 wrench: [changed, changed - axis.cross_force(wrench)],
                 by_velocity: self::wrench(&axes, &by_velocity),
             });

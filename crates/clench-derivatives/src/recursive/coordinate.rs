@@ -5,7 +5,7 @@
 //! C = ∂J/∂q add Cᵀf, and J (∂f/∂ẋ) C v by the change of ẋ = J v.
 
 use super::step::Step;
-use clench_dynamics::dynamics::inverse_derivatives::Columns;
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
 
 /// A coordinate at the positions of a step.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +92,7 @@ impl<'a> Coordinate<'a> {
     /// the force besides that of its length, `passed` the share of the force that acts along each dof.
     pub(super) fn subtract(
         self,
-        (nv, gradient): (usize, &mut Columns<'_, f64>),
+        (nv, gradient): (usize, &mut ForceDerivatives<'_, f64>),
         force: AlongForce,
         moving: impl Fn(usize) -> f64,
         passed: impl Fn(usize) -> f64,

@@ -15,7 +15,8 @@ use super::step::Step;
 use clench_dynamics::constraint::AnchorFrames;
 use clench_dynamics::constraint::at_distance::equality_softness;
 use clench_dynamics::dynamics::chains::{Chains, Side};
-use clench_dynamics::dynamics::inverse_derivatives::{Columns, InverseDerivatives, first_turning};
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
+use clench_dynamics::dynamics::inverse_derivatives::{InverseDerivatives, first_turning};
 use clench_dynamics::model::{EqualityTarget, Model};
 use clench_dynamics::record::ConstraintSource;
 use clench_math::{Dual, Force, Motion, Real, Vec3};
@@ -49,7 +50,7 @@ impl Frames {
         block: &Block<'_, f64>,
         source: ConstraintSource,
         (y, force): (&[f64], &[f64]),
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         let Some((frames, weld)) = frames(step, source) else {
             return;
@@ -97,7 +98,12 @@ impl Frames {
         self.add_arms(step.model, bodies, gradient);
     }
 
-    fn add_arms(&self, model: &Model, bodies: [Force<f64>; 2], gradient: &mut Columns<'_, f64>) {
+    fn add_arms(
+        &self,
+        model: &Model,
+        bodies: [Force<f64>; 2],
+        gradient: &mut ForceDerivatives<'_, f64>,
+    ) {
         for by in &self.arms {
             let turned = [0, 1].map(|b| by.wrench[b] - by.motion[b].cross_force(bodies[b]));
             for of in &self.arms {

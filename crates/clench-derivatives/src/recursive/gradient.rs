@@ -4,8 +4,8 @@ use super::blocks::Blocks;
 use super::local::Local;
 use super::step::Step;
 use super::weight::Weight;
-use crate::matrix::subtract_products;
-use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
+use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, InverseDerivatives};
 use clench_dynamics::model::Model;
 use clench_solver::Response;
 
@@ -38,34 +38,61 @@ impl Gradient {
 
     /// Computes the derivatives, and factors the Hessian. Returns false if recursions do not cover the contacts.
     pub(super) fn find(&mut self, step: &Step<'_>) -> bool {
-        let (model, params, plain) = (step.model, step.params, step.plain);
-        if !(self.response).factor(&plain.problem, &step.settings.solver, &plain.qacc) {
-            return false;
-        }
-        self.columns.clear();
-        self.columns.resize(model.nv * self.width, 0.0);
-        let mut gradient = Columns {
-            values: &mut self.columns,
+        let mut columns = std::mem::take(&mut self.columns);
+        columns.clear();
+        columns.resize(step.model.nv * self.width, 0.0);
+        let mut matrix = ForceDerivatives::Matrix {
+            values: &mut columns,
             width: self.width,
         };
+        let covered = self.prepare(step) && self.add(step, &mut matrix);
+        self.columns = columns;
+        covered
+    }
+
+    /// Factors the Hessian, and computes the derivatives of the forces of joints, tendons and actuators. Returns false
+    /// if the Hessian is larger than the settings allow.
+    pub(super) fn prepare(&mut self, step: &Step<'_>) -> bool {
+        let (problem, settings) = (&step.plain.problem, &step.settings.solver);
+        if !(self.response).factor(problem, settings, &step.plain.qacc) {
+            return false;
+        }
+        self.local.run(step);
+        true
+    }
+
+    /// Adds the derivatives. Returns false if recursions do not cover the contacts.
+    fn add(&mut self, step: &Step<'_>, gradient: &mut ForceDerivatives<'_, f64>) -> bool {
+        let (model, params, plain) = (step.model, step.params, step.plain);
         let moving = Accelerated {
             qacc: &plain.qacc,
             moving: Some((&plain.velocity, &step.before.qvel)),
         };
-        (self.inverse).add(model, params, &plain.position, moving, &mut gradient);
+        (self.inverse).add(model, params, &plain.position, moving, gradient);
         let solution = (&self.response, &self.inverse);
-        if !(self.blocks).run(step, solution, &mut gradient) {
+        if !(self.blocks).run(step, solution, gradient) {
             return false;
         }
-        self.local.run(step, &mut gradient);
-        self.weight.subtract(step, &mut gradient);
+        self.local.subtract(gradient);
+        self.weight.subtract(step, gradient);
         true
     }
 
-    /// Subtracts from `row` the part of a gradient `by_acceleration`, which is overwritten.
-    pub(super) fn pull_back(&mut self, by_acceleration: &mut [f64], row: &mut [f64]) {
+    /// Adds to `row` the part of a gradient `by_acceleration`, which is overwritten. Returns false if recursions do not
+    /// cover the contacts. The Hessian must be [prepared](Self::prepare).
+    pub(super) fn pull_back(
+        &mut self,
+        step: &Step<'_>,
+        by_acceleration: &mut [f64],
+        row: &mut [f64],
+    ) -> bool {
         self.response.solve_columns(by_acceleration, 1);
-        subtract_products(by_acceleration, &self.columns, row);
+        by_acceleration.iter_mut().for_each(|x| *x = -*x);
+        let mut product = ForceDerivatives::Product {
+            factors: by_acceleration,
+            row,
+        };
+        self.add(step, &mut product)
     }
 
     /// Replaces derivatives of the gradient, columns of `width` numbers a row, by those of the acceleration.

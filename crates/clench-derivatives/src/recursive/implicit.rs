@@ -7,8 +7,8 @@
 use super::coordinate::Coordinate;
 use super::gyroscopic::Gyroscopic;
 use super::step::Step;
-use crate::matrix::subtract_products;
-use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, Columns, InverseDerivatives};
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
+use clench_dynamics::dynamics::inverse_derivatives::{Accelerated, InverseDerivatives};
 use clench_dynamics::model::{Integrator, Model};
 
 /// The slopes of damping, and memory.
@@ -123,28 +123,22 @@ impl Implicit {
         }
     }
 
-    /// Computes h dB a′ + dM (a′ − a), nv rows of `width` numbers.
-    pub(super) fn set_right(
-        &mut self,
+    /// Adds h dB a′ + dM (a′ − a).
+    fn add_right(
+        &self,
         step: &Step<'_>,
         inverse: &mut InverseDerivatives<f64>,
-        width: usize,
+        right: &mut ForceDerivatives<'_, f64>,
     ) {
         let (model, plain) = (step.model, step.plain);
         let h = step.params.timestep;
         let change = plain.qacc.iter().zip(&plain.integration.qacc);
         let change = Vec::from_iter(change.map(|(a, implicit)| implicit - a));
-        self.right.clear();
-        self.right.resize(model.nv * width, 0.0);
-        let mut right = Columns {
-            values: &mut self.right,
-            width,
-        };
         let resting = Accelerated {
             qacc: &change,
             moving: None,
         };
-        inverse.add(model, step.params, &plain.position, resting, &mut right);
+        inverse.add(model, step.params, &plain.position, resting, right);
         for &(dof, column, rate) in &self.rates {
             right.add(dof, column, h * rate);
         }
@@ -158,8 +152,16 @@ impl Implicit {
         columns: &mut [f64],
         width: usize,
     ) {
-        self.set_right(step, inverse, width);
         let (model, plain) = (step.model, step.plain);
+        let mut right = std::mem::take(&mut self.right);
+        right.clear();
+        right.resize(model.nv * width, 0.0);
+        let mut matrix = ForceDerivatives::Matrix {
+            values: &mut right,
+            width,
+        };
+        self.add_right(step, inverse, &mut matrix);
+        self.right = right;
         let h = step.params.timestep;
         let rows = |i: usize| i * width..(i + 1) * width;
         let mut add_row = |to: usize, from: usize, scale: f64| {
@@ -187,19 +189,30 @@ impl Implicit {
             .for_each(|(x, &y)| *x -= y);
     }
 
-    /// Replaces the gradient by a′ of a function by that by a, and subtracts from `row` its product with the
-    /// [right side](Self::set_right), for a model without gyroscopic slopes.
-    pub(super) fn pull_back(&self, step: &Step<'_>, gradient: &mut [f64], row: &mut [f64]) {
+    /// Replaces the gradient by a′ of a function by that by a, and adds the rest to `row`, for a model without
+    /// gyroscopic slopes.
+    pub(super) fn pull_back(
+        &self,
+        step: &Step<'_>,
+        inverse: &mut InverseDerivatives<f64>,
+        gradient: &mut [f64],
+        row: &mut [f64],
+    ) {
         let h = step.params.timestep;
-        let mut solved = gradient.to_vec();
-        (step.plain.integration.factor).solve(&step.model.tree, &mut solved);
-        subtract_products(&solved, &self.right, row);
-        for ((x, &slope), &y) in gradient.iter_mut().zip(&self.slopes).zip(&solved) {
-            *x -= h * slope * y;
+        let mut factors = gradient.to_vec();
+        (step.plain.integration.factor).solve(&step.model.tree, &mut factors);
+        factors.iter_mut().for_each(|x| *x = -*x);
+        for ((x, &slope), &y) in gradient.iter_mut().zip(&self.slopes).zip(&factors) {
+            *x += h * slope * y;
         }
         for &(i, j, slope) in &self.couplings {
-            gradient[j] -= h * slope * solved[i];
+            gradient[j] += h * slope * factors[i];
         }
+        let mut product = ForceDerivatives::Product {
+            factors: &factors,
+            row,
+        };
+        self.add_right(step, inverse, &mut product);
     }
 }
 

@@ -8,7 +8,7 @@ use super::implicit::{Implicit, is_implicit};
 use super::step::Step;
 use super::tendons;
 use crate::tangent;
-use clench_dynamics::dynamics::inverse_derivatives::Columns;
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
 use clench_dynamics::dynamics::local::{LocalStages, dof_damping_slope, is_sprung};
 use clench_dynamics::model::{Integrator, Model, Params};
 use clench_dynamics::{State, Workspace};
@@ -34,6 +34,8 @@ pub(super) struct Local {
     before: State<Number>,
     stages: LocalStages<Number>,
     directions: Vec<(Kind, usize)>,
+    /// Minus the derivatives of the forces: a dof, a column and the number.
+    forces: Vec<(usize, usize, f64)>,
     /// The derivatives of the new activations, or of their rates for Runge–Kutta: an activation, a column and the
     /// derivative.
     pub activations: Vec<(usize, usize, f64)>,
@@ -50,6 +52,7 @@ impl Local {
             before: State::new(model),
             stages: LocalStages::new(model),
             directions: Vec::new(),
+            forces: Vec::new(),
             activations: Vec::new(),
             implicit: Implicit::default(),
             row: Vec::new(),
@@ -64,9 +67,12 @@ impl Local {
         self.params.body_gravcomp.fill(Number::ZERO);
     }
 
-    /// Subtracts the derivatives of the forces from `gradient`, and computes all others.
-    pub(super) fn run(&mut self, step: &Step<'_>, gradient: &mut Columns<'_, f64>) {
+    /// Computes the derivatives.
+    pub(super) fn run(&mut self, step: &Step<'_>) {
         let model = step.model;
+        let mut forces = std::mem::take(&mut self.forces);
+        forces.clear();
+        let gradient = &mut ForceDerivatives::List(&mut forces);
         self.activations.clear();
         self.implicit.clear(model.nv);
         self.list_directions(step);
@@ -105,6 +111,14 @@ impl Local {
             self.before.set_values(step.before);
             let numbers = (&self.params, &self.before);
             tendons::subtract(step, numbers, &mut self.implicit, gradient);
+        }
+        self.forces = forces;
+    }
+
+    /// Subtracts the derivatives of the forces from the gradient.
+    pub(super) fn subtract(&self, gradient: &mut ForceDerivatives<'_, f64>) {
+        for &(dof, column, x) in &self.forces {
+            gradient.add(dof, column, x);
         }
     }
 
@@ -200,7 +214,7 @@ impl Local {
         &self,
         step: &Step<'_>,
         part: &[(Kind, usize)],
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         for (i, force) in self.stages.force.qfrc_passive.iter().enumerate() {
             for (direction, &local) in part.iter().enumerate() {
@@ -216,7 +230,7 @@ impl Local {
         &mut self,
         step: &Step<'_>,
         part: &[(Kind, usize)],
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         let model = step.model;
         let passed = |dof: usize| step.passed_share(model.dofs[dof].joint);

@@ -10,12 +10,16 @@
 //! dw = (H⁻¹ α)·(−dg) − κ·R + the part of the integration
 //! ```
 
+use super::gradient::Gradient;
 use super::implicit::is_implicit;
 use super::step::Step;
 use super::{FindCurves, Recursive, scope};
 use crate::matrix::{InputGradient, Matrix};
 use crate::source::Source;
 use clench_rigid::SimError;
+
+/// The maximum number of functions: more of them take longer than the derivatives of the state.
+const MAX_FUNCTIONS: usize = 3;
 
 impl Recursive {
     /// Computes the gradients by state and controls of functions of the next state, one row of `gradient` for each.
@@ -30,29 +34,23 @@ impl Recursive {
         gradient: &Matrix,
         result: &mut InputGradient,
     ) -> Result<bool, SimError> {
-        let model = source.model;
-        if !scope::pulls_back(model) {
+        let (model, [rows, _]) = (source.model, gradient.shape);
+        if rows > MAX_FUNCTIONS || !scope::pulls_back(model) {
             return Ok(false);
         }
         self.step(source)?;
         find_curves(source.state, &mut self.curves);
         let step = Step::new(source, source.state, &self.plain, &self.curves);
-        if !self.gradient.find(&step) {
+        if !self.gradient.prepare(&step) {
             return Ok(false);
         }
         let (nv, h) = (model.nv, source.params.timestep);
         let (nx, nu) = (2 * nv + model.na, model.nu());
         (self.advance).run(model, &source.state.qpos, &self.state.qvel, h);
-        let implicit = is_implicit(&step);
-        if implicit {
-            let (inverse, local) = (&mut self.gradient.inverse, &mut self.gradient.local);
-            (local.implicit).set_right(&step, inverse, self.gradient.width);
-        }
-        let [rows, _] = gradient.shape;
         result.x.reset([rows, nx]);
         result.u.reset([rows, nu]);
         result.p.reset([rows, 0]);
-        let mut row = vec![0.0; self.gradient.width];
+        let mut row = vec![0.0; nx + nu];
         let mut by_velocity = vec![0.0; nv];
         for (k, by_next) in gradient.values.chunks_exact(nx.max(1)).enumerate() {
             row.fill(0.0);
@@ -62,9 +60,9 @@ impl Recursive {
             (self.advance).pull_back(model, by_position, &mut by_velocity, &mut row[..nv]);
             row[nv..2 * nv].copy_from_slice(&by_velocity);
             by_velocity.iter_mut().for_each(|x| *x *= h);
-            let local = &mut self.gradient.local;
-            if implicit {
-                (local.implicit).pull_back(&step, &mut by_velocity, &mut row);
+            let Gradient { inverse, local, .. } = &mut self.gradient;
+            if is_implicit(&step) {
+                (local.implicit).pull_back(&step, inverse, &mut by_velocity, &mut row);
             }
             let mut activations = by_activation.iter();
             local.write_activations(model, nx + nu, &mut |rates| {
@@ -73,7 +71,9 @@ impl Recursive {
                     .zip(rates)
                     .for_each(|(x, rate)| *x += by * rate);
             });
-            self.gradient.pull_back(&mut by_velocity, &mut row);
+            if !(self.gradient).pull_back(&step, &mut by_velocity, &mut row) {
+                return Ok(false);
+            }
             result.x.values[k * nx..][..nx].copy_from_slice(&row[..nx]);
             result.u.values[k * nu..][..nu].copy_from_slice(&row[nx..nx + nu]);
         }

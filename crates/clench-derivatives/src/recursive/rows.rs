@@ -4,7 +4,7 @@ use super::coordinate::{AlongForce, Coordinate};
 use super::slopes::Slopes;
 use super::step::Step;
 use clench_dynamics::constraint::equality_rates;
-use clench_dynamics::dynamics::inverse_derivatives::Columns;
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
 use clench_dynamics::model::{EqualityTarget, JointKind};
 use clench_dynamics::record::ConstraintSource;
 use clench_math::{Quat, Vec3};
@@ -25,7 +25,7 @@ impl Rows {
         block: &Block<'_, f64>,
         source: ConstraintSource,
         (force, slopes): (f64, &Slopes),
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         self.find_rates(step, block, source);
         let row = Coordinate {

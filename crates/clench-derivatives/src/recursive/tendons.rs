@@ -4,7 +4,7 @@ use super::coordinate::{AlongForce, Coordinate};
 use super::implicit::Implicit;
 use super::step::Step;
 use clench_dynamics::State;
-use clench_dynamics::dynamics::inverse_derivatives::Columns;
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
 use clench_dynamics::dynamics::local::{tendon_damping_slope, tendon_tension};
 use clench_dynamics::model::{Integrator, Params};
 use clench_math::{Dual, Real};
@@ -14,7 +14,7 @@ pub(super) fn subtract<const K: usize>(
     step: &Step<'_>,
     (params, state): (&Params<Dual<f64, K>>, &State<Dual<f64, K>>),
     implicit: &mut Implicit,
-    gradient: &mut Columns<'_, f64>,
+    gradient: &mut ForceDerivatives<'_, f64>,
 ) {
     let (model, plain) = (step.model, step.plain);
     for t in 0..model.tendons.len() {

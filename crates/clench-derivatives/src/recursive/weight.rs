@@ -11,7 +11,8 @@
 //! ```
 
 use super::step::Step;
-use clench_dynamics::dynamics::inverse_derivatives::{Columns, first_turning};
+use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
+use clench_dynamics::dynamics::inverse_derivatives::first_turning;
 use clench_math::{Force, Mat3, Motion, Vec3};
 
 /// Scratch memory of these derivatives.
@@ -32,7 +33,7 @@ struct Load {
 
 impl Weight {
     /// Subtracts the derivatives of gravity compensation and of applied forces from the gradient.
-    pub(super) fn subtract(&mut self, step: &Step<'_>, gradient: &mut Columns<'_, f64>) {
+    pub(super) fn subtract(&mut self, step: &Step<'_>, gradient: &mut ForceDerivatives<'_, f64>) {
         let (model, params) = (step.model, step.params);
         let lifted = params.body_gravcomp.iter().any(|&share| share > 0.0);
         if lifted && model.flags.gravity && (model.flags.spring || model.flags.damper) {
@@ -69,7 +70,7 @@ impl Weight {
         step: &Step<'_>,
         wrench: impl Fn(usize) -> (Vec3<f64>, Vec3<f64>),
         passed: impl Fn(usize) -> f64,
-        gradient: &mut Columns<'_, f64>,
+        gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         let (model, pos) = (step.model, &step.plain.position);
         self.loads.clear();

@@ -12,8 +12,12 @@
 //! Summed over the bodies below the later of two dofs, I and B give both entries of the pair. A dof above j is fixed in
 //! the world: it also feels that the force F below j turns, s ×* F. The rotations of one ball or free joint all turn
 //! together.
+//!
+//! The product of a row vector λ with the derivatives needs no pairs: one recursion sums λ_j s_j over the dofs j that
+//! move a body, another λ_i I s_i over the dofs i below it.
 
 use super::coriolis::{body_rate_columns, drifts};
+use super::force_derivatives::ForceDerivatives;
 use crate::model::{JointKind, Model, Params};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Force, Motion, Real, Vec3, kernel};
@@ -32,6 +36,37 @@ pub struct InverseDerivatives<T> {
     cfrc: Vec<Force<T>>,
     /// w × s − ṡ × u of each dof (nv).
     swing: Vec<Motion<T>>,
+    /// Sums for products.
+    sums: Vec<Sums<T>>,
+}
+
+/// Sums over dofs with the factors λ of a product (nbody).
+#[derive(Clone, Copy, Debug)]
+struct Sums<T> {
+    /// λ s over the dofs that move a body.
+    motion: Motion<T>,
+    /// λ I s and λ s · B over the dofs of a body and all below it.
+    momentum: Force<T>,
+    along: Vec3<T>,
+}
+
+impl<T: Real> Sums<T> {
+    const ZERO: Self = Sums {
+        motion: Motion::ZERO,
+        momentum: Force::ZERO,
+        along: Vec3::ZERO,
+    };
+}
+
+/// A dof's effect on the force on the bodies that it moves.
+struct Effect<T> {
+    /// The changes of the force with the position, in a frame that moves with the dof, and with the velocity.
+    by_position: Force<T>,
+    by_velocity: Force<T>,
+    /// I s.
+    momentum: Force<T>,
+    /// s · B.
+    along: Vec3<T>,
 }
 
 /// An acceleration, and the motion at which it acts.
@@ -43,24 +78,6 @@ pub struct Accelerated<'a, T> {
     pub moving: Option<(&'a Velocities<T>, &'a [T])>,
 }
 
-/// A matrix to which derivatives are added, one row for each force, one column for each position, then one for each
-/// velocity.
-#[derive(Debug)]
-pub struct Columns<'a, T> {
-    /// The numbers, row after row.
-    pub values: &'a mut [T],
-    /// The distance of two rows.
-    pub width: usize,
-}
-
-impl<T: Real> Columns<'_, T> {
-    /// Adds to an entry.
-    #[inline(always)]
-    pub fn add(&mut self, row: usize, column: usize, x: T) {
-        self.values[row * self.width + column] += x;
-    }
-}
-
 impl<T: Real> InverseDerivatives<T> {
     /// Allocates memory for a model.
     pub fn new(model: &Model) -> Self {
@@ -70,6 +87,7 @@ impl<T: Real> InverseDerivatives<T> {
             cacc: vec![Motion::ZERO; model.nbody()],
             cfrc: vec![Force::ZERO; model.nbody()],
             swing: vec![Motion::ZERO; model.nv],
+            sums: vec![Sums::ZERO; model.nbody()],
         }
     }
 
@@ -81,19 +99,20 @@ impl<T: Real> InverseDerivatives<T> {
         params: &Params<T>,
         pos: &Positions<T>,
         at: Accelerated<'_, T>,
-        out: &mut Columns<'_, T>,
+        out: &mut ForceDerivatives<'_, T>,
     ) {
         self.recurse(model, params, pos, at);
-        match at.moving {
-            Some((vel, qvel)) => {
-                drifts(model, pos, vel, qvel, &mut self.drift);
-                for i in 0..model.nv {
-                    self.add_moving(model, pos, vel, i, out);
-                }
+        if let Some((vel, qvel)) = at.moving {
+            drifts(model, pos, vel, qvel, &mut self.drift);
+        }
+        let vel = at.moving.map(|(vel, _)| vel);
+        match out {
+            ForceDerivatives::Product { factors, row } => {
+                self.add_product(model, pos, vel, factors, row);
             }
-            None => {
+            ForceDerivatives::Matrix { .. } | ForceDerivatives::List(_) => {
                 for i in 0..model.nv {
-                    self.add_resting(model, pos, i, out);
+                    self.add_entries(model, pos, vel, i, out);
                 }
             }
         }
@@ -109,63 +128,127 @@ impl<T: Real> InverseDerivatives<T> {
         [self.swing[dof], self.drift[dof]]
     }
 
-    /// Adds the entries of dof `i` with itself and the dofs above it.
+    /// Returns the effect of a dof.
     #[inline(always)]
-    fn add_moving(
+    fn effect(
         &self,
         model: &Model,
         pos: &Positions<T>,
-        vel: &Velocities<T>,
+        vel: Option<&Velocities<T>>,
         i: usize,
-        out: &mut Columns<'_, T>,
-    ) {
-        let (nv, axis, b) = (model.nv, pos.cdof[i], model.dofs[i].body);
-        let (inertia, rates) = (pos.crb[b], &self.rates[b]);
-        let momentum = inertia * axis;
-        // The change of the force below i with its position and velocity, and the force along i for each component of
-        // another axis.
-        let (mut by_position, mut by_velocity) = (inertia * self.swing[i], inertia * self.drift[i]);
-        let mut along = Vec3::ZERO;
-        for c in 0..3 {
-            by_position += rates[c] * vel.cdof_dot[i].angular[c];
-            by_velocity += rates[c] * axis.angular[c];
-            along[c] = axis.dot(rates[c]);
+    ) -> Effect<T> {
+        let (axis, b) = (pos.cdof[i], model.dofs[i].body);
+        let inertia = pos.crb[b];
+        let mut effect = Effect {
+            by_position: inertia * self.swing[i],
+            by_velocity: Force::ZERO,
+            momentum: inertia * axis,
+            along: Vec3::ZERO,
+        };
+        if let Some(vel) = vel {
+            effect.by_velocity = inertia * self.drift[i];
+            for (c, &rate) in self.rates[b].iter().enumerate() {
+                effect.by_position += rate * vel.cdof_dot[i].angular[c];
+                effect.by_velocity += rate * axis.angular[c];
+                effect.along[c] = axis.dot(rate);
+            }
         }
-        let fixed = by_position + axis.cross_force(self.cfrc[b]);
+        effect
+    }
+
+    /// Adds the entries of dof `i` with itself and the dofs above it.
+    #[inline(always)]
+    fn add_entries(
+        &self,
+        model: &Model,
+        pos: &Positions<T>,
+        vel: Option<&Velocities<T>>,
+        i: usize,
+        out: &mut ForceDerivatives<'_, T>,
+    ) {
+        let nv = model.nv;
+        let effect = self.effect(model, pos, vel, i);
+        let turned = pos.cdof[i].cross_force(self.cfrc[model.dofs[i].body]);
+        let fixed = effect.by_position + turned;
         let together = first_turning(model, i);
         for &j in model.tree.row(i) {
             let j = j as usize;
             let other = pos.cdof[j];
-            let turned = if j >= together { by_position } else { fixed };
-            out.add(j, i, other.dot(turned));
-            out.add(j, nv + i, other.dot(by_velocity));
+            let below = j >= together;
+            out.add(
+                j,
+                i,
+                other.dot(if below { effect.by_position } else { fixed }),
+            );
+            let mut by_position = self.swing[j].dot(effect.momentum);
+            if let Some(vel) = vel {
+                out.add(j, nv + i, other.dot(effect.by_velocity));
+                by_position += vel.cdof_dot[j].angular.dot(effect.along);
+            }
             if j != i {
-                let by_other = self.swing[j].dot(momentum) + vel.cdof_dot[j].angular.dot(along);
-                out.add(i, j, by_other);
-                out.add(
-                    i,
-                    nv + j,
-                    self.drift[j].dot(momentum) + other.angular.dot(along),
-                );
+                out.add(i, j, by_position);
+                if vel.is_some() {
+                    let along = other.angular.dot(effect.along);
+                    out.add(i, nv + j, self.drift[j].dot(effect.momentum) + along);
+                }
             }
         }
     }
 
-    /// Does the same without velocities.
+    /// Adds the product of the factors with the derivatives.
     #[inline(always)]
-    fn add_resting(&self, model: &Model, pos: &Positions<T>, i: usize, out: &mut Columns<'_, T>) {
-        let (axis, b) = (pos.cdof[i], model.dofs[i].body);
-        let momentum = pos.crb[b] * axis;
-        let change = pos.crb[b] * self.swing[i];
-        let fixed = change + axis.cross_force(self.cfrc[b]);
-        let together = first_turning(model, i);
-        for &j in model.tree.row(i) {
-            let j = j as usize;
-            let turned = if j >= together { change } else { fixed };
-            out.add(j, i, pos.cdof[j].dot(turned));
-            if j != i {
-                out.add(i, j, self.swing[j].dot(momentum));
+    fn add_product(
+        &mut self,
+        model: &Model,
+        pos: &Positions<T>,
+        vel: Option<&Velocities<T>>,
+        factors: &[T],
+        product: &mut [T],
+    ) {
+        let nv = model.nv;
+        for b in 1..model.nbody() {
+            let body = &model.bodies[b];
+            let mut sums = Sums {
+                motion: self.sums[body.parent].motion,
+                ..Sums::ZERO
+            };
+            // The part of the motion that turns together.
+            let mut turning = Motion::ZERO;
+            for i in body.dofs.clone() {
+                let own = pos.cdof[i] * factors[i];
+                turning = match first_turning(model, i) < i {
+                    true => turning + own,
+                    false => own,
+                };
+                sums.motion += own;
+                let effect = self.effect(model, pos, vel, i);
+                let turned = pos.cdof[i].cross_force(self.cfrc[b]);
+                product[i] += sums.motion.dot(effect.by_position + turned) - turning.dot(turned);
+                product[nv + i] += sums.motion.dot(effect.by_velocity);
             }
+            self.sums[b] = sums;
+        }
+        for b in (1..model.nbody()).rev() {
+            let body = &model.bodies[b];
+            let Sums {
+                mut momentum,
+                mut along,
+                ..
+            } = self.sums[b];
+            for i in body.dofs.clone().rev() {
+                product[i] += self.swing[i].dot(momentum);
+                if let Some(vel) = vel {
+                    product[i] += vel.cdof_dot[i].angular.dot(along);
+                    let turned = pos.cdof[i].angular.dot(along);
+                    product[nv + i] += self.drift[i].dot(momentum) + turned;
+                }
+                let effect = self.effect(model, pos, vel, i);
+                momentum += effect.momentum * factors[i];
+                along += effect.along * factors[i];
+            }
+            let above = &mut self.sums[body.parent];
+            above.momentum += momentum;
+            above.along += along;
         }
     }
 

@@ -27,6 +27,7 @@ pub mod ellipsoid;
 pub mod energy;
 pub(crate) mod euler;
 pub(crate) mod fluid;
+pub mod force_derivatives;
 pub mod frames;
 pub(crate) mod gain;
 pub mod gyroscopic;
