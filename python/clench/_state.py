@@ -7,7 +7,7 @@ import math
 import operator
 import zipfile
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, make_dataclass
+from dataclasses import dataclass, make_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,15 +34,17 @@ _SINCE_4 = {
 # The maximum number of entries that are read from an archive: more than any version has.
 _MAX_ENTRIES = 100
 
+_NAMES = ("time", *(name for name, *_ in _STATE_FIELDS))
 if TYPE_CHECKING:
     from clench._core import _StateArrays
 else:
-    _names = ("time", *(name for name, *_ in _STATE_FIELDS))
-    _StateArrays = make_dataclass("_StateArrays", [(name, np.ndarray) for name in _names], kw_only=True, eq=False, repr=False)
+    _StateArrays = make_dataclass("_StateArrays", [(name, np.ndarray) for name in _NAMES], kw_only=True, eq=False, repr=False)
 
+_SINGLE: np.dtype[Any] = np.dtype(np.float32)
+_DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 # The dtypes of all fields except those with the precision of the simulation.
 _DTYPES: dict[str, np.dtype[Any]] = {
-    "time": np.dtype(np.float64),
+    "time": _DOUBLE,
     **{name: np.dtype(kind) for name, kind, *_ in _STATE_FIELDS if kind != "number"},
 }
 
@@ -74,12 +76,12 @@ class State(_StateArrays):
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         """Returns the fields by name. Their dtypes are checked, since fields can be replaced."""
-        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
-        numbers = np.dtype(np.float32 if getattr(self.qpos, "dtype", None) == np.float32 else np.float64)
+        arrays = {name: getattr(self, name) for name in _NAMES}
+        numbers = _SINGLE if getattr(self.qpos, "dtype", None) == _SINGLE else _DOUBLE
         for name, array in arrays.items():
             wanted = _DTYPES.get(name, numbers)
-            found = getattr(array, "dtype", type(array).__name__)
-            if not isinstance(array, np.ndarray) or found != wanted:
+            if not isinstance(array, np.ndarray) or array.dtype != wanted:
+                found = getattr(array, "dtype", type(array).__name__)
                 raise TypeError(f"{name} of a state must be an array of {wanted}, not {found}")
         return arrays
 

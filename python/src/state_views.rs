@@ -158,9 +158,13 @@ impl StateViews {
     pub(crate) fn copy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let copies = PyDict::new(py);
         for (name, array) in self.named() {
-            copies.set_item(name, array.call_method0(py, "copy")?)?;
+            copies.set_item(name, array.call_method0(py, intern!(py, "copy"))?)?;
         }
-        state_class(py)?.call((), Some(&copies))
+        // Without the checks of the constructor.
+        let class = state_class(py)?;
+        let state = class.call_method1(intern!(py, "__new__"), (class,))?;
+        state.setattr(intern!(py, "__dict__"), copies)?;
+        Ok(state)
     }
 
     /// Copies a `clench.State` into the arrays: one of the same shapes or, for a batch, a state of one environment for
@@ -176,10 +180,10 @@ impl StateViews {
     ///
     /// # Errors
     /// Same as [`take_over`](Self::take_over).
-    pub(crate) fn take_over_rows(
+    pub(crate) fn take_over_rows<'py>(
         &self,
-        state: &Bound<'_, PyAny>,
-        envs: Option<(&Bound<'_, PyAny>, usize)>,
+        state: &Bound<'py, PyAny>,
+        envs: Option<(&Bound<'py, PyAny>, usize)>,
     ) -> PyResult<()> {
         let py = state.py();
         if !is_state(state)? {
@@ -191,33 +195,48 @@ impl StateViews {
         let values = state.call_method0(intern!(py, "_arrays"))?;
         let mut pairs = Vec::new();
         for (name, array) in self.named() {
-            let (to, mut from) = (array.bind(py), values.get_item(name)?);
-            // States of versions without dynamic constraints have no slots for them: all slots are set to empty.
-            if name.starts_with("dynamic_") && from.getattr("size")?.extract::<usize>()? == 0 {
-                let rows = envs.map_or_else(|| Ok(to.clone()), |(envs, _)| to.get_item(envs))?;
-                from = rows.call_method0("copy")?;
-                from.call_method1("fill", (0,))?;
-            }
-            let (found, needed) = (from.getattr("shape")?, to.getattr("shape")?);
-            let found: Vec<usize> = found.extract()?;
-            let mut needed: Vec<usize> = needed.extract()?;
-            if let (Some((_, count)), Some(first)) = (envs, needed.first_mut()) {
-                *first = count;
-            }
-            let one_for_all = self.is_of_batch(py)? && needed.get(1..) == Some(&found[..]);
-            if found != needed && !one_for_all {
-                let (found, needed) = (shape_text(&found), shape_text(&needed));
-                return Err(PyValueError::new_err(format!(
-                    "{name} of the state has shape {found} where {needed} is needed: is it of another model, or of another \
-                     number of environments?"
-                )));
-            }
+            let (to, from) = (array.bind(py), values.get_item(name)?);
+            let [found, needed] = [&from, to].map(|array| array.getattr(intern!(py, "shape")));
+            let from = match envs.is_none() && found?.eq(needed?)? {
+                true => from,
+                false => self.fit(name, from, to, envs)?,
+            };
             pairs.push((to, from));
         }
         pairs.iter().try_for_each(|(to, from)| match envs {
             Some((envs, _)) => to.set_item(envs, from),
-            None => copy_to(to, from),
+            None => to.set_item(py.Ellipsis(), from),
         })
+    }
+
+    /// Returns the values of a field for some environments, or for all, of the array `to`.
+    fn fit<'py>(
+        &self,
+        name: &str,
+        mut from: Bound<'py, PyAny>,
+        to: &Bound<'py, PyAny>,
+        envs: Option<(&Bound<'py, PyAny>, usize)>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        // States of versions without dynamic constraints have no slots for them: all slots are set to empty.
+        if name.starts_with("dynamic_") && from.getattr("size")?.extract::<usize>()? == 0 {
+            let rows = envs.map_or_else(|| Ok(to.clone()), |(envs, _)| to.get_item(envs))?;
+            from = rows.call_method0("copy")?;
+            from.call_method1("fill", (0,))?;
+        }
+        let found: Vec<usize> = from.getattr("shape")?.extract()?;
+        let mut needed: Vec<usize> = to.getattr("shape")?.extract()?;
+        if let (Some((_, count)), Some(first)) = (envs, needed.first_mut()) {
+            *first = count;
+        }
+        let one_for_all = self.is_of_batch(to.py())? && needed.get(1..) == Some(&found[..]);
+        if found == needed || one_for_all {
+            return Ok(from);
+        }
+        let (found, needed) = (shape_text(&found), shape_text(&needed));
+        Err(PyValueError::new_err(format!(
+            "{name} of the state has shape {found} where {needed} is needed: is it of another model, or of another number \
+             of environments?"
+        )))
     }
 
     /// Returns true if the arrays have an axis of environments.
