@@ -2,15 +2,35 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, SupportsIndex
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
+
+from clench._core import Sim
 
 if TYPE_CHECKING:
-    from clench._core import Batch, Element, Sim
+    from clench._core import Batch, Element
 
 
 def is_alone(owner: Any) -> bool:
     """Returns true if the owner is a `Sim`, which has no axis of environments."""
-    return not hasattr(owner, "n_envs")
+    return isinstance(owner, Sim)
+
+
+_Value = TypeVar("_Value")
+
+
+def computed_once(function: Callable[[Any], _Value]) -> _Value:
+    """Makes a property of a view that is computed when it is first read, as `functools.cached_property` does for
+    classes without slots."""
+    name = function.__name__
+
+    def read(view: ElementView) -> _Value:
+        if name not in view._computed:
+            view._computed[name] = function(view)
+        value: _Value = view._computed[name]
+        return value
+
+    return property(read)  # type: ignore[return-value]
 
 
 class ElementView:
@@ -29,7 +49,7 @@ class ElementView:
         Its name or index.
     """
 
-    __slots__ = ("_alone", "_element", "_owner", "_row")
+    __slots__ = ("_alone", "_computed", "_element", "_owner", "_row")
     _kind = ""
 
     def __init__(self, owner: Sim | Batch, which: str | SupportsIndex) -> None:
@@ -37,6 +57,7 @@ class ElementView:
         self._owner = owner
         self._row: int = self._element.id
         self._alone = is_alone(owner)
+        self._computed: dict[str, Any] = {}
 
     @property
     def element(self) -> Element:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike, NDArray
 
 from clench._lines import OutputLine, ParameterLine, StateLine, set_parameter
-from clench._element_view import ElementView, is_alone
+from clench._element_view import ElementView, computed_once, is_alone
 
 if TYPE_CHECKING:
     from clench._core import Batch, Sim
@@ -61,7 +61,7 @@ class BodyView(ElementView):
     gravcomp = ParameterLine("body_gravcomp", "Fraction of the weight that is compensated.")
     invweight0 = ParameterLine("body_invweight0", "Mean inverse inertia at qpos0 (2): of translation, of rotation.")
 
-    @property
+    @computed_once
     def _mocap(self) -> int:
         index = int(self.element.mocapid)
         if index < 0:
@@ -105,12 +105,12 @@ class JointView(ElementView):
     dampingpoly = ParameterLine("dof_dampingpoly", "Coefficients of quadratic and cubic damping (ndof, 2).", "_dofs")
     frictionloss = ParameterLine("dof_frictionloss", "Dry friction (ndof), N m or N.", "_dofs")
 
-    @property
+    @computed_once
     def _coordinates(self) -> slice:
         first = int(self.element.qposadr)
         return slice(first, first + (7, 4, 1, 1)[int(self.element.type)])
 
-    @property
+    @computed_once
     def _dofs(self) -> slice:
         first = int(self.element.dofadr)
         return slice(first, first + (6, 3, 1, 1)[int(self.element.type)])
@@ -225,17 +225,17 @@ class ActuatorView(ElementView):
     acc0 = ParameterLine("actuator_acc0", "Norm of the acceleration caused by a unit force at qpos0.")
     lengthrange = ParameterLine("actuator_lengthrange", "Minimum and maximum length (2).")
 
-    @property
+    @computed_once
     def _controls(self) -> slice:
         first = int(self.element.ctrladr)
         return slice(first, first + int(self.element.ctrlnum))
 
-    @property
+    @computed_once
     def _outputs(self) -> int | slice:
         first, count = int(self.element.outadr), int(self.element.outnum)
         return first if count == 1 else slice(first, first + count)
 
-    @property
+    @computed_once
     def _activations(self) -> slice:
         first = max(int(self.element.actadr), 0)
         return slice(first, first + int(self.element.actnum))
