@@ -174,6 +174,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
 
         self.fresh = np.zeros(num_envs, dtype=np.bool_)
         self.started = False
+        self._all = np.ones(num_envs, dtype=np.bool_)
         self._done = np.zeros(num_envs, dtype=np.bool_)
         self.elapsed = np.zeros(num_envs, dtype=np.int64)
         self._generators: list[np.random.Generator | None] = [None] * num_envs
@@ -335,7 +336,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
             start = qpos[envs], qvel[envs]
         for name, rows_of, values in zip(("qpos", "qvel"), (qpos, qvel), start, strict=True):
             shape = (len(envs), rows_of.shape[1])
-            rows_of[envs] = one_or_all(values, shape, f"{self._name}: {name} of initial_states()")
+            rows_of[envs] = one_or_all(values, shape, self, f"{name} of initial_states()")
         self.elapsed[mask] = 0
         self.on_reset(mask)
         if batch.outputs and batch.forward(mask):
@@ -354,13 +355,13 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         self.elapsed += 1
         self.fresh[:] = False
 
-        rewards = one_each(self.reward(action), n, np.float64, f"{self._name}: reward()")
-        terminations = one_each(self.terminated(), n, np.bool_, f"{self._name}: terminated()")
+        rewards = one_each(self.reward(action), n, np.float64, self, "reward()")
+        terminations = one_each(self.terminated(), n, np.bool_, self, "terminated()")
         limit = self.max_episode_steps
-        truncations = one_each(self.truncated(), n, np.bool_, f"{self._name}: truncated()")
+        truncations = one_each(self.truncated(), n, np.bool_, self, "truncated()")
         if limit is not None and limit != -1:
             truncations |= self.elapsed >= limit
-        about: list[vector_infos.Group] = [(self._checked_info(self.info()), np.ones(n, dtype=np.bool_))]
+        about: list[vector_infos.Group] = [(self._checked_info(self.info()), self._all)]
 
         running = batch.running
         if not running.all():
@@ -374,7 +375,7 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
 
     def observation(self) -> Any:
         """Returns the observation, in separate arrays."""
-        return observations.checked(self.observe(), self.num_envs, f"{self._name}: observe()")
+        return observations.checked(self.observe(), self.num_envs, self, "observe()")
 
     def _checked_info(self, info: Mapping[str, Array]) -> Mapping[str, Array]:
-        return {key: rows(value, self.num_envs, f"{self._name}: info `{key}`") for key, value in info.items()}
+        return {key: rows(value, self.num_envs, self, f"info `{key}`") for key, value in info.items()}

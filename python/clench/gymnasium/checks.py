@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from gymnasium.spaces import Box, Discrete, MultiBinary, MultiDiscrete, Space
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
+
+
+class Named(Protocol):
+    """Environments with a name, for errors."""
+
+    @property
+    def _name(self) -> str: ...
 
 
 def check_action_space(space: Any, name: str) -> None:
@@ -101,25 +108,25 @@ def checked_mask(options: Mapping[str, Any] | None, count: int) -> Array:
     return mask.copy()
 
 
-def rows(values: Any, count: int, what: str) -> Array:
-    """Converts values to an array with one row per environment."""
+def rows(values: Any, count: int, env: Named, what: str) -> Array:
+    """Converts values to an array with one row per environment. Errors name the environments and the values."""
     array = np.asarray(values)
     if array.shape[:1] != (count,):
-        raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count}, ...)")
+        raise ValueError(f"{env._name}: {what} is an array of shape {array.shape}, expected ({count}, ...)")
     return array
 
 
-def one_each(values: Any, count: int, dtype: type[np.generic], what: str) -> Array:
+def one_each(values: Any, count: int, dtype: type[np.generic], env: Named, what: str) -> Array:
     """Copies values, one per environment, to an array with that dtype."""
     array = np.array(values, dtype=dtype)
     if array.shape != (count,):
-        raise ValueError(f"{what} is an array of shape {array.shape}, expected ({count},)")
+        raise ValueError(f"{env._name}: {what} is an array of shape {array.shape}, expected ({count},)")
     return array
 
 
-def one_or_all(values: Any, shape: tuple[int, int], what: str) -> Array:
+def one_or_all(values: Any, shape: tuple[int, int], env: Named, what: str) -> Array:
     """Returns rows of that shape: the given rows, or one row repeated."""
     array = np.asarray(values)
     if array.shape not in (shape, shape[1:]):
-        raise ValueError(f"{what} is an array of shape {array.shape}, expected {shape} or {shape[1:]}")
+        raise ValueError(f"{env._name}: {what} is an array of shape {array.shape}, expected {shape} or {shape[1:]}")
     return array

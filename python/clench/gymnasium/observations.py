@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium.spaces import Box, Dict, Space
 from numpy.typing import NDArray
 
-from clench.gymnasium.checks import rows
+from clench.gymnasium.checks import Named, rows
 
 Array = NDArray[Any]
 
@@ -17,10 +17,10 @@ Observation: TypeAlias = Array | Mapping[str, Array]
 """The observation of a task: an array (n, ...), or arrays (n, ...) by name."""
 
 # Dtypes that are not converted: floats of either precision, and bytes of pictures. All others become float64.
-_KEPT = ("float64", "float32", "uint8")
+_KEPT = frozenset(map(np.dtype, (np.float64, np.float32, np.uint8)))
 
 
-def checked(values: Any, count: int, what: str) -> Any:
+def checked(values: Any, count: int, env: Named, what: str) -> Any:
     """Copies the observation of a task.
 
     Parameters
@@ -29,8 +29,10 @@ def checked(values: Any, count: int, what: str) -> Any:
         The observation that the task returned.
     count : int
         Number of environments.
+    env : Named
+        The environments, for errors.
     what : str
-        Its name in messages.
+        The name of the values in errors.
 
     Returns
     -------
@@ -43,15 +45,15 @@ def checked(values: Any, count: int, what: str) -> Any:
         If an array does not have one row per environment, or its rows are single numbers.
     """
     if isinstance(values, Mapping):
-        return {str(key): _array(value, count, f"{what}, `{key}`,") for key, value in values.items()}
-    return _array(values, count, what)
+        return {str(key): _array(value, count, env, f"{what}, `{key}`,") for key, value in values.items()}
+    return _array(values, count, env, what)
 
 
-def _array(values: Any, count: int, what: str) -> Array:
-    array = rows(values, count, what).copy()
+def _array(values: Any, count: int, env: Named, what: str) -> Array:
+    array = rows(values, count, env, what).copy()
     if array.ndim < 2:
-        raise ValueError(f"{what} must give each environment an array, not one number")
-    return array if array.dtype.name in _KEPT else array.astype(np.float64)
+        raise ValueError(f"{env._name}: {what} must give each environment an array, not one number")
+    return array if array.dtype in _KEPT else array.astype(np.float64)
 
 
 def space(sample: Any) -> Space[Any]:
