@@ -9,7 +9,7 @@ mod collada;
 mod ears;
 mod gltf;
 mod msh;
-pub(crate) mod obj;
+mod obj;
 mod stl;
 mod triangles;
 
@@ -66,10 +66,10 @@ impl Format {
 }
 
 /// The objects and groups of an OBJ file that are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Objects {
-    /// The first with faces, as in MuJoCo.
-    First,
+#[derive(Debug)]
+pub(crate) enum Objects<'a> {
+    /// The first with faces, as in MuJoCo. The reader counts the faces of all others.
+    First(&'a mut usize),
     All,
 }
 

@@ -6,29 +6,34 @@ use super::Objects;
 use super::ears::triangulate;
 use super::triangles::Triangles;
 use clench_math::Vec3;
+use std::str::{self, FromStr};
 
-pub(super) fn read(bytes: &[u8], objects: Objects) -> Result<Triangles, String> {
-    let text = String::from_utf8_lossy(bytes);
+pub(super) fn read(bytes: &[u8], mut objects: Objects) -> Result<Triangles, String> {
     let mut vertices = Vec::new();
     let mut texcoords = Vec::new();
-    let mut polygons: Vec<Polygon> = Vec::new();
+    let mut polygons = Polygons::default();
     let mut counts = true;
-    for (index, line) in text.lines().enumerate() {
+    for (index, line) in bytes.split(|&byte| byte == b'\n').enumerate() {
         let number = index + 1;
-        let mut words = line.split_ascii_whitespace();
+        let mut words = words(line);
         match words.next() {
-            Some("v") => vertices.push(vertex(words, number)?),
-            Some("vt") => texcoords.push(texcoord(words, number)?),
-            Some("f") if counts => {
-                let corners = words
-                    .map(|word| corner(word, [vertices.len(), texcoords.len()], number))
-                    .collect::<Result<Vec<Corner>, String>>()?;
-                // Faces without area are dropped, as in MuJoCo.
-                if corners.len() >= 3 {
-                    polygons.push(Polygon { number, corners });
+            Some(b"v") => vertices.push(vertex(words, number)?),
+            Some(b"vt") => texcoords.push(texcoord(words, number)?),
+            Some(b"f") if counts => {
+                for word in words {
+                    let corner = corner(word, [vertices.len(), texcoords.len()], number)?;
+                    polygons.corners.push(corner);
+                }
+                polygons.end(number);
+            }
+            Some(b"f") => {
+                if let Objects::First(omitted_faces) = &mut objects {
+                    **omitted_faces += 1;
                 }
             }
-            Some("o" | "g") if !polygons.is_empty() => counts = objects == Objects::All,
+            Some(b"o" | b"g") if !polygons.ends.is_empty() => {
+                counts = matches!(objects, Objects::All);
+            }
             _ => {}
         }
     }
@@ -38,22 +43,44 @@ pub(super) fn read(bytes: &[u8], objects: Objects) -> Result<Triangles, String> 
     triangles(vertices, texcoords, &polygons)
 }
 
-/// Returns the number of faces in objects and groups after the first.
-pub(crate) fn further_faces(bytes: &[u8]) -> usize {
-    let text = String::from_utf8_lossy(bytes);
-    let tags = text
-        .lines()
-        .filter_map(|line| line.split_ascii_whitespace().next());
-    let further = tags
-        .skip_while(|tag| *tag != "f")
-        .skip_while(|tag| !matches!(*tag, "o" | "g"));
-    further.filter(|tag| *tag == "f").count()
+/// Returns the words of a line.
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty())
 }
 
-/// A face of the file and its line number.
-struct Polygon {
-    number: usize,
+/// Parses a number.
+fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
+    str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// The faces of the file.
+#[derive(Default)]
+struct Polygons {
     corners: Vec<Corner>,
+    /// The end of each face among the corners, and its line number.
+    ends: Vec<(usize, usize)>,
+}
+
+impl Polygons {
+    /// Ends a face on a line. Faces without area are dropped, as in MuJoCo.
+    fn end(&mut self, line: usize) {
+        let start = self.ends.last().map_or(0, |&(end, _)| end);
+        match self.corners.len() - start {
+            0..3 => self.corners.truncate(start),
+            _ => self.ends.push((self.corners.len(), line)),
+        }
+    }
+
+    /// Returns the corners of each face, and its line number.
+    fn iter(&self) -> impl Iterator<Item = (&[Corner], usize)> {
+        let mut start = 0;
+        self.ends.iter().map(move |&(end, line)| {
+            let corners = &self.corners[start..end];
+            start = end;
+            (corners, line)
+        })
+    }
 }
 
 /// A corner of a face: a vertex and an optional texture coordinate.
@@ -67,19 +94,18 @@ struct Corner {
 fn triangles(
     vertices: Vec<Vec3<f64>>,
     texcoords: Vec<[f32; 2]>,
-    polygons: &[Polygon],
+    polygons: &Polygons,
 ) -> Result<Triangles, String> {
     let (mut faces, mut face_texcoords) = (Vec::new(), Vec::new());
-    for Polygon { number, corners } in polygons {
+    let mut places = Vec::new();
+    for (corners, number) in polygons.iter() {
         let missing = |corner: &&Corner| corner.vertex as usize >= vertices.len();
         if let Some(corner) = corners.iter().find(missing) {
             let vertex = u64::from(corner.vertex) + 1;
             return Err(format!("line {number}: there is no vertex {vertex}"));
         }
-        let places: Vec<_> = corners
-            .iter()
-            .map(|c| vertices[c.vertex as usize])
-            .collect();
+        places.clear();
+        places.extend(corners.iter().map(|c| vertices[c.vertex as usize]));
         for triangle in triangulate(&places) {
             let triangle = triangle.map(|corner| corners[corner]);
             faces.push(triangle.map(|corner| corner.vertex));
@@ -103,14 +129,11 @@ fn triangles(
 }
 
 /// Parses three coordinates, in single precision as in MuJoCo.
-fn vertex<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3<f64>, String> {
+fn vertex<'a>(words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<Vec3<f64>, String> {
     let mut coordinates = [0.0; 3];
     let mut found = 0;
     for (coordinate, word) in coordinates.iter_mut().zip(words) {
-        let number: f32 = word
-            .parse()
-            .map_err(|_| format!("line {line}: \"{word}\" is not a number"))?;
-        *coordinate = f64::from(number);
+        *coordinate = f64::from(single(word, line)?);
         found += 1;
     }
     match found {
@@ -119,28 +142,33 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3<
     }
 }
 
-/// Parses a texture coordinate, whose second axis points up.
-fn texcoord<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<[f32; 2], String> {
-    let mut number = || match words.next() {
-        None => Ok(0.0),
-        Some(word) => {
-            (word.parse::<f32>()).map_err(|_| format!("line {line}: \"{word}\" is not a number"))
-        }
+fn single(word: &[u8], line: usize) -> Result<f32, String> {
+    let wrong = || {
+        let word = String::from_utf8_lossy(word);
+        format!("line {line}: \"{word}\" is not a number")
     };
+    parse(word).ok_or_else(wrong)
+}
+
+/// Parses a texture coordinate, whose second axis points up.
+fn texcoord<'a>(
+    mut words: impl Iterator<Item = &'a [u8]>,
+    line: usize,
+) -> Result<[f32; 2], String> {
+    let mut number = || words.next().map_or(Ok(0.0), |word| single(word, line));
     Ok([number()?, 1.0 - number()?])
 }
 
 /// Parses a corner, such as `7`, `7/1/2` or, counted back from the last, `-1`; `before` counts the preceding vertices
 /// and texture coordinates.
-fn corner(word: &str, before: [usize; 2], line: usize) -> Result<Corner, String> {
-    let wrong = || format!("line {line}: \"{word}\" is not a corner of a face");
-    let mut parts = word.split('/');
+fn corner(word: &[u8], before: [usize; 2], line: usize) -> Result<Corner, String> {
+    let wrong = || {
+        let word = String::from_utf8_lossy(word);
+        format!("line {line}: \"{word}\" is not a corner of a face")
+    };
+    let mut parts = word.split(|&byte| byte == b'/');
     let mut index = |before: usize| {
-        let index = match parts.next().unwrap_or_default() {
-            "" => return None,
-            part => part.parse::<i64>().ok()?,
-        };
-        let index = match index {
+        let index = match parse::<i64>(parts.next()?)? {
             0 => return None,
             forwards if forwards > 0 => forwards - 1,
             backwards => before as i64 + backwards,

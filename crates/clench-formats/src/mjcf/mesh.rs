@@ -3,7 +3,7 @@
 use super::files::Files;
 use crate::document::Element;
 use crate::error::LoadError;
-use crate::mesh::{self, Format, MeshFolder, Objects, Triangles, builtin, obj};
+use crate::mesh::{self, Format, MeshFolder, Objects, Triangles, builtin};
 use crate::spending::Spending;
 use clench_builder::{MeshInertia, MeshSpec};
 use clench_math::{Quat, Vec3};
@@ -131,16 +131,18 @@ fn read_or_written(
         directory: &directory,
         spending,
     };
-    let mut further = 0;
+    let mut omitted = 0;
     let found = file.parse(element, |bytes| {
-        if format == Format::Obj {
-            further = obj::further_faces(&bytes);
-        }
-        mesh::read(bytes, format, Objects::First, &mut mesh_folder)
+        mesh::read(
+            bytes,
+            format,
+            Objects::First(&mut omitted),
+            &mut mesh_folder,
+        )
     })?;
-    if further > 0 {
+    if omitted > 0 {
         let note = format!(
-            "only the first object or group of an OBJ file is read, as in MuJoCo: {further} faces of others are omitted"
+            "only the first object or group of an OBJ file is read, as in MuJoCo: {omitted} faces of others are omitted"
         );
         notes.push(element.error(note).to_string());
     }
