@@ -54,22 +54,23 @@ def expected(path: Path, values: dict[str, Any]) -> dict[str, Any]:
     found = {name: getattr(model, name) for name in FIELDS}
     found["actuator_acc0"] = model.actuator_acc0[model.actuator_outadr]
     found["eq_anchor2"] = np.zeros((model.neq, 3))
-    connects = (model.eq_type == mujoco.mjtEq.mjEQ_CONNECT) & (model.eq_objtype == mujoco.mjtObj.mjOBJ_BODY)
+    of_bodies = model.eq_objtype == mujoco.mjtObj.mjOBJ_BODY
+    connects = (model.eq_type == mujoco.mjtEq.mjEQ_CONNECT) & of_bodies
     found["eq_anchor2"][connects] = model.eq_data[connects, 3:6]
     found["connects"] = connects
+    found["welds"] = (model.eq_type == mujoco.mjtEq.mjEQ_WELD) & of_bodies
+    found["eq_anchor1"], found["eq_quat1"] = model.eq_data[:, 3:6], model.eq_data[:, 6:10]
     found["tracking"] = model.cam_mode != mujoco.mjtCamLight.mjCAMLIGHT_FIXED
     return found
 
 
 def compare(owner: Any, env: int | None, values: dict[str, Any]) -> None:
-    connects = values["connects"]
-    for name in [*FIELDS, "eq_anchor2"]:
+    used = {"eq_anchor2": values["connects"], "eq_anchor1": values["welds"], "eq_quat1": values["welds"], "cam_poscom0": values["tracking"]}
+    for name in [*FIELDS, "eq_anchor2", "eq_anchor1", "eq_quat1"]:
         found, wanted = owner.param(name) if env is None else owner.param(name)[env], values[name]
         # Values that an element does not use are not compared.
-        if name == "eq_anchor2":
-            found, wanted = found[connects], wanted[connects]
-        if name == "cam_poscom0":
-            found, wanted = found[values["tracking"]], wanted[values["tracking"]]
+        if name in used:
+            found, wanted = found[used[name]], wanted[used[name]]
         scale = max(1e-6, float(np.max(np.abs(wanted), initial=0.0)))
         np.testing.assert_allclose(found, np.reshape(wanted, found.shape), rtol=0, atol=TOLERANCE * scale, err_msg=name)
 

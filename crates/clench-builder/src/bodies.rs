@@ -131,7 +131,7 @@ fn add(
                 let message = "cannot be discarded as visual: the inertia of its body comes from geoms of its group";
                 return Err(within(geom.error(message)));
             }
-            true => assets.place(geom).map(drop).map_err(within)?,
+            true => assets.check_discarded(geom).map_err(within)?,
             false => geoms::add_geom(geom, b, frame.moved, assets, model).map_err(within)?,
         }
     }

@@ -54,7 +54,7 @@ impl ModelBuilder {
 
         bodies::add_all(self, &order, &assets, &mut model)?;
         model.same_frames = SameFrames::of(&model.params);
-        assets.keep(self, &mut model);
+        assets.keep(self, &mut model)?;
         derived::require_inertia(&model, &order)?;
         derived::masses(self, &mut model);
         budget::matrices(self, &model)?;

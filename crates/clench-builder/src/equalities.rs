@@ -5,7 +5,7 @@ use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::tendons::require_scalar;
 use super::{BuildError, ConnectAnchor, EqualityKind, EqualitySpec};
-use clench_dynamics::constants::carry;
+use clench_dynamics::constants::{carry, relative_pose};
 use clench_dynamics::model::{Equality, EqualityTarget, Model};
 use clench_dynamics::stages::Positions;
 use clench_math::{Quat, Vec3};
@@ -31,6 +31,7 @@ pub(super) fn add_all(
             name: spec.name.clone(),
             target,
             sites: data.sites,
+            pose_at_qpos0: data.pose_at_qpos0,
             active0: spec.active,
         });
         let p = &mut model.params;
@@ -74,6 +75,7 @@ pub(super) fn check(e: &EqualitySpec) -> Result<(), BuildError> {
 #[derive(Default)]
 struct Data {
     sites: Option<[usize; 2]>,
+    pose_at_qpos0: bool,
     /// Anchors in the frames of the first and the second body.
     points: [Vec3<f64>; 2],
     quats: [Quat<f64>; 2],
@@ -255,18 +257,16 @@ fn require_finite_points(spec: &EqualitySpec, data: &Data) -> Result<(), BuildEr
 /// the first.
 fn weld_bodies(
     pose0: &Positions<f64>,
-    [body1, body2]: [usize; 2],
+    bodies: [usize; 2],
     anchor: Vec3<f64>,
     relpose: Option<(Vec3<f64>, Quat<f64>)>,
 ) -> Data {
     let (point, quat) = match relpose {
         Some((pos, quat)) => (pos, quat.normalize()),
-        None => (
-            carry(pose0, [body2, body1], anchor),
-            pose0.xquat[body1].conjugate() * pose0.xquat[body2],
-        ),
+        None => relative_pose(pose0, bodies, anchor),
     };
     Data {
+        pose_at_qpos0: relpose.is_none(),
         points: [point, anchor],
         quats: [quat, Quat::IDENTITY],
         ..Data::default()

@@ -1,11 +1,9 @@
 //! Geoms and sites.
 
-use super::added_mass::AddedMass;
 use super::element::Element;
 use super::placed::Assets;
 use super::{BuildError, GeomSpec, SiteSpec};
 use clench_collide::ShapeKind;
-use clench_dynamics::dynamics::ellipsoid::semi_axes;
 use clench_dynamics::model::{Geom, Model, Site};
 use clench_math::{Quat, Vec3};
 use std::sync::Arc;
@@ -69,14 +67,10 @@ pub(super) fn add_geom(
     p.geom_gap.push(spec.gap);
     p.geom_surfacevel.push(placed.surfacevel);
     p.geom_adhesion.push(spec.adhesion);
-    let added = if fluid_ellipsoid {
-        AddedMass::of_ellipsoid(semi_axes(spec.kind, placed.size))
-    } else {
-        AddedMass::default()
-    };
     p.geom_fluidcoef.push(spec.fluidcoef);
-    p.geom_virtualmass.push(added.mass);
-    p.geom_virtualinertia.push(added.inertia);
+    // Constants set these once the model is complete.
+    p.geom_virtualmass.push([0.0; 3]);
+    p.geom_virtualinertia.push([0.0; 3]);
     p.geom_solmix.push(spec.solmix);
     p.geom_solref.push(spec.solref);
     p.geom_solimp.push(spec.solimp);

@@ -28,7 +28,6 @@
 #![deny(unreachable_pub, unsafe_code)]
 
 mod actuators;
-mod added_mass;
 mod appearance;
 mod bodies;
 mod budget;

@@ -101,6 +101,9 @@ pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, Bu
 }
 
 fn check(spec: &MeshSpec) -> Result<(), BuildError> {
+    if let Some(reason) = &spec.unreadable {
+        return Err(spec.error(reason));
+    }
     if spec.vertices.len() < 4 {
         let count = spec.vertices.len();
         return Err(spec.error(format!("at least four vertices are needed, not {count}")));

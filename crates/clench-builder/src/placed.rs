@@ -18,7 +18,8 @@ pub(super) struct Assets<'a> {
     pub(super) uses: GeomUses<'a>,
     names: Names<'a>,
     field_names: Names<'a>,
-    pub meshes: Vec<Processed>,
+    /// The meshes. With `discardvisual`, the error of one matters only if a geom, site or sensor uses it.
+    meshes: Vec<Result<Processed, BuildError>>,
     pub height_fields: Vec<Arc<HeightField>>,
     /// The appearance of elements.
     pub palette: Arc<Palette>,
@@ -65,7 +66,10 @@ impl<'a> Assets<'a> {
             }
         }
         let meshes = (builder.meshes.iter().zip(needs_hull))
-            .map(|(spec, needs_hull)| process(spec, needs_hull))
+            .map(|(spec, needs_hull)| match process(spec, needs_hull) {
+                Err(error) if !builder.compiler.discardvisual => Err(error),
+                processed => Ok(processed),
+            })
             .collect::<Result<_, _>>()?;
         let height_fields = (builder.height_fields.iter())
             .map(|spec| {
@@ -91,7 +95,10 @@ impl<'a> Assets<'a> {
     }
 
     /// Moves the assets to a model that has all its geoms. With `discardvisual`, unused meshes are omitted.
-    pub(super) fn keep(self, builder: &ModelBuilder, model: &mut Model) {
+    ///
+    /// # Errors
+    /// Returns an error if a mesh that is used is invalid.
+    pub(super) fn keep(self, builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
         let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
             // A primitive that was fitted to a mesh also retains it, as in MuJoCo.
@@ -117,7 +124,7 @@ impl<'a> Assets<'a> {
         for (index, processed) in self.meshes.into_iter().enumerate() {
             number[index] = model.meshes.len();
             if used[index] {
-                model.meshes.push(Arc::new(processed.mesh));
+                model.meshes.push(Arc::new(processed?.mesh));
             }
         }
         let geoms = model.geoms.iter_mut().map(|geom| &mut geom.mesh);
@@ -126,6 +133,28 @@ impl<'a> Assets<'a> {
             *mesh = number[*mesh];
         }
         model.height_fields = self.height_fields;
+        Ok(())
+    }
+
+    /// Returns a mesh that an element uses, and its index.
+    ///
+    /// # Errors
+    /// Returns an error if the mesh is unknown or invalid.
+    fn mesh(&self, name: &str, user: &impl Element) -> Result<(usize, &Processed), BuildError> {
+        let index = self.names.find(name, user)?;
+        let processed = self.meshes[index].as_ref();
+        Ok((index, processed.map_err(Clone::clone)?))
+    }
+
+    /// Checks a geom that is omitted from the model. Its mesh may be invalid.
+    ///
+    /// # Errors
+    /// Returns the other errors of [`place`](Self::place).
+    pub(super) fn check_discarded(&self, spec: &GeomSpec) -> Result<(), BuildError> {
+        match self.names.find(&spec.mesh, spec) {
+            Ok(mesh) if self.meshes[mesh].is_err() => Ok(()),
+            Ok(_) | Err(_) => self.place(spec).map(drop),
+        }
     }
 
     /// Returns the mesh whose hull is a site's volume.
@@ -140,10 +169,7 @@ impl<'a> Assets<'a> {
             (false, true) => Ok(None),
             (false, false) => Err(spec.error("only a site of type mesh can refer to a mesh")),
             (true, true) => Err(spec.error("a site of type mesh must refer to a mesh")),
-            (true, false) => {
-                let index = self.names.find(&spec.mesh, spec)?;
-                Ok(Some((index, &self.meshes[index])))
-            }
+            (true, false) => self.mesh(&spec.mesh, spec).map(Some),
         }
     }
 
@@ -169,8 +195,8 @@ impl<'a> Assets<'a> {
             let field = self.field_names.find(&spec.hfield, spec)?;
             placed.take_height_field(field, &self.height_fields[field].shape);
         } else if spec.kind == ShapeKind::Mesh || !spec.mesh.is_empty() {
-            let mesh = self.names.find(&spec.mesh, spec)?;
-            placed.take_mesh(mesh, &self.meshes[mesh], self.fitaabb)?;
+            let (index, mesh) = self.mesh(&spec.mesh, spec)?;
+            placed.take_mesh(index, mesh, self.fitaabb)?;
         }
         check_size(spec, placed.size)?;
         if !matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField) {

@@ -4,7 +4,9 @@
 //! The inverse inertia of a constraint with Jacobian J is A = J M⁻¹ Jᵀ. MuJoCo's `invweight0` are such values at qpos0,
 //! averaged over the directions of a group. With M = LᵀDL, A_ii = ‖D^(-1/2) L^(-T) J_iᵀ‖².
 
+use crate::dynamics::added_mass::AddedMass;
 use crate::dynamics::camera::fixed_pose;
+use crate::dynamics::ellipsoid::semi_axes;
 use crate::dynamics::inertia::composite_inertia;
 use crate::dynamics::kinematics::Computed;
 use crate::dynamics::tendon_armature::add_tendon_inertia;
@@ -15,7 +17,7 @@ use crate::part::Part;
 use crate::singular::first_bad_pivot;
 use crate::stages::Positions;
 use crate::{State, Step};
-use clench_math::{Motion, Scalar, Vec3};
+use clench_math::{Motion, Quat, Scalar, Vec3};
 use clench_solver::{TreeFactor, TreeMatrix};
 
 /// The smallest mass (kg), inertia (kg m²) or inverse that is used as a divisor (MuJoCo's `mjMINVAL`).
@@ -24,11 +26,13 @@ pub const MIN_INERTIA: f64 = 1e-15;
 const MIN_SIZE: f64 = 1e-5;
 
 /// The fields that [`Constants`] sets.
-pub const CONSTANTS: [ParamField; 14] = [
+pub const CONSTANTS: [ParamField; 16] = [
     ParamField::body_subtreemass,
     ParamField::body_invweight0,
     ParamField::dof_invweight0,
     ParamField::dof_length,
+    ParamField::geom_virtualmass,
+    ParamField::geom_virtualinertia,
     ParamField::tendon_length0,
     ParamField::tendon_invweight0,
     ParamField::actuator_acc0,
@@ -104,6 +108,7 @@ impl Constants {
         self.set_dof_lengths(model, params);
         self.set_dof_weights(model, params);
         self.set_body_weights(model, params);
+        set_added_masses(model, params);
         self.set_tendons(model, params);
         self.set_unit_accelerations(model, params);
         self.set_cameras(model, params);
@@ -246,7 +251,8 @@ impl Constants {
         }
     }
 
-    /// Sets the anchors. A connect's second anchor coincides with the first at qpos0; sites are their own anchors.
+    /// Sets the anchors. A connect's second anchor coincides with the first at qpos0, as do the frames of a weld
+    /// without a pose of its own; sites are their own anchors.
     fn set_anchors(&self, model: &Model, params: &mut Params<f64>) {
         for (i, equality) in model.equalities.iter().enumerate() {
             match (equality.sites, equality.target.coupled()) {
@@ -261,8 +267,24 @@ impl Constants {
                 (None, Coupled::Points(bodies)) => {
                     params.eq_anchor2[i] = carry(&self.pose, bodies, params.eq_anchor1[i]);
                 }
+                (None, Coupled::Frames(bodies)) if equality.pose_at_qpos0 => {
+                    let (point, quat) = relative_pose(&self.pose, bodies, params.eq_anchor2[i]);
+                    (params.eq_anchor1[i], params.eq_quat1[i]) = (point, quat);
+                }
                 (None, Coupled::Frames(_) | Coupled::Joints(..) | Coupled::Tendons(..)) => {}
             }
+        }
+    }
+}
+
+/// Sets the inertia of the medium that ellipsoids move.
+fn set_added_masses(model: &Model, params: &mut Params<f64>) {
+    for (g, geom) in model.geoms.iter().enumerate() {
+        // Geoms that a world of several lacks move nothing.
+        if geom.fluid_ellipsoid && params.geom_rbound[g] >= 0.0 {
+            let added = AddedMass::of_ellipsoid(semi_axes(geom.kind, params.geom_size[g]));
+            params.geom_virtualmass[g] = added.mass;
+            params.geom_virtualinertia[g] = added.inertia;
         }
     }
 }
@@ -301,10 +323,17 @@ fn require_finite<S: Scalar>(rows: &[Vec<S>]) -> Result<(), SingularMass> {
     }
 }
 
-/// Computes poses, and everything that depends only on them, at `qpos`.
+/// Computes poses, and everything that depends only on them, at `qpos`; mocap bodies are where the parameters place
+/// them.
 pub fn pose(model: &Model, params: &Params<f64>, qpos: &[f64]) -> Positions<f64> {
     let mut state = State::new(model);
     state.qpos.copy_from_slice(qpos);
+    for (b, body) in model.bodies.iter().enumerate() {
+        if let Some(m) = body.mocap {
+            state.mocap_pos[m] = params.body_pos[b];
+            state.mocap_quat[m] = params.body_quat[b];
+        }
+    }
     let mut pos = Positions::new(model);
     let whole = [Part::whole(model)];
     (Step::compiled().poses)(model, params, &state, Computed::all(&whole), &mut pos);
@@ -315,6 +344,16 @@ pub fn pose(model: &Model, params: &Params<f64>, qpos: &[f64]) -> Positions<f64>
 pub fn carry(pose: &Positions<f64>, [from, to]: [usize; 2], point: Vec3<f64>) -> Vec3<f64> {
     let world = pose.xpos[from] + pose.xmat[from] * point;
     pose.xmat[to].transpose_mul(world - pose.xpos[to])
+}
+
+/// Returns the pose in the first body of a point of the second, with the orientation of the second.
+pub fn relative_pose(
+    pose: &Positions<f64>,
+    [body1, body2]: [usize; 2],
+    point: Vec3<f64>,
+) -> (Vec3<f64>, Quat<f64>) {
+    let quat = pose.xquat[body1].conjugate() * pose.xquat[body2];
+    (carry(pose, [body2, body1], point), quat)
 }
 
 /// Computes J M⁻¹ Jᵀ for a row that is zero except on the path to dof `last`, where `entry` returns it.

@@ -38,9 +38,10 @@ impl Sim {
 
     /// Computes the constants that depend on the parameters in the initial configuration ``qpos0``, as MuJoCo's
     /// ``mj_setConst`` does: subtree masses, the inverse inertias ``body_invweight0``, ``dof_invweight0`` and
-    /// ``tendon_invweight0`` that scale constraints, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, frames of
-    /// cameras (``cam_pos0``, ``cam_poscom0``, ``cam_mat0``), second anchors of connects, anchors at sites. The state
-    /// does not change.
+    /// ``tendon_invweight0`` that scale constraints, ``dof_length``, ``tendon_length0``, ``actuator_acc0``, added
+    /// masses of ellipsoids in a medium, frames of cameras (``cam_pos0``, ``cam_poscom0``, ``cam_mat0``), second
+    /// anchors of connects, poses of welds to which the model gives none, anchors at sites. Such anchors and poses are
+    /// replaced even if `weld_here` wrote them. The state does not change.
     ///
     /// Call it after masses, inertias, positions or armatures have changed, unless constraints should keep the softness
     /// of the original model.

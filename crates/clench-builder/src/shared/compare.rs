@@ -67,7 +67,7 @@ pub(super) fn require_same(a: &Model, b: &Model) -> Result<(), String> {
     compare!(a, b, "actuator" in actuators: name transmission dynamics acts outputs gain bias states controls inputs
         ctrllimited history forcelimited actlimited actearly disabled)?;
     compare!(a, b, "sensor" in sensors: name kind target data cutoff numbers history phase)?;
-    compare!(a, b, "equality" in equalities: target active0)?;
+    compare!(a, b, "equality" in equalities: target sites pose_at_qpos0 active0)?;
     compare!(a, b, "pair" in pairs: geoms condim)?;
     let whole = first_difference!(a, b: integrator flags options override_contacts max_dynamic_constraints
         max_stick_pairs nq nv na nplastic nhistory nmocap tree tendon_ties excludes);

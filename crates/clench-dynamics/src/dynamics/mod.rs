@@ -12,6 +12,7 @@ pub(crate) mod activation_rates;
 pub mod actuation;
 pub(crate) mod actuator;
 pub(crate) mod actuator_derivatives;
+pub(crate) mod added_mass;
 pub(crate) mod adhesion;
 pub mod articulated;
 pub(crate) mod bias;

@@ -1,8 +1,8 @@
 //! Meshes defined by name and parameters, MJCF's `builtin`: points and triangles as MuJoCo makes them, with 24 bits per
 //! coordinate.
 
-use super::bytes;
 use super::triangles::Triangles;
+use super::{bytes, lattice};
 use crate::spending::Spending;
 use clench_math::Vec3;
 use std::collections::HashMap;
@@ -20,6 +20,9 @@ pub(crate) fn make(
     parameters: &[f64],
     spending: &mut Spending,
 ) -> Result<Triangles, String> {
+    if let Some(found) = lattice::make(name, parameters, spending) {
+        return found;
+    }
     // An upper bound for any of them: a grid of the resolutions.
     let resolution = |k: usize| {
         let requested = parameters.get(k).map_or(0, |&number| number as usize);

@@ -8,6 +8,7 @@ pub(crate) mod builtin;
 mod collada;
 mod ears;
 mod gltf;
+mod lattice;
 mod msh;
 mod obj;
 mod stl;

@@ -22,7 +22,9 @@ pub(crate) fn read(
             "mesh" => {
                 let draft = source.classes.of(element)?.mesh.clone();
                 let notes = &mut builder.notes;
-                let mesh = draft.finish(element, &source.files, notes, spending)?;
+                let files = &source.files;
+                let discards = sources.main().spec.discardvisual;
+                let mesh = draft.finish(element, files, discards, notes, spending)?;
                 builder.meshes.push(mesh);
             }
             "hfield" => {

@@ -245,6 +245,7 @@ fn write_equality(
         name,
         target,
         sites,
+        pose_at_qpos0,
         active0,
     } = equality;
     let p = &model.params;
@@ -260,7 +261,11 @@ fn write_equality(
         }
         (EqualityTarget::Weld { body1, body2 }, None) => {
             let tag = write_bodies(model, [body1, body2], tag)?;
-            write_weld(p.eq_anchor1[k], p.eq_anchor2[k], p.eq_quat1[k], tag)
+            let tag = tag.numbers("anchor", &p.eq_anchor2[k].to_array());
+            match pose_at_qpos0 {
+                true => tag,
+                false => write_relpose(p.eq_anchor1[k], p.eq_quat1[k], tag),
+            }
         }
         (EqualityTarget::Joint { joint1, joint2 }, _) => {
             let joint = |j: usize| named("joint", &model.joints[j].name, j);
@@ -300,16 +305,9 @@ fn write_bodies<'a>(model: &Model, pair: [usize; 2], tag: Tag<'a>) -> Result<Tag
         .text("body2", body_name(model, body2)?))
 }
 
-/// Writes the anchor, a point of the second body, and the relative pose: its position and orientation in the first
-/// body.
-fn write_weld<'a>(
-    held: Vec3<f64>,
-    anchor: Vec3<f64>,
-    rotation: Quat<f64>,
-    tag: Tag<'a>,
-) -> Tag<'a> {
+/// Writes the pose in the first body of the anchor, which is a point of the second.
+fn write_relpose<'a>(held: Vec3<f64>, rotation: Quat<f64>, tag: Tag<'a>) -> Tag<'a> {
     let [x, y, z] = held.to_array();
     let [w, a, b, c] = rotation.to_array();
-    tag.numbers("anchor", &anchor.to_array())
-        .numbers("relpose", &[x, y, z, w, a, b, c])
+    tag.numbers("relpose", &[x, y, z, w, a, b, c])
 }

@@ -1,12 +1,13 @@
 //! `<mesh>`: a mesh from a file, from vertices and faces in the model, or built in.
 
-use super::files::Files;
+use super::files::{Files, slashes};
 use crate::document::Element;
 use crate::error::LoadError;
 use crate::mesh::{self, Format, MeshFolder, Objects, Triangles, builtin};
 use crate::spending::Spending;
 use clench_builder::{MeshInertia, MeshSpec};
 use clench_math::{Quat, Vec3};
+use std::path::Path;
 
 /// A mesh as written in an element or a default class.
 #[derive(Clone, Debug, Default)]
@@ -34,11 +35,13 @@ impl MeshDraft {
         Ok(())
     }
 
-    /// Completes the mesh with attributes that only an element can have. Notes report ignored faces.
+    /// Completes the mesh with attributes that only an element can have. Notes report ignored faces. If the model
+    /// `discards` meshes that it does not use, a file that cannot be read may be one of them: it is no error yet.
     pub(super) fn finish(
         mut self,
         element: &Element,
         files: &Files,
+        discards: bool,
         notes: &mut Vec<String>,
         spending: &mut Spending,
     ) -> Result<MeshSpec, LoadError> {
@@ -60,7 +63,17 @@ impl MeshDraft {
                 make(element, builtin, spending)?
             }
             None => {
-                let found = read_or_written(element, files, &mut mesh.name, notes, spending)?;
+                let read = read_or_written(element, files, &mut mesh.name, notes, spending);
+                let found = match read {
+                    Err(error) if discards => {
+                        mesh.unreadable = Some(error.message);
+                        if mesh.name.is_empty() {
+                            mesh.name = stem_of_file(element);
+                        }
+                        Triangles::default()
+                    }
+                    read => read?,
+                };
                 let taken = spending.bytes(mesh::cost(&found));
                 taken.map_err(|excess| element.error(excess))?;
                 found
@@ -147,6 +160,13 @@ fn read_or_written(
         notes.push(element.error(note).to_string());
     }
     merge(found, written, element)
+}
+
+/// Returns the name of the file that an element names, without folders and extension.
+fn stem_of_file(element: &Element) -> String {
+    let path = slashes(element.text("file").unwrap_or_default());
+    let stem = Path::new(&path).file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
 }
 
 /// Merges a file with data in the model, which may add missing faces and texture coordinates.

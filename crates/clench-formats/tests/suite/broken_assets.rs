@@ -270,6 +270,11 @@ fn invalid_meshes_are_refused() {
         ),
         ("builtin='plate' params='4 5'", "plane"),
         ("builtin='plate' params='4 1e300'", "needs 1 to"),
+        ("builtin='box' params='2 2 1 1 1 1'", "needs 2 to"),
+        ("builtin='grid' params='2 2 1001 1 1 1'", "needs 2 to"),
+        ("builtin='grid' params='2 2 2 1 1'", "params"),
+        ("builtin='cylinder' params='2 2 2 1 1 1 2'", "for flexes"),
+        ("builtin='disc' params='3 3 1 1 1 1'", "for flexes"),
         ("builtin='ball' params='4 5'", "there is no builtin ball"),
         (
             "vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 2 0 1 3' inertia='exact'",

@@ -128,6 +128,15 @@ fn builtin_meshes_have_the_shapes_that_they_are_named_after() {
             12800,
             disc / 2.0,
         ),
+        ("builtin='grid' params='3 2 2 1 2 3'", 12, 12, 12.0),
+        ("builtin='box' params='3 4 5 .1 .1 .1 3'", 55, 12, 0.024),
+        ("builtin='cylinder' params='21 21 2 .1 .1 2'", 883, 316, TAU),
+        (
+            "builtin='ellipsoid' params='21 21 21 .1 .1 .2'",
+            2403,
+            4800,
+            8.0 * PI / 3.0,
+        ),
     ] {
         let text = of_mesh(
             &format!("{attributes} inertia='exact'"),
@@ -143,7 +152,9 @@ fn builtin_meshes_have_the_shapes_that_they_are_named_after() {
             "{attributes}"
         );
         let mass = model.params.body_mass[1];
-        let straight = attributes.contains("cone");
+        let straight = ["cone", "grid", "box"]
+            .iter()
+            .any(|kind| attributes.contains(kind));
         let lacks = if straight { 1e-6 } else { 0.02 };
         assert!(
             mass < volume * (1.0 + 1e-6) && mass > volume * (1.0 - lacks),

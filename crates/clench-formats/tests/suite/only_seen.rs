@@ -108,3 +108,29 @@ fn opacity_determines_visibility() {
             .contains("rgba needs 4 numbers, not 3")
     );
 }
+
+#[test]
+fn a_mesh_that_nothing_uses_may_be_unreadable_with_discardvisual() {
+    let load = |compiler: &str, geom: &str, asset: &str| {
+        load_str(&format!(
+            "<mujoco><compiler discardvisual='true' {compiler}/><asset><mesh {asset}/></asset>
+               <worldbody><body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>
+                 <geom size='.1'/><geom type='mesh' mesh='m' {geom}/></body></worldbody></mujoco>"
+        ))
+    };
+    let seen = "contype='0' conaffinity='0'";
+    for (asset, complaint) in [
+        ("name='m' file='nowhere.obj'", "nowhere.obj"),
+        ("file='nowhere/m.obj'", "nowhere/m.obj"),
+        ("name='m' vertex='0 0 0 1 0 0 1 1 0 0 1 0'", "volume"),
+        ("name='m' vertex='0 0 0 1 0 0'", "vertices"),
+    ] {
+        let model = load("", seen, asset).expect(asset);
+        assert_eq!((model.geoms.len(), model.meshes.len()), (1, 0), "{asset}");
+        for (compiler, geom) in [("", ""), ("inertiafromgeom='true'", seen)] {
+            let error = load(compiler, geom, asset).expect_err(asset);
+            assert!(error.message.contains(complaint), "{asset}: {error}");
+        }
+    }
+    assert!(load("", seen, "name='n' vertex='0 0 0'").is_err());
+}

@@ -94,7 +94,6 @@ impl<S: Precision> Batch<S> {
         let mut params = self.model.params.clone();
         let mut changes = CONSTANTS.map(|field| (field, Vec::new())).to_vec();
         for &env in envs {
-            // No constant belongs to a geom, so that those of the environment's own model fit the layout.
             let model = self.models.own(&self.model, env);
             if self.models.are_several() {
                 params.clone_from(&model.params);
@@ -106,7 +105,9 @@ impl<S: Precision> Batch<S> {
             }
             let rows = constants::<S>(model, &mut params);
             let rows = rows.map_err(|singular| singular.error(model, Some(env)))?;
-            for ((_, values), row) in changes.iter_mut().zip(rows) {
+            for ((field, values), own) in changes.iter_mut().zip(rows) {
+                let mut row = self.param(field.name(), env)?;
+                self.models.layout_row(env, *field, &own, &mut row);
                 values.extend(row);
             }
         }

@@ -29,9 +29,10 @@ impl<T: Precision> Sim<T> {
 
     /// Computes the derived parameters in the initial configuration, as MuJoCo's `mj_setConst` does: subtree masses,
     /// the inverse inertias `*_invweight0` by which constraints are scaled, `dof_length`, `tendon_length0`,
-    /// `actuator_acc0`, frames of cameras (`cam_*0`), second anchors of connects, anchors at sites. Call it after
-    /// masses, inertias, positions or armatures have changed, unless constraints should keep the softness of the
-    /// original model.
+    /// `actuator_acc0`, added masses of ellipsoids in a medium, frames of cameras (`cam_*0`), second anchors of
+    /// connects, poses of welds to which the model gives none, anchors at sites. Call it after masses, inertias,
+    /// positions or armatures have changed, unless constraints should keep the softness of the original model. Such
+    /// anchors and poses are replaced even if [`weld_here`](Self::weld_here) wrote them.
     ///
     /// # Errors
     /// Returns an error if the mass matrix is not positive definite. The parameters are then unchanged.

@@ -263,3 +263,48 @@ fn constants_of_changed_numbers_are_those_of_a_model_built_with_them() {
     }
     assert!(batch.set_constants(&[3]).is_err());
 }
+
+#[test]
+fn constants_of_moved_bodies_hold_them_where_they_are() {
+    let anchored = |body2: &str| ConnectAnchor::Bodies {
+        body1: "arm".into(),
+        body2: body2.into(),
+        anchor: Vec3::new(0.1, 0.2, 0.3),
+    };
+    let weld = |relpose| EqualityKind::Weld {
+        anchor: anchored("hand"),
+        relpose,
+        torquescale: 1.0,
+    };
+    let held = |x: f64, turn: [f64; 4]| {
+        let mut builder = ModelBuilder::new("held");
+        let arm = bob("arm", 1.0).at([x, 0.0, 1.0]).turned(turn);
+        builder.add_body(ModelBuilder::WORLD, arm.joint(JointSpec::hinge("h", Y)));
+        let mut hand = BodySpec::new("hand").at([0.0, x, 2.0]);
+        hand.mocap = true;
+        builder.add_body(ModelBuilder::WORLD, hand);
+        for kind in [
+            weld(None),
+            weld(Some((Vec3::new(1.0, 2.0, 3.0), Quat::IDENTITY))),
+            EqualityKind::Connect(anchored("hand")),
+        ] {
+            builder.equalities.push(EqualitySpec::new("", kind));
+        }
+        Arc::new(builder.build().unwrap())
+    };
+    let model = held(0.5, [1.0, 0.0, 0.0, 0.0]);
+    let moved = held(0.8, [0.8, 0.0, 0.6, 0.0]);
+    let mut sim = Sim::<f64>::new(model).unwrap();
+    for field in ["body_pos", "body_quat"] {
+        let row = moved.params.read_lane(ParamField::find(field).unwrap(), 0);
+        sim.set_param(field, &row).unwrap();
+    }
+    sim.set_constants().unwrap();
+    for field in CONSTANTS {
+        let (actual, expected) = (
+            sim.param(field.name()).unwrap(),
+            moved.params.read_lane(field, 0),
+        );
+        assert_eq!(actual, expected, "{}", field.name());
+    }
+}

@@ -215,3 +215,40 @@ fn a_failed_environment_starts_over_from_its_own_model() {
         assert!((z - height).abs() < 1e-3, "environment {env} is at {z}");
     }
 }
+
+#[test]
+fn added_masses_follow_the_sizes_of_the_own_geoms() {
+    let world = |extra: &str| {
+        let text = format!(
+            "<mujoco><option density='1000'/><worldbody>{extra}<body><freejoint/>
+               <geom name='hull' type='ellipsoid' size='.1 .2 .3' fluidshape='ellipsoid'/></body></worldbody></mujoco>"
+        );
+        Arc::new(clench::load_str(&text).expect("valid"))
+    };
+    let models = [
+        world(""),
+        world("<geom name='rock' size='.1' pos='9 0 0'/>"),
+    ];
+    let mut batch = Batch::<f64>::of_models(&models, &[0, 1, 1], BatchOptions::default()).unwrap();
+    let mut alone = singles(&batch, RigidOptions::new());
+    let before = batch.param("geom_virtualmass", 2).expect("a field");
+    for (env, sim) in alone.iter_mut().enumerate().take(2) {
+        let sizes = sim.param("geom_size").expect("a field");
+        let larger = Vec::from_iter(sizes.iter().map(|x| 1.5 * x));
+        sim.set_param("geom_size", &larger).expect("valid");
+        sim.set_constants().expect("positive");
+        let row = batch.param("geom_size", env).expect("a field");
+        let row = Vec::from_iter(row.iter().map(|x| 1.5 * x));
+        batch.randomize("geom_size", &[env], &row).expect("valid");
+        batch.set_constants(&[env]).expect("positive");
+        let own = sim.param("geom_virtualmass").expect("a field");
+        let all = batch.param("geom_virtualmass", env).expect("a field");
+        for (mass, &slot) in own.chunks(3).zip(&batch.geoms_of(env).expect("a model")) {
+            assert_eq!(&all[3 * slot..][..3], mass, "environment {env}");
+        }
+        let largest = own.iter().copied().fold(0.0, f64::max);
+        let smaller = before.iter().copied().fold(0.0, f64::max);
+        assert!((largest / smaller - 1.5f64.powi(3)).abs() < 1e-6);
+    }
+    assert_eq!(batch.param("geom_virtualmass", 2).expect("a field"), before);
+}

@@ -90,6 +90,8 @@ pub struct Equality {
     pub target: EqualityTarget,
     /// The sites that it couples, if it names sites and not bodies.
     pub sites: Option<[usize; 2]>,
+    /// True for a weld of bodies to which the model gives no relative pose: it is that at qpos0.
+    pub pose_at_qpos0: bool,
     /// True if initially active.
     pub active0: bool,
 }

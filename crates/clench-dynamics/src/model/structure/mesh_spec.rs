@@ -45,6 +45,8 @@ pub struct MeshSpec {
     pub inertia: MeshInertia,
     /// Maximum number of vertices of the convex hull; `None` for any number.
     pub max_hull_vertices: Option<usize>,
+    /// The reason why its file could not be read, an error if the mesh is used. Set only with `discardvisual`.
+    pub unreadable: Option<String>,
     /// The source location.
     pub origin: Option<Origin>,
 }
@@ -63,6 +65,7 @@ impl Default for MeshSpec {
             scale: Vec3::new(1.0, 1.0, 1.0),
             inertia: MeshInertia::default(),
             max_hull_vertices: None,
+            unreadable: None,
             origin: None,
         }
     }

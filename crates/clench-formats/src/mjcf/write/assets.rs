@@ -31,6 +31,8 @@ fn write_mesh(spec: &MeshSpec, xml: &mut Xml) {
         tangents,
         texcoords: _,
         face_texcoords: _,
+        // A model has only meshes that could be read.
+        unreadable: _,
         origin: _,
     } = spec;
     let vertices: Vec<[f64; 3]> = vertices.iter().copied().map(Vec3::to_array).collect();

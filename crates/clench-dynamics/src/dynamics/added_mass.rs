@@ -27,8 +27,8 @@ const RULE: [(f64, f64); 8] = [
 const LEAST: f64 = 1e-14;
 
 /// Inertia of the medium, at unit density.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct AddedMass {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AddedMass {
     /// Along each axis, m³.
     pub mass: [f64; 3],
     /// About each axis, m⁵.
@@ -37,7 +37,7 @@ pub(super) struct AddedMass {
 
 impl AddedMass {
     /// Computes the added mass of an ellipsoid with these semi-axes.
-    pub(super) fn of_ellipsoid(r: Vec3<f64>) -> Self {
+    pub(crate) fn of_ellipsoid(r: Vec3<f64>) -> Self {
         let r = r.to_array();
         let volume = 4.0 / 3.0 * PI * r[0] * r[1] * r[2];
         let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
