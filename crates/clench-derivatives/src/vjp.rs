@@ -3,6 +3,7 @@
 use crate::linearizer::{Linearization, Linearizer, source};
 use crate::matrix::{InputGradient, OutputGradient};
 use crate::request::Request;
+use crate::source::Source;
 use clench_rigid::{Sim, SimError};
 
 impl Linearizer {
@@ -31,12 +32,25 @@ impl Linearizer {
             assert_eq!(matrix.values.len(), rows * columns, "a complete matrix");
         }
         let model = self.prepare(sim, &request.parameters)?;
-        let source = source(&model, sim, request);
-        let of_state = request.y_len(&model) == 0 && request.p_len() == 0;
-        if of_state && request.permits_recursion(&model) {
+        self.pull_back(source(&model, sim, request), gradient)?;
+        Ok(&self.gradient)
+    }
+
+    /// Computes the gradients of functions of the next state and y, after [`prepare`](Self::prepare).
+    ///
+    /// # Errors
+    /// Returns an error if the step fails.
+    pub(crate) fn pull_back(
+        &mut self,
+        source: Source<'_>,
+        gradient: &OutputGradient,
+    ) -> Result<(), SimError> {
+        let (model, request) = (source.model, source.request);
+        let of_state = request.y_len(model) == 0 && request.p_len() == 0;
+        if of_state && request.permits_recursion(model) {
             let result = &mut self.gradient;
             if self.pass.pull_back(source, &gradient.x, result)? {
-                return Ok(&self.gradient);
+                return Ok(());
             }
         }
         self.differentiate(source)?;
@@ -45,10 +59,10 @@ impl Linearizer {
         } = &self.result;
         let InputGradient { x, u, p } = &mut self.gradient;
         for (product, by_state, by_output) in [(x, a, c), (u, b, d), (p, e, f)] {
-            product.reset([rows, by_state.shape[1]]);
+            product.reset([gradient.x.shape[0], by_state.shape[1]]);
             product.add_product(&gradient.x, by_state);
             product.add_product(&gradient.y, by_output);
         }
-        Ok(&self.gradient)
+        Ok(())
     }
 }
