@@ -38,9 +38,9 @@ use exit::{BAD_INPUT, is_closed_pipe};
 use message::print_message;
 use std::process::ExitCode;
 
-/// Constrained motion of articulated rigid bodies, with MuJoCo's numbers.
+/// Simulate articulated rigid bodies under contacts and other constraints, with MuJoCo's numbers
 #[derive(Parser)]
-#[command(name = "clench", version, about, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "clench", version, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -47,6 +47,7 @@ fn a_folder_is_no_broken_array() {
 
 #[test]
 fn flags_say_what_they_do() {
+    assert!(printed("--help").starts_with("Simulate articulated rigid bodies"));
     let help = printed("simulate --help");
     for flag in [
         "Disable joint limits",
