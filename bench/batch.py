@@ -6,7 +6,6 @@ or one `rollout` call for the whole run with the controls of every step. Clench 
 contacts and iterations come from a separate run that records every environment and step and is not timed.
 """
 
-import os
 import time
 
 import mujoco
@@ -95,8 +94,3 @@ class Batch:
                 ctrl[:] = row
                 self.batch.step()
         return time.perf_counter() - begin
-
-
-def processors():
-    """Returns the number of processors available to this process."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

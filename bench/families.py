@@ -23,10 +23,10 @@ import numpy as np
 import generated
 import plots
 from single import Rollout
-from batch import Batch, processors
+from batch import Batch
 from program import CLENCH, Clench
 from scene import NEWTON, ROOT, Unmeasured, load, perturbed_states, smooth_controls
-from timing import alternate, ratio
+from timing import alternate, processors, ratio
 
 sys.path.insert(0, str(ROOT / "parity"))
 import public

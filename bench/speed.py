@@ -13,23 +13,13 @@ omits these: they take long or need a graphics device.
 """
 
 import argparse
+import importlib
 import json
 import os
 import pathlib
 import sys
 
-import single
-import batch
-import calls
-import families
-import gpu
-import heaps
-import pairs
-import pictures
-import public_models
-import vector
-import view
-from scene import Unmeasured, find
+from timing import processors
 
 DEFAULT_MODELS = ["humanoid", "ant", "half_cheetah"]
 # Comparisons that run only on request.
@@ -37,29 +27,35 @@ ALONE = ["families", "gpu", "pictures", "public"]
 DEFAULT_TASKS = ["HalfCheetah-v5", "Humanoid-v5"]
 
 
+# The module of each comparison, imported when it runs: `--help` needs neither MuJoCo nor Clench.
+COMPARISONS = {
+    "one": "single",
+    "batch": "batch",
+    "calls": "calls",
+    "vector": "vector",
+    "heaps": "heaps",
+    "pairs": "pairs",
+    "view": "view",
+    "families": "families",
+    "gpu": "gpu",
+    "pictures": "pictures",
+    "public": "public_models",
+}
+
+
 def main():
     args = arguments()
+    from scene import Unmeasured
+
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0
     if load > 0.5:
         print(f"other programs are running (load {load:.1f}): the figures are unreliable")
-    models = [find(model) for model in args.models]
     results = []
-    for name, (compare, subjects) in {
-        "one": (single.compare, models),
-        "batch": (batch.compare, models),
-        "calls": (calls.compare, models),
-        "vector": (vector.compare, args.tasks),
-        "heaps": (heaps.compare, heaps.SCENES),
-        "pairs": (pairs.compare, ["all pairs"]),
-        "view": (view.compare, ["the viewer"]),
-        "families": (families.compare, ["all scenes"]),
-        "gpu": (gpu.compare, models),
-        "pictures": (pictures.compare, models),
-        "public": (public_models.compare, ["all models"]),
-    }.items():
+    for name, module in COMPARISONS.items():
         if name == args.only or (args.only is None and name not in ALONE):
+            comparison = importlib.import_module(module)
             try:
-                results += [row for subject in subjects for row in compare(subject, args)]
+                results += [row for subject in subjects(name, comparison, args) for row in comparison.compare(subject, args)]
             except Unmeasured as reason:
                 sys.exit(str(reason))
     if args.json:
@@ -71,10 +67,23 @@ def main():
     sys.exit(1 if slower and args.check else 0)
 
 
+def subjects(name, comparison, args):
+    """Returns what a comparison is called for, one after the other."""
+    if name == "vector":
+        return args.tasks
+    if name == "heaps":
+        return comparison.SCENES
+    if name in ("pairs", "view", "families", "public"):
+        return [None]
+    from scene import find
+
+    return [find(model) for model in args.models]
+
+
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.split("\n")[0])
     parser.add_argument("models", nargs="*", default=DEFAULT_MODELS, help="gymnasium's names, or files")
-    parser.add_argument("--only", choices=["one", "batch", "calls", "vector", "heaps", "pairs", "view", "families", "gpu", "pictures", "public"], help="one of the comparisons")
+    parser.add_argument("--only", choices=list(COMPARISONS), help="one of the comparisons")
     parser.add_argument("--filter", default="", metavar="TEXT", help="public models, or scenes of the families, whose name contains this")
     parser.add_argument("--docs", action="store_true", help="rewrite the figures and plots in docs/ of families or of public models")
     parser.add_argument("--steps", type=int, default=5000, help="steps per run of one environment (default: %(default)s)")
@@ -85,7 +94,7 @@ def arguments():
     parser.add_argument("--gpu-envs", type=int, default=65536, help="maximum number of environments on a GPU (default: %(default)s)")
     parser.add_argument("--heap-steps", type=int, default=1500, help="steps per run of a heap (default: %(default)s)")
     parser.add_argument("--noise", type=float, default=0.1, help="noise of the initial states (default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=min(2, batch.processors()), help="threads of Clench's batch, in addition to one")
+    parser.add_argument("--threads", type=int, default=min(2, processors()), help="threads of Clench's batch, in addition to one")
     parser.add_argument("--repeat", type=int, default=7, help="runs of each engine (default: %(default)s)")
     parser.add_argument("--clench", default="", metavar="FLAGS", help="more flags for clench, as one string")
     parser.add_argument("--json", metavar="FILE", help="write the figures there as well")

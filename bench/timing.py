@@ -1,5 +1,6 @@
 """Runs engines alternately and reports their times."""
 
+import os
 import statistics
 
 
@@ -38,3 +39,8 @@ def table(engines, seconds, baseline, steps):
             flush=True,
         )
     return rows
+
+
+def processors():
+    """Returns the number of processors available to this process."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -110,7 +110,8 @@ def read(path: Path, source: str) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise LoadError(f"{path}: {error.strerror}", source) from None
+        what = "the file" if str(path) == source else str(path)
+        raise LoadError(f"cannot read {what}: {error.strerror}", source) from None
 
 
 def parsed(text: str, source: str) -> ET.Element:

@@ -68,6 +68,10 @@ def view(
 
     Raises
     ------
+    IndexError
+        If there is no such environment.
+    ValueError
+        If `port` or `speed` is out of range.
     OSError
         If the address or port is not available.
     ClenchError

@@ -344,7 +344,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     from clench._spec import ModelSpec
 
-    parser = argparse.ArgumentParser("python -m clench.decompose", description=(__doc__ or "").partition("\n")[0])
+    parser = argparse.ArgumentParser("python -m clench.decompose", description=(__doc__ or "").partition("\n")[0].replace("``", "`"))
     parser.add_argument("model", type=Path, help="the MJCF or URDF file to read")
     parser.add_argument("output", type=Path, help="the self-contained MJCF file to write")
     parser.add_argument(

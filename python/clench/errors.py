@@ -45,7 +45,8 @@ class LoadError(ClenchError, ValueError):
 
     def __str__(self) -> str:
         location = f"{self.file}:" if self.file else ""
-        location += "" if self.line is None else f"{self.line}:"
+        if self.line is not None:
+            location += f"{self.line}:" if self.file else f"line {self.line}:"
         return " ".join(part for part in (location, f"{self.element}:" if self.element else "", self.message) if part)
 
 

@@ -25,7 +25,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import jax
+try:
+    import jax
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError("clench.jax needs JAX: pip install 'clench[jax]'", name=error.name) from error
 import numpy as np
 from numpy.typing import NDArray
 

@@ -23,7 +23,10 @@ import math
 from typing import Any
 
 import numpy as np
-import torch
+try:
+    import torch
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError("clench.torch needs PyTorch: pip install 'clench[torch]'", name=error.name) from error
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 

@@ -2,7 +2,7 @@
 
 There are two rollouts in pinned memory. While one is filled by the policy of the iteration before, the learner copies
 the other to the GPU and learns from it. Stepping releases Python's lock, so neither waits for the other. Without a GPU
-the learner runs on the processor, and both share its cores::
+the learner runs on the processor, and both share its cores. Needs PyTorch (``pip install torch``)::
 
     python python/examples/feed_learner.py
     python python/examples/feed_learner.py --plot feed_learner.png

@@ -1,7 +1,7 @@
 """An arm learns to reach for a ball from depth pictures of 64 x 64 pixels, in six minutes of one processor core.
 
 The policy sees nothing else. Rays on the processor make the pictures, so that no graphics device is needed. ``ppo.py``
-is the learner, here with a convolutional network::
+is the learner, here with a convolutional network. Needs PyTorch (``pip install torch``)::
 
     python python/examples/reach.py --plot reach.png
 """

@@ -1,7 +1,7 @@
 """A suction gripper picks a box up, carries it, and lets it go.
 
 The object is selected at run time: a weld is added between the cup and the body that the cup touches, and later
-removed. This is one simulation; `Batch.add_weld` does the same in chosen environments.
+removed. This is one simulation; `Batch.add_weld` does the same in chosen environments::
 
     python python/examples/suction_gripper.py
     python python/examples/suction_gripper.py --plot suction_gripper.png

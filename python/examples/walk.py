@@ -1,6 +1,7 @@
 """A quadruped learns to walk in about two minutes, on two processor cores.
 
-:class:`Walk` is the task, for all environments at once; ``ppo.py`` is the learner. The same seed gives the same curve::
+:class:`Walk` is the task, for all environments at once; ``ppo.py`` is the learner. The same seed gives the same curve.
+Needs PyTorch (``pip install torch``)::
 
     python python/examples/walk.py --save walk.pt --record walk.html --plot walk.png
     python python/examples/walk.py --load walk.pt --evaluate

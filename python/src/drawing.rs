@@ -325,7 +325,7 @@ fn caster(model: &Model) -> Result<Arc<RayCaster>, Failure> {
 /// Returns
 /// -------
 /// str or None
-///     Its name; None if there is none, so that ``render`` casts rays on the processor, which see distances and geoms
+///     Its name; None if there is none, so that ``render`` casts rays on the processor, which find distances and geoms
 ///     but no colours.
 ///
 /// Raises

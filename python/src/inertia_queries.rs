@@ -35,6 +35,13 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     The forces, in the shape of `x`.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If `x` has another shape or is not finite.
+    /// SimulationError
+    ///     If the state is not finite.
     fn mul_mass<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.described().nv;
         let mut guard = lock(self.inner(), "simulation")?;
@@ -63,6 +70,8 @@ impl Sim {
     ///
     /// Raises
     /// ------
+    /// ValueError
+    ///     If `x` has another shape or is not finite.
     /// SimulationError
     ///     If the mass matrix is singular.
     fn solve_mass<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -91,6 +100,15 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     (nv,), N along slides and N m about hinges. To apply them, add them to `qfrc_applied`.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have the name, or a vector has another shape or is not finite.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (body, force = None, torque = None, point = None))]
     fn joint_forces<'py>(
         &self,

@@ -21,13 +21,13 @@ pub(crate) struct Linearization {
     pub(crate) C: Py<PyArrayDyn<f64>>,
     /// numpy.ndarray : ∂y/∂u.
     pub(crate) D: Py<PyArrayDyn<f64>>,
-    /// dict[str, numpy.ndarray] : ∂x⁺/∂p by parameter, with a column for each of its numbers that was asked for.
+    /// dict[str, numpy.ndarray] : ∂x⁺/∂p by parameter, with a column for each requested number.
     pub(crate) parameters: Py<PyDict>,
     /// dict[str, numpy.ndarray] : ∂y/∂p, likewise.
     pub(crate) output_parameters: Py<PyDict>,
     /// numpy.ndarray : The distance of each constraint row, in the order of `Sim.constraints`, from a change of its
-    /// state (a contact that begins to slip, a limit that lets go), where its force has no derivative; m/s² or rad/s²,
-    /// infinite for rows that always act. Of a batch, a list of arrays.
+    /// state (a contact that begins to slip, a limit that becomes inactive), where its force has no derivative; m/s² or
+    /// rad/s², infinite for rows that always act. Of a batch, a list of arrays.
     pub(crate) switching: Py<PyAny>,
     /// numpy.ndarray or None : The bound of the error of each acceleration (the output ``qacc``), (nv,), from the
     /// duality gap that the solver leaves; None unless requested. Bounds are infinite with RK4, noslip, sleep or

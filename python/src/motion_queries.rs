@@ -50,6 +50,17 @@ impl Sim {
     /// numpy.ndarray
     ///     (2, 3, nv), in world axes: translation, m/s per unit of each dof's velocity, then rotation, rad/s. For
     ///     example, ``jacp, jacr = sim.jacobian(site="hand")``.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, the model does not have its name, or an array has another shape.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// TypeError
+    ///     If `out` has another dtype.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None, out = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian<'py>(
@@ -92,6 +103,17 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     (2, 3, nv): of the translational part, then of the rotational part, in 1/s times the units of `jacobian`.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, the model does not have its name, or an array has another shape.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// TypeError
+    ///     If `out` has another dtype.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None, out = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian_rate<'py>(
@@ -132,6 +154,15 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     (3, nv), in world axes.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have the name, or `out` has another shape.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (body, *, out = None))]
     fn subtree_jacobian<'py>(
         &self,
@@ -163,6 +194,15 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     (2, 3): linear, m/s, of its position, then angular, rad/s.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, or the model does not have its name.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn velocity<'py>(
@@ -197,6 +237,15 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     (2, 3): linear, m/s², of its position, then angular, rad/s².
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, or the model does not have its name.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// SimulationError
+    ///     As for `step`.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn acceleration<'py>(

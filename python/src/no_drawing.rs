@@ -36,12 +36,23 @@ pub(crate) fn draw<'py>(
     Err(without())
 }
 
-/// Returns that error.
+/// Returns the same error.
 pub(crate) fn appearance<'py>(_: Python<'py>, _: &Model) -> PyResult<Bound<'py, PyDict>> {
     Err(without())
 }
 
-/// Returns that error.
+/// Names the graphics device that draws pictures.
+///
+/// Returns
+/// -------
+/// str or None
+///     Its name; None if there is none, so that ``render`` casts rays on the processor, which find distances and geoms
+///     but no colours.
+///
+/// Raises
+/// ------
+/// ClenchError
+///     If the package was built without rendering; the message says how to build it with that.
 #[pyfunction]
 pub(crate) fn render_device() -> PyResult<Option<String>> {
     Err(without())

@@ -25,6 +25,11 @@ impl Model {
     /// -------
     /// numpy.ndarray
     ///     Positions in the shape of `qpos`, float64.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a shape is wrong.
     #[pyo3(signature = (qpos, qvel, time = 1.0))]
     fn integrate_pos<'py>(
         &self,
@@ -56,6 +61,11 @@ impl Model {
     /// -------
     /// numpy.ndarray
     ///     Velocities (nv,) or (k, nv), float64.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a shape is wrong, or `time` is 0.
     #[pyo3(signature = (qpos1, qpos2, time = 1.0))]
     fn differentiate_pos<'py>(
         &self,

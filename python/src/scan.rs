@@ -125,6 +125,15 @@ impl Sim {
     /// -------
     /// RayHits
     ///     One hit for each ray.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have a name, or an array has another shape or is not finite.
+    /// IndexError
+    ///     If an index or a group is out of range.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (origins, directions, *, body = None, body_com = None, geom = None, site = None, camera = None,
                         groups = None, fixed = true, exclude_body = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
@@ -170,6 +179,16 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     Heights in the world (k,), m.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the geom is no height field, the model does not have a name, or `places` has another shape or is not
+    ///     finite.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (hfield, places, *, body = None, body_com = None, geom = None, site = None, camera = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn heights<'py>(

@@ -29,6 +29,6 @@ def assert_both_give_the_same(section: str, other: str) -> None:
 
 
 def _result(script: str) -> list[Any]:
-    names: dict[str, Any] = {"FOLDER": str(ROOT)}
+    names: dict[str, Any] = {}
     exec(compile(script, "docs", "exec"), names)
     return list(names["result"])

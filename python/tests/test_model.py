@@ -331,7 +331,7 @@ def test_load_errors_know_their_place(tmp_path: Path) -> None:
     with pytest.raises(clench.LoadError) as raised:
         clench.Model.from_xml("<mujoco>\n<mujoco>")
     assert raised.value.file == "" and raised.value.element is None
-    assert str(raised.value).startswith(f"{raised.value.line}: ")
+    assert str(raised.value).startswith(f"line {raised.value.line}: ")
     missing = tmp_path / "missing.xml"
     with pytest.raises(clench.LoadError) as raised:
         clench.Model.from_file(str(missing))

@@ -307,6 +307,14 @@ def test_bad_questions_are_errors() -> None:
         sim.jacobian(site="tool", out=np.zeros((2, 3, sim.model.nv), np.float32))
     with pytest.raises(ValueError, match="qacc has shape"):
         sim.inverse([1, 2])
+    nan = np.full(sim.model.nv, np.nan)
+    for wrong in (sim.inverse, sim.mul_mass, sim.solve_mass, clench.Batch(sim.model, 2).mul_mass):
+        with pytest.raises(ValueError, match=r"\[0\] is NaN, but must be finite"):
+            wrong(nan)
+    with pytest.raises(ValueError, match="is NaN, but must be finite"):
+        sim.rays([[0, 0, np.nan]], [[0, 0, 1]])
+    with pytest.raises(ValueError, match="is NaN, but must be finite"):
+        sim.ik([clench.ComTarget([np.nan, 0, 0])])
     with pytest.raises(ValueError, match="not a height field"):
         sim.heights("hand", [[0, 0]])
     with pytest.raises(ValueError, match="a position, a quat or both"):

@@ -47,6 +47,15 @@ else:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.parametrize(
+    ("module", "package", "extra"),
+    [("torch", "torch", "torch"), ("jax", "jax", "jax"), ("gymnasium.sb3", "stable_baselines3", "sb3")],
+)
+def test_a_missing_package_is_named_with_its_extra(module: str, package: str, extra: str) -> None:
+    done = python(f"import sys; sys.modules[{package!r}] = None; import clench.{module}")
+    assert f"pip install 'clench[{extra}]'" in done.stderr.splitlines()[-1]
+
+
 def test_it_is_loaded_quickly() -> None:
     program = "import sys, clench; print(*sys.modules)"
     loaded = python(program).stdout.split()
@@ -115,6 +124,8 @@ def test_errors_are_what_they_say() -> None:
     assert {cls.__name__ for cls in ERRORS} == {"BusyError", "ClenchError", "LoadError", "SimulationError"}
     assert all(issubclass(cls, clench.ClenchError) for cls in ERRORS)
     assert issubclass(clench.LoadError, ValueError)
+    assert str(clench.LoadError("wrong", "robot.xml", 12)) == "robot.xml:12: wrong"
+    assert str(clench.LoadError("wrong", "", 12, "geom")) == "line 12: geom: wrong"
     assert issubclass(clench.SimulationError, RuntimeError) and issubclass(clench.BusyError, RuntimeError)
 
 

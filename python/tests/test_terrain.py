@@ -122,7 +122,7 @@ def test_a_tile_is_a_terrain_and_models_of_tiles_have_the_same_joints() -> None:
             assert tile.origins[0, 0].tolist() == [0.0, 0.0, ground.origins[1, column, 2]]
             x, y, _ = ground.origins[1, column]
             np.testing.assert_allclose(tile.height(0.3, 1.1), ground.height(x + 0.3, y + 1.1), atol=1e-12)
-    with pytest.raises(IndexError):
+    with pytest.raises(IndexError, match=r"no tile \(2, 0\): there are 2 rows and"):
         ground.cell(2, 0)
 
 

@@ -289,6 +289,9 @@ def test_bad_arguments_are_named() -> None:
         clench.view(3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="speed"):
         clench.view(sim, speed=-1, open_browser=False)
+    for port in (-1, 65536):
+        with pytest.raises(ValueError, match="port is .* but must be 0 to 65535"):
+            view(sim, port=port)
     with pytest.raises(IndexError):
         view(sim, env=1)
     with pytest.raises(clench.ClenchError, match="closed"):

@@ -88,7 +88,13 @@ Needs Python 3.11 or later with venv. The first run, and the stage `package`, ne
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
+    let wants_help = matches!(args.get(1).map(String::as_str), Some("-h" | "--help"));
     let outcome = match args.first().map(String::as_str) {
+        // The options of the bench are those of its script.
+        Some(command) if wants_help && command != "bench" => {
+            println!("{HELP}");
+            Ok(())
+        }
         Some("test") => stages::test(&args[1..]),
         Some("bench") => stages::bench(&args[1..]),
         Some("soak") => soak::soak(&args[1..]),

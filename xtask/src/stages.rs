@@ -240,6 +240,11 @@ fn omitted(names: &[&str]) -> String {
 /// # Errors
 /// Returns an error if a build, an installation or the script fails.
 pub(crate) fn bench(args: &[String]) -> Result<(), String> {
+    if args.iter().any(|arg| arg == "--help" || arg == "-h") {
+        let mut script = command("python3", &["bench/speed.py"]);
+        script.args(args);
+        return run(script);
+    }
     let profile = Profile::Dist;
     compile(profile, "clench-cli", ["--bin", "clench"])?;
     compile(profile, "clench", ["--example", "batch_step"])?;

@@ -33,14 +33,14 @@ mod table;
 mod view;
 mod zip;
 
-use clap::{Parser, Subcommand};
+use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
 use exit::{BAD_INPUT, is_closed_pipe};
 use message::print_message;
 use std::process::ExitCode;
 
-/// Constrained motion of articulated rigid bodies, with MuJoCo's numbers.
+/// Simulate articulated rigid bodies under contacts and other constraints, with MuJoCo's numbers
 #[derive(Parser)]
-#[command(name = "clench", version, about, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "clench", version, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -87,7 +87,11 @@ enum Command {
 /// Runs the program with the arguments of the process and returns its exit code.
 #[must_use]
 pub fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let matches = Arguments::command()
+        .mut_subcommands(|command| command.mut_args(with_negative_numbers))
+        .get_matches();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let result = match arguments.command {
         Command::View(arguments) => view::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
@@ -105,6 +109,12 @@ pub fn main() -> ExitCode {
             ExitCode::from(BAD_INPUT)
         }
     }
+}
+
+/// Lets an option take a negative number as its value, so that the error names the option.
+fn with_negative_numbers(arg: Arg) -> Arg {
+    let takes = !arg.is_positional() && arg.get_action().takes_values();
+    arg.allow_negative_numbers(takes)
 }
 
 /// Returns the error of a program that was built without a feature: its purpose, and the command that enables it.

@@ -12,6 +12,9 @@ const MAX_STEPS: f64 = 1e15;
 /// The maximum length of the header of an `.npy` file, bytes, as in NumPy.
 pub const MAX_NPY_HEADER: usize = 10_000;
 
+/// The heading of the limits in a help text.
+pub(crate) const HEADING: &str = "Limits";
+
 /// The number of bytes in a gigabyte.
 const GIGABYTE: f64 = 1e9;
 /// The default limit of an array file or a record, gigabytes.
@@ -31,7 +34,7 @@ pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
 #[derive(Args)]
 pub struct MemoryArguments {
     /// Maximum memory of each input array, and of the record, in gigabytes
-    #[arg(long, value_name = "GB", default_value_t = DEFAULT_MEMORY, value_parser = positive)]
+    #[arg(long, value_name = "GB", default_value_t = DEFAULT_MEMORY, value_parser = positive, help_heading = HEADING)]
     max_memory: f64,
 }
 
@@ -78,7 +81,8 @@ impl MemoryLimit {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// Parses a number that must be positive.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
         Ok(_) => Err("it must be positive and finite".into()),

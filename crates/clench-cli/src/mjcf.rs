@@ -1,6 +1,6 @@
 //! `clench mjcf`: the supported part of MJCF.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use clench::formats::supported;
 use std::io::{self, Write};
@@ -10,15 +10,22 @@ use std::io::{self, Write};
 /// may contain.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Only this element; `parent/name` if its meaning depends on the parent
+    /// Only this element; `parent/name` selects one of several with the same name
     element: Option<String>,
 }
 
 /// Prints everything to standard output.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let mut out = io::stdout().lock();
-    let wanted = |element: &str| arguments.element.as_deref().is_none_or(|e| e == element);
+    let mut found = false;
+    let wanted = |element: &str| match arguments.element.as_deref() {
+        Some(name) => {
+            name == element || element.rsplit_once('/').is_some_and(|(_, own)| name == own)
+        }
+        None => true,
+    };
     for support in supported().filter(|support| wanted(&support.element)) {
+        found = true;
         writeln!(out, "{}", support.element)?;
         let lists = [
             ("read", support.read),
@@ -30,5 +37,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
             writeln!(out, "  {what:<8} {}", names.join(" "))?;
         }
     }
+    let element = arguments.element.as_deref().unwrap_or_default();
+    ensure!(
+        found,
+        "MJCF has no element {element:?}, or Clench refuses it: `clench mjcf` lists the elements that it reads"
+    );
     Ok(())
 }

@@ -2,9 +2,9 @@
 
 use crate::limits::{MAX_NPY_HEADER, MemoryLimit};
 use crate::zip::Archive;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::fs::File;
-use std::io::{BufReader, BufWriter, ErrorKind, Read};
+use std::io::{self, BufReader, BufWriter, ErrorKind, Read};
 use std::iter;
 use std::path::Path;
 
@@ -81,9 +81,8 @@ fn read(path: &Path, width: usize, limit: MemoryLimit) -> Result<Rows> {
 
 /// Reads the header text, which describes the numbers.
 fn read_header(file: &mut impl Read) -> Result<String> {
-    let cut = "the file is not a NumPy array: it ends within its header";
     let mut start = [0; MAGIC.len() + 2];
-    file.read_exact(&mut start).context(cut)?;
+    file.read_exact(&mut start).map_err(header_error)?;
     let (magic, version) = start.split_at(MAGIC.len());
     ensure!(
         magic == MAGIC,
@@ -99,15 +98,25 @@ fn read_header(file: &mut impl Read) -> Result<String> {
             version[1]
         ),
     };
-    file.read_exact(digits).context(cut)?;
+    file.read_exact(digits).map_err(header_error)?;
     let length = u32::from_le_bytes(length) as usize;
     ensure!(
         length <= MAX_NPY_HEADER,
         "its header is {length} bytes long, and at most {MAX_NPY_HEADER} are read"
     );
     let mut text = vec![0; length];
-    file.read_exact(&mut text).context(cut)?;
+    file.read_exact(&mut text).map_err(header_error)?;
     Ok(String::from_utf8_lossy(&text).into_owned())
+}
+
+/// Returns the message for an error of reading the header.
+fn header_error(error: io::Error) -> anyhow::Error {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => {
+            anyhow!("the file is not a NumPy array: it ends within its header")
+        }
+        _ => error.into(),
+    }
 }
 
 /// The header of an array, a Python dictionary literal.

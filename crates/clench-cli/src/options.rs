@@ -1,5 +1,6 @@
 //! The arguments that all subcommands share: the model, and options that override the file's.
 
+use crate::limits::{HEADING as LIMITS, positive};
 use crate::message::print_message;
 use crate::overrides::{HEADING, Overrides};
 use anyhow::{Result, ensure};
@@ -8,23 +9,26 @@ use clench::{Budget, Loader, Model, RigidOptions, Sim};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The heading of the options of reading the model.
+const READING: &str = "Reading the model";
+
 /// The model file and the options of reading it.
 #[derive(Args)]
 pub(crate) struct ModelFile {
     /// Model file (MJCF or URDF)
-    #[arg(help_heading = "Arguments")]
+    #[arg(help_heading = None)]
     pub model: PathBuf,
     /// Multiply the default limits of memory and work of the model by this factor
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive, help_heading = LIMITS)]
     budget: f64,
     /// A folder of packages, for meshes that URDF files name by `package://`; may be repeated
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", help_heading = READING)]
     package_path: Vec<PathBuf>,
     /// Add a free joint to the base of a URDF robot, which its file fixes to the world
-    #[arg(long)]
+    #[arg(long, help_heading = READING)]
     floating: bool,
     /// Omit unsupported elements and attributes of an MJCF model that the others do not depend on, and list them
-    #[arg(long)]
+    #[arg(long, help_heading = READING)]
     ignore_unsupported: bool,
 }
 
@@ -80,7 +84,7 @@ impl ModelArguments {
         if let Some(timestep) = self.timestep {
             ensure!(
                 timestep > 0.0 && timestep.is_finite(),
-                "--timestep: {timestep} is not a positive number of seconds"
+                "--timestep: {timestep} must be finite and positive"
             );
             model.params.timestep = timestep;
         }

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use clench::RigidOptions;
-use clench::rigid::options::{Argument, MaxContacts, OptionValue, RigidOption};
+use clench::rigid::options::{Argument, MaxContacts, OptionValue, Range, RigidOption};
 
 /// The heading of these flags in a help text.
 pub(crate) const HEADING: &str = "Options that override the file";
@@ -28,7 +28,7 @@ impl FromArgMatches for Overrides {
         for &option in RigidOption::ALL {
             let given = match option.argument() {
                 Argument::Value(_) => matches.get_one(option.name()).copied(),
-                Argument::Sets(_, value) => matches.get_flag(option.name()).then_some(value),
+                Argument::Sets(_, value, _) => matches.get_flag(option.name()).then_some(value),
             };
             if let Some(value) = given {
                 (options.set(option, value)).map_err(|wrong| {
@@ -52,19 +52,12 @@ fn flag(option: RigidOption) -> Arg {
         Argument::Value(flag) => {
             let default = option.default(false);
             arg.long(flag)
-                .value_parser(parser(default))
+                .value_parser(parser(option))
                 .value_name(value_name(default))
                 .ignore_case(true)
                 .help(sentence)
         }
-        Argument::Sets(flag, value) => {
-            let question = sentence
-                .split_once("; ")
-                .map_or(sentence, |(question, _)| question);
-            arg.long(flag)
-                .action(ArgAction::SetTrue)
-                .help(format!("{question}: {value}"))
-        }
+        Argument::Sets(flag, _, help) => arg.long(flag).action(ArgAction::SetTrue).help(help),
     }
 }
 
@@ -76,11 +69,11 @@ fn value_name(default: OptionValue) -> &'static str {
     }
 }
 
-/// Returns a parser of values of the same type as a default.
-fn parser(default: OptionValue) -> ValueParser {
-    match default {
+/// Returns a parser of the values of an option.
+fn parser(option: RigidOption) -> ValueParser {
+    match option.default(false) {
         OptionValue::Count(_) => (|text: &str| text.parse().map(OptionValue::Count)).into(),
-        OptionValue::Number(_) => (|text: &str| text.parse().map(OptionValue::Number)).into(),
+        OptionValue::Number(_) => (move |text: &str| in_range(option.range(), text)).into(),
         OptionValue::Limit(_) => {
             let limit = |n| OptionValue::Limit(MaxContacts::Limit(n));
             (move |text: &str| text.parse().map(limit)).into()
@@ -94,5 +87,15 @@ fn parser(default: OptionValue) -> ValueParser {
             };
             (PossibleValuesParser::new(spellings).try_map(meaning)).into()
         }
+    }
+}
+
+/// Parses a number and checks its range.
+fn in_range(range: Range, text: &str) -> Result<OptionValue, String> {
+    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
+    let value = OptionValue::Number(number);
+    match range.holds(value) {
+        true => Ok(value),
+        false => Err(format!("it must be {}", range.text())),
     }
 }

@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     paused: bool,
     /// Show N environments: one of them, or up to 64 side by side; --noise or --states makes them differ
-    #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     envs: Option<u32>,
 
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::workspace::Workspace;
 use clench_math::{Clock, Mask, Mat3, Real, Scalar, kernel};
 use clench_solver::Status;
 
-/// Checks that the values have the right length and are finite.
+/// Checks that the values of an argument have the right length and are finite.
 pub fn check_values<T: Scalar>(
     field: &'static str,
     values: &[T],
@@ -22,11 +22,12 @@ pub fn check_values<T: Scalar>(
     check_length(field, values.len(), expected)?;
     match first_beyond(values, 0, Bound::Finite) {
         None => Ok(()),
-        Some((index, value)) => Err(SimError::Fault(Fault::NotFinite {
+        Some((index, value)) => Err(SimError::Parameter {
             field,
             index,
             value,
-        })),
+            range: "finite",
+        }),
     }
 }
 

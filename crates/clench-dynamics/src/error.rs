@@ -56,7 +56,7 @@ pub enum SimError {
         /// The allowed range.
         range: &'static str,
     },
-    /// A parameter is out of its range.
+    /// A number of a parameter or an argument is out of its range.
     #[error("{field}[{index}] is {value}, but must be {range}")]
     Parameter {
         /// The field of the parameters.

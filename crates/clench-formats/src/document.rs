@@ -7,7 +7,7 @@ use crate::error::LoadError;
 use crate::spending::Spending;
 use crate::tolerant;
 use clench_builder::Origin;
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Error, Node};
 use std::sync::Arc;
 
 /// The maximum nesting depth of elements, as in MuJoCo.
@@ -111,8 +111,15 @@ fn parse_strictly(
 ) -> Result<Element, Failure> {
     check_marks(text, file, spending).map_err(Failure::Other)?;
     let document = Document::parse(text).map_err(|error| {
+        let row = match error {
+            // The parser reports these two at the first line.
+            Error::UnexpectedEndOfStream | Error::UnclosedRootNode => {
+                1 + count_newlines(text.trim_end().as_bytes())
+            }
+            _ => error.pos().row,
+        };
         let message = format!("not well-formed XML: {error}");
-        Failure::Malformed(LoadError::line(file, error.pos().row, message))
+        Failure::Malformed(LoadError::line(file, row, message))
     })?;
     let converter = Converter {
         text,

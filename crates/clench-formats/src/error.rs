@@ -56,7 +56,8 @@ impl LoadError {
             text.push(':');
         }
         if let Some(line) = self.line {
-            text += &format!("{line}:");
+            let prefix = if text.is_empty() { "line " } else { "" };
+            text += &format!("{prefix}{line}:");
         }
         if !text.is_empty() {
             text.push(' ');

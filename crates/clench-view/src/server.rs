@@ -77,7 +77,7 @@ pub enum ServeError {
         error: io::Error,
     },
     /// The token is easy to guess, or does not fit into a URL.
-    #[error("the viewer's token must have 16 to 128 letters, digits, - and _")]
+    #[error("the viewer's token (CLENCH_VIEW_TOKEN) must have 16 to 128 letters, digits, - and _")]
     Token,
     /// The system provides no random numbers or no threads.
     #[error("the viewer cannot start: {0}")]

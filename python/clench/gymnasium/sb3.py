@@ -20,7 +20,13 @@ from typing import Any
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
+
+try:
+    from stable_baselines3.common.vec_env import VecEnv
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        "clench.gymnasium.sb3 needs Stable-Baselines3: pip install 'clench[sb3]'", name=error.name
+    ) from error
 
 from clench.gymnasium.batch_env import BatchEnv
 

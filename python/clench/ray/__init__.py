@@ -12,9 +12,9 @@
         batch.step(10)
         print(batch.qpos.mean(axis=0))
 
-`Batch` has the API of `clench.Batch`: an environment moves identically, to the bit, on any number of machines. A worker
-that dies is replaced: the new one starts from the last snapshot of the lost one and repeats the later calls, so that
-the run ends with the same bits as without the failure.
+`Batch` has the API of `clench.Batch`, except `ray`, derivatives, GPUs and several models. An environment moves
+identically, to the bit, on any number of machines. A worker that dies is replaced: the new one starts from the last
+snapshot of the lost one and repeats the later calls, so that the run ends with the same bits as without the failure.
 
 The modules are the driver's side (`batch.py`, with queries in `queries.py` and dynamic constraints in `dynamic_constraints.py`;
 `worker.py` represents one worker), the code that a worker runs (`shard.py`), arrays that driver and workers share

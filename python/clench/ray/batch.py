@@ -26,10 +26,11 @@ _STATE = tuple(field.name for field in dataclasses.fields(clench.State))
 class Batch(Queries, DynamicConstraints):
     """Many environments of one model, on the machines of a Ray cluster.
 
-    The API is that of `clench.Batch`. Arrays of the state (``qpos``, ``ctrl``, ...) are read and written in the same
-    way: changes are sent to the workers with the next call, and arrays that were ever read are returned by each call.
-    Recorded outputs are fetched on demand, and are copies. The environments are split into consecutive parts; the
-    number of workers, or the death of one, does not change a bit of the result.
+    The API is that of `clench.Batch`, except `ray`, derivatives, GPUs and several models. Arrays of the state
+    (``qpos``, ``ctrl``, ...) are read and written in the same way: changes are sent to the workers with the next call,
+    and arrays that were ever read are returned by each call. Recorded outputs are fetched on demand, and are copies.
+    The environments are split into consecutive parts; the number of workers, or the death of one, does not change a bit
+    of the result.
 
     Parameters
     ----------

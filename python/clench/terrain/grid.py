@@ -185,6 +185,8 @@ class Terrain:
         IndexError
             If there is no such tile.
         """
+        if row >= self.rows or column >= self.columns:
+            raise IndexError(f"there is no tile ({row}, {column}): there are {self.rows} rows and {self.columns} columns")
         return Terrain([[self._tiles[row][column]]], self.size, self.border, self.resolution, [self.difficulties[row]])
 
     def height(self, x: ArrayLike, y: ArrayLike) -> Floats:

@@ -31,7 +31,7 @@ impl Model {
     fn nout(&self) -> usize {
         self.0.nout()
     }
-    /// int : Size of the buffers of delayed actuators.
+    /// int : Size of the buffers of delayed actuators and sensors.
     #[getter]
     fn nhistory(&self) -> usize {
         self.0.nhistory

@@ -66,6 +66,11 @@ impl Sim {
     /// -------
     /// int
     ///     The constraint, for `remove`.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     As for `add_weld`, or if `anchor` has another shape or is not finite.
     fn add_connect(
         &self,
         body1: &Bound<'_, PyAny>,

@@ -232,6 +232,13 @@ impl Sim {
     /// ----------
     /// keyframe : str or int, optional
     ///     A keyframe of the model, by name or index. Quantities that it does not store are as in the initial state.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have the keyframe.
+    /// IndexError
+    ///     If the index is negative or too large.
     #[pyo3(signature = (keyframe = None))]
     fn reset(&self, keyframe: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let find = |which| Kind::Keyframe.find(self.model.get().inner(), which);
@@ -340,6 +347,13 @@ impl Sim {
     ///     The equality, by name or index.
     /// active : bool
     ///     True to make it active. `eq_active` shows all switches.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have the name.
+    /// IndexError
+    ///     If the index is negative or too large.
     fn set_equality(
         this: &Bound<'_, Self>,
         which: &Bound<'_, PyAny>,

@@ -66,6 +66,11 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     A copy in the field's shape in the model.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If no parameter has the name.
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
         let shape = self.model.get().param_shape(field)?;
         let guard = lock(&self.inner, "simulation")?;

@@ -35,6 +35,11 @@ impl Sim {
     /// -------
     /// numpy.ndarray
     ///     Dense (nv, nv), float64.
+    ///
+    /// Raises
+    /// ------
+    /// SimulationError
+    ///     If the state is not finite.
     fn mass_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut guard = lock(&self.inner, "simulation")?;
         let values = each_sim!(&mut *guard, own => own.current().and_then(|sim| sim.mass_matrix()));
@@ -66,6 +71,15 @@ impl Sim {
     /// -------
     /// RayHit or None
     ///     None if the ray hits nothing.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a vector has another shape or is not finite, the direction is zero, or the model does not have the body.
+    /// IndexError
+    ///     If an index or a group is out of range.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (origin, direction, *, groups = None, fixed = true, exclude_body = None))]
     fn ray(
         &self,
@@ -103,6 +117,15 @@ impl Sim {
     /// Separation or None
     ///     None if they are further apart than the limit, or their distance is not defined: two planes or height
     ///     fields, or a flat mesh.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have a name.
+    /// IndexError
+    ///     If an index is negative or too large.
+    /// SimulationError
+    ///     If the state is not finite.
     #[pyo3(signature = (geom1, geom2, limit = None))]
     fn distance(
         &self,

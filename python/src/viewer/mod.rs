@@ -82,6 +82,11 @@ fn check_speed(speed: f64) -> PyResult<f64> {
     )))
 }
 
+fn check_port(port: i64) -> PyResult<u16> {
+    let wrong = |_| PyValueError::new_err(format!("port is {port}, but must be 0 to 65535"));
+    u16::try_from(port).map_err(wrong)
+}
+
 fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     let array = shaped::<f64>(name, value, &[3])?;
     let values = array.as_array();
@@ -96,7 +101,7 @@ impl Viewer {
         target: &Bound<'_, PyAny>,
         env: usize,
         host: &str,
-        port: u16,
+        port: i64,
         paused: bool,
         speed: f64,
     ) -> PyResult<Self> {
@@ -107,7 +112,7 @@ impl Viewer {
         check_env(env, envs)?;
         let options = ServerOptions {
             host: host.to_owned(),
-            port,
+            port: check_port(port)?,
             ..ServerOptions::default()
         };
         let speed = check_speed(speed)?;

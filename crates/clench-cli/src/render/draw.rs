@@ -218,6 +218,7 @@ fn find_camera(model: &Model, key: &str) -> Result<usize> {
     }
     match key.parse() {
         Ok(index) if index < cameras.len() => Ok(index),
+        _ if cameras.is_empty() => bail!("--camera {key}: the model has no cameras"),
         _ => {
             let names: Vec<_> = cameras.iter().map(|camera| camera.name.as_str()).collect();
             let count = names.len();

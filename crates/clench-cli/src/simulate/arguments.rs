@@ -100,7 +100,7 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
 #[command(next_help_heading = "Many environments")]
 pub(crate) struct BatchArguments {
     /// Step N environments as a batch
-    #[arg(long, value_name = "E", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub envs: Option<u32>,
     /// Another model for some environments: with the same bodies, joints, actuators and sensors, and geoms and numbers
     /// of its own. Environment i has the i-th of all models, in turn; repeat the flag for more

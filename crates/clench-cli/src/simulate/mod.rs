@@ -171,7 +171,7 @@ fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> R
         (None, Some(time)) => {
             ensure!(
                 time.is_finite() && time >= 0.0,
-                "--time: {time} is not a number of seconds"
+                "--time: {time} must be finite and not negative"
             );
             steps_in(time, timestep)?
         }

@@ -54,7 +54,7 @@ impl StartArguments {
     ) -> Result<Starts<'a>> {
         ensure!(
             self.noise.is_finite() && self.noise >= 0.0,
-            "--noise: {} is not a finite number of zero or more",
+            "--noise: {} must be finite and not negative",
             self.noise
         );
         let keyframe = self.keyframe.as_ref();

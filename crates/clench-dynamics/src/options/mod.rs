@@ -13,8 +13,8 @@ use clench_solver::{ConstraintSolver, SolverOptions, Switch};
 pub enum Argument {
     /// A flag followed by the value.
     Value(&'static str),
-    /// A flag that implies a value.
-    Sets(&'static str, OptionValue),
+    /// A flag that implies a value, and its help text.
+    Sets(&'static str, OptionValue, &'static str),
 }
 
 /// The location of an option in MJCF.

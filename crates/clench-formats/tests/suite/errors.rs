@@ -78,6 +78,18 @@ fn broken_xml_is_located() {
 }
 
 #[test]
+fn a_truncated_file_is_located_at_its_end() {
+    for text in [
+        "<mujoco>\n<worldbody>\n<geom si",
+        "<mujoco>\n<option/>\n<worldbody>\n",
+    ] {
+        let error = rejected(text);
+        assert_eq!(error.line, Some(3), "{error}");
+        assert!(error.to_string().starts_with("line 3: "), "{error}");
+    }
+}
+
+#[test]
 fn bytes_that_are_not_utf8_stand_for_some_character() {
     let path = std::env::temp_dir().join(format!("clench-latin-{}.xml", std::process::id()));
     std::fs::write(&path, b"<mujoco>\n<!-- \xe9 -->\n</mujoco>").unwrap();

@@ -21,12 +21,12 @@ fn plugins_and_deformable_bodies_are_omitted_and_listed() {
     assert_eq!(model.bodies.len(), 2);
     assert_eq!(model.omitted.len(), 2, "{:?}", model.omitted);
     assert!(
-        model.omitted[0].starts_with("2: plugin"),
+        model.omitted[0].starts_with("line 2: plugin"),
         "{:?}",
         model.omitted
     );
     assert!(
-        model.omitted[1].starts_with("4: flexcomp \"cloth\""),
+        model.omitted[1].starts_with("line 4: flexcomp \"cloth\""),
         "{:?}",
         model.omitted
     );

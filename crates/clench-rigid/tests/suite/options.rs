@@ -7,7 +7,7 @@ fn sentences_contain_the_defaults() {
     for &option in RigidOption::ALL {
         let told = option
             .sentence()
-            .split_once("; ")
+            .split_once("; default ")
             .map_or("", |(_, told)| told);
         let default = option.default(false).to_string();
         assert!(told.starts_with(&default), "{}: {told}", option.name());
@@ -44,7 +44,7 @@ fn options_keep_their_values_and_refuse_other_types() {
 fn names_of_flags_and_attributes_are_different() {
     let mut names: Vec<&str> = Vec::new();
     for &option in RigidOption::ALL {
-        let (Argument::Value(flag) | Argument::Sets(flag, _)) = option.argument();
+        let (Argument::Value(flag) | Argument::Sets(flag, ..)) = option.argument();
         names.push(flag);
     }
     let all = names.len();
