@@ -226,7 +226,8 @@ class SpecElement:
 
         Its elements become elements of this model, with names that begin with `prefix`: they are found, changed,
         renamed, removed and referred to like all others. They are read with the units, classes and inertia rules of
-        their own model.
+        their own model. A keyframe of this model lists the numbers of the complete model in order: where attached
+        joints or actuators precede others, insert their numbers into its vectors.
 
         >>> hand = clench.ModelSpec("hand")
         >>> _ = hand.world.add_body(name="palm").add_geom(size=0.1)

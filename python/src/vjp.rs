@@ -67,7 +67,7 @@ impl Sim {
     }
 
     /// Computes the gradient of a function of the states after each of the next T steps. The state does not change. The
-    /// memory is that of A and B of each step.
+    /// memory is that of A and B of each step except the last.
     ///
     /// Parameters
     /// ----------
