@@ -85,7 +85,7 @@ fn insert(
     keyframe: &mut Keyframe,
 ) -> Result<(), BuildError> {
     let unknown = || spec.error(format!("there is no {:?}", part.element));
-    let yielding = |place: Option<usize>, count| place.map_or(0..0, |at| at..at + count);
+    let yielding = |start: Option<usize>, count| start.map_or(0..0, |at| at..at + count);
     let (into, ranges, plastic) = match part.element {
         KeyframeElement::Joint(j) => {
             let joint = model.joints.get(j).ok_or_else(unknown)?;
