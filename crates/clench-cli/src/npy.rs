@@ -81,9 +81,9 @@ fn read(path: &Path, width: usize, limit: MemoryLimit) -> Result<Rows> {
 
 /// Reads the header text, which describes the numbers.
 fn read_header(file: &mut impl Read) -> Result<String> {
-    let cut = "the file is not a NumPy array: it ends within its header";
+    let truncated = "the file is not a NumPy array: it ends within its header";
     let mut start = [0; MAGIC.len() + 2];
-    file.read_exact(&mut start).context(cut)?;
+    file.read_exact(&mut start).context(truncated)?;
     let (magic, version) = start.split_at(MAGIC.len());
     ensure!(
         magic == MAGIC,
@@ -99,14 +99,14 @@ fn read_header(file: &mut impl Read) -> Result<String> {
             version[1]
         ),
     };
-    file.read_exact(digits).context(cut)?;
+    file.read_exact(digits).context(truncated)?;
     let length = u32::from_le_bytes(length) as usize;
     ensure!(
         length <= MAX_NPY_HEADER,
         "its header is {length} bytes long, and at most {MAX_NPY_HEADER} are read"
     );
     let mut text = vec![0; length];
-    file.read_exact(&mut text).context(cut)?;
+    file.read_exact(&mut text).context(truncated)?;
     Ok(String::from_utf8_lossy(&text).into_owned())
 }
 
@@ -185,7 +185,7 @@ fn parts(text: &str) -> Vec<&str> {
     parts
 }
 
-/// Reads `count` numbers of a file. Memory grows with the data, not with the promise of the header.
+/// Reads `count` numbers of a file. Memory grows with the data that is read, not with the size in the header.
 fn numbers<const N: usize>(
     mut file: impl Read,
     count: u64,

@@ -26,11 +26,11 @@ impl FromArgMatches for Overrides {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let mut options = RigidOptions::new();
         for &option in RigidOption::ALL {
-            let given = match option.argument() {
+            let value = match option.argument() {
                 Argument::Value(_) => matches.get_one(option.name()).copied(),
                 Argument::Sets(_, value) => matches.get_flag(option.name()).then_some(value),
             };
-            if let Some(value) = given {
+            if let Some(value) = value {
                 (options.set(option, value)).map_err(|wrong| {
                     Error::raw(ErrorKind::ValueValidation, format!("{wrong}\n"))
                 })?;
@@ -58,12 +58,12 @@ fn flag(option: RigidOption) -> Arg {
                 .help(sentence)
         }
         Argument::Sets(flag, value) => {
-            let question = sentence
+            let description = sentence
                 .split_once("; ")
-                .map_or(sentence, |(question, _)| question);
+                .map_or(sentence, |(description, _)| description);
             arg.long(flag)
                 .action(ArgAction::SetTrue)
-                .help(format!("{question}: {value}"))
+                .help(format!("{description}: {value}"))
         }
     }
 }
@@ -85,12 +85,12 @@ fn parser(default: OptionValue) -> ValueParser {
             let limit = |n| OptionValue::Limit(MaxContacts::Limit(n));
             (move |text: &str| text.parse().map(limit)).into()
         }
-        words => {
-            let spellings = words.words().iter().map(|(word, _)| *word);
+        choices => {
+            let spellings = choices.keywords().iter().map(|(name, _)| *name);
             let meaning = move |text: String| {
-                let meant = |(word, _): &&(&str, OptionValue)| word.eq_ignore_ascii_case(&text);
-                let found = words.words().iter().find(meant);
-                found.map(|&(_, value)| value).ok_or(words.what())
+                let is_same = |(name, _): &&(&str, OptionValue)| name.eq_ignore_ascii_case(&text);
+                let found = choices.keywords().iter().find(is_same);
+                found.map(|&(_, value)| value).ok_or(choices.description())
             };
             (PossibleValuesParser::new(spellings).try_map(meaning)).into()
         }

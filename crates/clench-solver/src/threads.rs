@@ -135,13 +135,13 @@ fn stay_awake(done: &AtomicBool) {
     }
 }
 
-/// Pauses between two polls of another thread's progress, after `looks` polls without success.
-pub(crate) fn pause(looks: usize) {
+/// Pauses between two polls of another thread's progress, after `polls` polls without success.
+pub(crate) fn pause(polls: usize) {
     /// Polling without a pause would keep taking the cache line from the thread that writes it.
     const SPINS: usize = 16;
     /// After this many polls, some hundred microseconds, the operating system may run other threads here.
-    const MAX_SPINNING_LOOKS: usize = 1000;
-    match looks < MAX_SPINNING_LOOKS {
+    const MAX_SPINNING_POLLS: usize = 1000;
+    match polls < MAX_SPINNING_POLLS {
         true => (0..SPINS).for_each(|_| spin_loop()),
         false => yield_now(),
     }

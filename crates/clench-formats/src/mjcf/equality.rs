@@ -303,12 +303,12 @@ fn write_bodies<'a>(model: &Model, pair: [usize; 2], tag: Tag<'a>) -> Result<Tag
 /// Writes the anchor, a point of the second body, and the relative pose: its position and orientation in the first
 /// body.
 fn write_weld<'a>(
-    held: Vec3<f64>,
+    position: Vec3<f64>,
     anchor: Vec3<f64>,
     rotation: Quat<f64>,
     tag: Tag<'a>,
 ) -> Tag<'a> {
-    let [x, y, z] = held.to_array();
+    let [x, y, z] = position.to_array();
     let [w, a, b, c] = rotation.to_array();
     tag.numbers("anchor", &anchor.to_array())
         .numbers("relpose", &[x, y, z, w, a, b, c])
