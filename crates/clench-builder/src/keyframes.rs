@@ -53,10 +53,10 @@ fn complete(
     spec: &KeyframeSpec,
     field: &str,
     group: usize,
-    given: &Option<Vec<f64>>,
+    numbers: &Option<Vec<f64>>,
     initial: &[f64],
 ) -> Result<Vec<f64>, BuildError> {
-    let mut values = given.clone().unwrap_or_default();
+    let mut values = numbers.clone().unwrap_or_default();
     if values.len() > initial.len() {
         return Err(spec.error(format!(
             "{field} has {} numbers, the model has {}",

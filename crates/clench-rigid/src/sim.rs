@@ -398,18 +398,10 @@ impl<T: Precision> Sim<T> {
         let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(T::workspace(model)));
         let splat = |numbers: &[T]| numbers.iter().copied().map(T::SingleEnv::splat).collect();
         let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
-        let acceleration = (&qacc[..], kind);
+        let input = (&qacc[..], kind);
         let (params, settings) = (&self.params, &self.settings);
         computed_state::read(state, &mut self.lane_copy, |state| {
-            T::inverse(
-                model,
-                params,
-                settings,
-                state,
-                acceleration,
-                ws,
-                &mut forces,
-            );
+            T::inverse(model, params, settings, state, input, ws, &mut forces);
         });
         read_lane(&forces, 0, qfrc_inverse);
         match T::good_results(state, ws) {

@@ -55,17 +55,17 @@ impl Threads {
     }
 
     /// Runs `work` on one of the threads, where forked work starts immediately.
-    pub fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    pub fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
             None => work(),
         }
     }
 
-    /// Works like [`enter`](Self::enter), for work that forks many times, each time for less than a millisecond. The
+    /// Works like [`run`](Self::run), for work that forks many times, each time for less than a millisecond. The
     /// other threads stay awake until it is done, as far as there are processors for them. Waking a thread was measured
     /// to take 60 µs.
-    pub fn enter_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    pub fn run_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let Some(pool) = &self.pool else {
             return work();
         };
