@@ -3,7 +3,7 @@
 use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
 use crate::error::sim_error;
-use crate::inertia_queries::given;
+use crate::inertia_queries::acceleration_kind;
 use crate::kind::Kind;
 use crate::motion_queries::axes;
 use crate::queries::ray_filter;
@@ -307,7 +307,7 @@ impl Batch {
         discrete: Option<bool>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = self.described();
-        let kind = given(model, discrete);
+        let kind = acceleration_kind(model, discrete);
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let qacc = Table::row_of("qacc", qacc, model.nv, Some(self.count()))?;

@@ -13,7 +13,7 @@ use clench::{Acceleration, Model};
 use pyo3::prelude::*;
 
 /// Returns the kind of acceleration: that of the argument, or by default the model's.
-pub(crate) fn given(model: &Model, discrete: Option<bool>) -> Acceleration {
+pub(crate) fn acceleration_kind(model: &Model, discrete: Option<bool>) -> Acceleration {
     match discrete {
         None => Acceleration::of(model),
         Some(true) => Acceleration::Discrete,
@@ -127,11 +127,11 @@ impl Sim {
             let point = point.map(|point| vector("point", point)).transpose()?;
             let mut qfrc = vec![Real::ZERO; model.nv];
             let done = own.current().and_then(|sim| {
-                let place = match point {
+                let position = match point {
                     Some(point) => point,
                     None => Vec3::from_slice(&sim.output("xipos")?[3 * body..]),
                 };
-                sim.add_joint_forces(body, place, wrench, &mut qfrc)
+                sim.add_joint_forces(body, position, wrench, &mut qfrc)
             });
             done.map_err(sim_error)?;
             answer(py, qfrc, &[model.nv], None)
@@ -172,13 +172,13 @@ impl Sim {
         discrete: Option<bool>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = self.described();
-        let given = given(model, discrete);
+        let kind = acceleration_kind(model, discrete);
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let sim = own.current().map_err(sim_error)?;
             let mut forces = vec![Real::ZERO; model.nv];
             each_row("qacc", qacc, model.nv, |row| {
-                sim.inverse(row, given, &mut forces)?;
+                sim.inverse(row, kind, &mut forces)?;
                 row.copy_from_slice(&forces);
                 Ok(())
             })

@@ -7,6 +7,7 @@ mod answer;
 mod arrays;
 mod assets;
 mod batch;
+mod batch_models;
 mod batch_queries;
 mod block;
 mod busy;
@@ -26,7 +27,6 @@ mod error;
 mod field;
 mod fields;
 mod free_camera;
-mod given_models;
 #[cfg(feature = "derivatives")]
 mod gradients;
 mod ik;

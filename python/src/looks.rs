@@ -28,15 +28,15 @@ impl Appearance {
     pub(crate) fn new(
         model: &clench::Model,
         n: Option<usize>,
-        given: &Bound<'_, PyAny>,
+        value: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let Ok(given) = given.cast::<PyDict>() else {
-            let found = given.get_type().name()?;
+        let Ok(value) = value.cast::<PyDict>() else {
+            let found = value.get_type().name()?;
             return Err(PyTypeError::new_err(format!(
                 "appearance must be a dict of arrays, not {found}"
             )));
         };
-        let fields = given.iter().map(|(name, values)| {
+        let fields = value.iter().map(|(name, values)| {
             let name: String = name.extract()?;
             Values::new(model, n, &name, &values)
         });

@@ -59,16 +59,16 @@ fn did_you_mean(known: &str) -> String {
 /// else the one with the smallest edit distance.
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let distance = |known: &str| strsim::damerau_levenshtein(known, name);
-    let holds = |known: &&&str| {
+    let extends = |known: &&&str| {
         known
             .strip_suffix(name)
             .is_some_and(|start| start.ends_with('_'))
     };
-    let held = known.iter().find(holds);
+    let extension = known.iter().find(extends);
     let close = || {
         (known.iter())
             .filter(|known| distance(known) <= known.len().max(name.len()) / 3)
             .min_by_key(|known| distance(known))
     };
-    held.or_else(close).copied()
+    extension.or_else(close).copied()
 }

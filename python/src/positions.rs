@@ -100,11 +100,11 @@ impl Model {
 fn shaped_rows(
     name: &str,
     values: &Bound<'_, PyAny>,
-    beside: &Bound<'_, PyAny>,
+    qpos: &Bound<'_, PyAny>,
     width: usize,
 ) -> PyResult<Vec<Vec<f64>>> {
-    let beside = numbers::<f64>("qpos", beside)?;
-    let mut shape = beside.shape().to_vec();
+    let qpos = numbers::<f64>("qpos", qpos)?;
+    let mut shape = qpos.shape().to_vec();
     shape.pop();
     shape.push(width);
     let array = shaped::<f64>(name, values, &shape)?;

@@ -33,14 +33,14 @@ fn initial_rows<S: Precision + Element>(
     n: usize,
     width: usize,
 ) -> PyResult<Copied<S>> {
-    let given = Copied::of(numbers::<S>("initial", values)?)?;
-    if given.shape != [width] {
-        require_shape("initial", &given.shape, &[n, width])?;
-        return Ok(given);
+    let initial = Copied::of(numbers::<S>("initial", values)?)?;
+    if initial.shape != [width] {
+        require_shape("initial", &initial.shape, &[n, width])?;
+        return Ok(initial);
     }
     Ok(Copied {
         shape: vec![n, width],
-        numbers: given.numbers.repeat(n),
+        numbers: initial.numbers.repeat(n),
     })
 }
 
@@ -104,7 +104,7 @@ pub(crate) fn rollout<'py, S: Precision + Element>(
                 .iter()
                 .try_for_each(|name| Output::find(name).map(drop))
                 .map_err(sim_error)?;
-            views.take_over(state)?;
+            views.assign_from(state)?;
             (0..n)
                 .try_for_each(|env| batch.revive(env))
                 .map_err(sim_error)?;

@@ -90,14 +90,14 @@ pub(crate) fn rays<S: Precision + Element>(
 
 /// Converts hits to the format of a batch: five numbers per ray.
 fn in_numbers<S: Precision>(hits: &[Option<RayHit<S>>]) -> Vec<S> {
-    let nothing = [-1.0, f64::INFINITY, 0.0, 0.0, 0.0].map(S::new);
+    let no_hit = [-1.0, f64::INFINITY, 0.0, 0.0, 0.0].map(S::new);
     let numbers = |hit: &RayHit<S>| {
         let [x, y, z] = hit.normal.to_array();
         [S::new(hit.geom as f64), hit.distance, x, y, z]
     };
     let hits = hits
         .iter()
-        .flat_map(|hit| hit.as_ref().map_or(nothing, numbers));
+        .flat_map(|hit| hit.as_ref().map_or(no_hit, numbers));
     hits.collect()
 }
 

@@ -90,13 +90,13 @@ macro_rules! views {
         }
 
         impl StateViews {
-            /// Creates views of `rows`, whose memory `keeper` owns; with `alone`, of the only row.
+            /// Creates views of `rows`, whose memory `keeper` owns; with `single`, of the only row.
             pub(crate) fn new<S: Precision + Viewed>(
                 keeper: &Bound<'_, Keeper>,
                 rows: &mut StateRows<S>,
-                alone: bool,
+                single: bool,
             ) -> PyResult<Self> {
-                let envs = if alone { None } else { Some(rows.count()) };
+                let envs = if single { None } else { Some(rows.count()) };
                 let shape = |of_row: &[usize]| {
                     Vec::from_iter(envs.into_iter().chain(of_row.iter().copied()))
                 };
@@ -172,15 +172,15 @@ impl StateViews {
     ///
     /// # Errors
     /// Returns an error if a shape or type differs. The arrays are then unchanged.
-    pub(crate) fn take_over(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.take_over_rows(state, None)
+    pub(crate) fn assign_from(&self, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.assign_rows_from(state, None)
     }
 
     /// Copies a `clench.State` into some environments of a batch, given by their indices and number.
     ///
     /// # Errors
-    /// Same as [`take_over`](Self::take_over).
-    pub(crate) fn take_over_rows<'py>(
+    /// Same as [`assign_from`](Self::assign_from).
+    pub(crate) fn assign_rows_from<'py>(
         &self,
         state: &Bound<'py, PyAny>,
         envs: Option<(&Bound<'py, PyAny>, usize)>,

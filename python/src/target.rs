@@ -27,9 +27,9 @@ impl Choices<'_, '_> {
             (Kind::Site, FrameObject::Site),
             (Kind::Camera, FrameObject::Camera),
         ];
-        let mut given = (self.0.iter().zip(OBJECTS))
+        let mut chosen = (self.0.iter().zip(OBJECTS))
             .filter_map(|(which, (kind, make))| Some(((*which)?, kind, make)));
-        match (given.next(), given.next()) {
+        match (chosen.next(), chosen.next()) {
             (None, _) => Ok(None),
             (Some((which, kind, make)), None) => Ok(Some(make(kind.find(model, which)?))),
             (Some(_), Some(_)) => Err(PyValueError::new_err(

@@ -17,16 +17,16 @@ use std::sync::Arc;
 /// The base object of views: it owns the memory that they show.
 #[pyclass(frozen, module = "clench._core")]
 pub(crate) struct Keeper {
-    _kept: Arc<dyn Any + Send + Sync>,
+    _owner: Arc<dyn Any + Send + Sync>,
 }
 
 impl Keeper {
     /// Creates a keeper of the owner of the numbers.
     pub(crate) fn new(
         py: Python<'_>,
-        kept: Arc<dyn Any + Send + Sync>,
+        owner: Arc<dyn Any + Send + Sync>,
     ) -> PyResult<Bound<'_, Self>> {
-        Bound::new(py, Keeper { _kept: kept })
+        Bound::new(py, Keeper { _owner: owner })
     }
 }
 

@@ -33,16 +33,16 @@ pub(crate) struct Times {
     quick: bool,
     cold: bool,
     /// The kind of run, the stage and its duration, s.
-    known: Vec<(String, String, f64)>,
+    records: Vec<(String, String, f64)>,
 }
 
 impl Times {
     /// Reads the records of earlier runs, for a run with this profile.
     pub(crate) fn read(profile: Profile) -> Self {
         // Without a readable file, as in a first run, durations are estimated.
-        let known = parse(&fs::read_to_string(file()).unwrap_or_default());
+        let records = parse(&fs::read_to_string(file()).unwrap_or_default());
         let all_sets = |kind: &str| kind.starts_with("dev");
-        let (last, now) = (known.last(), format!("{profile:?}").to_lowercase());
+        let (last, now) = (records.last(), format!("{profile:?}").to_lowercase());
         let has_other_sets = last.is_some_and(|(kind, ..)| all_sets(kind) != all_sets(&now));
         let cold = has_other_sets || !has_kernels(profile);
         Times {
@@ -50,15 +50,15 @@ impl Times {
             cores: available_parallelism().map_or(1, usize::from) as f64,
             quick: profile == Profile::Quick,
             cold,
-            known,
+            records,
         }
     }
 
     /// Returns the expected duration of a stage, s.
     pub(crate) fn seconds(&self, stage: &str) -> f64 {
-        let mut known = self.known.iter();
+        let mut records = self.records.iter();
         if let Some((.., seconds)) =
-            known.find(|(kind, name, _)| *kind == self.kind && name == stage)
+            records.find(|(kind, name, _)| *kind == self.kind && name == stage)
         {
             return *seconds;
         }
@@ -73,20 +73,21 @@ impl Times {
     }
 
     /// Returns true if all of these stages have run on this machine with this kind of run.
-    pub(crate) fn knows<'a>(&self, mut stages: impl Iterator<Item = &'a str>) -> bool {
-        let has =
-            |stage| (self.known.iter()).any(|(kind, name, _)| *kind == self.kind && name == stage);
+    pub(crate) fn has_records<'a>(&self, mut stages: impl Iterator<Item = &'a str>) -> bool {
+        let has = |stage| {
+            (self.records.iter()).any(|(kind, name, _)| *kind == self.kind && name == stage)
+        };
         stages.all(has)
     }
 
     /// Records the duration of a stage for the next run.
-    pub(crate) fn keep(&mut self, stage: &str, seconds: f64) {
+    pub(crate) fn record(&mut self, stage: &str, seconds: f64) {
         let is_old = |kind: &str, name: &str| kind == self.kind && name == stage;
-        self.known.retain(|(kind, name, _)| !is_old(kind, name));
-        self.known
+        self.records.retain(|(kind, name, _)| !is_old(kind, name));
+        self.records
             .push((self.kind.clone(), stage.to_owned(), seconds));
         // Without the file the next run uses estimates, which fails no test.
-        let _ = fs::write(file(), text(&self.known));
+        let _ = fs::write(file(), text(&self.records));
     }
 }
 
@@ -119,10 +120,10 @@ fn parse(text: &str) -> Vec<(String, String, f64)> {
     text.lines().filter_map(line).collect()
 }
 
-fn text(known: &[(String, String, f64)]) -> String {
+fn text(records: &[(String, String, f64)]) -> String {
     let line =
         |(kind, stage, seconds): &(String, String, f64)| format!("{kind} {stage} {seconds:.1}\n");
-    known.iter().map(line).collect()
+    records.iter().map(line).collect()
 }
 
 /// Formats a time: `40 s`, `7 min`.
@@ -143,7 +144,7 @@ mod tests {
             cores: 2.0,
             quick: false,
             cold: false,
-            known: parse(text),
+            records: parse(text),
         }
     }
 
@@ -151,9 +152,9 @@ mod tests {
     fn the_estimate_of_a_stage_is_from_a_run_of_the_same_kind() {
         let times = times("dev-cold unit 700.0\ndev-warm unit 123.4\nnonsense\ndev-warm doc NaN\n");
         assert_eq!(times.seconds("unit"), 123.4);
-        assert_eq!(times.known.len(), 2);
-        assert!(times.knows(["unit"].into_iter()));
-        assert!(!times.knows(["unit", "doc"].into_iter()));
+        assert_eq!(times.records.len(), 2);
+        assert!(times.has_records(["unit"].into_iter()));
+        assert!(!times.has_records(["unit", "doc"].into_iter()));
     }
 
     #[test]
@@ -172,8 +173,8 @@ mod tests {
 
     #[test]
     fn written_times_are_read_again() {
-        let known = times("dev-warm unit 123.4\nquick-cold fmt 1.0\n").known;
-        assert_eq!(parse(&text(&known)), known);
+        let records = times("dev-warm unit 123.4\nquick-cold fmt 1.0\n").records;
+        assert_eq!(parse(&text(&records)), records);
     }
 
     #[test]

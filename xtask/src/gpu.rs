@@ -19,9 +19,10 @@ const DRAWING: [&str; 3] = ["silhouettes", "surfaces", "videos"];
 const PART: [&str; 4] = ["batch::", "outputs::", "double::", "random::"];
 /// The number of random models that are written for the tests.
 const RANDOM_MODELS: usize = 200;
-/// The number of random models of a soak, and the distance of its seeds.
+/// The number of random models of a soak.
 const SOAKED_MODELS: usize = 5_000;
-const APART: u64 = 1_000_000;
+/// The distance between the first seeds of two soaks.
+const SEED_DISTANCE: u64 = 1_000_000;
 
 /// Runs the tests.
 ///
@@ -39,9 +40,9 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
         rest.args(["--skip", name]);
     }
     thread::scope(|scope| {
-        let beside = scope.spawn(|| run(part));
+        let other = scope.spawn(|| run(part));
         let rest = run(rest);
-        let part = beside.join();
+        let part = other.join();
         rest.and(part.unwrap_or_else(|_| Err("a part of the tests panicked".into())))
     })?;
     run(tests(profile, &DRAWING))
@@ -53,7 +54,7 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
 /// Returns an error if one differs.
 pub(crate) fn soak(seed: u64) -> Result<(), String> {
     python::prepare()?;
-    write_random_models(seed * APART, SOAKED_MODELS)?;
+    write_random_models(seed * SEED_DISTANCE, SOAKED_MODELS)?;
     let mut test = computing(Profile::Dev, &COMPUTING[..1])?;
     test.args(["--", "random::", "--nocapture"]);
     run(test)

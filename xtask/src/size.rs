@@ -41,12 +41,12 @@ pub(crate) fn check() -> Result<(), String> {
 
 /// Returns the reason if sizes cannot be measured here.
 pub(crate) fn no_elf() -> Option<String> {
-    let is_known = cfg!(all(
+    let is_supported = cfg!(all(
         target_os = "linux",
         target_pointer_width = "64",
         target_endian = "little"
     ));
-    (!is_known).then(|| "only files for 64-bit Linux are measured".to_owned())
+    (!is_supported).then(|| "only files for 64-bit Linux are measured".to_owned())
 }
 
 /// Returns the size of the text segment of an ELF file, bytes, as in `size`.

@@ -38,7 +38,7 @@ const STAGES: &[Stage] = &[
         name: "fmt",
         remedy: "run `cargo fmt --all`",
         check: |_| fmt(),
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::All,
     },
     Stage {
@@ -52,28 +52,28 @@ const STAGES: &[Stage] = &[
         name: "clippy",
         remedy: "fix the warnings above",
         check: clippy,
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::Named(""),
     },
     Stage {
         name: "unit",
         remedy: "run the failing crate alone with `CLENCH_INSTRUCTIONS=all cargo test -p CRATE`",
         check: unit::test,
-        missing: nothing,
-        quick: Quick::Without(unit::LEFT_OUT),
+        missing: no_requirement,
+        quick: Quick::Without(unit::OMITTED_PARTS),
     },
     Stage {
         name: "doc",
         remedy: "fix the documentation comments named above",
         check: doc,
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::Nothing,
     },
     Stage {
         name: "build",
         remedy: "fix the errors above",
         check: build,
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::All,
     },
     Stage {
@@ -94,7 +94,7 @@ const STAGES: &[Stage] = &[
         name: "python",
         remedy: "see the message above",
         check: |_| python::prepare(),
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::All,
     },
     Stage {
@@ -108,14 +108,14 @@ const STAGES: &[Stage] = &[
         name: "package",
         remedy: "see the message above",
         check: package::check,
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::Named(""),
     },
     Stage {
         name: "pytest",
         remedy: "run one case alone with `.venv/bin/python -m pytest python/tests -k NAME`",
         check: package::test,
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::Named(
             "tests marked as long (leaks, random calls, examples), a graphics device, the page of a loop in Python",
         ),
@@ -124,7 +124,7 @@ const STAGES: &[Stage] = &[
         name: "parity",
         remedy: "run one case alone with `CLENCH=target/debug/clench .venv/bin/python -m pytest parity -k NAME`",
         check: parity,
-        missing: nothing,
+        missing: no_requirement,
         quick: Quick::Without("tests marked as long (long motions, random models)"),
     },
 ];
@@ -149,7 +149,7 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
     let expected = |times: &Times, stages: &[&Stage]| -> f64 {
         stages.iter().map(|stage| times.seconds(stage.name)).sum()
     };
-    let source = match times.knows(chosen.iter().map(|stage| stage.name)) {
+    let source = match times.has_records(chosen.iter().map(|stage| stage.name)) {
         true => "as the last such run did",
         false => "estimated from the number of processors",
     };
@@ -159,9 +159,9 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
     );
     let mut summary = String::new();
     for (k, stage) in chosen.iter().enumerate() {
-        let left = format_duration(expected(&times, &chosen[k..]));
+        let remaining = format_duration(expected(&times, &chosen[k..]));
         println!(
-            "\n==> [{}/{}] {} (about {left} left)",
+            "\n==> [{}/{}] {} (about {remaining} left)",
             k + 1,
             chosen.len(),
             stage.name
@@ -175,13 +175,13 @@ pub(crate) fn test(args: &[String]) -> Result<(), String> {
         let outcome = (stage.check)(profile);
         let seconds = start.elapsed().as_secs_f64();
         if let Err(message) = outcome {
-            let left = chosen.len() - k - 1;
+            let remaining = chosen.len() - k - 1;
             return Err(format!(
-                "\n{summary}  {:<8}FAILED  {seconds:6.1} s\n\n{message}\nStage `{}` failed: {}. {left} stages not run.",
+                "\n{summary}  {:<8}FAILED  {seconds:6.1} s\n\n{message}\nStage `{}` failed: {}. {remaining} stages not run.",
                 stage.name, stage.name, stage.remedy
             ));
         }
-        times.keep(stage.name, seconds);
+        times.record(stage.name, seconds);
         summary += &format!("  {:<8}ok      {seconds:6.1} s\n", stage.name);
     }
     println!(
@@ -258,7 +258,7 @@ pub(crate) fn bench(args: &[String]) -> Result<(), String> {
     script.env("PAIRS", profile.program("examples/pairs"));
     script.env("FRAMES", profile.program("examples/frames"));
     script.env("SPEED", profile.program("examples/speed"));
-    // MuJoCo chooses a windowless renderer on Linux only if it is told to.
+    // MuJoCo uses a windowless renderer on Linux only if this variable requests it.
     if cfg!(target_os = "linux") && std::env::var_os("MUJOCO_GL").is_none() {
         script.env("MUJOCO_GL", "egl");
     }
@@ -268,7 +268,7 @@ pub(crate) fn bench(args: &[String]) -> Result<(), String> {
 }
 
 /// Returns `None`, for stages without further requirements.
-fn nothing() -> Option<String> {
+fn no_requirement() -> Option<String> {
     None
 }
 

@@ -19,7 +19,7 @@ const LONG: [&str; 10] = [
     "minima_agree_and_the_gap_certifies_them",
 ];
 /// The parts of this stage that a quick run omits.
-pub(crate) const LEFT_OUT: &str = "clench-gpu, clench-render, clench-derivatives, examples of documentation, and the tests that xtask/src/unit.rs lists as long";
+pub(crate) const OMITTED_PARTS: &str = "clench-gpu, clench-render, clench-derivatives, examples of documentation, and the tests that xtask/src/unit.rs lists as long";
 
 /// Builds and runs the tests.
 ///
@@ -58,7 +58,7 @@ pub(crate) fn test(profile: Profile) -> Result<(), String> {
             break;
         }
     }
-    println!("{}", report.rest());
+    println!("{}", report.other_output());
     outcome
 }
 
@@ -177,12 +177,12 @@ impl Report {
     }
 
     fn line(&self, what: &str) -> String {
-        let place = format!("[{}/{}]", self.begun.min(self.programs), self.programs);
-        format!("  {place:<9} {what:<22} {}", self.current)
+        let progress = format!("[{}/{}]", self.begun.min(self.programs), self.programs);
+        format!("  {progress:<9} {what:<22} {}", self.current)
     }
 
     /// Returns the output that belongs to no result, such as compiler errors, and the totals.
-    fn rest(&self) -> String {
+    fn other_output(&self) -> String {
         let mut lines = self.printed.clone();
         lines.push(format!("{} passed, {} failed", self.passed, self.failed));
         lines.join("\n")
@@ -247,7 +247,7 @@ test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out; fini
         assert!(lines[0].ends_with(" tests/lanes.rs"));
         assert!(lines[1].contains(" 3 passed in 1.50s"));
         assert!(lines[1].ends_with(" documentation of clench"));
-        assert_eq!(report.rest(), "4 passed, 1 failed");
+        assert_eq!(report.other_output(), "4 passed, 1 failed");
     }
 
     #[test]

@@ -78,7 +78,7 @@ fn npm(arguments: &[&str]) -> Result<(), String> {
 }
 
 fn in_web(program: &str, arguments: &[&str]) -> Command {
-    let mut made = command(program, arguments);
-    made.current_dir(root().join("web"));
-    made
+    let mut command_in_web = command(program, arguments);
+    command_in_web.current_dir(root().join("web"));
+    command_in_web
 }

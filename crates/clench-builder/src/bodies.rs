@@ -61,12 +61,12 @@ pub(super) fn add_all(
     check_world(&builder.bodies[0])?;
     for &old in order {
         let spec = &builder.bodies[old];
-        let place = Place {
+        let context = BodyContext {
             name: describe(&spec.name, old),
             parent: number[spec.parent],
             has_children: has_children[old],
         };
-        add(builder, spec, &place, assets, model)?;
+        add(builder, spec, &context, assets, model)?;
     }
     Ok(())
 }
@@ -83,7 +83,7 @@ fn check_world(world: &BodySpec) -> Result<(), BuildError> {
 }
 
 /// The context of a body.
-struct Place {
+struct BodyContext {
     /// Its name in messages.
     name: String,
     /// Index in the model's order.
@@ -102,20 +102,20 @@ struct Frame {
 fn add(
     builder: &ModelBuilder,
     spec: &BodySpec,
-    place: &Place,
+    context: &BodyContext,
     assets: &Assets,
     model: &mut Model,
 ) -> Result<(), BuildError> {
     let b = model.bodies.len();
     let is_world = b == 0;
-    let parent = place.parent;
-    check_joints(spec, parent).map_err(|e| e.about(&place.name))?;
+    let parent = context.parent;
+    check_joints(spec, parent).map_err(|e| e.about(&context.name))?;
     let mut inertia = match is_world {
         true => MassProperties::NONE,
-        false => mass_properties(spec, &place.name, builder.settings_of(spec), assets)?,
+        false => mass_properties(spec, &context.name, builder.settings_of(spec), assets)?,
     };
-    let frame = align(builder, spec, place.has_children, &mut inertia);
-    let within = |e: BuildError| e.of_body(&place.name);
+    let frame = align(builder, spec, context.has_children, &mut inertia);
+    let within = |e: BuildError| e.of_body(&context.name);
 
     push_body(model, spec, parent, is_null(inertia.pos, inertia.quat));
     push_params(model, spec, &frame, &inertia);

@@ -54,7 +54,7 @@ impl ModelBuilder {
 
         bodies::add_all(self, &order, &assets, &mut model)?;
         model.same_frames = SameFrames::of(&model.params);
-        assets.keep(self, &mut model)?;
+        assets.move_into(self, &mut model)?;
         derived::require_inertia(&model, &order)?;
         derived::masses(self, &mut model);
         budget::matrices(self, &model)?;
@@ -71,7 +71,7 @@ impl ModelBuilder {
         let pose0 = pose(&model, &model.params, &model.params.qpos0);
         let rest = |model: &Model| pose(model, &model.params, &model.params.qpos_spring);
         tendons::spring_lengths(self, rest, &mut model);
-        lights::set_initial_places(&pose0, &mut model);
+        lights::set_initial_poses(&pose0, &mut model);
         equalities::add_all(self, &names, &pose0, &mut model)?;
         budget::equalities(self, &model)?;
         let joints = order.iter().flat_map(|&b| &self.bodies[b].joints);

@@ -2,13 +2,13 @@
 
 use super::BuildError;
 use super::camera_spec::{CameraLens, CameraSpec, CameraTracking};
-use super::geoms::{Moved, place};
+use super::geoms::{Moved, moved_pose};
 use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use clench_dynamics::model::{Camera, CameraMode, Model};
 use std::sync::Arc;
 
-/// MuJoCo's focal lengths of a camera that has a field of view instead, m.
+/// The focal lengths and the principal point that MuJoCo stores for a camera with a field of view, m.
 const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];
 
 /// Adds a camera of body `b`, without a target.
@@ -37,7 +37,7 @@ pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) 
         intrinsic: matches!(spec.lens, CameraLens::Intrinsic { .. }),
         user: Arc::clone(&spec.user),
     });
-    let (pos, quat) = place(moved, spec.pos, spec.quat);
+    let (pos, quat) = moved_pose(moved, spec.pos, spec.quat);
     let p = &mut model.params;
     p.cam_pos.push(pos);
     p.cam_quat.push(quat);

@@ -230,15 +230,15 @@ fn motor_states(spec: &ActuatorSpec, first: usize) -> Controller {
 fn inputs(
     spec: &ActuatorSpec,
     usual: &[ControlInput],
-    known: &[ControlInput],
+    allowed: &[ControlInput],
 ) -> Result<Vec<ControlInput>, BuildError> {
     let Some(given) = &spec.inputs else {
         return Ok(usual.to_vec());
     };
     let rises = given.windows(2).all(|pair| pair[0] < pair[1]);
-    if !rises || given.iter().any(|input| !known.contains(input)) {
+    if !rises || given.iter().any(|input| !allowed.contains(input)) {
         return Err(spec.error(format!(
-            "its inputs must be some of {known:?}, in this order, but are {given:?}"
+            "its inputs must be some of {allowed:?}, in this order, but are {given:?}"
         )));
     }
     Ok(given.clone())

@@ -78,7 +78,7 @@ pub(super) fn derive(
     let with_inertia = bodies_of_tendons_with_inertia(model, &pose0);
     for (b, &old) in order.iter().enumerate() {
         let may = !builder.bodies[old].never_simple && !with_inertia[b];
-        model.bodies[b].diagonal_inertia = may && moves_alone(model, b);
+        model.bodies[b].diagonal_inertia = may && moves_independently(model, b);
     }
     let constants = Constants::new(model, &model.params, pose0);
     let mut constants = constants.map_err(|found| singular(model, found))?;
@@ -130,7 +130,7 @@ fn bodies_of_tendons_with_inertia(model: &Model, pose0: &Positions<f64>) -> Vec<
 /// Returns true if the body moves independently, without children, along and about its own coordinate axes through its
 /// centre of mass: along those of the world or of a body fixed to it, and then about one, or about all by a ball or
 /// free joint.
-fn moves_alone(model: &Model, b: usize) -> bool {
+fn moves_independently(model: &Model, b: usize) -> bool {
     let body = &model.bodies[b];
     let p = &model.params;
     let on_fixed = {

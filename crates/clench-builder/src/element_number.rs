@@ -8,9 +8,9 @@ use clench_dynamics::model::{ParamField, Params};
 pub enum NumberDimension {
     /// A coordinate: a length or an angle.
     Coordinate,
-    /// A force along it.
+    /// A force or torque along a coordinate.
     Force,
-    /// A force per coordinate or per rate, or an inertia.
+    /// A stiffness, a damping or an inertia along a coordinate.
     ForcePerCoordinate,
 }
 

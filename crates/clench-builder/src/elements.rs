@@ -66,7 +66,7 @@ pub struct InertialSpec {
     pub quat: Quat<f64>,
     /// Mass, kg.
     pub mass: f64,
-    /// Moments.
+    /// Rotational inertia.
     pub inertia: InertiaSpec,
     /// The source location.
     pub origin: Option<Origin>,
@@ -122,13 +122,13 @@ macro_rules! declare_joint {
             pub damping: [f64; 3],
             /// Time constant and damping ratio from which the linear stiffness and damping are derived, if positive.
             pub springdamper: [f64; 2],
-            /// Limit reference dynamics.
+            /// Reference dynamics of the limit (solref).
             pub solref_limit: [f64; 2],
-            /// Limit impedance.
+            /// Impedance of the limit (solimp).
             pub solimp_limit: [f64; 5],
-            /// Dry-friction reference dynamics.
+            /// Reference dynamics of dry friction (solref).
             pub solref_friction: [f64; 2],
-            /// Dry-friction impedance.
+            /// Impedance of dry friction (solimp).
             pub solimp_friction: [f64; 5],
             /// Group, only for selection by the user.
             pub group: i32,
@@ -231,9 +231,9 @@ pub struct GeomSpec {
     pub priority: i32,
     /// Weight in mixing parameters.
     pub solmix: f64,
-    /// Reference dynamics.
+    /// Reference dynamics of its contacts (solref).
     pub solref: [f64; 2],
-    /// Impedance.
+    /// Impedance of its contacts (solimp).
     pub solimp: [f64; 5],
     /// Distance at which contacts are detected, m.
     pub margin: f64,

@@ -33,12 +33,12 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
     let named = Named::new(builder);
     let mut fused: Vec<BodySpec> = Vec::with_capacity(bodies.len());
     // The new body, and the pose in it, of each of the author's bodies.
-    let mut places: Vec<Place> = vec![Place::ORIGIN; bodies.len()];
+    let mut locations: Vec<Location> = vec![Location::ORIGIN; bodies.len()];
     // The bodies that stayed, by the author's indices, and the masses fused into each.
     let mut stayed: Vec<(usize, Vec<MassProperties>)> = Vec::new();
     for &b in &order {
         let body = &bodies[b];
-        let on = places[body.parent];
+        let on = locations[body.parent];
         let here = on.then(body.pos, body.quat);
         let keeps = b == 0
             || !body.joints.is_empty()
@@ -47,9 +47,9 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
             || named.keeps(body)
             || affects_motion(builder, &masses, b, stayed[on.body].0);
         if keeps {
-            places[b] = Place {
+            locations[b] = Location {
                 body: fused.len(),
-                ..Place::ORIGIN
+                ..Location::ORIGIN
             };
             fused.push(BodySpec {
                 parent: on.body,
@@ -60,7 +60,7 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
             stayed.push((b, Vec::new()));
             continue;
         }
-        places[b] = here;
+        locations[b] = here;
         let target = &mut fused[here.body];
         target.geoms.extend(body.geoms.iter().map(|g| here.geom(g)));
         target.sites.extend(body.sites.iter().map(|s| here.site(s)));
@@ -70,11 +70,11 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
         target
             .lights
             .extend(body.lights.iter().map(|l| here.light(l)));
-        stayed[here.body].1.push(here.mass(&masses[b].bounded));
+        stayed[here.body].1.push(here.mass(&masses[b].properties));
     }
     for (body, (b, parts)) in fused.iter_mut().zip(&stayed).skip(1) {
         if !parts.is_empty() && builder.compiler.inertiafromgeom != InertiaFromGeom::Always {
-            body.inertial = Some(total(builder, body, masses[*b].bounded, parts)?);
+            body.inertial = Some(total(builder, body, masses[*b].properties, parts)?);
         }
     }
     Ok(fused)
@@ -82,7 +82,7 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
 
 /// The mass of a body after the compiler's bounds, and whether these changed it.
 struct Mass {
-    bounded: MassProperties,
+    properties: MassProperties,
     adjusted: bool,
 }
 
@@ -95,16 +95,16 @@ impl Mass {
     ) -> Result<Self, BuildError> {
         if b == 0 {
             return Ok(Mass {
-                bounded: MassProperties::NONE,
+                properties: MassProperties::NONE,
                 adjusted: false,
             });
         }
         let name = describe(&body.name, b);
-        let bounded = mass_properties(body, &name, &builder.compiler, assets)?;
+        let properties = mass_properties(body, &name, &builder.compiler, assets)?;
         let found = unbounded_mass_properties(body, &name, &builder.compiler, assets)?;
         Ok(Mass {
-            adjusted: found.mass != bounded.mass || found.moments != bounded.moments,
-            bounded,
+            adjusted: found.mass != properties.mass || found.moments != properties.moments,
+            properties,
         })
     }
 }
@@ -117,7 +117,7 @@ fn affects_motion(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usi
     let (body, parent) = (&builder.bodies[b], &builder.bodies[target]);
     let physics = &builder.physics;
     let in_fluid = physics.density > 0.0 || physics.viscosity > 0.0;
-    let has_mass = masses[b].bounded.mass > 0.0;
+    let has_mass = masses[b].properties.mass > 0.0;
     let from_geoms = builder.compiler.inertiafromgeom == InertiaFromGeom::Always;
     let ellipsoids = body.geoms.iter().any(|geom| geom.fluid_ellipsoid);
     in_fluid && ellipsoids
@@ -154,22 +154,22 @@ fn total(
 
 /// The location of one of the author's bodies: the body that it became part of, and its pose in that.
 #[derive(Clone, Copy)]
-struct Place {
+struct Location {
     body: usize,
     pos: Vec3<f64>,
     quat: Quat<f64>,
 }
 
-impl Place {
-    const ORIGIN: Place = Place {
+impl Location {
+    const ORIGIN: Location = Location {
         body: 0,
         pos: Vec3::ZERO,
         quat: Quat::IDENTITY,
     };
 
-    /// Composes this place with a pose in it.
-    fn then(&self, pos: Vec3<f64>, quat: Quat<f64>) -> Place {
-        Place {
+    /// Composes this location with a pose in it.
+    fn then(&self, pos: Vec3<f64>, quat: Quat<f64>) -> Location {
+        Location {
             body: self.body,
             pos: self.pos + self.quat.rotate(pos),
             quat: (self.quat * quat.normalize()).normalize(),

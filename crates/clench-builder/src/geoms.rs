@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// The pose of a body's frame in the model's frame if it was moved, with a unit quaternion; its geoms and sites follow.
 pub(super) type Moved = Option<(Vec3<f64>, Quat<f64>)>;
 
-pub(super) fn place(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>) {
+pub(super) fn moved_pose(moved: Moved, pos: Vec3<f64>, quat: Quat<f64>) -> (Vec3<f64>, Quat<f64>) {
     let quat = quat.normalize();
     match moved {
         None => (pos, quat),
@@ -56,7 +56,7 @@ pub(super) fn add_geom(
     });
     let appearance = assets.palette.resolve(&spec.appearance);
     model.visuals.geoms.push(appearance);
-    let (pos, quat) = place(moved, placed.pos, placed.quat);
+    let (pos, quat) = moved_pose(moved, placed.pos, placed.quat);
     let p = &mut model.params;
     p.geom_pos.push(pos);
     p.geom_quat.push(quat);
@@ -101,7 +101,7 @@ pub(super) fn add_site(
     });
     let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.reach());
     model.params.site_size.push(size);
-    let (pos, quat) = place(moved, spec.pos, spec.quat);
+    let (pos, quat) = moved_pose(moved, spec.pos, spec.quat);
     model.params.site_pos.push(pos);
     model.params.site_quat.push(quat);
     Ok(())

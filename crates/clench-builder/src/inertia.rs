@@ -67,7 +67,7 @@ pub(super) fn unbounded_mass_properties(
         false => Vec::new(),
     };
     let found = match (&counted[..], &body.inertial) {
-        ([], Some(inertial)) => given(body, inertial, compiler),
+        ([], Some(inertial)) => specified(body, inertial, compiler),
         // Without data MuJoCo puts the inertial frame at the body's offset from its parent, or from its innermost
         // <frame>.
         ([], None) => {
@@ -121,7 +121,7 @@ fn geom_mass(geom: &PlacedGeom) -> Result<f64, BuildError> {
 }
 
 /// Returns the author's mass properties, in the principal frame.
-fn given(
+fn specified(
     body: &BodySpec,
     inertial: &InertialSpec,
     compiler: &CompilerSpec,

@@ -53,10 +53,10 @@ fn complete(
     spec: &KeyframeSpec,
     field: &str,
     group: usize,
-    given: &Option<Vec<f64>>,
+    numbers: &Option<Vec<f64>>,
     initial: &[f64],
 ) -> Result<Vec<f64>, BuildError> {
-    let mut values = given.clone().unwrap_or_default();
+    let mut values = numbers.clone().unwrap_or_default();
     if values.len() > initial.len() {
         return Err(spec.error(format!(
             "{field} has {} numbers, the model has {}",
@@ -85,7 +85,7 @@ fn insert(
     keyframe: &mut Keyframe,
 ) -> Result<(), BuildError> {
     let unknown = || spec.error(format!("there is no {:?}", part.element));
-    let yielding = |place: Option<usize>, count| place.map_or(0..0, |at| at..at + count);
+    let yielding = |start: Option<usize>, count| start.map_or(0..0, |at| at..at + count);
     let (into, ranges, plastic) = match part.element {
         KeyframeElement::Joint(j) => {
             let joint = model.joints.get(j).ok_or_else(unknown)?;

@@ -2,7 +2,7 @@
 
 use super::cameras;
 use super::element::Element;
-use super::geoms::{Moved, place};
+use super::geoms::{Moved, moved_pose};
 use super::model_builder::ModelBuilder;
 use super::resolve::AllNames;
 use super::{BuildError, LightSpec};
@@ -37,7 +37,7 @@ pub(super) fn check(light: &LightSpec) -> Result<(), BuildError> {
 
 /// Adds a light of body `b`, without a target.
 pub(super) fn add(spec: &LightSpec, b: usize, moved: Moved, model: &mut Model) {
-    let (pos, rotation) = place(moved, spec.pos, Quat::IDENTITY);
+    let (pos, rotation) = moved_pose(moved, spec.pos, Quat::IDENTITY);
     let dir = rotation.rotate(spec.dir.normalize().0);
     model.visuals.lights.push(Light {
         name: spec.name.clone(),
@@ -70,7 +70,7 @@ pub(super) fn aim_all(
 }
 
 /// Records the initial poses, which tracking lights maintain.
-pub(super) fn set_initial_places(pose0: &Positions<f64>, model: &mut Model) {
+pub(super) fn set_initial_poses(pose0: &Positions<f64>, model: &mut Model) {
     for light in &mut model.visuals.lights {
         let rotation = pose0.xmat[light.body];
         let pos = pose0.xpos[light.body] + rotation * light.pos;

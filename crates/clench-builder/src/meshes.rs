@@ -11,7 +11,7 @@ use clench_math::{Mat3, Quat, Vec3, rough_principal_axes};
 /// Volumes (m³) and areas (m²) below this count as zero (MuJoCo's `mjMINVAL`).
 const NEGLIGIBLE: f64 = 1e-15;
 /// Triangles of less area (m²) have no orientation (the root of `mjMINVAL`).
-const NO_SIDE: f64 = 3.162_277_660_168_379e-8;
+const NO_ORIENTATION: f64 = 3.162_277_660_168_379e-8;
 /// The relative precision of the inertia of vertices with 24 bits per coordinate, as a fraction of its largest entry
 /// (MuJoCo's measure).
 const UNCERTAINTY: f64 = 1e-7;
@@ -54,7 +54,7 @@ pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, Bu
         }
         false => None,
     };
-    let vertices = placed(spec);
+    let vertices = in_own_frame(spec);
     let faces = faces(spec, surface.as_ref());
     let hull_faces = surface
         .as_ref()
@@ -69,7 +69,7 @@ pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, Bu
         .map(|&v| turn.rotate(v - mass.pos))
         .collect();
     let tangents = (spec.tangents.iter())
-        .map(|pair| placed_tangents(spec, pair).map(|tangent| turn.rotate(tangent)))
+        .map(|pair| tangents_in_own_frame(spec, pair).map(|tangent| turn.rotate(tangent)))
         .collect();
     let by_axis = |pick: fn(f64, f64) -> f64| {
         let all = vertices.iter().copied();
@@ -134,7 +134,7 @@ fn check(spec: &MeshSpec) -> Result<(), BuildError> {
     spec.require_finite("refquat", &spec.refquat.to_array())?;
     spec.require_finite("scale", &spec.scale.to_array())?;
     match spec.inertia {
-        MeshInertia::Exact => check_sides(spec),
+        MeshInertia::Exact => check_orientation(spec),
         MeshInertia::Convex | MeshInertia::Legacy | MeshInertia::Shell => Ok(()),
     }
 }
@@ -171,11 +171,11 @@ fn check_texcoords(spec: &MeshSpec) -> Result<(), BuildError> {
 
 /// Checks the orientation: in a closed surface with consistent triangles, no two traverse an edge in the same
 /// direction.
-fn check_sides(spec: &MeshSpec) -> Result<(), BuildError> {
+fn check_orientation(spec: &MeshSpec) -> Result<(), BuildError> {
     let mut halves = Vec::with_capacity(3 * spec.faces.len());
     for &[a, b, c] in &spec.faces {
         let [p, q, r] = [a, b, c].map(|i| spec.vertices[i as usize]);
-        if (q - p).cross(r - p).norm() * 0.5 > NO_SIDE {
+        if (q - p).cross(r - p).norm() * 0.5 > NO_ORIENTATION {
             halves.extend([(a, b), (b, c), (c, a)]);
         }
     }
@@ -191,7 +191,7 @@ fn check_sides(spec: &MeshSpec) -> Result<(), BuildError> {
 }
 
 /// Returns the vertices after reference position, orientation and scale.
-fn placed(spec: &MeshSpec) -> Vec<Vec3<f64>> {
+fn in_own_frame(spec: &MeshSpec) -> Vec<Vec3<f64>> {
     let back = spec.refquat.normalize().conjugate();
     (spec.vertices.iter())
         .map(|&v| back.rotate(v - spec.refpos).scale_by(spec.scale))
@@ -200,7 +200,7 @@ fn placed(spec: &MeshSpec) -> Vec<Vec3<f64>> {
 
 /// Returns the tangents after reference orientation and scale. MuJoCo divides them by the scale, as normals, in single
 /// precision, which is visible in speeds along them.
-fn placed_tangents(spec: &MeshSpec, tangents: &[Vec3<f64>; 2]) -> [Vec3<f64>; 2] {
+fn tangents_in_own_frame(spec: &MeshSpec, tangents: &[Vec3<f64>; 2]) -> [Vec3<f64>; 2] {
     let back = spec.refquat.normalize().conjugate();
     let scale = spec.scale.to_array();
     tangents.map(|tangent| {

@@ -21,7 +21,7 @@ pub struct ModelBuilder {
     pub compiler: CompilerSpec,
     /// Time step, gravity, medium, integrator and feature flags.
     pub physics: PhysicsSpec,
-    /// Solver options that the source sets; they rank below a user's and above the design's defaults.
+    /// Solver options that the file sets. They take precedence over the defaults, and a user's options over them.
     pub options: RigidOptions,
     /// Limits on the resources of building the model and of each of its steps.
     pub budget: Budget,

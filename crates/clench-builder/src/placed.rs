@@ -98,7 +98,11 @@ impl<'a> Assets<'a> {
     ///
     /// # Errors
     /// Returns an error if a mesh that is used is invalid.
-    pub(super) fn keep(self, builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
+    pub(super) fn move_into(
+        self,
+        builder: &ModelBuilder,
+        model: &mut Model,
+    ) -> Result<(), BuildError> {
         let mut used = vec![!builder.compiler.discardvisual; self.meshes.len()];
         for geom in builder.bodies.iter().flat_map(|body| &body.geoms) {
             // A primitive that was fitted to a mesh also retains it, as in MuJoCo.
@@ -193,10 +197,10 @@ impl<'a> Assets<'a> {
         };
         if spec.kind == ShapeKind::HeightField {
             let field = self.field_names.find(&spec.hfield, spec)?;
-            placed.take_height_field(field, &self.height_fields[field].shape);
+            placed.use_height_field(field, &self.height_fields[field].shape);
         } else if spec.kind == ShapeKind::Mesh || !spec.mesh.is_empty() {
             let (index, mesh) = self.mesh(&spec.mesh, spec)?;
-            placed.take_mesh(index, mesh, self.fitaabb)?;
+            placed.use_mesh(index, mesh, self.fitaabb)?;
         }
         check_size(spec, placed.size)?;
         if !matches!(spec.kind, ShapeKind::Plane | ShapeKind::HeightField) {
@@ -208,15 +212,15 @@ impl<'a> Assets<'a> {
 }
 
 impl<'a> PlacedGeom<'a> {
-    fn take_height_field(&mut self, index: usize, field: &clench_collide::HeightField) {
+    fn use_height_field(&mut self, index: usize, field: &clench_collide::HeightField) {
         let [x, y, elevation, base] = field.size();
         self.size = Vec3::new(x, y, 0.25 * elevation + 0.5 * base);
         self.rbound = field.radius();
         self.height_field = Some(index);
     }
 
-    /// Takes the mesh itself, or the primitive that fits it, in the mesh's frame.
-    fn take_mesh(
+    /// Uses the mesh itself, or the primitive that fits it, in the mesh's frame.
+    fn use_mesh(
         &mut self,
         index: usize,
         mesh: &'a Processed,
@@ -233,9 +237,9 @@ impl<'a> PlacedGeom<'a> {
             self.mesh = Some((index, mesh));
         } else if fitaabb {
             center = (mesh.low + mesh.high) * 0.5;
-            self.size = around(self.spec, mesh.high - center)? * self.spec.fitscale;
+            self.size = enclosing_size(self.spec, mesh.high - center)? * self.spec.fitscale;
         } else {
-            self.size = alike(self.spec, mesh.half_box)? * self.spec.fitscale;
+            self.size = equivalent_size(self.spec, mesh.half_box)? * self.spec.fitscale;
         }
         let quat = mesh.mesh.quat;
         let pos = mesh.mesh.pos + quat.rotate(center);
@@ -259,7 +263,7 @@ pub fn surfacevel_in_frame(
 }
 
 /// Returns the size of a primitive equivalent to a box with these half sizes.
-fn alike(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
+fn equivalent_size(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
     let radius = 0.5 * (half.x + half.y);
     let size = match spec.kind {
         ShapeKind::Sphere => [(half.x + half.y + half.z) / 3.0, 0.0, 0.0],
@@ -274,7 +278,7 @@ fn alike(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
 }
 
 /// Returns the size of the smallest primitive whose bounding box contains one with these half sizes.
-fn around(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
+fn enclosing_size(spec: &GeomSpec, half: Vec3<f64>) -> Result<Vec3<f64>, BuildError> {
     let radius = half.x.max(half.y);
     let size = match spec.kind {
         ShapeKind::Sphere => [radius.max(half.z), 0.0, 0.0],

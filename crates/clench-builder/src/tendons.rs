@@ -153,9 +153,9 @@ fn dofs(tendon: &Tendon, model: &Model) -> Vec<u32> {
         let [first, last] = section.sites.map(|site| model.sites[site].body);
         between([first, last]);
         if let Some((geom, _)) = section.obstacle {
-            let around = model.geoms[geom].body;
-            between([first, around]);
-            between([around, last]);
+            let obstacle = model.geoms[geom].body;
+            between([first, obstacle]);
+            between([obstacle, last]);
         }
     }
     dofs

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// # Errors
 /// Returns an error if an element has more numbers than the description specifies.
 fn resolve(builder: &ModelBuilder) -> Result<UserWidths, BuildError> {
-    let given = builder.user_widths;
+    let specified = builder.user_widths;
     let bodies = || builder.bodies.iter();
     let joints = bodies().flat_map(|body| &body.joints);
     let geoms = bodies().flat_map(|body| &body.geoms);
@@ -22,25 +22,25 @@ fn resolve(builder: &ModelBuilder) -> Result<UserWidths, BuildError> {
     let (tendons, actuators) = (builder.tendons.iter(), builder.actuators.iter());
     let sensors = builder.sensors.iter();
     Ok(UserWidths {
-        body: width(given.body, bodies().map(|e| (e, &e.user)))?,
-        joint: width(given.joint, joints.map(|e| (e, &e.user)))?,
-        geom: width(given.geom, geoms.map(|e| (e, &e.user)))?,
-        site: width(given.site, sites.map(|e| (e, &e.user)))?,
-        camera: width(given.camera, cameras.map(|e| (e, &e.user)))?,
-        tendon: width(given.tendon, tendons.map(|e| (e, &e.user)))?,
-        actuator: width(given.actuator, actuators.map(|e| (e, &e.user)))?,
-        sensor: width(given.sensor, sensors.map(|e| (e, &e.user)))?,
+        body: width(specified.body, bodies().map(|e| (e, &e.user)))?,
+        joint: width(specified.joint, joints.map(|e| (e, &e.user)))?,
+        geom: width(specified.geom, geoms.map(|e| (e, &e.user)))?,
+        site: width(specified.site, sites.map(|e| (e, &e.user)))?,
+        camera: width(specified.camera, cameras.map(|e| (e, &e.user)))?,
+        tendon: width(specified.tendon, tendons.map(|e| (e, &e.user)))?,
+        actuator: width(specified.actuator, actuators.map(|e| (e, &e.user)))?,
+        sensor: width(specified.sensor, sensors.map(|e| (e, &e.user)))?,
     })
 }
 
 fn width<'a, E: Element + 'a>(
-    given: Option<usize>,
+    specified: Option<usize>,
     elements: impl Iterator<Item = (&'a E, &'a Arc<[f64]>)>,
 ) -> Result<Option<usize>, BuildError> {
     let mut longest = 0;
     for (element, user) in elements {
         let count = user.len();
-        match given {
+        match specified {
             Some(width) if count > width => {
                 return Err(element.error(format!(
                     "user has {count} numbers, more than the {width} that each {} has",
@@ -50,7 +50,7 @@ fn width<'a, E: Element + 'a>(
             _ => longest = longest.max(count),
         }
     }
-    Ok(Some(given.unwrap_or(longest)))
+    Ok(Some(specified.unwrap_or(longest)))
 }
 
 /// Pads the numbers of all elements of a kind to the same length with zeros.
@@ -59,11 +59,11 @@ fn width<'a, E: Element + 'a>(
 /// Returns an error if an element has more numbers, or if all need more memory than the budget allows.
 pub(super) fn pad(builder: &ModelBuilder, model: &mut Model) -> Result<(), BuildError> {
     let widths = resolve(builder)?;
-    let mut left = builder.budget.bytes;
+    let mut remaining = builder.budget.bytes;
     let mut pad = |width: Option<usize>, rows: Vec<&mut Arc<[f64]>>| {
         let width = width.unwrap_or(0);
         let bytes = (8 * rows.len() as u64).saturating_mul(width as u64);
-        left = left.checked_sub(bytes).ok_or_else(|| {
+        remaining = remaining.checked_sub(bytes).ok_or_else(|| {
             let message = format!(
                 "its user data would take more than {} bytes; {RAISE}",
                 builder.budget.bytes

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// The materials and textures of a model, and the index of each name.
 pub(super) struct Palette {
     visuals: Visuals,
-    place: HashMap<String, usize>,
+    index: HashMap<String, usize>,
 }
 
 impl Palette {
@@ -21,7 +21,7 @@ impl Palette {
         };
         let materials: Vec<Material> = builder.materials.iter().map(material).collect();
         Palette {
-            place: indices_by_name(materials.iter().map(|material| &material.name)),
+            index: indices_by_name(materials.iter().map(|material| &material.name)),
             visuals: Visuals {
                 materials,
                 textures: builder.textures.clone(),
@@ -40,7 +40,7 @@ impl Palette {
     pub(super) fn resolve(&self, spec: &AppearanceSpec) -> Appearance {
         Appearance {
             rgba: spec.rgba,
-            material: self.place.get(&*spec.material).copied(),
+            material: self.index.get(&*spec.material).copied(),
         }
     }
 }

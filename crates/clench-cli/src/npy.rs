@@ -194,7 +194,7 @@ fn parts(text: &str) -> Vec<&str> {
     parts
 }
 
-/// Reads `count` numbers of a file. Memory grows with the data, not with the promise of the header.
+/// Reads `count` numbers of a file. Memory grows with the data that is read, not with the size in the header.
 fn numbers<const N: usize>(
     mut file: impl Read,
     count: u64,

@@ -26,11 +26,11 @@ impl FromArgMatches for Overrides {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let mut options = RigidOptions::new();
         for &option in RigidOption::ALL {
-            let given = match option.argument() {
+            let value = match option.argument() {
                 Argument::Value(_) => matches.get_one(option.name()).copied(),
                 Argument::Sets(_, value, _) => matches.get_flag(option.name()).then_some(value),
             };
-            if let Some(value) = given {
+            if let Some(value) = value {
                 (options.set(option, value)).map_err(|wrong| {
                     Error::raw(ErrorKind::ValueValidation, format!("{wrong}\n"))
                 })?;
@@ -78,12 +78,12 @@ fn parser(option: RigidOption) -> ValueParser {
             let limit = |n| OptionValue::Limit(MaxContacts::Limit(n));
             (move |text: &str| text.parse().map(limit)).into()
         }
-        words => {
-            let spellings = words.words().iter().map(|(word, _)| *word);
+        choices => {
+            let spellings = choices.keywords().iter().map(|(name, _)| *name);
             let meaning = move |text: String| {
-                let meant = |(word, _): &&(&str, OptionValue)| word.eq_ignore_ascii_case(&text);
-                let found = words.words().iter().find(meant);
-                found.map(|&(_, value)| value).ok_or(words.what())
+                let is_same = |(name, _): &&(&str, OptionValue)| name.eq_ignore_ascii_case(&text);
+                let found = choices.keywords().iter().find(is_same);
+                found.map(|&(_, value)| value).ok_or(choices.description())
             };
             (PossibleValuesParser::new(spellings).try_map(meaning)).into()
         }

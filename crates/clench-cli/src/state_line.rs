@@ -35,11 +35,11 @@ impl Fields<'_> {
     }
 
     /// Returns an error if there is a field that is not in the list.
-    fn check_known(&self, known: &[&str]) -> Result<()> {
-        let unknown = self.0.keys().find(|key| !known.contains(&key.as_str()));
+    fn check_names(&self, names: &[&str]) -> Result<()> {
+        let unknown = self.0.keys().find(|key| !names.contains(&key.as_str()));
         match unknown {
             None => Ok(()),
-            Some(key) => bail!("unknown field {key}; the fields are {}", known.join(", ")),
+            Some(key) => bail!("unknown field {key}; the fields are {}", names.join(", ")),
         }
     }
 
@@ -179,7 +179,7 @@ fn assign<K: Written>(fields: &Fields, name: &str, target: &mut Vec<K::Of<f64>>)
 pub fn apply(line: &str, sim: &mut Sim) -> Result<Option<Vec<Contact<f64>>>> {
     let value = serde_json::from_str(line)?;
     let fields = Fields::of(&value, "a state")?;
-    fields.check_known(FIELDS)?;
+    fields.check_names(FIELDS)?;
     if let Some(time) = fields.read("time", number)? {
         sim.state.time = time;
     }
@@ -205,7 +205,7 @@ fn contact(value: &Value, sim: &Sim) -> Result<Contact<f64>> {
         "adhesion",
     ];
     let fields = Fields::of(value, "a contact")?;
-    fields.check_known(&[&READ[..], &IGNORED[..]].concat())?;
+    fields.check_names(&[&READ[..], &IGNORED[..]].concat())?;
     let geoms = fields.require("geom", |value| geoms(value, sim))?;
     let dim = fields.require("dim", integer)?;
     ensure!(

@@ -91,14 +91,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
 /// Steps and shows a simulation or a batch until a signal arrives.
 fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
     let page = Page::find(|text| print_message(text))?;
-    let place = ServerOptions {
+    let options = ServerOptions {
         host: arguments.host.clone(),
         port: arguments.port,
         token: env::var(TOKEN).ok(),
     };
     let scene = Scene::new(viewed.model()).of_envs(viewed.envs());
     let interrupt = Interrupt::listen()?;
-    let server = Server::start(&place, page, &scene)?;
+    let server = Server::start(&options, page, &scene)?;
     announce(arguments, &server);
     let mut player = Player::new(viewed, arguments.paused);
     player.interaction().selection.count = player.viewed().envs().min(AT_FIRST);

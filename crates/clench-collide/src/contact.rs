@@ -100,8 +100,8 @@ impl<T: Real> Contacts<T> {
         if first {
             self.clear();
         }
-        for (place, point) in other.as_slice().iter().enumerate() {
-            let (taken, slot) = (point.active & environments, self.slot(place));
+        for (index, point) in other.as_slice().iter().enumerate() {
+            let (taken, slot) = (point.active & environments, self.slot(index));
             for lane in (0..T::LANES).filter(|&lane| taken.lane(lane)) {
                 set_lane(&mut slot.position, lane, point.position.lane(lane));
                 for (row, new) in slot.frame.rows.iter_mut().zip(&point.frame.rows) {
@@ -112,14 +112,14 @@ impl<T: Real> Contacts<T> {
             }
         }
     }
-    /// Returns the point at index `place`. At the end it first appends a point that exists in no environment.
+    /// Returns the point at index `index`. At the end it first appends a point that exists in no environment.
     #[inline(always)]
-    pub(crate) fn slot(&mut self, place: usize) -> &mut ContactPoint<T> {
-        if place == self.len {
-            self.points[place] = ContactPoint::none();
+    pub(crate) fn slot(&mut self, index: usize) -> &mut ContactPoint<T> {
+        if index == self.len {
+            self.points[index] = ContactPoint::none();
             self.len += 1;
         }
-        &mut self.points[place]
+        &mut self.points[index]
     }
     /// Adds a point that is active in any environment. No pair exceeds the capacity.
     #[inline(always)]

@@ -282,13 +282,13 @@ impl Linearizer {
     /// Returns the number of directions of the pass that starts with direction `first`. A pass contains no positions
     /// and other directions together if later passes can then reuse poses and contacts.
     fn pass_len(&self, source: Source<'_>, first: usize) -> usize {
-        let most = self.pass.directions();
-        let count = most.min(self.directions.len() - first);
+        let max_len = self.pass.directions();
+        let count = max_len.min(self.directions.len() - first);
         let directions = self.directions[first..].iter();
         let moving = directions.take_while(|(direction, _)| direction.is_position());
         let moving = moving.count();
         let others = self.directions.len() - first - moving;
-        let pays = others > 2 * most && keeps_positions(source);
+        let pays = others > 2 * max_len && keeps_positions(source);
         match pays && moving > 0 {
             true => count.min(moving),
             false => count,

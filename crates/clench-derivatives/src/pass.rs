@@ -20,7 +20,7 @@ const REGISTERS: usize = 2;
 pub(crate) trait Pass: Send {
     /// Returns the maximum number of directions of a pass.
     fn directions(&self) -> usize;
-    /// Writes the distances of constraints from a change of their piece in the last pass.
+    /// Writes the distances of constraints from a switch to another piece of their costs, in the last pass.
     fn switching(&self, out: &mut Vec<f64>);
     /// Adds bounds of the errors that the solver leaves in the last pass, along `count` directions.
     fn bound_errors(&mut self, source: Source<'_>, count: usize, bound: &mut ErrorBound);
@@ -100,7 +100,7 @@ pub(crate) struct DualPass<L: Real<Scalar = f64>> {
     /// The start of the last pass.
     pub last: Stage,
     pub recursive: Recursive,
-    /// True if recursions found the last derivatives.
+    /// True if the last derivatives were computed by recursions.
     recursed: bool,
 }
 
@@ -248,7 +248,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         // Buffers of delayed sensors store measurements.
         ws.sensors.wanted = !request.omits_sensors || request.memory;
         ws.constant_factor = source.constant_factor;
-        hold(ws, std::mem::replace(last, source.start), source);
+        remove_reused_derivatives(ws, std::mem::replace(last, source.start), source);
         let step = match source.start {
             Stage::Positions => {
                 ws.invalidate_poses();
@@ -297,18 +297,18 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
 }
 
 /// Removes the derivatives of the stages that the pass reuses from the last one, which began with stage `last`.
-fn hold<T: Real>(ws: &mut Workspace<T>, last: Stage, source: Source<'_>) {
-    let held = last..source.start;
-    if held.contains(&Stage::Positions) && source.constant_factor {
-        ws.hold_positions();
+fn remove_reused_derivatives<T: Real>(ws: &mut Workspace<T>, last: Stage, source: Source<'_>) {
+    let reused = last..source.start;
+    if reused.contains(&Stage::Positions) && source.constant_factor {
+        ws.remove_position_derivatives();
     }
-    if held.contains(&Stage::Velocities) {
-        ws.hold_velocities();
+    if reused.contains(&Stage::Velocities) {
+        ws.remove_velocity_derivatives();
     }
     // Displacements of friction that sticks are found with the constraints.
-    ws.keep_constraints =
+    ws.reuse_constraints =
         source.start == Stage::Forces && source.constant_factor && !source.settings.stiction;
-    if ws.keep_constraints && !held.is_empty() {
-        ws.hold_constraints();
+    if ws.reuse_constraints && !reused.is_empty() {
+        ws.remove_constraint_derivatives();
     }
 }

@@ -55,11 +55,13 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
                     &mut ws.position,
                 );
             }
-            Stage::Velocities | Stage::Forces if last == Stage::Positions => ws.hold_positions(),
+            Stage::Velocities | Stage::Forces if last == Stage::Positions => {
+                ws.remove_position_derivatives()
+            }
             Stage::Velocities | Stage::Forces => {}
         }
         if source.start == Stage::Forces && last != Stage::Forces {
-            ws.hold_velocities();
+            ws.remove_velocity_derivatives();
         }
         match model.sensors.iter().filter_map(last_stage).max() {
             None | Some(Stage::Positions) => {}

@@ -6,7 +6,7 @@ use crate::error::{Fault, SimError};
 pub use crate::error::{check_count, check_length};
 use crate::joint_description::{joint_of, massless};
 use crate::model::Model;
-use crate::state::bounds::{Bound, OCCASIONAL, each_input, first_beyond, within};
+use crate::state::bounds::{Limit, OCCASIONAL, each_input, first_beyond, within};
 pub use crate::state::bounds::{beyond_bounds, has_occasional};
 use crate::state::{FIELDS, State};
 use crate::workspace::Workspace;
@@ -20,7 +20,7 @@ pub fn check_values<T: Scalar>(
     expected: usize,
 ) -> Result<(), SimError> {
     check_length(field, values.len(), expected)?;
-    match first_beyond(values, 0, Bound::Finite) {
+    match first_beyond(values, 0, Limit::Finite) {
         None => Ok(()),
         Some((index, value)) => Err(SimError::Parameter {
             field,
@@ -44,17 +44,17 @@ pub fn check_lengths<T: Real>(model: &Model, s: &State<T>) -> Result<(), SimErro
 
 /// Passes the computed quantities that must be within limits to `visit`.
 #[inline(always)]
-fn each_computed<T: Real>(ws: &Workspace<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
-    visit("qacc", Bound::Near, &ws.qacc);
-    visit("qfrc_constraint", Bound::Finite, &ws.qfrc_constraint);
+fn each_computed<T: Real>(ws: &Workspace<T>, mut visit: impl FnMut(&'static str, Limit, &[T])) {
+    visit("qacc", Limit::Near, &ws.qacc);
+    visit("qfrc_constraint", Limit::Finite, &ws.qfrc_constraint);
 }
 
 /// Passes the numbers of the state that a step must leave within limits to `visit`.
 #[inline(always)]
-fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Bound, &[T])) {
-    visit("qvel", Bound::Near, &state.qvel);
-    visit("qpos", Bound::Near, &state.qpos);
-    visit("act", Bound::Finite, &state.act);
+fn each_moved<T: Real>(state: &State<T>, mut visit: impl FnMut(&'static str, Limit, &[T])) {
+    visit("qvel", Limit::Near, &state.qvel);
+    visit("qpos", Limit::Near, &state.qpos);
+    visit("act", Limit::Finite, &state.act);
 }
 
 /// Returns the lanes whose state a step can start from. If `occasional` is false, all [occasional
@@ -69,7 +69,7 @@ pub fn good_inputs<T: Real>(s: &State<T>, occasional: bool) -> T::Mask {
         s,
         |group| occasional || group != OCCASIONAL,
         #[inline(always)]
-        |_, bound, _, values| good &= within(values, bound),
+        |_, limit, _, values| good &= within(values, limit),
     );
     good
 }
@@ -79,9 +79,9 @@ pub fn input_fault<T: Real>(model: &Model, s: &State<T>, lane: usize) -> Fault {
     let time = s.time.lane(lane);
     let mut found = (!time.is_finite()).then_some(("time", 0, time));
     let every_group = |_| true;
-    each_input(s, every_group, |field, bound, start, values| {
+    each_input(s, every_group, |field, limit, start, values| {
         if found.is_none()
-            && let Some((i, value)) = first_beyond(values, lane, bound)
+            && let Some((i, value)) = first_beyond(values, lane, limit)
         {
             found = Some((field, start + i, value));
         }
@@ -118,7 +118,7 @@ pub fn well_computed<T: Real>(ws: &Workspace<T>) -> T::Mask {
     each_computed(
         ws,
         #[inline(always)]
-        |_, bound, values| good &= within(values, bound),
+        |_, limit, values| good &= within(values, limit),
     );
     good
 }
@@ -130,7 +130,7 @@ pub fn well_moved<T: Real>(state: &State<T>) -> T::Mask {
     each_moved(
         state,
         #[inline(always)]
-        |_, bound, values| good &= within(values, bound),
+        |_, limit, values| good &= within(values, limit),
     );
     good
 }
@@ -159,14 +159,14 @@ pub fn result_fault<S: Real, T: Real>(
         };
     }
     let mut found = None;
-    let mut note = |field, first: Option<(usize, f64)>| {
+    let mut record = |field, first: Option<(usize, f64)>| {
         found = found.or(first.map(|(index, value)| (field, index, value)));
     };
-    each_computed(ws, |field, bound, values| {
-        note(field, first_beyond(values, lane, bound));
+    each_computed(ws, |field, limit, values| {
+        record(field, first_beyond(values, lane, limit));
     });
-    each_moved(state, |field, bound, values| {
-        note(field, first_beyond(values, lane, bound));
+    each_moved(state, |field, limit, values| {
+        record(field, first_beyond(values, lane, limit));
     });
     // If every number is within limits, the solver encountered one that was not.
     let (field, index, value) = found.unwrap_or(("gap", 0, f64::NAN));

@@ -175,7 +175,7 @@ impl Constants {
             for group in dofs.chunks_mut(together) {
                 group.fill(mean(group));
             }
-            if slides_alone(model, joint.body) {
+            if only_slides(model, joint.body) {
                 dofs.fill(1.0 / params.body_mass[joint.body].max(MIN_INERTIA));
             }
         }
@@ -190,7 +190,7 @@ impl Constants {
             if model.bodies[model.bodies[b].weld].joints.is_empty() {
                 continue;
             }
-            if slides_alone(model, b) {
+            if only_slides(model, b) {
                 *weight = [1.0 / params.body_mass[b].max(MIN_INERTIA), 0.0];
                 continue;
             }
@@ -387,7 +387,7 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Returns true if a body's weights depend only on its mass: MuJoCo then takes 1/mass in every direction, without
 /// armature (its `body_simple` of level two).
-fn slides_alone(model: &Model, body: usize) -> bool {
+fn only_slides(model: &Model, body: usize) -> bool {
     let slides = |j: usize| model.joints[j].kind == JointKind::Slide;
     let body = &model.bodies[body];
     body.diagonal_inertia && body.joints.clone().all(slides)

@@ -16,9 +16,9 @@ pub struct NotDiscrete {
 
 /// Two geoms that may collide but whose shapes are not supported.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{place}geoms {first} and {second} may collide, but {kinds} is not supported")]
+#[error("{location}geoms {first} and {second} may collide, but {kinds} is not supported")]
 pub struct UnsupportedPair {
-    pub(crate) place: String,
+    pub(crate) location: String,
     pub(crate) first: String,
     pub(crate) second: String,
     pub(crate) kinds: String,

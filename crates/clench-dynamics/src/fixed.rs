@@ -8,7 +8,7 @@ use std::slice::from_ref;
 #[derive(Clone, Debug)]
 pub struct FixedPoses {
     /// True if the poses are those of the present parameters.
-    known: bool,
+    computed: bool,
     /// The number of times that they were computed.
     version: u64,
     /// The whole model.
@@ -31,7 +31,7 @@ impl FixedPoses {
         let mut moving = Vec::new();
         Part::list(model, &moves, &mut moving);
         FixedPoses {
-            known: false,
+            computed: false,
             version: 0,
             whole: Part::whole(model),
             moves: Vec::from_iter((0..model.nbody()).map(moves)),
@@ -41,19 +41,19 @@ impl FixedPoses {
 
     /// Invalidates the poses, because parameters may have changed.
     pub fn invalidate(&mut self) {
-        self.known = false;
+        self.computed = false;
     }
 
     /// Records that a pass computed the invalid poses.
-    pub fn note(&mut self) {
-        if !self.known {
-            (self.known, self.version) = (true, self.version + 1);
+    pub fn mark_computed(&mut self) {
+        if !self.computed {
+            (self.computed, self.version) = (true, self.version + 1);
         }
     }
 
     /// Returns true if the poses are valid.
-    pub fn known(&self) -> bool {
-        self.known
+    pub fn is_computed(&self) -> bool {
+        self.computed
     }
 
     /// Returns the number of times that the poses were computed. They change only with it.
@@ -68,7 +68,7 @@ impl FixedPoses {
 
     /// Returns the parts whose poses a pass computes.
     pub fn parts(&self) -> &[Part] {
-        match self.known {
+        match self.computed {
             true => &self.moving,
             false => from_ref(&self.whole),
         }

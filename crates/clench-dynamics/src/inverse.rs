@@ -18,7 +18,7 @@ use crate::constraint::assemble;
 use crate::contact::detect;
 use crate::dynamics::actuation::actuation;
 use crate::dynamics::adhesion::adhesion;
-use crate::dynamics::discrete::{add_metric_forces, enter_metric};
+use crate::dynamics::discrete::{add_metric_forces, apply_metric};
 use crate::dynamics::euler::{damped_inertia, damped_lanes};
 use crate::dynamics::implicit::{add_gyroscopic_products, full_inertia, symmetric_inertia};
 use crate::model::{Integrator, Model, Params};
@@ -68,7 +68,7 @@ pub fn inverse<T: Real>(
         // The derivatives of actuators depend on their forces.
         let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
         actuation(model, params, state, pos, vel, T::ZERO, force);
-        enter_metric(model, params, settings, state, ws);
+        apply_metric(model, params, settings, state, ws);
     } else if given == Acceleration::Discrete {
         make_continuous(model, params, state, ws);
     }

@@ -7,7 +7,7 @@ use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::articulated::articulated_factor;
 use crate::dynamics::bias::bias_forces;
 use crate::dynamics::com::com_positions;
-use crate::dynamics::discrete::{discrete, enter_metric};
+use crate::dynamics::discrete::{apply_metric, discrete};
 use crate::dynamics::energy::{Energy, energy};
 use crate::dynamics::euler::euler;
 use crate::dynamics::implicit::{implicit, implicit_fast};
@@ -50,11 +50,11 @@ pub fn position_stage<T: Real>(
 fn positions<T: Real>(model: &Model, params: &Params<T>, state: &State<T>, ws: &mut Workspace<T>) {
     let computed = Computed {
         parts: ws.sleep.parts(&ws.fixed),
-        fixed: !ws.fixed.known(),
+        fixed: !ws.fixed.is_computed(),
     };
     let pos = &mut ws.position;
     poses(model, params, state, computed, pos);
-    ws.fixed.note();
+    ws.fixed.mark_computed();
     ws.clock.lap(Stage::Kinematics as usize);
     let (mass, factor) = match ws.metric.acts() {
         true => (&mut ws.metric.mass, &mut ws.metric.mass_factor),
@@ -155,7 +155,7 @@ pub(crate) fn force_stage<T: Real>(
     actuation(model, params, state, pos, vel, ws.integration.offset, force);
     smooth_forces(model, ws.sleep.computed(), state, pos, force);
     if ws.metric.acts() {
-        enter_metric(model, params, settings, state, ws);
+        apply_metric(model, params, settings, state, ws);
     }
     let parts = (ws.sleep.computed(), ws.sleep.rows(model));
     let forces = (&ws.force.qfrc_smooth[..], &ws.metric.shift[..]);
@@ -241,9 +241,9 @@ fn from_forces<T: Real>(
     force_stage(model, params, settings, state, ws);
     constraint_stage(model, params, settings, state, ws);
     if settings.flags.sleep {
-        ws.sleep.still(model, &mut ws.qacc);
+        ws.sleep.clear_sleeping(model, &mut ws.qacc);
         if !ws.singular.any() {
-            ws.sleep.note(model, state);
+            ws.sleep.record_pass(model, state);
         }
     }
 }
@@ -257,7 +257,7 @@ pub fn step<T: Real>(
     ws: &mut Workspace<T>,
     sensors: Sensors<T>,
 ) {
-    if rest(model, params, settings, state, ws, sensors) {
+    if step_asleep(model, params, settings, state, ws, sensors) {
         return;
     }
     if settings.flags.sleep && sleep::is_idle(model, state, ws) {
@@ -269,7 +269,7 @@ pub fn step<T: Real>(
 }
 
 /// Does the step if everything sleeps as the last step left it, so that only time changes. Returns true if it did.
-pub fn rest<T: Real>(
+pub fn step_asleep<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -277,15 +277,15 @@ pub fn rest<T: Real>(
     ws: &mut Workspace<T>,
     sensors: Sensors<T>,
 ) -> bool {
-    let rests = settings.flags.sleep && sleep::rests(model, state, ws);
-    if rests {
-        pass_time(model, params, settings, state, ws, sensors);
+    let unchanged = settings.flags.sleep && sleep::sleeps_unchanged(model, state, ws);
+    if unchanged {
+        advance_time(model, params, settings, state, ws, sensors);
     }
-    rests
+    unchanged
 }
 
 /// Does a step that only advances time.
-fn pass_time<T: Real>(
+fn advance_time<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -309,8 +309,8 @@ fn idle<T: Real>(
     if !ws.sleep.is_at_rest() {
         clear(model, params, settings, state, ws);
     }
-    pass_time(model, params, settings, state, ws, sensors);
-    sleep::hold(model, state, ws);
+    advance_time(model, params, settings, state, ws, sensors);
+    sleep::restore_sleeping(model, state, ws);
     state.qacc_warmstart.fill(T::ZERO);
 }
 
@@ -377,7 +377,7 @@ pub fn step_from_forces<T: Real>(
         }),
     }
     if settings.flags.sleep {
-        sleep::hold(model, state, ws);
+        sleep::restore_sleeping(model, state, ws);
     }
     state.qacc_warmstart.copy_from_slice(&ws.qacc);
     ws.clock.lap(Stage::Integration as usize);

@@ -69,7 +69,7 @@ impl Profile {
         let step = |name, stage| (name, steps.spent()[stage as usize]);
         let part = |name, part| (name, solves.spent()[part as usize]);
         let parts: Duration = solves.spent().iter().sum();
-        let rest = steps.spent()[Stage::Solve as usize].saturating_sub(parts);
+        let remainder = steps.spent()[Stage::Solve as usize].saturating_sub(parts);
         let stages = vec![
             step("kinematics", Stage::Kinematics),
             step("inertia", Stage::Inertia),
@@ -85,7 +85,7 @@ impl Profile {
             part("direction", SolvePart::Direction),
             part("line search", SolvePart::LineSearch),
             part("evaluation", SolvePart::Evaluation),
-            ("solve rest", rest),
+            ("solve rest", remainder),
             step("sensors", Stage::Sensors),
             step("integration", Stage::Integration),
             step("rows and checks", Stage::Rows),

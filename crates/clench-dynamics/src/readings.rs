@@ -60,13 +60,13 @@ impl<T: Real> BodyForces<T> {
             .iter()
             .any(|sensor| sensor.kind.needs_body_forces())
         {
-            bodies.make_room(model.nbody());
+            bodies.allocate(model.nbody());
         }
         bodies
     }
 
     /// Allocates the arrays for `count` bodies.
-    pub fn make_room(&mut self, count: usize) {
+    pub fn allocate(&mut self, count: usize) {
         self.cacc.resize(count, Motion::ZERO);
         self.cfrc_int.resize(count, Force::ZERO);
         self.external.clear();

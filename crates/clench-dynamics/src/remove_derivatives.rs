@@ -8,19 +8,19 @@ use clench_math::{Inertia, Mat3, Motion, Quat, Real, Vec3};
 
 impl<T: Real> Workspace<T> {
     /// Removes the derivatives of the position stage and of contacts. The factor of the mass matrix must have none.
-    pub fn hold_positions(&mut self) {
-        self.position.hold();
-        hold(&mut self.problem.mass.values, number);
-        hold(&mut self.contacts, contact);
+    pub fn remove_position_derivatives(&mut self) {
+        self.position.remove_derivatives();
+        remove_derivatives(&mut self.problem.mass.values, number);
+        remove_derivatives(&mut self.contacts, contact);
     }
 
-    /// Removes the derivatives of constraints, which the next pass keeps. (With the integrator `discrete` they depend
+    /// Removes the derivatives of constraints, which the next pass reuses. (With the integrator `discrete` they depend
     /// on the forces of actuators.)
-    pub fn hold_constraints(&mut self) {
-        self.problem.hold_constraints();
-        hold(&mut self.record.pos, number);
-        hold(&mut self.record.vel, number);
-        hold(&mut self.record.blocks, |block| BlockRecord {
+    pub fn remove_constraint_derivatives(&mut self) {
+        self.problem.remove_constraint_derivatives();
+        remove_derivatives(&mut self.record.pos, number);
+        remove_derivatives(&mut self.record.vel, number);
+        remove_derivatives(&mut self.record.blocks, |block| BlockRecord {
             margin: number(&block.margin),
             impedance: number(&block.impedance),
             ..*block
@@ -28,17 +28,17 @@ impl<T: Real> Workspace<T> {
     }
 
     /// Removes the derivatives of the velocity stage.
-    pub fn hold_velocities(&mut self) {
+    pub fn remove_velocity_derivatives(&mut self) {
         let Velocities {
             cvel,
             cdof_dot,
             ten_velocity,
             actuator_velocity,
         } = &mut self.velocity;
-        hold(cvel, motion);
-        hold(cdof_dot, motion);
-        hold(ten_velocity, number);
-        hold(actuator_velocity, number);
+        remove_derivatives(cvel, motion);
+        remove_derivatives(cdof_dot, motion);
+        remove_derivatives(ten_velocity, number);
+        remove_derivatives(actuator_velocity, number);
         let Forces {
             qfrc_bias,
             qfrc_spring,
@@ -57,7 +57,7 @@ impl<T: Real> Workspace<T> {
             act_dot: _,
             cfrc_body: _,
         } = &mut self.force;
-        hold(cacc, motion);
+        remove_derivatives(cacc, motion);
         for forces in [
             qfrc_bias,
             qfrc_spring,
@@ -67,13 +67,13 @@ impl<T: Real> Workspace<T> {
             qfrc_adhesion,
             qfrc_passive,
         ] {
-            hold(forces, number);
+            remove_derivatives(forces, number);
         }
     }
 }
 
 impl<T: Real> Positions<T> {
-    fn hold(&mut self) {
+    fn remove_derivatives(&mut self) {
         for points in [
             &mut self.xpos,
             &mut self.xipos,
@@ -84,7 +84,7 @@ impl<T: Real> Positions<T> {
             &mut self.subtree_com,
             &mut self.subtree_moment,
         ] {
-            hold(points, vector);
+            remove_derivatives(points, vector);
         }
         for frames in [
             &mut self.xmat,
@@ -92,14 +92,14 @@ impl<T: Real> Positions<T> {
             &mut self.geom_xmat,
             &mut self.site_xmat,
         ] {
-            hold(frames, frame);
+            remove_derivatives(frames, frame);
         }
         for rotations in [&mut self.xquat, &mut self.jnt_rotation] {
-            hold(rotations, rotation);
+            remove_derivatives(rotations, rotation);
         }
-        hold(&mut self.cdof, motion);
+        remove_derivatives(&mut self.cdof, motion);
         for inertias in [&mut self.cinert, &mut self.crb] {
-            hold(inertias, inertia);
+            remove_derivatives(inertias, inertia);
         }
         for numbers in [
             &mut self.ten_length,
@@ -107,14 +107,14 @@ impl<T: Real> Positions<T> {
             &mut self.actuator_length,
             &mut self.actuator_moment,
         ] {
-            hold(numbers, number);
+            remove_derivatives(numbers, number);
         }
     }
 }
 
 /// Replaces every element by its value.
 #[inline(always)]
-fn hold<X>(elements: &mut [X], value: impl Fn(&X) -> X) {
+fn remove_derivatives<X>(elements: &mut [X], value: impl Fn(&X) -> X) {
     for element in elements {
         *element = value(element);
     }

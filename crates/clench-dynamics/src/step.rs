@@ -29,8 +29,8 @@ pub struct Step<T: Real> {
     pub step: fn(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>, Sensors<T>),
     /// [`pipeline::forward`].
     pub forward: fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>, Sensors<T>),
-    /// [`pipeline::rest`].
-    pub rest:
+    /// [`pipeline::step_asleep`].
+    pub step_asleep:
         fn(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>, Sensors<T>) -> bool,
     /// [`pipeline::before_forces`].
     pub before_forces: fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>),
@@ -94,7 +94,7 @@ impl KernelTable for StepTable {
             splat_state: State::splat_from,
             step: pipeline::step,
             forward: pipeline::forward,
-            rest: pipeline::rest,
+            step_asleep: pipeline::step_asleep,
             before_forces: pipeline::before_forces,
             step_from_forces: pipeline::step_from_forces,
             position_stage: pipeline::position_stage,

@@ -45,9 +45,9 @@ pub struct Workspace<T: Real> {
     /// True if the factor of the mass matrix needs no derivatives, because only the unconstrained acceleration follows
     /// from it. Only dual numbers have any.
     pub constant_factor: bool,
-    /// True if the next constraint stage keeps the blocks of the last one, which was for the same positions and
+    /// True if the next constraint stage reuses the blocks of the last one, which was for the same positions and
     /// velocities. Only passes in dual numbers do so.
-    pub keep_constraints: bool,
+    pub reuse_constraints: bool,
     /// True if the workspace is read after a step. Otherwise a step in which everything sleeps computes nothing.
     pub read: bool,
     /// The trees that are awake.
@@ -113,7 +113,7 @@ impl<T: Real> Workspace<T> {
             qacc: zeros(nv),
             qfrc_constraint: zeros(nv),
             constant_factor: false,
-            keep_constraints: false,
+            reuse_constraints: false,
             read: true,
             sleep: Sleep::new(model),
             fixed: FixedPoses::new(model),

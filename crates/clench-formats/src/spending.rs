@@ -95,10 +95,10 @@ impl Spending {
             return Ok(bytes.clone());
         }
         let read = || -> io::Result<Vec<u8>> {
-            let left = self.budget.bytes.saturating_sub(self.bytes);
+            let remaining = self.budget.bytes.saturating_sub(self.bytes);
             let mut bytes = Vec::new();
             File::open(path)?
-                .take(left.saturating_add(1))
+                .take(remaining.saturating_add(1))
                 .read_to_end(&mut bytes)?;
             Ok(bytes)
         };

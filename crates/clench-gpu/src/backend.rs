@@ -53,7 +53,7 @@ pub fn batch<S: GpuReal>(
 }
 
 /// Returns the report field that holds an output, if one does.
-fn word(output: Output) -> Option<&'static str> {
+fn report_field(output: Output) -> Option<&'static str> {
     match output {
         Output::contact_count => Some("ncon"),
         Output::solver_iterations => Some("niter"),
@@ -122,18 +122,18 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
         match output {
             Output::ten_J | Output::actuator_moment | Output::actuator_power => true,
             Output::site_jacp | Output::site_jacr => true,
-            output => word(output).is_some() || self.work.find(output.name()).is_some(),
+            output => report_field(output).is_some() || self.work.find(output.name()).is_some(),
         }
     }
 
-    fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
+    fn request(&mut self, outputs: &[Output]) -> Result<(), SimError> {
         let of_bodies = |output: &Output| {
             use Output::{cacc, cfrc_ext, cfrc_int, contact_force};
             matches!(output, cacc | cfrc_int | cfrc_ext | contact_force)
         };
         let of_cameras = |output: &Output| matches!(output, Output::cam_xpos | Output::cam_xmat);
         if outputs.iter().any(of_cameras) {
-            self.place_cameras()?;
+            self.enable_cameras()?;
         }
         if outputs.iter().any(of_bodies) {
             self.observe(false)?;
@@ -149,7 +149,7 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     }
 
     fn set_parameters(&mut self, envs: &[usize], rows: &[Vec<S>]) -> Result<(), SimError> {
-        Ok(self.give_parameters(envs, rows)?)
+        Ok(self.write_parameters(envs, rows)?)
     }
 
     fn write(&mut self, field: &'static str, rows: &[S]) -> Result<(), SimError> {
@@ -162,8 +162,8 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     }
 
     fn read_output(&mut self, output: Output, rows: &mut [S]) -> Result<(), SimError> {
-        if let Some(word) = word(output) {
-            let words = self.report(word)?;
+        if let Some(field) = report_field(output) {
+            let words = self.report(field)?;
             let counts = rows.iter_mut().zip(words);
             counts.for_each(|(row, count)| *row = S::new(f64::from(count)));
             return Ok(());

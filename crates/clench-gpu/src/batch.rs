@@ -172,16 +172,16 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// Returns an error if the device was lost, perhaps in the steps of the previous call.
     pub fn step(&mut self, steps: usize) -> Result<(), GpuError> {
-        let mut left = steps;
-        while left > 0 {
-            let now = left.min(STEPS_AT_A_TIME);
+        let mut remaining = steps;
+        while remaining > 0 {
+            let now = remaining.min(STEPS_AT_A_TIME);
             let commands =
                 self.commands(|batch, encoder| (0..now).for_each(|_| batch.encode_step(encoder)));
             let submission = self.device.queue.submit([commands]);
             if let Some(before) = self.pending.replace(submission) {
                 self.device.wait(before)?;
             }
-            left -= now;
+            remaining -= now;
         }
         Ok(())
     }
@@ -234,7 +234,7 @@ impl<S: GpuReal> GpuBatch<S> {
         self.submit(|batch, encoder| {
             batch.clear_failures(encoder);
             for (k, kernel) in kernels.iter().enumerate() {
-                batch.encode(encoder, clock.around(k), [kernel].into_iter());
+                batch.encode(encoder, clock.timestamp_writes(k), [kernel].into_iter());
             }
             clock.write(encoder);
         })?;
@@ -257,12 +257,12 @@ impl<S: GpuReal> GpuBatch<S> {
     /// # Errors
     /// Returns an error if an environment does not exist or the device was lost.
     pub fn reset_envs(&mut self, envs: &[usize]) -> Result<(), GpuError> {
-        let mut asked = vec![0u32; self.count];
+        let mut restarts = vec![0u32; self.count];
         for &env in envs {
             self.check_env(env)?;
-            asked[env] = 1;
+            restarts[env] = 1;
         }
-        self.write_report("restart", &asked);
+        self.write_report("restart", &restarts);
         self.submit(|batch, encoder| {
             batch.encode(encoder, None, [&batch.pipelines.restart].into_iter())
         })
@@ -346,9 +346,9 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Returns an error if the device refuses a kernel.
     pub(crate) fn observe(&mut self, sensors: bool) -> Result<(), GpuError> {
         if sensors {
-            let place = 4 * MEASURES as u64;
-            (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
-            self.place_cameras()?;
+            let offset = 4 * MEASURES as u64;
+            (self.device.queue).write_buffer(&self.arrays.words, offset, [1u32].as_bytes());
+            self.enable_cameras()?;
         }
         self.pipelines
             .observe::<S>(&self.device, self.count, sensors)
@@ -358,11 +358,12 @@ impl<S: GpuReal> GpuBatch<S> {
     ///
     /// # Errors
     /// Returns an error if the device refuses the kernel.
-    pub(crate) fn place_cameras(&mut self) -> Result<(), GpuError> {
+    pub(crate) fn enable_cameras(&mut self) -> Result<(), GpuError> {
         if self.model.cameras.is_empty() {
             return Ok(());
         }
-        self.pipelines.place_cameras::<S>(&self.device, self.count)
+        self.pipelines
+            .compile_cameras::<S>(&self.device, self.count)
     }
 
     pub(crate) fn check_env(&self, env: usize) -> Result<(), GpuError> {

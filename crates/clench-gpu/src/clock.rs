@@ -46,7 +46,10 @@ impl Clock {
     }
 
     /// Returns the timestamp writes of the k-th timed pass.
-    pub(crate) fn around(&self, k: usize) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    pub(crate) fn timestamp_writes(
+        &self,
+        k: usize,
+    ) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         Some(wgpu::ComputePassTimestampWrites {
             query_set: &self.times,
             beginning_of_pass_write_index: Some(2 * k as u32),

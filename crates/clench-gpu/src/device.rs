@@ -169,15 +169,15 @@ impl Device {
         name: Option<&str>,
         features: wgpu::Features,
     ) -> Result<Arc<Self>, GpuError> {
-        let known = with_open_devices(|open| {
+        let open_device = with_open_devices(|open| {
             open.devices
                 .retain(|(_, _, device)| lock(&device.lost).is_none());
-            let fits = |(known, able, _): &&(Option<String>, wgpu::Features, _)| {
-                known.as_deref() == name && *able == features
+            let fits = |(key, able, _): &&(Option<String>, wgpu::Features, _)| {
+                key.as_deref() == name && *able == features
             };
             open.devices.iter().find(fits).map(|found| found.2.clone())
         });
-        if let Some(device) = known {
+        if let Some(device) = open_device {
             return Ok(device);
         }
         let device = Arc::new(Self::find(name, features)?);
@@ -196,8 +196,8 @@ impl Device {
         let adapter = found.iter().find(fits).ok_or_else(|| {
             let names: Vec<_> = found.iter().map(|a| a.get_info().name).collect();
             GpuError::NoSuchDevice {
-                asked: name.unwrap_or_default().to_owned(),
-                known: names.join(", "),
+                requested: name.unwrap_or_default().to_owned(),
+                available: names.join(", "),
             }
         })?;
         if !adapter.features().contains(features) {

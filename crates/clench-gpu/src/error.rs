@@ -28,12 +28,12 @@ pub enum GpuError {
     )]
     NoDevice,
     /// No device has this name.
-    #[error("there is no graphics device \"{asked}\"; there are: {known}")]
+    #[error("there is no graphics device \"{requested}\"; there are: {available}")]
     NoSuchDevice {
         /// The requested name.
-        asked: String,
+        requested: String,
         /// The names of the available devices.
-        known: String,
+        available: String,
     },
     /// The device lacks a required feature.
     #[error("the graphics device \"{device}\" cannot be used: {reason}")]
@@ -64,7 +64,7 @@ pub enum GpuError {
     /// The environments do not fit the device's memory.
     #[error(
         "the graphics device \"{device}\" has no memory for {count} environments of {bytes} bytes{}",
-        at_most(*.max)
+        capacity_hint(*.max)
     )]
     OutOfMemory {
         /// The device's name.
@@ -133,12 +133,12 @@ pub enum GpuError {
         value: f64,
     },
     /// No field has this name.
-    #[error("there is no field \"{name}\" on a graphics device; there are: {known}")]
+    #[error("there is no field \"{name}\" on a graphics device; there are: {names}")]
     Unknown {
         /// The name.
         name: String,
         /// All names.
-        known: String,
+        names: String,
     },
     /// The field is derived from others.
     #[error("{field} is computed from the state: it is read-only")]
@@ -162,7 +162,7 @@ impl From<GpuError> for SimError {
     }
 }
 
-fn at_most(max: Option<usize>) -> String {
+fn capacity_hint(max: Option<usize>) -> String {
     max.map_or_else(
         || ": create fewer, or several batches one after the other".to_owned(),
         |max| format!(": at most {max} fit its largest buffer; create several batches"),

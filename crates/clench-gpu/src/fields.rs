@@ -11,7 +11,7 @@ pub(crate) struct Field {
     /// The name; in capitals, its offset in the kernels.
     pub name: &'static str,
     /// The offset.
-    pub place: usize,
+    pub offset: usize,
     /// The number of values.
     pub width: usize,
 }
@@ -27,8 +27,12 @@ pub(crate) struct Fields {
 
 impl Fields {
     fn push(&mut self, name: &'static str, width: usize) {
-        let place = self.size;
-        self.list.push(Field { name, place, width });
+        let offset = self.size;
+        self.list.push(Field {
+            name,
+            offset,
+            width,
+        });
         self.size += width;
     }
 

@@ -60,7 +60,7 @@ macro_rules! texts {
     ($($name:literal),*) => { &[$(include_str!(concat!("kernels/", $name, ".wgsl"))),*] };
 }
 
-/// The source texts of all kernels.
+/// The source texts that every kernel includes.
 const COMMON: &[&str] = texts!["memory", "math"];
 
 macro_rules! kernels {
@@ -246,7 +246,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         memory.reports,
     ] {
         for field in &fields.list {
-            layout.count(&field.name.to_uppercase(), field.place);
+            layout.count(&field.name.to_uppercase(), field.offset);
         }
     }
     Preface {

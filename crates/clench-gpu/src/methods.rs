@@ -47,7 +47,7 @@ fn method(kinds: [ShapeKind; 2]) -> Option<(Method, usize)> {
             HeightField,
             Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh,
         ] => (Method::Convex, MAX_POINTS),
-        // Grounds do not collide.
+        // Planes and height fields do not collide with each other.
         [Plane | HeightField, Plane | HeightField] => return None,
         // In the wrong order.
         [

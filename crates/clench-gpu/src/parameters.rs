@@ -27,8 +27,8 @@ impl<S: GpuReal> GpuBatch<S> {
             let is_shared = matches!(geom.kind, ShapeKind::Mesh | ShapeKind::HeightField);
             is_shared && model.params.geom_size[g] != self.model().params.geom_size[g]
         });
-        let alike = tables.constants == base.constants && tables.layout == base.layout;
-        if resized || !alike || tables.words != base.words {
+        let same_structure = tables.constants == base.constants && tables.layout == base.layout;
+        if resized || !same_structure || tables.words != base.words {
             return Err(GpuError::Structure);
         }
         Ok(tables.numbers_in())
@@ -38,7 +38,7 @@ impl<S: GpuReal> GpuBatch<S> {
     ///
     /// # Errors
     /// Returns an error if the device has too little memory.
-    pub(crate) fn give_parameters(
+    pub(crate) fn write_parameters(
         &mut self,
         envs: &[usize],
         rows: &[Vec<S>],
@@ -59,8 +59,8 @@ impl<S: GpuReal> GpuBatch<S> {
             self.own = each.flat_map(|&x| repeat_n(x, count)).collect();
             self.arrays.parameters = self.device.array("parameters", bytes);
             self.bindings = self.arrays.bind(&self.device);
-            let place = 4 * OWN_PARAMETERS as u64;
-            (self.device.queue).write_buffer(&self.arrays.words, place, [1u32].as_bytes());
+            let offset = 4 * OWN_PARAMETERS as u64;
+            (self.device.queue).write_buffer(&self.arrays.words, offset, [1u32].as_bytes());
         }
         for (&env, row) in envs.iter().zip(rows) {
             for (k, &x) in row.iter().enumerate() {

@@ -166,7 +166,7 @@ impl Pipelines {
     ///
     /// # Errors
     /// Returns an error if the device refuses the kernel.
-    pub(crate) fn place_cameras<S: Texts>(
+    pub(crate) fn compile_cameras<S: Texts>(
         &mut self,
         device: &Device,
         count: usize,

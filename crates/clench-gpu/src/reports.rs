@@ -44,7 +44,7 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 
     /// Decodes a report field into faults.
-    pub(crate) fn faults(&self, word: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
+    pub(crate) fn faults(&self, field: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
         let limit = self.capacity.contacts;
         let fault = |&code: &u32| match Report::of(code) {
             Some(Report::Running | Report::Excluded) => None,
@@ -54,7 +54,7 @@ impl<S: GpuReal> GpuBatch<S> {
             // No kernel writes another code: its memory is corrupt.
             Some(Report::Diverged) | None => Some(GpuFault::Diverged),
         };
-        Ok(self.report(word)?.iter().map(fault).collect())
+        Ok(self.report(field)?.iter().map(fault).collect())
     }
 
     /// Returns the number of steps of each environment since its last reset.
@@ -108,7 +108,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Writes a report field of all environments.
     pub(crate) fn write_report(&self, name: &str, words: &[u32]) {
         if let Some(field) = self.reports.find(name) {
-            let start = 4 * (field.place * self.count) as u64;
+            let start = 4 * (field.offset * self.count) as u64;
             (self.device.queue).write_buffer(&self.arrays.reports, start, words.as_bytes());
         }
     }
@@ -119,7 +119,7 @@ impl<S: GpuReal> GpuBatch<S> {
             let bytes = 4 * self.count as u64;
             encoder.clear_buffer(
                 &self.arrays.reports,
-                field.place as u64 * bytes,
+                field.offset as u64 * bytes,
                 Some(bytes),
             );
         }

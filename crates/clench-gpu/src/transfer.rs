@@ -72,7 +72,7 @@ impl<S: GpuReal> GpuBatch<S> {
 
     fn upload(&self, field: Field, values: &[S]) {
         let turned = transpose(values, self.count, field.width);
-        let start = (size_of::<S>() * field.place * self.count) as u64;
+        let start = (size_of::<S>() * field.offset * self.count) as u64;
         (self.device.queue).write_buffer(&self.arrays.state, start, turned.as_bytes());
     }
 
@@ -86,7 +86,7 @@ impl<S: GpuReal> GpuBatch<S> {
         check_length(name, row.len(), field.width)?;
         check_row(name, env, row)?;
         for (k, value) in row.iter().enumerate() {
-            let start = (size_of::<S>() * ((field.place + k) * self.count + env)) as u64;
+            let start = (size_of::<S>() * ((field.offset + k) * self.count + env)) as u64;
             (self.device.queue).write_buffer(&self.arrays.state, start, value.as_bytes());
         }
         Ok(())
@@ -117,14 +117,14 @@ impl<S: GpuReal> GpuBatch<S> {
         let Some(field) = self.rows.find(name) else {
             return Err(GpuError::Unknown {
                 name: name.to_owned(),
-                known: self.names().join(", "),
+                names: self.names().join(", "),
             });
         };
         let bytes = (size_of::<S>() * self.rows.size * self.count) as u64;
         let all = self.device.download(&self.arrays.rows, 0, bytes)?;
         let all = decode::<S>(&all);
         let rows = all.chunks_exact(self.rows.size.max(1));
-        let part = field.place..field.place + field.width;
+        let part = field.offset..field.offset + field.width;
         Ok(rows.flat_map(|row| row[part.clone()].to_vec()).collect())
     }
 
@@ -157,10 +157,10 @@ impl<S: GpuReal> GpuBatch<S> {
             let field = name.to_owned();
             return Err(GpuError::ReadOnly { field });
         }
-        let known = self.state.list.iter().map(|field| field.name);
+        let names = self.state.list.iter().map(|field| field.name);
         Err(GpuError::Unknown {
             name: name.to_owned(),
-            known: Vec::from_iter(known).join(", "),
+            names: Vec::from_iter(names).join(", "),
         })
     }
 
@@ -170,7 +170,7 @@ impl<S: GpuReal> GpuBatch<S> {
         field: Field,
     ) -> Result<Vec<E>, GpuError> {
         let each = (size_of::<E>() * self.count) as u64;
-        let start = field.place as u64 * each;
+        let start = field.offset as u64 * each;
         let bytes = self
             .device
             .download(array, start, field.width as u64 * each)?;
@@ -188,12 +188,12 @@ fn decode<E: FromBytes + Copy>(bytes: &[u8]) -> Vec<E> {
 
 /// Transposes `height` rows of `width` numbers in cache-sized blocks.
 fn transpose<S: GpuReal>(values: &[S], height: usize, width: usize) -> Vec<S> {
-    const SIDE: usize = 32;
+    const BLOCK: usize = 32;
     let mut turned = vec![S::ZERO; height * width];
-    for top in (0..height).step_by(SIDE) {
-        for left in (0..width).step_by(SIDE) {
-            for column in left..width.min(left + SIDE) {
-                let bottom = height.min(top + SIDE);
+    for top in (0..height).step_by(BLOCK) {
+        for left in (0..width).step_by(BLOCK) {
+            for column in left..width.min(left + BLOCK) {
+                let bottom = height.min(top + BLOCK);
                 let to = &mut turned[column * height..][top..bottom];
                 for (row, to) in (top..bottom).zip(to) {
                     *to = values[row * width + column];

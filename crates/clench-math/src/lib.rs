@@ -7,7 +7,7 @@
 //! ```
 //! use clench_math::{Instructions, LaneTask, Real, Scalar, kernel};
 //!
-//! /// Coulomb friction: against the velocity where it slides, nothing where it rests.
+//! /// Coulomb friction: opposes the velocity, and is zero at rest.
 //! #[kernel]
 //! fn friction<T: Real>(velocity: &[T], limit: T, force: &mut [T]) {
 //!     for (force, &v) in force.iter_mut().zip(velocity) {

@@ -181,7 +181,7 @@ impl<T: Real> Quat<T> {
         angle = T::select(angle.gt(pi), angle - pi - pi, angle);
         let vector = axis * angle;
         if T::IS_DUAL {
-            // No axis, but derivatives: the vector is ±2 times the imaginary part.
+            // Without an axis the vector is ±2 times the imaginary part, which has derivatives.
             let small = self.imaginary() * T::new(2.0).copysign(self.w);
             return Vec3::select(sine.lt(T::new(TINY)), small, vector);
         }
@@ -199,7 +199,7 @@ impl<T: Real> Quat<T> {
         let (axis, angle) = v.normalize();
         let rotation = Quat::from_axis_angle(axis, angle);
         if T::IS_DUAL {
-            // No axis, but derivatives: the imaginary part is half the vector.
+            // Without an axis the imaginary part is half the vector, which has derivatives.
             let half = v * T::new(0.5);
             let small = Quat::new(T::ONE, half.x, half.y, half.z);
             return Quat::select(angle.lt(T::new(TINY)), small, rotation);

@@ -39,7 +39,7 @@ pub trait Mask:
     fn set_lane(&mut self, i: usize, value: bool);
 }
 
-/// A time for each environment, s, always in double precision: a clock adds up small steps, a million times.
+/// A time for each environment, s. It is in double precision, because it accumulates millions of small steps.
 pub trait Clock: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Creates the same time in every lane.
     fn splat(time: f64) -> Self;

@@ -5,7 +5,7 @@ use clench::rigid::{Precision, Sim};
 
 /// The half size of the visible part of a plane if there is nothing else, m.
 const PLANE: f64 = 1.0;
-/// The distance of a camera that shows all movable geoms over their size.
+/// The distance of a camera that shows all movable geoms, as a multiple of their size.
 const DISTANCE: f64 = 1.75;
 
 /// A camera independent of the model, which looks at a point from a distance and a direction: MuJoCo's free camera.
@@ -33,15 +33,15 @@ impl FreeCamera {
         let (model, params) = (sim.model(), sim.params());
         let bounds = |moving: bool| {
             let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-            for (g, place) in places.chunks_exact(3).enumerate() {
+            for (g, pose) in places.chunks_exact(3).enumerate() {
                 let radius = params.geom_rbound[g].lane(0).to_f64();
                 if moving && (model.geoms[g].body == 0 || radius <= 0.0) {
                     continue;
                 }
                 let radius = if radius > 0.0 { radius } else { PLANE };
                 for k in 0..3 {
-                    low[k] = low[k].min(place[k].to_f64() - 0.7 * radius);
-                    high[k] = high[k].max(place[k].to_f64() + 0.7 * radius);
+                    low[k] = low[k].min(pose[k].to_f64() - 0.7 * radius);
+                    high[k] = high[k].max(pose[k].to_f64() + 0.7 * radius);
                 }
             }
             (low[0] <= high[0]).then_some((low, high))
@@ -78,7 +78,7 @@ pub enum View {
 
 /// A camera with its pose.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
+pub(crate) struct CameraPose {
     pub eye: [f32; 3],
     /// The unit vectors to the right, upwards and backwards.
     pub axes: [[f32; 3]; 3],
@@ -89,10 +89,10 @@ pub(crate) struct Placed {
 
 impl View {
     /// Returns the present pose of the camera.
-    pub(crate) fn place<T: Precision>(
+    pub(crate) fn pose<T: Precision>(
         &self,
         sim: &mut Sim<T>,
-    ) -> Result<Placed, crate::RenderError> {
+    ) -> Result<CameraPose, crate::RenderError> {
         match *self {
             View::Camera(index) => {
                 let count = sim.model().cameras.len();
@@ -106,15 +106,15 @@ impl View {
                 let rotation: Vec<f32> = rotation.take(9).collect();
                 let parallel = sim.model().cameras[index].orthographic;
                 let fovy = sim.params().cam_fovy[index].lane(0).to_f64();
-                Ok(Placed {
+                Ok(CameraPose {
                     eye: [0, 1, 2].map(|k| number(eye[3 * index + k])),
                     axes: [0, 1, 2].map(|k| [rotation[k], rotation[3 + k], rotation[6 + k]]),
                     half: half(fovy, parallel),
                     parallel,
                 })
             }
-            View::Free(free) => Ok(free.place()),
-            View::All => Ok(FreeCamera::of_all(sim)?.place()),
+            View::Free(free) => Ok(free.pose()),
+            View::All => Ok(FreeCamera::of_all(sim)?.pose()),
         }
     }
 }
@@ -128,7 +128,7 @@ fn half(fovy: f64, parallel: bool) -> f32 {
 }
 
 impl FreeCamera {
-    fn place(&self) -> Placed {
+    fn pose(&self) -> CameraPose {
         let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
         let ahead = [
             elevation.cos() * azimuth.cos(),
@@ -142,7 +142,7 @@ impl FreeCamera {
             elevation.cos(),
         ];
         let narrow = |v: [f64; 3]| v.map(|x| x as f32);
-        Placed {
+        CameraPose {
             eye: narrow([0, 1, 2].map(|k| self.lookat[k] - self.distance * ahead[k])),
             axes: [narrow(right), narrow(up), narrow(ahead.map(|x| -x))],
             half: half(self.fovy, false),
@@ -151,7 +151,7 @@ impl FreeCamera {
     }
 }
 
-impl Placed {
+impl CameraPose {
     /// Returns the distance of a point along the viewing direction, m.
     pub(crate) fn distance(&self, point: [f32; 3]) -> f32 {
         let along = |k: usize| self.axes[2][k] * (self.eye[k] - point[k]);

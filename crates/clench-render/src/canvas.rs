@@ -85,12 +85,14 @@ impl Form {
         u64::from(self.row()) * u64::from(self.size[1])
     }
 
-    /// Returns the number of pictures of a dispatch of a call that requests `asked` pictures.
-    pub(crate) fn pictures(&self, asked: usize) -> u32 {
+    /// Returns the number of pictures of a dispatch of a call that requests `requested` pictures.
+    pub(crate) fn pictures(&self, requested: usize) -> u32 {
         let shadow = u64::from(self.colors) * 4 * u64::from(self.shadow()).pow(2);
         let each = u64::from(self.planes()) * self.picture() + shadow;
-        let most = (BUDGET / each.max(1)).clamp(1, MAX_PICTURES);
-        (asked.max(1) as u64).next_power_of_two().min(most) as u32
+        let max_pictures = (BUDGET / each.max(1)).clamp(1, MAX_PICTURES);
+        (requested.max(1) as u64)
+            .next_power_of_two()
+            .min(max_pictures) as u32
     }
 }
 
@@ -168,7 +170,7 @@ impl Canvas {
         }
     }
 
-    /// Writes the pictures of a dispatch, of which `slots` are the places, into memory.
+    /// Writes the pictures of a dispatch into memory, at the indices `slots`.
     pub(crate) fn read(
         &self,
         flight: usize,
@@ -217,7 +219,7 @@ impl Target {
 
 /// Creates a render target; with one sample per pixel it can also be read and sampled.
 fn texture(gpu: &Gpu, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
-    let kept = match samples {
+    let extra_usage = match samples {
         1 => TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING,
         _ => TextureUsages::empty(),
     };
@@ -232,7 +234,7 @@ fn texture(gpu: &Gpu, [width, height]: [u32; 2], format: TextureFormat, samples:
         sample_count: samples,
         dimension: TextureDimension::D2,
         format,
-        usage: TextureUsages::RENDER_ATTACHMENT | kept,
+        usage: TextureUsages::RENDER_ATTACHMENT | extra_usage,
         view_formats: &[],
     })
 }

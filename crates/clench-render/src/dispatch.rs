@@ -1,6 +1,6 @@
 //! The content of a dispatch: environments, and pictures of them.
 
-use crate::camera::Placed;
+use crate::camera::CameraPose;
 use crate::canvas::Form;
 use crate::items::{self, Item, Surface};
 use crate::light::{Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
@@ -8,7 +8,7 @@ use crate::looks::Looks;
 use crate::scene::Scene;
 use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE, Sight};
 use clench::collide::ShapeKind;
-use clench::rigid::readout::light_places;
+use clench::rigid::readout::light_poses;
 use clench::rigid::{Precision, Sim};
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ const _: () = assert!(size_of::<Uniforms>() <= STRIDE);
 #[derive(Clone, Copy, zerocopy::IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Parameters {
     pub uniforms: Uniforms,
-    rest: [u8; STRIDE - size_of::<Uniforms>()],
+    padding: [u8; STRIDE - size_of::<Uniforms>()],
 }
 
 /// A draw call: the vertices of one shape for one or more items.
@@ -104,11 +104,11 @@ impl Snapshot {
             .partition(|&k| items[k].color[3] >= 1.0);
         items.extend(items::of_tendons(sim)?);
         let centre = scene.centre(&items);
-        let places = light_places(lights, sim.workspace());
+        let poses = light_poses(lights, sim.workspace());
         let reach = REACH * scene.extent;
         Ok(Snapshot {
             strings: scene.items.len()..items.len(),
-            lighting: Lighting::new((lights, headlight), &places, centre, reach),
+            lighting: Lighting::new((lights, headlight), &poses, centre, reach),
             items,
             opaque,
             transparent,
@@ -118,7 +118,7 @@ impl Snapshot {
 
 impl Dispatch {
     /// Adds an environment; its pictures follow.
-    pub(crate) fn enter(&mut self, scene: &Scene, shown: &Snapshot, form: &Form) {
+    pub(crate) fn add_environment(&mut self, scene: &Scene, shown: &Snapshot, form: &Form) {
         self.items.extend(&shown.items);
         self.lamps.extend(&shown.lighting.lamps);
         let casting = (form.colors && shown.lighting.casts).then(|| {
@@ -148,7 +148,7 @@ impl Dispatch {
         &mut self,
         scene: &Scene,
         shown: &Snapshot,
-        camera: &Placed,
+        camera: &CameraPose,
         form: &Form,
         slot: usize,
     ) {
@@ -186,7 +186,7 @@ impl Dispatch {
         let begins = (form.shadow(), self.lamps.len() - lighting.lamps.len());
         self.parameters.push(Parameters {
             uniforms: Uniforms::new(camera, aspect, scene.extent, lighting, begins),
-            rest: [0; _],
+            padding: [0; _],
         });
         self.shots.push(shot);
     }
@@ -213,9 +213,9 @@ impl Dispatch {
             let nearest = sight.camera.distance([x, y, z]) - length(along);
             length(side) * sight.camera.pixels(nearest, sight.height)
         };
-        let most = segments.iter().map(pixels).fold(0.0, f32::max);
+        let max_width = segments.iter().map(pixels).fold(0.0, f32::max);
         (!segments.is_empty()).then(|| Drawn {
-            vertices: scene.shapes.string(most, sight.tolerance),
+            vertices: scene.shapes.string(max_width, sight.tolerance),
             items: self.of_last(shown, shown.strings.clone()),
             surface: Surface::Plain,
             texture: None,

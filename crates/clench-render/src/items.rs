@@ -159,7 +159,7 @@ fn poses_of<T: Precision>(
     let places = sim.output(places)?;
     let rotations = sim.output(rotations)?;
     let number = |x: T| x.to_f64() as f32;
-    let pose = |(place, rotation): (&[T], &[T])| {
+    let pose = |(position, rotation): (&[T], &[T])| {
         let column = |k: usize| {
             [
                 number(rotation[k]),
@@ -168,8 +168,13 @@ fn poses_of<T: Precision>(
                 0.0,
             ]
         };
-        let place = [number(place[0]), number(place[1]), number(place[2]), 1.0];
-        [column(0), column(1), column(2), place]
+        let position = [
+            number(position[0]),
+            number(position[1]),
+            number(position[2]),
+            1.0,
+        ];
+        [column(0), column(1), column(2), position]
     };
     Ok(places
         .chunks_exact(3)

@@ -1,6 +1,6 @@
 //! The camera and light parameters of the shader, and the shadow of the sun or of a light.
 
-use crate::camera::Placed;
+use crate::camera::CameraPose;
 use crate::device::Gpu;
 use crate::passes::Passes;
 use clench::rigid::model::{Headlight, Light, LightKind};
@@ -50,7 +50,7 @@ pub(crate) struct Lamp {
 pub(crate) struct Lighting {
     pub lamps: Vec<Lamp>,
     /// The view of the sun, or of the model's light that casts the shadow.
-    pub sun: Placed,
+    pub sun: CameraPose,
     /// True if there is a shadow.
     pub casts: bool,
     /// The sum of ambient light, the headlight's diffuse light and its highlights.
@@ -112,19 +112,19 @@ fn lamp(light: &Light, place: &[[f64; 3]; 2], casts: bool) -> Lamp {
 }
 
 /// Returns the view of a light of the region around a centre.
-fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> Placed {
+fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> CameraPose {
     let [pos, dir] = place.map(narrow);
     let away = [0, 1, 2].map(|k| centre[k] - pos[k]);
     match light.properties.kind {
         LightKind::Directional => far_away(centre, dir.map(|x| -x), reach),
         // A cone of a right angle or more would not fit into one view.
-        LightKind::Spot => Placed {
+        LightKind::Spot => CameraPose {
             eye: pos,
             axes: axes(dir.map(|x| -x)),
             half: light.properties.cutoff.clamp(1.0, 75.0).to_radians().tan() as f32,
             parallel: false,
         },
-        LightKind::Point => Placed {
+        LightKind::Point => CameraPose {
             eye: pos,
             axes: axes(unit(away.map(|x| -x))),
             half: (reach / length(away).max(1e-6)).clamp(0.1, 3.0),
@@ -137,7 +137,7 @@ impl Uniforms {
     /// Creates the parameters of an image of a region of a size, m. The shadow map has `shadow` pixels a side, and the
     /// lights of the environment begin at the index `lamps`.
     pub(crate) fn new(
-        camera: &Placed,
+        camera: &CameraPose,
         aspect: f32,
         extent: f32,
         lighting: &Lighting,
@@ -163,7 +163,7 @@ impl Uniforms {
 }
 
 /// Returns the distances of the near and far planes of the view that casts the shadow, m.
-pub(crate) fn sun_planes(sun: &Placed, extent: f32) -> [f32; 2] {
+pub(crate) fn sun_planes(sun: &CameraPose, extent: f32) -> [f32; 2] {
     match sun.parallel {
         true => [0.1 * REACH * extent, 6.0 * REACH * extent],
         false => [NEAR * extent, FAR * extent],
@@ -195,8 +195,8 @@ pub(crate) fn light_group(gpu: &Gpu, passes: &Passes, shadow: &TextureView) -> B
 }
 
 /// Returns the view of a distant light around a point; `to_light` is the direction to the light.
-fn far_away(centre: [f32; 3], to_light: [f32; 3], reach: f32) -> Placed {
-    Placed {
+fn far_away(centre: [f32; 3], to_light: [f32; 3], reach: f32) -> CameraPose {
+    CameraPose {
         eye: [0, 1, 2].map(|k| centre[k] + 3.0 * reach * to_light[k]),
         axes: axes(to_light),
         half: reach,

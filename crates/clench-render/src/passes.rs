@@ -28,7 +28,7 @@ pub(crate) struct Passes {
     module: ShaderModule,
     own_lights: bool,
     /// Those of each task, without and with culling.
-    made: [[OnceLock<RenderPipeline>; 2]; Task::COUNT],
+    pipelines: [[OnceLock<RenderPipeline>; 2]; Task::COUNT],
 }
 
 /// The task of a pipeline.
@@ -74,13 +74,13 @@ impl Passes {
             texture: texture_layout(device),
             module: device.create_shader_module(wgpu::include_wgsl!("shader.wgsl")),
             own_lights,
-            made: Default::default(),
+            pipelines: Default::default(),
         }
     }
 
     /// Returns the pipeline of a task, which omits the back sides of triangles if `culls`.
     pub(crate) fn pipeline(&self, device: &Device, task: Task, culls: bool) -> &RenderPipeline {
-        self.made[task.index()][usize::from(culls)].get_or_init(|| match task {
+        self.pipelines[task.index()][usize::from(culls)].get_or_init(|| match task {
             Task::Shadow => self.make_facts(device, culls, None),
             Task::Facts => self.make_facts(device, culls, Some("facts")),
             Task::Opaque(surface) => self.make_picture(device, culls, surface, None),

@@ -1,6 +1,6 @@
-//! A model on the device: all that its pictures have in common.
+//! A model on the device: the data that its pictures share.
 
-use crate::camera::{FreeCamera, Placed};
+use crate::camera::{CameraPose, FreeCamera};
 use crate::device::{Gpu, RenderError};
 use crate::items::{self, Item, Surface};
 use crate::passes::Passes;
@@ -61,7 +61,7 @@ impl Scene {
         &self,
         items: &[Item],
         transparent: &[usize],
-        camera: &Placed,
+        camera: &CameraPose,
     ) -> Vec<usize> {
         let distance = |&k: &usize| {
             let place = items[k].pose[3];

@@ -1,6 +1,6 @@
 //! The shapes of geoms, sites and tendons on the device, in several levels of detail.
 
-use crate::camera::Placed;
+use crate::camera::CameraPose;
 use crate::device::Gpu;
 use crate::light::FAR;
 use crate::simplify::{bounds, closed, simplified};
@@ -14,7 +14,7 @@ use wgpu::{Buffer, BufferUsages};
 use zerocopy::IntoBytes;
 
 /// The number of segments of a circle at each level of detail.
-const AROUND: [usize; 8] = [8, 12, 16, 20, 28, 36, 52, 72];
+const CIRCLE_SEGMENTS: [usize; 8] = [8, 12, 16, 20, 28, 36, 52, 72];
 /// The number of cells of the longest side of a mesh at each level of detail but the last, which is the mesh itself.
 const CELLS: [usize; 9] = [4, 6, 8, 12, 16, 24, 32, 48, 64];
 /// The deviation of a mesh whose cells are of size 1: its surface moves by much less than a cell.
@@ -33,9 +33,9 @@ pub(crate) struct Shapes {
     all: Vec<Shape>,
 }
 
-/// A camera with what its image requires of shapes.
+/// A camera, and the accuracy that its image requires of shapes.
 pub(crate) struct Sight<'a> {
-    pub camera: &'a Placed,
+    pub camera: &'a CameraPose,
     /// The distance of the near plane, m.
     pub near: f32,
     /// The height of the image, pixels.
@@ -49,7 +49,7 @@ struct Shape {
     /// The vertices and the deviation from the exact shape, m; the coarsest level is the first.
     levels: Vec<(Range<u32>, f32)>,
     /// The radius of a sphere around the origin that contains the shape, m.
-    bound: f32,
+    radius: f32,
     /// True if the triangles enclose a volume and are wound counterclockwise as seen from outside.
     closed: bool,
 }
@@ -63,7 +63,7 @@ impl Shapes {
         let params = &model.params;
         for (g, geom) in model.geoms.iter().enumerate() {
             let round = Round::new(geom.kind, params.geom_size[g].to_array());
-            let of = |around| triangles::of_geom(model, params, g, far, around);
+            let of = |segments| triangles::of_geom(model, params, g, far, segments);
             // The mean of texture coordinates of a file can be anywhere in the texture.
             let simple = geom.kind == ShapeKind::Mesh && !triangles::has_own_texcoords(model, g);
             all.push(match simple {
@@ -73,7 +73,7 @@ impl Shapes {
         }
         for (s, site) in model.sites.iter().enumerate() {
             let round = Round::new(site.kind, params.site_size[s].to_array());
-            let of = |around| triangles::of_site(model, params, s, around);
+            let of = |segments| triangles::of_site(model, params, s, segments);
             all.push(Shape::new(&mut corners, round, of));
         }
         if ground {
@@ -90,11 +90,11 @@ impl Shapes {
         Shapes { corners, all }
     }
 
-    /// Returns the vertices of a shape at a place, as they are drawn for a camera. The back sides of their triangles
+    /// Returns the vertices of a shape at a position, as they are drawn for a camera. The back sides of their triangles
     /// are hidden if the second value is true.
-    pub(crate) fn at(&self, shape: usize, place: [f32; 3], sight: &Sight) -> (Range<u32>, bool) {
+    pub(crate) fn at(&self, shape: usize, position: [f32; 3], sight: &Sight) -> (Range<u32>, bool) {
         let shape = &self.all[shape];
-        let nearest = sight.camera.distance(place) - shape.bound;
+        let nearest = sight.camera.distance(position) - shape.radius;
         let pixels = sight.camera.pixels(nearest, sight.height);
         // A camera in a shape, or cut off by the near plane, shows its inside.
         let hidden = shape.closed && nearest > sight.near;
@@ -134,7 +134,7 @@ impl Shape {
     fn empty(closed: bool) -> Self {
         Shape {
             levels: Vec::new(),
-            bound: 0.0,
+            radius: 0.0,
             closed,
         }
     }
@@ -143,12 +143,12 @@ impl Shape {
     fn new(corners: &mut Vec<Vertex>, round: Round, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
         let mut shape = Shape::empty(round.closed);
         let levels = match round.radius > 0.0 {
-            true => &AROUND[..],
-            false => &AROUND[..1],
+            true => &CIRCLE_SEGMENTS[..],
+            false => &CIRCLE_SEGMENTS[..1],
         };
-        for &around in levels {
-            let deviation = round.radius * (1.0 - (PI / around as f32).cos());
-            shape.add(corners, &of(around), deviation);
+        for &segments in levels {
+            let deviation = round.radius * (1.0 - (PI / segments as f32).cos());
+            shape.add(corners, &of(segments), deviation);
         }
         shape
     }
@@ -171,8 +171,8 @@ impl Shape {
     /// Appends the vertices of a level of detail.
     fn add(&mut self, corners: &mut Vec<Vertex>, level: &[Vertex], deviation: f32) {
         for vertex in level {
-            let square: f32 = vertex.place.iter().map(|x| x * x).sum();
-            self.bound = self.bound.max(square.sqrt());
+            let square: f32 = vertex.position.iter().map(|x| x * x).sum();
+            self.radius = self.radius.max(square.sqrt());
         }
         let start = corners.len() as u32;
         corners.extend(level);

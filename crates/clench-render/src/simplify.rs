@@ -10,7 +10,7 @@ pub(crate) fn simplified(triangles: &[Vertex], cells: usize) -> Vec<Vertex> {
     let (low, side) = bounds(triangles);
     let along = |x: f32, low: f32| ((x - low) / side * cells as f32) as usize;
     let cell = |vertex: &Vertex| {
-        let at = [0, 1, 2].map(|k| along(vertex.place[k], low[k]).min(cells - 1));
+        let at = [0, 1, 2].map(|k| along(vertex.position[k], low[k]).min(cells - 1));
         (at[0] * cells + at[1]) * cells + at[2]
     };
     // A mean for each cell that has vertices.
@@ -36,7 +36,7 @@ pub(crate) fn simplified(triangles: &[Vertex], cells: usize) -> Vec<Vertex> {
     };
     let vertices = |corners: [u32; 3]| {
         let triangle = corners.map(|corner| means[corner as usize].vertex());
-        let normal = normal_of(triangle.map(|vertex| vertex.place));
+        let normal = normal_of(triangle.map(|vertex| vertex.position));
         triangle.map(|vertex| Vertex { normal, ..vertex })
     };
     corners
@@ -51,8 +51,8 @@ pub(crate) fn bounds(triangles: &[Vertex]) -> ([f32; 3], f32) {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for vertex in triangles {
         for k in 0..3 {
-            low[k] = low[k].min(vertex.place[k]);
-            high[k] = high[k].max(vertex.place[k]);
+            low[k] = low[k].min(vertex.position[k]);
+            high[k] = high[k].max(vertex.position[k]);
         }
     }
     let side = (0..3).map(|k| high[k] - low[k]).fold(0.0, f32::max);
@@ -67,7 +67,7 @@ pub(crate) fn closed(triangles: &[Vertex]) -> bool {
     for triangle in triangles.as_chunks::<3>().0 {
         let [a, b, c] = triangle
             .each_ref()
-            .map(|vertex| vertex.place.map(f32::to_bits));
+            .map(|vertex| vertex.position.map(f32::to_bits));
         for (from, to) in [(a, b), (b, c), (c, a)] {
             match from < to {
                 true => *edges.entry((from, to)).or_insert(0) += 1,
@@ -77,7 +77,7 @@ pub(crate) fn closed(triangles: &[Vertex]) -> bool {
         volume += signed_volume(
             triangle
                 .each_ref()
-                .map(|vertex| vertex.place.map(f64::from)),
+                .map(|vertex| vertex.position.map(f64::from)),
         );
     }
     volume > 0.0 && edges.values().all(|&count| count == 0)
@@ -92,7 +92,7 @@ fn signed_volume([a, b, c]: [[f64; 3]; 3]) -> f64 {
 /// The mean of vertices.
 #[derive(Default)]
 struct Mean {
-    place: [f32; 3],
+    position: [f32; 3],
     texcoord: [f32; 3],
     count: f32,
 }
@@ -101,7 +101,7 @@ impl Mean {
     fn add(&mut self, vertex: &Vertex) {
         self.count += 1.0;
         for k in 0..3 {
-            self.place[k] += vertex.place[k];
+            self.position[k] += vertex.position[k];
             self.texcoord[k] += vertex.texcoord[k];
         }
     }
@@ -109,7 +109,7 @@ impl Mean {
     /// Returns the mean, without a normal.
     fn vertex(&self) -> Vertex {
         Vertex {
-            place: self.place.map(|x| x / self.count),
+            position: self.position.map(|x| x / self.count),
             normal: [0.0; 3],
             texcoord: self.texcoord.map(|x| x / self.count),
         }
@@ -133,7 +133,8 @@ mod tests {
             let found = simplified(&cylinder, cells);
             assert!(!found.is_empty() && found.len() < cylinder.len() && closed(&found));
             for Vertex {
-                place: [x, y, z], ..
+                position: [x, y, z],
+                ..
             } in found
             {
                 let radius = x.hypot(y);

@@ -19,7 +19,7 @@ const SIDES: usize = 6;
 pub(crate) struct Textures {
     /// The textures by their index in the model; `None` if unused.
     of_model: Vec<Option<BindGroup>>,
-    nothing: BindGroup,
+    blank: BindGroup,
 }
 
 impl Textures {
@@ -59,14 +59,14 @@ impl Textures {
         }
         Textures {
             of_model,
-            nothing: group(gpu, passes, &sampler, &blank, &blank_cube),
+            blank: group(gpu, passes, &sampler, &blank, &blank_cube),
         }
     }
 
     /// Returns the texture of an element; `None` for none.
     pub(crate) fn of(&self, texture: Option<usize>) -> &BindGroup {
         let found = texture.and_then(|index| self.of_model.get(index)?.as_ref());
-        found.unwrap_or(&self.nothing)
+        found.unwrap_or(&self.blank)
     }
 }
 

@@ -13,7 +13,7 @@ const QUARTER: usize = 4;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Vertex {
-    pub place: [f32; 3],
+    pub position: [f32; 3],
     pub normal: [f32; 3],
     /// The texture coordinates: x across and y down, or a direction in a cube texture.
     pub texcoord: [f32; 3],
@@ -21,23 +21,23 @@ pub(crate) struct Vertex {
 
 impl Vertex {
     /// Creates a vertex without texture coordinates.
-    fn new(place: [f32; 3], normal: [f32; 3]) -> Self {
+    fn new(position: [f32; 3], normal: [f32; 3]) -> Self {
         Vertex {
-            place,
+            position,
             normal,
             texcoord: [0.0; 3],
         }
     }
 }
 
-/// Returns the triangles of a geom; `far` is the size of an infinite plane, `around` the number of segments of a
+/// Returns the triangles of a geom; `far` is the size of an infinite plane, `segments` the number of segments of a
 /// circle.
 pub(crate) fn of_geom(
     model: &Model,
     params: &Params<f64>,
     geom: usize,
     far: f32,
-    around: usize,
+    segments: usize,
 ) -> Vec<Vertex> {
     let described = &model.geoms[geom];
     let size = params.geom_size[geom];
@@ -50,7 +50,7 @@ pub(crate) fn of_geom(
             .and_then(|f| model.height_fields.get(f))
             .map(|field| terrain(&field.shape))
             .unwrap_or_default(),
-        kind => primitive(kind, size.to_array().map(|x| x as f32), far, around),
+        kind => primitive(kind, size.to_array().map(|x| x as f32), far, segments),
     };
     if !has_own_texcoords(model, geom) {
         let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
@@ -78,11 +78,11 @@ pub(crate) fn of_site(
     model: &Model,
     params: &Params<f64>,
     site: usize,
-    around: usize,
+    segments: usize,
 ) -> Vec<Vertex> {
     let (kind, size) = (model.sites[site].kind, params.site_size[site]);
     let appearance = model.visuals.sites[site];
-    let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0, around);
+    let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0, segments);
     let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
     let scale = texture_scale(model, appearance, kind, size);
     cover(&mut shape, scale.map(|x| x as f32), texture);
@@ -90,13 +90,13 @@ pub(crate) fn of_site(
 }
 
 /// Returns the triangles of a shape without an asset; `far` is the size of an infinite plane.
-fn primitive(kind: ShapeKind, size: [f32; 3], far: f32, around: usize) -> Vec<Vertex> {
+fn primitive(kind: ShapeKind, size: [f32; 3], far: f32, segments: usize) -> Vec<Vertex> {
     match kind {
         ShapeKind::Plane => plane(size, far),
-        ShapeKind::Sphere => round([size[0]; 3], 0.0, around),
-        ShapeKind::Ellipsoid => round(size, 0.0, around),
-        ShapeKind::Capsule => round([size[0]; 3], size[1], around),
-        ShapeKind::Cylinder => cylinder(size[0], size[1], around),
+        ShapeKind::Sphere => round([size[0]; 3], 0.0, segments),
+        ShapeKind::Ellipsoid => round(size, 0.0, segments),
+        ShapeKind::Capsule => round([size[0]; 3], size[1], segments),
+        ShapeKind::Cylinder => cylinder(size[0], size[1], segments),
         ShapeKind::Box => block(size),
         ShapeKind::Mesh | ShapeKind::HeightField => Vec::new(),
     }
@@ -105,7 +105,7 @@ fn primitive(kind: ShapeKind, size: [f32; 3], far: f32, around: usize) -> Vec<Ve
 /// Sets the texture coordinates of each vertex; see [`texture_scale`].
 fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
     for vertex in shape {
-        let [x, y, z] = [0, 1, 2].map(|k| scale[k] * vertex.place[k]);
+        let [x, y, z] = [0, 1, 2].map(|k| scale[k] * vertex.position[k]);
         vertex.texcoord = match texture {
             Some(TextureKind::Plane) => [x - 0.5, -y - 0.5, 0.0],
             _ => [x, y, z],
@@ -114,15 +114,15 @@ fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
 }
 
 /// Returns a cylinder along z of radius 1 and half length 1, for tendon segments.
-pub(crate) fn string(around: usize) -> Vec<Vertex> {
-    cylinder(1.0, 1.0, around)
+pub(crate) fn string(segments: usize) -> Vec<Vertex> {
+    cylinder(1.0, 1.0, segments)
 }
 
 /// Appends four vertices, counterclockwise from outside, as two triangles. At a pole one of them has no area.
 fn quad(out: &mut Vec<Vertex>, corners: [Vertex; 4]) {
     let [a, b, c, d] = corners;
     for [a, b, c] in [[a, b, c], [a, c, d]] {
-        if a.place != b.place && b.place != c.place && c.place != a.place {
+        if a.position != b.position && b.position != c.position && c.position != a.position {
             out.extend([a, b, c]);
         }
     }
@@ -130,7 +130,7 @@ fn quad(out: &mut Vec<Vertex>, corners: [Vertex; 4]) {
 
 fn flat_quad(out: &mut Vec<Vertex>, places: [[f32; 3]; 4]) {
     let normal = normal_of([places[0], places[1], places[2]]);
-    quad(out, places.map(|place| Vertex::new(place, normal)));
+    quad(out, places.map(|position| Vertex::new(position, normal)));
 }
 
 pub(crate) fn normal_of([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
@@ -165,8 +165,8 @@ fn plane(size: [f32; 3], far: f32) -> Vec<Vertex> {
 }
 
 /// Returns an ellipsoid of these half axes, whose halves are shifted by `half` along z and joined by a cylinder.
-fn round(axes: [f32; 3], half: f32, around: usize) -> Vec<Vertex> {
-    let upwards = around / QUARTER;
+fn round(axes: [f32; 3], half: f32, segments: usize) -> Vec<Vertex> {
+    let upwards = segments / QUARTER;
     // Latitudes from pole to pole; the equator occurs twice, at both ends of the cylinder. Poles are exact, so that
     // their triangles have equal corners.
     let rows: Vec<(f32, f32)> = (0..=upwards)
@@ -174,7 +174,7 @@ fn round(axes: [f32; 3], half: f32, around: usize) -> Vec<Vertex> {
         .chain((0..=upwards).map(|k| (half, 0.5 * PI * k as f32 / upwards as f32)))
         .collect();
     let corner = |&(shift, latitude): &(f32, f32), k: usize| {
-        let longitude = 2.0 * PI * (k % around) as f32 / around as f32;
+        let longitude = 2.0 * PI * (k % segments) as f32 / segments as f32;
         let across = match latitude.abs() < 0.499 * PI {
             true => latitude.cos(),
             false => 0.0,
@@ -184,13 +184,13 @@ fn round(axes: [f32; 3], half: f32, around: usize) -> Vec<Vertex> {
             across * longitude.sin(),
             latitude.sin(),
         ];
-        let place = [axes[0] * on[0], axes[1] * on[1], axes[2] * on[2] + shift];
+        let position = [axes[0] * on[0], axes[1] * on[1], axes[2] * on[2] + shift];
         let normal = unit([on[0] / axes[0], on[1] / axes[1], on[2] / axes[2]]);
-        Vertex::new(place, normal)
+        Vertex::new(position, normal)
     };
     let mut out = Vec::new();
     for pair in rows.windows(2) {
-        for k in 0..around {
+        for k in 0..segments {
             let corners = [
                 corner(&pair[0], k),
                 corner(&pair[0], k + 1),
@@ -203,13 +203,13 @@ fn round(axes: [f32; 3], half: f32, around: usize) -> Vec<Vertex> {
     out
 }
 
-fn cylinder(radius: f32, half: f32, around: usize) -> Vec<Vertex> {
+fn cylinder(radius: f32, half: f32, segments: usize) -> Vec<Vertex> {
     let mut out = Vec::new();
     let on = |k: usize| {
-        let angle = 2.0 * PI * (k % around) as f32 / around as f32;
+        let angle = 2.0 * PI * (k % segments) as f32 / segments as f32;
         (angle.cos(), angle.sin())
     };
-    for k in 0..around {
+    for k in 0..segments {
         let (a, b) = (on(k), on(k + 1));
         let side =
             |(x, y): (f32, f32), z: f32| Vertex::new([radius * x, radius * y, z], [x, y, 0.0]);
@@ -233,11 +233,11 @@ fn block(half: [f32; 3]) -> Vec<Vertex> {
         let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
         for side in [-1.0, 1.0] {
             let corner = |u: f32, v: f32| {
-                let mut place = [0.0; 3];
-                place[axis] = side * half[axis];
-                place[first] = u * side * half[first];
-                place[second] = v * half[second];
-                place
+                let mut position = [0.0; 3];
+                position[axis] = side * half[axis];
+                position[first] = u * side * half[first];
+                position[second] = v * half[second];
+                position
             };
             flat_quad(
                 &mut out,
@@ -254,11 +254,11 @@ fn block(half: [f32; 3]) -> Vec<Vertex> {
 }
 
 fn mesh(mesh: &Mesh) -> Vec<Vertex> {
-    let place = |&corner: &u32| mesh.vertices[corner as usize].to_array().map(|x| x as f32);
+    let position = |&corner: &u32| mesh.vertices[corner as usize].to_array().map(|x| x as f32);
     let triangle = |(index, corners): (usize, &[u32; 3])| {
-        let places = corners.each_ref().map(place);
+        let places = corners.each_ref().map(position);
         let normal = normal_of(places);
-        let mut triangle = places.map(|place| Vertex::new(place, normal));
+        let mut triangle = places.map(|position| Vertex::new(position, normal));
         if let Some(corners) = mesh.face_texcoords.get(index) {
             for (vertex, &corner) in triangle.iter_mut().zip(corners) {
                 let [across, down] = mesh.texcoords[corner as usize];
@@ -297,7 +297,7 @@ fn terrain(field: &clench::collide::HeightField) -> Vec<Vertex> {
             for triangle in [[0, 1, 2], [0, 2, 3]] {
                 let places = triangle.map(|k| corners[k]);
                 let normal = normal_of(places);
-                out.extend(places.map(|place| Vertex::new(place, normal)));
+                out.extend(places.map(|position| Vertex::new(position, normal)));
             }
         }
     }

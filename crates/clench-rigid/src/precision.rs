@@ -94,15 +94,15 @@ compile! {
         (Step::compiled().forward)(model, params, settings, state, ws, sensor::evaluate);
     }
 
-    /// Runs [`pipeline::rest`](clench_dynamics::pipeline::rest) for one environment.
-    fn rest(
+    /// Runs [`pipeline::step_asleep`](clench_dynamics::pipeline::step_asleep) for one environment.
+    fn step_asleep(
         model: &Model,
         params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
         state: &mut State<SingleEnv<Self>>,
         ws: &mut Workspace<SingleEnv<Self>>,
     ) -> bool {
-        (Step::compiled().rest)(model, params, settings, state, ws, sensor::evaluate)
+        (Step::compiled().step_asleep)(model, params, settings, state, ws, sensor::evaluate)
     }
 
     /// Runs [`pipeline::before_forces`](clench_dynamics::pipeline::before_forces) for one environment.
@@ -182,10 +182,10 @@ compile! {
         params: &Params<SingleEnv<Self>>,
         settings: &StepSettings,
         state: &State<SingleEnv<Self>>,
-        given: (&[SingleEnv<Self>], Acceleration),
+        acceleration: (&[SingleEnv<Self>], Acceleration),
         ws: &mut Workspace<SingleEnv<Self>>,
         qfrc_inverse: &mut [SingleEnv<Self>],
     ) {
-        (Step::compiled().inverse)(model, params, settings, state, given, ws, qfrc_inverse);
+        (Step::compiled().inverse)(model, params, settings, state, acceleration, ws, qfrc_inverse);
     }
 }

@@ -6,7 +6,7 @@ mod light;
 mod push;
 mod tendon;
 
-pub use light::light_places;
+pub use light::light_poses;
 pub use push::Push;
 pub(crate) use push::pushes;
 pub use tendon::TendonLine;

@@ -8,7 +8,7 @@ mod parameters;
 mod provided_contacts;
 mod pushes;
 mod quality;
-mod rest;
+mod step_asleep;
 mod threads;
 
 pub use dynamic::DynamicConstraint;
@@ -144,7 +144,7 @@ impl<T: Precision> Sim<T> {
 
     fn try_step(&mut self) -> Result<(), SimError> {
         self.ws.clock.start();
-        if self.rest() {
+        if self.step_asleep() {
             self.ws.clock.lap(Stage::Rows as usize);
             return Ok(());
         }
@@ -348,7 +348,7 @@ impl<T: Precision> Sim<T> {
             return Ok(vec![energy.potential, energy.kinetic]);
         }
         self.check_state()?;
-        self.require(output.extent())?;
+        self.require(output.requires())?;
         let mut values = Vec::new();
         self.read(|source| T::read(output, source, &mut values));
         Ok(values.iter().map(|value| value.lane(0)).collect())
@@ -390,7 +390,7 @@ impl<T: Precision> Sim<T> {
     pub(crate) fn invert(
         &mut self,
         qacc: &[T],
-        given: Acceleration,
+        kind: Acceleration,
         qfrc_inverse: &mut [T],
     ) -> Result<(), SimError> {
         self.check_state()?;
@@ -398,10 +398,10 @@ impl<T: Precision> Sim<T> {
         let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(T::workspace(model)));
         let splat = |numbers: &[T]| numbers.iter().copied().map(T::SingleEnv::splat).collect();
         let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
-        let given = (&qacc[..], given);
+        let input = (&qacc[..], kind);
         let (params, settings) = (&self.params, &self.settings);
         computed_state::read(state, &mut self.lane_copy, |state| {
-            T::inverse(model, params, settings, state, given, ws, &mut forces);
+            T::inverse(model, params, settings, state, input, ws, &mut forces);
         });
         read_lane(&forces, 0, qfrc_inverse);
         match T::good_results(state, ws) {

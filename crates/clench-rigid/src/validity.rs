@@ -57,13 +57,13 @@ impl<T: Scalar> Validity<T> {
         self.computed == Computed::Everything
     }
 
-    /// Returns the extent of valid results of this state.
+    /// Returns the results that are valid for this state.
     pub(crate) fn computed(&self, state: &State<T>) -> Computed {
-        let placed = self.qpos == state.qpos
+        let same_positions = self.qpos == state.qpos
             && self.mocap_pos == state.mocap_pos
             && self.mocap_quat == state.mocap_quat;
         match self.computed {
-            _ if !placed => Computed::Nothing,
+            _ if !same_positions => Computed::Nothing,
             Computed::Everything if self.qvel != state.qvel => Computed::Positions,
             computed => computed,
         }

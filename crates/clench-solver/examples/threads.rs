@@ -79,7 +79,7 @@ fn time(problem: &Problem<f64>, threads: &Threads) -> Result<f64, Box<dyn Error>
     let mut times = Vec::new();
     for _ in 0..=ROUNDS {
         let start = Instant::now();
-        threads.enter_awake(|| solver.solve(problem, &settings, None).map(|_| ()))?;
+        threads.run_awake(|| solver.solve(problem, &settings, None).map(|_| ()))?;
         times.push(1e3 * start.elapsed().as_secs_f64());
     }
     // The first solve allocates.

@@ -28,7 +28,7 @@ pub(crate) struct Cg<T> {
     last: Vec<T>,
     /// M⁻¹ times the current gradient, and true if it is up to date.
     preconditioned: Vec<T>,
-    fresh: bool,
+    is_current: bool,
     /// True once this solve has computed a direction.
     started: bool,
 }
@@ -41,7 +41,7 @@ impl<T: Real> Cg<T> {
         problem
             .mass_factor
             .solve(problem.tree(), &mut self.preconditioned);
-        self.fresh = true;
+        self.is_current = true;
     }
 }
 
@@ -52,7 +52,7 @@ impl<T: Real> Direction<T> for Cg<T> {
     #[inline(always)]
     fn prepare(&mut self, _: &Problem<T>, _: &Settings) -> bool {
         self.started = false;
-        self.fresh = false;
+        self.is_current = false;
         true
     }
 
@@ -61,7 +61,7 @@ impl<T: Real> Direction<T> for Cg<T> {
         for g in &mut self.gradient {
             *g = T::select(mask, T::ZERO, *g);
         }
-        self.fresh = false;
+        self.is_current = false;
     }
 
     /// Computes the duality gap. The next direction needs M⁻¹g anyway, so the gap costs only an inner product.
@@ -75,7 +75,7 @@ impl<T: Real> Direction<T> for Cg<T> {
     #[kernel]
     fn find(&mut self, problem: &Problem<T>, _: &Convergence<T>, state: &mut SolverState<T>) {
         let (iterate, direction) = (&state.iterate, &mut state.ray.direction);
-        if !self.fresh {
+        if !self.is_current {
             self.precondition(problem, iterate);
         }
         let mut beta = T::ZERO;

@@ -1,7 +1,7 @@
 //! The constants of the methods, by their names in the GPU kernels.
 
 use crate::cg::{Cg, OVERLAP};
-use crate::continuation::{FIRST, SETTLED, STAGE, STIFF};
+use crate::continuation::{FIRST, STAGE, STAGE_TOLERANCE, STIFF};
 use crate::descent::{Direction, NEGLIGIBLE, NOTICEABLE};
 use crate::line_search::{CURVATURE, DECREASE, RESOLUTION};
 use crate::newton::Newton;
@@ -19,5 +19,5 @@ pub const METHOD_CONSTANTS: &[(&str, f64)] = &[
     ("CONTINUATION_STIFF", STIFF),
     ("CONTINUATION_FIRST", FIRST),
     ("CONTINUATION_STAGE", STAGE),
-    ("CONTINUATION_SETTLED", SETTLED),
+    ("CONTINUATION_SETTLED", STAGE_TOLERANCE),
 ];

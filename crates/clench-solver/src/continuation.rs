@@ -17,7 +17,7 @@ pub(crate) const STIFF: f64 = 2e4;
 pub(crate) const FIRST: f64 = 10.0;
 pub(crate) const STAGE: f64 = 10.0;
 /// A stage ends when an improvement falls below this fraction of the cost.
-pub(crate) const SETTLED: f64 = 1e-9;
+pub(crate) const STAGE_TOLERANCE: f64 = 1e-9;
 
 /// The current softening of the cones.
 #[derive(Clone, Debug)]
@@ -85,7 +85,7 @@ impl<T: Real> Continuation<T> {
     /// Moves to the next stage in the lanes whose stage has ended; returns these lanes.
     #[inline(always)]
     pub(crate) fn advance(&mut self, improvement: T, cost: T) -> T::Mask {
-        let over = self.active() & !improvement.gt(T::new(SETTLED) * cost);
+        let over = self.active() & !improvement.gt(T::new(STAGE_TOLERANCE) * cost);
         let next = self.level * T::new(1.0 / STAGE);
         let last = (next * self.stiffest).lt(T::ONE);
         self.level = T::select(over, T::select(last, T::ZERO, next), self.level);

@@ -255,8 +255,8 @@ impl<T: Real> Convergence<T> {
         let idle = self.idles(norm, negligible, T::new(D::PATIENCE));
         let stuck = self.live & !in_continuation & (step.alpha.eq(T::ZERO) | idle);
         // Stopping is not due to the precision if the search was not allowed to reach a lower cost.
-        let cut = stuck & step.cut & step.alpha.eq(T::ZERO);
-        self.end(cut & self.refreshed, Status::IterationLimit, stats);
+        let truncated = stuck & step.truncated & step.alpha.eq(T::ZERO);
+        self.end(truncated & self.refreshed, Status::IterationLimit, stats);
         let refreshed = stuck & self.refreshed;
         let done = self.consistent(problem, direction, (iterate, ray, stats), refreshed);
         self.end(done, Status::NoProgress, stats);

@@ -47,12 +47,12 @@ struct Slots<T: Real> {
     /// other share the slot of the first: its patterns do not change, and it stays in the processor's caches.
     single: Vec<Option<u32>>,
     /// For each tree, the first one of the same shape.
-    alike: Vec<u32>,
-    /// The forest that `single` and `alike` refer to.
+    same_shape: Vec<u32>,
+    /// The forest that `single` and `same_shape` refer to.
     tree: Option<Arc<Tree>>,
     /// The slots of islands of several trees, in order, and the number in use.
     several: Vec<u32>,
-    taken: usize,
+    several_in_use: usize,
 }
 
 /// The inputs of a solve of all islands.
@@ -105,7 +105,7 @@ impl<T: Real> Islands<T> {
         }
         let (all, local) = (T::Mask::splat(true), &lists.local[..]);
         (job.threads).for_each(&mut slots.slots, |slot| {
-            if slot.taken {
+            if slot.in_use {
                 job.solve(partition, local, all, slot, AllLanes);
             }
         });
@@ -168,7 +168,7 @@ impl<T: Real> Job<'_, T> {
         let warmstart = self.warmstart.map(|warm| {
             slot.warmstart.clear();
             let dofs = slot.dofs.iter().map(|&dof| dof as usize);
-            (slot.warmstart).extend(dofs.map(|dof| transfer.take(warm[dof])));
+            (slot.warmstart).extend(dofs.map(|dof| transfer.convert(warm[dof])));
             &slot.warmstart[..]
         });
         slot.work.state.threads.clone_from(self.threads);
@@ -231,30 +231,30 @@ impl TreeLists {
 impl<T: Real> Slots<T> {
     /// Releases all slots for a new solve. Returns true if it is the first one over this forest.
     fn start(&mut self, tree: &Arc<Tree>) -> bool {
-        let known = self
+        let is_same_forest = self
             .tree
             .as_ref()
-            .is_some_and(|known| Arc::ptr_eq(known, tree) || known.parents() == tree.parents());
-        if !known {
-            self.alike = tree.alike();
+            .is_some_and(|stored| Arc::ptr_eq(stored, tree) || stored.parents() == tree.parents());
+        if !is_same_forest {
+            self.same_shape = tree.first_of_same_shape();
             self.single.clear();
             self.single.resize(tree.ntree(), None);
             self.tree = Some(tree.clone());
         }
-        self.slots.iter_mut().for_each(|slot| slot.taken = false);
+        self.slots.iter_mut().for_each(|slot| slot.in_use = false);
         self.restart();
-        !known
+        !is_same_forest
     }
 
     /// Restarts the assignment for the same islands.
     fn restart(&mut self) {
-        self.taken = 0;
+        self.several_in_use = 0;
     }
 
     /// Returns the slot for the next island, once the previous one is done.
     fn take(&mut self, trees: &[u32]) -> usize {
         match *trees {
-            [tree] => self.take_single(self.alike[tree as usize]),
+            [tree] => self.take_single(self.same_shape[tree as usize]),
             _ => self.take_several(),
         }
     }
@@ -265,7 +265,7 @@ impl<T: Real> Slots<T> {
             [tree] => self.take_single(tree),
             _ => self.take_several(),
         };
-        self.slots[slot].taken = true;
+        self.slots[slot].in_use = true;
         slot
     }
 
@@ -277,11 +277,11 @@ impl<T: Real> Slots<T> {
 
     fn take_several(&mut self) -> usize {
         let new = self.slots.len() as u32;
-        self.taken += 1;
-        if self.several.len() < self.taken {
+        self.several_in_use += 1;
+        if self.several.len() < self.several_in_use {
             self.several.push(new);
         }
-        self.ensure(self.several[self.taken - 1])
+        self.ensure(self.several[self.several_in_use - 1])
     }
 
     /// Returns the index of a slot, creating it if it is new.

@@ -44,13 +44,13 @@ impl<T: Real> Iterate<T> {
                 self.move_to(problem, &problem.qacc_smooth);
                 self.better_of(problem, warm, ray)
             }
-            None => self.place(problem, &problem.qacc_smooth),
+            None => self.start_at(problem, &problem.qacc_smooth),
         }
     }
 
     /// Moves to an acceleration, as if it were the unconstrained one; returns the totals of the constraints there.
     #[kernel]
-    pub fn place(&mut self, problem: &Problem<T>, qacc: &[T]) -> Totals<T> {
+    pub fn start_at(&mut self, problem: &Problem<T>, qacc: &[T]) -> Totals<T> {
         self.move_to(problem, qacc);
         self.normal_forces.start(problem, &self.residual);
         self.evaluate(problem)
@@ -82,7 +82,7 @@ impl<T: Real> Iterate<T> {
     #[kernel]
     pub fn evaluate_at_qacc(&mut self, problem: &Problem<T>) {
         let qacc = std::mem::take(&mut self.qacc);
-        self.place(problem, &qacc);
+        self.start_at(problem, &qacc);
         let displacement = &mut self.gradient;
         displacement.copy_from_slice(&qacc);
         subtract(displacement, &problem.qacc_smooth);

@@ -46,7 +46,7 @@ pub(crate) struct Part {
     pub columns: Range<usize>,
     pub triangle: bool,
     /// The offset of the first entry, and the stride from one row to the next.
-    pub place: usize,
+    pub offset: usize,
     pub stride: usize,
 }
 
@@ -59,8 +59,8 @@ impl Part {
         } else {
             self.columns.end
         };
-        let place = self.place + (row - self.rows.start) * self.stride;
-        (self.columns.start..end, place)
+        let offset = self.offset + (row - self.rows.start) * self.stride;
+        (self.columns.start..end, offset)
     }
 }
 
@@ -70,8 +70,8 @@ impl Pattern for Tree {
         // Runs of dofs that are neighbours in their path, hence in every row that contains them.
         let mut rest = 0..dofs.len();
         while let Some(first) = rest.next() {
-            let place = self.depth(dofs[first] as usize);
-            let follows = |&k: &usize| self.depth(dofs[k] as usize) == place + k - first;
+            let depth = self.depth(dofs[first] as usize);
+            let follows = |&k: &usize| self.depth(dofs[k] as usize) == depth + k - first;
             let end = first + 1 + rest.clone().take_while(follows).count();
             rest.start = end;
             for row in first..dofs.len() {
@@ -79,7 +79,7 @@ impl Pattern for Tree {
                     rows: row..row + 1,
                     columns: first..end.min(row + 1),
                     triangle: false,
-                    place: self.row_start(dofs[row] as usize) + place,
+                    offset: self.row_start(dofs[row] as usize) + depth,
                     stride: 0,
                 });
             }
@@ -178,11 +178,11 @@ impl<T: Real> StoredRows<T> {
         let dofs = &mut self.dofs[b.dof..];
         let rows = &mut self.values[b.value..];
         for column in 1..b.ndof {
-            let place = dofs[..column].partition_point(|&dof| dof < dofs[column]);
-            if place < column {
-                dofs[place..=column].rotate_right(1);
+            let index = dofs[..column].partition_point(|&dof| dof < dofs[column]);
+            if index < column {
+                dofs[index..=column].rotate_right(1);
                 for row in rows.chunks_exact_mut(b.ndof) {
-                    row[place..=column].rotate_right(1);
+                    row[index..=column].rotate_right(1);
                 }
             }
         }
@@ -256,8 +256,8 @@ impl<T: Real> StoredRows<T> {
             |part| {
                 for k in part.rows.clone() {
                     let wj = weigh_column::<T, DIM>(weight, form, &array(|i| rows[i][k]));
-                    let (columns, place) = part.row(k);
-                    let values = &mut hessian[place..place + columns.len()];
+                    let (columns, offset) = part.row(k);
+                    let values = &mut hessian[offset..offset + columns.len()];
                     let rows: [&[T]; DIM] = array(|i| &rows[i][columns.clone()]);
                     add_weighted(&wj, &rows, values);
                 }

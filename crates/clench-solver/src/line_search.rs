@@ -27,7 +27,7 @@ pub(crate) struct Step<T: Real> {
     /// The number of evaluations of the derivatives.
     pub evaluations: T,
     /// The lanes in which the evaluations ran out before the search converged.
-    pub cut: T::Mask,
+    pub truncated: T::Mask,
 }
 
 /// The precision of a line search.
@@ -119,7 +119,7 @@ impl<T: Real> Ray<T> {
             alpha: T::ZERO,
             improvement: T::ZERO,
             evaluations: T::ZERO,
-            cut: descends,
+            truncated: descends,
         };
         if !descends.any() {
             return step;
@@ -155,7 +155,7 @@ impl<T: Real> Ray<T> {
                 break;
             }
         }
-        step.cut = open & (bracket.high - bracket.low).gt(resolution);
+        step.truncated = open & (bracket.high - bracket.low).gt(resolution);
         step.alpha = T::select(descends, bracket.alpha, T::ZERO);
         let mut reached = self.change(problem, iterate, start, step.alpha);
         // Only a truncated search can end above its start (elsewhere an apparent rise is rounding); the low end of its

@@ -34,8 +34,8 @@ impl MinimumDegree {
     /// Couples two trees.
     pub(crate) fn couple(&mut self, a: usize, b: usize) {
         for (one, other) in [(a, b as u32), (b, a as u32)] {
-            if let (true, Err(place)) = (a != b, self.neighbors[one].binary_search(&other)) {
-                self.neighbors[one].insert(place, other);
+            if let (true, Err(index)) = (a != b, self.neighbors[one].binary_search(&other)) {
+                self.neighbors[one].insert(index, other);
             }
         }
     }

@@ -239,12 +239,12 @@ impl<T: Real> Friction<T> {
         let mut target = [T::ZERO; MAX_DIM];
         let count = block.dim - first;
         for j in 0..count {
-            let bound = match edges {
+            let limit = match edges {
                 Some(edges) => shape[j + 1] * (edges[2 * j] + edges[2 * j + 1]),
                 None => shape[j],
             };
             let old = force[first + j];
-            target[j] = within(old, residual[j], a[j][j], bound);
+            target[j] = within(old, residual[j], a[j][j], limit);
             let delta = target[j] - old;
             for i in 0..count {
                 residual[i] += a[i][j] * delta;
@@ -284,9 +284,9 @@ fn residual<T: Real>(
 
 /// Computes the optimal force of one row within ±bound.
 #[inline(always)]
-fn within<T: Real>(force: T, residual: T, a: T, bound: T) -> T {
+fn within<T: Real>(force: T, residual: T, a: T, limit: T) -> T {
     let free = T::select(a.gt(T::ZERO), force - residual / a, T::ZERO);
-    free.clamp(-bound, bound)
+    free.clamp(-limit, limit)
 }
 
 /// Computes the optimal friction within Σ (f_j / μ_j)² ≤ normal².

@@ -236,11 +236,11 @@ impl<T: Real> Partition<T> {
 
     /// Adds `members`, an island of a lane whose lowest tree is `first`.
     fn add(&mut self, first: u32, lane: usize) {
-        let known = (self.by_first.iter(first)).find(|&k| {
+        let found = (self.by_first.iter(first)).find(|&k| {
             let trees = self.islands[k as usize].trees.clone();
             self.trees[trees] == self.members[..]
         });
-        if let Some(k) = known {
+        if let Some(k) = found {
             self.islands[k as usize].lanes.set_lane(lane, true);
             return;
         }

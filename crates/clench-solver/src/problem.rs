@@ -152,7 +152,7 @@ impl<T: Real> Problem<T> {
     }
 
     /// Removes the derivatives of all blocks.
-    pub fn hold_constraints(&mut self) {
+    pub fn remove_constraint_derivatives(&mut self) {
         for numbers in [
             &mut self.jacobian.values,
             &mut self.aref,
@@ -305,7 +305,7 @@ impl<T: Real> Problem<T> {
                 (&mut self.mass.values, &whole.mass.values[rows]),
                 (&mut self.qacc_smooth, &whole.qacc_smooth[run]),
             ] {
-                to.extend(from.iter().map(|&x| transfer.take(x)));
+                to.extend(from.iter().map(|&x| transfer.convert(x)));
             }
         }
         self.mass_factor
@@ -340,7 +340,7 @@ impl<T: Real> Problem<T> {
                 dofs.map(|&dof| part.local[dof as usize]),
                 whole.jacobian.values(b),
                 #[inline(always)]
-                |j| transfer.take_in(lanes, j, L::ZERO),
+                |j| transfer.convert_in(lanes, j, L::ZERO),
             );
             self.nactive += b.active_range().len();
             for (to, from, absent) in [
@@ -351,7 +351,7 @@ impl<T: Real> Problem<T> {
             ] {
                 to.extend(from[b.rows()].iter().map(
                     #[inline(always)]
-                    |&x| transfer.take_in(lanes, x, absent),
+                    |&x| transfer.convert_in(lanes, x, absent),
                 ));
             }
         }

@@ -28,7 +28,7 @@ impl<T: Real> Response<T> {
     /// larger matrices than the settings allow.
     pub fn factor(&mut self, problem: &Problem<T>, settings: &Settings, qacc: &[T]) -> bool {
         let fits = self.newton.prepare(problem, settings);
-        self.iterate.place(problem, qacc);
+        self.iterate.start_at(problem, qacc);
         if fits {
             let (iterate, all) = (&self.iterate, T::Mask::splat(true));
             (self.newton).factor(problem, iterate, all, &self.threads, &mut self.clock);

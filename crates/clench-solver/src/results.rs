@@ -72,9 +72,9 @@ impl<T: Real> Results<T> {
             blend(
                 lanes,
                 &mut self.qacc[dof],
-                transfer.put(iterate.qacc[local]),
+                transfer.convert_back(iterate.qacc[local]),
             );
-            let force = transfer.put(iterate.qfrc_constraint[local]);
+            let force = transfer.convert_back(iterate.qfrc_constraint[local]);
             blend(lanes, &mut self.qfrc_constraint[dof], force);
         }
         for (b, &k) in island.problem.jacobian.blocks.iter().zip(&island.blocks) {
@@ -82,11 +82,11 @@ impl<T: Real> Results<T> {
             let lanes = lanes & acting[k as usize];
             let force = &iterate.force[b.rows()];
             for (to, &from) in self.force[to.rows()].iter_mut().zip(force) {
-                blend(lanes, to, transfer.put(from));
+                blend(lanes, to, transfer.convert_back(from));
             }
             let edges = &island.work.edges[b.active_range()];
             for (to, &from) in self.edges[to.active_range()].iter_mut().zip(edges) {
-                blend(lanes, to, transfer.put(from));
+                blend(lanes, to, transfer.convert_back(from));
             }
         }
     }

@@ -67,7 +67,7 @@ impl<T: Real> SlidingSystem<T> {
         for (i, &delta) in right.iter().enumerate() {
             self.pairs.add_second(i, delta, step);
         }
-        hessian.solve_rest(step);
+        hessian.complete_solve(step);
     }
 
     /// Returns the lanes in which a contact jams.

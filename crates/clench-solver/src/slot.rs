@@ -10,7 +10,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(crate) struct Slot<F: Real> {
     /// True if an island of the current solve uses it.
-    pub taken: bool,
+    pub in_use: bool,
     /// The island's dofs, as numbered in the whole problem and in local order; its blocks, ascending.
     pub dofs: Vec<u32>,
     pub blocks: Vec<u32>,
@@ -22,7 +22,7 @@ pub(crate) struct Slot<F: Real> {
 impl<F: Real> Default for Slot<F> {
     fn default() -> Self {
         Slot {
-            taken: false,
+            in_use: false,
             dofs: Vec::new(),
             blocks: Vec::new(),
             problem: Problem::new(Arc::new(Tree::dense(0))),

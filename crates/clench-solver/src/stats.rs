@@ -130,7 +130,7 @@ impl<T: Real> SolveStats<T> {
             (&mut self.noslip_iterations, other.noslip_iterations),
             (&mut self.status, other.status),
         ] {
-            *worst = T::select(lanes, worst.max(transfer.put(other)), *worst);
+            *worst = T::select(lanes, worst.max(transfer.convert_back(other)), *worst);
         }
         for (sum, other) in [
             (&mut self.gap, other.gap),
@@ -140,7 +140,7 @@ impl<T: Real> SolveStats<T> {
             (&mut self.updates, other.updates),
             (&mut self.islands, other.islands),
         ] {
-            *sum = T::select(lanes, *sum + transfer.put(other), *sum);
+            *sum = T::select(lanes, *sum + transfer.convert_back(other), *sum);
         }
     }
 

@@ -55,17 +55,17 @@ impl Threads {
     }
 
     /// Runs `work` on one of the threads, where forked work starts immediately.
-    pub fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    pub fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
             None => work(),
         }
     }
 
-    /// Works like [`enter`](Self::enter), for work that forks many times, each time for less than a millisecond. The
+    /// Works like [`run`](Self::run), for work that forks many times, each time for less than a millisecond. The
     /// other threads stay awake until it is done, as far as there are processors for them. Waking a thread was measured
     /// to take 60 µs.
-    pub fn enter_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    pub fn run_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let Some(pool) = &self.pool else {
             return work();
         };
@@ -135,13 +135,13 @@ fn stay_awake(done: &AtomicBool) {
     }
 }
 
-/// Pauses between two polls of another thread's progress, after `looks` polls without success.
-pub(crate) fn pause(looks: usize) {
+/// Pauses between two polls of another thread's progress, after `polls` polls without success.
+pub(crate) fn pause(polls: usize) {
     /// Polling without a pause would keep taking the cache line from the thread that writes it.
     const SPINS: usize = 16;
     /// After this many polls, some hundred microseconds, the operating system may run other threads here.
-    const MAX_SPINNING_LOOKS: usize = 1000;
-    match looks < MAX_SPINNING_LOOKS {
+    const MAX_SPINNING_POLLS: usize = 1000;
+    match polls < MAX_SPINNING_POLLS {
         true => (0..SPINS).for_each(|_| spin_loop()),
         false => yield_now(),
     }

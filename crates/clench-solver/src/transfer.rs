@@ -4,12 +4,12 @@ use clench_math::Real;
 
 /// Converts numbers `T` to numbers `F` and back.
 pub(crate) trait Transfer<T: Real, F: Real>: Copy {
-    /// Takes a number of the whole problem.
-    fn take(self, x: T) -> F;
-    /// Takes `x` in `lanes`, which include the lanes of this transfer, and `absent` in the others.
-    fn take_in(self, lanes: T::Mask, x: T, absent: T) -> F;
-    /// Returns a result, valid in the lanes of this transfer.
-    fn put(self, x: F) -> T;
+    /// Converts a number of the whole problem.
+    fn convert(self, x: T) -> F;
+    /// Converts `x` in `lanes`, which include the lanes of this transfer, and `absent` in the others.
+    fn convert_in(self, lanes: T::Mask, x: T, absent: T) -> F;
+    /// Converts a result of the island back. It is valid in the lanes of this transfer.
+    fn convert_back(self, x: F) -> T;
 }
 
 /// The transfer of all lanes.
@@ -18,15 +18,15 @@ pub(crate) struct AllLanes;
 
 impl<T: Real> Transfer<T, T> for AllLanes {
     #[inline(always)]
-    fn take(self, x: T) -> T {
+    fn convert(self, x: T) -> T {
         x
     }
     #[inline(always)]
-    fn take_in(self, lanes: T::Mask, x: T, absent: T) -> T {
+    fn convert_in(self, lanes: T::Mask, x: T, absent: T) -> T {
         T::select(lanes, x, absent)
     }
     #[inline(always)]
-    fn put(self, x: T) -> T {
+    fn convert_back(self, x: T) -> T {
         x
     }
 }
@@ -37,15 +37,15 @@ pub(crate) struct OneLane(pub usize);
 
 impl<T: Real> Transfer<T, T::Scalar> for OneLane {
     #[inline(always)]
-    fn take(self, x: T) -> T::Scalar {
+    fn convert(self, x: T) -> T::Scalar {
         x.lane(self.0)
     }
     #[inline(always)]
-    fn take_in(self, _: T::Mask, x: T, _: T) -> T::Scalar {
+    fn convert_in(self, _: T::Mask, x: T, _: T) -> T::Scalar {
         x.lane(self.0)
     }
     #[inline(always)]
-    fn put(self, x: T::Scalar) -> T {
+    fn convert_back(self, x: T::Scalar) -> T {
         T::splat(x)
     }
 }

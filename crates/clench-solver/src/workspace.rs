@@ -68,7 +68,7 @@ impl<T: Real> Workspace<T> {
     pub fn evaluate(&mut self, problem: &Problem<T>, qacc: &[T]) {
         let SolverState { iterate, stats, .. } = &mut self.state;
         *stats = SolveStats::default();
-        iterate.place(problem, qacc);
+        iterate.start_at(problem, qacc);
         iterate.differentiate(problem);
         self.find_edge_forces(problem);
     }

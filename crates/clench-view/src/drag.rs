@@ -44,13 +44,13 @@ impl Drag {
         if compliance <= 0.0 {
             return;
         }
-        let place = at(ws, body, self.point);
+        let position = at(ws, body, self.point);
         let com = ws.position.subtree_com[model.bodies[body].root];
-        let velocity = wide(ws.velocity.cvel[body].velocity_at(place - com));
-        let place = wide(place);
-        let pull = Vec3::from_array(self.target) - place;
+        let velocity = wide(ws.velocity.cvel[body].velocity_at(position - com));
+        let position = wide(position);
+        let pull = Vec3::from_array(self.target) - position;
         let force = (pull * RATE - velocity * (2.0 * RATE.sqrt())) * (1.0 / compliance);
-        let torque = (place - wide(ws.position.xipos[body])).cross(force);
+        let torque = (position - wide(ws.position.xipos[body])).cross(force);
         self.force = force.to_array();
         sim.state.xfrc_applied[body] = Force::new(narrow(torque), narrow(force));
     }
@@ -63,8 +63,8 @@ impl Drag {
     /// Returns the row of a frame: the body, the point in the world, the target, the force.
     pub(crate) fn row<T: Real>(&self, ws: &Workspace<T>) -> [f32; 10] {
         let mut row = [self.body as f32; 10];
-        let place = wide(at(ws, self.body, self.point)).to_array();
-        let numbers = place.iter().chain(&self.target).chain(&self.force);
+        let position = wide(at(ws, self.body, self.point)).to_array();
+        let numbers = position.iter().chain(&self.target).chain(&self.force);
         for (to, &from) in row[1..].iter_mut().zip(numbers) {
             *to = from as f32;
         }
@@ -101,7 +101,7 @@ impl Turn {
             return;
         }
         let omega = wide(ws.velocity.cvel[self.body].angular);
-        let spring = self.left(ws) * RATE - omega * (2.0 * RATE.sqrt());
+        let spring = self.remaining(ws) * RATE - omega * (2.0 * RATE.sqrt());
         let torque = spring * (1.0 / compliance);
         self.torque = torque.to_array();
         sim.state.xfrc_applied[self.body] = Force::new(narrow(torque), Vec3::ZERO);
@@ -113,7 +113,7 @@ impl Turn {
     }
 
     /// Returns the rotation from the current to the target orientation, in world axes, rad.
-    fn left<T: Real>(&self, ws: &Workspace<T>) -> Vec3<f64> {
+    fn remaining<T: Real>(&self, ws: &Workspace<T>) -> Vec3<f64> {
         let now = ws.position.xquat[self.body]
             .to_array()
             .map(|x| x.lane(0).to_f64());
@@ -124,9 +124,9 @@ impl Turn {
     /// Returns the row of a frame: the body, its centre of mass, the remaining rotation, the torque.
     pub(crate) fn row<T: Real>(&self, ws: &Workspace<T>) -> [f32; 10] {
         let mut row = [self.body as f32; 10];
-        let place = wide(ws.position.xipos[self.body]).to_array();
-        let left = self.left(ws).to_array();
-        let numbers = place.iter().chain(&left).chain(&self.torque);
+        let position = wide(ws.position.xipos[self.body]).to_array();
+        let remaining = self.remaining(ws).to_array();
+        let numbers = position.iter().chain(&remaining).chain(&self.torque);
         for (to, &from) in row[1..].iter_mut().zip(numbers) {
             *to = from as f32;
         }

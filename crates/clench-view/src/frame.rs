@@ -10,7 +10,7 @@ use crate::stages::StageTimes;
 use clench::SimError;
 use clench::math::{Mask, Real, Scalar, Vec3};
 use clench::rigid::constraint::ConstraintSource;
-use clench::rigid::readout::{ContactRow, Push, contact_rows, islands, light_places};
+use clench::rigid::readout::{ContactRow, Push, contact_rows, islands, light_poses};
 use clench::rigid::{Precision, Sim, Workspace};
 use std::time::Duration;
 
@@ -126,7 +126,7 @@ sections! {
     /// Cameras: position, and the right, up and backward axes as columns.
     cameras: 12 => s.cameras.iter().for_each(|row| out.extend(row));
     /// Lights: position and direction.
-    lights: 6 => out.extend(light_places(&s.sim.model().visuals.lights, s.sim.workspace()).as_flattened().as_flattened().iter().map(|&x| x as f32));
+    lights: 6 => out.extend(light_poses(&s.sim.model().visuals.lights, s.sim.workspace()).as_flattened().as_flattened().iter().map(|&x| x as f32));
     /// Straight segments of tendons: the tendon, both ends.
     spans: 7 => tendon_lines(s.sim, out);
     /// Position coordinates of the state.

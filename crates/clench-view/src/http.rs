@@ -64,11 +64,11 @@ pub(crate) fn read_request(
         if head.len() > MAX_HEAD {
             return Ok(Err(BAD));
         }
-        let left = deadline.saturating_duration_since(Instant::now());
-        if left.is_zero() {
+        let remaining = deadline.saturating_duration_since(Instant::now());
+        if remaining.is_zero() {
             return Err(io::ErrorKind::TimedOut.into());
         }
-        stream.set_read_timeout(Some(left))?;
+        stream.set_read_timeout(Some(remaining))?;
         match stream.read(&mut piece)? {
             0 => return Err(io::ErrorKind::UnexpectedEof.into()),
             count => head.extend(&piece[..count]),
@@ -116,10 +116,10 @@ fn parse(head: &[u8], token: &str, anywhere: bool) -> Result<Request, Refusal> {
     if !matches!(path, "/" | "/socket") {
         return Err(UNKNOWN);
     }
-    let given = query
+    let sent = query
         .split('&')
         .find_map(|part| part.strip_prefix("token="));
-    if !given.is_some_and(|given| same_token(given, token)) {
+    if !sent.is_some_and(|sent| same_token(sent, token)) {
         return Err(NO_TOKEN);
     }
     if path == "/" {
@@ -149,9 +149,9 @@ fn is_ours(host: &str, anywhere: bool) -> bool {
 }
 
 /// Compares in a time that does not depend on the first difference.
-fn same_token(given: &str, token: &str) -> bool {
-    let differing = given.bytes().zip(token.bytes()).map(|(a, b)| a ^ b);
-    given.len() == token.len() && differing.fold(0, |all, bits| all | bits) == 0
+fn same_token(sent: &str, token: &str) -> bool {
+    let differing = sent.bytes().zip(token.bytes()).map(|(a, b)| a ^ b);
+    sent.len() == token.len() && differing.fold(0, |all, bits| all | bits) == 0
 }
 
 /// Sends the page.

@@ -106,11 +106,11 @@ impl Interaction {
     /// Returns the reason if the command fails; nothing has changed then.
     pub fn apply<V: Viewed>(&mut self, viewed: &mut V, command: Command) -> Result<(), String> {
         command.check(viewed.model(), viewed.envs())?;
-        self.carry_out(viewed, command)
+        self.execute(viewed, command)
             .map_err(|error| error.to_string())
     }
 
-    fn carry_out<V: Viewed>(&mut self, viewed: &mut V, command: Command) -> Result<(), SimError> {
+    fn execute<V: Viewed>(&mut self, viewed: &mut V, command: Command) -> Result<(), SimError> {
         let env = self.selection.env;
         match command {
             Command::Pause { on } => self.paused = on,

@@ -1,7 +1,7 @@
 //! The viewer: a page in the browser that shows a simulation and lets users interact with it.
 //!
 //! [`scene`] describes the elements to draw, [`surfaces`] their textures, [`frame`] their poses and the forces;
-//! viewers, recordings and films share them. [`Server`] sends a page, a scene and frames to browsers, and passes their
+//! viewers, recordings and videos share them. [`Server`] sends a page, a scene and frames to browsers, and passes their
 //! [`Command`]s to the code that steps the simulation: [`Player`], which steps it in real time, or the user's own loop
 //! with a [`PassiveViewer`]. [`interaction`] implements the commands for both. The source of the page is in `web/`.
 //!

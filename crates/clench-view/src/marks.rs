@@ -66,7 +66,7 @@ impl Marks {
     /// Returns an error if a number is not finite, a colour is not within 0 to 1, the lifetime is negative, the text is
     /// too long or there are too many marks.
     pub fn add(&mut self, mark: Mark) -> Result<(), String> {
-        let (from, to, radius) = mark.place();
+        let (from, to, radius) = mark.ends_and_radius();
         let numbers = from.into_iter().chain(to).chain([radius]);
         if !numbers.clone().all(|x| (x as f32).is_finite()) || radius < 0.0 {
             return Err(
@@ -117,7 +117,7 @@ impl Marks {
 
 impl Mark {
     /// Returns both ends and the radius.
-    fn place(&self) -> ([f64; 3], [f64; 3], f64) {
+    fn ends_and_radius(&self) -> ([f64; 3], [f64; 3], f64) {
         match self.shape {
             MarkShape::Sphere { center, radius } => (center, center, radius),
             MarkShape::Line { from, to, radius } | MarkShape::Arrow { from, to, radius } => {
@@ -143,7 +143,7 @@ impl Mark {
             MarkShape::Arrow { .. } => 2.0,
             MarkShape::Text { .. } => 3.0,
         };
-        let (from, to, radius) = self.place();
+        let (from, to, radius) = self.ends_and_radius();
         let mut row = [kind; 12];
         let numbers = from.into_iter().chain(to).chain([radius]);
         for (to, from) in iter::zip(&mut row[1..8], numbers) {

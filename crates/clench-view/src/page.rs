@@ -86,8 +86,8 @@ impl Page {
     /// Returns an error if the text lacks the markers for data.
     pub fn of(text: impl Into<String>) -> Result<Self, PageError> {
         let text = text.into();
-        let place = format!("{BEFORE_DATA}{AFTER_DATA}");
-        match text.contains(&place) {
+        let placeholder = format!("{BEFORE_DATA}{AFTER_DATA}");
+        match text.contains(&placeholder) {
             true => Ok(Page(text)),
             false => Err(PageError::Version),
         }

@@ -15,7 +15,7 @@ const PERIOD: Duration = Duration::from_micros(16_667);
 /// The interval between frames while no page is connected, so that a new one finds a frame.
 const IDLE_PERIOD: Duration = Duration::from_millis(500);
 /// The interval between polls of the commands while the loop is paused.
-const REST: Duration = Duration::from_millis(10);
+const PAUSED_PERIOD: Duration = Duration::from_millis(10);
 /// The maximum delay that the loop compensates, s.
 const LATE: f64 = 0.1;
 /// The lead of the loop, s, above which it is assumed to have jumped in time or to have a new speed.
@@ -34,7 +34,7 @@ pub struct PassiveViewer {
     anchor: Option<(Instant, f64)>,
     published: Option<Instant>,
     /// The real and simulated time at which the loop resumed.
-    left: Option<(Instant, f64)>,
+    resumed: Option<(Instant, f64)>,
     timing: Timing,
     stages: StageClock,
     /// The number of steps since `stages` last read the profile.
@@ -62,7 +62,7 @@ impl PassiveViewer {
             steps: 0,
             anchor: None,
             published: None,
-            left: None,
+            resumed: None,
             timing: Timing::default(),
             stages: StageClock::default(),
             unread_steps: 0,
@@ -87,7 +87,7 @@ impl PassiveViewer {
         let env = self.interaction.selection.env;
         self.measure(viewed, env);
         for command in self.server.commands() {
-            self.take(viewed, command);
+            self.execute(viewed, command);
         }
         self.interaction.pull(viewed)?;
         let due = match self.server.clients() {
@@ -101,7 +101,7 @@ impl PassiveViewer {
         if wait.is_none() {
             self.marks.shown();
             let env = self.interaction.selection.env;
-            self.left = Some((Instant::now(), viewed.time(env)));
+            self.resumed = Some((Instant::now(), viewed.time(env)));
         }
         Ok(wait)
     }
@@ -130,7 +130,7 @@ impl PassiveViewer {
         }
     }
 
-    fn take<V: Viewed>(&mut self, viewed: &mut V, command: Command) {
+    fn execute<V: Viewed>(&mut self, viewed: &mut V, command: Command) {
         let done = match command {
             Command::Step { count } => {
                 let checked = command.check(viewed.model(), viewed.envs());
@@ -151,7 +151,7 @@ impl PassiveViewer {
 
     /// Measures the duration and the number of steps since the loop resumed.
     fn measure<V: Viewed>(&mut self, viewed: &V, env: usize) {
-        let Some((when, before)) = self.left.take() else {
+        let Some((when, before)) = self.resumed.take() else {
             return;
         };
         let time = viewed.time(env);
@@ -170,7 +170,7 @@ impl PassiveViewer {
         if self.interaction.paused {
             self.anchor = None;
             if self.steps == 0 {
-                return Some(REST);
+                return Some(PAUSED_PERIOD);
             }
             self.steps -= 1;
             return None;
@@ -183,7 +183,7 @@ impl PassiveViewer {
         }
         let ahead = (time - start) / factor - when.elapsed().as_secs_f64();
         if ahead > 0.0 && time >= start && ahead < MAX_AHEAD {
-            return Some(Duration::from_secs_f64(ahead).min(REST));
+            return Some(Duration::from_secs_f64(ahead).min(PAUSED_PERIOD));
         }
         if !(-LATE..MAX_AHEAD).contains(&ahead) || time < start {
             self.anchor = None;

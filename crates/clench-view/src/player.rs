@@ -58,11 +58,11 @@ impl<V: Stepped> Player<V> {
     /// # Errors
     /// Returns an error if the state cannot be evaluated.
     pub fn frame(&mut self) -> Result<Vec<u8>, SimError> {
-        let nothing = &mut Marks::default();
+        let no_marks = &mut Marks::default();
         let ends = self.past.front().zip(self.past.back());
         let now = self.time();
         let past = ends.map(|(first, last)| [first.time, last.time.max(now)]);
-        (self.interaction).frame(&mut self.viewed, self.timing, past, nothing)
+        (self.interaction).frame(&mut self.viewed, self.timing, past, no_marks)
     }
 
     /// Returns the simulated time of the selected environment, s.

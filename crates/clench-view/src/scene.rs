@@ -162,7 +162,7 @@ fn shape(kind: ShapeKind) -> &'static str {
     }
 }
 
-fn placed(
+fn shape_at(
     model: &Model,
     pose: (Vec3<f64>, Quat<f64>),
     appearance: Appearance,
@@ -190,7 +190,7 @@ fn merged(mut first: Value, second: Value) -> Value {
 
 fn geom(model: &Model, g: usize) -> Value {
     let (geom, p) = (&model.geoms[g], &model.params);
-    let place = placed(
+    let drawn = shape_at(
         model,
         (p.geom_pos[g], p.geom_quat[g]),
         model.visuals.geoms[g],
@@ -205,7 +205,7 @@ fn geom(model: &Model, g: usize) -> Value {
         "friction": p.geom_friction[g],
         "condim": geom.condim,
     });
-    merged(place, own)
+    merged(drawn, own)
 }
 
 fn site(model: &Model, s: usize) -> Value {
@@ -217,7 +217,7 @@ fn site(model: &Model, s: usize) -> Value {
         pos += quat.rotate(mesh.pos);
         quat = quat * mesh.quat;
     }
-    let place = placed(
+    let drawn = shape_at(
         model,
         (pos, quat),
         model.visuals.sites[s],
@@ -229,7 +229,7 @@ fn site(model: &Model, s: usize) -> Value {
         "body": site.body,
         "group": site.group,
     });
-    merged(place, own)
+    merged(drawn, own)
 }
 
 fn joint(model: &Model, j: usize) -> Value {

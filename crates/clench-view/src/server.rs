@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::handshake::accept_key;
 use crate::http::{self, CROWDED, Request};
-use crate::shared::{HEARTBEAT, News, Shared};
+use crate::shared::{HEARTBEAT, Latest, Shared};
 use crate::{Page, Scene, socket};
 use serde_json::json;
 use std::io::{self, Write};
@@ -115,7 +115,7 @@ impl Server {
             scene: scene.to_json().into(),
             token,
             anywhere: !address.ip().is_loopback(),
-            news: Mutex::new(News {
+            latest: Mutex::new(Latest {
                 number: 0,
                 frame: Bytes::new(),
                 message_count: 0,
@@ -161,18 +161,18 @@ impl Server {
 
     /// Publishes a frame to all browsers; each receives it when it is ready.
     pub fn publish(&self, frame: Vec<u8>) {
-        let mut news = self.shared.news();
-        news.number += 1;
-        news.frame = frame.into();
-        drop(news);
+        let mut latest = self.shared.latest();
+        latest.number += 1;
+        latest.frame = frame.into();
+        drop(latest);
         self.shared.changed.notify_all();
     }
 
     /// Sends a message to all browsers, such as why a simulation has stopped.
     pub fn notify(&self, text: &str) {
-        let mut news = self.shared.news();
-        news.message_count += 1;
-        news.message = json!({ "error": text }).to_string().into();
+        let mut latest = self.shared.latest();
+        latest.message_count += 1;
+        latest.message = json!({ "error": text }).to_string().into();
     }
 
     /// Returns the commands since the last call.

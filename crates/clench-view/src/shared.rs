@@ -15,7 +15,7 @@ pub(crate) struct Shared {
     pub scene: Utf8Bytes,
     pub token: String,
     pub anywhere: bool,
-    pub news: Mutex<News>,
+    pub latest: Mutex<Latest>,
     pub changed: Condvar,
     pub commands: SyncSender<Command>,
     pub clients: AtomicUsize,
@@ -24,7 +24,7 @@ pub(crate) struct Shared {
 
 /// The latest frame and message, each with its sequence number.
 #[derive(Clone)]
-pub(crate) struct News {
+pub(crate) struct Latest {
     pub number: u64,
     pub frame: Bytes,
     pub message_count: u64,
@@ -32,16 +32,16 @@ pub(crate) struct News {
 }
 
 impl Shared {
-    pub(crate) fn news(&self) -> MutexGuard<'_, News> {
-        self.news.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(crate) fn latest(&self) -> MutexGuard<'_, Latest> {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Waits for a frame after this one, up to [`HEARTBEAT`], and returns the latest.
-    pub(crate) fn newer_than(&self, seen: u64) -> News {
-        let old = |news: &mut News| news.number <= seen && !self.closing.load(Relaxed);
-        let waited = (self.changed).wait_timeout_while(self.news(), HEARTBEAT, old);
-        let (news, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        news.clone()
+    pub(crate) fn newer_than(&self, seen: u64) -> Latest {
+        let old = |latest: &mut Latest| latest.number <= seen && !self.closing.load(Relaxed);
+        let waited = (self.changed).wait_timeout_while(self.latest(), HEARTBEAT, old);
+        let (latest, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        latest.clone()
     }
 }
 

@@ -63,7 +63,7 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     loop {
         let message = match socket.read() {
             Ok(message) => message,
-            Err(Error::Io(error)) if is_pause(&error) => {
+            Err(Error::Io(error)) if is_timeout(&error) => {
                 if shared.closing.load(Relaxed) {
                     return socket.close(None);
                 }
@@ -74,14 +74,14 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
         match message {
             Message::Text(text) => match BrowserMessage::read(&text) {
                 Some(BrowserMessage::Next { changes }) => {
-                    let news = shared.newer_than(seen);
-                    if news.message_count > sent {
-                        sent = news.message_count;
-                        socket.send(Message::Text(news.message))?;
+                    let latest = shared.newer_than(seen);
+                    if latest.message_count > sent {
+                        sent = latest.message_count;
+                        socket.send(Message::Text(latest.message))?;
                     }
-                    seen = news.number;
-                    let changed = delta(&last, &news.frame).filter(|_| changes);
-                    last = news.frame;
+                    seen = latest.number;
+                    let changed = delta(&last, &latest.frame).filter(|_| changes);
+                    last = latest.frame;
                     let frame = changed.map_or_else(|| last.clone(), Bytes::from);
                     socket.send(Message::Binary(frame))?;
                 }
@@ -106,7 +106,7 @@ fn refuse(socket: &mut WebSocket<TcpStream>, why: &str) -> Result<(), Error> {
 }
 
 /// Returns true if the read timed out.
-fn is_pause(error: &io::Error) -> bool {
+fn is_timeout(error: &io::Error) -> bool {
     matches!(
         error.kind(),
         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut

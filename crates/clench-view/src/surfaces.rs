@@ -38,7 +38,7 @@ pub fn texture_scale(
     };
     // An infinite side has no size to fit a texture to.
     let half = half.map(|half| if half > 0.0 { half } else { 1.0 });
-    let is_given = matches!(kind, ShapeKind::Mesh | ShapeKind::HeightField);
+    let is_asset = matches!(kind, ShapeKind::Mesh | ShapeKind::HeightField);
     match visuals.textures[texture].kind {
         TextureKind::Plane => [0, 1, 2].map(|k| {
             let repeat = material.texrepeat.get(k).map_or(1.0, |&x| f64::from(x));
@@ -47,7 +47,7 @@ pub fn texture_scale(
                 false => 0.5 * repeat / half[k],
             }
         }),
-        _ => match (material.texuniform, is_given) {
+        _ => match (material.texuniform, is_asset) {
             (true, true) => half,
             (true, false) | (false, true) => [1.0; 3],
             (false, false) => half.map(|half| 1.0 / half),

@@ -1,12 +1,12 @@
 //! `clench.Batch`.
 
 use crate::arrays::mask;
+use crate::batch_models::Models;
 use crate::busy::lock;
 use crate::count::Count;
 use crate::derivatives::BatchMemory;
 use crate::device::Device;
 use crate::error::sim_error;
-use crate::given_models::Models;
 use crate::model::Model;
 use crate::names::{Names, no_attribute};
 use crate::options::RigidOptions;
@@ -166,16 +166,16 @@ impl Batch {
             lanes,
             linearizer: Mutex::default(),
         };
-        batch.keep(py, &record.0)?;
+        batch.record_outputs(py, &record.0)?;
         Ok(PyClassInitializer::from(views).add_subclass(batch))
     }
 
     fn __getattr__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
         let Ok(output) = Output::find(name) else {
-            let known = Vec::from_iter(Output::ALL.iter().map(|output| output.name()));
-            return Err(no_attribute("Batch", name, &known));
+            let names = Vec::from_iter(Output::ALL.iter().map(|output| output.name()));
+            return Err(no_attribute("Batch", name, &names));
         };
-        let view = self.fresh(py, output)?;
+        let view = self.current_view(py, output)?;
         view.ok_or_else(|| PyAttributeError::new_err(not_recorded(name)))
     }
 
@@ -222,7 +222,7 @@ impl Batch {
     fn set_state(this: &Bound<'_, Self>, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let own = this.get();
         let mut guard = lock(&own.inner, "batch")?;
-        this.as_super().get().take_over(state)?;
+        this.as_super().get().assign_from(state)?;
         let mut envs = 0..own.n_envs;
         each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
     }
@@ -257,7 +257,7 @@ impl Batch {
         let mut guard = lock(&own.inner, "batch")?;
         let rows = PyList::new(this.py(), &envs)?;
         let rows = Some((rows.as_any(), envs.len()));
-        this.as_super().get().take_over_rows(state, rows)?;
+        this.as_super().get().assign_rows_from(state, rows)?;
         let mut envs = envs.into_iter();
         each!(&mut *guard, batch => envs.try_for_each(|env| batch.revive(env))).map_err(sim_error)
     }
@@ -331,13 +331,13 @@ impl Batch {
 
     fn __repr__(&self) -> PyResult<String> {
         let name = &self.model.get().inner().name;
-        let how = match self.device()?.as_str() {
+        let execution = match self.device()?.as_str() {
             "cpu" => format!("{} lanes, {} threads", self.lanes, self.threads),
             device => format!("on {device}"),
         };
         let (count, bits) = (self.n_envs, self.precision.name());
         Ok(format!(
-            "<clench.Batch of {count} x {name:?}, {bits} bits, {how}>"
+            "<clench.Batch of {count} x {name:?}, {bits} bits, {execution}>"
         ))
     }
 }
@@ -369,7 +369,7 @@ impl Batch {
     }
 
     /// Returns the view of an output if it is recorded, up to date unless another thread is stepping this batch.
-    fn fresh(&self, py: Python<'_>, output: Output) -> PyResult<Option<Py<PyAny>>> {
+    fn current_view(&self, py: Python<'_>, output: Output) -> PyResult<Option<Py<PyAny>>> {
         let view = self.recorded.get(py, output)?;
         if view.is_some()
             && let Ok(mut guard) = lock(&self.inner, "batch")
@@ -407,7 +407,7 @@ impl Batch {
     }
 
     /// Records outputs in addition to those that are recorded already.
-    fn keep(&self, py: Python<'_>, names: &[String]) -> PyResult<()> {
+    fn record_outputs(&self, py: Python<'_>, names: &[String]) -> PyResult<()> {
         let mut guard = lock(&self.inner, "batch")?;
         let keeper = self.keeper.bind(py);
         each!(&mut *guard, batch => self.recorded.add(keeper, batch, names))

@@ -25,7 +25,7 @@ impl Batch {
     ///     Names of outputs, see `clench.OUTPUTS`.
     #[pyo3(signature = (*names))]
     fn record(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
-        self.keep(py, &names)
+        self.record_outputs(py, &names)
     }
 
     /// tuple of str : The outputs that are recorded.
@@ -53,7 +53,7 @@ impl Batch {
     ///     If the output is not recorded.
     fn output(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
         let output = Output::find(name).map_err(sim_error)?;
-        let view = self.fresh(py, output)?;
+        let view = self.current_view(py, output)?;
         view.ok_or_else(|| PyValueError::new_err(not_recorded(name)))
     }
 

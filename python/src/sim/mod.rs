@@ -375,7 +375,7 @@ impl Sim {
     #[setter]
     fn set_state(this: &Bound<'_, Self>, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let _guard = lock(&this.get().inner, "simulation")?;
-        this.as_super().get().take_over(state)
+        this.as_super().get().assign_from(state)
     }
 
     /// Model : The model.

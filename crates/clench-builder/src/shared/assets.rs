@@ -30,23 +30,23 @@ impl Assets {
             let mesh = Arc::clone(&model.meshes[index]);
             let similar = self.similar.entry([mesh.vertices.len(), mesh.faces.len()]);
             let similar = similar.or_default();
-            let equal = |&&known: &&usize| {
-                let known = &self.meshes[known];
-                Arc::ptr_eq(known, &mesh) || are_equal(known, &mesh)
+            let equal = |&&shared: &&usize| {
+                let shared = &self.meshes[shared];
+                Arc::ptr_eq(shared, &mesh) || are_equal(shared, &mesh)
             };
-            let Some(&known) = similar.iter().find(equal) else {
+            let Some(&shared) = similar.iter().find(equal) else {
                 similar.push(self.meshes.len());
                 self.meshes.push(mesh);
                 continue;
             };
-            if !Arc::ptr_eq(&self.meshes[known], &mesh) {
-                Arc::make_mut(model).meshes[index] = Arc::clone(&self.meshes[known]);
+            if !Arc::ptr_eq(&self.meshes[shared], &mesh) {
+                Arc::make_mut(model).meshes[index] = Arc::clone(&self.meshes[shared]);
             }
         }
         for field in &model.height_fields {
-            let known = &mut self.height_fields;
-            if !known.iter().any(|known| Arc::ptr_eq(known, field)) {
-                known.push(Arc::clone(field));
+            let shared = &mut self.height_fields;
+            if !shared.iter().any(|shared| Arc::ptr_eq(shared, field)) {
+                shared.push(Arc::clone(field));
             }
         }
     }
@@ -54,7 +54,7 @@ impl Assets {
     /// Returns the index of a mesh that is shared.
     fn mesh(&self, mesh: &Arc<Mesh>) -> Option<usize> {
         let similar = (self.similar).get(&[mesh.vertices.len(), mesh.faces.len()])?;
-        let is_same = |&&known: &&usize| Arc::ptr_eq(&self.meshes[known], mesh);
+        let is_same = |&&shared: &&usize| Arc::ptr_eq(&self.meshes[shared], mesh);
         similar.iter().find(is_same).copied()
     }
 
@@ -82,8 +82,8 @@ impl Assets {
             let mesh = geom.mesh.and_then(|mesh| self.mesh(&model.meshes[mesh]));
             let field = geom.height_field.and_then(|field| {
                 let field = &model.height_fields[field];
-                let mut known = self.height_fields.iter();
-                known.position(|known| Arc::ptr_eq(known, field))
+                let mut shared = self.height_fields.iter();
+                shared.position(|shared| Arc::ptr_eq(shared, field))
             });
             assets[slot] = mesh.or(field).map(|asset| asset as u32);
         }

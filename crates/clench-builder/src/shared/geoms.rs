@@ -1,10 +1,10 @@
 //! The geoms of several models in one layout.
 //!
-//! A geom of the layout stands for at most one geom of each model, of the same class: what a step reads of a geom's
-//! structure. The geoms of a body keep their order in every model, so that the contacts of an environment have the same
-//! order as in its own model. The geoms of each body are therefore a common supersequence of those of all models: model
-//! by model, the longest common subsequence with the layout so far is shared, where geoms of equal names count more
-//! and the rest is inserted.
+//! A geom of the layout stands for at most one geom of each model, of the same class: the part of a geom's structure
+//! that a step reads. The geoms of a body keep their order in every model, so that the contacts of an environment have
+//! the same order as in its own model. The geoms of each body are therefore a common supersequence of those of all
+//! models: model by model, the longest common subsequence with the layout so far is shared, where geoms of equal names
+//! count more and the rest is inserted.
 
 use super::difference::differ;
 use clench_collide::ShapeKind;
@@ -94,13 +94,13 @@ impl Alignment {
             owners: Vec::new(),
             slots,
         };
-        let mut places = vec![0; count];
-        for (place, slot) in alignment.bodies.iter().flatten().enumerate() {
-            places[slot.number] = place;
+        let mut index_in_layout = vec![0; count];
+        for (index, slot) in alignment.bodies.iter().flatten().enumerate() {
+            index_in_layout[slot.number] = index;
             alignment.owners.push(slot.owner);
         }
         let all = alignment.slots.iter_mut().flatten();
-        all.for_each(|slot| *slot = places[*slot]);
+        all.for_each(|slot| *slot = index_in_layout[*slot]);
         Ok(alignment)
     }
 
@@ -114,7 +114,7 @@ impl Alignment {
         &self.owners
     }
 
-    /// Gives a model the geoms of the layout.
+    /// Replaces the geoms of a model by those of the layout.
     pub(super) fn lay_out(&self, model: &mut Model) {
         model.geoms.clear();
         model.visuals.geoms.clear();
@@ -134,13 +134,13 @@ impl Alignment {
 fn merge(merged: &mut Vec<Slot>, own: Vec<Slot>, count: &mut usize) -> Vec<usize> {
     let (mut all, mut numbers) = (Vec::new(), Vec::new());
     let mut next = 0;
-    for (slot, place) in own.iter().zip(places(merged, &own)) {
-        let end = place.unwrap_or(next);
+    for (slot, shared) in own.iter().zip(shared_slots(merged, &own)) {
+        let end = shared.unwrap_or(next);
         all.extend_from_slice(&merged[next..end]);
         next = end;
-        match place {
-            Some(place) => {
-                all.push(merged[place].clone());
+        match shared {
+            Some(shared) => {
+                all.push(merged[shared].clone());
                 next += 1;
             }
             None => {
@@ -159,18 +159,16 @@ fn merge(merged: &mut Vec<Slot>, own: Vec<Slot>, count: &mut usize) -> Vec<usize
 }
 
 /// Returns the slot in `merged` that each geom of a further model shares, in ascending order; `None` for a new geom.
-fn places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
+fn shared_slots(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     // Most models agree in most geoms.
-    let alike = |(a, b): &(&Slot, &Slot)| value(a, b) == Some(MATCH + SAME_NAME);
-    let start = merged.iter().zip(own).take_while(alike).count();
+    let is_same = |(a, b): &(&Slot, &Slot)| value(a, b) == Some(MATCH + SAME_NAME);
+    let start = merged.iter().zip(own).take_while(is_same).count();
     let (merged_rest, own_rest) = (&merged[start..], &own[start..]);
     let rest = match merged_rest.len().saturating_mul(own_rest.len()) {
-        0..=MAX_TABLE => best_places(merged_rest, own_rest),
-        _ => first_places(merged_rest, own_rest),
+        0..=MAX_TABLE => best_slots(merged_rest, own_rest),
+        _ => first_slots(merged_rest, own_rest),
     };
-    let rest = rest
-        .into_iter()
-        .map(|place| place.map(|place| start + place));
+    let rest = rest.into_iter().map(|slot| slot.map(|slot| start + slot));
     (0..start).map(Some).chain(rest).collect()
 }
 
@@ -182,7 +180,7 @@ fn value(a: &Slot, b: &Slot) -> Option<u32> {
 }
 
 /// Returns the slots of greatest total value, by dynamic programming.
-fn best_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
+fn best_slots(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     // The greatest value of the geoms from i and j on.
     let mut best = vec![vec![0; own.len() + 1]; merged.len() + 1];
     for i in (0..merged.len()).rev() {
@@ -192,7 +190,7 @@ fn best_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
         }
     }
     let mut i = 0;
-    let place = |j: usize| {
+    let find_slot = |j: usize| {
         while i < merged.len() && best[i][j] > best[i][j + 1] {
             i += 1;
             let shared = value(&merged[i - 1], &own[j]).map(|value| value + best[i][j + 1]);
@@ -202,19 +200,19 @@ fn best_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
         }
         None
     };
-    (0..own.len()).map(place).collect()
+    (0..own.len()).map(find_slot).collect()
 }
 
 /// Returns for each geom the first slot of its class after the slot of the geom before it.
-fn first_places(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
+fn first_slots(merged: &[Slot], own: &[Slot]) -> Vec<Option<usize>> {
     let mut next = 0;
-    let place = |slot: &Slot| {
+    let find_slot = |slot: &Slot| {
         let mut rest = merged[next..].iter();
         let found = rest.position(|other| value(other, slot).is_some())?;
         next += found + 1;
         Some(next - 1)
     };
-    own.iter().map(place).collect()
+    own.iter().map(find_slot).collect()
 }
 
 /// Replaces the indices of geoms in a model's references by those in the layout.

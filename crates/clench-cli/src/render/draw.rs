@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let written = match form {
         Form::Png => {
             motion.advance(time)?;
-            let image = camera.take(&mut motion.sim)?;
+            let image = camera.draw(&mut motion.sim)?;
             write_png(file.file()?, &image)
         }
         Form::Gif => write_gif(file.file()?, &mut motion, &mut camera, time),
@@ -96,7 +96,7 @@ struct Camera<'a> {
 }
 
 impl Camera<'_> {
-    fn take(&mut self, sim: &mut Sim<f64>) -> Result<Image> {
+    fn draw(&mut self, sim: &mut Sim<f64>) -> Result<Image> {
         Ok(self.renderer.draw(sim, &self.picture)?)
     }
 }
@@ -147,7 +147,7 @@ fn render_frames(
 ) -> Result<()> {
     for k in 0..=(time * rate) as usize {
         motion.advance(k as f64 / rate)?;
-        show(camera.take(&mut motion.sim)?)?;
+        show(camera.draw(&mut motion.sim)?)?;
     }
     Ok(())
 }

@@ -136,8 +136,8 @@ impl BatchArguments {
             ("--instructions", self.instructions.is_some()),
             ("--no-grouping", self.no_grouping),
         ];
-        let given = flags.into_iter().find(|&(_, given)| given);
-        given.map(|(flag, _)| flag)
+        let is_set = flags.into_iter().find(|&(_, is_set)| is_set);
+        is_set.map(|(flag, _)| flag)
     }
 
     pub(super) fn options(&self, options: RigidOptions) -> BatchOptions {

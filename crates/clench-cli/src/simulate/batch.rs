@@ -48,13 +48,13 @@ pub(crate) fn run<S: Precision>(
     let mut heap = Heap::default();
     let options = arguments.batch.options(options);
     let mut batch =
-        heap.taken_by(|| Batch::<S>::of_models_in_turn(&run.models, envs as usize, options))?;
+        heap.measure(|| Batch::<S>::of_models_in_turn(&run.models, envs as usize, options))?;
     run.starts.start_all(&mut batch)?;
     let times = widen(batch.state.time.as_slice());
     let energies = energies(&mut batch, &mut heap)?;
     // The energy of several models is not judged.
-    let is_alone = run.models.len() == 1;
-    let mut account = match is_alone {
+    let single_model = run.models.len() == 1;
+    let mut account = match single_model {
         true => EnergyAccount::open(&run.model, energies.iter().copied()),
         false => None,
     };
@@ -70,16 +70,16 @@ pub(crate) fn run<S: Precision>(
     let RunResult {
         steps,
         recorded_rows,
-    } = rollout.take(&mut batch, |batch, range, controls| {
+    } = rollout.run(&mut batch, |batch, range, controls| {
         let is_checked = range.end.is_multiple_of(STEPS_BETWEEN_CHECKS) || range.end == run.steps;
         let recorded = BATCH_OUTPUTS.into_iter().filter(|_| records);
         let energy = (account.is_some() && is_checked).then_some("energy");
         let outputs = Vec::from_iter(recorded.chain(energy));
-        heap.taken_by(|| batch.record(&outputs))?;
+        heap.measure(|| batch.record(&outputs))?;
         // Queries between calls are not counted.
         batch.run_clocks(arguments.profile);
         let begin = Instant::now();
-        let recording = heap.taken_by(|| batch.rollout(range.len(), controls, traced))?;
+        let recording = heap.measure(|| batch.rollout(range.len(), controls, traced))?;
         spent += begin.elapsed();
         batch.run_clocks(false);
         if let Some(account) = &mut account {
@@ -90,9 +90,9 @@ pub(crate) fn run<S: Precision>(
     let verdict = verdict(batch.model(), &batch.quality(), account.as_ref());
     let mut report = report(&batch, done(&batch, &times, steps), spent, &heap, verdict);
     let whole = report.failure.is_none() && report.resets == 0;
-    report.take_record(recorded_rows);
+    report.set_record(recorded_rows);
     let free = whole && batch.quality().constrained == 0;
-    if free && is_alone && is_conservative(&run.model) {
+    if free && single_model && is_conservative(&run.model) {
         report.energy_drift = drift(&energies, &self::energies(&mut batch, &mut heap)?);
     }
     let env_steps = batch.divergence().env_steps;
@@ -138,30 +138,30 @@ fn done<S: Precision>(batch: &Batch<S>, start: &[f64], steps: usize) -> (usize, 
 /// The heap memory of a batch, bytes.
 #[derive(Default)]
 struct Heap {
-    taken: usize,
-    given_back: usize,
+    allocated: usize,
+    freed: usize,
 }
 
 impl Heap {
     /// Runs `work` and records the memory that it allocated or freed.
-    fn taken_by<R>(&mut self, work: impl FnOnce() -> R) -> R {
+    fn measure<R>(&mut self, work: impl FnOnce() -> R) -> R {
         let before = ALLOCATOR.allocated();
         let result = work();
         let after = ALLOCATOR.allocated();
-        self.taken += after.saturating_sub(before);
-        self.given_back += before.saturating_sub(after);
+        self.allocated += after.saturating_sub(before);
+        self.freed += before.saturating_sub(after);
         result
     }
 }
 
 /// Returns the potential and kinetic energy of each environment, J.
 fn energies<S: Precision>(batch: &mut Batch<S>, heap: &mut Heap) -> Result<Vec<[f64; 2]>> {
-    heap.taken_by(|| batch.record(&["energy"]))?;
+    heap.measure(|| batch.record(&["energy"]))?;
     let energies = batch.output("energy").map(|rows| {
         let parts = |parts: &[S]| [parts[0], parts[1]].map(|x| x.to_f64());
         rows.iter().map(parts).collect()
     });
-    heap.taken_by(|| batch.record(&[]))?;
+    heap.measure(|| batch.record(&[]))?;
     Ok(energies.unwrap_or_default())
 }
 
@@ -190,7 +190,7 @@ fn report<S: Precision>(
     let failures = failures(batch);
     let resets = batch.resets().iter().sum();
     let rows = batch.count() * batch.bytes_per_env();
-    let scratch = heap.taken.saturating_sub(heap.given_back + rows);
+    let scratch = heap.allocated.saturating_sub(heap.freed + rows);
     Report {
         status: status(!failures.is_empty(), resets, 0, quality.unconverged),
         quality: verdict.word,

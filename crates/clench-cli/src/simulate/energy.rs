@@ -104,8 +104,8 @@ impl EnergyAccount {
 /// Returns true if only actuators supply energy to the model.
 fn is_closed(model: &Model) -> bool {
     let p = &model.params;
-    let still = p.wind.to_array().iter().all(|&v| v == 0.0);
-    model.nmocap == 0 && p.body_gravcomp.iter().all(|&g| g == 0.0) && still
+    let no_wind = p.wind.to_array().iter().all(|&v| v == 0.0);
+    model.nmocap == 0 && p.body_gravcomp.iter().all(|&g| g == 0.0) && no_wind
 }
 
 /// Returns the next range of steps to take at once: up to the next step that is recorded or checked, or the end of the

@@ -88,15 +88,15 @@ pub(super) fn run<S: GpuReal>(
     batch.record(&BATCH_OUTPUTS)?;
     let rollout = Rollout::new(run, envs, STEPS_A_CALL)?;
     let mut spent = Duration::ZERO;
-    let taken = rollout.take(&mut batch, |batch, range, controls| {
+    let result = rollout.run(&mut batch, |batch, range, controls| {
         let begin = Instant::now();
         let recording = batch.rollout(range.len(), controls, &[])?;
         spent += begin.elapsed();
         Ok(recording.summary.running)
     })?;
     Ok(GpuReport {
-        recorded_rows: taken.recorded_rows?,
-        ..report(&batch, run, taken.steps, spent.as_secs_f64())
+        recorded_rows: result.recorded_rows?,
+        ..report(&batch, run, result.steps, spent.as_secs_f64())
     })
 }
 

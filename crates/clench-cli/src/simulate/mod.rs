@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let controls = controls.map(|path| read_rows("--ctrl", path, model.nu(), limit));
     let controls = controls.transpose()?;
     let count = controls.as_ref().map(Rows::count);
-    let steps = steps_to_take(arguments, model.params.timestep, count)?;
+    let steps = step_count(arguments, model.params.timestep, count)?;
     let run = Run {
         starts: (arguments.start).starts(&model, envs.unwrap_or(1) as usize, limit)?,
         steps,
@@ -165,8 +165,8 @@ fn print(arguments: &Arguments, report: &(impl Serialize + ToString)) -> Result<
 }
 
 /// Returns the number of steps of a run; `rows` is the row count of the controls, if given.
-fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> Result<usize> {
-    let wanted = match (arguments.steps, arguments.time) {
+fn step_count(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> Result<usize> {
+    let steps = match (arguments.steps, arguments.time) {
         (Some(steps), _) => steps,
         (None, Some(time)) => {
             ensure!(
@@ -190,9 +190,9 @@ fn steps_to_take(arguments: &Arguments, timestep: f64, rows: Option<usize>) -> R
     };
     if let Some(rows) = rows {
         ensure!(
-            wanted <= rows,
-            "--ctrl: {rows} rows are too few for {wanted} steps"
+            steps <= rows,
+            "--ctrl: {rows} rows are too few for {steps} steps"
         );
     }
-    Ok(wanted)
+    Ok(steps)
 }

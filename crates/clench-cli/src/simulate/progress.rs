@@ -62,11 +62,11 @@ fn line(elapsed: Duration, steps: usize, total: usize) -> String {
     let seconds = elapsed.as_secs_f64();
     let share = steps as f64 / total.max(1) as f64;
     let bar = "#".repeat((share * BAR as f64) as usize);
-    let left = Duration::try_from_secs_f64(seconds / share - seconds);
-    let left = left.map_or("?".to_owned(), clock);
+    let remaining = Duration::try_from_secs_f64(seconds / share - seconds);
+    let remaining = remaining.map_or("?".to_owned(), clock);
     let speed = steps as f64 / seconds;
     let elapsed = clock(elapsed);
-    format!("{elapsed} [{bar:<BAR$}] {steps}/{total} steps, {speed:.0}/s, {left} left")
+    format!("{elapsed} [{bar:<BAR$}] {steps}/{total} steps, {speed:.0}/s, {remaining} left")
 }
 
 /// Formats a time as hours, minutes and seconds.

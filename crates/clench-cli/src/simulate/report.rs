@@ -64,7 +64,7 @@ pub(crate) struct Report {
 
 impl Report {
     /// Sets the number of rows of the record, or the error of writing it, which has the lowest priority among failures.
-    pub(crate) fn take_record(&mut self, recorded: anyhow::Result<Option<usize>>) {
+    pub(crate) fn set_record(&mut self, recorded: anyhow::Result<Option<usize>>) {
         match recorded {
             Ok(rows) => self.recorded_rows = rows,
             Err(error) if self.failure.is_none() => {

@@ -50,7 +50,7 @@ impl<'a, S: Precision> Rollout<'a, S> {
     ///
     /// # Errors
     /// Returns the error of `call` with the number of rows recorded before, which are written.
-    pub(super) fn take(
+    pub(super) fn run(
         mut self,
         batch: &mut Batch<S>,
         mut call: impl FnMut(&mut Batch<S>, Range<usize>, Controls<S>) -> Result<usize>,

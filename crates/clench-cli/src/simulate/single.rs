@@ -65,7 +65,7 @@ pub(crate) fn run<T: Precision>(
     sim.run_clocks(false);
     let verdict = verdict(&run.model, summary.quality(), account.as_ref());
     let mut report = summary.finish(&mut sim, spent.as_secs_f64(), verdict);
-    report.take_record(recorded);
+    report.set_record(recorded);
     if arguments.profile {
         let (profile, steps) = (sim.profile(), report.steps as u64);
         report.profile = Some(stages(&profile, spent, steps));

@@ -86,7 +86,7 @@ impl Starts<'_> {
             sim.reset_to_keyframe(key)?;
         }
         let (mut qpos, mut qvel) = (widen(&sim.state.qpos), widen(&sim.state.qvel));
-        self.place(0, &mut qpos, &mut qvel);
+        self.apply(0, &mut qpos, &mut qvel);
         sim.set_configuration(&narrow::<T>(&qpos), &narrow::<T>(&qvel))?;
         Ok(())
     }
@@ -101,7 +101,7 @@ impl Starts<'_> {
                 let state = &mut batch.state;
                 let (qpos, qvel) = (state.qpos.row_mut(env), state.qvel.row_mut(env));
                 let (mut positions, mut velocities) = (widen(qpos), widen(qvel));
-                self.place(env, &mut positions, &mut velocities);
+                self.apply(env, &mut positions, &mut velocities);
                 qpos.copy_from_slice(&narrow(&positions));
                 qvel.copy_from_slice(&narrow(&velocities));
             }
@@ -111,7 +111,7 @@ impl Starts<'_> {
 
     /// Applies the given state and the noise of environment `env` to the positions and velocities of the model or
     /// keyframe.
-    fn place(&self, env: usize, qpos: &mut [f64], qvel: &mut [f64]) {
+    fn apply(&self, env: usize, qpos: &mut [f64], qvel: &mut [f64]) {
         if let Some(rows) = &self.states {
             let (positions, velocities) = rows.row(env).split_at(self.model.nq);
             qpos.copy_from_slice(positions);

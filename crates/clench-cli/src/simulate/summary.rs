@@ -33,7 +33,7 @@ impl Summary {
 
     /// Records a step.
     pub(crate) fn after_step<T: Precision>(&mut self, sim: &Sim<T>) {
-        self.quality.note(sim);
+        self.quality.add_step(sim);
         self.iterations += sim.stats().iterations;
         self.contacts += sim.contacts().len();
         self.overflows += u64::from(sim.contact_overflow());

@@ -68,12 +68,12 @@ impl Clusters {
 
     /// Updates the boxes of the clusters, and finds those without a shape that is `awake`.
     fn update(&mut self, boxes: &[Aabb], awake: impl Fn(usize) -> bool) {
-        let around = |members: &Range<usize>| {
+        let enclosing = |members: &Range<usize>| {
             let members = boxes[members.clone()].iter();
             members.fold(Aabb::EMPTY, |all, one| all.union(one))
         };
         self.boxes.clear();
-        self.boxes.extend(self.members.iter().map(around));
+        self.boxes.extend(self.members.iter().map(enclosing));
         self.fixed.clear();
         let members = self.members.iter().cloned();
         self.fixed
@@ -97,10 +97,10 @@ impl Clusters {
         };
         grid.pairs(all, &mut |one, other| {
             let (one, other) = (one as usize, other as usize);
-            let around = &self.boxes[other];
+            let bounds = &self.boxes[other];
             for a in self.members[one]
                 .clone()
-                .filter(|&a| boxes[a].overlaps(around))
+                .filter(|&a| boxes[a].overlaps(bounds))
             {
                 let others = self.members[other].clone();
                 let near = others.filter(|&b| boxes[a].overlaps(&boxes[b]));

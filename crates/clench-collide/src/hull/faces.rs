@@ -10,7 +10,8 @@ use super::surface::{MeshEdge, edges};
 use super::{Crease, FEW_FACES, Hull, HullSurface};
 use clench_math::Vec3;
 
-/// The distance of a corner from its plane, relative to the hull: some ulps of 24-bit coordinates.
+/// The maximum distance of a corner from the plane of its face, relative to the size of the hull: some units in the
+/// last place of 24-bit coordinates.
 const COPLANAR: f64 = 1e-6;
 const NONE: u32 = u32::MAX;
 
@@ -158,7 +159,7 @@ fn merge(
         }
         match outline(triangles, &members) {
             Some(corners) => faces.push(corners),
-            // Not a disk, which only rounding causes: the seed remains a face by itself.
+            // Rounding can make the triangles no disk. The seed then remains a face by itself.
             None => {
                 members[1..].iter().for_each(|&t| face_of[t] = NONE);
                 faces.push(triangles[seed].to_vec());

@@ -8,7 +8,7 @@ use super::{
 use clench_math::{Scalar, Vec3};
 
 /// The corners of a face, in order.
-const AROUND: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+const CORNERS: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
 
 impl<S: Scalar> BoxPair<S> {
     /// Clips the face of the other box that most opposes the touching face. Each corner that is near enough is a
@@ -74,7 +74,7 @@ impl<S: Scalar> BoxPair<S> {
         let (u, v) = (half((largest + 1) % 3), half((largest + 2) % 3));
         let height = self.size[owner][axis];
         let mut face = Polygon::empty();
-        for (along_u, along_v) in AROUND {
+        for (along_u, along_v) in CORNERS {
             let p = center + u * S::new(along_u) + v * S::new(along_v);
             let above = side * p[axis] - height;
             face.push(Vec3::new(p[(axis + 1) % 3], p[(axis + 2) % 3], above));

@@ -53,11 +53,11 @@ pub(super) fn boxes_near<T: Real>(
 /// Returns the lanes in which the box of a shape is at most `reach` from a point.
 #[inline(always)]
 fn box_near<T: Real>(shape: AnyPlaced<T>, point: Vec3<T>, reach: T) -> T::Mask {
-    let (place, half) = (shape.pose.local(point), shape.shape.half_lengths());
+    let (local, half) = (shape.pose.local(point), shape.shape.half_lengths());
     // NaN is preserved, and is near nothing.
     let mut gap = Vec3::ZERO;
     for k in 0..3 {
-        gap[k] = T::ZERO.max(place[k].abs() - half[k] * allowance());
+        gap[k] = T::ZERO.max(local[k].abs() - half[k] * allowance());
     }
     let reach = T::ZERO.max(reach * allowance());
     gap.norm_squared().le(reach * reach)

@@ -20,7 +20,7 @@ struct LocalCylinder<T> {
     radius: T,
     half_length: T,
     /// The outward direction, across the axis, for points on the axis.
-    spare: Vec3<T>,
+    fallback: Vec3<T>,
 }
 
 impl<T: Real> LocalCylinder<T> {
@@ -30,7 +30,7 @@ impl<T: Real> LocalCylinder<T> {
         LocalCylinder {
             radius: b.shape.radius,
             half_length: b.shape.half_length,
-            spare: -b.pose.rotation.transpose_mul(across_axes(a, b)),
+            fallback: -b.pose.rotation.transpose_mul(across_axes(a, b)),
         }
     }
 
@@ -52,7 +52,7 @@ impl<T: Real> LocalCylinder<T> {
         let on_axis = from_axis.lt(T::new(1e-15));
         let scale = across / T::select(on_axis, T::ONE, from_axis);
         let radial = Vec3::new(p.x * scale, p.y * scale, T::ZERO);
-        let mut outward = Vec3::select(on_axis, self.spare * across, radial);
+        let mut outward = Vec3::select(on_axis, self.fallback * across, radial);
         outward.z = T::select(p.z.gt(T::ZERO), along, -along);
         let signed = T::select(within, above_cap.max(off_side), length);
         (signed, outward)
@@ -115,7 +115,7 @@ pub(super) fn capsule_cylinder<T: Real>(
         axis: b.pose.rotation.transpose_mul(a.pose.axis()),
         half_length: a.shape.half_length,
     };
-    let near = (cylinder.apart_at_least(&segment) - radius).le(margin);
+    let near = (cylinder.min_distance(&segment) - radius).le(margin);
     if !near.any() {
         return;
     }
@@ -163,7 +163,7 @@ impl<T: Real> LocalCylinder<T> {
     /// Returns a cheap lower bound of a segment's distance: the larger of its distances beyond the caps and beyond the
     /// side.
     #[inline(always)]
-    fn apart_at_least(&self, segment: &Segment<T>) -> T {
+    fn min_distance(&self, segment: &Segment<T>) -> T {
         let (c, u) = (segment.center, segment.axis);
         let beyond_caps = c.z.abs() - segment.half_length * u.z.abs() - self.half_length;
         let square = (u.x * u.x + u.y * u.y).max(T::new(1e-15));

@@ -32,8 +32,8 @@ pub use pair_memory::PairMemory;
 use placed::Placed;
 pub use separating_axis::SeparatingAxis;
 
-/// Defines the supported pairs of shapes: MuJoCo's algorithm, closed form or general, and the kernel used here. The
-/// names are the kernels' arguments: the two shapes, the margin, the memory of the pair, and the output.
+/// Lists the supported pairs of shapes: MuJoCo's algorithm for the pair (closed form or general), and the kernel used
+/// here. The names are the kernels' arguments: the two shapes, the margin, the memory of the pair, and the output.
 macro_rules! pairs {
     ($a:ident, $b:ident, $margin:ident, $memory:ident, $out:ident:
      $(($first:ident, $second:ident) $mujoco:ident => $find:expr,)*) => {

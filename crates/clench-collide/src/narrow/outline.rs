@@ -48,7 +48,7 @@ pub(super) struct Outline<S> {
 impl<S: Scalar> Outline<S> {
     /// Computes the convex hull of points ordered counter-clockwise, seen along z. A point nearer than `same` to its
     /// predecessor is omitted.
-    pub(super) fn around(points: &[Vec3<S>], same: S) -> Self {
+    pub(super) fn of_points(points: &[Vec3<S>], same: S) -> Self {
         let corners = hull(points, same);
         let (middle, round) = moments(&corners);
         Outline {

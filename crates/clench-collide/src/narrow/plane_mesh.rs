@@ -15,9 +15,9 @@ use crate::shape::{MAX_CORNERS, Mesh, Plane, Solid};
 use arrayvec::ArrayVec;
 use clench_math::{Mask, Real, Scalar, Vec3, kernel};
 
-/// Relative to the hull: the distance below which face corners are merged, and the allowed error of the outline's
-/// depth.
+/// The distance below which corners of a face are merged, relative to the size of the hull.
 pub(super) const SAME: f64 = 1e-5;
+/// The allowed error of the outline's depth, relative to the size of the hull.
 pub(super) const MISSED: f64 = 1e-6;
 
 #[kernel]
@@ -82,7 +82,7 @@ fn points<S: Scalar>(
                 let candidate = candidate(corner(hull, vertex));
                 (candidate.height <= margin).then_some(candidate)
             };
-            around(hull, deepest, face, near, &mut candidates);
+            collect_near(hull, deepest, face, near, &mut candidates);
         }
     }
     for Candidate { at, height } in candidates {
@@ -100,7 +100,7 @@ fn corner<S: Scalar>(hull: &Hull, vertex: u32) -> Vec3<S> {
 }
 
 /// Collects near vertices up to the capacity: the deepest, those of the face on the plane, then their neighbours.
-fn around<S: Scalar>(
+fn collect_near<S: Scalar>(
     hull: &Hull,
     deepest: usize,
     face: Option<usize>,
@@ -109,7 +109,7 @@ fn around<S: Scalar>(
 ) {
     let mut visited = ArrayVec::<u32, PATCH_POINTS>::new();
     let mut visit = |vertex: u32, visited: &mut ArrayVec<u32, PATCH_POINTS>| {
-        // Most vertices are not near.
+        // Tested first, because most vertices are not near.
         if let Some(candidate) = near(vertex)
             && !visited.is_full()
             && !visited.contains(&vertex)
@@ -154,7 +154,7 @@ fn sample<S: Scalar>(
     for &vertex in corners.iter().step_by(corners.len().div_ceil(MAX_CORNERS)) {
         polygon.push(flat(corner(hull, vertex)));
     }
-    let outline = Outline::around(polygon.corners(), size * S::new(SAME));
+    let outline = Outline::of_points(polygon.corners(), size * S::new(SAME));
     let place = |p: &Vec3<S>| candidate(origin + along * p.x + across * p.y);
     let first = Vec3::new(S::ONE, S::ZERO, S::ZERO);
     candidates.extend(outline.sample(first).iter().map(place));

@@ -56,7 +56,7 @@ impl<S: Scalar> Polygon<S> {
     }
 
     /// Sorts the corners around their middle, starting with the first. It overwrites their heights.
-    pub(super) fn sort_around(&mut self) {
+    pub(super) fn sort_by_angle(&mut self) {
         let Some(&first) = self.corners.first() else {
             return;
         };
@@ -69,10 +69,10 @@ impl<S: Scalar> Polygon<S> {
         for p in &mut self.corners {
             let arm = *p - middle;
             let along = start.x * arm.x + start.y * arm.y;
-            let aside = start.x * arm.y - start.y * arm.x;
-            let sum = (along.abs() + aside.abs()).max(S::MIN_POSITIVE);
+            let across = start.x * arm.y - start.y * arm.x;
+            let sum = (along.abs() + across.abs()).max(S::MIN_POSITIVE);
             let pseudo_angle = S::ONE - along / sum;
-            p.z = if aside < -sum * tiny {
+            p.z = if across < -sum * tiny {
                 S::new(4.0) - pseudo_angle
             } else {
                 pseudo_angle

@@ -3,13 +3,13 @@
 use super::line::Line;
 use clench_math::{Real, Scalar, Vec3};
 
-/// The entry and exit distances of a line, and the outward normals there. It is empty if `leave` is less than `enter`.
+/// The entry and exit distances of a line, and the outward normals there. It is empty if `exit` is less than `entry`.
 #[derive(Clone, Copy)]
 pub(crate) struct Chord<T> {
-    pub enter: T,
-    pub leave: T,
-    pub entered: Vec3<T>,
-    pub left: Vec3<T>,
+    pub entry: T,
+    pub exit: T,
+    pub entry_normal: Vec3<T>,
+    pub exit_normal: Vec3<T>,
 }
 
 impl<T: Real> Chord<T> {
@@ -17,10 +17,10 @@ impl<T: Real> Chord<T> {
     #[inline(always)]
     pub(crate) fn whole() -> Self {
         Chord {
-            enter: T::new(f64::NEG_INFINITY),
-            leave: T::new(f64::INFINITY),
-            entered: Vec3::ZERO,
-            left: Vec3::ZERO,
+            entry: T::new(f64::NEG_INFINITY),
+            exit: T::new(f64::INFINITY),
+            entry_normal: Vec3::ZERO,
+            exit_normal: Vec3::ZERO,
         }
     }
 
@@ -53,10 +53,10 @@ impl<T: Real> Chord<T> {
     }
 
     #[inline(always)]
-    fn between(self, enter: T, leave: T, hit: T::Mask) -> Self {
+    fn between(self, entry: T, exit: T, hit: T::Mask) -> Self {
         Chord {
-            enter: T::select(hit, enter, T::new(f64::INFINITY)),
-            leave: T::select(hit, leave, T::new(f64::NEG_INFINITY)),
+            entry: T::select(hit, entry, T::new(f64::INFINITY)),
+            exit: T::select(hit, exit, T::new(f64::NEG_INFINITY)),
             ..self
         }
     }
@@ -70,26 +70,30 @@ impl<T: Real> Chord<T> {
         let ahead = u.gt(T::ZERO);
         let infinity = T::new(f64::INFINITY);
         let divisor = T::select(parallel, T::ONE, u);
-        let enter = (T::select(ahead, low, high) - o) / divisor;
-        let leave = (T::select(ahead, high, low) - o) / divisor;
+        let entry = (T::select(ahead, low, high) - o) / divisor;
+        let exit = (T::select(ahead, high, low) - o) / divisor;
         let unbounded = T::select(within, -infinity, infinity);
         let mut out = Vec3::ZERO;
         out[axis] = T::ONE.copysign(u);
-        self.cut(
-            (T::select(parallel, unbounded, enter), -out),
-            (T::select(parallel, -unbounded, leave), out),
+        self.intersect(
+            (T::select(parallel, unbounded, entry), -out),
+            (T::select(parallel, -unbounded, exit), out),
         )
     }
 
     /// Intersects with another interval: its entry and exit, each with a normal.
     #[inline(always)]
-    pub(crate) fn cut(self, (enter, entered): (T, Vec3<T>), (leave, left): (T, Vec3<T>)) -> Self {
-        let (later, earlier) = (enter.gt(self.enter), leave.lt(self.leave));
+    pub(crate) fn intersect(
+        self,
+        (entry, entry_normal): (T, Vec3<T>),
+        (exit, exit_normal): (T, Vec3<T>),
+    ) -> Self {
+        let (later, earlier) = (entry.gt(self.entry), exit.lt(self.exit));
         Chord {
-            enter: T::select(later, enter, self.enter),
-            leave: T::select(earlier, leave, self.leave),
-            entered: Vec3::select(later, entered, self.entered),
-            left: Vec3::select(earlier, left, self.left),
+            entry: T::select(later, entry, self.entry),
+            exit: T::select(earlier, exit, self.exit),
+            entry_normal: Vec3::select(later, entry_normal, self.entry_normal),
+            exit_normal: Vec3::select(earlier, exit_normal, self.exit_normal),
         }
     }
 
@@ -97,13 +101,13 @@ impl<T: Real> Chord<T> {
     #[inline(always)]
     pub(crate) fn or(self, other: Self) -> Self {
         let infinity = T::new(f64::INFINITY);
-        let hits = self.enter.le(self.leave);
-        let enter = T::select(hits, self.enter, infinity);
-        let leave = T::select(hits, self.leave, -infinity);
-        let hits = other.enter.le(other.leave);
+        let hits = self.entry.le(self.exit);
+        let entry = T::select(hits, self.entry, infinity);
+        let exit = T::select(hits, self.exit, -infinity);
+        let hits = other.entry.le(other.exit);
         Chord {
-            enter: enter.min(T::select(hits, other.enter, infinity)),
-            leave: leave.max(T::select(hits, other.leave, -infinity)),
+            entry: entry.min(T::select(hits, other.entry, infinity)),
+            exit: exit.max(T::select(hits, other.exit, -infinity)),
             ..self
         }
     }
@@ -112,12 +116,12 @@ impl<T: Real> Chord<T> {
     /// there is none.
     #[inline(always)]
     pub(crate) fn first(&self) -> (T, Vec3<T>) {
-        let outside = self.enter.ge(T::ZERO);
-        let hit = self.enter.le(self.leave) & self.leave.ge(T::ZERO);
-        let distance = T::select(outside, self.enter, self.leave);
+        let outside = self.entry.ge(T::ZERO);
+        let hit = self.entry.le(self.exit) & self.exit.ge(T::ZERO);
+        let distance = T::select(outside, self.entry, self.exit);
         (
             T::select(hit, distance, T::new(f64::INFINITY)),
-            Vec3::select(outside, self.entered, self.left),
+            Vec3::select(outside, self.entry_normal, self.exit_normal),
         )
     }
 }

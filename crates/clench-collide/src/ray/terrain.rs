@@ -30,14 +30,14 @@ pub(crate) fn height_field(
             .slab(&line, 2, low, high)
     };
     let chord = between(-base, top);
-    if !(chord.enter <= chord.leave && chord.leave >= 0.0) {
+    if !(chord.entry <= chord.exit && chord.exit >= 0.0) {
         return None;
     }
-    let mut traversal = Traversal::new(field, &line, chord.enter.max(0.0));
+    let mut traversal = Traversal::new(field, &line, chord.entry.max(0.0));
     let above = traversal.height(traversal.now) >= 0.0;
-    if !above && chord.enter >= 0.0 {
+    if !above && chord.entry >= 0.0 {
         // The ray enters through a side or the bottom.
-        return Some((chord.enter, chord.entered));
+        return Some((chord.entry, chord.entry_normal));
     }
     let in_terrain = !above && origin.z > 0.0;
     let chord = match (above, in_terrain) {
@@ -46,22 +46,22 @@ pub(crate) fn height_field(
         (false, false) => between(-base, 0.0),
     };
     for _ in 0..field.rows() + field.columns() {
-        let end = traversal.next.0.min(traversal.next.1).min(chord.leave);
+        let end = traversal.next.0.min(traversal.next.1).min(chord.exit);
         if let Some(hit) = traversal.cross(end.max(traversal.now), above) {
             return Some(hit);
         }
-        if end >= chord.leave {
+        if end >= chord.exit {
             break;
         }
         traversal.advance();
     }
-    let through_base = in_terrain && chord.left.z < 0.0;
+    let through_base = in_terrain && chord.exit_normal.z < 0.0;
     let normal = if through_base {
-        -chord.left
+        -chord.exit_normal
     } else {
-        chord.left
+        chord.exit_normal
     };
-    (!above).then_some((chord.leave, normal))
+    (!above).then_some((chord.exit, normal))
 }
 
 /// The traversal of cells along a ray.
@@ -137,7 +137,7 @@ impl<'a> Traversal<'a> {
     }
 
     /// Returns the position in the cell, from 0 to 1.
-    fn place(&self, at: f64) -> [f64; 2] {
+    fn in_cell(&self, at: f64) -> [f64; 2] {
         let p = self.line.at(at);
         [0, 1].map(|axis| {
             let from = self.cell[axis] as f64 * self.step[axis] - self.field.size()[axis];
@@ -158,24 +158,24 @@ impl<'a> Traversal<'a> {
 
     /// Returns the height of the line over the right or left triangle of the cell.
     fn over(&self, at: f64, right: bool) -> f64 {
-        let [x, y] = self.place(at);
+        let [x, y] = self.in_cell(at);
         let (z, along_x, along_y) = self.slopes(right);
         self.line.at(at).z - (z + along_x * x + along_y * y)
     }
 
     /// Returns the height of the line over the surface.
     fn height(&self, at: f64) -> f64 {
-        let [x, y] = self.place(at);
+        let [x, y] = self.in_cell(at);
         self.over(at, x > y)
     }
 
     /// Returns the first crossing with the surface up to `end`, and its normal.
     fn cross(&self, end: f64, above: bool) -> Option<(f64, Vec3<f64>)> {
-        let aside = |at| {
-            let [x, y] = self.place(at);
+        let across = |at| {
+            let [x, y] = self.in_cell(at);
             x - y
         };
-        let (from, to) = (aside(self.now), aside(end));
+        let (from, to) = (across(self.now), across(end));
         let diagonal = if (from < 0.0) != (to < 0.0) {
             self.now + (end - self.now) * (from / (from - to))
         } else {

@@ -38,9 +38,9 @@ impl<T: Real> UnitRay<T> {
         let rounding = far * (T::splat(T::Scalar::EPSILON) * T::new(8.0));
         let radius = radius * allowance() + rounding;
         let nearest = ahead - radius;
-        let farthest_asked = within * self.length * allowance();
+        let farthest = within * self.length * allowance();
         beside.norm_squared().le(radius * radius)
             & (ahead + radius).ge(T::ZERO)
-            & !nearest.gt(farthest_asked)
+            & !nearest.gt(farthest)
     }
 }

@@ -67,8 +67,8 @@ impl<T: Real> Solid<T> for Cylinder<T> {
             Vec3::new(p.x, p.y, T::ZERO).normalize().0
         };
         let tube = Chord {
-            entered: side(tube.enter),
-            left: side(tube.leave),
+            entry_normal: side(tube.entry),
+            exit_normal: side(tube.exit),
             ..tube
         };
         tube.slab(line, 2, -self.half_length, self.half_length)

@@ -78,9 +78,9 @@ fn hit(hull: &Hull, line: &Line<f64>) -> Option<(f64, Vec3<f64>)> {
         let above = normal.dot(line.origin) - hull.offset(face);
         let at = (-above / rate, normal);
         chord = if rate < 0.0 {
-            chord.cut(at, (infinity, none))
+            chord.intersect(at, (infinity, none))
         } else if rate > 0.0 {
-            chord.cut((-infinity, none), at)
+            chord.intersect((-infinity, none), at)
         } else if above > 0.0 {
             return None;
         } else {

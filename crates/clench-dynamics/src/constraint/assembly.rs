@@ -95,11 +95,11 @@ impl<T: Real> Assembly<'_, T> {
             for (&j, &dof) in jacobian.iter().zip(&*dofs) {
                 velocity += j * self.qvel[dof as usize];
             }
-            let asked = match &self.implicit {
+            let aref = match &self.implicit {
                 Some(implicit) => implicit.reference(row, velocity),
                 None => row.at_velocity(velocity),
             };
-            target.aref[i] = asked + r[i] * row.pull;
+            target.aref[i] = aref + r[i] * row.pull;
             target.r[i] = r[i];
             target.d[i] = T::select(block.active, T::ONE / r[i], T::ZERO);
             target.shape[i] = row.shape;

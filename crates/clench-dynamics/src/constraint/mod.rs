@@ -59,7 +59,7 @@ pub fn constraint_stage<T: Real>(
     if in_metric {
         couple_smooth(model, &settings.solver, ws);
     }
-    if !(T::IS_DUAL && ws.keep_constraints) {
+    if !(T::IS_DUAL && ws.reuse_constraints) {
         assemble(model, params, settings, state, ws);
     }
     if in_metric {

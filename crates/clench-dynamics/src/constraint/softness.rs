@@ -77,14 +77,14 @@ impl<T: Real> Softness<T> {
         solimp: [T; 5],
         min_timeconst: T,
     ) -> (T, T) {
-        let given = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
-        if !given.any() {
+        let specified = !(solref[0].eq(T::ZERO) & solref[1].eq(T::ZERO)) & !is_mixed(solref);
+        if !specified.any() {
             return (self.stiffness, self.damping);
         }
         let (k, damping) = spring_damper(solref, solimp[1], min_timeconst);
         (
-            T::select(given, k * self.impedance, self.stiffness),
-            T::select(given, damping, self.damping),
+            T::select(specified, k * self.impedance, self.stiffness),
+            T::select(specified, damping, self.damping),
         )
     }
 
@@ -129,8 +129,8 @@ pub(crate) fn inverse_weight<T: Real>(d: T, a: T) -> T {
 /// for the reference acceleration, but R is at least that of the maximum impedance.
 #[inline(always)]
 pub(crate) fn implicit_ratio<T: Real>(d: T, beta: T) -> T {
-    let most = T::new(IMPEDANCE_RANGE[1]);
-    (T::ONE / beta).max(d * (T::ONE - most) / (most * (T::ONE - d)))
+    let max_impedance = T::new(IMPEDANCE_RANGE[1]);
+    (T::ONE / beta).max(d * (T::ONE - max_impedance) / (max_impedance * (T::ONE - d)))
 }
 
 /// Returns R, clamped to its minimum.

@@ -77,8 +77,8 @@ impl<T: Real> BodyPairs<T> {
 
     /// Returns the index of the box of a body's candidate geoms, created if absent.
     fn box_about(&mut self, model: &Model, body: usize) -> usize {
-        let known = self.boxes.iter().position(|known| known.body == body);
-        known.unwrap_or_else(|| {
+        let found = self.boxes.iter().position(|found| found.body == body);
+        found.unwrap_or_else(|| {
             let of_body = |&&g: &&usize| model.geoms[g].body == body;
             self.boxes.push(BodyBox {
                 body,
@@ -123,14 +123,14 @@ impl<T: Real> BodyPairs<T> {
     #[inline(always)]
     pub(super) fn near(&self, run: usize) -> Option<Range<usize>> {
         let run = &self.runs[run];
-        let meet = match run.boxes {
+        let may_touch = match run.boxes {
             None => true,
             Some([a, b]) => {
                 let (a, b) = (&self.boxes[a], &self.boxes[b]);
                 (at_most(a.low, b.high) & at_most(b.low, a.high)).any()
             }
         };
-        meet.then(|| run.candidates.clone())
+        may_touch.then(|| run.candidates.clone())
     }
 }
 

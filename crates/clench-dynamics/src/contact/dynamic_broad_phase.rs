@@ -121,10 +121,11 @@ impl<T: Real> DynamicBroadPhase<T> {
         spheres: &mut Vec<BoundingSphere<T>>,
     ) {
         let placement = |geom: usize| Placement::of(model, params, pos, geom);
-        let mut known = self.statics.iter().zip(&self.placements);
+        let mut stored = self.statics.iter().zip(&self.placements);
         let unchanged = self.placements.len() == self.statics.len()
             && self.bounds.len() == model.geoms.len()
-            && (version == self.version || known.all(|(&geom, known)| placement(geom).same(known)));
+            && (version == self.version
+                || stored.all(|(&geom, stored)| placement(geom).same(stored)));
         self.version = version;
         let bound = |g: usize| Bound::new(&shape(model, params, g), &pose(pos, g));
         if unchanged {

@@ -125,12 +125,12 @@ pub fn check_supported(model: &Model) -> Result<(), UnsupportedPair> {
         name => format!("\"{name}\""),
     };
     let [a, b] = geoms.map(|g| &model.geoms[g]);
-    let place = match b.origin.as_ref().or(a.origin.as_ref()) {
+    let location = match b.origin.as_ref().or(a.origin.as_ref()) {
         Some(origin) => format!("{origin}: "),
         None => String::new(),
     };
     Err(UnsupportedPair {
-        place,
+        location,
         first: name(geoms[0]),
         second: name(geoms[1]),
         kinds: format!("{:?} against {:?}", a.kind, b.kind).to_lowercase(),

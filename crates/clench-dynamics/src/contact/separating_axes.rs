@@ -57,16 +57,16 @@ impl<T: Real> SeparatingAxes<T> {
     pub(super) fn index(&mut self, geoms: [u32; 2]) -> usize {
         let mixed = hash(geoms);
         let bucket = (mixed ^ (mixed >> 15)) as usize & (self.buckets.len() - 1);
-        let (places, check) = (&mut self.buckets[bucket], self.check);
-        let known = places.iter().position(|entry| entry.geoms == geoms);
-        let way = known.unwrap_or_else(|| {
-            let age = |way: &usize| check.wrapping_sub(places[*way].used);
+        let (entries, check) = (&mut self.buckets[bucket], self.check);
+        let found = entries.iter().position(|entry| entry.geoms == geoms);
+        let way = found.unwrap_or_else(|| {
+            let age = |way: &usize| check.wrapping_sub(entries[*way].used);
             let oldest = (0..WAYS).max_by_key(age).unwrap_or(0);
-            places[oldest].geoms = geoms;
-            places[oldest].axis = SeparatingAxis::default();
+            entries[oldest].geoms = geoms;
+            entries[oldest].axis = SeparatingAxis::default();
             oldest
         });
-        places[way].used = check;
+        entries[way].used = check;
         bucket * WAYS + way
     }
 

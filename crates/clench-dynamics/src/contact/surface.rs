@@ -20,13 +20,13 @@ pub(super) fn relative<T: Real>(
 ) -> [T; 3] {
     let [mut linear, mut angular] = [Vec3::ZERO; 2];
     for (geom, sign) in geoms.into_iter().zip([-T::ONE, T::ONE]) {
-        let given = &params.geom_surfacevel[geom];
-        if given.iter().all(|v| v.eq(T::ZERO).all()) {
+        let velocity = &params.geom_surfacevel[geom];
+        if velocity.iter().all(|v| v.eq(T::ZERO).all()) {
             continue;
         }
         let pose = pose(pos, geom);
-        let turning = pose.rotation * Vec3::from_slice(&given[3..]);
-        let along = pose.rotation * Vec3::from_slice(given);
+        let turning = pose.rotation * Vec3::from_slice(&velocity[3..]);
+        let along = pose.rotation * Vec3::from_slice(velocity);
         linear += (along + turning.cross(point - pose.position)) * sign;
         angular += turning * sign;
     }

@@ -94,15 +94,15 @@ pub(crate) fn next_activation<T: Real>(
 pub(crate) fn input<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T {
     let actuator = &model.actuators[u];
     let input = match actuator.act() {
-        None => given.ctrl[actuator.controls.start],
-        Some(a) => acting(model, params, given, act_dot, (u, a), at),
+        None => inputs.ctrl[actuator.controls.start],
+        Some(a) => acting(model, params, inputs, act_dot, (u, a), at),
     };
     nearest_setpoint(model, params, u, input, at.length)
 }
@@ -112,13 +112,20 @@ pub(crate) fn input<T: Real>(
 pub(crate) fn acting<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     (u, a): (usize, usize),
     at: ActuatorMotion<T>,
 ) -> T {
     match model.actuators[u].actearly {
-        true => next_activation(model, params, u, a, (given.act[a], act_dot[a]), at.velocity),
-        false => given.act[a],
+        true => next_activation(
+            model,
+            params,
+            u,
+            a,
+            (inputs.act[a], act_dot[a]),
+            at.velocity,
+        ),
+        false => inputs.act[a],
     }
 }

@@ -14,15 +14,15 @@ use clench_math::{Real, kernel};
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
     act_dot: &mut [T],
 ) {
     for (u, actuator) in model.actuators.iter().enumerate() {
         let Some(a) = actuator.act() else { continue };
-        let act = given.act[a];
-        let ctrl = || given.ctrl[actuator.controls.start];
+        let act = inputs.act[a];
+        let ctrl = || inputs.ctrl[actuator.controls.start];
         let at = ActuatorMotion::of(model, pos, vel, u);
         act_dot[a] = match actuator.dynamics {
             // MuJoCo leaves these rates to a user callback.
@@ -31,7 +31,7 @@ pub(crate) fn activation_rates<T: Real>(
                 muscle::activation_rate(ctrl(), act, &params.actuator_dynprm[u])
             }
             DynamicsKind::Integrator => {
-                let controls = &given.ctrl[actuator.controls.clone()];
+                let controls = &inputs.ctrl[actuator.controls.clone()];
                 for (a, &rate) in actuator.acts.clone().zip(controls) {
                     act_dot[a] = rate;
                 }
@@ -41,11 +41,11 @@ pub(crate) fn activation_rates<T: Real>(
                 (nearest_setpoint(model, params, u, ctrl(), act) - act) / time_constant(params, u)
             }
             DynamicsKind::Pid => {
-                pid::activation_rates(model, params, given, u, at.length, act_dot);
+                pid::activation_rates(model, params, inputs, u, at.length, act_dot);
                 continue;
             }
             DynamicsKind::DcMotor => {
-                dc_motor::activation_rates(model, params, given, u, at, act_dot);
+                dc_motor::activation_rates(model, params, inputs, u, at, act_dot);
                 continue;
             }
         };

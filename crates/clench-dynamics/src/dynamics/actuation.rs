@@ -32,20 +32,20 @@ pub fn actuation<T: Real>(
         return;
     }
     acting_controls(model, params, state, offset, &mut force.ctrl);
-    let given = ActuatorInputs {
+    let inputs = ActuatorInputs {
         ctrl: &force.ctrl,
         act: &state.act,
     };
-    activation_rates(model, params, given, pos, vel, &mut force.act_dot);
+    activation_rates(model, params, inputs, pos, vel, &mut force.act_dot);
     for (u, actuator) in model.actuators.iter().enumerate() {
         if !actuator.disabled {
             let act_dot = &force.act_dot;
             let out = &mut force.actuator_force[actuator.outputs.clone()];
             if actuator.gain.is_rotation() {
-                orientation::torque(model, params, given, act_dot, u, (pos, vel)).write(out);
+                orientation::torque(model, params, inputs, act_dot, u, (pos, vel)).write(out);
             } else {
                 let at = ActuatorMotion::of(model, pos, vel, u);
-                out[0] = unlimited_force(model, params, given, act_dot, u, at);
+                out[0] = unlimited_force(model, params, inputs, act_dot, u, at);
             }
         }
     }
@@ -67,12 +67,12 @@ pub fn actuation<T: Real>(
         }
         if actuator.bias == BiasKind::DcMotor && !actuator.disabled {
             let (act_dot, length) = (&force.act_dot, pos.actuator_length[first]);
-            let given = ActuatorInputs {
+            let inputs = ActuatorInputs {
                 ctrl: &force.ctrl,
                 act: &state.act,
             };
             force.actuator_force[first] +=
-                dc_motor::mechanical_force(model, params, given, act_dot, u, length);
+                dc_motor::mechanical_force(model, params, inputs, act_dot, u, length);
         }
         for output in actuator.outputs.clone() {
             for (dof, arm) in moment(model, pos, output) {

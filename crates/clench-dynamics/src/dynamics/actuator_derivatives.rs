@@ -27,18 +27,18 @@ pub(crate) fn velocity_derivative<T: Real>(
         return orientation::slope(model, params, u, &force.actuator_force);
     }
     let at = ActuatorMotion::of(model, pos, vel, u);
-    let given = inputs(state, force);
-    let slope = unlimited_slope(model, params, given, &force.act_dot, u, at);
-    let held = is_held(model, params, given, force, u, at);
+    let inputs = inputs(state, force);
+    let slope = unlimited_slope(model, params, inputs, &force.act_dot, u, at);
+    let at_limit = is_at_limit(model, params, inputs, force, u, at);
     // As in MuJoCo, friction counts here with a motor's gain, though it is part of its bias.
     let friction = || dc_motor::mechanical_slope(model, params, u);
     let slope = match (actuator.gain, actuator.bias) {
         // The bias of a motor requires its gain. No limit applies to it.
-        (GainKind::DcMotor, BiasKind::DcMotor) => T::select(held, T::ZERO, slope) + friction(),
-        (GainKind::DcMotor, _) => T::select(held, T::ZERO, slope + friction()),
-        _ => T::select(held, T::ZERO, slope),
+        (GainKind::DcMotor, BiasKind::DcMotor) => T::select(at_limit, T::ZERO, slope) + friction(),
+        (GainKind::DcMotor, _) => T::select(at_limit, T::ZERO, slope + friction()),
+        _ => T::select(at_limit, T::ZERO, slope),
     };
-    unless_joint_holds(model, params, force, u, slope)
+    unless_joint_limits(model, params, force, u, slope)
 }
 
 /// Computes ∂force/∂length of actuator `u`. For an orientation servo, that at small angles, equal about each axis.
@@ -58,17 +58,17 @@ pub(crate) fn length_derivative<T: Real>(
         return orientation::length_slope(model, params, u, &force.actuator_force);
     }
     let at = ActuatorMotion::of(model, pos, vel, u);
-    let given = inputs(state, force);
-    let slope = unlimited_length_slope(model, params, given, &force.act_dot, u, at);
-    let held = is_held(model, params, given, force, u, at);
-    let slope = T::select(held, T::ZERO, slope);
+    let inputs = inputs(state, force);
+    let slope = unlimited_length_slope(model, params, inputs, &force.act_dot, u, at);
+    let at_limit = is_at_limit(model, params, inputs, force, u, at);
+    let slope = T::select(at_limit, T::ZERO, slope);
     let slope = match actuator.bias {
         BiasKind::DcMotor => slope + dc_motor::cogging_slope(params, u, at.length),
         BiasKind::None | BiasKind::Affine | BiasKind::Muscle | BiasKind::So3 | BiasKind::User => {
             slope
         }
     };
-    unless_joint_holds(model, params, force, u, slope)
+    unless_joint_limits(model, params, force, u, slope)
 }
 
 #[inline(always)]
@@ -82,37 +82,37 @@ fn inputs<'a, T: Real>(state: &'a State<T>, force: &'a Forces<T>) -> ActuatorInp
 /// Returns the lanes in which the force is at an end of its range, or the total of its tendon at an end of the tendon's
 /// range.
 #[inline(always)]
-fn is_held<T: Real>(
+fn is_at_limit<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     force: &Forces<T>,
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T::Mask {
     let actuator = &model.actuators[u];
-    let mut held = T::Mask::splat(false);
+    let mut at_limit = T::Mask::splat(false);
     if actuator.forcelimited {
         // Cogging and friction of a motor follow its limit, which clamps only the current's force.
         let limited = match actuator.bias {
-            BiasKind::DcMotor => unlimited_force(model, params, given, &force.act_dot, u, at),
+            BiasKind::DcMotor => unlimited_force(model, params, inputs, &force.act_dot, u, at),
             BiasKind::None
             | BiasKind::Affine
             | BiasKind::Muscle
             | BiasKind::So3
             | BiasKind::User => force.actuator_force[actuator.outputs.start],
         };
-        held |= is_saturated(limited, params.actuator_forcerange[u]);
+        at_limit |= is_saturated(limited, params.actuator_forcerange[u]);
     }
     if let Some(t) = limited_tendon(model, actuator.transmission) {
-        held |= is_reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
+        at_limit |= is_reached(force.ten_actuator_force[t], params.tendon_actfrcrange[t]);
     }
-    held
+    at_limit
 }
 
 /// Returns the slope, or zero in lanes in which the range of the actuator's joint clamps the total force.
 #[inline(always)]
-fn unless_joint_holds<T: Real>(
+fn unless_joint_limits<T: Real>(
     model: &Model,
     params: &Params<T>,
     force: &Forces<T>,
@@ -123,8 +123,8 @@ fn unless_joint_holds<T: Real>(
     match joint.filter(|&j| model.joints[j].actfrclimited) {
         Some(j) => {
             let total = force.qfrc_actuator[model.joints[j].dof];
-            let held = is_saturated(total, params.jnt_actfrcrange[j]);
-            T::select(held, T::ZERO, slope)
+            let at_limit = is_saturated(total, params.jnt_actfrcrange[j]);
+            T::select(at_limit, T::ZERO, slope)
         }
         None => slope,
     }

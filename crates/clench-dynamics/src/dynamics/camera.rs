@@ -13,9 +13,9 @@ pub fn fixed_pose<T: Real>(
     camera: usize,
 ) -> (Vec3<T>, Mat3<T>) {
     let body = model.cameras[camera].body;
-    let place = pos.xpos[body] + pos.xmat[body] * params.cam_pos[camera];
+    let position = pos.xpos[body] + pos.xmat[body] * params.cam_pos[camera];
     let rotation = (pos.xquat[body] * params.cam_quat[camera]).to_matrix();
-    (place, rotation)
+    (position, rotation)
 }
 
 /// Returns the pose of a camera: its position, and its axes as columns.
@@ -26,7 +26,7 @@ pub fn camera_pose<T: Real>(
     pos: &Positions<T>,
     camera: usize,
 ) -> (Vec3<T>, Mat3<T>) {
-    let kept = || {
+    let initial_axes = || {
         let [x, y, z] = [0, 3, 6].map(|i| Vec3::from_slice(&params.cam_mat0[camera][i..]));
         Mat3 { rows: [x, y, z] }
     };
@@ -34,18 +34,18 @@ pub fn camera_pose<T: Real>(
     let body = model.cameras[camera].body;
     match model.cameras[camera].mode {
         CameraMode::Fixed => fixed(),
-        CameraMode::Track => (pos.xpos[body] + params.cam_pos0[camera], kept()),
+        CameraMode::Track => (pos.xpos[body] + params.cam_pos0[camera], initial_axes()),
         CameraMode::TrackCom(_) => {
-            let place = pos.subtree_com[body] + params.cam_poscom0[camera];
-            (place, kept())
+            let position = pos.subtree_com[body] + params.cam_poscom0[camera];
+            (position, initial_axes())
         }
         CameraMode::TargetBody(target) => {
-            let place = fixed().0;
-            (place, looking(place, pos.xpos[target]))
+            let position = fixed().0;
+            (position, looking(position, pos.xpos[target]))
         }
         CameraMode::TargetBodyCom(target) => {
-            let place = fixed().0;
-            (place, looking(place, pos.subtree_com[target]))
+            let position = fixed().0;
+            (position, looking(position, pos.subtree_com[target]))
         }
     }
 }

@@ -47,34 +47,34 @@ impl<T: Real> Circuit<T> {
     fn new(
         model: &Model,
         params: &Params<T>,
-        given: ActuatorInputs<'_, T>,
+        inputs: ActuatorInputs<'_, T>,
         u: usize,
         at: ActuatorMotion<T>,
     ) -> Self {
         let actuator = &model.actuators[u];
         let (dyn_, gain) = (&params.actuator_dynprm[u], &params.actuator_gainprm[u]);
         let [cold, constant, tempcoef, reftemp, kp, ki, kd, vmax, ..] = *gain;
-        let setpoints = Setpoints::new(model, params, given, u);
+        let setpoints = Setpoints::new(model, params, inputs, u);
         let (mut voltage, mut voltage_slope) = (T::ZERO, T::ZERO);
         let mut voltage_length_slope = T::ZERO;
         let controlled =
             |input: &ControlInput| !matches!(input, ControlInput::Voltage | ControlInput::Command);
         if actuator.inputs.iter().any(controlled) {
-            let integral = actuator.states.integral.map_or(T::ZERO, |a| given.act[a]);
+            let integral = actuator.states.integral.map_or(T::ZERO, |a| inputs.act[a]);
             let torque = kp * (setpoints.position - at.length)
                 + kd * (setpoints.velocity - at.velocity)
                 + ki * integral
                 + setpoints.feedforward;
             let per_torque = cold / constant;
             voltage = per_torque * torque + constant * at.velocity;
-            let bounded = vmax.gt(T::ZERO);
-            let beyond = bounded & voltage.abs().ge(vmax);
+            let limited = vmax.gt(T::ZERO);
+            let beyond = limited & voltage.abs().ge(vmax);
             voltage_slope = T::select(beyond, T::ZERO, constant - per_torque * kd);
             voltage_length_slope = T::select(beyond, T::ZERO, -per_torque * kp);
-            voltage = T::select(bounded, voltage.max(-vmax).min(vmax), voltage);
+            voltage = T::select(limited, voltage.max(-vmax).min(vmax), voltage);
         }
         let resistance = match actuator.states.temperature {
-            Some(a) => cold * (T::ONE + tempcoef * (given.act[a] + dyn_[4] - reftemp)),
+            Some(a) => cold * (T::ONE + tempcoef * (inputs.act[a] + dyn_[4] - reftemp)),
             None => cold,
         };
         Circuit {
@@ -97,9 +97,9 @@ impl<T: Real> Circuit<T> {
     #[inline(always)]
     fn current_rate(&self, prm: &[T; 10], current: T, velocity: T) -> T {
         let rate = (self.steady_current(velocity) - current) / prm[0];
-        let bound = prm[1];
-        let limited = rate.max(-bound).min(bound);
-        T::select(bound.gt(T::ZERO), limited, rate)
+        let limit = prm[1];
+        let limited = rate.max(-limit).min(limit);
+        T::select(limit.gt(T::ZERO), limited, rate)
     }
 }
 
@@ -108,34 +108,34 @@ impl<T: Real> Circuit<T> {
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     u: usize,
     at: ActuatorMotion<T>,
     act_dot: &mut [T],
 ) {
     let states = model.actuators[u].states;
     let prm = &params.actuator_dynprm[u];
-    let circuit = Circuit::new(model, params, given, u, at);
+    let circuit = Circuit::new(model, params, inputs, u, at);
     if let Some(a) = states.slew {
-        act_dot[a] = circuit.setpoints.slew_rate(params, given.act[a]);
+        act_dot[a] = circuit.setpoints.slew_rate(params, inputs.act[a]);
     }
     if let Some(a) = states.integral {
         let error = circuit.setpoints.position - at.length;
-        act_dot[a] = integral_rate(error, given.act[a], prm[8]);
+        act_dot[a] = integral_rate(error, inputs.act[a], prm[8]);
     }
     if let Some(a) = states.temperature {
         let current = match states.current {
-            Some(current) => given.act[current],
+            Some(current) => inputs.act[current],
             None => circuit.steady_current(at.velocity),
         };
         let heat = circuit.resistance * current * current;
-        act_dot[a] = (heat - given.act[a] / prm[2]) / prm[3];
+        act_dot[a] = (heat - inputs.act[a] / prm[2]) / prm[3];
     }
     if let Some(a) = states.bristle {
-        act_dot[a] = bristle_decay(params, u, at.velocity) * given.act[a] + at.velocity;
+        act_dot[a] = bristle_decay(params, u, at.velocity) * inputs.act[a] + at.velocity;
     }
     if let Some(a) = states.current {
-        act_dot[a] = circuit.current_rate(prm, given.act[a], at.velocity);
+        act_dot[a] = circuit.current_rate(prm, inputs.act[a], at.velocity);
     }
 }
 
@@ -167,16 +167,20 @@ pub(crate) fn next_activation<T: Real>(
     }
     if states.bristle == Some(a) {
         let decay = bristle_decay(params, u, velocity);
-        let left = (decay * h).exp();
+        let remaining = (decay * h).exp();
         let moves = decay.abs().gt(T::new(MIN_DIVISOR));
-        let time = T::select(moves, (left - T::ONE) / T::select(moves, decay, T::ONE), h);
-        return left * act + time * velocity;
+        let time = T::select(
+            moves,
+            (remaining - T::ONE) / T::select(moves, decay, T::ONE),
+            h,
+        );
+        return remaining * act + time * velocity;
     }
     let next = act + act_dot * h;
     if states.integral == Some(a) {
-        let bound = prm[8];
-        let within = next.max(-bound).min(bound);
-        return T::select(bound.gt(T::ZERO), within, next);
+        let limit = prm[8];
+        let within = next.max(-limit).min(limit);
+        return T::select(limit.gt(T::ZERO), within, next);
     }
     next
 }
@@ -187,11 +191,11 @@ pub(crate) fn next_activation<T: Real>(
 pub(crate) fn gain_and_voltage<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     u: usize,
     at: ActuatorMotion<T>,
 ) -> (T, T) {
-    let circuit = Circuit::new(model, params, given, u, at);
+    let circuit = Circuit::new(model, params, inputs, u, at);
     let gain = match model.actuators[u].states.current {
         Some(_) => circuit.constant,
         None => circuit.constant / divisor(circuit.resistance),
@@ -219,12 +223,12 @@ pub(crate) fn back_emf<T: Real>(
 pub(crate) fn electrical_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T {
-    let circuit = Circuit::new(model, params, given, u, at);
+    let circuit = Circuit::new(model, params, inputs, u, at);
     let actuator = &model.actuators[u];
     let net = match actuator.states.current {
         None if actuator.bias != BiasKind::DcMotor => circuit.voltage_slope,
@@ -238,12 +242,12 @@ pub(crate) fn electrical_slope<T: Real>(
 pub(crate) fn electrical_length_slope<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T {
-    let circuit = Circuit::new(model, params, given, u, at);
+    let circuit = Circuit::new(model, params, inputs, u, at);
     let net = circuit.voltage_length_slope;
     by_voltage(model, params, act_dot, u, &circuit, net)
 }
@@ -268,8 +272,8 @@ fn by_voltage<T: Real>(
             let prm = &params.actuator_dynprm[u];
             let te = divisor(prm[0]);
             let share = T::ONE - (-params.timestep / te).exp();
-            let held = prm[1].gt(T::ZERO) & act_dot[a].abs().ge(prm[1]);
-            T::select(held, T::ZERO, steady * share)
+            let at_limit = prm[1].gt(T::ZERO) & act_dot[a].abs().ge(prm[1]);
+            T::select(at_limit, T::ZERO, steady * share)
         }
     }
 }
@@ -279,7 +283,7 @@ fn by_voltage<T: Real>(
 pub(crate) fn mechanical_force<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     length: T,
@@ -289,7 +293,7 @@ pub(crate) fn mechanical_force<T: Real>(
     match model.actuators[u].states.bristle {
         Some(a) => {
             let prm = &params.actuator_dynprm[u];
-            cogging - (prm[5] * given.act[a] + prm[6] * act_dot[a])
+            cogging - (prm[5] * inputs.act[a] + prm[6] * act_dot[a])
         }
         None => cogging,
     }

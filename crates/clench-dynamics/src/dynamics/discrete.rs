@@ -23,7 +23,7 @@ const EXACT_STEPS: usize = 4;
 
 /// Replaces the mass matrix with the metric of the state, after actuators have their forces.
 #[kernel]
-pub(crate) fn enter_metric<T: Real>(
+pub(crate) fn apply_metric<T: Real>(
     model: &Model,
     params: &Params<T>,
     settings: &StepSettings,
@@ -157,19 +157,19 @@ pub fn spin_freely<T: Real>(model: &Model, params: &Params<T>, qvel: &[T], ws: &
         qacc,
         ..
     } = ws;
-    note_touched(model, problem, &mut metric.touched);
+    mark_touched(model, problem, &mut metric.touched);
     let total = |i: usize| force.qfrc_smooth[i] + metric.shift[i];
     for (j, joint) in model.joints.iter().enumerate() {
         let free = is_free_tree(model, j);
-        let alone = !metric.touched[model.tree.tree_of(joint.dof)];
-        if !free || !alone.any() {
+        let untouched = !metric.touched[model.tree.tree_of(joint.dof)];
+        if !free || !untouched.any() {
             continue;
         }
         let system = (&problem.mass, array(|r| total(joint.dof + r)));
         let stages = (pos as &_, vel as &_);
         let x = solve_gyroscopic(model, params, j, qvel, stages, FluidForces::Drag, system);
         for (qacc, x) in qacc[joint.dof..].iter_mut().zip(x) {
-            *qacc = T::select(alone, x, *qacc);
+            *qacc = T::select(untouched, x, *qacc);
         }
     }
 }
@@ -200,23 +200,23 @@ pub(crate) fn add_metric_forces<T: Real>(
             qfrc[dof] += scale * rate * arm
         });
     }
-    note_touched(model, problem, &mut metric.touched);
+    mark_touched(model, problem, &mut metric.touched);
     for (j, joint) in model.joints.iter().enumerate() {
-        let alone = !metric.touched[model.tree.tree_of(joint.dof)];
-        if !is_free_tree(model, j) || !alone.any() {
+        let untouched = !metric.touched[model.tree.tree_of(joint.dof)];
+        if !is_free_tree(model, j) || !untouched.any() {
             continue;
         }
         let product =
             gyroscopic_product(model, params, j, qvel, (pos, vel), FluidForces::Drag, qacc);
         for (qfrc, x) in qfrc[joint.dof..].iter_mut().zip(product) {
-            *qfrc += T::select(alone, x, T::ZERO);
+            *qfrc += T::select(untouched, x, T::ZERO);
         }
     }
 }
 
 /// Records the trees on which constraints act.
 #[inline(always)]
-fn note_touched<T: Real>(model: &Model, problem: &Problem<T>, touched: &mut [T::Mask]) {
+fn mark_touched<T: Real>(model: &Model, problem: &Problem<T>, touched: &mut [T::Mask]) {
     for block in problem.blocks() {
         let acts = acting(block.d);
         for &dof in block.dofs {

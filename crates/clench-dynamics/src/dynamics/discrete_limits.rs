@@ -23,7 +23,7 @@ pub(crate) fn check_discrete(
         let reason = "trees that its metric couples must sleep and wake together";
         return refuse("sleep without islands".to_owned(), reason);
     }
-    let coupling = terms(model).find(|along| couples_what_sleeps(model, *along));
+    let coupling = terms(model).find(|along| couples_sleeping_trees(model, *along));
     if let (true, Some(along)) = (sleep, coupling) {
         let reason = "the metric couples a tree that may sleep with another tree, and the metric of a sleeping tree is undefined: \
             MuJoCo 4.0 includes the tree as free in one half of a step and omits it in the other";
@@ -59,7 +59,7 @@ fn acts_on_tendon(model: &Model, t: usize) -> bool {
 }
 
 /// Returns true if a term acts on several trees of which one may sleep.
-fn couples_what_sleeps(model: &Model, along: Along) -> bool {
+fn couples_sleeping_trees(model: &Model, along: Along) -> bool {
     let trees = model.trees_of(along.dofs(model));
     let may_sleep = |&tree: &usize| model.trees[tree].sleep != SleepPolicy::Never;
     trees.len() > 1 && trees.iter().any(may_sleep)

@@ -10,7 +10,7 @@ pub enum ForceDerivatives<'a, T> {
     Matrix {
         /// The numbers, row after row.
         values: &'a mut [T],
-        /// The distance of two rows.
+        /// The distance from one row to the next.
         width: usize,
     },
     /// The product of a row vector with the matrix.

@@ -24,7 +24,7 @@ fn chain(model: &Model, body: usize) -> &[u32] {
 
 /// Writes a column of three numbers, one per row.
 #[inline(always)]
-fn put<T: Real>(rows: &mut [T], nv: usize, column: usize, value: Vec3<T>) {
+fn write_column<T: Real>(rows: &mut [T], nv: usize, column: usize, value: Vec3<T>) {
     for k in 0..3 {
         rows[k * nv + column] = value[k];
     }
@@ -43,13 +43,13 @@ pub fn point_jacobian<T: Real>(
     let (linear, angular) = out.split_at_mut(3 * model.nv);
     for &dof in chain(model, point.body) {
         let axis = pos.cdof[dof as usize];
-        put(
+        write_column(
             linear,
             model.nv,
             dof as usize,
             axis.velocity_at(point.offset),
         );
-        put(angular, model.nv, dof as usize, axis.angular);
+        write_column(angular, model.nv, dof as usize, axis.angular);
     }
 }
 
@@ -68,8 +68,8 @@ pub fn point_jacobian_rate<T: Real>(
         let dof = dof as usize;
         let (axis, rate) = (pos.cdof[dof], axis_rate(model, pos, vel, dof));
         let column = rate.velocity_at(point.offset) + axis.angular.cross(velocity);
-        put(linear, model.nv, dof, column);
-        put(angular, model.nv, dof, rate.angular);
+        write_column(linear, model.nv, dof, column);
+        write_column(angular, model.nv, dof, rate.angular);
     }
 }
 
@@ -118,14 +118,14 @@ pub fn subtree_jacobian<T: Real>(
     let point = BodyPoint::new(model, pos, body, pos.subtree_com[body]);
     for &dof in chain(model, body) {
         let column = pos.cdof[dof as usize].velocity_at(point.offset);
-        put(out, model.nv, dof as usize, column);
+        write_column(out, model.nv, dof as usize, column);
     }
     for b in model.subtree(body).skip(1) {
         let share = params.body_subtreemass[b] * inverse;
         let point = BodyPoint::new(model, pos, b, pos.subtree_com[b]);
         for dof in model.bodies[b].dofs.clone() {
             let column = pos.cdof[dof].velocity_at(point.offset) * share;
-            put(out, model.nv, dof, column);
+            write_column(out, model.nv, dof, column);
         }
     }
 }

@@ -113,7 +113,7 @@ impl<T: Real> Metric<T> {
             metric.backbone_factor = TreeFactor::zeros(&model.tree);
         }
         let couplings = &mut metric.couplings;
-        let mut place = |along: Along| {
+        let mut coupling = |along: Along| {
             let fits = is_chain(&model.tree, along.dofs(model));
             (!fits).then(|| {
                 couplings.push(along);
@@ -121,9 +121,9 @@ impl<T: Real> Metric<T> {
             })
         };
         let tendons = (0..model.tendons.len()).map(Along::Tendon);
-        metric.of_tendon = tendons.map(&mut place).collect();
+        metric.of_tendon = tendons.map(&mut coupling).collect();
         let outputs = (0..model.nout()).map(Along::Output);
-        metric.of_output = outputs.map(&mut place).collect();
+        metric.of_output = outputs.map(&mut coupling).collect();
         metric.scales = vec![T::ZERO; metric.couplings.len()];
         metric
     }
@@ -210,8 +210,8 @@ pub(crate) fn add_metric<T: Real>(
     for t in 0..model.tendons.len() {
         let derivatives = tendon_derivatives(model, params, state, (pos, vel), t);
         let term = Term::new(h, derivatives, vel.ten_velocity[t]);
-        let place = metric.of_tendon[t];
-        term.add(model, pos, Along::Tendon(t), place, metric, mass);
+        let coupling = metric.of_tendon[t];
+        term.add(model, pos, Along::Tendon(t), coupling, metric, mass);
     }
     if model.flags.actuation {
         for (u, actuator) in model.actuators.iter().enumerate() {
@@ -222,8 +222,8 @@ pub(crate) fn add_metric<T: Real>(
             ];
             for output in actuator.outputs.clone() {
                 let term = Term::new(h, derivatives, vel.actuator_velocity[output]);
-                let place = metric.of_output[output];
-                term.add(model, pos, Along::Output(output), place, metric, mass);
+                let coupling = metric.of_output[output];
+                term.add(model, pos, Along::Output(output), coupling, metric, mass);
             }
         }
     }
@@ -313,14 +313,14 @@ impl<T: Real> Term<T> {
         }
     }
 
-    /// Adds the term to the matrix, or to the couplings at index `place`.
+    /// Adds the term to the matrix, or to the couplings at index `coupling`.
     #[kernel]
     fn add(
         &self,
         model: &Model,
         pos: &Positions<T>,
         along: Along,
-        place: Option<usize>,
+        coupling: Option<usize>,
         metric: &mut Metric<T>,
         mass: &mut TreeMatrix<T>,
     ) {
@@ -355,9 +355,9 @@ impl<T: Real> Term<T> {
                 |dof, arm| *diagonal(&model.tree, backbone, dof) += self.scale * arm * arm,
             );
         }
-        match (place, along) {
-            (Some(place), _) => {
-                scales[place] = self.scale;
+        match (coupling, along) {
+            (Some(coupling), _) => {
+                scales[coupling] = self.scale;
                 each_arm(
                     model,
                     pos,

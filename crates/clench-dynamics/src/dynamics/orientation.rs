@@ -23,7 +23,7 @@ pub const OUTPUTS: usize = 3;
 pub fn torque<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     (pos, vel): (&Positions<T>, &Velocities<T>),
@@ -31,7 +31,7 @@ pub fn torque<T: Real>(
     let outputs = model.actuators[u].outputs.clone();
     let now = Quat::from_rotation_vector(Vec3::from_slice(&pos.actuator_length[outputs.clone()]));
     let velocity = Vec3::from_slice(&vel.actuator_velocity[outputs]);
-    let error = target(model, params, given, act_dot, u).difference(now);
+    let error = target(model, params, inputs, act_dot, u).difference(now);
     let [constant, _, damping, ..] = params.actuator_biasprm[u];
     let constant = Vec3::new(constant, constant, constant);
     error * params.actuator_gainprm[u][0] + constant + velocity * damping
@@ -42,12 +42,12 @@ pub fn torque<T: Real>(
 fn target<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
 ) -> Quat<T> {
     let actuator = &model.actuators[u];
-    let controls = &given.ctrl[actuator.controls.clone()];
+    let controls = &inputs.ctrl[actuator.controls.clone()];
     if actuator.inputs[0] == ControlInput::Quaternion {
         return Quat::from_slice(controls).normalize();
     }
@@ -57,8 +57,8 @@ fn target<T: Real>(
     let mut vector = [T::ZERO; OUTPUTS];
     for (a, part) in actuator.acts.clone().zip(&mut vector) {
         *part = match actuator.actearly {
-            true => next_activation(model, params, u, a, (given.act[a], act_dot[a]), T::ZERO),
-            false => given.act[a],
+            true => next_activation(model, params, u, a, (inputs.act[a], act_dot[a]), T::ZERO),
+            false => inputs.act[a],
         };
     }
     Quat::from_rotation_vector(Vec3::from_array(vector))
@@ -77,19 +77,19 @@ pub fn limit<T: Real>(torque: &mut [T], range: [T; 2]) {
 #[inline(always)]
 pub fn slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
     let slope = params.actuator_biasprm[u][2];
-    T::select(is_held(model, params, u, forces), T::ZERO, slope)
+    T::select(is_at_limit(model, params, u, forces), T::ZERO, slope)
 }
 
 /// Returns ∂torque/∂angle at small angles from the target, likewise.
 #[kernel]
 pub fn length_slope<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T {
     let slope = -params.actuator_gainprm[u][0];
-    T::select(is_held(model, params, u, forces), T::ZERO, slope)
+    T::select(is_at_limit(model, params, u, forces), T::ZERO, slope)
 }
 
 /// Returns the lanes in which the limit clamps the torque.
 #[inline(always)]
-fn is_held<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T::Mask {
+fn is_at_limit<T: Real>(model: &Model, params: &Params<T>, u: usize, forces: &[T]) -> T::Mask {
     let actuator = &model.actuators[u];
     if !actuator.forcelimited {
         return T::Mask::splat(false);

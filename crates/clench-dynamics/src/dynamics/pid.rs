@@ -16,20 +16,20 @@ use clench_math::Real;
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     u: usize,
     length: T,
     act_dot: &mut [T],
 ) {
     let states = model.actuators[u].states;
-    let setpoints = Setpoints::new(model, params, given, u);
+    let setpoints = Setpoints::new(model, params, inputs, u);
     if let Some(a) = states.slew {
-        act_dot[a] = setpoints.slew_rate(params, given.act[a]);
+        act_dot[a] = setpoints.slew_rate(params, inputs.act[a]);
     }
     if let Some(a) = states.integral {
         let target = nearest_setpoint(model, params, u, setpoints.position, length);
-        let bound = params.actuator_dynprm[u][0];
-        act_dot[a] = integral_rate(target - length, given.act[a], bound);
+        let limit = params.actuator_dynprm[u][0];
+        act_dot[a] = integral_rate(target - length, inputs.act[a], limit);
     }
 }
 
@@ -38,13 +38,13 @@ pub(crate) fn activation_rates<T: Real>(
 pub(crate) fn force<T: Real>(
     model: &Model,
     params: &Params<T>,
-    given: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<'_, T>,
     act_dot: &[T],
     u: usize,
     at: ActuatorMotion<T>,
 ) -> T {
     let actuator = &model.actuators[u];
-    let setpoints = Setpoints::new(model, params, given, u);
+    let setpoints = Setpoints::new(model, params, inputs, u);
     let target = nearest_setpoint(model, params, u, setpoints.position, at.length);
     let bias = &params.actuator_biasprm[u];
     let force = setpoints.feedforward - bias[1] * target - bias[2] * setpoints.velocity;
@@ -52,9 +52,16 @@ pub(crate) fn force<T: Real>(
         return force;
     };
     let integral = if actuator.actearly {
-        next_activation(model, params, u, a, (given.act[a], act_dot[a]), at.velocity)
+        next_activation(
+            model,
+            params,
+            u,
+            a,
+            (inputs.act[a], act_dot[a]),
+            at.velocity,
+        )
     } else {
-        given.act[a]
+        inputs.act[a]
     };
     force + params.actuator_gainprm[u][0] * integral
 }

@@ -27,11 +27,13 @@ pub(crate) fn yield_springs<T: Real>(
         return;
     }
     for (j, joint) in model.joints.iter().enumerate() {
-        let Some(place) = joint.plastic else { continue };
+        let Some(offset) = joint.plastic else {
+            continue;
+        };
         let awake = sleep.is_awake(model.tree.tree_of(joint.dof));
         let limit = params.jnt_springyield[j];
         let elongation = elongation_of_joint(model, params, (qpos, plastic), j);
-        let rest = &mut plastic[place..place + joint.kind.nq()];
+        let rest = &mut plastic[offset..offset + joint.kind.nq()];
         match elongation {
             JointElongation::Scalar(x) => rest[0] += T::select(awake, beyond(x, limit), T::ZERO),
             JointElongation::Rotation(rotation) => yield_rotation(rotation, limit, awake, rest),
@@ -39,7 +41,7 @@ pub(crate) fn yield_springs<T: Real>(
         }
     }
     for (t, tendon) in model.tendons.iter().enumerate() {
-        let Some(place) = tendon.plastic else {
+        let Some(offset) = tendon.plastic else {
             continue;
         };
         let mut rate = T::ZERO;
@@ -49,9 +51,9 @@ pub(crate) fn yield_springs<T: Real>(
             awake |= sleep.is_awake(model.tree.tree_of(dof));
         }
         let length = start.length[t] + params.timestep * rate;
-        let elongation = elongation_outside([plastic[place], plastic[place + 1]], length);
+        let elongation = elongation_outside([plastic[offset], plastic[offset + 1]], length);
         let moved = beyond(elongation, params.tendon_springyield[t]);
-        for end in &mut plastic[place..place + 2] {
+        for end in &mut plastic[offset..offset + 2] {
             *end += T::select(awake, moved, T::ZERO);
         }
     }

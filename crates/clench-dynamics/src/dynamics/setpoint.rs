@@ -25,7 +25,7 @@ impl<T: Real> Setpoints<T> {
     /// Returns the setpoints of actuator `u`. A rate limit of the first control starts at its previous value, and on a
     /// circle takes the shorter arc.
     #[kernel]
-    pub fn new(model: &Model, params: &Params<T>, given: ActuatorInputs<'_, T>, u: usize) -> Self {
+    pub fn new(model: &Model, params: &Params<T>, inputs: ActuatorInputs<'_, T>, u: usize) -> Self {
         let actuator = &model.actuators[u];
         let mut setpoints = Setpoints {
             position: T::ZERO,
@@ -35,7 +35,7 @@ impl<T: Real> Setpoints<T> {
             first: T::ZERO,
         };
         for (k, input) in actuator.inputs.iter().enumerate() {
-            let mut value = given.ctrl[actuator.controls.start + k];
+            let mut value = inputs.ctrl[actuator.controls.start + k];
             if k == 0 {
                 if let Some(a) = actuator.states.slew {
                     let rate = match actuator.dynamics {
@@ -48,7 +48,7 @@ impl<T: Real> Setpoints<T> {
                         | DynamicsKind::DcMotor
                         | DynamicsKind::User => params.actuator_dynprm[u][7],
                     };
-                    let (before, step) = (given.act[a], rate * params.timestep);
+                    let (before, step) = (inputs.act[a], rate * params.timestep);
                     value = nearest_setpoint(model, params, u, value, before);
                     value = value.clamp(before - step, before + step);
                 }
@@ -76,10 +76,10 @@ impl<T: Real> Setpoints<T> {
 
 /// Returns the rate of an integral of an error; an integral at its positive bound only decreases in magnitude.
 #[inline(always)]
-pub(crate) fn integral_rate<T: Real>(error: T, integral: T, bound: T) -> T {
-    let bounded = bound.gt(T::ZERO);
-    let high = bounded & integral.ge(bound);
-    let low = bounded & !high & integral.le(-bound);
+pub(crate) fn integral_rate<T: Real>(error: T, integral: T, limit: T) -> T {
+    let has_limit = limit.gt(T::ZERO);
+    let high = has_limit & integral.ge(limit);
+    let low = has_limit & !high & integral.le(-limit);
     let from_low = T::select(low, error.max(T::ZERO), error);
     T::select(high, error.min(T::ZERO), from_low)
 }

@@ -25,8 +25,8 @@ pub(crate) fn smooth_forces<T: Real>(
                 + force.qfrc_actuator[i];
         }
     }
-    let still = |f: &Force<T>| f.to_array().iter().all(|x| x.eq(T::ZERO).all());
-    if state.xfrc_applied.iter().all(still) {
+    let is_zero = |f: &Force<T>| f.to_array().iter().all(|x| x.eq(T::ZERO).all());
+    if state.xfrc_applied.iter().all(is_zero) {
         return;
     }
     for (b, applied) in state.xfrc_applied.iter().enumerate() {

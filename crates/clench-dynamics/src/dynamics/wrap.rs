@@ -137,7 +137,7 @@ pub fn wrap<T: Real>(ends: [Vec3<T>; 2], obstacle: &Obstacle<T>) -> Wrapped<T> {
     let project = |v: Vec3<T>| Planar::new(v.dot(plane[0]), v.dot(plane[1]));
     let flat = ends.map(project);
     let radius = obstacle.radius;
-    let mut found = around(flat, side.map(|side| project(side).unit()), radius);
+    let mut found = wrap_circle(flat, side.map(|side| project(side).unit()), radius);
     if let Some(side) = side {
         let inside = side.norm().lt(radius);
         if inside.any() {
@@ -198,7 +198,7 @@ fn plane_through<T: Real>([first, second]: [Vec3<T>; 2]) -> [Vec3<T>; 2] {
 
 /// Computes the shortest string around the circle, in the direction of `side`.
 #[inline(always)]
-fn around<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> PlanarWrap<T> {
+fn wrap_circle<T: Real>(ends: [Planar<T>; 2], side: Option<Planar<T>>, radius: T) -> PlanarWrap<T> {
     let [first, second] = ends;
     let angle_between = match side {
         None => first.angle_to(second),

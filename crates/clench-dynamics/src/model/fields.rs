@@ -131,13 +131,13 @@ fn require_own_sizes<S: Scalar>(
 ) -> Result<(), SimError> {
     for (g, geom) in model.geoms.iter().enumerate() {
         let own = model.params.geom_size[g].to_array().map(S::new);
-        let given = &row[3 * g..][..3];
-        if has_own_size(geom.kind) && given != own {
-            let axis = (0..3).find(|&i| given[i] != own[i]).unwrap_or(0);
+        let size = &row[3 * g..][..3];
+        if has_own_size(geom.kind) && size != own {
+            let axis = (0..3).find(|&i| size[i] != own[i]).unwrap_or(0);
             return Err(SimError::Parameter {
                 field,
                 index: 3 * g + axis,
-                value: given[axis].to_f64(),
+                value: size[axis].to_f64(),
                 range: "the size of its mesh or height field",
             });
         }

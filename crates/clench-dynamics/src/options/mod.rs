@@ -83,7 +83,7 @@ macro_rules! declare_options {
                         let own = value.try_into().map_err(|value| OptionError {
                             name: option.name(),
                             value,
-                            range: option.default(false).what(),
+                            range: option.default(false).description(),
                         })?;
                         option.check(value)?;
                         self.$name = Some(own);

@@ -34,7 +34,7 @@ pub enum MaxContacts {
 }
 
 macro_rules! declare_values {
-    ($($(#[$doc:meta])* $variant:ident($type:ty): $what:literal, $words:expr;)*) => {
+    ($($(#[$doc:meta])* $variant:ident($type:ty): $description:literal, $keywords:expr;)*) => {
         /// The value of some option.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum OptionValue {
@@ -43,13 +43,13 @@ macro_rules! declare_values {
 
         impl OptionValue {
             /// Returns the description of a value of this type.
-            pub fn what(self) -> &'static str {
-                match self { $(OptionValue::$variant(_) => $what,)* }
+            pub fn description(self) -> &'static str {
+                match self { $(OptionValue::$variant(_) => $description,)* }
             }
 
             /// Returns the keywords of values of this type; a number is written in digits.
-            pub fn words(self) -> &'static [(&'static str, OptionValue)] {
-                match self { $(OptionValue::$variant(_) => $words,)* }
+            pub fn keywords(self) -> &'static [(&'static str, OptionValue)] {
+                match self { $(OptionValue::$variant(_) => $keywords,)* }
             }
         }
 
@@ -105,10 +105,10 @@ declare_values! {
 }
 
 impl OptionValue {
-    /// Returns its keyword among `words`.
-    pub fn word(self, words: &[(&'static str, OptionValue)]) -> Option<&'static str> {
-        let found = words.iter().find(|(_, value)| *value == self);
-        found.map(|&(word, _)| word)
+    /// Returns its keyword in a list.
+    pub fn keyword_in(self, keywords: &[(&'static str, OptionValue)]) -> Option<&'static str> {
+        let found = keywords.iter().find(|(_, value)| *value == self);
+        found.map(|&(keyword, _)| keyword)
     }
 }
 
@@ -119,7 +119,7 @@ impl fmt::Display for OptionValue {
             OptionValue::Count(n) | OptionValue::Limit(MaxContacts::Limit(n)) => write!(out, "{n}"),
             OptionValue::Number(x) if x.fract() == 0.0 && x.abs() < 1e6 => write!(out, "{x}"),
             OptionValue::Number(x) => write!(out, "{x:?}"),
-            other => out.write_str(other.word(other.words()).unwrap_or_default()),
+            other => out.write_str(other.keyword_in(other.keywords()).unwrap_or_default()),
         }
     }
 }

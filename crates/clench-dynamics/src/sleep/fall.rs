@@ -42,7 +42,7 @@ pub fn fall_asleep<T: Real>(
         ready |= counts & next.eq(T::new(READY));
     }
     if ready.any() {
-        put_islands_to_sleep(model, state, &ws.problem, counting, sleep, &mut ws.qacc);
+        deactivate_islands(model, state, &ws.problem, counting, sleep, &mut ws.qacc);
     }
 }
 
@@ -66,7 +66,7 @@ fn is_slow<T: Real>(params: &Params<T>, tree: &KinematicTree, state: &State<T>) 
 
 /// Deactivates ready islands as a whole, and ready trees on which no constraint acts.
 #[inline(always)]
-fn put_islands_to_sleep<T: Real>(
+fn deactivate_islands<T: Real>(
     model: &Model,
     state: &mut State<T>,
     problem: &Problem<T>,
@@ -84,14 +84,14 @@ fn put_islands_to_sleep<T: Real>(
         let is_ready = |&tree: &u32| sleep.counters[tree as usize].eq(T::new(READY));
         let ready = (members.iter().map(is_ready)).fold(lanes & island.lanes, |all, one| all & one);
         if ready.any() {
-            put_to_sleep(model, state, sleep, &members, ready, qacc);
+            deactivate(model, state, sleep, &members, ready, qacc);
         }
     }
     for tree in 0..model.ntree() {
-        let alone = lanes & !partition.constrained(tree);
-        let ready = alone & sleep.counters[tree].eq(T::new(READY));
+        let unconstrained = lanes & !partition.constrained(tree);
+        let ready = unconstrained & sleep.counters[tree].eq(T::new(READY));
         if ready.any() {
-            put_to_sleep(model, state, sleep, &[tree as u32], ready, qacc);
+            deactivate(model, state, sleep, &[tree as u32], ready, qacc);
         }
     }
     sleep.partition = partition;
@@ -101,7 +101,7 @@ fn put_islands_to_sleep<T: Real>(
 
 /// Deactivates the trees of an island in some lanes.
 #[inline(always)]
-fn put_to_sleep<T: Real>(
+fn deactivate<T: Real>(
     model: &Model,
     state: &mut State<T>,
     sleep: &mut Sleep<T>,
@@ -127,7 +127,7 @@ fn put_to_sleep<T: Real>(
 impl<T: Real> Sleep<T> {
     /// Sets the acceleration of sleeping trees to zero.
     #[kernel]
-    pub fn still(&self, model: &Model, qacc: &mut [T]) {
+    pub fn clear_sleeping(&self, model: &Model, qacc: &mut [T]) {
         for (tree, &awake) in model.trees.iter().zip(&self.awake) {
             if awake.all() {
                 continue;
@@ -142,7 +142,7 @@ impl<T: Real> Sleep<T> {
 /// Stores in the state which trees sleep, and resets those to their sleeping positions, independently of the
 /// integrator.
 #[kernel]
-pub fn hold<T: Real>(model: &Model, state: &mut State<T>, ws: &Workspace<T>) {
+pub fn restore_sleeping<T: Real>(model: &Model, state: &mut State<T>, ws: &Workspace<T>) {
     state.tree_asleep.copy_from_slice(&ws.sleep.counters);
     for (tree, &awake) in model.trees.iter().zip(&ws.sleep.awake) {
         if awake.all() {

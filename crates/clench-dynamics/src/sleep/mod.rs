@@ -15,8 +15,8 @@ mod skipped_work;
 mod wake;
 
 pub use fall::fall_asleep;
-pub(crate) use fall::hold;
-pub(crate) use skipped_work::{is_idle, rests};
+pub(crate) use fall::restore_sleeping;
+pub(crate) use skipped_work::{is_idle, sleeps_unchanged};
 pub use wake::wake_in_state;
 pub(crate) use wake::{wake_coupled, wake_pulled, wake_touched, wake_touching};
 
@@ -42,8 +42,9 @@ pub struct Sleep<T: Real> {
     awake: Vec<T::Mask>,
     /// Lanes in which each body is awake: mocap bodies always, because the user may move them, and fixed bodies never.
     bodies: Vec<T::Mask>,
-    /// True if the workspace's results are those of a complete pass at the positions and mocap poses in `pose`.
-    placed: bool,
+    /// True if the workspace's results are those of a complete pass at the positions in `pose`.
+    has_results: bool,
+    /// The positions, and the poses of mocap bodies, of the last complete pass.
     pose: Vec<T>,
     /// True if, in addition, all trees slept in the last pass in all lanes.
     at_rest: bool,
@@ -68,7 +69,7 @@ impl<T: Real> Sleep<T> {
                 .map(|body| T::Mask::splat(!model.is_fixed(body)))
                 .collect(),
             at_rest: false,
-            placed: false,
+            has_results: false,
             parts: Parts::new(model),
             pose: vec![T::ZERO; numbers(model.nq + 7 * model.nmocap)],
             partition: Partition::default(),

@@ -26,7 +26,7 @@ struct TreeResults {
     isolated: bool,
     /// True if the tree is awake in any lane.
     awake: bool,
-    /// True if it was in the last pass.
+    /// True if it was awake in the last pass.
     was_awake: bool,
     /// True if its results are valid.
     valid: bool,
@@ -93,7 +93,7 @@ impl Parts {
     }
 
     /// Records that a pass ends.
-    pub(super) fn note(&mut self) {
+    pub(super) fn end_pass(&mut self) {
         for tree in &mut self.trees {
             tree.was_awake = tree.awake;
         }

@@ -20,14 +20,14 @@ use std::ops::Range;
 /// Returns true if everything sleeps as the last pass left it, so that a step only advances time. Models with elements
 /// that act on sleeping trees other than by forces, or that are written in every step, are left to [`is_idle`].
 #[kernel]
-pub fn rests<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> bool {
+pub fn sleeps_unchanged<T: Real>(model: &Model, state: &State<T>, ws: &Workspace<T>) -> bool {
     let sleep = &ws.sleep;
     let bare = model.actuators.is_empty()
         && model.equalities.is_empty()
         && model.nhistory == 0
         && state.plastic.is_empty();
     bare && !ws.collision.contacts_provided
-        && sleep.rests_as_before(model, state)
+        && sleep.stays_at_rest(model, state)
         && all_same(&state.tree_asleep, &sleep.counters)
         && all_same(&state.pose_asleep, &sleep.pose)
         && all_blank(&state.qvel)
@@ -53,25 +53,25 @@ pub(crate) fn is_idle<T: Real>(model: &Model, state: &State<T>, ws: &mut Workspa
         ws.sleep.begin(model, state);
         return false;
     }
-    ws.sleep.rests_as_before(model, state) || (model.nmocap == 0 && !ws.read)
+    ws.sleep.stays_at_rest(model, state) || (model.nmocap == 0 && !ws.read)
 }
 
 impl<T: Real> Sleep<T> {
     /// Invalidates all poses, so that the next pass computes them.
     pub fn invalidate(&mut self) {
-        (self.placed, self.at_rest) = (false, false);
+        (self.has_results, self.at_rest) = (false, false);
         self.parts.select_all();
     }
 
     /// Records a pass over a state.
-    pub fn note(&mut self, model: &Model, state: &State<T>) {
+    pub fn record_pass(&mut self, model: &Model, state: &State<T>) {
         let (qpos, mocap) = self.pose.split_at_mut(model.nq);
         qpos.copy_from_slice(&state.qpos);
         for (m, pose) in mocap.chunks_exact_mut(7).enumerate() {
             pose.copy_from_slice(&mocap_pose(state, m));
         }
-        self.parts.note();
-        self.placed = true;
+        self.parts.end_pass();
+        self.has_results = true;
         self.at_rest = self.all_asleep().all();
     }
 
@@ -104,16 +104,16 @@ impl<T: Real> Sleep<T> {
         fixed: &FixedPoses,
         woke: bool,
     ) {
-        if woke && self.placed {
+        if woke && self.has_results {
             self.find_parts(model, state, fixed);
         }
-        (self.placed, self.at_rest) = (false, false);
+        (self.has_results, self.at_rest) = (false, false);
     }
 
     /// Finds the parts that a pass over a state computes.
     #[inline(never)]
     pub(crate) fn find_parts(&mut self, model: &Model, state: &State<T>, fixed: &FixedPoses) {
-        if !self.placed {
+        if !self.has_results {
             self.parts.select_all();
             return;
         }
@@ -130,7 +130,7 @@ impl<T: Real> Sleep<T> {
     }
 
     /// Returns true if all trees slept in the last pass at their present positions, and no mocap body has moved.
-    fn rests_as_before(&self, model: &Model, state: &State<T>) -> bool {
+    fn stays_at_rest(&self, model: &Model, state: &State<T>) -> bool {
         let mut mocap = self.pose[model.nq..].chunks_exact(7).enumerate();
         self.at_rest
             && self.lies_as_before(0..model.nq, state)

@@ -81,9 +81,9 @@ fn is_untouched<T: Real>(model: &Model, tree: &KinematicTree, state: &State<T>) 
         same &= q.eq(asleep);
     }
     if let Some(mocap) = tree.mocap {
-        let kept = &state.pose_asleep[model.nq + 7 * mocap..];
-        for (x, &kept) in mocap_pose(state, mocap).into_iter().zip(kept) {
-            same &= x.eq(kept);
+        let stored = &state.pose_asleep[model.nq + 7 * mocap..];
+        for (x, &stored) in mocap_pose(state, mocap).into_iter().zip(stored) {
+            same &= x.eq(stored);
         }
     }
     for &v in &state.qvel[tree.dofs.clone()] {
@@ -260,11 +260,11 @@ fn wake_couple<T: Real>(sleep: &mut Sleep<T>, trees: [usize; 2], lanes: T::Mask)
         if both && sleep.first_of_island(one, lane) == sleep.first_of_island(other, lane) {
             continue;
         }
-        let mut alone = T::Mask::splat(false);
-        alone.set_lane(lane, true);
+        let mut this_lane = T::Mask::splat(false);
+        this_lane.set_lane(lane, true);
         for tree in trees {
             if !sleep.awake[tree].lane(lane) {
-                sleep.wake(tree, alone, T::new(AWAKE));
+                sleep.wake(tree, this_lane, T::new(AWAKE));
             }
         }
         woke = true;

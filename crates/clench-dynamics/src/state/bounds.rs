@@ -9,19 +9,19 @@ const MAX_VALUE: f64 = 1e10;
 
 /// The limit of the numbers of a field.
 #[derive(Clone, Copy)]
-pub(crate) enum Bound {
+pub(crate) enum Limit {
     /// At most [`MAX_VALUE`].
     Near,
     /// Finite.
     Finite,
 }
 
-impl Bound {
+impl Limit {
     #[inline(always)]
     pub(crate) fn of<T: Real>(self) -> T {
         match self {
-            Bound::Near => T::new(MAX_VALUE),
-            Bound::Finite => T::splat(T::Scalar::MAX),
+            Limit::Near => T::new(MAX_VALUE),
+            Limit::Finite => T::splat(T::Scalar::MAX),
         }
     }
 }
@@ -30,10 +30,10 @@ impl Bound {
 pub(crate) fn first_beyond<T: Real>(
     values: &[T],
     lane: usize,
-    bound: Bound,
+    limit: Limit,
 ) -> Option<(usize, f64)> {
     let value = |i: usize| values[i].lane(lane);
-    let limit = bound.of::<T::Scalar>();
+    let limit = limit.of::<T::Scalar>();
     let index = (0..values.len()).find(|&i| !value(i).abs().le(limit))?;
     Some((index, value(index).to_f64()))
 }
@@ -43,12 +43,12 @@ const WORTH_CALL: usize = 32;
 
 /// Returns the lanes in which all numbers are within a limit.
 #[inline(always)]
-pub(crate) fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
+pub(crate) fn within<T: Real>(values: &[T], limit: Limit) -> T::Mask {
     if T::LANES == 1 && values.len() >= WORTH_CALL {
         let values = T::as_scalars(values);
-        return T::Mask::splat(T::Scalar::all_within(values, bound.of()));
+        return T::Mask::splat(T::Scalar::all_within(values, limit.of()));
     }
-    let limit = bound.of();
+    let limit = limit.of();
     let mut mask = T::Mask::splat(true);
     for x in values {
         mask &= x.abs().le(limit);
@@ -58,12 +58,12 @@ pub(crate) fn within<T: Real>(values: &[T], bound: Bound) -> T::Mask {
 
 macro_rules! declare_inputs {
     ($($group:ident { $(
-        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $limit:ident;
     )* })*) => {
         /// Returns true if some numbers of a field of the state are beyond its limit.
         pub fn beyond_bounds<T: Scalar>(field: &str, values: &[T]) -> bool {
             $($(if field == stringify!($name) {
-                return first_beyond(values, 0, Bound::$bound).is_some();
+                return first_beyond(values, 0, Limit::$limit).is_some();
             })*)*
             false
         }
@@ -74,13 +74,13 @@ macro_rules! declare_inputs {
         pub(crate) fn each_input<T: Real>(
             s: &State<T>,
             wanted: impl Fn(&'static str) -> bool,
-            mut visit: impl FnMut(&'static str, Bound, usize, &[T]),
+            mut visit: impl FnMut(&'static str, Limit, usize, &[T]),
         ) {
             $(if wanted(stringify!($group)) {
                 $(kind::$kind::numbers::<T>(
                     &s.$name,
                     #[inline(always)]
-                    |start, numbers| visit(stringify!($name), Bound::$bound, start, numbers),
+                    |start, numbers| visit(stringify!($name), Limit::$limit, start, numbers),
                 );)*
             })*
         }

@@ -159,7 +159,7 @@ fn zeros<T: Real, K: Kind>(count: usize) -> Vec<K::Of<T>> {
 
 macro_rules! declare_state {
     ($($group:ident { $(
-        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $limit:ident;
     )* })*) => {
         /// The state of one environment (or of the lanes of a group): everything that the next step depends on.
         #[derive(Clone, Debug)]
@@ -233,7 +233,7 @@ crate::state_fields!(declare_state);
 
 macro_rules! declare_moving {
     (moving { $(
-        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $bound:ident;
+        $(#[$doc:meta])* $name:ident $setter:ident: $kind:ident, $size:ident, $limit:ident;
     )* } $($others:tt)*) => {
         impl<T: Real> State<T> {
             /// Copies the fields that a step writes from another state of the same model, without allocating.
@@ -260,7 +260,7 @@ impl<T: Real> State<T> {
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
         broadcast(&model.params.qpos0, &mut state.qpos);
-        write_initial_rests(model, &mut state.plastic);
+        write_initial_rest_positions(model, &mut state.plastic);
         for actuator in &model.actuators {
             if actuator.inputs.first() == Some(&ControlInput::Quaternion) {
                 state.ctrl[actuator.controls.start] = T::ONE; // No rotation.
@@ -341,7 +341,7 @@ impl<T: Real> State<T> {
 }
 
 /// Writes the initial rest positions of yielding springs (nplastic).
-fn write_initial_rests<T: Real>(model: &Model, plastic: &mut [T]) {
+fn write_initial_rest_positions<T: Real>(model: &Model, plastic: &mut [T]) {
     for joint in &model.joints {
         if let Some(start) = joint.plastic {
             let count = joint.kind.nq();

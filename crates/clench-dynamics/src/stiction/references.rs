@@ -31,8 +31,8 @@ impl<T: Real> StickPair<T> {
         for lane in (0..T::LANES).filter(|&lane| self.active.lane(lane)) {
             let cursor = cursors[lane];
             let is_used = |&i: &usize| tags(&list[i], lane)[0] != T::Scalar::ZERO;
-            let mut places = (cursor..list.len()).take_while(is_used).chain(0..cursor);
-            if let Some(found) = places.find(|&i| tags(&list[i], lane) == wanted) {
+            let mut indices = (cursor..list.len()).take_while(is_used).chain(0..cursor);
+            if let Some(found) = indices.find(|&i| tags(&list[i], lane) == wanted) {
                 copy_lane(&list[found], &mut own, lane);
                 cursors[lane] = found + 1;
             }
@@ -67,7 +67,7 @@ impl<T: Real> Stiction<T> {
         let mut overflow = T::Mask::splat(false);
         let empty = Reference::zero::<T>();
         for lane in 0..T::LANES {
-            let mut used = keep_sleeping(model, sleep, list, lane);
+            let mut used = move_sleeping_to_front(model, sleep, list, lane);
             for pair in self.pairs.iter().filter(|pair| pair.active.lane(lane)) {
                 match list.get_mut(used) {
                     Some(slot) => copy_lane(&pair.stored(), slot, lane),
@@ -85,7 +85,7 @@ impl<T: Real> Stiction<T> {
 }
 
 /// Moves the references of pairs that sleep in a lane to the front. Returns their number.
-fn keep_sleeping<T: Real>(
+fn move_sleeping_to_front<T: Real>(
     model: &Model,
     sleep: &Sleep<T>,
     list: &mut [StickReference<T>],

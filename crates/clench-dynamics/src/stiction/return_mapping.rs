@@ -111,23 +111,23 @@ impl<T: Real> LoadedContact<T> {
     /// Returns the factor of the displacements of a pair whose contacts store at most `limit`, m.
     #[inline(always)]
     fn factor(&self, limit: T) -> T {
-        let most = limit * self.stiffness;
-        let beyond = self.demand.gt(most) & self.force.gt(T::ZERO);
+        let max_demand = limit * self.stiffness;
+        let beyond = self.demand.gt(max_demand) & self.force.gt(T::ZERO);
         if !beyond.any() {
             return T::ONE;
         }
         T::select(
             beyond,
-            most / T::select(beyond, self.demand, T::ONE),
+            max_demand / T::select(beyond, self.demand, T::ONE),
             T::ONE,
         )
     }
 
-    /// Replaces the displacements by their change, or in the lanes of `anew` by their new values; the surfaces
+    /// Replaces the displacements by their change, or in the lanes of `replaced` by their new values; the surfaces
     /// themselves have moved by `drift`.
     #[inline(always)]
-    fn change(&mut self, limit: T, anew: T::Mask, drift: [T; 3]) {
-        let factor = self.factor(limit) - T::select(anew, T::ZERO, T::ONE);
+    fn change(&mut self, limit: T, replaced: T::Mask, drift: [T; 3]) {
+        let factor = self.factor(limit) - T::select(replaced, T::ZERO, T::ONE);
         for phi in &mut self.displacement {
             *phi *= factor;
         }

@@ -1,8 +1,8 @@
 //! Triangulation of polygons, as MuJoCo 4.0 does for OBJ files.
 //!
 //! A quadrilateral is split along its shorter diagonal, a larger polygon by ear clipping: corner by corner, projected
-//! along the coordinate axis that its first corner faces most, a corner is cut off if it turns the right way and its
-//! triangle contains no other vertex. On a polygon that is not convex, the search may terminate early and omit the
+//! along the coordinate axis that its first corner faces most, a corner is cut off if it is not reflex and its triangle
+//! contains no other vertex. On a polygon that is not convex, the search may terminate early and omit the
 //! remainder. Rounding affects the result, so all is in single precision, and a corner's sense is compared with the
 //! sign of x₀ y₁ − y₀ x₁, as in tinyobjloader, the reader that MuJoCo uses.
 
@@ -12,8 +12,8 @@ use clench_math::Vec3;
 const MAX_CORNERS: usize = 100;
 
 /// Returns the triangles of a polygon with these corners, as indices of the corners.
-pub(super) fn triangulate(places: &[Vec3<f64>]) -> Vec<[usize; 3]> {
-    let points: Vec<[f32; 3]> = (places.iter())
+pub(super) fn triangulate(polygon: &[Vec3<f64>]) -> Vec<[usize; 3]> {
+    let points: Vec<[f32; 3]> = (polygon.iter())
         .map(|place| place.to_array().map(|x| x as f32))
         .collect();
     match points[..] {

@@ -109,8 +109,8 @@ fn triangles(
         for triangle in triangulate(&places) {
             let triangle = triangle.map(|corner| corners[corner]);
             faces.push(triangle.map(|corner| corner.vertex));
-            let known = |c: Corner| (c.texcoord).filter(|&at| (at as usize) < texcoords.len());
-            if let [Some(a), Some(b), Some(c)] = triangle.map(known) {
+            let texcoord = |c: Corner| (c.texcoord).filter(|&at| (at as usize) < texcoords.len());
+            if let [Some(a), Some(b), Some(c)] = triangle.map(texcoord) {
                 face_texcoords.push([a, b, c]);
             }
         }

@@ -49,9 +49,9 @@ const SLEEP_POLICIES: [(&str, SleepPolicy); 4] = [
 /// The memory factor of an element: stored in the builder, then in the model, for a while in both.
 const COPIES: usize = 3;
 
-/// The position of the reader in the tree.
+/// The context of an element: the body, default class and frame that enclose it.
 #[derive(Clone)]
-struct Place {
+struct Context {
     /// The body that contains the elements.
     body: usize,
     /// The default class of elements without a class.
@@ -62,7 +62,7 @@ struct Place {
     scale: FrameId,
 }
 
-impl Place {
+impl Context {
     /// Returns the linear map of positions by the enclosing frames, in body axes.
     fn in_body(&self) -> LinearMap {
         self.frame.linear_map.rotated(self.frame.quat.conjugate())
@@ -74,7 +74,7 @@ struct Level<'e> {
     element: &'e Element,
     /// The index of the next child.
     next: usize,
-    place: Place,
+    context: Context,
 }
 
 /// Returns the empty world.
@@ -117,7 +117,7 @@ impl<'a> BodyReader<'a> {
 
     /// Reads one `<worldbody>`.
     pub(super) fn read_world(&mut self, element: &Element) -> Result<(), LoadError> {
-        let world = Place {
+        let world = Context {
             body: 0,
             class: MAIN,
             frame: Pose::IDENTITY,
@@ -126,7 +126,7 @@ impl<'a> BodyReader<'a> {
         let mut open = vec![Level {
             element,
             next: 0,
-            place: world,
+            context: world,
         }];
         while let Some(level) = open.last_mut() {
             let Some(child) = level.element.children.get(level.next) else {
@@ -134,16 +134,16 @@ impl<'a> BodyReader<'a> {
                 continue;
             };
             level.next += 1;
-            let place = &level.place;
-            let entered = match child.tag.as_str() {
-                "body" => Some(self.enter_body(child, place)?),
-                "frame" => Some(self.enter_frame(child, place)?),
+            let context = &level.context;
+            let opened = match child.tag.as_str() {
+                "body" => Some(self.open_body(child, context)?),
+                "frame" => Some(self.open_frame(child, context)?),
                 _ => {
-                    self.read_part(child, place)?;
+                    self.read_part(child, context)?;
                     None
                 }
             };
-            open.extend(entered);
+            open.extend(opened);
         }
         Ok(())
     }
@@ -156,40 +156,40 @@ impl<'a> BodyReader<'a> {
         consumed.map_err(|excess| element.error(excess))
     }
 
-    fn enter_body<'e>(
+    fn open_body<'e>(
         &mut self,
         element: &'e Element,
-        place: &Place,
+        context: &Context,
     ) -> Result<Level<'e>, LoadError> {
-        let linear_map = self.push_body(element, place)?;
-        let inside = Place {
+        let linear_map = self.push_body(element, context)?;
+        let inside = Context {
             body: self.bodies.len() - 1,
             class: self
                 .classes(element)
-                .named_by(element, "childclass", place.class)?,
+                .named_by(element, "childclass", context.class)?,
             frame: Pose {
                 linear_map,
                 ..Pose::IDENTITY
             },
-            scale: place.scale,
+            scale: context.scale,
         };
         Ok(Level {
             element,
             next: 0,
-            place: inside,
+            context: inside,
         })
     }
 
     /// Reads a body without its contents, and returns the enclosing frames' map of positions in its axes.
-    fn push_body(&mut self, element: &Element, place: &Place) -> Result<LinearMap, LoadError> {
+    fn push_body(&mut self, element: &Element, context: &Context) -> Result<LinearMap, LoadError> {
         let written = Pose::read(element, self.compiler(element))?;
-        let pose = place.frame.then(written);
+        let pose = context.frame.then(written);
         let mut body = BodySpec {
             name: element.string("name"),
-            parent: place.body,
+            parent: context.body,
             pos: pose.pos,
             quat: pose.quat,
-            written: Some((place.frame.linear_map.apply(written.pos), written.quat)),
+            written: Some((context.frame.linear_map.apply(written.pos), written.quat)),
             compiler: self.own_settings(element),
             origin: Some(element.origin.clone()),
             ..BodySpec::default()
@@ -208,70 +208,70 @@ impl<'a> BodyReader<'a> {
         if body.mocap {
             self.mocaps.push(element.number);
         }
-        self.frames.add_body(&body, place.scale, pose.linear_map);
+        self.frames.add_body(&body, context.scale, pose.linear_map);
         self.bodies.push(body);
         Ok(pose.linear_map)
     }
 
-    fn enter_frame<'e>(
+    fn open_frame<'e>(
         &mut self,
         element: &'e Element,
-        place: &Place,
+        context: &Context,
     ) -> Result<Level<'e>, LoadError> {
-        let mut frame = place
+        let mut frame = context
             .frame
             .then(Pose::read(element, self.compiler(element))?);
-        let scale = self.frames.enter(element, place.scale, &mut frame)?;
+        let scale = self.frames.add_frame(element, context.scale, &mut frame)?;
         let class = self
             .classes(element)
-            .named_by(element, "class", place.class)?;
-        let inside = Place {
+            .named_by(element, "class", context.class)?;
+        let inside = Context {
             class: self
                 .classes(element)
                 .named_by(element, "childclass", class)?,
             frame,
             scale,
-            ..place.clone()
+            ..context.clone()
         };
         Ok(Level {
             element,
             next: 0,
-            place: inside,
+            context: inside,
         })
     }
 
-    fn read_part(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+    fn read_part(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
         let in_world = |what| Err(element.error(format!("the world cannot have {what}")));
         match element.tag.as_str() {
-            "inertial" if place.body == 0 => in_world("inertia")?,
-            "joint" | "freejoint" if place.body == 0 => in_world("joints")?,
-            "inertial" => self.read_inertial(element, place)?,
-            "joint" => self.read_joint(element, place)?,
+            "inertial" if context.body == 0 => in_world("inertia")?,
+            "joint" | "freejoint" if context.body == 0 => in_world("joints")?,
+            "inertial" => self.read_inertial(element, context)?,
+            "joint" => self.read_joint(element, context)?,
             "freejoint" => {
                 let joint = joint::read_free(element)?;
-                self.push_joint(joint, element, place)?;
+                self.push_joint(joint, element, context)?;
             }
-            "geom" => self.read_geom(element, place)?,
-            "site" => self.read_site(element, place)?,
-            "camera" => self.read_camera(element, place)?,
-            "light" => self.read_light(element, place)?,
+            "geom" => self.read_geom(element, context)?,
+            "site" => self.read_site(element, context)?,
+            "camera" => self.read_camera(element, context)?,
+            "light" => self.read_light(element, context)?,
             // The schema admits no other element.
             _ => {}
         }
         Ok(())
     }
 
-    fn read_inertial(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
+    fn read_inertial(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
         let mut orientation = Orientation::default();
         orientation.read(element)?;
-        let pose = place.frame.then(Pose {
+        let pose = context.frame.then(Pose {
             pos: Vec3::from_array(element.required_numbers("pos")?),
             quat: orientation.resolve(self.compiler(element), element)?,
             ..Pose::IDENTITY
         });
         let [mass] = element.required_numbers("mass")?;
-        let inertia = read_inertia(element, &place.frame)?;
-        let body = &mut self.bodies[place.body];
+        let inertia = read_inertia(element, &context.frame)?;
+        let body = &mut self.bodies[context.body];
         if body.inertial.is_some() {
             return Err(element.error("a body can have only one inertial"));
         }
@@ -282,8 +282,8 @@ impl<'a> BodyReader<'a> {
             inertia,
             origin: Some(element.origin.clone()),
         };
-        let scale = self.frames.scale(place.scale);
-        scale.inertial(&mut inertial, place.in_body());
+        let scale = self.frames.scale(context.scale);
+        scale.inertial(&mut inertial, context.in_body());
         body.inertial = Some(inertial);
         Ok(())
     }
@@ -304,17 +304,17 @@ impl<'a> BodyReader<'a> {
         &self.sources.of(element).classes
     }
 
-    fn class(&self, element: &Element, place: &Place) -> Result<usize, LoadError> {
+    fn class(&self, element: &Element, context: &Context) -> Result<usize, LoadError> {
         self.classes(element)
-            .named_by(element, "class", place.class)
+            .named_by(element, "class", context.class)
     }
 
-    fn read_joint(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let mut joint = self.classes(element)[self.class(element, place)?]
+    fn read_joint(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
+        let mut joint = self.classes(element)[self.class(element, context)?]
             .joint
             .clone();
         joint::read(element, &mut joint)?;
-        let mut joint = joint::finish(joint, self.compiler(element), &place.frame);
+        let mut joint = joint::finish(joint, self.compiler(element), &context.frame);
         let resolve = |what, range, said| self.sources.resolve_limit(element, what, range, said);
         resolve("", joint.range, &mut joint.limited)?;
         resolve(
@@ -322,88 +322,98 @@ impl<'a> BodyReader<'a> {
             joint.actuatorfrcrange,
             &mut joint.actuatorfrclimited,
         )?;
-        self.push_joint(joint, element, place)
+        self.push_joint(joint, element, context)
     }
 
     fn push_joint(
         &mut self,
         joint: JointSpec,
         element: &Element,
-        place: &Place,
+        context: &Context,
     ) -> Result<(), LoadError> {
         let name = element.string("name");
         self.consume(element, size_of::<JointSpec>(), &[&name])?;
-        self.joints.push((place.body, element.number));
+        self.joints.push((context.body, element.number));
         let mut joint = JointSpec {
             name,
             origin: Some(element.origin.clone()),
             ..joint
         };
-        let scaled = self.frames.scale(place.scale);
-        let length = scaled.joint(&mut joint, place.in_body());
+        let scaled = self.frames.scale(context.scale);
+        let length = scaled.joint(&mut joint, context.in_body());
         let length = length.map_err(|reason| element.error(reason))?;
-        (self.frames).add_joint(&joint, place.body, place.scale, length);
-        self.bodies[place.body].joints.push(joint);
+        (self.frames).add_joint(&joint, context.body, context.scale, length);
+        self.bodies[context.body].joints.push(joint);
         Ok(())
     }
 
-    fn read_geom(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let mut geom = self.classes(element)[self.class(element, place)?]
+    fn read_geom(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
+        let mut geom = self.classes(element)[self.class(element, context)?]
             .geom
             .clone();
         geom.read(element)?;
         let bytes = size_of::<GeomSpec>() + geom.text_length();
         self.consume(element, bytes, &[])?;
-        let (mut geom, deformation) =
-            geom.finish(element, self.compiler(element), self.palette, &place.frame)?;
-        let scaled = self.frames.scale(place.scale).geom(&mut geom, deformation);
+        let (mut geom, deformation) = geom.finish(
+            element,
+            self.compiler(element),
+            self.palette,
+            &context.frame,
+        )?;
+        let scaled = self
+            .frames
+            .scale(context.scale)
+            .geom(&mut geom, deformation);
         scaled.map_err(|reason| element.error(reason))?;
         self.frames.instance(&mut geom.mesh, deformation.linear_map);
         self.frames
             .instance(&mut geom.hfield, deformation.linear_map);
-        self.frames.add(Named::Geom, &geom.name, place.scale);
-        let number = self.bodies[place.body].geoms.len();
-        (self.frames).add_mesh(&geom, place.body, number, place.scale);
-        self.bodies[place.body].geoms.push(geom);
+        self.frames.add(Named::Geom, &geom.name, context.scale);
+        let number = self.bodies[context.body].geoms.len();
+        (self.frames).add_mesh(&geom, context.body, number, context.scale);
+        self.bodies[context.body].geoms.push(geom);
         Ok(())
     }
 
-    fn read_site(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let mut site = self.classes(element)[self.class(element, place)?]
+    fn read_site(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
+        let mut site = self.classes(element)[self.class(element, context)?]
             .site
             .clone();
         site.read(element)?;
-        let (mut site, deformation) = site.finish(element, self.compiler(element), &place.frame)?;
-        self.frames.scale(place.scale).site(&mut site, deformation);
+        let (mut site, deformation) =
+            site.finish(element, self.compiler(element), &context.frame)?;
+        self.frames
+            .scale(context.scale)
+            .site(&mut site, deformation);
         self.frames.instance(&mut site.mesh, deformation.linear_map);
-        self.frames.add(Named::Site, &site.name, place.scale);
+        self.frames.add(Named::Site, &site.name, context.scale);
         self.consume(element, size_of::<SiteSpec>(), &[&site.name])?;
-        self.bodies[place.body].sites.push(site);
+        self.bodies[context.body].sites.push(site);
         Ok(())
     }
 
-    fn read_light(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let mut light = self.classes(element)[self.class(element, place)?]
+    fn read_light(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
+        let mut light = self.classes(element)[self.class(element, context)?]
             .light
             .clone();
         light.read(element)?;
-        let mut light = light.finish(element, &place.frame);
-        self.frames.scale(place.scale).light(&mut light);
+        let mut light = light.finish(element, &context.frame);
+        self.frames.scale(context.scale).light(&mut light);
         self.consume(element, size_of::<LightSpec>(), &[&light.name])?;
-        self.bodies[place.body].lights.push(light);
+        self.bodies[context.body].lights.push(light);
         Ok(())
     }
 
-    fn read_camera(&mut self, element: &Element, place: &Place) -> Result<(), LoadError> {
-        let mut camera = self.classes(element)[self.class(element, place)?]
+    fn read_camera(&mut self, element: &Element, context: &Context) -> Result<(), LoadError> {
+        let mut camera = self.classes(element)[self.class(element, context)?]
             .camera
             .clone();
         camera.read(element)?;
-        let mut camera = camera.finish(element, self.compiler(element), &place.frame)?;
-        self.frames.scale(place.scale).camera(&mut camera);
-        self.frames.add(Named::Camera, &camera.name, place.scale);
+        let mut camera = camera.finish(element, self.compiler(element), &context.frame)?;
+        self.frames.scale(context.scale).camera(&mut camera);
+        self.frames.add(Named::Camera, &camera.name, context.scale);
         self.consume(element, size_of::<CameraSpec>(), &[&camera.name])?;
-        self.bodies[place.body].cameras.push(camera);
+        self.bodies[context.body].cameras.push(camera);
         Ok(())
     }
 }

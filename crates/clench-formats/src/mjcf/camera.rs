@@ -128,7 +128,7 @@ impl CameraDraft {
                 principal,
             });
         }
-        if self.focal.is_given() || self.principal.is_given() {
+        if self.focal.is_set() || self.principal.is_set() {
             let message = "a focal length or a principal point needs a sensorsize";
             return Err(element.incomplete(message));
         }
@@ -173,7 +173,7 @@ pub(super) fn tracking(mode: Mode, element: &Element) -> CameraTracking {
 }
 
 impl Lengths {
-    fn is_given(&self) -> bool {
+    fn is_set(&self) -> bool {
         (self.metres, self.pixels) != ([0.0; 2], [0.0; 2])
     }
 }

@@ -68,9 +68,9 @@ fn read_option(
         return Ok(false);
     };
     let default = option.default(false);
-    let Some(&(_, value)) = default.words().iter().find(|(word, _)| *word == text) else {
-        let what = default.what();
-        return Err(element.error(format!("{name} is \"{text}\", but must be {what}")));
+    let Some(&(_, value)) = default.keywords().iter().find(|(word, _)| *word == text) else {
+        let description = default.description();
+        return Err(element.error(format!("{name} is \"{text}\", but must be {description}")));
     };
     (options.set(option, value)).map_err(|wrong| element.error(wrong.to_string()))?;
     Ok(true)

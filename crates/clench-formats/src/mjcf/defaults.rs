@@ -227,8 +227,8 @@ impl Classes {
             return Ok(otherwise);
         };
         self.find(name).ok_or_else(|| {
-            let known = self.list.iter().map(|class| class.name.as_str());
-            let hint = super::schema::suggestion(name, known);
+            let names = self.list.iter().map(|class| class.name.as_str());
+            let hint = super::schema::suggestion(name, names);
             element.error(format!("there is no default class \"{name}\"{hint}"))
         })
     }

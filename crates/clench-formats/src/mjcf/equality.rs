@@ -306,8 +306,8 @@ fn write_bodies<'a>(model: &Model, pair: [usize; 2], tag: Tag<'a>) -> Result<Tag
 }
 
 /// Writes the pose in the first body of the anchor, which is a point of the second.
-fn write_relpose<'a>(held: Vec3<f64>, rotation: Quat<f64>, tag: Tag<'a>) -> Tag<'a> {
-    let [x, y, z] = held.to_array();
+fn write_relpose<'a>(position: Vec3<f64>, rotation: Quat<f64>, tag: Tag<'a>) -> Tag<'a> {
+    let [x, y, z] = position.to_array();
     let [w, a, b, c] = rotation.to_array();
     tag.numbers("relpose", &[x, y, z, w, a, b, c])
 }

@@ -31,7 +31,7 @@ pub(crate) fn read_kind(element: &Element, kind: &mut Option<ShapeKind>) -> Resu
 ///
 /// # Errors
 /// Returns an error for a signed distance field.
-pub(crate) fn known_kind(
+pub(crate) fn require_supported(
     kind: Option<ShapeKind>,
     element: &Element,
 ) -> Result<ShapeKind, LoadError> {
@@ -120,14 +120,14 @@ impl GeomDraft {
         palette: &Palette,
         frame: &Pose,
     ) -> Result<(GeomSpec, Deformation), LoadError> {
-        self.spec.kind = known_kind(self.kind, element)?;
+        self.spec.kind = require_supported(self.kind, element)?;
         let (pose, deformation) = match self.fromto {
             Some(_) if !self.spec.mesh.is_empty() => {
                 return Err(element.error("fromto and mesh cannot both be given"));
             }
             Some(points) => {
                 let size = &mut self.size;
-                place_segment(points, self.pos, self.spec.kind, size, element, frame)?
+                segment_pose(points, self.pos, self.spec.kind, size, element, frame)?
             }
             None => frame.carry(Pose {
                 pos: Vec3::from_array(self.pos),
@@ -156,7 +156,7 @@ impl GeomDraft {
 
 /// Returns the pose, in the body, of a shape between two points of a frame, whose distance becomes its size along z. If
 /// the frame's scales differ between axes, the points are mapped.
-pub(crate) fn place_segment(
+pub(crate) fn segment_pose(
     points: [f64; 6],
     pos: [f64; 3],
     kind: ShapeKind,

@@ -59,8 +59,8 @@ fn written(element: &Element, spending: &mut Spending) -> Result<Elevation, Load
     }
     let taken = spending.bytes(HEIGHT.saturating_mul(count as u64));
     taken.map_err(|excess| element.error(excess))?;
-    let given = element.list_of_singles("elevation", usize::MAX)?;
-    let heights = match given.filter(|heights| !heights.is_empty()) {
+    let elevation = element.list_of_singles("elevation", usize::MAX)?;
+    let heights = match elevation.filter(|heights| !heights.is_empty()) {
         Some(heights) if heights.len() == count => (heights.chunks_exact(columns).rev())
             .flatten()
             .map(|&height| f64::from(height))

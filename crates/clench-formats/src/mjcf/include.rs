@@ -46,7 +46,7 @@ impl Includes {
         // The open lists of children, outermost first.
         let mut open = vec![Siblings::of(root, directory.into(), 1)];
         while let Some(siblings) = open.last_mut() {
-            let Some(mut child) = siblings.left.next() else {
+            let Some(mut child) = siblings.remaining.next() else {
                 let done = std::mem::take(&mut siblings.done);
                 let owner = siblings.owner.take();
                 open.pop();
@@ -113,7 +113,7 @@ impl Includes {
 struct Siblings {
     /// The element; `None` for the root of a file, of which only the children are used.
     owner: Option<Element>,
-    left: std::vec::IntoIter<Element>,
+    remaining: std::vec::IntoIter<Element>,
     done: Vec<Element>,
     /// The directory of the file that they were read from.
     directory: Rc<Path>,
@@ -126,7 +126,7 @@ impl Siblings {
     fn of(element: &mut Element, directory: Rc<Path>, depth: usize) -> Self {
         Siblings {
             owner: None,
-            left: std::mem::take(&mut element.children).into_iter(),
+            remaining: std::mem::take(&mut element.children).into_iter(),
             done: Vec::new(),
             directory,
             depth,

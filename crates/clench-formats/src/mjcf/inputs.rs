@@ -79,16 +79,16 @@ pub(crate) fn read_inputs(element: &Element, inputs: &mut Option<Inputs>) -> Res
     };
     let mut found = Inputs(0);
     for word in text.split_ascii_whitespace().filter(|_| text != "none") {
-        let place = INPUTS.iter().position(|(name, _)| *name == word);
-        let Some(place) = place else {
+        let index = INPUTS.iter().position(|(name, _)| *name == word);
+        let Some(index) = index else {
             return Err(element.error(format!("input has \"{word}\", not one of {}", names())));
         };
-        if found.0 >> place != 0 {
+        if found.0 >> index != 0 {
             return Err(element.error(format!("input must name {} in this order", names())));
         }
-        found.0 |= 1 << place;
+        found.0 |= 1 << index;
     }
-    let given = !text.trim().is_empty();
-    *inputs = given.then_some(found);
+    let is_present = !text.trim().is_empty();
+    *inputs = is_present.then_some(found);
     Ok(())
 }

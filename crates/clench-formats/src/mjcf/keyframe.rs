@@ -28,13 +28,13 @@ const MAX_KEYFRAMES: usize = 10_000;
 /// Adds keyframes in the initial state up to the number that a `<size>` requests.
 pub(crate) fn pad(size: &Element, keyframes: &mut Vec<KeyframeSpec>) -> Result<(), LoadError> {
     // MuJoCo writes -1 for "as many as there are".
-    let wanted = size.integer("nkey")?.unwrap_or(-1).max(-1);
-    let wanted = usize::try_from(wanted).unwrap_or(0);
-    if wanted > MAX_KEYFRAMES {
+    let requested = size.integer("nkey")?.unwrap_or(-1).max(-1);
+    let requested = usize::try_from(requested).unwrap_or(0);
+    if requested > MAX_KEYFRAMES {
         return Err(size.error(format!("nkey is more than {MAX_KEYFRAMES}")));
     }
-    if keyframes.len() < wanted {
-        keyframes.resize_with(wanted, KeyframeSpec::default);
+    if keyframes.len() < requested {
+        keyframes.resize_with(requested, KeyframeSpec::default);
     }
     Ok(())
 }

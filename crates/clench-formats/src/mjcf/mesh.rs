@@ -98,7 +98,7 @@ impl MeshDraft {
     }
 }
 
-/// Makes the mesh that `builtin` names.
+/// Generates the mesh that `builtin` names.
 fn make(element: &Element, builtin: &str, spending: &mut Spending) -> Result<Triangles, LoadError> {
     for other in ["file", "vertex"] {
         if element.text(other).is_some() {
@@ -212,7 +212,7 @@ fn read_vertices(element: &Element) -> Result<Vec<Vec3<f64>>, LoadError> {
     let numbers = (element.list_of_singles("vertex", usize::MAX)?).unwrap_or_default();
     let (points, rest) = numbers.as_chunks::<3>();
     if !rest.is_empty() {
-        return Err(element.error("vertex needs three numbers a vertex"));
+        return Err(element.error("vertex needs three numbers per vertex"));
     }
     Ok(points.iter().copied().map(point).collect())
 }
@@ -226,7 +226,7 @@ fn read_texcoords(element: &Element) -> Result<Vec<[f32; 2]>, LoadError> {
     let (places, rest) = numbers.as_chunks::<2>();
     match rest.is_empty() {
         true => Ok(places.to_vec()),
-        false => Err(element.error("texcoord needs two numbers a vertex")),
+        false => Err(element.error("texcoord needs two numbers per vertex")),
     }
 }
 
@@ -238,7 +238,7 @@ fn read_faces(element: &Element) -> Result<Vec<[u32; 3]>, LoadError> {
         .collect::<Result<_, _>>()?;
     let (faces, rest) = numbers.as_chunks::<3>();
     if !rest.is_empty() {
-        return Err(element.error("face needs three numbers a face"));
+        return Err(element.error("face needs three numbers per face"));
     }
     Ok(faces.to_vec())
 }

@@ -120,7 +120,7 @@ fn attribute(element: &Element, option: RigidOption) -> Result<Option<OptionValu
         (Mjcf::Attribute(name), OptionValue::Number(_)) => {
             Ok(element.numbers(name)?.map(|[x]| OptionValue::Number(x)))
         }
-        (Mjcf::Attribute(name), default) => element.keyword(name, default.words()),
+        (Mjcf::Attribute(name), default) => element.keyword(name, default.keywords()),
         (Mjcf::Words(name, words), _) => element.keyword(name, words),
         (Mjcf::Flag(..) | Mjcf::Text(_) | Mjcf::Nowhere, _) => Ok(None),
     }

@@ -132,14 +132,14 @@ fn check_child(
         _ => &[],
     };
     let sensors = || sensors.iter().map(|kind| kind.name());
-    let known = || {
+    let allowed_names = || {
         words(rule.children)
             .chain(words(rule.once))
             .chain(sensors())
     };
-    let allowed = known().any(|name| name == tag);
+    let allowed = allowed_names().any(|name| name == tag);
     find(&element.tag, tag).filter(|_| allowed).ok_or_else(|| {
-        let hint = suggestion(tag, known().chain(words(rule.later_children)));
+        let hint = suggestion(tag, allowed_names().chain(words(rule.later_children)));
         child.error(format!(
             "unknown element <{tag}> in <{}>{hint}",
             element.tag
@@ -173,8 +173,8 @@ fn check_attribute(
     }
     let later =
         words(rule.later).map(|later| later.split_once('=').map_or(later, |(name, _)| name));
-    let known = words(rule.read).chain(words(rule.ignored)).chain(later);
-    let hint = suggestion(name, known);
+    let supported = words(rule.read).chain(words(rule.ignored)).chain(later);
+    let hint = suggestion(name, supported);
     Err(element.error(format!("unknown attribute \"{name}\"{hint}")))
 }
 

@@ -171,13 +171,13 @@ fn read_rays(element: &Element) -> Result<SensorSubject, LoadError> {
         (None, Some(camera)) => (FrameKind::Camera, camera),
         (None, None) => return Err(element.incomplete("either site or camera must be given")),
     };
-    let known = RayField::ALL.iter().map(|&field| (field.name(), field));
+    let allowed = RayField::ALL.iter().map(|&field| (field.name(), field));
     Ok(SensorSubject::Rays {
         source: FrameName {
             kind,
             name: name.to_owned(),
         },
-        fields: read_fields(element, &known.collect::<Vec<_>>())?,
+        fields: read_fields(element, &allowed.collect::<Vec<_>>())?,
     })
 }
 
@@ -203,14 +203,14 @@ fn read_contacts(element: &Element) -> Result<SensorSubject, LoadError> {
     if count == 0 {
         return Err(element.error("num must be positive"));
     }
-    let known = ContactField::ALL.iter().map(|&field| (field.name(), field));
+    let allowed = ContactField::ALL.iter().map(|&field| (field.name(), field));
     Ok(SensorSubject::Contacts(ContactQuerySpec {
         sides: [
             side("geom1", "body1", "subtree1"),
             side("geom2", "body2", "subtree2"),
         ],
         site: element.string("site"),
-        fields: read_fields(element, &known.collect::<Vec<_>>())?,
+        fields: read_fields(element, &allowed.collect::<Vec<_>>())?,
         reduction: element
             .keyword("reduce", &reductions)?
             .unwrap_or(ContactReduction::None),
@@ -218,10 +218,10 @@ fn read_contacts(element: &Element) -> Result<SensorSubject, LoadError> {
     }))
 }
 
-/// Reads the words of `data`, which must be in the order of `known`.
+/// Reads the words of `data`, which must be in the order of `allowed`.
 fn read_fields<F: Copy + PartialOrd>(
     element: &Element,
-    known: &[(&str, F)],
+    allowed: &[(&str, F)],
 ) -> Result<Vec<F>, LoadError> {
     let mut fields: Vec<F> = Vec::new();
     for word in element
@@ -229,9 +229,9 @@ fn read_fields<F: Copy + PartialOrd>(
         .unwrap_or_default()
         .split_ascii_whitespace()
     {
-        let names = || known.iter().map(|(name, _)| *name);
+        let names = || allowed.iter().map(|(name, _)| *name);
         let list = || names().collect::<Vec<_>>().join(", ");
-        let Some(&(_, field)) = known.iter().find(|(name, _)| *name == word) else {
+        let Some(&(_, field)) = allowed.iter().find(|(name, _)| *name == word) else {
             let message = format!("data has \"{word}\", not one of {}", list());
             return Err(element.error(message));
         };

@@ -2,7 +2,7 @@
 
 use super::appearance::read_appearance;
 use super::compiler::CompilerOptions;
-use super::geom::{known_kind, place_segment, read_kind};
+use super::geom::{read_kind, require_supported, segment_pose};
 use super::linear_map::Deformation;
 use super::orientation::{Orientation, Pose};
 use crate::document::Element;
@@ -72,9 +72,9 @@ impl SiteDraft {
         compiler: &CompilerOptions,
         frame: &Pose,
     ) -> Result<(SiteSpec, Deformation), LoadError> {
-        let kind = known_kind(self.kind, element)?;
+        let kind = require_supported(self.kind, element)?;
         let (pose, deformation) = match self.fromto {
-            Some(points) => place_segment(points, self.pos, kind, &mut self.size, element, frame)?,
+            Some(points) => segment_pose(points, self.pos, kind, &mut self.size, element, frame)?,
             None => frame.carry(Pose {
                 pos: Vec3::from_array(self.pos),
                 quat: self.orientation.resolve(compiler, element)?,

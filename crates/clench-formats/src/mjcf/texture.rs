@@ -204,7 +204,7 @@ fn unfolded(
     for (square, letter) in layout.chars().take(squares).enumerate() {
         let side = LETTERS.iter().position(|&known| known == letter);
         match side {
-            Some(side) => sides[side] = Some(cut(&picture, width, square, columns)),
+            Some(side) => sides[side] = Some(crop(&picture, width, square, columns)),
             None if letter == '.' => {}
             None => return Err(element.error("gridlayout has letters other than .RLUDFB")),
         }
@@ -213,7 +213,7 @@ fn unfolded(
 }
 
 /// Returns a square of an image with `columns` squares in a row.
-fn cut(picture: &Pixels, width: usize, square: usize, columns: usize) -> Vec<u8> {
+fn crop(picture: &Pixels, width: usize, square: usize, columns: usize) -> Vec<u8> {
     let (row, column) = (square / columns, square % columns);
     let lines = picture.rgb.chunks_exact(3 * picture.width);
     lines

@@ -23,8 +23,8 @@ pub(super) fn read(element: &Element) -> Result<TransmissionSpec, LoadError> {
         return Err(element.error("refsite needs site"));
     }
     if element.text("cranksite").is_none() {
-        let given = |attribute: &&str| element.text(attribute).is_some();
-        if let Some(attribute) = ["slidersite", "cranklength"].iter().find(|a| given(a)) {
+        let has = |attribute: &&str| element.text(attribute).is_some();
+        if let Some(attribute) = ["slidersite", "cranklength"].iter().find(|a| has(a)) {
             return Err(element.error(format!("{attribute} needs cranksite")));
         }
     }

@@ -37,13 +37,13 @@ pub(super) fn float(root: &Element, builder: &mut ModelBuilder) -> Result<(), Lo
         }
         None => {}
     }
-    let taken = |name: &str| {
+    let is_used = |name: &str| {
         let mut joints = builder.bodies.iter().flat_map(|body| &body.joints);
         joints.any(|joint| joint.name == name)
     };
     let mut name = NAME.to_owned();
     for number in 1.. {
-        if !taken(&name) {
+        if !is_used(&name) {
             break;
         }
         name = format!("{NAME}_{number}");

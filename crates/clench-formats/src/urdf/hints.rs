@@ -4,7 +4,7 @@ use crate::document::Element;
 use crate::mjcf::schema::suggestion;
 
 /// The supported attributes and children of each element.
-const KNOWN: [(&str, &[&str], &[&str]); 21] = [
+const SUPPORTED: [(&str, &[&str], &[&str]); 21] = [
     ("robot", &["name"], &["link", "joint", "material", "mujoco"]),
     ("link", &["name"], &["inertial", "collision", "visual"]),
     ("inertial", &[], &["origin", "mass", "inertia"]),
@@ -48,15 +48,17 @@ pub(super) fn collect(root: &Element, notes: &mut Vec<String>) {
     let mut compared = 0;
     let mut pending = vec![("robot", root)];
     while let Some((tag, element)) = pending.pop() {
-        let Some((_, attributes, children)) = KNOWN.iter().find(|(known, ..)| *known == tag) else {
+        let Some((_, attributes, children)) =
+            SUPPORTED.iter().find(|(supported, ..)| *supported == tag)
+        else {
             continue;
         };
-        let mut check = |what: String, name: &str, known: &[&str], line: u32| {
-            if known.contains(&name) || compared >= MAX_COMPARED {
+        let mut check = |what: String, name: &str, names: &[&str], line: u32| {
+            if names.contains(&name) || compared >= MAX_COMPARED {
                 return;
             }
             compared += 1;
-            let hint = suggestion(name, known.iter().copied());
+            let hint = suggestion(name, names.iter().copied());
             if !hint.is_empty() && notes.len() < MAX_NOTES {
                 let of = element.label();
                 notes.push(format!("line {line}: {what} of {of} is ignored{hint}"));

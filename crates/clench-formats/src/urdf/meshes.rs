@@ -22,7 +22,7 @@ pub(super) struct Meshes<'a> {
     strippath: bool,
     pub found: Vec<MeshSpec>,
     /// The names of the meshes in `found`, by file and scale.
-    known: HashMap<(PathBuf, [u64; 3]), String>,
+    names_by_file: HashMap<(PathBuf, [u64; 3]), String>,
     names: HashSet<String>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Meshes<'a> {
             meshdir: directory.join(slashes(&compiler.meshdir)),
             strippath: compiler.strippath,
             found: Vec::new(),
-            known: HashMap::new(),
+            names_by_file: HashMap::new(),
             names: HashSet::new(),
         }
     }
@@ -57,7 +57,7 @@ impl<'a> Meshes<'a> {
         let scale: [f64; 3] = element.numbers("scale")?.unwrap_or([1.0; 3]);
         let path = self.find(&written).map_err(|why| element.error(why))?;
         let key = (path.clone(), scale.map(f64::to_bits));
-        if let Some(name) = self.known.get(&key) {
+        if let Some(name) = self.names_by_file.get(&key) {
             return Ok(name.clone());
         }
         let mut file = Content::open(path, element, spending)?;
@@ -78,7 +78,7 @@ impl<'a> Meshes<'a> {
             .bytes(mesh::cost(&triangles))
             .map_err(|excess| element.error(excess))?;
         let name = self.name(&file.stem);
-        self.known.insert(key, name.clone());
+        self.names_by_file.insert(key, name.clone());
         self.found.push(MeshSpec {
             name: name.clone(),
             vertices: triangles.vertices,
@@ -125,13 +125,13 @@ impl<'a> Meshes<'a> {
         // Some files write three slashes.
         let inside = inside.trim_start_matches('/');
         let (name, rest) = inside.split_once('/').unwrap_or(("", inside));
-        let around = self.directory.canonicalize().unwrap_or_default();
-        let around = match self.directory.as_os_str().is_empty() {
+        let start = self.directory.canonicalize().unwrap_or_default();
+        let start = match self.directory.as_os_str().is_empty() {
             true => std::env::current_dir().unwrap_or_default(),
-            false => around,
+            false => start,
         };
         let folders = self.packages.iter().map(PathBuf::as_path);
-        let places = folders.chain(around.ancestors()).flat_map(|folder| {
+        let places = folders.chain(start.ancestors()).flat_map(|folder| {
             let itself = folder.file_name().is_some_and(|last| last == name);
             let itself = itself.then(|| folder.join(rest));
             [Some(folder.join(inside)), itself].into_iter().flatten()

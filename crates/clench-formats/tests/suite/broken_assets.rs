@@ -219,10 +219,10 @@ fn invalid_meshes_are_refused() {
     let flat = "vertex='0 0 0 1 0 0 0 1 0 1 1 0'";
     for (attributes, complaint) in [
         ("", "four vertices"),
-        ("vertex='0 0 0 1 0 0 0 1'", "three numbers a vertex"),
+        ("vertex='0 0 0 1 0 0 0 1'", "three numbers per vertex"),
         (
             "vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1'",
-            "three numbers a face",
+            "three numbers per face",
         ),
         ("vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 -2'", "negative"),
         ("vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 4'", "vertex 4"),

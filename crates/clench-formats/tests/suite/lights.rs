@@ -3,7 +3,7 @@
 use clench_formats::load_str;
 use clench_rigid::Sim;
 use clench_rigid::model::{Headlight, LightKind};
-use clench_rigid::readout::light_places;
+use clench_rigid::readout::light_poses;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
@@ -100,9 +100,9 @@ fn lights_have_mujocos_poses() {
         ],
         [[-0.35, -0.7, 2.852627944163], [0.0, 1.0, 0.0]],
     ];
-    let places = light_places(&sim.model().visuals.lights, sim.workspace());
-    assert_eq!(places.len(), expected.len());
-    for (k, (place, expected)) in places.iter().zip(expected).enumerate() {
+    let poses = light_poses(&sim.model().visuals.lights, sim.workspace());
+    assert_eq!(poses.len(), expected.len());
+    for (k, (place, expected)) in poses.iter().zip(expected).enumerate() {
         let both = place.as_flattened().iter().zip(expected.as_flattened());
         assert!(
             both.into_iter().all(|(a, b)| (a - b).abs() < 1e-9),

@@ -36,8 +36,8 @@ fn limit_tendon_forces() {
         let low = parameter(TENDON_FORCE_RANGE + 2u * t);
         let high = parameter(TENDON_FORCE_RANGE + 2u * t + 1u);
         if (total != 0.0 && (total < low || total > high)) {
-            let place = ACTUATOR_FORCE + output_of(u);
-            put(place, fetch(place) * (clamp(total, low, high) / total));
+            let offset = ACTUATOR_FORCE + output_of(u);
+            put(offset, fetch(offset) * (clamp(total, low, high) / total));
         }
     }
 }
@@ -48,9 +48,9 @@ fn limit_force(u: u32) {
         limit_torque(u);
         return;
     }
-    let place = ACTUATOR_FORCE + output_of(u);
+    let offset = ACTUATOR_FORCE + output_of(u);
     let range = FORCE_RANGE + 2u * u;
-    put(place, clamp(fetch(place), parameter(range), parameter(range + 1u)));
+    put(offset, clamp(fetch(offset), parameter(range), parameter(range + 1u)));
 }
 
 // Sums the forces of all outputs with a moment arm on a dof.

@@ -39,7 +39,7 @@ fn tendon_is_saturated(t: u32) -> bool {
 
 // Returns true if a limit of the actuator or its tendon is active. Cogging and friction of a motor are added after its
 // limit, which applies only to its current.
-fn is_held(u: u32) -> bool {
+fn is_at_limit(u: u32) -> bool {
     var limited = fetch(ACTUATOR_FORCE + output_of(u));
     if (ANY_CONTROLLER && words[BIAS_LAW + u] == LAW_DC_MOTOR) {
         limited = unlimited_force(u);
@@ -63,16 +63,16 @@ fn velocity_slope(u: u32) -> f32 {
     if (words[ACTUATOR_OFF + u] == 1u || joint_holds(u)) {
         return 0.0;
     }
-    let held = is_held(u);
+    let at_limit = is_at_limit(u);
     if (ANY_CONTROLLER && words[GAIN_LAW + u] == LAW_DC_MOTOR) {
         // As in MuJoCo, friction counts with a motor's gain although it is part of its bias. No limit applies to it.
         let friction = mechanical_slope(u);
-        if (held) {
+        if (at_limit) {
             return select(0.0, friction, words[BIAS_LAW + u] == LAW_DC_MOTOR);
         }
         return unlimited_slope(u) + friction;
     }
-    if (held) {
+    if (at_limit) {
         return 0.0;
     }
     return unlimited_slope(u);

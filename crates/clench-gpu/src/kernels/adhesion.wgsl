@@ -10,21 +10,21 @@ fn contact_arms(u: u32, body: u32) {
     }
     var count: f32 = 0.0;
     for (var c = 0u; c < reports[NCON * envs + env]; c++) {
-        let place = CONTACTS + CONTACT_SIZE * c;
-        let pair = u32(fetch(place));
+        let offset = CONTACTS + CONTACT_SIZE * c;
+        let pair = u32(fetch(offset));
         let a = words[PAIR_BODY + 2u * pair];
         let b = words[PAIR_BODY + 2u * pair + 1u];
         if (a != body && b != body) {
             continue;
         }
         let margin = parameter(PAIR_PRM + PAIR_SIZE * pair + PAIR_MARGIN);
-        let acts = fetch(place + 1u) < margin || contact_adhesion(c) != 0.0;
-        if (move_alike(a, b) && acts) {
+        let acts = fetch(offset + 1u) < margin || contact_adhesion(c) != 0.0;
+        if (move_together(a, b) && acts) {
             continue;
         }
         count += 1.0;
-        let position = fetch3(place + 2u);
-        let normal = fetch3(place + 5u);
+        let position = fetch3(offset + 2u);
+        let normal = fetch3(offset + 5u);
         for (var i = 0u; i < bound(NV); i++) {
             let second = moves(b, i);
             if (moves(a, i) != second) {

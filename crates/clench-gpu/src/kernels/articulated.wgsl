@@ -12,15 +12,15 @@ struct ArticulatedInertia {
 }
 
 fn fetch_articulated(b: u32) -> ArticulatedInertia {
-    let place = ARTICULATED + 27u * b;
-    return ArticulatedInertia(fetch_matrix(place), fetch_matrix(place + 9u), fetch_matrix(place + 18u));
+    let offset = ARTICULATED + 27u * b;
+    return ArticulatedInertia(fetch_matrix(offset), fetch_matrix(offset + 9u), fetch_matrix(offset + 18u));
 }
 
 fn put_articulated(b: u32, inertia: ArticulatedInertia) {
-    let place = ARTICULATED + 27u * b;
-    put_matrix(place, inertia.rotational);
-    put_matrix(place + 9u, inertia.coupling);
-    put_matrix(place + 18u, inertia.mass);
+    let offset = ARTICULATED + 27u * b;
+    put_matrix(offset, inertia.rotational);
+    put_matrix(offset + 9u, inertia.coupling);
+    put_matrix(offset + 18u, inertia.mass);
 }
 
 // Returns the inertia of a single body.

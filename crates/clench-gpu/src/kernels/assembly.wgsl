@@ -61,8 +61,8 @@ fn coupling_entry(equality: u32, a: u32, i: u32) -> f32 {
 // Returns an entry of row `k` of a contact: along, then about the normal and the tangents; second body relative to
 // first.
 fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
-    let place = CONTACTS + CONTACT_SIZE * contact;
-    let pair = u32(fetch(place));
+    let offset = CONTACTS + CONTACT_SIZE * contact;
+    let pair = u32(fetch(offset));
     let first = words[PAIR_BODY + 2u * pair];
     let second = words[PAIR_BODY + 2u * pair + 1u];
     let by_first = moves(first, i);
@@ -70,9 +70,9 @@ fn contact_entry(contact: u32, k: u32, i: u32) -> f32 {
     if (by_first == by_second) {
         return 0.0;
     }
-    let axis = fetch3(place + 5u + 3u * (k % 3u));
+    let axis = fetch3(offset + 5u + 3u * (k % 3u));
     let motion = axis_of(i);
-    let linear = motion.linear + cross(motion.angular, offset_of(select(first, second, by_second), fetch3(place + 2u)));
+    let linear = motion.linear + cross(motion.angular, offset_of(select(first, second, by_second), fetch3(offset + 2u)));
     let along = dot(axis, select(motion.angular, linear, k < 3u));
     return select(-along, along, by_second);
 }

@@ -8,8 +8,8 @@ fn may_touch(pair: u32) -> bool {
     let reach = parameter(PAIR_REACH + pair);
     let offset = fetch3(GEOM_XPOS + 3u * b) - fetch3(GEOM_XPOS + 3u * a);
     if (words[GEOM_KIND + a] == PLANE) {
-        let place = GEOM_XMAT + 9u * a;
-        let normal = vec3f(fetch(place + 2u), fetch(place + 5u), fetch(place + 8u));
+        let start = GEOM_XMAT + 9u * a;
+        let normal = vec3f(fetch(start + 2u), fetch(start + 5u), fetch(start + 8u));
         return dot(normal, offset) <= reach;
     }
     return dot(offset, offset) <= reach * max(reach, 0.0);

@@ -18,11 +18,11 @@ fn follow(c: u32, point: vec3f, offset: u32) {
 
 // Fixes a camera to its body, and optionally turns it towards a point.
 fn fix(c: u32, mode: u32, body: u32, looked_at: u32) {
-    let place = fetch3(XPOS + 3u * body) + fetch_matrix(XMAT + 9u * body) * parameter3(CAM_POS + 3u * c);
-    put3(CAM_XPOS + 3u * c, place);
+    let position = fetch3(XPOS + 3u * body) + fetch_matrix(XMAT + 9u * body) * parameter3(CAM_POS + 3u * c);
+    put3(CAM_XPOS + 3u * c, position);
     var axes = quat_matrix(quat_product(fetch4(XQUAT + 4u * body), parameter4(CAM_QUAT + 4u * c)));
     if (mode != FIXED) {
-        axes = looking(place, fetch3(select(SUBTREE_COM, XPOS, mode == TARGET_BODY) + 3u * looked_at));
+        axes = looking(position, fetch3(select(SUBTREE_COM, XPOS, mode == TARGET_BODY) + 3u * looked_at));
     }
     put_matrix(CAM_XMAT + 9u * c, axes);
 }

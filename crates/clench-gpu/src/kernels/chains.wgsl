@@ -6,7 +6,7 @@ fn moves(body: u32, dof: u32) -> bool {
 }
 
 // Returns true if each dof moves both bodies or neither.
-fn move_alike(a: u32, b: u32) -> bool {
+fn move_together(a: u32, b: u32) -> bool {
     var alike = true;
     for (var i = 0u; i < MASK_WORDS; i++) {
         alike = alike && words[DOF_MASK + MASK_WORDS * a + i] == words[DOF_MASK + MASK_WORDS * b + i];

@@ -103,8 +103,8 @@ fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
         return steady;
     }
     let limit = controller(u, CONTROLLER_DYNAMICS + 1u);
-    let is_held = limit > 0.0 && abs(fetch(ACT_DOT + a)) >= limit;
-    if (words[ACTUATOR_EARLY + u] == 0u || is_held) {
+    let is_at_limit = limit > 0.0 && abs(fetch(ACT_DOT + a)) >= limit;
+    if (words[ACTUATOR_EARLY + u] == 0u || is_at_limit) {
         return 0.0;
     }
     return -steady * exp_less_one(-TIMESTEP / max(controller(u, CONTROLLER_DYNAMICS), TINY));

@@ -48,26 +48,26 @@ fn body_inertia(b: u32) {
 fn dof_axes(j: u32) {
     let body = words[JNT_BODY + j];
     let kind = words[JNT_KIND + j];
-    var place = CDOF + 6u * words[JNT_DOF + j];
+    var start = CDOF + 6u * words[JNT_DOF + j];
     let offset = fetch3(SUBTREE_COM + 3u * words[BODY_ROOT + body]) - fetch3(XANCHOR + 3u * j);
     let axis = fetch3(XAXIS + 3u * j);
     if (kind == SLIDE) {
-        put_spatial(place, Spatial(vec3f(), axis));
+        put_spatial(start, Spatial(vec3f(), axis));
         return;
     }
     if (kind == HINGE) {
-        put_spatial(place, Spatial(axis, cross(axis, offset)));
+        put_spatial(start, Spatial(axis, cross(axis, offset)));
         return;
     }
     if (kind == FREE) {
-        put_spatial(place, Spatial(vec3f(), vec3f(1.0, 0.0, 0.0)));
-        put_spatial(place + 6u, Spatial(vec3f(), vec3f(0.0, 1.0, 0.0)));
-        put_spatial(place + 12u, Spatial(vec3f(), vec3f(0.0, 0.0, 1.0)));
-        place += 18u;
+        put_spatial(start, Spatial(vec3f(), vec3f(1.0, 0.0, 0.0)));
+        put_spatial(start + 6u, Spatial(vec3f(), vec3f(0.0, 1.0, 0.0)));
+        put_spatial(start + 12u, Spatial(vec3f(), vec3f(0.0, 0.0, 1.0)));
+        start += 18u;
     }
     let xmat = fetch_matrix(XMAT + 9u * body);
     for (var k = 0u; k < 3u; k++) {
-        put_spatial(place + 6u * k, Spatial(xmat[k], cross(xmat[k], offset)));
+        put_spatial(start + 6u * k, Spatial(xmat[k], cross(xmat[k], offset)));
     }
 }
 

@@ -13,13 +13,13 @@ var<private> block_impedance: f32;
 // Begins a block of a kind, with a cost; its Jacobian is computed from the source.
 fn begin_block(kind: u32, cost: u32, dim: u32, source: u32, impedance: f32) {
     block_impedance = impedance;
-    let place = BLOCKS + BLOCK_SIZE * nblock;
+    let offset = BLOCKS + BLOCK_SIZE * nblock;
     if (writes) {
-        put_row(place + BLOCK_KIND, f32(kind));
-        put_row(place + BLOCK_COST, f32(cost));
-        put_row(place + BLOCK_DIM, f32(dim));
-        put_row(place + BLOCK_ROW, f32(nrow));
-        put_row(place + BLOCK_SOURCE, f32(source));
+        put_row(offset + BLOCK_KIND, f32(kind));
+        put_row(offset + BLOCK_COST, f32(cost));
+        put_row(offset + BLOCK_DIM, f32(dim));
+        put_row(offset + BLOCK_ROW, f32(nrow));
+        put_row(offset + BLOCK_SOURCE, f32(source));
     }
     nblock++;
 }
@@ -83,9 +83,9 @@ fn push_limits(k: u32) {
 // Returns the velocity of the second geom's surface relative to the first's at the contact: along both tangents, and
 // about the normal.
 fn surface_velocity(contact: u32) -> vec3f {
-    let place = CONTACTS + CONTACT_SIZE * contact;
-    let pair = u32(fetch(place));
-    let point = fetch3(place + 2u);
+    let offset = CONTACTS + CONTACT_SIZE * contact;
+    let pair = u32(fetch(offset));
+    let point = fetch3(offset + 2u);
     var linear = vec3f();
     var angular = vec3f();
     for (var side = 0u; side < 2u; side++) {
@@ -97,7 +97,7 @@ fn surface_velocity(contact: u32) -> vec3f {
         linear += (along + cross(turning, point - fetch3(GEOM_XPOS + 3u * geom))) * sign;
         angular += turning * sign;
     }
-    return vec3f(dot(fetch3(place + 8u), linear), dot(fetch3(place + 11u), linear), dot(fetch3(place + 5u), angular));
+    return vec3f(dot(fetch3(offset + 8u), linear), dot(fetch3(offset + 11u), linear), dot(fetch3(offset + 5u), angular));
 }
 
 // Adds the friction rows of a contact, after the normal's.
@@ -131,14 +131,14 @@ fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull:
 
 // Adds a contact. One with adhesion has no friction within the gap.
 fn push_contact(contact: u32) {
-    let place = CONTACTS + CONTACT_SIZE * contact;
-    let pair = u32(fetch(place));
+    let offset = CONTACTS + CONTACT_SIZE * contact;
+    let pair = u32(fetch(offset));
     let prm = PAIR_PRM + PAIR_SIZE * pair;
-    let distance = fetch(place + 1u);
+    let distance = fetch(offset + 1u);
     let margin = parameter(prm + PAIR_MARGIN);
     let adhesion = contact_adhesion(contact);
     let touches = distance < margin;
-    if (!(touches || adhesion != 0.0) || move_alike(words[PAIR_BODY + 2u * pair], words[PAIR_BODY + 2u * pair + 1u])) {
+    if (!(touches || adhesion != 0.0) || move_together(words[PAIR_BODY + 2u * pair], words[PAIR_BODY + 2u * pair + 1u])) {
         return;
     }
     let a0 = parameter(prm + PAIR_INVWEIGHT);

@@ -32,13 +32,13 @@ fn add_contact(pair: u32, distance: f32, position: vec3f, normal: vec3f, tangent
         overflowed = true;
         return;
     }
-    let place = thread_field(FOUND_CONTACTS) + CONTACT_SIZE * found;
-    put(place, f32(pair));
-    put(place + 1u, distance);
-    put3(place + 2u, position);
-    put3(place + 5u, normal);
-    put3(place + 8u, tangent);
-    put3(place + 11u, cross(normal, tangent));
+    let offset = thread_field(FOUND_CONTACTS) + CONTACT_SIZE * found;
+    put(offset, f32(pair));
+    put(offset + 1u, distance);
+    put3(offset + 2u, position);
+    put3(offset + 5u, normal);
+    put3(offset + 8u, tangent);
+    put3(offset + 11u, cross(normal, tangent));
     found++;
 }
 

@@ -6,11 +6,11 @@
 fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
     let query = QUERIES + words[s + SENSOR_OBJECT];
     let sides = query + QUERY_SIZE + words[query + QUERY_NFIELD];
-    let place = CONTACTS + CONTACT_SIZE * c;
-    let pair = u32(fetch(place));
+    let offset = CONTACTS + CONTACT_SIZE * c;
+    let pair = u32(fetch(offset));
     let a = words[sides + words[PAIR_GEOM + 2u * pair]];
     let b = words[sides + words[PAIR_GEOM + 2u * pair + 1u]];
-    if (words[s + SENSOR_REFERENCE] != NONE && !is_inside(s, prm, fetch3(place + 2u))) {
+    if (words[s + SENSOR_REFERENCE] != NONE && !is_inside(s, prm, fetch3(offset + 2u))) {
         return 0.0;
     }
     if ((a & FIRST_SIDE) != 0u && (b & SECOND_SIDE) != 0u) {
@@ -32,16 +32,16 @@ fn contact_wrench(c: u32) -> Spatial {
 }
 
 fn contact_frame(c: u32) -> mat3x3f {
-    let place = CONTACTS + CONTACT_SIZE * c;
-    return mat3x3f(fetch3(place + 5u), fetch3(place + 8u), fetch3(place + 11u));
+    let offset = CONTACTS + CONTACT_SIZE * c;
+    return mat3x3f(fetch3(offset + 5u), fetch3(offset + 8u), fetch3(offset + 11u));
 }
 
 // Returns the motion of the second body relative to the first at the contact, in its frame.
 fn relative_motion(c: u32) -> Spatial {
-    let place = CONTACTS + CONTACT_SIZE * c;
-    let pair = u32(fetch(place));
-    let first = velocity_at(words[PAIR_BODY + 2u * pair], fetch3(place + 2u));
-    let second = velocity_at(words[PAIR_BODY + 2u * pair + 1u], fetch3(place + 2u));
+    let offset = CONTACTS + CONTACT_SIZE * c;
+    let pair = u32(fetch(offset));
+    let first = velocity_at(words[PAIR_BODY + 2u * pair], fetch3(offset + 2u));
+    let second = velocity_at(words[PAIR_BODY + 2u * pair + 1u], fetch3(offset + 2u));
     let axes = contact_frame(c);
     return Spatial((second.angular - first.angular) * axes, (second.linear - first.linear) * axes);
 }
@@ -73,17 +73,17 @@ struct ContactData {
 }
 
 fn contact_data(c: u32, sign: f32) -> ContactData {
-    let place = CONTACTS + CONTACT_SIZE * c;
+    let offset = CONTACTS + CONTACT_SIZE * c;
     let turned = vec3f(1.0, 1.0, sign);
     let wrench = contact_wrench(c);
     let motion = relative_motion(c);
     return ContactData(
         Spatial(wrench.angular * turned, wrench.linear * turned),
         Spatial(motion.angular * turned, motion.linear * turned),
-        fetch(place + 1u),
-        fetch3(place + 2u),
-        fetch3(place + 5u) * sign,
-        fetch3(place + 8u) * sign,
+        fetch(offset + 1u),
+        fetch3(offset + 2u),
+        fetch3(offset + 5u) * sign,
+        fetch3(offset + 8u) * sign,
     );
 }
 

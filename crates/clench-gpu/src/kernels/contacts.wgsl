@@ -2,16 +2,16 @@
 // distance is measured.
 
 // Copies all numbers of a contact at once: a GPU waits as long for one.
-fn copy_contact(start: u32, place: u32) {
+fn copy_contact(start: u32, offset: u32) {
     let first = fetch4(start);
     let second = fetch4(start + 4u);
     let third = fetch4(start + 8u);
     let last = vec2f(fetch(start + 12u), fetch(start + 13u));
-    put4(place, first);
-    put4(place + 4u, second);
-    put4(place + 8u, third);
-    put(place + 12u, last.x);
-    put(place + 13u, last.y);
+    put4(offset, first);
+    put4(offset + 4u, second);
+    put4(offset + 8u, third);
+    put(offset + 12u, last.x);
+    put(offset + 13u, last.y);
 }
 
 // Gathers the contacts found by the threads of the narrow phase. One team per environment; each thread traverses the

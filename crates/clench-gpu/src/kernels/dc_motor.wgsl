@@ -1,8 +1,8 @@
 // The states of direct-current motors. CPU counterpart: `dynamics/dc_motor.rs`, which lists formulas and parameters.
 // Each actuator with a controller has ten numbers of its dynamics, then of its gain, then of its bias.
 
-fn controller(u: u32, place: u32) -> f32 {
-    return parameter(CONTROLLER_PRM + CONTROLLER_SIZE * words[ACTUATOR_CONTROLLER + u] + place);
+fn controller(u: u32, offset: u32) -> f32 {
+    return parameter(CONTROLLER_PRM + CONTROLLER_SIZE * words[ACTUATOR_CONTROLLER + u] + offset);
 }
 
 // Returns the activation that is the given state of actuator `u`, one of the STATE_ constants; NONE if it has none.

@@ -44,7 +44,7 @@ struct Convergence {
 }
 
 // Sets the iterate of a round: the unconstrained acceleration, that of the last step, or the current one.
-fn place(round: u32) {
+fn start_at(round: u32) {
     for (var i = lane; i < bound(NV); i += GROUP) {
         if (round == AT_SMOOTH) {
             put_vector(SMOOTH_AT + i, fetch(QACC_SMOOTH + i));
@@ -205,7 +205,7 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
             step = search(nblock, products, TOLERANCE * LS_TOLERANCE * inertia);
             advance_iterate(step.alpha, nrow);
         } else if (round < DESCEND || round == REFRESH) {
-            place(round);
+            start_at(round);
             refresh(nrow, round == AT_SMOOTH || round == BACK_AT_SMOOTH);
         }
         if (round != PROVE) {

@@ -17,9 +17,9 @@ fn read_distance(kind: u32, s: u32, prm: u32, out: u32) {
     var normal = vec3f();
     var middle = vec3f();
     if (nearest != NONE) {
-        let place = MEASURED + CONTACT_SIZE * nearest;
-        middle = fetch3(place + 2u);
-        normal = fetch3(place + 5u) * select(f32(1.0), f32(-1.0), words[MEASURED_TURNED + nearest] == 1u);
+        let offset = MEASURED + CONTACT_SIZE * nearest;
+        middle = fetch3(offset + 2u);
+        normal = fetch3(offset + 5u) * select(f32(1.0), f32(-1.0), words[MEASURED_TURNED + nearest] == 1u);
     }
     // From the first end to the second: against the normal if the geoms overlap.
     switch kind {

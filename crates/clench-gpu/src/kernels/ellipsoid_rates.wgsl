@@ -59,13 +59,13 @@ fn ellipsoid_rates() {
 
 // Returns column `c` of the rates of a body: its symmetric part, with `sign` 1, or its skew one, with −1.
 fn rate_part(b: u32, c: u32, sign: f32) -> Spatial {
-    let place = FLUID_RATES + 36u * b;
+    let offset = FLUID_RATES + 36u * b;
     var across = Spatial(vec3f(), vec3f());
     for (var k = 0u; k < bound(3u); k++) {
-        across.angular[k] = fetch(place + 6u * k + c);
-        across.linear[k] = fetch(place + 18u + 6u * k + c);
+        across.angular[k] = fetch(offset + 6u * k + c);
+        across.linear[k] = fetch(offset + 18u + 6u * k + c);
     }
-    return times(plus(fetch_spatial(place + 6u * c), times(across, sign)), 0.5);
+    return times(plus(fetch_spatial(offset + 6u * c), times(across, sign)), 0.5);
 }
 
 // Returns the change by that part for a motion of the body.

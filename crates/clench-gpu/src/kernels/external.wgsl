@@ -6,25 +6,25 @@ fn push(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
     if (body == 0u) {
         return;
     }
-    let place = CFRC_EXT + 6u * body;
+    let offset = CFRC_EXT + 6u * body;
     let torque = couple + cross(offset_of(body, at), force);
-    put_spatial(place, plus(fetch_spatial(place), times(Spatial(torque, force), sign)));
+    put_spatial(offset, plus(fetch_spatial(offset), times(Spatial(torque, force), sign)));
 }
 
 // Does the same and adds them to the sum of contacts: the force, then the torque at the body's centre of mass.
 fn push_by_contact(body: u32, sign: f32, force: vec3f, couple: vec3f, at: vec3f) {
-    let place = CONTACT_FORCE + 6u * body;
+    let offset = CONTACT_FORCE + 6u * body;
     let torque = couple + cross(at - fetch3(XIPOS + 3u * body), force);
-    put3(place, fetch3(place) + force * sign);
-    put3(place + 3u, fetch3(place + 3u) + torque * sign);
+    put3(offset, fetch3(offset) + force * sign);
+    put3(offset + 3u, fetch3(offset + 3u) + torque * sign);
     push(body, sign, force, couple, at);
 }
 
 fn push_contact(source: u32, f: vec3f, t: vec3f) {
-    let place = CONTACTS + CONTACT_SIZE * source;
-    let pair = u32(fetch(place));
-    let at = fetch3(place + 2u);
-    let axes = mat3x3f(fetch3(place + 5u), fetch3(place + 8u), fetch3(place + 11u));
+    let offset = CONTACTS + CONTACT_SIZE * source;
+    let pair = u32(fetch(offset));
+    let at = fetch3(offset + 2u);
+    let axes = mat3x3f(fetch3(offset + 5u), fetch3(offset + 8u), fetch3(offset + 11u));
     push_by_contact(words[PAIR_BODY + 2u * pair], -1.0, axes * f, axes * t, at);
     push_by_contact(words[PAIR_BODY + 2u * pair + 1u], 1.0, axes * f, axes * t, at);
 }
@@ -88,11 +88,11 @@ fn push_strings() {
 
 fn external_forces() {
     for (var b = 0u; b < bound(NBODY); b++) {
-        let place = XFRC_APPLIED + 6u * b;
+        let offset = XFRC_APPLIED + 6u * b;
         put3(CONTACT_FORCE + 6u * b, vec3f());
         put3(CONTACT_FORCE + 6u * b + 3u, vec3f());
         put_spatial(CFRC_EXT + 6u * b, Spatial(vec3f(), vec3f()));
-        push(b, 1.0, fetch_state3(place), fetch_state3(place + 3u), fetch3(XIPOS + 3u * b));
+        push(b, 1.0, fetch_state3(offset), fetch_state3(offset + 3u), fetch3(XIPOS + 3u * b));
     }
     for (var b = 0u; b < reports[NBLOCK * envs + env]; b++) {
         let kind = block(b, BLOCK_KIND);

@@ -25,7 +25,7 @@ fn mass_tile(i: u32, j: u32) -> vec4f {
 }
 
 // Stages four stiff rows, from the k-th on, for a product: J at dof `i` and W J at dof `j`.
-fn stage_stiff(place: u32, k: u32, count: u32, i: u32, j: u32) {
+fn stage_stiff(offset: u32, k: u32, count: u32, i: u32, j: u32) {
     var of_j = vec4f();
     var of_wj = vec4f();
     for (var a = 0u; a < 4u; a++) {
@@ -35,8 +35,8 @@ fn stage_stiff(place: u32, k: u32, count: u32, i: u32, j: u32) {
             of_wj[a] = select(0.0, row(WEIGHED + stiff + j), j < NV);
         }
     }
-    scratch[place] = of_j;
-    tiles[RIGHT + place] = of_wj;
+    scratch[offset] = of_j;
+    tiles[RIGHT + offset] = of_wj;
 }
 
 // Stages the factors of a term of the tile (i, j) for a product: of Jᵀ W J for sixteen stiff rows, or of a previous
@@ -45,12 +45,12 @@ fn stage_term(i: u32, j: u32, term: u32, chunks: u32, count: u32) {
     // Adjacent threads have adjacent rows, which are dofs: adjacent numbers of J.
     let r = lane % TILE;
     let quad = lane / TILE;
-    let place = waiting_row(r) + quad;
+    let offset = waiting_row(r) + quad;
     if (term < chunks) {
-        stage_stiff(place, TILE * term + 4u * quad, count, TILE * i + r, TILE * j + r);
+        stage_stiff(offset, TILE * term + 4u * quad, count, TILE * i + r, TILE * j + r);
     } else {
-        scratch[place] = -tile_quad(tile_at(i, term - chunks), r, quad);
-        tiles[RIGHT + place] = tile_quad(tile_at(j, term - chunks), r, quad);
+        scratch[offset] = -tile_quad(tile_at(i, term - chunks), r, quad);
+        tiles[RIGHT + offset] = tile_quad(tile_at(j, term - chunks), r, quad);
     }
     workgroupBarrier();
 }
@@ -75,17 +75,17 @@ fn invert_factor(own: vec4f, order: u32) -> vec4f {
         inverse[r % 4u] = 1.0;
     }
     for (var k = 0u; k < bound(order); k++) {
-        let place = waiting_row(k);
+        let offset = waiting_row(k);
         if (r == k) {
-            scratch[place + own_quad()] = a;
-            tiles[RIGHT + place + own_quad()] = inverse;
+            scratch[offset + own_quad()] = a;
+            tiles[RIGHT + offset + own_quad()] = inverse;
         }
         workgroupBarrier();
-        let rest = scratch[place + k / 4u][k % 4u];
+        let rest = scratch[offset + k / 4u][k % 4u];
         let scale = inverseSqrt(select(diagonal[k], rest, rest > MIN_PIVOT * diagonal[k]));
-        let of_a = scratch[place + own_quad()] * scale;
-        let of_inverse = tiles[RIGHT + place + own_quad()] * scale;
-        let multiplier = scratch[place + r / 4u][r % 4u] * scale;
+        let of_a = scratch[offset + own_quad()] * scale;
+        let of_inverse = tiles[RIGHT + offset + own_quad()] * scale;
+        let multiplier = scratch[offset + r / 4u][r % 4u] * scale;
         if (r > k) {
             a -= multiplier * of_a;
             inverse -= multiplier * of_inverse;
@@ -100,9 +100,9 @@ fn invert_factor(own: vec4f, order: u32) -> vec4f {
 
 // Returns a tile below the diagonal: its remainder times the inverse of the factor above it.
 fn divide_tile(own: vec4f, j: u32) -> vec4f {
-    let place = waiting_row(own_row()) + own_quad();
-    scratch[place] = own;
-    tiles[RIGHT + place] = tile_quad(tile_at(j, j), own_row(), own_quad());
+    let offset = waiting_row(own_row()) + own_quad();
+    scratch[offset] = own;
+    tiles[RIGHT + offset] = tile_quad(tile_at(j, j), own_row(), own_quad());
     workgroupBarrier();
     return tile_product();
 }

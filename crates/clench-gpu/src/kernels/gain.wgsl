@@ -4,9 +4,9 @@
 // Gain and bias are affine in the length and the velocity of the actuator, or those of a muscle, a controller or a
 // motor. Terms that a kind lacks have a zero coefficient.
 
-fn affine(place: u32, length: f32, velocity: f32) -> f32 {
-    let moved = parameter(place + AFFINE_CONSTANT) + parameter(place + AFFINE_LENGTH) * length;
-    return moved + parameter(place + AFFINE_VELOCITY) * velocity;
+fn affine(offset: u32, length: f32, velocity: f32) -> f32 {
+    let moved = parameter(offset + AFFINE_CONSTANT) + parameter(offset + AFFINE_LENGTH) * length;
+    return moved + parameter(offset + AFFINE_VELOCITY) * velocity;
 }
 
 // Returns control `c` of actuator `u` after its delay, clamped to its range.

@@ -7,15 +7,15 @@ struct Inertia {
     third: vec2f,
 }
 
-fn fetch_inertia(place: u32) -> Inertia {
-    return Inertia(fetch4(place), fetch4(place + 4u), vec2f(fetch(place + 8u), fetch(place + 9u)));
+fn fetch_inertia(offset: u32) -> Inertia {
+    return Inertia(fetch4(offset), fetch4(offset + 4u), vec2f(fetch(offset + 8u), fetch(offset + 9u)));
 }
 
-fn put_inertia(place: u32, inertia: Inertia) {
-    put4(place, inertia.first);
-    put4(place + 4u, inertia.second);
-    put(place + 8u, inertia.third.x);
-    put(place + 9u, inertia.third.y);
+fn put_inertia(offset: u32, inertia: Inertia) {
+    put4(offset, inertia.first);
+    put4(offset + 4u, inertia.second);
+    put(offset + 8u, inertia.third.x);
+    put(offset + 9u, inertia.third.y);
 }
 
 fn sum_of_inertias(a: Inertia, b: Inertia) -> Inertia {

@@ -51,13 +51,13 @@ fn restore_start() {
 }
 
 // Reduces a rotation vector of more than half a turn by full turns to the same orientation.
-fn shorten(place: u32) {
-    let vector = fetch_state3(place);
+fn shorten(offset: u32) {
+    let vector = fetch_state3(offset);
     let angle = length(vector);
     if (angle > PI) {
         let share = (angle - TWO_PI * floor(angle / TWO_PI + 0.5)) / angle;
         for (var k = 0u; k < 3u; k++) {
-            put_state(place + k, vector[k] * share);
+            put_state(offset + k, vector[k] * share);
         }
     }
 }

@@ -20,19 +20,19 @@ const PRECONDITIONED_AT: u32 = select(7u, 3u, NEWTON) * WIDTH;
 const LAST_PRECONDITIONED_AT: u32 = 8u * WIDTH;
 const LAST_GRADIENT_AT: u32 = 9u * WIDTH;
 
-fn vector(place: u32) -> f32 {
+fn vector(offset: u32) -> f32 {
     if (SHARE_VECTORS) {
-        return vectors[place];
+        return vectors[offset];
     }
-    return row(VECTORS + place);
+    return row(VECTORS + offset);
 }
 
 // Writes an element; all threads see it after the next `join_vectors`.
-fn put_vector(place: u32, x: f32) {
+fn put_vector(offset: u32, x: f32) {
     if (SHARE_VECTORS) {
-        vectors[place] = x;
+        vectors[offset] = x;
     } else {
-        put_row(VECTORS + place, x);
+        put_row(VECTORS + offset, x);
     }
 }
 

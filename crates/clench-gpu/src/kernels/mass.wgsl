@@ -41,9 +41,9 @@ fn mass_entry(i: u32, j: u32) -> f32 {
     }
     let below = max(i, j);
     let above = min(i, j);
-    let place = words[TREE_START + below] + depth(above);
-    if (place < words[TREE_START + below + 1u] && words[TREE_DOF + place] == above) {
-        return row(MASS + place);
+    let offset = words[TREE_START + below] + depth(above);
+    if (offset < words[TREE_START + below + 1u] && words[TREE_DOF + offset] == above) {
+        return row(MASS + offset);
     }
     return 0.0;
 }

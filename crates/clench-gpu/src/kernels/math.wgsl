@@ -81,13 +81,13 @@ struct Spatial {
     linear: vec3f,
 }
 
-fn fetch_spatial(place: u32) -> Spatial {
-    return Spatial(fetch3(place), fetch3(place + 3u));
+fn fetch_spatial(offset: u32) -> Spatial {
+    return Spatial(fetch3(offset), fetch3(offset + 3u));
 }
 
-fn put_spatial(place: u32, s: Spatial) {
-    put3(place, s.angular);
-    put3(place + 3u, s.linear);
+fn put_spatial(offset: u32, s: Spatial) {
+    put3(offset, s.angular);
+    put3(offset + 3u, s.linear);
 }
 
 fn plus(a: Spatial, b: Spatial) -> Spatial {
@@ -119,12 +119,13 @@ fn cross_force(a: Spatial, f: Spatial) -> Spatial {
     );
 }
 
-// Returns the momentum of the inertia at `place` (xx, yy, zz, xy, xz, yz; mass times offset; mass) with the motion `m`.
-fn momentum(place: u32, m: Spatial) -> Spatial {
-    let diagonal = fetch3(place);
-    let off = fetch3(place + 3u);
-    let moment = fetch3(place + 6u);
-    let mass = fetch(place + 9u);
+// Returns the momentum of the inertia at `offset` (xx, yy, zz, xy, xz, yz; mass times centre; mass) with the motion
+// `m`.
+fn momentum(offset: u32, m: Spatial) -> Spatial {
+    let diagonal = fetch3(offset);
+    let off = fetch3(offset + 3u);
+    let moment = fetch3(offset + 6u);
+    let mass = fetch(offset + 9u);
     let turned = vec3f(
         diagonal.x * m.angular.x + off.x * m.angular.y + off.y * m.angular.z,
         off.x * m.angular.x + diagonal.y * m.angular.y + off.z * m.angular.z,

@@ -1,5 +1,5 @@
 // The memory layout. The sizes (NV, ...) and the offsets in capitals are constants of the model, written before this
-// text. State and work are arrays of fields with interleaved environments (`place * envs + env`), so that neighbouring
+// text. State and work are arrays of fields with interleaved environments (`offset * envs + env`), so that neighbouring
 // threads access neighbouring numbers; `rows` holds the problem of one workgroup, a block of ROWS numbers for each
 // environment.
 
@@ -28,16 +28,16 @@ fn select_environment(index: u32) {
 }
 
 // Returns a parameter of this environment.
-fn parameter(place: u32) -> f32 {
-    return parameters[place * parameter_stride + parameter_start];
+fn parameter(offset: u32) -> f32 {
+    return parameters[offset * parameter_stride + parameter_start];
 }
 
-fn parameter3(place: u32) -> vec3f {
-    return vec3f(parameter(place), parameter(place + 1u), parameter(place + 2u));
+fn parameter3(offset: u32) -> vec3f {
+    return vec3f(parameter(offset), parameter(offset + 1u), parameter(offset + 2u));
 }
 
-fn parameter4(place: u32) -> vec4f {
-    return vec4f(parameter3(place), parameter(place + 3u));
+fn parameter4(offset: u32) -> vec4f {
+    return vec4f(parameter3(offset), parameter(offset + 3u));
 }
 
 // Begins an environment. Returns false if it does not exist or has stopped.
@@ -56,72 +56,72 @@ fn fail(fault: u32) {
     }
 }
 
-fn fetch(place: u32) -> f32 {
-    return work[place * envs + env];
+fn fetch(offset: u32) -> f32 {
+    return work[offset * envs + env];
 }
 
-fn put(place: u32, x: f32) {
-    work[place * envs + env] = x;
+fn put(offset: u32, x: f32) {
+    work[offset * envs + env] = x;
 }
 
-fn add(place: u32, x: f32) {
-    work[place * envs + env] += x;
+fn add(offset: u32, x: f32) {
+    work[offset * envs + env] += x;
 }
 
-fn fetch3(place: u32) -> vec3f {
-    return vec3f(fetch(place), fetch(place + 1u), fetch(place + 2u));
+fn fetch3(offset: u32) -> vec3f {
+    return vec3f(fetch(offset), fetch(offset + 1u), fetch(offset + 2u));
 }
 
-fn put3(place: u32, v: vec3f) {
-    put(place, v.x);
-    put(place + 1u, v.y);
-    put(place + 2u, v.z);
+fn put3(offset: u32, v: vec3f) {
+    put(offset, v.x);
+    put(offset + 1u, v.y);
+    put(offset + 2u, v.z);
 }
 
-fn fetch4(place: u32) -> vec4f {
-    return vec4f(fetch3(place), fetch(place + 3u));
+fn fetch4(offset: u32) -> vec4f {
+    return vec4f(fetch3(offset), fetch(offset + 3u));
 }
 
-fn put4(place: u32, v: vec4f) {
-    put3(place, v.xyz);
-    put(place + 3u, v.w);
+fn put4(offset: u32, v: vec4f) {
+    put3(offset, v.xyz);
+    put(offset + 3u, v.w);
 }
 
 // Matrices are row-major, as users read them.
-fn fetch_matrix(place: u32) -> mat3x3f {
-    return transpose(mat3x3f(fetch3(place), fetch3(place + 3u), fetch3(place + 6u)));
+fn fetch_matrix(offset: u32) -> mat3x3f {
+    return transpose(mat3x3f(fetch3(offset), fetch3(offset + 3u), fetch3(offset + 6u)));
 }
 
-fn put_matrix(place: u32, m: mat3x3f) {
+fn put_matrix(offset: u32, m: mat3x3f) {
     let t = transpose(m);
-    put3(place, t[0]);
-    put3(place + 3u, t[1]);
-    put3(place + 6u, t[2]);
+    put3(offset, t[0]);
+    put3(offset + 3u, t[1]);
+    put3(offset + 6u, t[2]);
 }
 
-fn fetch_state(place: u32) -> f32 {
-    return state[place * envs + env];
+fn fetch_state(offset: u32) -> f32 {
+    return state[offset * envs + env];
 }
 
-fn fetch_state3(place: u32) -> vec3f {
-    return vec3f(fetch_state(place), fetch_state(place + 1u), fetch_state(place + 2u));
+fn fetch_state3(offset: u32) -> vec3f {
+    return vec3f(fetch_state(offset), fetch_state(offset + 1u), fetch_state(offset + 2u));
 }
 
-fn fetch_state4(place: u32) -> vec4f {
-    return vec4f(fetch_state3(place), fetch_state(place + 3u));
+fn fetch_state4(offset: u32) -> vec4f {
+    return vec4f(fetch_state3(offset), fetch_state(offset + 3u));
 }
 
-fn put_state(place: u32, x: f32) {
-    state[place * envs + env] = x;
+fn put_state(offset: u32, x: f32) {
+    state[offset * envs + env] = x;
 }
 
 // Returns a number of the block of this environment.
-fn row(place: u32) -> f32 {
-    return rows[env * ROWS + place];
+fn row(offset: u32) -> f32 {
+    return rows[env * ROWS + offset];
 }
 
-fn put_row(place: u32, x: f32) {
-    rows[env * ROWS + place] = x;
+fn put_row(offset: u32, x: f32) {
+    rows[env * ROWS + offset] = x;
 }
 
 // Returns a field of a block.

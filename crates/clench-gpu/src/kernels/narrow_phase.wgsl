@@ -77,11 +77,11 @@ fn narrow_phase(@builtin(global_invocation_id) id: vec3u) {
     overflowed = false;
     let count = reports[NNEAR * envs + env];
     for (var rotation = thread; rotation < count; rotation += NTHREAD) {
-        let place = (NEAR_PAIRS + reports[(NEAR_BY_METHOD + rotation) * envs + env]) * envs + env;
-        let pair = reports[place];
+        let offset = (NEAR_PAIRS + reports[(NEAR_BY_METHOD + rotation) * envs + env]) * envs + env;
+        let pair = reports[offset];
         first_of_pair = found;
         collide(pair, words[PAIR_GEOM + 2u * pair], words[PAIR_GEOM + 2u * pair + 1u]);
-        reports[place] = contacts_of_pair(thread * THREAD_CONTACTS + first_of_pair, found - first_of_pair);
+        reports[offset] = contacts_of_pair(thread * THREAD_CONTACTS + first_of_pair, found - first_of_pair);
     }
     var fault = RUNNING;
     if (!loops_end()) {

@@ -24,8 +24,8 @@ fn size_of_pixel(c: u32) -> vec2f {
 
 // Returns the image position of a site, in pixels from the upper left corner.
 fn project(site: u32, c: u32) -> vec2f {
-    let place = fetch3(SITE_XPOS + 3u * site) - fetch3(CAM_XPOS + 3u * c);
-    let p = place * fetch_matrix(CAM_XMAT + 9u * c);
+    let position = fetch3(SITE_XPOS + 3u * site) - fetch3(CAM_XPOS + 3u * c);
+    let p = position * fetch_matrix(CAM_XMAT + 9u * c);
     let z = select(max(p.z, TINY), min(p.z, -TINY), p.z < 0.0);
     let offset = vec2f(-p.x, p.y) / (z * size_of_pixel(c));
     return 0.5 * resolution(CAMERAS + CAMERA_SIZE * c) + offset;
@@ -47,11 +47,11 @@ fn line_of_sight(c: u32, pixel: u32) -> Line {
     let width = words[camera + CAMERA_WIDTH];
     let middle = vec2f(f32(pixel % width), f32(pixel / width)) + 0.5;
     let offset = (middle - optical_axis(c)) * vec2f(1.0, -1.0);
-    let place = fetch3(CAM_XPOS + 3u * c);
+    let position = fetch3(CAM_XPOS + 3u * c);
     let axes = fetch_matrix(CAM_XMAT + 9u * c);
     if (words[camera + CAMERA_ORTHOGRAPHIC] == 1u) {
         let size = parameter(CAM_FOVY + c) / resolution(camera);
-        return Line(place + axes * vec3f(offset * size, 0.0), -axes[2]);
+        return Line(position + axes * vec3f(offset * size, 0.0), -axes[2]);
     }
-    return Line(place, axes * direction(vec3f(offset * size_of_pixel(c), -1.0)).xyz);
+    return Line(position, axes * direction(vec3f(offset * size_of_pixel(c), -1.0)).xyz);
 }

@@ -39,12 +39,12 @@ fn servo_torque(u: u32) -> vec3f {
 
 // Limits the norm of the torque to the upper end of its range; its direction stays.
 fn limit_torque(u: u32) {
-    let place = ACTUATOR_FORCE + output_of(u);
-    let torque = fetch3(place);
+    let offset = ACTUATOR_FORCE + output_of(u);
+    let torque = fetch3(offset);
     let norm = length(torque);
     let limit = parameter(FORCE_RANGE + 2u * u + 1u);
     if (norm > limit) {
-        put3(place, torque * (limit / norm));
+        put3(offset, torque * (limit / norm));
     }
 }
 

@@ -101,13 +101,13 @@ fn adhesion_forces() {
     join();
     // Contacts share bodies, so one thread adds them all.
     for (var c = 0u; is_first() && c < reports[NCON * envs + env]; c++) {
-        let place = CONTACTS + CONTACT_SIZE * c;
-        let pair = u32(fetch(place));
+        let offset = CONTACTS + CONTACT_SIZE * c;
+        let pair = u32(fetch(offset));
         let adhesion = contact_adhesion(c);
         for (var side = 0u; side < 2u; side++) {
             let b = words[PAIR_BODY + 2u * pair + side];
-            let force = fetch3(place + 5u) * select(adhesion, -adhesion, side == 1u);
-            let pull = Spatial(cross(offset_of(b, fetch3(place + 2u)), force), force);
+            let force = fetch3(offset + 5u) * select(adhesion, -adhesion, side == 1u);
+            let pull = Spatial(cross(offset_of(b, fetch3(offset + 2u)), force), force);
             put_spatial(CFRC + 6u * b, plus(fetch_spatial(CFRC + 6u * b), pull));
         }
     }

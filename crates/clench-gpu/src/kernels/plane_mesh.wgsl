@@ -30,7 +30,7 @@ fn visit(vertex: u32, height: f32, range: f32) {
 
 // Visits the deepest vertex, those of the face that lies on the plane, and others around them: all within range, up to
 // the capacity.
-fn visit_around(hull: u32, deepest: u32, face: u32, up: vec3f, origin: f32, range: f32) {
+fn visit_near(hull: u32, deepest: u32, face: u32, up: vec3f, origin: f32, range: f32) {
     visited_count = 0u;
     visit(deepest, above_plane(vertex_of_hull(hull, deepest), up, origin).w, range);
     let neighbors = words[hull + HULL_NEIGHBORS];
@@ -121,7 +121,7 @@ fn plane_mesh(pair: u32, normal: vec3f, above: f32, mesh: Placed, hull: u32, ran
             return;
         }
     }
-    visit_around(hull, deepest, face, up, above, range);
+    visit_near(hull, deepest, face, up, above, range);
     for (var k = 0u; k < visited_count; k++) {
         add_candidate(pair, mesh, above_plane(vertex_of_hull(hull, visited[k]), up, above), normal);
     }

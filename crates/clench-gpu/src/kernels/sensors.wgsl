@@ -181,15 +181,15 @@ fn touch(s: u32, prm: u32) -> f32 {
         if (block(b, BLOCK_KIND) < CONTACT_NORMAL) {
             continue;
         }
-        let place = CONTACTS + CONTACT_SIZE * block(b, BLOCK_SOURCE);
-        let pair = u32(fetch(place));
+        let offset = CONTACTS + CONTACT_SIZE * block(b, BLOCK_SOURCE);
+        let pair = u32(fetch(offset));
         let second = words[PAIR_BODY + 2u * pair + 1u];
         let normal = row(FORCE + block(b, BLOCK_ROW)) - contact_adhesion(block(b, BLOCK_SOURCE));
         if ((own != second && own != words[PAIR_BODY + 2u * pair]) || normal <= 0.0) {
             continue;
         }
-        let o = (fetch3(place + 2u) - centre) * axes;
-        let d = (fetch3(place + 5u) * select(f32(-1.0), f32(1.0), own == second)) * axes;
+        let o = (fetch3(offset + 2u) - centre) * axes;
+        let d = (fetch3(offset + 5u) * select(f32(-1.0), f32(1.0), own == second)) * axes;
         sum += select(0.0, normal, intersects_volume(words[s + SENSOR_SHAPE], parameter3(prm + SENSOR_PRM_VOLUME), o, d));
     }
     return sum;
@@ -326,20 +326,20 @@ fn read_sensor(s: u32, prm: u32, out: u32) {
             }
         }
         case OF_ACTUATOR: {
-            var place: u32;
+            var offset: u32;
             switch kind {
                 case SENSE_ACTUATORPOS: {
-                    place = ACTUATOR_LENGTH;
+                    offset = ACTUATOR_LENGTH;
                 }
                 case SENSE_ACTUATORVEL: {
-                    place = ACTUATOR_VELOCITY;
+                    offset = ACTUATOR_VELOCITY;
                 }
                 case SENSE_ACTUATORFRC, default: {
-                    place = ACTUATOR_FORCE;
+                    offset = ACTUATOR_FORCE;
                 }
             }
             for (var k = 0u; k < words[s + SENSOR_DIM]; k++) {
-                put(out + k, fetch(place + e + k));
+                put(out + k, fetch(offset + e + k));
             }
         }
         case OF_CONTACTS: {

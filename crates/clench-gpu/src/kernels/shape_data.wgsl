@@ -1,11 +1,11 @@
 // The shape data shared by all environments: numbers and height fields.
 
-fn shape3(place: u32) -> vec3f {
-    return vec3f(numbers[place], numbers[place + 1u], numbers[place + 2u]);
+fn shape3(offset: u32) -> vec3f {
+    return vec3f(numbers[offset], numbers[offset + 1u], numbers[offset + 2u]);
 }
 
-fn shape4(place: u32) -> vec4f {
-    return vec4f(shape3(place), numbers[place + 3u]);
+fn shape4(offset: u32) -> vec4f {
+    return vec4f(shape3(offset), numbers[offset + 3u]);
 }
 
 // A height field. A grid point is a vector of row and column; those beyond the border do not exist.
@@ -24,10 +24,10 @@ struct TerrainGrid {
 var<private> grid: TerrainGrid;
 
 // Begins the height field at an offset.
-fn begin_grid(place: u32) {
-    let sizes = words[place + FIELD_SIZES];
-    grid.rows = i32(words[place + FIELD_ROWS]);
-    grid.columns = i32(words[place + FIELD_COLUMNS]);
+fn begin_grid(offset: u32) {
+    let sizes = words[offset + FIELD_SIZES];
+    grid.rows = i32(words[offset + FIELD_ROWS]);
+    grid.columns = i32(words[offset + FIELD_COLUMNS]);
     grid.half = vec2f(numbers[sizes + FIELD_NUMBERS_HALF], numbers[sizes + FIELD_NUMBERS_HALF + 1u]);
     grid.step = vec2f(numbers[sizes + FIELD_NUMBERS_STEP], numbers[sizes + FIELD_NUMBERS_STEP + 1u]);
     grid.elevation = numbers[sizes + FIELD_NUMBERS_ELEVATION];

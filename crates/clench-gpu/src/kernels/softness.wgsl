@@ -52,11 +52,11 @@ fn spline(x: f32, midpoint: f32, power: f32) -> f32 {
     return select(1.0 - y, y, below);
 }
 
-// Returns the impedance at the violation `r`, with solimp at `place`.
-fn impedance(place: u32, r: f32) -> f32 {
-    let dmin = clamp_impedance(parameter(place));
-    let dmax = clamp_impedance(parameter(place + 1u));
-    let width = parameter(place + 2u);
+// Returns the impedance at the violation `r`, with solimp at `offset`.
+fn impedance(offset: u32, r: f32) -> f32 {
+    let dmin = clamp_impedance(parameter(offset));
+    let dmax = clamp_impedance(parameter(offset + 1u));
+    let width = parameter(offset + 2u);
     if (dmin == dmax || width <= LEAST) {
         return 0.5 * (dmin + dmax);
     }
@@ -67,18 +67,18 @@ fn impedance(place: u32, r: f32) -> f32 {
     if (x <= 0.0) {
         return dmin;
     }
-    let midpoint = clamp_impedance(parameter(place + 3u));
-    return dmin + spline(x, midpoint, max(parameter(place + 4u), 1.0)) * (dmax - dmin);
+    let midpoint = clamp_impedance(parameter(offset + 3u));
+    return dmin + spline(x, midpoint, max(parameter(offset + 4u), 1.0)) * (dmax - dmin);
 }
 
-// Returns the softness, with solref at `place`, then solimp.
-fn soften(place: u32, r: f32) -> Softness {
-    var solref = vec2f(parameter(place), parameter(place + 1u));
+// Returns the softness, with solref at `offset`, then solimp.
+fn soften(offset: u32, r: f32) -> Softness {
+    var solref = vec2f(parameter(offset), parameter(offset + 1u));
     if (is_mixed(solref)) {
         solref = vec2f(0.02, 1.0);
     }
-    let law = spring_damper(solref, parameter(place + 3u));
-    let d = impedance(place + 2u, r);
+    let law = spring_damper(solref, parameter(offset + 3u));
+    let d = impedance(offset + 2u, r);
     return Softness(d, law.x * d, law.y);
 }
 

@@ -35,11 +35,11 @@ fn tile_at(i: u32, j: u32) -> u32 {
 
 // Returns four numbers of a row of a tile.
 fn tile_quad(tile: u32, r: u32, quad: u32) -> vec4f {
-    let place = QUADS_OF_TILE * tile + QUADS * r + quad;
+    let offset = QUADS_OF_TILE * tile + QUADS * r + quad;
     if (SHARE_TILES) {
-        return tiles[place];
+        return tiles[offset];
     }
-    let first = TILES + 4u * place;
+    let first = TILES + 4u * offset;
     return vec4f(row(first), row(first + 1u), row(first + 2u), row(first + 3u));
 }
 
@@ -52,12 +52,12 @@ fn tile_entry(tile: u32, r: u32, column: u32) -> f32 {
 
 // Stores each thread's part of a tile. All see it after the next barrier.
 fn store_tile(tile: u32, own: vec4f) {
-    let place = QUADS_OF_TILE * tile + lane;
+    let offset = QUADS_OF_TILE * tile + lane;
     if (SHARE_TILES) {
-        tiles[place] = own;
+        tiles[offset] = own;
     } else {
         for (var k = 0u; k < 4u; k++) {
-            put_row(TILES + 4u * place + k, own[k]);
+            put_row(TILES + 4u * offset + k, own[k]);
         }
     }
 }

@@ -63,7 +63,7 @@ fn plane_through(p: vec3f, q: vec3f) -> mat2x3f {
 }
 
 // Finds the shortest string around a circle that turns by the angle `rotation`.
-fn around(p: vec2f, q: vec2f, rotation: f32, radius: f32) -> PlanarWrap {
+fn wrap_circle(p: vec2f, q: vec2f, rotation: f32, radius: f32) -> PlanarWrap {
     let square = radius * radius;
     let squares = vec2f(dot(p, p), dot(q, q));
     let tangents = sqrt(max(squares - square, vec2f()));
@@ -162,7 +162,7 @@ fn wrap(p: vec3f, q: vec3f, geom: u32, side: u32) -> Wrapped {
     if (inside) {
         found = through(flat_start, flat_end, radius);
     } else {
-        found = around(flat_start, flat_end, rotation, radius);
+        found = wrap_circle(flat_start, flat_end, rotation, radius);
     }
     var heights = vec2f();
     if (is_cylinder) {

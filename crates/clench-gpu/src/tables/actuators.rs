@@ -205,8 +205,11 @@ impl Tables {
         let all =
             Vec::from_iter((0..m.actuators.len()).filter(|&u| has_controller(&m.actuators[u])));
         self.flag("ANY_CONTROLLER", !all.is_empty());
-        let place = |u: usize| all.binary_search(&u).unwrap_or(NONE as usize);
-        self.words("ACTUATOR_CONTROLLER", (0..m.actuators.len()).map(place));
+        let controller = |u: usize| all.binary_search(&u).unwrap_or(NONE as usize);
+        self.words(
+            "ACTUATOR_CONTROLLER",
+            (0..m.actuators.len()).map(controller),
+        );
         let prm = |&u: &usize| {
             let row = ControllerNumbers {
                 dynamics: p.actuator_dynprm[u],

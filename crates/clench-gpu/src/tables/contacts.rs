@@ -178,12 +178,12 @@ impl Tables {
         self.surfaces(m, candidates, capacity);
 
         let widest = candidates.iter().map(dim).max().unwrap_or(0);
-        let most = candidates.iter().map(|c| points_of_pair(c.kinds)).sum();
+        let max_points = candidates.iter().map(|c| points_of_pair(c.kinds)).sum();
         capacity.contacts = match s.max_contacts {
-            MaxContacts::Limit(limit) => limit.min(most),
+            MaxContacts::Limit(limit) => limit.min(max_points),
             MaxContacts::Auto => {
                 let pool = POOL_NUMBERS / (3 * widest * m.nv).max(1);
-                pool.clamp(POOL[0], POOL[1]).min(most)
+                pool.clamp(POOL[0], POOL[1]).min(max_points)
             }
         };
         capacity.blocks += capacity.contacts;
@@ -271,11 +271,11 @@ impl Tables {
         self.flag("MANY_CORNERS", corners > BOX_CORNERS);
         // The overlap of two polygons has at most all their corners; on a round cap it also has both ends of a chord
         // for each side.
-        let most = if caps {
+        let max_corners = if caps {
             3 * corners + CAP_CORNERS
         } else {
             2 * corners + BOX_CORNERS
         };
-        self.constant("POLYGON_CORNERS", most);
+        self.constant("POLYGON_CORNERS", max_corners);
     }
 }

@@ -66,11 +66,14 @@ impl Tables {
     /// Adds the springs that yield, the offsets of their rest positions, and their yield elongations.
     fn plastic(&mut self, m: &Model) {
         let p = &m.params;
-        let place = |start: Option<usize>| start.unwrap_or(NONE as usize);
+        let offset = |start: Option<usize>| start.unwrap_or(NONE as usize);
         self.flag("ANY_PLASTIC", m.nplastic > 0 && m.flags.spring);
         self.flag("YIELDING_TENDONS", has_yielding_tendons(m));
-        self.words("JNT_PLASTIC", m.joints.iter().map(|j| place(j.plastic)));
-        self.words("TENDON_PLASTIC", m.tendons.iter().map(|t| place(t.plastic)));
+        self.words("JNT_PLASTIC", m.joints.iter().map(|j| offset(j.plastic)));
+        self.words(
+            "TENDON_PLASTIC",
+            m.tendons.iter().map(|t| offset(t.plastic)),
+        );
         self.numbers("JNT_YIELD", p.jnt_springyield.iter().copied());
         self.numbers("TENDON_YIELD", p.tendon_springyield.iter().copied());
     }
@@ -197,8 +200,8 @@ fn drag(m: &Model, b: usize) -> [f64; 12] {
 fn ellipsoid(m: &Model, g: usize) -> EllipsoidNumbers {
     let p = &m.params;
     let heavy = p.body_mass[m.geoms[g].body] >= TINY;
-    let felt = |x: f64| if heavy { x.max(0.0) } else { 0.0 };
-    let (density, viscosity) = (felt(p.density), felt(p.viscosity));
+    let acting = |x: f64| if heavy { x.max(0.0) } else { 0.0 };
+    let (density, viscosity) = (acting(p.density), acting(p.viscosity));
     let r = semi_axes(m.geoms[g].kind, p.geom_size[g]).to_array();
     let [blunt, slender, angular, kutta, magnus] = p.geom_fluidcoef[g];
     let mut sorted = r;
@@ -207,11 +210,11 @@ fn ellipsoid(m: &Model, g: usize) -> EllipsoidNumbers {
     let diameter = r.iter().sum::<f64>() * (2.0 / 3.0);
     let swept = |axis: f64, others: f64| 8.0 / 15.0 * PI * axis * others.powi(4);
     let others = |i: usize| [r[(i + 1) % 3], r[(i + 2) % 3]];
-    let most = swept(middle, largest);
+    let max_moment = swept(middle, largest);
     let angular_drag = |i: usize| {
         let [a, b] = others(i);
         let moment = swept(r[i], a.max(b));
-        density * (angular * moment + slender * (most - moment))
+        density * (angular * moment + slender * (max_moment - moment))
     };
     let area = |i: usize| {
         let [a, b] = others(i);

@@ -42,12 +42,12 @@ impl Tables {
     ) -> Vec<usize> {
         let mut next = self.words.len();
         self.words(name, owners.clone().flatten().flat_map(row));
-        let mut place = |history: Option<&History>| {
-            let place = next;
+        let mut offset = |history: Option<&History>| {
+            let offset = next;
             next += HistoryWords::SIZE * usize::from(history.is_some());
-            history.map_or(NONE as usize, |_| place)
+            history.map_or(NONE as usize, |_| offset)
         };
-        owners.map(&mut place).collect()
+        owners.map(&mut offset).collect()
     }
 
     /// Declares the rows of buffers.

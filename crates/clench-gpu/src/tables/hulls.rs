@@ -97,7 +97,7 @@ impl Tables {
         self.row::<HullWords>();
         self.row::<FieldWords>();
         self.row::<FieldNumbers>();
-        let mut most_corners = 0;
+        let mut max_corners = 0;
         let mut of_mesh = vec![None; m.meshes.len()];
         let mut of_box = None;
         let mut of_geom = vec![super::NONE as usize; m.geoms.len()];
@@ -107,24 +107,24 @@ impl Tables {
         {
             let g = g as usize;
             let geom = &m.geoms[g];
-            let beside_cylinder = candidate.kinds == [ShapeKind::Cylinder, ShapeKind::Box];
+            let with_cylinder = candidate.kinds == [ShapeKind::Cylinder, ShapeKind::Box];
             if of_geom[g] != super::NONE as usize {
                 continue;
             }
             let hull = geom.mesh.and_then(|mesh| m.meshes[mesh].any_hull());
             match (geom.kind, hull) {
                 (ShapeKind::Mesh, Some(hull)) => {
-                    let place = geom.mesh.and_then(|mesh| of_mesh[mesh]);
-                    let place = place.unwrap_or_else(|| self.hull(hull));
+                    let offset = geom.mesh.and_then(|mesh| of_mesh[mesh]);
+                    let offset = offset.unwrap_or_else(|| self.hull(hull));
                     if let Some(mesh) = geom.mesh {
-                        of_mesh[mesh] = Some(place);
+                        of_mesh[mesh] = Some(offset);
                     }
                     let corners = (0..hull.face_count()).map(|face| hull.corners(face).len());
-                    most_corners = corners.fold(most_corners, usize::max);
-                    of_geom[g] = place;
+                    max_corners = corners.fold(max_corners, usize::max);
+                    of_geom[g] = offset;
                 }
                 // A flat box is no polyhedron.
-                (ShapeKind::Box, _) if beside_cylinder && is_solid(m.params.geom_size[g]) => {
+                (ShapeKind::Box, _) if with_cylinder && is_solid(m.params.geom_size[g]) => {
                     of_geom[g] = *of_box.get_or_insert_with(|| self.hull(&unit_box()));
                 }
                 (ShapeKind::HeightField, _) => {
@@ -136,7 +136,7 @@ impl Tables {
             }
         }
         self.words("GEOM_HULL", of_geom);
-        most_corners
+        max_corners
     }
 
     /// Adds a polyhedron. Returns its offset.
@@ -190,23 +190,23 @@ impl Tables {
     fn lists<'a>(&mut self, lists: impl Iterator<Item = &'a [u32]> + Clone) -> usize {
         let begins = starts(lists.clone().map(<[u32]>::len));
         let items = self.words.len() + begins.len();
-        let place = self.add_words(begins.into_iter().map(|begin| items + begin));
+        let offset = self.add_words(begins.into_iter().map(|begin| items + begin));
         self.add_words(lists.flatten().map(|&item| item as usize));
-        place
+        offset
     }
 
     /// Adds words. Returns their offset.
     pub(super) fn add_words(&mut self, values: impl IntoIterator<Item = usize>) -> usize {
-        let place = self.words.len();
+        let offset = self.words.len();
         self.words.extend(values.into_iter().map(|v| v as u32));
-        place
+        offset
     }
 
     /// Adds numbers. Returns their offset.
     pub(super) fn add_numbers(&mut self, values: impl IntoIterator<Item = f64>) -> usize {
-        let place = self.numbers.len();
+        let offset = self.numbers.len();
         self.numbers.extend(values);
-        place
+        offset
     }
 }
 

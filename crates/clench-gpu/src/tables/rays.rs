@@ -152,15 +152,15 @@ impl Tables {
         let mut of_geom = Vec::new();
         for g in visible(m).filter(|_| ray_count(m) > 0) {
             let geom = &m.geoms[g];
-            let mut place = None;
+            let mut offset = None;
             if let Some(mesh) = geom.mesh {
                 let add = || self.triangles(m.meshes[mesh].triangles());
-                place = Some(*of_mesh[mesh].get_or_insert_with(add));
+                offset = Some(*of_mesh[mesh].get_or_insert_with(add));
             } else if let Some(field) = geom.height_field {
                 let add = || self.height_field(&m.height_fields[field].shape);
-                place = Some(*of_field[field].get_or_insert_with(add));
+                offset = Some(*of_field[field].get_or_insert_with(add));
             }
-            of_geom.push(place.unwrap_or(NONE as usize));
+            of_geom.push(offset.unwrap_or(NONE as usize));
         }
         self.words("RAY_SHAPE", of_geom);
     }
@@ -182,9 +182,9 @@ impl Tables {
         };
         let words = self.add_words(nodes.iter().flat_map(words));
         let coordinates = mesh.vertices().iter().flat_map(|v| v.to_array());
-        let margin = NODE_MARGIN * coordinates.fold(0.0, |most: f64, x| most.max(x.abs()));
-        let room = Vec3::new(margin, margin, margin);
-        let sides = |node: &TriangleNode| [node.low - room, node.high + room];
+        let margin = NODE_MARGIN * coordinates.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let padding = Vec3::new(margin, margin, margin);
+        let sides = |node: &TriangleNode| [node.low - padding, node.high + padding];
         let boxes = nodes.iter().flat_map(|(_, node)| sides(node));
         let boxes = self.add_numbers(boxes.flat_map(Vec3::to_array));
         let corners = mesh.faces().as_flattened().iter();

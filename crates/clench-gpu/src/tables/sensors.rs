@@ -393,7 +393,7 @@ fn clip(sensor: &Sensor) -> Clip {
     }
 }
 
-/// Returns the site whose volume a sensor is about.
+/// Returns the site in whose volume a sensor measures.
 fn site_of(sensor: &Sensor) -> Option<usize> {
     match &sensor.target {
         SensorTarget::Inside { site, .. } => Some(*site),

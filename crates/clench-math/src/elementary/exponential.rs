@@ -1,7 +1,7 @@
 //! Exponential, logarithm and real powers.
 
 use super::extended::{ordered_sum, two_product, two_sum};
-use super::polynomial::{bounded, by_precision, nearest_integer, polynomial};
+use super::polynomial::{by_precision, clamp_keeping_nan, nearest_integer, polynomial};
 use crate::{Real, Scalar, kernel};
 use std::f64::consts::LOG2_E;
 
@@ -68,11 +68,11 @@ pub(crate) fn ln<T: Real>(x: T) -> T {
 pub(crate) fn powf<T: Real>(x: T, p: T) -> T {
     let (zero, infinity) = (T::ZERO, T::splat(T::Scalar::INFINITY));
     // A larger power overflows or underflows for every x but 1, and could make the product below inexact.
-    let most = by_precision::<T, _>(f64::powi(2.0, 64), f64::powi(2.0, 32));
-    let bounded_p = bounded(p, -most, most);
+    let limit = by_precision::<T, _>(f64::powi(2.0, 64), f64::powi(2.0, 32));
+    let clamped_p = clamp_keeping_nan(p, -limit, limit);
     let (high, low) = ln_extended(x);
-    let (product, error) = two_product(high, bounded_p);
-    let y = exp_extended(product, error + low * bounded_p);
+    let (product, error) = two_product(high, clamped_p);
+    let y = exp_extended(product, error + low * clamped_p);
 
     let falls = p.lt(zero);
     let y = T::select(x.eq(zero), T::select(falls, infinity, zero), y);
@@ -88,9 +88,9 @@ pub(crate) fn powf<T: Real>(x: T, p: T) -> T {
 fn exp_extended<T: Real>(high: T, low: T) -> T {
     // A little past the points at which the result is ∞ or 0. At these limits the low part no longer affects the
     // result, but must stay small.
-    let (least, most) = by_precision::<T, _>((-750.0, 712.0), (-108.0, 92.0));
-    let high = bounded(high, least, most);
-    let low = bounded(low, -1.0, 1.0);
+    let (least, limit) = by_precision::<T, _>((-750.0, 712.0), (-108.0, 92.0));
+    let high = clamp_keeping_nan(high, least, limit);
+    let low = clamp_keeping_nan(low, -1.0, 1.0);
     let exponent = nearest_integer(high * T::new(LOG2_E));
     let (ln2_high, ln2_low) = ln_2::<T>();
     let (r, tail) = ordered_sum(high - exponent * ln2_high, low - exponent * ln2_low);

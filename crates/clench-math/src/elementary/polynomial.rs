@@ -37,6 +37,6 @@ pub(super) fn nearest_integer<T: Real>(x: T) -> T {
 
 /// Clamps `x` between two limits; NaN stays NaN.
 #[inline(always)]
-pub(super) fn bounded<T: Real>(x: T, low: f64, high: f64) -> T {
+pub(super) fn clamp_keeping_nan<T: Real>(x: T, low: f64, high: f64) -> T {
     T::new(high).min(T::new(low).max(x))
 }

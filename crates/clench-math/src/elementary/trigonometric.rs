@@ -87,8 +87,8 @@ const ARC_TANGENT_32: [f64; 5] = [
 #[inline(always)]
 pub(crate) fn sin_cos<T: Real>(x: T) -> (T, T) {
     // Past a quarter of the mantissa's integers, quarter turns cannot be distinguished; infinity becomes NaN.
-    let most = T::new(by_precision::<T, _>(f64::powi(2.0, 50), f64::powi(2.0, 21)));
-    let x = T::select(x.abs().le(most), x, x * T::ZERO);
+    let limit = T::new(by_precision::<T, _>(f64::powi(2.0, 50), f64::powi(2.0, 21)));
+    let x = T::select(x.abs().le(limit), x, x * T::ZERO);
     let (quarters, angle, tail) = reduce_to_quarter_turn(x);
     let (sine, cosine) = small_sin_cos(angle, tail);
     // q modulo 4, negated, in −2..=2, by arithmetic, without bit operations or branches. The order of the operations
@@ -166,8 +166,8 @@ pub(crate) fn atan2<T: Real>(y: T, x: T) -> T {
     ));
     let angle = eighths * high + (eighths * low + sign * arc);
 
-    let known = x.eq(x) & y.eq(y);
-    T::select(known, angle.copysign(y), T::new(f64::NAN))
+    let not_nan = x.eq(x) & y.eq(y);
+    T::select(not_nan, angle.copysign(y), T::new(f64::NAN))
 }
 
 /// Makes the smaller and the larger magnitude safe to divide and add: (0, 0) and (finite, ∞) become (0, 1), (∞, ∞)

@@ -70,7 +70,7 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
     }
     let [width, height] = eye.size.map(|side| side as f64);
     let [right, up, back] = eye.axes.map(Vec3::<T>::splat);
-    let place = Vec3::<T>::splat(eye.place);
+    let position = Vec3::<T>::splat(eye.position);
     let [near, far] = [eye.near, eye.far].map(T::new);
     let pixel = eye.half / height;
     let drawn = facts.rows.clone();
@@ -82,8 +82,8 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
             let column = lanes + lanes + T::new(2.0 * start as f64 + 1.0 - width);
             let aside = right * (column * T::new(pixel)) + across;
             let (from, direction) = match eye.parallel {
-                true => (place + aside, -back),
-                false => (place, aside - back),
+                true => (position + aside, -back),
+                false => (position, aside - back),
             };
             // Distances are along the viewing direction, behind the near plane.
             let line = Ray {
@@ -131,7 +131,7 @@ impl<'a, T: Real<Scalar = f64>> Aim<'a, T> {
         let [ahead, side, normal] = [0, 1, 2].map(|k| rotation.column(k));
         let above = match eye.parallel {
             true => normal.dot(eye.axes[2]),
-            false => normal.dot(eye.place - target.pose.position),
+            false => normal.dot(eye.position - target.pose.position),
         };
         if target.kind == ShapeKind::Plane && above < 0.0 {
             rotation = Mat3::from_columns(ahead, -side, -normal);

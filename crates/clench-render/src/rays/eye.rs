@@ -1,13 +1,13 @@
 //! The rays of a camera.
 
-use crate::camera::Placed;
+use crate::camera::CameraPose;
 use clench::math::Vec3;
 use std::ops::Range;
 
 /// A camera whose pixels are rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
-    pub(super) place: Vec3<f64>,
+    pub(super) position: Vec3<f64>,
     /// The unit vectors to the right, upwards and backwards.
     pub(super) axes: [Vec3<f64>; 3],
     /// Half the height of the picture at distance 1 or, if the rays are parallel, in metres.
@@ -28,11 +28,12 @@ pub(super) struct Window {
 }
 
 impl Eye {
-    /// Creates the rays of a camera between two distances. As in the pictures of a device, only parallel rays end.
-    pub(super) fn new(camera: &Placed, size: [u32; 2], [near, far]: [f64; 2]) -> Self {
+    /// Creates the rays of a camera between two distances. As in the pictures of a device, only the rays of
+    /// an orthographic camera have an end.
+    pub(super) fn new(camera: &CameraPose, size: [u32; 2], [near, far]: [f64; 2]) -> Self {
         let wide = |v: [f32; 3]| Vec3::from_array(v.map(f64::from));
         Eye {
-            place: wide(camera.eye),
+            position: wide(camera.eye),
             axes: camera.axes.map(wide),
             half: f64::from(camera.half),
             parallel: camera.parallel,
@@ -52,7 +53,7 @@ impl Eye {
 
     /// Returns a part of the picture that contains a ball.
     pub(super) fn window(&self, center: Vec3<f64>, radius: f64) -> Window {
-        let from = center - self.place;
+        let from = center - self.position;
         let [x, y, back] = self.axes.map(|axis| axis.dot(from));
         let ahead = -back;
         if ![x, y, ahead, radius].iter().all(|x| x.is_finite()) {

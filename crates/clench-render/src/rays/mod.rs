@@ -20,8 +20,8 @@ use std::num::NonZeroUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 use target::{Target, targets};
 
-/// The number of environments that wait for the threads that draw them.
-const WAITING: usize = 64;
+/// The maximum number of environments that wait for the threads that draw them.
+const MAX_WAITING: usize = 64;
 /// The number of pixels that a thread draws at once, which bounds its memory.
 const BAND: usize = 1 << 16;
 /// The number of pixels that are worth a thread.
@@ -127,12 +127,12 @@ impl RayPictures<'_> {
         looks: Option<&Looks>,
     ) -> Result<(), RenderError> {
         let (extent, wanted) = (self.caster.extent, self.wanted);
-        let place = |view: &crate::View| {
-            let camera = view.place(sim)?;
+        let eye = |view: &crate::View| {
+            let camera = view.pose(sim)?;
             let planes = [NEAR * extent, FAR * extent].map(f64::from);
             Ok(Eye::new(&camera, [wanted.width, wanted.height], planes))
         };
-        let eyes = wanted.views.iter().map(place);
+        let eyes = wanted.views.iter().map(eye);
         let eyes = eyes.collect::<Result<_, RenderError>>()?;
         self.waiting.push(Scene {
             eyes,
@@ -140,7 +140,7 @@ impl RayPictures<'_> {
             depth: (self.depth.get_mut(index).and_then(Option::take)).unwrap_or_default(),
             geoms: (self.geoms.get_mut(index).and_then(Option::take)).unwrap_or_default(),
         });
-        if self.waiting.len() == WAITING {
+        if self.waiting.len() == MAX_WAITING {
             self.draw();
         }
         Ok(())

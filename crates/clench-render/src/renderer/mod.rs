@@ -50,12 +50,12 @@ impl Picture {
         sizes.into_iter().try_fold(1usize, usize::checked_mul)
     }
 
-    /// Returns an error unless each side has 1 to `most` pixels.
-    pub(crate) fn check_sides(&self, most: u32) -> Result<(), RenderError> {
+    /// Returns an error unless each side has 1 to `max` pixels.
+    pub(crate) fn check_sides(&self, max: u32) -> Result<(), RenderError> {
         let sides = [self.width, self.height];
-        match sides.iter().all(|side| (1..=most).contains(side)) {
+        match sides.iter().all(|side| (1..=max).contains(side)) {
             true => Ok(()),
-            false => Err(RenderError::Size(self.width, self.height, most)),
+            false => Err(RenderError::Size(self.width, self.height, max)),
         }
     }
 
@@ -68,7 +68,7 @@ impl Picture {
             (out.geoms.len(), 1),
         ] {
             let fits = len == 0 || Some(len) == pixels.and_then(|pixels| pixels.checked_mul(each));
-            assert!(fits, "the memory of pictures has another size than they");
+            assert!(fits, "the memory has another size than the pictures");
         }
     }
 }
@@ -183,8 +183,8 @@ impl Renderer {
     /// # Errors
     /// Returns an error if it is out of range.
     pub fn check_size(&self, wanted: &Picture) -> Result<(), RenderError> {
-        let most = MAX_SIDE.min(self.gpu.device.limits().max_texture_dimension_2d);
-        wanted.check_sides(most)
+        let max = MAX_SIDE.min(self.gpu.device.limits().max_texture_dimension_2d);
+        wanted.check_sides(max)
     }
 
     /// Takes the textures of a form out of the renderer, or creates them.
@@ -199,7 +199,7 @@ impl Renderer {
     }
 
     /// Stores textures for later pictures.
-    fn keep_canvas(&mut self, canvas: Canvas) {
+    fn store_canvas(&mut self, canvas: Canvas) {
         self.canvases.push(canvas);
         let old = self.canvases.len().saturating_sub(MAX_CANVASES);
         self.canvases.drain(..old);

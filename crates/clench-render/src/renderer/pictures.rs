@@ -73,7 +73,7 @@ impl<'a> Pictures<'a> {
         let views = &self.wanted.views;
         let mut entered = false;
         for (k, view) in views.iter().enumerate() {
-            let camera = view.place(sim)?;
+            let camera = view.pose(sim)?;
             let Some(canvas) = &self.canvas else {
                 continue;
             };
@@ -87,7 +87,7 @@ impl<'a> Pictures<'a> {
             };
             let scene = &self.renderer.scene;
             if !entered {
-                self.dispatch.enter(scene, &shown, &canvas.form);
+                self.dispatch.add_environment(scene, &shown, &canvas.form);
                 entered = true;
             }
             let slot = index * views.len() + k;
@@ -106,7 +106,7 @@ impl<'a> Pictures<'a> {
             self.land(flight)?;
         }
         if let Some(canvas) = self.canvas.take() {
-            self.renderer.keep_canvas(canvas);
+            self.renderer.store_canvas(canvas);
         }
         Ok(())
     }

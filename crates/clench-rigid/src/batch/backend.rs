@@ -24,7 +24,7 @@ pub trait Backend<S>: Send {
     ///
     /// # Errors
     /// Returns an error if the device cannot compute them for this model, or if it failed.
-    fn want(&mut self, outputs: &[Output]) -> Result<(), SimError>;
+    fn request(&mut self, outputs: &[Output]) -> Result<(), SimError>;
     /// Returns the device's parameters for a model that differs from the batch's only in parameters.
     ///
     /// # Errors

@@ -41,7 +41,7 @@ impl<'a, S: Shared> Cells<'a, S> {
 
     /// Replaces the row of an environment.
     #[inline(always)]
-    pub fn put(&self, env: usize, values: impl IntoIterator<Item = S>) {
+    pub fn set_row(&self, env: usize, values: impl IntoIterator<Item = S>) {
         for (cell, value) in self.row(env).iter().zip(values) {
             S::store(cell, value);
         }
@@ -53,7 +53,7 @@ impl<'a, S: Shared> Cells<'a, S> {
     }
 
     /// Replaces all rows.
-    pub(crate) fn put_all(&self, values: impl Iterator<Item = S>) {
+    pub(crate) fn set_all(&self, values: impl Iterator<Item = S>) {
         for (cell, value) in self.cells.iter().zip(values) {
             S::store(cell, value);
         }

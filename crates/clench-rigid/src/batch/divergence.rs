@@ -57,13 +57,13 @@ impl Divergence {
     pub(super) fn count<T: Real>(&mut self, ws: &Workspace<T>, len: usize) {
         let iterations = &T::as_scalars(from_ref(&ws.solver.stats().iterations))[..len];
         let iterations = iterations.iter().map(|x| x.to_f64() as u64);
-        let most = iterations.clone().max().unwrap_or(0);
+        let max_iterations = iterations.clone().max().unwrap_or(0);
         self.group_steps += 1;
         self.env_steps += len as u64;
         self.lane_steps += T::LANES as u64;
-        self.group_iterations += most;
+        self.group_iterations += max_iterations;
         self.env_iterations += iterations.sum::<u64>();
-        self.lane_iterations += most * T::LANES as u64;
+        self.lane_iterations += max_iterations * T::LANES as u64;
         self.contact_slots += ws.contacts.len() as u64;
         for contact in &ws.contacts {
             let active = (0..len).filter(|&lane| contact.active.lane(lane));

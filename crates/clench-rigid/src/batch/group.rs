@@ -36,7 +36,7 @@ impl<T: Real> Group<T> {
     }
 
     /// Removes the environments outside these lanes.
-    pub fn keep(&mut self, lanes: T::Mask) {
+    pub fn retain(&mut self, lanes: T::Mask) {
         let mut kept = 0;
         for lane in 0..self.len {
             if lanes.lane(lane) {

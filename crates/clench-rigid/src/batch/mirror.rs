@@ -13,7 +13,7 @@ use clench_dynamics::state::FIELDS;
 pub(super) struct Mirror<S: Precision> {
     pub(super) backend: Box<dyn Backend<S>>,
     /// Each field of [`FIELDS`] as last uploaded or downloaded.
-    pub(super) held: Vec<Vec<S>>,
+    pub(super) fields: Vec<Vec<S>>,
     /// True for environments that take part in a call and still run.
     pub(super) running: Vec<bool>,
     /// True for environments that repeat their step from the initial state.
@@ -28,9 +28,9 @@ pub(super) struct Mirror<S: Precision> {
 impl<S: Precision> Mirror<S> {
     /// Returns the bytes per environment on host and device.
     pub(super) fn bytes_per_env(&self, model: &Model) -> usize {
-        let held: usize = FIELDS.iter().map(|field| field.numbers(model)).sum();
+        let numbers: usize = FIELDS.iter().map(|field| field.numbers(model)).sum();
         let besides = 2 * size_of::<bool>() + size_of::<Outcome>();
-        self.backend.bytes_per_env() + held * size_of::<S>() + besides
+        self.backend.bytes_per_env() + numbers * size_of::<S>() + besides
     }
 
     pub(super) fn name(&self) -> String {
@@ -39,19 +39,19 @@ impl<S: Precision> Mirror<S> {
 
     /// Lets the device compute these outputs from now on, except those that follow from the rows. Returns an error if
     /// it cannot.
-    pub(super) fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
+    pub(super) fn request(&mut self, outputs: &[Output]) -> Result<(), SimError> {
         let from_rows = |output: &Output| output.is_state() || *output == Output::energy;
-        let there = |output: &Output| from_rows(output) || self.backend.computes(*output);
-        let Some(missing) = outputs.iter().find(|output| !there(output)) else {
-            return self.backend.want(outputs);
+        let is_available = |output: &Output| from_rows(output) || self.backend.computes(*output);
+        let Some(missing) = outputs.iter().find(|output| !is_available(output)) else {
+            return self.backend.request(outputs);
         };
-        let known = Output::ALL.iter().filter(|output| there(output));
-        let known = Vec::from_iter(known.map(|output| output.name()));
+        let available = Output::ALL.iter().filter(|output| is_available(output));
+        let available = Vec::from_iter(available.map(|output| output.name()));
         Err(SimError::Backend(format!(
             "{} does not compute {} yet; it computes {}",
             self.name(),
             missing.name(),
-            known.join(", ")
+            available.join(", ")
         )))
     }
 }

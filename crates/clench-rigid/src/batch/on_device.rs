@@ -33,7 +33,7 @@ impl<S: Precision> Batch<S> {
         let mut batch = Batch::with_options(model, count, options)?;
         let mut mirror = Mirror {
             backend,
-            held: Vec::new(),
+            fields: Vec::new(),
             running: per_env(count, || false)?,
             restarted: per_env(count, || false)?,
             outcomes: per_env(count, Outcome::default)?,
@@ -46,7 +46,7 @@ impl<S: Precision> Batch<S> {
             if mirror.backend.holds(field.name) {
                 mirror.backend.write(field.name, &numbers)?;
             }
-            mirror.held.push(numbers);
+            mirror.fields.push(numbers);
         }
         batch.mirror = Some(mirror);
         Ok(batch)
@@ -87,16 +87,16 @@ impl<S: Precision> Batch<S> {
         }
         let may_restart = self.settings.autoreset && call.pass == Pass::Step;
         self.upload(mirror, call.pass, may_restart, &mut summary)?;
-        let held = matches!(call.controls, Controls::Held);
+        let constant_controls = matches!(call.controls, Controls::Held);
         // The rounded time determines when a sensor with a period is due, so every step gets its own time.
         let periods = &self.model.params.sensor_interval;
         let timed = periods.iter().any(|&period| period > 0.0);
-        let alike = held && trace.is_empty() && !may_restart && !timed;
+        let is_uniform = constant_controls && trace.is_empty() && !may_restart && !timed;
         let mut step = call.range.start;
         while step < call.range.end
             && (mirror.running.contains(&true) || mirror.restarted.contains(&true))
         {
-            let count = if alike { call.range.end - step } else { 1 };
+            let count = if is_uniform { call.range.end - step } else { 1 };
             self.control(mirror, call, step)?;
             self.advance(mirror, call.pass, count, may_restart, &mut summary)?;
             if mirror.restarted.contains(&true) {
@@ -134,7 +134,7 @@ impl<S: Precision> Batch<S> {
         }
         for (k, field) in FIELDS.iter().enumerate() {
             self.state.read_field(field.name, &mut mirror.numbers);
-            if mirror.numbers == mirror.held[k] {
+            if mirror.numbers == mirror.fields[k] {
                 continue;
             }
             if !mirror.backend.holds(field.name) {
@@ -144,15 +144,15 @@ impl<S: Precision> Batch<S> {
                     field.name
                 )));
             }
-            swap(&mut mirror.numbers, &mut mirror.held[k]);
+            swap(&mut mirror.numbers, &mut mirror.fields[k]);
             let width = field.numbers(&self.model);
             for env in 0..mirror.running.len() {
-                let row = &mirror.held[k][env * width..][..width];
+                let row = &mirror.fields[k][env * width..][..width];
                 if mirror.running[env] && beyond_bounds(field.name, row) {
                     self.refuse(mirror, env, pass, may_restart, summary)?;
                 }
             }
-            mirror.backend.write(field.name, &mirror.held[k])?;
+            mirror.backend.write(field.name, &mirror.fields[k])?;
         }
         Ok(())
     }
@@ -186,17 +186,17 @@ impl<S: Precision> Batch<S> {
         step: usize,
     ) -> Result<(), SimError> {
         let nu = self.model.nu();
-        let Some(place) = FIELDS.iter().position(|field| field.name == "ctrl") else {
+        let Some(ctrl) = FIELDS.iter().position(|field| field.name == "ctrl") else {
             return Ok(());
         };
-        let held = &mut mirror.held[place];
+        let fields = &mut mirror.fields[ctrl];
         for env in 0..self.status.len() {
             match call.controls.row(env, step, call.steps, nu) {
-                Some(row) => held[env * nu..][..nu].copy_from_slice(row),
+                Some(row) => fields[env * nu..][..nu].copy_from_slice(row),
                 None => return Ok(()),
             }
         }
-        mirror.backend.write("ctrl", held)
+        mirror.backend.write("ctrl", fields)
     }
 
     /// Runs `count` steps or a forward pass, and records which environments failed or must be reset.
@@ -235,11 +235,11 @@ impl<S: Precision> Batch<S> {
                 continue;
             };
             mirror.running[env] = false;
-            let bounded = matches!(
+            let out_of_capacity = matches!(
                 failure,
                 StepFailure::ContactOverflow { .. } | StepFailure::Unfinished
             );
-            if may_restart && !bounded {
+            if may_restart && !out_of_capacity {
                 mirror.restarted[env] = true;
             } else if pass != Pass::Query {
                 self.status[env] = EnvStatus::Failed(self.fault(failure, time));
@@ -304,13 +304,13 @@ impl<S: Precision> Batch<S> {
         if pass != Pass::Step {
             return Ok(());
         }
-        for (field, held) in FIELDS.iter().zip(&mut mirror.held) {
+        for (field, numbers) in FIELDS.iter().zip(&mut mirror.fields) {
             let moves = StateRows::<S>::MOVING.contains(&field.name);
-            if !moves || held.is_empty() || !mirror.backend.holds(field.name) {
+            if !moves || numbers.is_empty() || !mirror.backend.holds(field.name) {
                 continue;
             }
-            mirror.backend.read(field.name, held)?;
-            self.state.write_field(field.name, held);
+            mirror.backend.read(field.name, numbers)?;
+            self.state.write_field(field.name, numbers);
         }
         Ok(())
     }
@@ -318,8 +318,8 @@ impl<S: Precision> Batch<S> {
     /// Copies the recorded outputs.
     fn fetch_recorded(&mut self, mirror: &mut Mirror<S>) -> Result<(), SimError> {
         let mut outputs = take(&mut self.outputs);
-        let mut kept = outputs.iter_mut();
-        let fetched = kept.try_for_each(|own| self.fetch(mirror, own, 0));
+        let mut own_outputs = outputs.iter_mut();
+        let fetched = own_outputs.try_for_each(|own| self.fetch(mirror, own, 0));
         self.outputs = outputs;
         if let Some(recorded) = &mut self.recorded {
             let ran = mirror.running.iter().enumerate().filter(|(_, runs)| **runs);

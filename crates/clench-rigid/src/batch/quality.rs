@@ -141,7 +141,7 @@ fn figures<T: Real>(results: StepResults<T>) -> StepFigures<T> {
         figures.depth = T::select(contact.active, depth, figures.depth).max(figures.depth);
         figures.deep |= contact.active & depth.gt(half);
     }
-    for (_, record, pos) in held(results.ws) {
+    for (_, record, pos) in equalities_and_limits(results.ws) {
         for &pos in pos {
             let size = violation(record, pos);
             figures.violated |= record.active & size.gt(T::new(SUSPICIOUS_VIOLATION));
@@ -172,16 +172,18 @@ fn half_thickness<T: Real>(results: StepResults<T>, contact: &Contact<T>) -> T {
 
 /// Returns the blocks of equalities and limits with their indices, their records and the positions of their rows.
 #[inline(always)]
-fn held<T: Real>(ws: &Workspace<T>) -> impl Iterator<Item = (usize, &BlockRecord<T>, &[T])> {
+fn equalities_and_limits<T: Real>(
+    ws: &Workspace<T>,
+) -> impl Iterator<Item = (usize, &BlockRecord<T>, &[T])> {
     let blocks = ws.record.blocks.iter().enumerate();
     // Contacts are at the end.
     let others =
         blocks.take_while(|(_, record)| !matches!(record.source, ConstraintSource::Contact(_)));
-    let held = others.filter(|(_, record)| {
+    let chosen = others.filter(|(_, record)| {
         use ConstraintSource::{DofFriction, TendonFriction};
         !matches!(record.source, DofFriction(_) | TendonFriction(_))
     });
-    held.map(|(i, record)| (i, record, &ws.record.pos[ws.problem.block(i).rows()]))
+    chosen.map(|(i, record)| (i, record, &ws.record.pos[ws.problem.block(i).rows()]))
 }
 
 /// Returns the violation of a row of an equality or a limit at `pos`.
@@ -229,7 +231,7 @@ fn deepest<T: Real>(results: StepResults<T>, lane: usize) -> Option<DeepContact>
 fn worst_violation<T: Real>(results: StepResults<T>, lane: usize) -> Option<Violation> {
     let p = results.params;
     let mut worst = None;
-    for (block, record, rows) in held(results.ws) {
+    for (block, record, rows) in equalities_and_limits(results.ws) {
         let source = record.source;
         let softness = match source {
             ConstraintSource::Equality(i) => (p.eq_solref[i], p.eq_solimp[i]),

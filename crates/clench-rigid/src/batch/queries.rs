@@ -165,7 +165,7 @@ impl<S: Precision> Batch<S> {
             answers: Cells::new(&mut answers),
         };
         let (steppers, order) = (&mut self.steppers, &self.order);
-        self.threads.enter(|| {
+        self.threads.run(|| {
             for_each_group(steppers, order, |stepper, group| {
                 stepper.query(group, &call)
             })

@@ -55,10 +55,10 @@ impl<S: Precision> Batch<S> {
     /// Returns an error if a name is unknown or if memory is insufficient, or as [`forward`](Self::forward) does. The
     /// recorded outputs are then unchanged.
     pub fn record(&mut self, names: &[&str]) -> Result<(), SimError> {
-        let wanted = each_once(names)?;
-        let mut new = wanted.clone();
+        let requested = each_once(names)?;
+        let mut new = requested.clone();
         new.retain(|output| self.outputs.iter().all(|own| own.output != *output));
-        self.want(&new)?;
+        self.request(&new)?;
         let mut new = self.tables(&new, 1, S::ZERO)?;
         if !new.is_empty() {
             // New outputs are computed at once and separately: recorded ones do not change, and hold for the same
@@ -76,7 +76,7 @@ impl<S: Precision> Batch<S> {
             }
             computed?;
         }
-        self.outputs.retain(|own| wanted.contains(&own.output));
+        self.outputs.retain(|own| requested.contains(&own.output));
         self.outputs.extend(new);
         if self.outputs.is_empty() {
             self.recorded = None;
@@ -205,13 +205,13 @@ impl<S: Precision> Batch<S> {
             Controls::Each(values) => check_length("ctrl", values.len(), n.saturating_mul(row))?,
         }
         let record = each_once(record)?;
-        self.want(&record)?;
+        self.request(&record)?;
         self.tables(&record, steps, S::new(f64::NAN))
     }
 
     /// Lets the device of this batch, if there is one, compute these outputs.
-    fn want(&mut self, outputs: &[Output]) -> Result<(), SimError> {
-        (self.mirror.as_mut()).map_or(Ok(()), |mirror| mirror.want(outputs))
+    fn request(&mut self, outputs: &[Output]) -> Result<(), SimError> {
+        (self.mirror.as_mut()).map_or(Ok(()), |mirror| mirror.request(outputs))
     }
 
     /// Allocates tables for outputs with rows of `steps` steps.

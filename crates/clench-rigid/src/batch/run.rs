@@ -95,7 +95,7 @@ impl<S: Precision> Batch<S> {
         }
         // All groups of a call run inside the pool, so that its threads need not be woken for each.
         let threads = self.threads.clone();
-        Ok(threads.enter(|| self.run_here(call, trace)))
+        Ok(threads.run(|| self.run_here(call, trace)))
     }
 
     fn run_here(&mut self, call: &Call<S>, trace: &mut [OutputRows<S>]) -> Summary {

@@ -138,7 +138,7 @@ macro_rules! declare_rows {
                 let (motion, _) = self.share();
                 $(if name == stringify!($moving) {
                     let cells = values.iter().map(|&x| kind::$moving_kind::from_number::<S>(x));
-                    return motion.$moving.put_all(cells);
+                    return motion.$moving.set_all(cells);
                 })*
             }
 
@@ -307,12 +307,13 @@ impl<S: Scalar + Shared> MovingRows<'_, S> {
         let (time, row) = row.split_at(1);
         let (qpos, row) = row.split_at(nq);
         let (qvel, act) = row.split_at(nv);
-        self.time.put(env, time.iter().map(|t| t.to_f64()));
-        self.qpos.put(env, qpos.iter().copied());
-        self.qvel.put(env, qvel.iter().copied());
-        self.act.put(env, act.iter().copied());
+        self.time.set_row(env, time.iter().map(|t| t.to_f64()));
+        self.qpos.set_row(env, qpos.iter().copied());
+        self.qvel.set_row(env, qvel.iter().copied());
+        self.act.set_row(env, act.iter().copied());
         self.qacc_warmstart
-            .put(env, std::iter::repeat_n(S::ZERO, nv));
-        self.tree_asleep.put(env, std::iter::repeat(AWAKE as i32));
+            .set_row(env, std::iter::repeat_n(S::ZERO, nv));
+        self.tree_asleep
+            .set_row(env, std::iter::repeat(AWAKE as i32));
     }
 }

@@ -162,7 +162,7 @@ where
                 let fault = check::input_fault(job.model, &self.state, lane);
                 self.fail((env, fault), (start, step), job);
             }
-            group.keep(good);
+            group.retain(good);
         }
         good.all()
     }
@@ -177,11 +177,11 @@ where
         if job.pass == Pass::Query {
             return;
         }
-        let bounded = matches!(
+        let out_of_capacity = matches!(
             fault,
             Fault::ContactOverflow { .. } | Fault::OverBudget { .. }
         );
-        if job.settings.autoreset && start == Start::Rows && !bounded {
+        if job.settings.autoreset && start == Start::Rows && !out_of_capacity {
             self.restarts.push((env as u32, step));
         } else {
             self.totals.faults.push((env as u32, fault));
@@ -225,7 +225,7 @@ where
         }
         self.scatter(group, good, job);
         self.record(group, good, step, job);
-        group.keep(good);
+        group.retain(good);
         good.all()
     }
 
@@ -348,7 +348,7 @@ where
             if good.all() {
                 break good;
             }
-            group.keep(good);
+            group.retain(good);
         };
         self.output.clear();
         let lanes = (&self.params, &self.state, &mut self.ws);

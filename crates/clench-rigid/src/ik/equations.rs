@@ -95,8 +95,8 @@ impl<T: Real> Equations<T> {
             IkTarget::Orientation(object) => {
                 point_jacobian(model, pos, &frames.point(object), jacobian);
                 let goal = Quat::from_slice(goal).normalize();
-                let left = goal * frames.orientation(object).conjugate();
-                (left.to_rotation_vector(), &jacobian[3 * model.nv..])
+                let error = goal * frames.orientation(object).conjugate();
+                (error.to_rotation_vector(), &jacobian[3 * model.nv..])
             }
             IkTarget::Position(object) => {
                 point_jacobian(model, pos, &frames.point(object), jacobian);
@@ -167,19 +167,25 @@ impl<T: Real> Equations<T> {
     /// Solves (A + μ I) δ = g for the dofs that are not held; δ of a held dof is zero. `factor` is scratch memory for
     /// the Cholesky factor. Returns false in lanes where the matrix is not positive definite.
     #[kernel]
-    pub fn solve(&self, damping: T, held: &[T::Mask], factor: &mut [T], step: &mut [T]) -> T::Mask {
+    pub fn solve(
+        &self,
+        damping: T,
+        at_limit: &[T::Mask],
+        factor: &mut [T],
+        step: &mut [T],
+    ) -> T::Mask {
         use clench_math::Mask;
         let mut positive = T::Mask::splat(true);
         factor.copy_from_slice(&self.matrix);
         for i in 0..step.len() {
             let start = row_start(i);
             for j in 0..i {
-                let apart = held[i] | held[j];
-                factor[start + j] = T::select(apart, T::ZERO, factor[start + j]);
+                let omitted = at_limit[i] | at_limit[j];
+                factor[start + j] = T::select(omitted, T::ZERO, factor[start + j]);
             }
             let diagonal = factor[start + i] + damping;
-            factor[start + i] = T::select(held[i], T::ONE, diagonal);
-            step[i] = T::select(held[i], T::ZERO, self.right[i]);
+            factor[start + i] = T::select(at_limit[i], T::ONE, diagonal);
+            step[i] = T::select(at_limit[i], T::ZERO, self.right[i]);
         }
         for i in 0..step.len() {
             let (above, own) = factor.split_at_mut(row_start(i));

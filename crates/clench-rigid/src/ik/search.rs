@@ -57,7 +57,7 @@ pub struct Search<T: Real> {
     scratch: Scratch<T>,
     factor: Vec<T>,
     step: Vec<T>,
-    held: Vec<T::Mask>,
+    at_limit: Vec<T::Mask>,
     /// The step over all dofs (nv).
     velocity: Vec<T>,
     /// The current iterate, while `state` holds the trial positions (nq).
@@ -87,7 +87,7 @@ impl<T: Real> Search<T> {
             scratch: Scratch::new(model),
             factor: here.matrix.clone(),
             step: vec![T::ZERO; n],
-            held: vec![T::Mask::splat(false); n],
+            at_limit: vec![T::Mask::splat(false); n],
             velocity: vec![T::ZERO; model.nv],
             qpos: vec![T::ZERO; model.nq],
             here,
@@ -146,7 +146,7 @@ impl<T: Real> Search<T> {
         self.evaluate(model, params, ik);
         std::mem::swap(&mut self.here, &mut self.there);
         self.qpos.copy_from_slice(&self.state.qpos);
-        self.held.fill(T::Mask::splat(false));
+        self.at_limit.fill(T::Mask::splat(false));
         self.status = IkStatus::IterationLimit.code();
         let mut lambda = T::new(ik.options.damping);
         let mut failures = T::ZERO;
@@ -192,19 +192,19 @@ impl<T: Real> Search<T> {
     #[inline(always)]
     fn try_step(&mut self, model: &Model, params: &Params<T>, ik: &Ik, damping: T) -> T {
         if ik.options.limits {
-            hold(
+            mark_at_limit(
                 model,
                 params,
                 ik,
                 &self.qpos,
                 &self.here.right,
-                &mut self.held,
+                &mut self.at_limit,
             );
         }
-        let positive = (self.here).solve(damping, &self.held, &mut self.factor, &mut self.step);
+        let positive = (self.here).solve(damping, &self.at_limit, &mut self.factor, &mut self.step);
         let longest = (self.step.iter()).fold(T::ZERO, |longest, step| longest.max(step.abs()));
-        let most = T::new(ik.options.max_step);
-        let share = T::select(longest.gt(most), most / longest, T::ONE);
+        let max_step = T::new(ik.options.max_step);
+        let share = T::select(longest.gt(max_step), max_step / longest, T::ONE);
         self.velocity.fill(T::ZERO);
         let mut promised = T::ZERO;
         for ((&dof, &step), &right) in ik.dofs.iter().zip(&self.step).zip(&self.here.right) {
@@ -267,8 +267,8 @@ impl<S: Scalar> IkSolution<S> {
         let (qpos, rest) = row.split_at(nq);
         let status = rest[1].to_f64();
         // An environment whose state is not finite was not searched.
-        let known = IkStatus::ALL.get(status as usize);
-        let status = known.filter(|_| status.is_finite());
+        let listed = IkStatus::ALL.get(status as usize);
+        let status = listed.filter(|_| status.is_finite());
         IkSolution {
             qpos: qpos.to_vec(),
             iterations: rest[0].to_f64() as usize,
@@ -312,21 +312,21 @@ fn project<T: Real>(model: &Model, params: &Params<T>, ik: &Ik, qpos: &mut [T]) 
 
 /// Marks the dofs at a limit against which `right` presses.
 #[inline(always)]
-fn hold<T: Real>(
+fn mark_at_limit<T: Real>(
     model: &Model,
     params: &Params<T>,
     ik: &Ik,
     qpos: &[T],
     right: &[T],
-    held: &mut [T::Mask],
+    at_limit: &mut [T::Mask],
 ) {
-    for ((&dof, &right), held) in ik.dofs.iter().zip(right).zip(held) {
+    for ((&dof, &right), at_limit) in ik.dofs.iter().zip(right).zip(at_limit) {
         let j = model.dofs[dof as usize].joint;
         let joint = &model.joints[j];
         if !joint.limited || !matches!(joint.kind, JointKind::Slide | JointKind::Hinge) {
             continue;
         }
         let (q, [low, high]) = (qpos[joint.qpos], params.jnt_range[j]);
-        *held = (q.le(low) & right.lt(T::ZERO)) | (q.ge(high) & right.gt(T::ZERO));
+        *at_limit = (q.le(low) & right.lt(T::ZERO)) | (q.ge(high) & right.gt(T::ZERO));
     }
 }

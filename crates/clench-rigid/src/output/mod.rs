@@ -23,7 +23,7 @@ use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Inertia, Mat3, Motion, Quat, Real, Vec3};
 
 macro_rules! outputs {
-    ($m:ident, $s:ident, $out:ident; $($(#[$doc:meta])* $name:ident [$($size:expr),*] of $extent:ident => $read:expr;)*) => {
+    ($m:ident, $s:ident, $out:ident; $($(#[$doc:meta])* $name:ident [$($size:expr),*] of $requires:ident => $read:expr;)*) => {
         /// A row of numbers that every environment has.
         #[allow(non_camel_case_types)] // Named as users name them.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,8 +48,8 @@ macro_rules! outputs {
             }
 
             /// Returns the results that it requires.
-            pub(crate) fn extent(self) -> Computed {
-                match self { $(Output::$name => Computed::$extent,)* }
+            pub(crate) fn requires(self) -> Computed {
+                match self { $(Output::$name => Computed::$requires,)* }
             }
 
             /// Appends its numbers to `out`.

@@ -40,14 +40,14 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let (model, params, ws) = (s.model, s.params, &s.ws);
     let mut force = T::ZERO;
     if model.flags.spring {
-        let stretch = tendon_elongation(
+        let elongation = tendon_elongation(
             model,
             params,
             &s.state.plastic,
             t,
             ws.position.ten_length[t],
         );
-        force -= stretch * tendon_spring(params, t).stiffness(stretch);
+        force -= elongation * tendon_spring(params, t).stiffness(elongation);
     }
     if model.flags.damper {
         let velocity = ws.velocity.ten_velocity[t];

@@ -8,9 +8,9 @@ use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::Integrator;
 
 /// Returns an error if inverse dynamics do not support this kind of acceleration.
-pub(crate) fn check_acceleration(model: &Model, given: Acceleration) -> Result<(), SimError> {
+pub(crate) fn check_acceleration(model: &Model, kind: Acceleration) -> Result<(), SimError> {
     let stages = model.integrator == Integrator::Rk4;
-    match given {
+    match kind {
         Acceleration::Discrete if stages => Err(SimError::NoDiscreteInverse),
         Acceleration::Discrete | Acceleration::Continuous => Ok(()),
     }
@@ -32,12 +32,12 @@ impl<T: Precision> Sim<T> {
     pub fn inverse(
         &mut self,
         qacc: &[T],
-        given: Acceleration,
+        kind: Acceleration,
         qfrc_inverse: &mut [T],
     ) -> Result<(), SimError> {
         check_values("qacc", qacc, self.model().nv)?;
         check_length("qfrc_inverse", qfrc_inverse.len(), qacc.len())?;
-        check_acceleration(self.model(), given)?;
-        self.invert(qacc, given, qfrc_inverse)
+        check_acceleration(self.model(), kind)?;
+        self.invert(qacc, kind, qfrc_inverse)
     }
 }

@@ -6,15 +6,15 @@ use clench_math::{Real, Scalar, Vec3};
 
 /// Returns the position, m, and unit direction of lights in world axes, by the rules of MuJoCo's `mj_camlight`, for
 /// lane 0.
-pub fn light_places<T: Real>(lights: &[Light], ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
-    let place = |light: &Light| {
-        let (pos, dir) = light_place(light, ws);
+pub fn light_poses<T: Real>(lights: &[Light], ws: &Workspace<T>) -> Vec<[[f64; 3]; 2]> {
+    let pose = |light: &Light| {
+        let (pos, dir) = light_pose(light, ws);
         [pos.to_array(), dir.to_array()]
     };
-    lights.iter().map(place).collect()
+    lights.iter().map(pose).collect()
 }
 
-fn light_place<T: Real>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f64>) {
+fn light_pose<T: Real>(light: &Light, ws: &Workspace<T>) -> (Vec3<f64>, Vec3<f64>) {
     let wide = |v: Vec3<T>| Vec3::from_array(v.to_array().map(|x| x.lane(0).to_f64()));
     let at = |body: usize| wide(ws.position.xpos[body]);
     let com = |body: usize| wide(ws.position.subtree_com[body]);

@@ -21,7 +21,7 @@ pub(crate) fn update<T: Real>(
     ws: &mut Workspace<T>,
 ) {
     let mut bodies = std::mem::take(&mut ws.sensors.bodies);
-    bodies.make_room(model.nbody());
+    bodies.allocate(model.nbody());
     let source = Source {
         model,
         params,

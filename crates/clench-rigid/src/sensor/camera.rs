@@ -17,8 +17,8 @@ impl<T: Real> Reading<'_, T> {
     /// perspective even if the camera is orthographic, and the principal point is the centre of the image.
     #[kernel]
     pub(super) fn project(&self, site: usize, camera: usize, out: &mut [T]) {
-        let (place, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
-        let p = axes.transpose_mul(self.ws.position.site_xpos[site] - place);
+        let (position, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
+        let p = axes.transpose_mul(self.ws.position.site_xpos[site] - position);
         let near = p.z.abs().lt(T::new(MIN_DEPTH));
         let least = T::new(MIN_DEPTH);
         let signed = T::select(p.z.lt(T::ZERO), -least, least);
@@ -53,27 +53,27 @@ impl<T: Real> Reading<'_, T> {
 
     /// Calls `show` with the line of sight through the centre of each pixel, row by row from the upper left corner.
     pub(super) fn lines_of_sight(&self, camera: usize, mut show: impl FnMut(usize, &Ray<T>)) {
-        let (place, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
+        let (position, axes) = camera_pose(self.model, self.params, &self.ws.position, camera);
         let structure = &self.model.cameras[camera];
         let [width, height] = structure.resolution;
         let focal = self.focal_lengths(camera);
         let center = self.optical_axis(camera);
         // As in MuJoCo, the image of an orthographic camera is as wide as it is high.
-        let extent = self.params.cam_fovy[camera];
-        let pixel = [width, height].map(|n| extent / T::new(n as f64));
+        let size = self.params.cam_fovy[camera];
+        let pixel = [width, height].map(|n| size / T::new(n as f64));
         let z = axes.column(2);
         for i in 0..width * height {
             let x = T::new((i % width) as f64 + 0.5) - center[0];
             let y = center[1] - T::new((i / width) as f64 + 0.5);
             let line = match structure.orthographic {
                 true => Ray {
-                    origin: place + axes * Vec3::new(x * pixel[0], y * pixel[1], T::ZERO),
+                    origin: position + axes * Vec3::new(x * pixel[0], y * pixel[1], T::ZERO),
                     direction: -z,
                 },
                 false => {
                     let local = Vec3::new(x / focal[0], y / focal[1], -T::ONE);
                     Ray {
-                        origin: place,
+                        origin: position,
                         direction: axes * local.normalize().0,
                     }
                 }

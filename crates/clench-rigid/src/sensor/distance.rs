@@ -13,20 +13,20 @@ impl<T: Real> Reading<'_, T> {
         for lane in 0..T::LANES {
             let limit = T::Scalar::new(sensor.cutoff);
             let nearest = self.nearest(sets, limit, lane);
-            let mut put = |numbers: &[T::Scalar]| {
+            let mut write = |numbers: &[T::Scalar]| {
                 for (to, &from) in out.iter_mut().zip(numbers) {
                     to.set_lane(lane, from);
                 }
             };
             match (sensor.kind, nearest) {
-                (SensorKind::Distance, found) => put(&[found.map_or(limit, |f| f.distance)]),
-                (SensorKind::Normal, Some(found)) => put(&direction(&found).to_array()),
+                (SensorKind::Distance, found) => write(&[found.map_or(limit, |f| f.distance)]),
+                (SensorKind::Normal, Some(found)) => write(&direction(&found).to_array()),
                 (SensorKind::FromTo, Some(found)) => {
                     let points = found.points.map(Vec3::to_array);
-                    put(points.as_flattened());
+                    write(points.as_flattened());
                 }
                 (SensorKind::Normal | SensorKind::FromTo, None) => {
-                    put(&[<T::Scalar as Real>::ZERO; 6]);
+                    write(&[<T::Scalar as Real>::ZERO; 6]);
                 }
                 // The builder gives the other kinds other targets.
                 (
@@ -35,7 +35,7 @@ impl<T: Real> Reading<'_, T> {
                     | sensor_group!(frame)
                     | sensor_group!(others),
                     _,
-                ) => put(&[<T::Scalar as Real>::ZERO; 6]),
+                ) => write(&[<T::Scalar as Real>::ZERO; 6]),
             }
         }
     }
@@ -52,8 +52,8 @@ impl<T: Real> Reading<'_, T> {
             for b in second.clone() {
                 let (shape_a, pose_a) = self.solid(a, lane);
                 let (shape_b, pose_b) = self.solid(b, lane);
-                let bound = best.map_or(limit, |best| best.distance);
-                if let Some(found) = distance(&shape_a, &pose_a, &shape_b, &pose_b, bound)
+                let reach = best.map_or(limit, |best| best.distance);
+                if let Some(found) = distance(&shape_a, &pose_a, &shape_b, &pose_b, reach)
                     && best.is_none_or(|best| found.distance < best.distance)
                 {
                     best = Some(found);

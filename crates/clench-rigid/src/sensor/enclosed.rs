@@ -15,14 +15,14 @@ impl<T: Real> Reading<'_, T> {
         let mut out = T::ZERO;
         for lane in 0..T::LANES {
             let volume = self.site_in_lane(site, lane);
-            let mut most = -T::Scalar::INFINITY;
+            let mut largest = -T::Scalar::INFINITY;
             if let FrameObject::Site(inner) = object {
-                most = self.of_shape(&self.site_in_lane(inner, lane), &volume);
+                largest = self.of_shape(&self.site_in_lane(inner, lane), &volume);
             }
             for geom in object.enclosed_geoms(self.model) {
-                most = Real::max(most, self.of_geom(geom, lane, &volume));
+                largest = Real::max(largest, self.of_geom(geom, lane, &volume));
             }
-            out.set_lane(lane, most);
+            out.set_lane(lane, largest);
         }
         out
     }

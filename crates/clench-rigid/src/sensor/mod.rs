@@ -31,8 +31,8 @@ pub fn evaluate<T: Real>(
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
-    let kept = !ws.sensors.measured.is_empty();
-    if !(ws.sensors.wanted || kept) || !model.flags.sensor {
+    let stores_past = !ws.sensors.measured.is_empty();
+    if !(ws.sensors.wanted || stores_past) || !model.flags.sensor {
         return;
     }
     let mut data = std::mem::take(&mut ws.sensors.data);
@@ -54,7 +54,7 @@ pub fn evaluate<T: Real>(
             clip(sensor, out);
         }
     }
-    if kept {
+    if stores_past {
         delay(model, params, state, &mut data, &mut ws.sensors.measured);
     }
     ws.sensors.data = data;
@@ -82,10 +82,10 @@ fn delay<T: Real>(
         );
         let past = late.gt(T::ZERO) | !due;
         if past.any() {
-            let told = &mut data[sensor.numbers.clone()];
-            history.read(&state.history, -late, told);
-            for (told, &now) in told.iter_mut().zip(&measured[sensor.numbers.clone()]) {
-                *told = T::select(past, *told, now);
+            let reading = &mut data[sensor.numbers.clone()];
+            history.read(&state.history, -late, reading);
+            for (reading, &now) in reading.iter_mut().zip(&measured[sensor.numbers.clone()]) {
+                *reading = T::select(past, *reading, now);
             }
         }
     }

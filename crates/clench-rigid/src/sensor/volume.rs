@@ -78,23 +78,23 @@ impl<T: Real> Reading<'_, T> {
     }
 }
 
-/// Returns the hull of a site's mesh, of size `extent`, and transforms `point` from the site's frame, in which the mesh
+/// Returns the hull of a site's mesh, of size `size`, and transforms `point` from the site's frame, in which the mesh
 /// has its original coordinates, to that of the hull.
 #[inline(always)]
 fn in_frame_of_hull<T: Real>(
     mesh: &model::Mesh,
-    extent: Vec3<T>,
+    size: Vec3<T>,
     point: Vec3<T>,
 ) -> (Shape<'_, T>, Vec3<T>) {
     let offset = point - Vec3::from_f64(mesh.pos.to_array());
-    (hull_of(mesh, extent), axes_of(mesh).transpose_mul(offset))
+    (hull_of(mesh, size), axes_of(mesh).transpose_mul(offset))
 }
 
 #[inline(always)]
-fn hull_of<T: Real>(mesh: &model::Mesh, extent: Vec3<T>) -> Shape<'_, T> {
+fn hull_of<T: Real>(mesh: &model::Mesh, size: Vec3<T>) -> Shape<'_, T> {
     Shape::Mesh(Mesh {
         hull: mesh.hull.as_ref(),
-        extent,
+        extent: size,
     })
 }
 

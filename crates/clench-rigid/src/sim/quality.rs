@@ -7,7 +7,7 @@ use clench_math::Mask;
 
 impl Quality {
     /// Adds the last step of a simulation, which must have succeeded.
-    pub fn note<T: Precision>(&mut self, sim: &Sim<T>) {
+    pub fn add_step<T: Precision>(&mut self, sim: &Sim<T>) {
         let results = StepResults {
             model: sim.model(),
             params: sim.params(),

@@ -60,7 +60,7 @@ impl<T: Precision> Sim<T> {
         let ws = &mut self.ws;
         let threads = ws.threads.clone();
         computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
-            threads.enter_awake(|| pass(model, params, settings, state, ws));
+            threads.run_awake(|| pass(model, params, settings, state, ws));
         });
     }
 }

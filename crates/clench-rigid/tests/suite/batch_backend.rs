@@ -94,7 +94,7 @@ impl Backend<f64> for Played {
     fn computes(&self, output: Output) -> bool {
         output == Output::qacc
     }
-    fn want(&mut self, _: &[Output]) -> Result<(), SimError> {
+    fn request(&mut self, _: &[Output]) -> Result<(), SimError> {
         Ok(())
     }
     fn parameters_of(&self, _: &Model) -> Result<Vec<f64>, SimError> {

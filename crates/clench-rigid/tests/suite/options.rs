@@ -30,7 +30,7 @@ fn options_keep_their_values_and_refuse_other_types() {
             .expect("a default is in its range");
         assert_eq!(options.get(option), Some(value));
         for &other in RigidOption::ALL {
-            let alike = value.what() == other.default(false).what();
+            let alike = value.description() == other.default(false).description();
             assert_eq!(
                 options.set(other, value).is_ok(),
                 alike,

@@ -16,7 +16,7 @@
 //! Pieces: the normal 1 or 0; friction 1 if it slides, else 0.
 
 use super::block_cost::{BlockCost, Form, MAX_DIM, RankOne, Rows, Slope, Totals, Weight};
-use super::huber::Turn;
+use super::huber::RowMove;
 use super::one_sided::{active, add_edge_slope, edge_divergence};
 use super::slip::{Slip, SlipPath};
 use clench_math::{Mask, Real};
@@ -30,7 +30,7 @@ struct Disc<T: Real> {
     /// λ.
     radius: T,
     /// λ / K, the slip at which friction reaches its limit.
-    bound: T,
+    limit: T,
 }
 
 impl<T: Real> Disc<T> {
@@ -41,14 +41,14 @@ impl<T: Real> Disc<T> {
         Disc {
             k: rows.d[1] / (mu * mu),
             radius: rows.lambda,
-            bound: rows.lambda * rows.r[1] * mu * mu,
+            limit: rows.lambda * rows.r[1] * mu * mu,
         }
     }
 
     /// Returns the lanes in which friction is at its limit.
     #[inline(always)]
     fn slides(&self, slip: &Slip<T>) -> T::Mask {
-        !slip.t.lt(self.bound) & self.k.gt(T::ZERO)
+        !slip.t.lt(self.limit) & self.k.gt(T::ZERO)
     }
 }
 
@@ -76,7 +76,7 @@ impl<T: Real> BlockCost<T> for Coulomb {
             force[j] = T::select(slides, limit, -(rows.d[j] * y[j]));
         }
         let sticking = half * disc.k * slip.t * slip.t;
-        let sliding = disc.radius * (slip.t - half * disc.bound);
+        let sliding = disc.radius * (slip.t - half * disc.limit);
         totals.cost += half * rows.d[0] * m * m + T::select(slides, sliding, sticking);
         totals.curved |= slides & disc.radius.gt(T::ZERO);
         totals.mark(&mut active_set[0], active(rows.d[0], y[0]));
@@ -144,7 +144,7 @@ impl<T: Real> BlockCost<T> for Coulomb {
             ..
         } = Path::new(rows, y, dy, alpha);
         // The slope is K c u·U' with c = min(T, λ / K).
-        let end = after.t.min(disc.bound);
+        let end = after.t.min(disc.limit);
         slope.growth += disc.k * (huber.change * slip.along + end * slip.turn);
         let u = slip.along + slip.turn;
         let across = (slip.squares - u * u).max(T::ZERO);
@@ -156,7 +156,7 @@ impl<T: Real> BlockCost<T> for Coulomb {
     #[inline(always)]
     fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
         let path = Path::new(rows, y, dy, alpha);
-        let start = path.before.t.min(path.disc.bound);
+        let start = path.before.t.min(path.disc.limit);
         let huber = path.huber.change * path.huber.beyond;
         let friction = path.disc.k * (huber + start * path.slip.bend);
         edge_divergence(rows.d[0], y[0], alpha * dy[0]) + friction
@@ -182,7 +182,7 @@ struct Path<T: Real> {
     after: Slip<T>,
     slip: SlipPath<T>,
     /// The change of the Huber cost of T.
-    huber: Turn<T>,
+    huber: RowMove<T>,
 }
 
 impl<T: Real> Path<T> {
@@ -194,7 +194,7 @@ impl<T: Real> Path<T> {
         let slip = SlipPath::new(rows.shape, dy, alpha, [&before, &after]);
         let step = alpha * slip.along + slip.bend;
         Path {
-            huber: Turn::new(disc.bound, before.t, step),
+            huber: RowMove::new(disc.limit, before.t, step),
             disc,
             before,
             after,

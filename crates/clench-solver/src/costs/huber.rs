@@ -68,9 +68,9 @@ impl<T: Real> BlockCost<T> for Huber {
     fn slope(rows: Rows<T>, y: &[T], dy: &[T], alpha: T, slope: &mut Slope<T>) {
         for i in 0..rows.d.len() {
             let (d, dy) = (rows.d[i], dy[i]);
-            let turn = Turn::new(rows.r[i] * rows.shape[i], y[i], alpha * dy);
-            slope.growth += d * turn.change * dy;
-            slope.second += T::select(turn.ends_inside, d, T::ZERO) * dy * dy;
+            let moved = RowMove::new(rows.r[i] * rows.shape[i], y[i], alpha * dy);
+            slope.growth += d * moved.change * dy;
+            slope.second += T::select(moved.ends_inside, d, T::ZERO) * dy * dy;
         }
     }
 
@@ -78,15 +78,15 @@ impl<T: Real> BlockCost<T> for Huber {
     fn divergence(rows: Rows<T>, y: &[T], dy: &[T], alpha: T) -> T {
         let mut sum = T::ZERO;
         for i in 0..rows.d.len() {
-            let turn = Turn::new(rows.r[i] * rows.shape[i], y[i], alpha * dy[i]);
-            sum += rows.d[i] * turn.change * turn.beyond;
+            let moved = RowMove::new(rows.r[i] * rows.shape[i], y[i], alpha * dy[i]);
+            sum += rows.d[i] * moved.change * moved.beyond;
         }
         sum
     }
 }
 
-/// One row moving from y₀ to y₁.
-pub(super) struct Turn<T: Real> {
+/// The change of one row from y₀ to y₁.
+pub(super) struct RowMove<T: Real> {
     /// c₁ − c₀.
     pub change: T,
     /// y₁ − ½ (c₀ + c₁), with the sign of the change.
@@ -94,16 +94,16 @@ pub(super) struct Turn<T: Real> {
     pub ends_inside: T::Mask,
 }
 
-impl<T: Real> Turn<T> {
+impl<T: Real> RowMove<T> {
     #[inline(always)]
-    pub(super) fn new(bound: T, y: T, step: T) -> Self {
+    pub(super) fn new(limit: T, y: T, step: T) -> Self {
         let half = T::new(0.5);
         let end = y + step;
-        let (c0, c1) = (y.clamp(-bound, bound), end.clamp(-bound, bound));
-        let ends_inside = end.abs().lt(bound);
+        let (c0, c1) = (y.clamp(-limit, limit), end.clamp(-limit, limit));
+        let ends_inside = end.abs().lt(limit);
         // Within the quadratic piece both follow from the step, without cancellation.
-        let inside = y.abs().lt(bound) & ends_inside;
-        Turn {
+        let inside = y.abs().lt(limit) & ends_inside;
+        RowMove {
             change: T::select(inside, step, c1 - c0),
             beyond: T::select(inside, half * step, end - half * (c0 + c1)),
             ends_inside,
@@ -113,6 +113,6 @@ impl<T: Real> Turn<T> {
 
 /// Returns −1, 0 or 1: the side of the quadratic piece that `y` is on.
 #[inline(always)]
-fn side<T: Real>(bound: T, y: T) -> T {
-    T::select(y.abs().lt(bound), T::ZERO, T::ONE.copysign(y))
+fn side<T: Real>(limit: T, y: T) -> T {
+    T::select(y.abs().lt(limit), T::ZERO, T::ONE.copysign(y))
 }

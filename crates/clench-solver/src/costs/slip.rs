@@ -38,7 +38,7 @@ impl<T: Real> Slip<T> {
     }
 }
 
-/// The slip along a ray, from y to y + α dy.
+/// The slip along a ray, from y to y + α dy. U' is the derivative of U by α.
 pub(super) struct SlipPath<T> {
     /// |U'|².
     pub squares: T,

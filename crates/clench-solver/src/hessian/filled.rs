@@ -47,9 +47,9 @@ fn split<T: Real>(
 }
 
 impl<T: Real> FilledForm<T> {
-    /// Fits the pattern to that of M with couplings. Returns false if it would have more than `most` entries.
-    pub(super) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
-        if !self.pattern.analyse(tree, couplings, most) {
+    /// Fits the pattern to that of M with couplings. Returns false if it would have more than `max_entries` entries.
+    pub(super) fn analyse(&mut self, tree: &Tree, couplings: &[u32], max_entries: usize) -> bool {
+        if !self.pattern.analyse(tree, couplings, max_entries) {
             return false;
         }
         self.factor.resize(&self.pattern);
@@ -134,10 +134,10 @@ impl<T: Real> FilledForm<T> {
         self.factor.solve_transposed(&self.pattern, x);
     }
 
-    /// See [`Hessian::solve_rest`](super::Hessian::solve_rest).
+    /// See [`Hessian::complete_solve`](super::Hessian::complete_solve).
     #[inline(always)]
-    pub(super) fn solve_rest(&mut self, x: &mut [T]) {
-        self.factor.solve_rest(&self.pattern, x);
+    pub(super) fn complete_solve(&mut self, x: &mut [T]) {
+        self.factor.complete_solve(&self.pattern, x);
     }
 
     /// See [`Hessian::push_pair`](super::Hessian::push_pair).

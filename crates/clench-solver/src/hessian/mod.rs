@@ -45,8 +45,13 @@ const MIN_FILLED_DOFS: usize = 36;
 const WORTH_FILLED: f64 = 2.0;
 
 impl<T: Real> Hessian<T> {
-    /// Fits the pattern to a problem. Returns false if it would have more than `most` entries.
-    pub(crate) fn prepare(&mut self, problem: &Problem<T>, dense: bool, most: usize) -> bool {
+    /// Fits the pattern to a problem. Returns false if it would have more than `max_entries` entries.
+    pub(crate) fn prepare(
+        &mut self,
+        problem: &Problem<T>,
+        dense: bool,
+        max_entries: usize,
+    ) -> bool {
         let tree = problem.tree();
         self.found.clear();
         if !dense {
@@ -60,7 +65,7 @@ impl<T: Real> Hessian<T> {
             self.couplings.extend_from_slice(&self.found);
             self.parents.clear();
             self.parents.extend_from_slice(tree.parents());
-            if !self.choose(tree, most) {
+            if !self.choose(tree, max_entries) {
                 // Invalidated, so that the next problem of this pattern is refused as well.
                 self.parents.clear();
                 return false;
@@ -71,15 +76,15 @@ impl<T: Real> Hessian<T> {
         } else {
             self.paths.nnz()
         };
-        nnz <= most
+        nnz <= max_entries
     }
 
-    /// Chooses the form of H, and fits the pattern. Returns false if it would have more than `most` entries.
-    fn choose(&mut self, tree: &Tree, most: usize) -> bool {
+    /// Chooses the form of H, and fits the pattern. Returns false if it would have more than `max_entries` entries.
+    fn choose(&mut self, tree: &Tree, max_entries: usize) -> bool {
         self.is_filled = !self.dense
             && tree.nv() >= MIN_FILLED_DOFS
             && !self.found.is_empty()
-            && self.filled.analyse(tree, &self.found, most)
+            && self.filled.analyse(tree, &self.found, max_entries)
             && self.filled.saves() > WORTH_FILLED;
         if self.is_filled {
             return true;
@@ -89,7 +94,7 @@ impl<T: Real> Hessian<T> {
             self.found.push(tree.nv() as u32);
             self.found.extend(0..tree.nv() as u32);
         }
-        self.paths.rebuild(tree, &self.found, most)
+        self.paths.rebuild(tree, &self.found, max_entries)
     }
 
     /// Factors H = M + Jᵀ W J in the lanes of `mask`, on the threads if that pays. `weigh` writes the Hessian block of
@@ -128,7 +133,7 @@ impl<T: Real> Hessian<T> {
     #[inline(always)]
     pub(crate) fn solve(&mut self, x: &mut [T]) {
         self.solve_transposed(x);
-        self.solve_rest(x);
+        self.complete_solve(x);
     }
 
     /// Computes `x ← L⁻ᵀ x`, the first part of [`solve`](Self::solve).
@@ -143,11 +148,11 @@ impl<T: Real> Hessian<T> {
 
     /// Computes `x ← L⁻¹ D⁻¹ x`, the rest of [`solve`](Self::solve).
     #[inline(always)]
-    pub(crate) fn solve_rest(&mut self, x: &mut [T]) {
+    pub(crate) fn complete_solve(&mut self, x: &mut [T]) {
         if self.is_filled {
-            self.filled.solve_rest(x);
+            self.filled.complete_solve(x);
         } else {
-            self.paths.solve_rest(x);
+            self.paths.complete_solve(x);
         }
     }
 

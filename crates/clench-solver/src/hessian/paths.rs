@@ -24,9 +24,9 @@ pub(super) struct PathForm<T> {
 }
 
 impl<T: Real> PathForm<T> {
-    /// Fits the tree to that of M with couplings. Returns false if it would have more than `most` entries.
-    pub(super) fn rebuild(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
-        if !(self.tree).rebuild_coupled(tree, couplings, most, &mut self.scratch) {
+    /// Fits the tree to that of M with couplings. Returns false if it would have more than `max_entries` entries.
+    pub(super) fn rebuild(&mut self, tree: &Tree, couplings: &[u32], max_entries: usize) -> bool {
+        if !(self.tree).rebuild_coupled(tree, couplings, max_entries, &mut self.scratch) {
             return false;
         }
         self.matrix.values.clear();
@@ -107,10 +107,10 @@ impl<T: Real> PathForm<T> {
         self.factor.solve_transposed(&self.tree, x);
     }
 
-    /// See [`Hessian::solve_rest`](super::Hessian::solve_rest).
+    /// See [`Hessian::complete_solve`](super::Hessian::complete_solve).
     #[inline(always)]
-    pub(super) fn solve_rest(&self, x: &mut [T]) {
-        self.factor.solve_rest(&self.tree, x);
+    pub(super) fn complete_solve(&self, x: &mut [T]) {
+        self.factor.complete_solve(&self.tree, x);
     }
 
     /// See [`Hessian::push_pair`](super::Hessian::push_pair).

@@ -95,7 +95,7 @@ impl<T: Real<Value = f64, Mask = bool>> ErrorBounds<T> {
             ..*settings
         };
         let refined = &mut self.refined;
-        let known = refined.solve_values(problem, &settings, Some(qacc))
+        let is_refined = refined.solve_values(problem, &settings, Some(qacc))
             && is_exact(refined.state.stats.status(0))
             && (problem.blocks()).all(|block| block.cost != Cost::Coulomb);
         let (problem, iterate) = (&refined.problem, &mut refined.state.iterate);
@@ -108,7 +108,7 @@ impl<T: Real<Value = f64, Mask = bool>> ErrorBounds<T> {
         problem.mass.mul(problem.tree(), &offset, &mut force);
         let rest = force_norm(problem, &mut iterate.gradient.clone());
         let radius = dot(&offset, &force).max(0.0).sqrt() + rest;
-        bound.acceleration = if known { radius } else { f64::INFINITY };
+        bound.acceleration = if is_refined { radius } else { f64::INFINITY };
         bound.directions.clear();
         bound.dofs.clear();
         for dof in 0..problem.nv() {
@@ -119,9 +119,9 @@ impl<T: Real<Value = f64, Mask = bool>> ErrorBounds<T> {
         push_slopes(problem, &mut bound.reach);
         problem.switching_distances(&iterate.qacc, &mut self.scratch);
         let mut rows = self.scratch.iter().zip(&bound.reach);
-        self.exists = known && rows.all(|(&distance, &slope)| distance > slope * rest);
+        self.exists = is_refined && rows.all(|(&distance, &slope)| distance > slope * rest);
         for reach in &mut bound.reach {
-            *reach = if known {
+            *reach = if is_refined {
                 *reach * radius
             } else {
                 f64::INFINITY

@@ -99,15 +99,15 @@ struct Values;
 
 impl<T: Real> Transfer<T, T::Value> for Values {
     #[inline(always)]
-    fn take(self, x: T) -> T::Value {
+    fn convert(self, x: T) -> T::Value {
         x.value()
     }
     #[inline(always)]
-    fn take_in(self, lanes: T::Mask, x: T, absent: T) -> T::Value {
+    fn convert_in(self, lanes: T::Mask, x: T, absent: T) -> T::Value {
         T::select(lanes, x, absent).value()
     }
     #[inline(always)]
-    fn put(self, x: T::Value) -> T {
+    fn convert_back(self, x: T::Value) -> T {
         T::from_value(x)
     }
 }
@@ -146,7 +146,7 @@ impl<V: Real<Value = V>> Implicit<V> {
             a.set_value(value);
         }
         let qacc = std::mem::take(&mut iterate.qacc);
-        iterate.place(problem, &qacc);
+        iterate.start_at(problem, &qacc);
         iterate.differentiate(problem);
         let solved = &self.state.iterate;
         for (to, from) in [

@@ -125,13 +125,13 @@ impl<'a, T> Elimination<'a, T> {
 
     #[cold]
     fn wait_long(&self, index: usize) -> Option<&Done<'a, T>> {
-        let mut looks = 0;
+        let mut polls = 0;
         while !self.abandoned.load(Ordering::Relaxed) {
             if let Some(done) = self.done[index].get() {
                 return Some(done);
             }
-            pause(looks);
-            looks += 1;
+            pause(polls);
+            polls += 1;
         }
         None
     }

@@ -141,10 +141,10 @@ fn eliminate<T: Real>(pattern: &SparsePattern, elimination: &Elimination<T>) {
                 above: &mut *open.values,
                 target: s,
             };
-            let place = update.place as usize;
+            let offset = update.offset as usize;
             let rows = Rows {
-                dofs: &pattern.columns(source)[place..place + update.count as usize],
-                place,
+                dofs: &pattern.columns(source)[offset..offset + update.count as usize],
+                offset,
             };
             tiles.subtract(&rows, pattern.runs(source), pattern.runs(s));
         }

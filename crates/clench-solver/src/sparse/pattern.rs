@@ -71,7 +71,7 @@ impl Supernode {
 pub(crate) struct Run {
     pub dof: u32,
     /// The index of the first in the columns.
-    pub place: u32,
+    pub offset: u32,
     pub len: u32,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct Update {
     /// The earlier supernode.
     pub source: u32,
     /// The index in its columns of the first that is a row of the later one, and their number.
-    pub place: u32,
+    pub offset: u32,
     pub count: u32,
 }
 
@@ -111,8 +111,8 @@ enum Pass {
 
 impl SparsePattern {
     /// Analyses the pattern of M over `tree` with `couplings` (each a count, then ascending dofs). Returns false if it
-    /// would have more than `most` entries.
-    pub(crate) fn analyse(&mut self, tree: &Tree, couplings: &[u32], most: usize) -> bool {
+    /// would have more than `max_entries` entries.
+    pub(crate) fn analyse(&mut self, tree: &Tree, couplings: &[u32], max_entries: usize) -> bool {
         let nv = tree.nv();
         self.supernodes.clear();
         self.supernode_of.clear();
@@ -133,7 +133,7 @@ impl SparsePattern {
                 open.columns.end -= 1;
                 (open.first, open.len) = (dof, open.len + 1);
             } else {
-                if !self.close(most) {
+                if !self.close(max_entries) {
                     return false;
                 }
                 let start = self.columns.len();
@@ -149,7 +149,7 @@ impl SparsePattern {
             }
             self.supernode_of[dof] = self.supernodes.len() as u32 - 1;
         }
-        let fits = self.close(most);
+        let fits = self.close(max_entries);
         if fits {
             self.list_updates();
         }
@@ -162,22 +162,22 @@ impl SparsePattern {
         for pass in [Pass::Count, Pass::Write] {
             for source in 0..self.supernodes.len() {
                 let columns = self.supernodes[source].columns.clone();
-                let mut place = columns.start;
-                while place < columns.end {
-                    let target = self.supernode_of[self.columns[place] as usize] as usize;
+                let mut next = columns.start;
+                while next < columns.end {
+                    let target = self.supernode_of[self.columns[next] as usize] as usize;
                     let target = &mut self.supernodes[target];
                     let end = target.first + target.len;
-                    let rows = self.columns[place..columns.end].iter();
+                    let rows = self.columns[next..columns.end].iter();
                     let rows = rows.take_while(|&&dof| (dof as usize) < end).count();
                     if pass == Pass::Write {
                         self.updates[target.updates.end] = Update {
                             source: source as u32,
-                            place: (place - columns.start) as u32,
+                            offset: (next - columns.start) as u32,
                             count: rows as u32,
                         };
                     }
                     target.updates.end += 1;
-                    place += rows;
+                    next += rows;
                 }
             }
             if pass == Pass::Count {
@@ -243,18 +243,18 @@ impl SparsePattern {
         is_last.then_some(self.supernodes.len() as u32 - 1)
     }
 
-    /// Completes the open supernode. Returns false if there are now more than `most` entries.
-    fn close(&mut self, most: usize) -> bool {
+    /// Completes the open supernode. Returns false if there are now more than `max_entries` entries.
+    fn close(&mut self, max_entries: usize) -> bool {
         let Some(last) = self.supernodes.last_mut() else {
             return true;
         };
         let (columns, start) = (&self.columns[last.columns.clone()], self.runs.len());
-        for (place, &dof) in columns.iter().enumerate() {
+        for (offset, &dof) in columns.iter().enumerate() {
             match self.runs[start..].last_mut() {
                 Some(run) if run.dof + run.len == dof => run.len += 1,
                 _ => self.runs.push(Run {
                     dof,
-                    place: place as u32,
+                    offset: offset as u32,
                     len: 1,
                 }),
             }
@@ -265,7 +265,7 @@ impl SparsePattern {
             let index = self.supernodes.len() as u32 - 1;
             self.scratch.children.push_front(parent, index);
         }
-        self.nnz <= most
+        self.nnz <= max_entries
     }
 
     /// Returns the number of stored values.
@@ -315,13 +315,13 @@ impl SparsePattern {
 
     /// Returns the index of a column in the rows of its supernode.
     #[inline(always)]
-    pub(super) fn place(&self, supernode: &Supernode, column: usize) -> usize {
+    pub(super) fn row_of_column(&self, supernode: &Supernode, column: usize) -> usize {
         if column >= supernode.first {
             return supernode.shared() + column - supernode.first;
         }
         let runs = self.runs(supernode);
         let run = runs[runs.partition_point(|run| run.dof as usize <= column) - 1];
-        run.place as usize + column - run.dof as usize
+        run.offset as usize + column - run.dof as usize
     }
 
     /// Returns the approximate number of multiplications of a factorization.

@@ -9,7 +9,7 @@ impl<T: Real> SparseFactor<T> {
     #[inline(always)]
     pub(crate) fn solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
         self.solve_transposed(pattern, x);
-        self.solve_rest(pattern, x);
+        self.complete_solve(pattern, x);
     }
 
     /// Computes `x ← L^(-T) x`.
@@ -22,7 +22,7 @@ impl<T: Real> SparseFactor<T> {
 
     /// Computes `x ← L⁻¹ D⁻¹ x`, which completes [`solve_transposed`](Self::solve_transposed).
     #[kernel]
-    pub(crate) fn solve_rest(&mut self, pattern: &SparsePattern, x: &mut [T]) {
+    pub(crate) fn complete_solve(&mut self, pattern: &SparsePattern, x: &mut [T]) {
         for (x, &inverse) in x.iter_mut().zip(&self.inverse) {
             *x *= inverse;
         }

@@ -23,7 +23,7 @@ pub(super) struct Tiles<'a, T> {
 pub(super) struct Rows<'a> {
     pub dofs: &'a [u32],
     /// The index of the first in the columns of the finished supernode.
-    pub place: usize,
+    pub offset: usize,
 }
 
 impl<T: Real> Tiles<'_, T> {
@@ -31,12 +31,12 @@ impl<T: Real> Tiles<'_, T> {
     /// diagonal nothing is stored; values written there are never read.
     #[inline(always)]
     pub(super) fn subtract(&mut self, rows: &Rows, runs: &[Run], target_runs: &[Run]) {
-        let last = rows.place + rows.dofs.len();
+        let last = rows.offset + rows.dofs.len();
         let mut candidates = target_runs.iter();
         let mut candidate = candidates.next();
         for run in runs {
-            let (place, dof) = (run.place as usize, run.dof as usize);
-            if place >= last {
+            let (offset, dof) = (run.offset as usize, run.dof as usize);
+            if offset >= last {
                 break;
             }
             let to = if dof >= self.target.first {
@@ -46,19 +46,19 @@ impl<T: Real> Tiles<'_, T> {
                     candidate = candidates.next();
                 }
                 let Some(found) = candidate else { break };
-                found.place as usize + dof - found.dof as usize
+                found.offset as usize + dof - found.dof as usize
             };
-            let len = (run.len as usize).min(last - place);
-            self.subtract_run(rows, place, len, to);
+            let len = (run.len as usize).min(last - offset);
+            self.subtract_run(rows, offset, len, to);
         }
     }
 
-    /// Does the same for `len` columns from `place` on, which start at `to` in the rows of the target.
+    /// Does the same for `len` columns from `offset` on, which start at `to` in the rows of the target.
     #[inline(always)]
-    fn subtract_run(&mut self, rows: &Rows, place: usize, len: usize, to: usize) {
+    fn subtract_run(&mut self, rows: &Rows, offset: usize, len: usize, to: usize) {
         let mut column = 0;
         while column < len {
-            let (from, to) = (place + column, to + column);
+            let (from, to) = (offset + column, to + column);
             column += match len - column {
                 // As many columns as fit into registers: more for scalars than for lanes.
                 WIDE.. if T::LANES == 1 => self.subtract_columns::<WIDE>(rows, from, to),
@@ -101,7 +101,7 @@ impl<T: Real> Tiles<'_, T> {
         for r in 0..R {
             sums[r].copy_from_slice(&self.above[starts[r]..starts[r] + N]);
         }
-        let multipliers = rows.place + row;
+        let multipliers = rows.offset + row;
         for k in (0..self.len).rev() {
             let start = k * self.width;
             let lower = &self.lower[start + multipliers..][..R];

@@ -63,8 +63,8 @@ impl<'a> Window<'a> {
             let mut first = 0;
             while first < columns.len() {
                 let len = run_length(&columns[first..]);
-                let place = start + self.pattern.place(s, columns[first] as usize);
-                values[place..place + len].copy_from_slice(&row[first..first + len]);
+                let offset = start + self.pattern.row_of_column(s, columns[first] as usize);
+                values[offset..offset + len].copy_from_slice(&row[first..first + len]);
                 first += len;
             }
         }
@@ -121,7 +121,7 @@ impl Pattern for Window<'_> {
                         rows: rows.clone(),
                         columns: column..end,
                         triangle: own,
-                        place: start + self.pattern.place(s, dofs[column] as usize),
+                        offset: start + self.pattern.row_of_column(s, dofs[column] as usize),
                         stride: s.width(),
                     });
                     column = end;

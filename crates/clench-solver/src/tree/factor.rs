@@ -228,7 +228,7 @@ impl<T: Real> TreeFactor<T> {
                 (&mut self.diagonal, &whole.diagonal[run.clone()]),
                 (&mut self.inverse, &whole.inverse[run]),
             ] {
-                to.extend(from.iter().map(|&x| transfer.take(x)));
+                to.extend(from.iter().map(|&x| transfer.convert(x)));
             }
         }
     }

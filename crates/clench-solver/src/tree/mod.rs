@@ -178,13 +178,13 @@ impl Tree {
 
     /// Returns, for each tree, the first one of the same shape: its dofs have the same parents, relative to the tree's
     /// first dof.
-    pub(crate) fn alike(&self) -> Vec<u32> {
+    pub(crate) fn first_of_same_shape(&self) -> Vec<u32> {
         let mut shapes: Vec<Vec<Option<u32>>> = vec![Vec::new(); self.ntree];
-        let mut place = vec![0; self.nv()];
+        let mut local = vec![0; self.nv()];
         for (dof, parent) in self.parents.iter().enumerate() {
             let shape = &mut shapes[self.trees[dof] as usize];
-            place[dof] = shape.len() as u32;
-            shape.push(parent.map(|parent| place[parent as usize]));
+            local[dof] = shape.len() as u32;
+            shape.push(parent.map(|parent| local[parent as usize]));
         }
         let mut first = HashMap::new();
         let shapes = shapes.into_iter().zip(0..);
@@ -227,12 +227,12 @@ impl Tree {
     /// Liu's algorithm, from the last dof to the first: the current tree of a neighbour becomes a child of the dof. Of
     /// a coupling, only the pairs of neighbouring dofs are needed, since the dofs above are already connected.
     ///
-    /// Returns false and changes nothing if the pattern would have more than `most` entries.
+    /// Returns false and changes nothing if the pattern would have more than `max_entries` entries.
     pub(crate) fn rebuild_coupled(
         &mut self,
         tree: &Tree,
         couplings: &[u32],
-        most: usize,
+        max_entries: usize,
         scratch: &mut CouplingScratch,
     ) -> bool {
         let nv = tree.nv();
@@ -272,7 +272,7 @@ impl Tree {
             roots[i] = 1 + parents[i].map_or(0, |parent| roots[parent]);
             entries += roots[i] as usize;
         }
-        if entries > most {
+        if entries > max_entries {
             return false;
         }
         let ascending = self.rebuild(nv, |i| parents[i]);

@@ -8,12 +8,12 @@ impl<T: Real> TreeFactor<T> {
     #[inline(always)]
     pub fn solve(&self, tree: &Tree, x: &mut [T]) {
         self.solve_transposed(tree, x);
-        self.solve_rest(tree, x);
+        self.complete_solve(tree, x);
     }
 
     /// Computes `x ← L⁻¹ D⁻¹ x`, which completes [`solve_transposed`](Self::solve_transposed).
     #[kernel]
-    pub(crate) fn solve_rest(&self, tree: &Tree, x: &mut [T]) {
+    pub(crate) fn complete_solve(&self, tree: &Tree, x: &mut [T]) {
         for &TreeSupernode { first, len } in &tree.supernodes {
             with_len!(len, LEN => self.solve_supernode::<LEN>(tree, first, x));
         }
@@ -52,9 +52,9 @@ impl<T: Real> TreeFactor<T> {
     /// `last`. `x` holds the entries on the path, in the order of `tree.row(last)`.
     pub fn solve_half_along(&self, tree: &Tree, last: usize, x: &mut [T]) {
         let path = tree.row(last);
-        for (place, &dof) in path.iter().enumerate().rev() {
-            let row = &self.lower[tree.row_start(dof as usize)..][..place];
-            let (above, own) = x.split_at_mut(place);
+        for (count, &dof) in path.iter().enumerate().rev() {
+            let row = &self.lower[tree.row_start(dof as usize)..][..count];
+            let (above, own) = x.split_at_mut(count);
             for (above, &multiplier) in above.iter_mut().zip(row) {
                 *above -= multiplier * own[0];
             }
@@ -68,9 +68,9 @@ impl<T: Real> TreeFactor<T> {
     /// pair by D. `x` holds the entries on the path, in the order of `tree.row(last)`.
     #[inline(always)]
     pub(crate) fn solve_pairs_along(&self, tree: &Tree, last: usize, x: &mut [[T; 2]]) {
-        for (place, &dof) in tree.row(last).iter().enumerate().rev() {
-            let row = &self.lower[tree.row_start(dof as usize)..][..place];
-            let (above, own) = x.split_at_mut(place);
+        for (count, &dof) in tree.row(last).iter().enumerate().rev() {
+            let row = &self.lower[tree.row_start(dof as usize)..][..count];
+            let (above, own) = x.split_at_mut(count);
             let [first, second] = &mut own[0];
             for (above, &multiplier) in above.iter_mut().zip(row) {
                 above[0] -= multiplier * *first;

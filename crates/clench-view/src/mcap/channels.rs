@@ -64,7 +64,7 @@ pub(crate) fn channels(model: &Model) -> Vec<Channel> {
         let properties = keys.into_iter().map(|key| (key, each.clone()));
         channel(topic, name, object(properties), message)
     };
-    let known = |keys: &[&str]| keys.iter().map(|&key| key.to_owned()).collect::<Vec<_>>();
+    let owned = |keys: &[&str]| keys.iter().map(|&key| key.to_owned()).collect::<Vec<_>>();
     let mut all = vec![
         channel(
             "/tf",
@@ -77,14 +77,14 @@ pub(crate) fn channels(model: &Model) -> Vec<Channel> {
         numbers(
             "/solver",
             "clench.Solver",
-            known(&messages::SOLVER),
+            owned(&messages::SOLVER),
             number(),
             MessageKind::Solver,
         ),
         numbers(
             "/energy",
             "clench.Energy",
-            known(&messages::ENERGY),
+            owned(&messages::ENERGY),
             number(),
             MessageKind::Energy,
         ),
@@ -95,7 +95,7 @@ pub(crate) fn channels(model: &Model) -> Vec<Channel> {
     let joints = messages::joint_names(model);
     if !joints.is_empty() {
         let each = object(
-            known(&["position", "velocity"])
+            owned(&["position", "velocity"])
                 .into_iter()
                 .map(|key| (key, number())),
         );

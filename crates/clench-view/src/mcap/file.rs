@@ -70,21 +70,21 @@ impl<W: Write> McapFile<W> {
         const PROFILE: &str = "";
         const NO_METADATA: &[u8] = &[];
         let (mut schemas, mut channels) = (Vec::new(), Vec::new());
-        let mut known: Vec<(&str, &[u8])> = Vec::new();
+        let mut stored: Vec<(&str, &[u8])> = Vec::new();
         for (channel, stream) in (0..).zip(streams) {
             let schema = (stream.schema_name, &stream.schema[..]);
             // Schema numbers start at 1: 0 means no schema.
-            let place = known.iter().position(|&other| other == schema);
-            let place = place.unwrap_or_else(|| {
-                let record = Record::new(Kind::Schema).u16(known.len() as u16 + 1);
+            let index = stored.iter().position(|&other| other == schema);
+            let index = index.unwrap_or_else(|| {
+                let record = Record::new(Kind::Schema).u16(stored.len() as u16 + 1);
                 let record = record.text(schema.0).text("jsonschema").bytes(schema.1);
                 schemas.extend(record.end());
-                known.push(schema);
-                known.len() - 1
+                stored.push(schema);
+                stored.len() - 1
             });
             let record = Record::new(Kind::Channel)
                 .u16(channel)
-                .u16(place as u16 + 1);
+                .u16(index as u16 + 1);
             let record = record.text(stream.topic).text("json").bytes(NO_METADATA);
             channels.extend(record.end());
         }
@@ -99,28 +99,28 @@ impl<W: Write> McapFile<W> {
             ended: false,
             schemas,
             channels,
-            schema_count: known.len() as u16,
+            schema_count: stored.len() as u16,
             counts: vec![0; streams.len()],
             times: None,
             chunk,
             chunk_indexes: Vec::new(),
             chunk_count: 0,
         };
-        file.put(MAGIC)?;
+        file.write_bytes(MAGIC)?;
         let header = Record::new(Kind::Header).text(PROFILE).text(library);
-        file.put(&header.end())?;
+        file.write_bytes(&header.end())?;
         Ok(file)
     }
 
-    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn write_bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
         if self.ended {
             return Err(io::Error::other("nothing can follow in this file"));
         }
         self.position += bytes.len() as u64;
         self.checksum.update(bytes);
-        let put = self.to.write_all(bytes);
-        self.ended |= put.is_err();
-        put
+        let written = self.to.write_all(bytes);
+        self.ended |= written.is_err();
+        written
     }
 
     /// Adds a message; `time` is in nanoseconds.
@@ -145,12 +145,12 @@ impl<W: Write> McapFile<W> {
         self.counts[usize::from(channel)] += 1;
         match self.chunk.records.len() < CHUNK {
             true => Ok(()),
-            false => self.put_chunk(),
+            false => self.write_chunk(),
         }
     }
 
     /// Writes the pending messages and their index.
-    fn put_chunk(&mut self) -> io::Result<()> {
+    fn write_chunk(&mut self) -> io::Result<()> {
         let Chunk {
             records,
             times,
@@ -163,16 +163,16 @@ impl<W: Write> McapFile<W> {
         let (start, length) = (self.position, records.len() as u64);
         let chunk = Record::new(Kind::Chunk).times(times).u64(length);
         let chunk = chunk.u32(crc32fast::hash(&records)).text(COMPRESSION);
-        self.put(&chunk.u64(length).raw(&records).end())?;
+        self.write_bytes(&chunk.u64(length).raw(&records).end())?;
         let end = self.position;
-        let mut places = Vec::new();
+        let mut offsets = Vec::new();
         for (channel, index) in indexes {
-            places.extend(of_channel(channel, self.position));
+            offsets.extend(of_channel(channel, self.position));
             let record = Record::new(Kind::MessageIndex).u16(channel);
-            self.put(&record.bytes(&index).end())?;
+            self.write_bytes(&record.bytes(&index).end())?;
         }
         let index = Record::new(Kind::ChunkIndex).times(times);
-        let index = index.u64(start).u64(end - start).bytes(&places);
+        let index = index.u64(start).u64(end - start).bytes(&offsets);
         let index = index.u64(self.position - end).text(COMPRESSION);
         let index = index.u64(length).u64(length).end();
         self.chunk_indexes.extend(index);
@@ -185,7 +185,7 @@ impl<W: Write> McapFile<W> {
     /// # Errors
     /// Returns an error if the output cannot be written.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
-        self.put_chunk()?;
+        self.write_chunk()?;
         self.to.flush()
     }
 
@@ -211,9 +211,9 @@ impl<W: Write> McapFile<W> {
         if self.ended {
             return Ok(());
         }
-        self.put_chunk()?;
+        self.write_chunk()?;
         let checksum = take(&mut self.checksum).finalize();
-        self.put(&Record::new(Kind::DataEnd).u32(checksum).end())?;
+        self.write_bytes(&Record::new(Kind::DataEnd).u32(checksum).end())?;
         // The second part of the file, with its own checksum, is the index of the first.
         self.checksum.reset();
         let start = self.position;
@@ -228,10 +228,10 @@ impl<W: Write> McapFile<W> {
             let offset = Record::new(Kind::SummaryOffset).raw(&[kind as u8]);
             let offset = offset.u64(self.position).u64(records.len() as u64);
             offsets.extend(offset.end());
-            self.put(&records)?;
+            self.write_bytes(&records)?;
         }
         let offsets_start = self.position;
-        self.put(&offsets)?;
+        self.write_bytes(&offsets)?;
         let footer = Record::new(Kind::Footer).u64(start).u64(offsets_start);
         let mut footer = footer.u32(0).end();
         // The checksum covers all bytes before it.
@@ -239,8 +239,8 @@ impl<W: Write> McapFile<W> {
         self.checksum.update(&footer[..checksum_at]);
         let checksum = take(&mut self.checksum).finalize();
         footer[checksum_at..].copy_from_slice(&checksum.to_le_bytes());
-        self.put(&footer)?;
-        self.put(MAGIC)?;
+        self.write_bytes(&footer)?;
+        self.write_bytes(MAGIC)?;
         self.ended = true;
         self.to.flush()
     }

@@ -68,16 +68,17 @@ fn of_geom(model: &Model, g: usize, kind: ShapeKind, rgba: [f32; 4]) -> Vec<(&'s
     let p = &model.params;
     let (at, quat) = (p.geom_pos[g], p.geom_quat[g]);
     let [x, y, z] = p.geom_size[g].to_array();
-    let place = pose(at.to_array(), quat.to_array());
-    let solid = |size: [f64; 3]| json!({"pose": place, "size": point(size), "color": color(rgba)});
+    let geom_pose = pose(at.to_array(), quat.to_array());
+    let solid =
+        |size: [f64; 3]| json!({"pose": geom_pose, "size": point(size), "color": color(rgba)});
     let tube = |radius: f64, half: f64| {
         let size = [2.0 * radius, 2.0 * radius, 2.0 * half];
-        json!({"pose": place, "size": point(size), "bottom_scale": 1.0, "top_scale": 1.0, "color": color(rgba)})
+        json!({"pose": geom_pose, "size": point(size), "bottom_scale": 1.0, "top_scale": 1.0, "color": color(rgba)})
     };
     let triangles = |points: Vec<[f64; 3]>, faces: Vec<[u32; 3]>| {
         let points: Vec<_> = points.into_iter().map(point).collect();
         let indices = faces.as_flattened();
-        json!({"pose": place, "points": points, "color": color(rgba), "colors": [], "indices": indices})
+        json!({"pose": geom_pose, "points": points, "color": color(rgba), "colors": [], "indices": indices})
     };
     match kind {
         ShapeKind::Plane => {
@@ -93,8 +94,8 @@ fn of_geom(model: &Model, g: usize, kind: ShapeKind, rgba: [f32; 4]) -> Vec<(&'s
         ShapeKind::Capsule => {
             let cap = |end: f64| {
                 let centre = at + Quat::rotate(quat, Vec3::new(0.0, 0.0, end));
-                let place = pose(centre.to_array(), quat.to_array());
-                json!({"pose": place, "size": point([2.0 * x; 3]), "color": color(rgba)})
+                let pose = pose(centre.to_array(), quat.to_array());
+                json!({"pose": pose, "size": point([2.0 * x; 3]), "color": color(rgba)})
             };
             vec![
                 ("cylinders", tube(x, y)),
@@ -129,7 +130,7 @@ fn terrain(field: &clench::collide::HeightField) -> (Vec<[f64; 3]>, Vec<[u32; 3]
     let [half_x, half_y, elevation, _] = field.size();
     let along =
         |k: usize, count: usize, half: f64| half * (2.0 * k as f64 / (count - 1) as f64 - 1.0);
-    let place = |k: usize| {
+    let point_at = |k: usize| {
         let (row, column) = (k / columns, k % columns);
         let (x, y) = (along(column, columns, half_x), along(row, rows, half_y));
         [x, y, elevation * heights[k]]
@@ -142,5 +143,5 @@ fn terrain(field: &clench::collide::HeightField) -> (Vec<[f64; 3]>, Vec<[u32; 3]
             faces.push([corner(1, 1), corner(0, 0), corner(0, 1)]);
         }
     }
-    ((0..rows * columns).map(place).collect(), faces)
+    ((0..rows * columns).map(point_at).collect(), faces)
 }

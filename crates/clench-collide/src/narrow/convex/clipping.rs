@@ -201,7 +201,7 @@ impl<S: Scalar> ProjectedFeature<S> {
                 out.push(p);
             }
         }
-        out.sort_around();
+        out.sort_by_angle();
     }
 
     /// Returns the parameters, 0 to 1 on the segment, at which it enters and leaves this cap's circle; twice that

@@ -64,7 +64,7 @@ pub(super) fn prism_gap<S: Scalar>(
     Gap {
         normal: -best.normal,
         gap: best.gap,
-        settled: true,
+        is_exact: true,
     }
 }
 
@@ -198,7 +198,7 @@ impl<S: Scalar> FramedCylinder<S> {
         Gap {
             normal: pair.rotation * best.normal,
             gap: best.gap,
-            settled: true,
+            is_exact: true,
         }
     }
 
@@ -216,18 +216,18 @@ impl<S: Scalar> FramedCylinder<S> {
         tolerance: S,
     ) -> LargestGap<S> {
         let mut best = LargestGap::new(tolerance);
-        let mut known = ArrayVec::<Face<S>, FEW_FACES>::new();
+        let mut tested = ArrayVec::<Face<S>, FEW_FACES>::new();
         for (outward, offset) in faces {
             let face = self.face(outward, offset);
             best.offer(-face.depth, || -outward);
             if best.gap > limit {
                 return best;
             }
-            known.push(face);
+            tested.push(face);
         }
         self.corners(corners, &mut best);
         for edge in edges {
-            let faces = edge.faces.map(|k| &known[k]);
+            let faces = edge.faces.map(|k| &tested[k]);
             if edge.may_touch(faces, best.depth()) {
                 self.edge(&edge, faces, &mut best);
             }

@@ -23,7 +23,7 @@ use super::{
 use crate::shape::{Cylinder, Solid};
 use clench_math::{Mat3, Scalar, Vec3};
 
-/// Returns the largest gap of two overlapping cylinders, or a positive one if they are apart. It is not settled if it
+/// Returns the largest gap of two overlapping cylinders, or a positive one if they are apart. It is not exact if it
 /// may be across two cap circles, or if no common point is known.
 pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) -> Gap<S> {
     let axes = [Vec3::new(S::ZERO, S::ZERO, S::ONE), pair.rotation.column(2)];
@@ -67,13 +67,13 @@ pub(super) fn largest_gap<S: Scalar>(pair: &Pair<S>, shapes: [&Cylinder<S>; 2]) 
             offer(across * along_x.copysign(x) + own.side * along_y.copysign(y));
         }
     }
-    let settled = best.gap > S::ZERO
+    let is_exact = best.gap > S::ZERO
         || (!circles_cross(&cylinders, (cosine, sine), -best.gap)
             && (axes_pass(&cylinders, sine) || deepest_inside(pair, shapes, best.normal)));
     Gap {
         normal: best.normal,
         gap: best.gap,
-        settled,
+        is_exact,
     }
 }
 
@@ -90,7 +90,7 @@ fn parallel<S: Scalar>(pair: &Pair<S>) -> Gap<S> {
     let along = Vec3::new(S::ZERO, S::ZERO, S::ONE.copysign(pair.offset.z));
     let mut best = pair.gap(along);
     best.improve(pair.gap(side), S::ZERO);
-    best.settled = true;
+    best.is_exact = true;
     best
 }
 

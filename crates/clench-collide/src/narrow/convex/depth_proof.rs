@@ -48,9 +48,9 @@ impl<'a> LaneProofs<'a> {
         let env = self.envs.get(lane).copied().unwrap_or(0);
         let mixed = self.pair ^ env.wrapping_mul(0xC2B2_AE35);
         let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
-        let place = (mixed ^ (mixed >> 13)) as usize;
+        let index = (mixed ^ (mixed >> 13)) as usize;
         let last = self.table.len().wrapping_sub(1);
-        self.table.get_mut(place & last)
+        self.table.get_mut(index & last)
     }
 }
 
@@ -86,11 +86,11 @@ impl DepthProof {
             return None;
         }
         let measured = touching.measure_first(pair, &bodies)?;
-        let place = |&[a, b]: &[u16; 2]| {
+        let difference = |&[a, b]: &[u16; 2]| {
             let (a, b) = (bodies[0].corner(a.into()), bodies[1].corner(b.into()));
             pair.offset + pair.rotation * b - a
         };
-        let places: ArrayVec<Vec3<S>, POINTS> = self.points.iter().map(place).collect();
+        let differences: ArrayVec<Vec3<S>, POINTS> = self.points.iter().map(difference).collect();
         let depth = -measured.0.gap;
         let (near, far) = (
             depth - S::new(0.5) * tie(pair),
@@ -101,7 +101,7 @@ impl DepthProof {
             touching.include(pair, &bodies, &measured, corners)
         };
         let holds = self.triangles.iter().all(|triangle| {
-            let [p, q, r] = triangle.map(|k| places[k as usize]);
+            let [p, q, r] = triangle.map(|k| differences[k as usize]);
             let normal = (q - p).cross(r - p);
             let (height, square) = (normal.dot(p), normal.norm_squared());
             let beyond = |distance: S| height.squared() > distance.squared() * square;

@@ -92,13 +92,13 @@ fn enclose<S: Scalar>(pair: &Pair<S>, given: &[Vertex<S>]) -> Result<[Vertex<S>;
 /// Returns the gap along or against the first direction as an error if none is beyond `least`.
 fn furthest<S: Scalar>(
     pair: &Pair<S>,
-    given: &[Vertex<S>],
+    vertices: &[Vertex<S>],
     directions: &[Vec3<S>],
     distance: impl Fn(&Vertex<S>) -> S,
     least: S,
 ) -> Result<Vertex<S>, Gap<S>> {
-    let mut best = (S::ZERO, given[0]);
-    for vertex in given {
+    let mut best = (S::ZERO, vertices[0]);
+    for vertex in vertices {
         let reach = distance(vertex);
         if reach > best.0 {
             best = (reach, *vertex);
@@ -134,21 +134,21 @@ fn expand<S: Scalar>(
     let mut touching = polytope.corners(0);
     // True if Newton's method has refined the best direction.
     let mut refined = false;
-    let mut known = false;
+    let mut converged = false;
     for _ in 0..ROUNDS {
         let (nearest, distance) = polytope.nearest();
         // The tolerance for a smaller depth through the nearest face.
-        let slack = if best.settled {
+        let slack = if best.is_exact {
             (pair.smallest * S::new(SLACK)).max(pair.tolerance)
         } else {
             pair.tolerance
         };
         let corners = polytope.corners(nearest);
-        known = -best.gap - distance <= slack;
-        if known && !best.settled && distance < S::INFINITY {
+        converged = -best.gap - distance <= slack;
+        if converged && !best.is_exact && distance < S::INFINITY {
             touching = corners;
         }
-        if known || polytope.is_full() {
+        if converged || polytope.is_full() {
             break;
         }
         let outward = polytope.normal(nearest);
@@ -156,16 +156,16 @@ fn expand<S: Scalar>(
         let raw = Gap {
             normal: -outward,
             gap: -outward.dot(vertex.w),
-            settled: false,
+            is_exact: false,
         };
         let movable = -raw.gap - distance;
         let better = best.improve(raw, pair.tolerance);
         refined &= !better;
-        known = movable <= pair.tolerance;
-        if better || (known && !best.settled) {
+        converged = movable <= pair.tolerance;
+        if better || (converged && !best.is_exact) {
             touching = corners;
         }
-        if known {
+        if converged {
             break;
         }
         if !polytope.add(nearest, &vertex) {
@@ -179,9 +179,9 @@ fn expand<S: Scalar>(
     }
     let touching = polytope.vertices(touching);
     if !refined {
-        best.settle(pair, &touching);
+        best.refine_inexact(pair, &touching);
     }
-    if !known {
+    if !converged {
         for normal in pair.crossings() {
             best.improve(pair.gap(normal), pair.tolerance);
         }

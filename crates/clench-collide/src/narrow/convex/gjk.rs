@@ -64,7 +64,7 @@ pub(super) fn gjk<S: Scalar>(
         End::Beyond => Cores::Apart(best),
         End::Inside if best.gap <= pair.tolerance => Cores::Overlap,
         End::Inside | End::Nearest(_) => {
-            best.settle(pair, simplex.vertices());
+            best.refine_inexact(pair, simplex.vertices());
             Cores::Near(best)
         }
     }
@@ -109,7 +109,7 @@ fn search<S: Scalar>(
         let raw = Gap {
             normal: n,
             gap,
-            settled: false,
+            is_exact: false,
         };
         best.improve(raw, pair.tolerance);
         if length - gap <= pair.tolerance {
@@ -125,9 +125,9 @@ fn search<S: Scalar>(
         v = nearest;
         if newton && length - gap < pair.smallest * S::new(NEAR) {
             let active = ActiveEdges::of(pair, simplex.vertices());
-            let known = best.normal;
+            let previous = best.normal;
             best.improve(refine(pair, n, &active), pair.tolerance);
-            if best.normal != known {
+            if best.normal != previous {
                 for vertex in active.vertices(pair, best.normal) {
                     match simplex.add(vertex) {
                         Some(nearest) => v = nearest,

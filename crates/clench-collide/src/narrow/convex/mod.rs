@@ -78,7 +78,7 @@ pub(super) fn points<S: Scalar>(
         patch(&pair, a, best, Some(&Simplex::new(between)), margin, points);
         return Ok(());
     }
-    let known = match (&a.shape, &b.shape) {
+    let direct = match (&a.shape, &b.shape) {
         (Shape::Cylinder(a), Shape::Box(b)) => {
             Some(cylinder_polyhedron::box_gap(&pair, a, b, margin))
         }
@@ -89,19 +89,19 @@ pub(super) fn points<S: Scalar>(
         }
         _ => None,
     };
-    let known = known.filter(|known| Real::is_finite(known.gap));
-    if let Some(apart) = known.filter(|known| known.gap > margin) {
+    let direct = direct.filter(|direct| Real::is_finite(direct.gap));
+    if let Some(apart) = direct.filter(|direct| direct.gap > margin) {
         return Err(apart.normal);
     }
     // If the bodies are apart, this gap is not always the distance.
-    if let Some(certain) = known.filter(|known| known.settled && known.gap <= S::ZERO) {
+    if let Some(certain) = direct.filter(|direct| direct.is_exact && direct.gap <= S::ZERO) {
         patch_along(&pair, a, certain, margin, points);
         return Ok(());
     }
     let (start, mut simplex) = begin(&pair);
     let best = nearest(&pair, start, margin, &mut simplex, proof).map_err(|apart| apart.normal)?;
-    match known.filter(|known| known.gap > best.gap + pair.tolerance) {
-        Some(known) => patch_along(&pair, a, known, margin, points),
+    match direct.filter(|direct| direct.gap > best.gap + pair.tolerance) {
+        Some(direct) => patch_along(&pair, a, direct, margin, points),
         None => patch(&pair, a, best, Some(&simplex), margin, points),
     }
     Ok(())
@@ -115,7 +115,7 @@ fn begin<S: Scalar>(pair: &Pair<S>) -> (Gap<S>, Simplex<S>) {
     let start = Gap {
         normal,
         gap: normal.dot(vertex.w),
-        settled: false,
+        is_exact: false,
     };
     (start, Simplex::new(vertex))
 }
@@ -150,21 +150,21 @@ pub(super) fn points_along<S: Scalar>(
     margin: S,
     points: &mut Points<S>,
 ) {
-    let known = Gap {
+    let gap = Gap {
         normal,
         gap,
-        settled: true,
+        is_exact: true,
     };
-    patch_along(&Pair::new(a, b), a, known, margin, points);
+    patch_along(&Pair::new(a, b), a, gap, margin, points);
 }
 
 /// Computes the contacts of a pair whose largest gap was found without a simplex.
 fn patch_along<S: Scalar>(
     pair: &Pair<S>,
     a: AnyPlaced<S>,
-    known: Gap<S>,
+    gap: Gap<S>,
     margin: S,
     points: &mut Points<S>,
 ) {
-    patch(pair, a, known, None, margin, points);
+    patch(pair, a, gap, None, margin, points);
 }

@@ -118,7 +118,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
             found.clear();
             found.push(lowest.at_distance(self.gap));
         } else if found.len() > PATCH_POINTS {
-            *found = self.sample(&Outline::around(polygon.corners(), same), lowest);
+            *found = self.sample(&Outline::of_points(polygon.corners(), same), lowest);
         }
         found.retain(|point| point.distance() <= reach);
         merge(found, same);
@@ -151,7 +151,7 @@ impl<'a, S: Scalar> Overlap<'a, S> {
         Some(Gap {
             normal,
             gap,
-            settled: true,
+            is_exact: true,
         })
     }
 
@@ -260,8 +260,8 @@ impl<'a, S: Scalar> Overlap<'a, S> {
     /// the sample misses the lowest point, it samples again starting with that point.
     fn sample(&self, outline: &Outline<S>, lowest: PatchPoint<S>) -> PatchPoints<S> {
         let from = |first| -> PatchPoints<S> {
-            let places = outline.sample(first);
-            places.iter().map(|place| self.at(place)).collect()
+            let samples = outline.sample(first);
+            samples.iter().map(|sample| self.at(sample)).collect()
         };
         let few = outline.corners().len() <= PATCH_POINTS;
         let mut found: PatchPoints<S> = if few {

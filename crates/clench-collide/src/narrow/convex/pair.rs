@@ -49,13 +49,13 @@ pub(super) struct Gap<S> {
     pub normal: Vec3<S>,
     pub gap: S,
     /// True if the gap is a local maximum and the direction exact.
-    pub settled: bool,
+    pub is_exact: bool,
 }
 
 impl<S: Scalar> Gap<S> {
-    /// Takes the other gap if it is larger; of gaps equal to the tolerance, a settled one. Returns true if it did.
+    /// Takes the other gap if it is larger; of gaps equal up to the tolerance, an exact one. Returns true if it did.
     pub(super) fn improve(&mut self, other: Gap<S>, tolerance: S) -> bool {
-        let handicap = match (self.settled, other.settled) {
+        let handicap = match (self.is_exact, other.is_exact) {
             (true, false) => tolerance,
             (false, true) => -tolerance,
             _ => S::ZERO,
@@ -141,7 +141,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 
     /// Returns the vertex, among several vertices w(n), that is furthest against `side`, which is near n.
     #[inline]
-    pub(super) fn vertex_beside(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
+    pub(super) fn vertex_against(&self, normal: Vec3<S>, side: Vec3<S>) -> Vertex<S> {
         let local = |v| -self.rotation.transpose_mul(v);
         let b = self.b.corner_along(local(normal), local(side));
         self.difference(self.a.corner_along(normal, side), b)
@@ -159,7 +159,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         Gap {
             normal,
             gap: normal.dot(self.vertex(normal).w),
-            settled: false,
+            is_exact: false,
         }
     }
 

@@ -85,14 +85,15 @@ impl<S: Scalar> ActiveEdges<S> {
         let [f] = self.directions[..] else {
             return true;
         };
-        let along = |side: Vec3<S>| side.dot(pair.vertex_beside(n, n + side * S::EPSILON.sqrt()).w);
+        let along =
+            |side: Vec3<S>| side.dot(pair.vertex_against(n, n + side * S::EPSILON.sqrt()).w);
         along(f) <= pair.tolerance && along(-f) <= pair.tolerance
     }
 
     /// Returns the vertices at the direction `n`: one for each touching corner.
     pub(super) fn vertices(&self, pair: &Pair<S>, n: Vec3<S>) -> ArrayVec<Vertex<S>, 4> {
         let tilt = S::EPSILON.sqrt();
-        let beside = |side| pair.vertex_beside(n, n + side * tilt);
+        let beside = |side| pair.vertex_against(n, n + side * tilt);
         let mut vertices = ArrayVec::new();
         match self.directions[..] {
             [] => vertices.push(pair.vertex(n)),
@@ -105,8 +106,8 @@ impl<S: Scalar> ActiveEdges<S> {
 
 impl<S: Scalar> Gap<S> {
     /// Refines the direction if it is not exact and a curved body touches the feature spanned by some vertices.
-    pub(super) fn settle(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
-        if pair.curved && !self.settled {
+    pub(super) fn refine_inexact(&mut self, pair: &Pair<S>, vertices: &[Vertex<S>]) {
+        if pair.curved && !self.is_exact {
             let active = ActiveEdges::of(pair, vertices);
             self.improve(refine(pair, self.normal, &active), pair.tolerance);
         }
@@ -121,16 +122,16 @@ pub(super) fn refine<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveE
     }
     match cap(pair, start) {
         Some(Cap::Touches(gap)) => gap,
-        Some(Cap::Passes(beside)) => climb(pair, beside, active),
+        Some(Cap::Passes(start)) => climb(pair, start, active),
         None => climb(pair, start, active),
     }
 }
 
 /// The gap near the axis of a flat cap.
 enum Cap<S> {
-    /// The gap across it, the largest around.
+    /// The gap across it, the largest nearby.
     Touches(Gap<S>),
-    /// The gap increases beside it, from this start direction.
+    /// The start direction of a search: the gap is larger next to the axis.
     Passes(Vec3<S>),
 }
 
@@ -164,7 +165,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
         let (toward, distance) = lateral.normalize();
         let passes = distance > radius * (S::ONE + S::new(1e-9)) && distance > S::new(1e-15);
         found = Some(if passes {
-            // Beside the axis, since on it no point of the circle is distinguished.
+            // Next to the axis, since on it no point of the circle is distinguished.
             let start = axis + toward * S::EPSILON.sqrt();
             let [bend] = pair.curvature(start, [(toward, toward)]);
             let rotation = (distance - radius) / (bend + gap).max(pair.tolerance);
@@ -174,7 +175,7 @@ fn cap<S: Scalar>(pair: &Pair<S>, n: Vec3<S>) -> Option<Cap<S>> {
             Cap::Touches(Gap {
                 normal: axis,
                 gap,
-                settled: true,
+                is_exact: true,
             })
         });
     }
@@ -188,7 +189,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
     let mut best = Gap {
         normal: start,
         gap: start.dot(w),
-        settled: false,
+        is_exact: false,
     };
     for _ in 0..MAX_STEPS {
         let Some((mut rotation, down)) = step(pair, &best, w, active) else {
@@ -216,7 +217,7 @@ fn climb<S: Scalar>(pair: &Pair<S>, start: Vec3<S>, active: &ActiveEdges<S>) -> 
         }
         // If a cap's circle touches, next to the axis, even the smallest rotation changes the gap.
         if size <= last && best.gap - before <= pair.tolerance {
-            best.settled = down && active.hold(pair, best.normal);
+            best.is_exact = down && active.hold(pair, best.normal);
             return best;
         }
     }

@@ -53,11 +53,11 @@ impl<S: Scalar> Simplex<S> {
             3 => self.on_triangle(2, 0, 1),
             _ => self.on_tetrahedron()?,
         };
-        self.keep(&nearest);
+        self.retain_nearest(&nearest);
         Some(nearest.point)
     }
 
-    fn keep(&mut self, nearest: &Nearest<S>) {
+    fn retain_nearest(&mut self, nearest: &Nearest<S>) {
         let mut weights = [S::ZERO; 4];
         for (&index, &weight) in nearest.of.iter().zip(&nearest.weights) {
             weights[index] += weight;

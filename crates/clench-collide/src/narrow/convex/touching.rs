@@ -195,7 +195,7 @@ fn measured<S: Scalar>(
     let found = Gap {
         normal,
         gap,
-        settled: false,
+        is_exact: false,
     };
     let (w, corners) = (normal * gap, [of_a, of_b]);
     (found, Vertex { w, a, b, corners })
@@ -204,7 +204,7 @@ fn measured<S: Scalar>(
 /// Returns the numbers in order if there are two different ones.
 fn two_of(numbers: [u32; 3]) -> Option<[u32; 2]> {
     let least = numbers.into_iter().fold(u32::MAX, u32::min);
-    let most = numbers.into_iter().fold(0, u32::max);
-    let two = least < most && numbers.into_iter().all(|k| k == least || k == most);
-    two.then_some([least, most])
+    let largest = numbers.into_iter().fold(0, u32::max);
+    let two = least < largest && numbers.into_iter().all(|k| k == least || k == largest);
+    two.then_some([least, largest])
 }

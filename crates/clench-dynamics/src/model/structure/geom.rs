@@ -92,8 +92,8 @@ impl Mesh {
             let surface = convex_hull(&self.vertices, None).ok()?;
             Some(Hull::new(&surface, &self.vertices))
         };
-        let spare = || self.on_demand.hull.get_or_init(make).as_ref();
-        self.hull.as_ref().or_else(spare)
+        let on_demand = || self.on_demand.hull.get_or_init(make).as_ref();
+        self.hull.as_ref().or_else(on_demand)
     }
 }
 

@@ -39,14 +39,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     }
     let file = File::new(&document);
     let (mut found, mut size) = (Triangles::default(), 0);
-    let mut known = HashMap::new();
+    let mut read_geometries = HashMap::new();
     let unit = Transform::scaling([unit(root)?; 3]);
     for Instance {
         geometry,
         transform,
     } in scene::instances(&file, root)?
     {
-        let groups = match known.entry(geometry.id()) {
+        let groups = match read_geometries.entry(geometry.id()) {
             Entry::Occupied(read) => read.into_mut(),
             Entry::Vacant(unread) => unread.insert(geometry::read(&file, geometry)?),
         };

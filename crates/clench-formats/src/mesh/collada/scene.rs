@@ -49,7 +49,7 @@ pub(super) fn instances<'a>(
 /// A node to visit, with the transform of its parent.
 struct Pending<'a> {
     node: Node<'a, 'a>,
-    around: Transform,
+    parent: Transform,
     depth: usize,
 }
 
@@ -58,12 +58,12 @@ fn below<'a>(file: &File<'a>, scene: Node<'a, 'a>) -> Result<Vec<Instance<'a>>, 
     let (mut found, mut visited) = (Vec::new(), 0);
     let mut pending = vec![Pending {
         node: scene,
-        around: Transform::IDENTITY,
+        parent: Transform::IDENTITY,
         depth: 0,
     }];
     while let Some(Pending {
         node,
-        around,
+        parent,
         depth,
     }) = pending.pop()
     {
@@ -74,7 +74,7 @@ fn below<'a>(file: &File<'a>, scene: Node<'a, 'a>) -> Result<Vec<Instance<'a>>, 
                 "nodes are nested too deeply, or there are too many",
             ));
         }
-        let transform = around * transform::of_node(node)?;
+        let transform = parent * transform::of_node(node)?;
         let mut inner = Vec::new();
         for element in node.children().filter(Node::is_element) {
             let node = match element.tag_name().name() {
@@ -98,7 +98,7 @@ fn below<'a>(file: &File<'a>, scene: Node<'a, 'a>) -> Result<Vec<Instance<'a>>, 
             };
             inner.push(Pending {
                 node,
-                around: transform,
+                parent: transform,
                 depth: depth + 1,
             });
         }

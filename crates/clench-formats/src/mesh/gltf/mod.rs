@@ -25,7 +25,7 @@ const MAX_SIZE: usize = 20_000_000;
 const MAGIC: &[u8] = b"glTF";
 
 /// Prefixes of extensions that only affect appearance.
-const ONLY_SEEN: [&str; 4] = [
+const APPEARANCE_ONLY: [&str; 4] = [
     "KHR_materials_",
     "KHR_texture_",
     "KHR_lights_",
@@ -70,7 +70,7 @@ pub(super) fn read(bytes: &[u8], mesh_folder: &mut MeshFolder) -> Result<Triangl
 
 /// Returns the text and the binary chunk of a binary file.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    let short = || "the file ends too early".to_owned();
+    let short = || "the file is truncated".to_owned();
     let word = |at: usize| -> Result<usize, String> {
         let word = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
         Ok(u32::from_le_bytes(*word.ok_or_else(short)?) as usize)
@@ -98,7 +98,11 @@ fn check(root: &Root) -> Result<(), String> {
     if !version.starts_with("2.") {
         return Err(format!("glTF of version {version}, not 2"));
     }
-    let acts = |name: &&String| !ONLY_SEEN.iter().any(|prefix| name.starts_with(prefix));
+    let acts = |name: &&String| {
+        !APPEARANCE_ONLY
+            .iter()
+            .any(|prefix| name.starts_with(prefix))
+    };
     match root.extensions_required.iter().find(acts) {
         Some(name) => Err(format!(
             "needs the extension {name}, which is not supported"
@@ -117,17 +121,17 @@ fn position(primitive: &Primitive) -> Result<usize, String> {
 fn append(
     found: &mut Triangles,
     corners: &[[usize; 3]],
-    places: &[clench_math::Vec3<f64>],
+    vertices: &[clench_math::Vec3<f64>],
     transform: &Transform,
 ) -> Result<(), String> {
     let mut numbers: HashMap<usize, u32> = HashMap::new();
     for &corner in corners {
         let mut face = [0; 3];
-        for (number, place) in face.iter_mut().zip(corner) {
-            let point = places.get(place);
+        for (number, vertex) in face.iter_mut().zip(corner) {
+            let point = vertices.get(vertex);
             let point = point
-                .ok_or_else(|| format!("a face refers to vertex {place}, which does not exist"))?;
-            *number = *numbers.entry(place).or_insert_with(|| {
+                .ok_or_else(|| format!("a face refers to vertex {vertex}, which does not exist"))?;
+            *number = *numbers.entry(vertex).or_insert_with(|| {
                 found.vertices.push(to_single(transform.point(*point)));
                 found.vertices.len() as u32 - 1
             });

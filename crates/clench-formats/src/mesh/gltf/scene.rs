@@ -18,7 +18,7 @@ pub(super) struct Instance<'a> {
 /// A node to visit, with the transform of its parent.
 struct Pending {
     node: usize,
-    around: Transform,
+    parent: Transform,
     depth: usize,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
     let (mut found, mut visited) = (Vec::new(), 0);
     while let Some(Pending {
         node: number,
-        around,
+        parent,
         depth,
     }) = pending.pop()
     {
@@ -56,7 +56,7 @@ pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
         }
         let node = root.nodes.get(number);
         let node = node.ok_or_else(|| format!("there is no node {number}"))?;
-        let transform = around * own(node);
+        let transform = parent * own(node);
         if let Some(number) = node.mesh {
             if node.skin.is_some() {
                 return Err("meshes that a skeleton deforms are not supported".to_owned());
@@ -74,10 +74,10 @@ pub(super) fn instances(root: &Root) -> Result<Vec<Instance<'_>>, String> {
 }
 
 /// Pushes nodes in reverse, so that the first is popped first.
-fn push(pending: &mut Vec<Pending>, nodes: &[usize], (around, depth): (Transform, usize)) {
+fn push(pending: &mut Vec<Pending>, nodes: &[usize], (parent, depth): (Transform, usize)) {
     let pushed = nodes.iter().rev().map(|&node| Pending {
         node,
-        around,
+        parent,
         depth,
     });
     pending.extend(pushed);

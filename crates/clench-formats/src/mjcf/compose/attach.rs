@@ -34,8 +34,8 @@ impl Composer<'_, '_> {
             Some(name) => match models.find(name) {
                 Some(model) => self.attach_model(element, model, wanted, &namespace, open.len()),
                 None => {
-                    let known = models.0.iter().map(|(name, _)| name.as_str());
-                    let hint = schema::suggestion(name, known);
+                    let names = models.0.iter().map(|(name, _)| name.as_str());
+                    let hint = schema::suggestion(name, names);
                     Err(element.error(format!(
                         "there is no model \"{name}\" among the assets{hint}"
                     )))
@@ -137,20 +137,20 @@ impl Composer<'_, '_> {
         }
         let name = element.text("model").unwrap_or_default();
         let rule = self.shared.sources.of(element).compiler.conflict;
-        let taken = match rule {
+        let adopted = match rule {
             Conflict::Warning => Ok(Vec::new()),
             Conflict::Merge | Conflict::Error => self.settings.merge(options, rule),
         };
-        let taken = taken.map_err(|what| {
+        let adopted = adopted.map_err(|what| {
             element.error(format!(
                 "the options of the attached model \"{name}\" are in conflict with this model's: {what}"
             ))
         })?;
-        self.note(match (rule, taken.is_empty()) {
+        self.add_note(match (rule, adopted.is_empty()) {
             (Conflict::Merge, true) => return Ok(()),
             (Conflict::Merge, false) => {
-                let taken = taken.join(", ");
-                format!("options adopted from the attached model \"{name}\": {taken}")
+                let adopted = adopted.join(", ");
+                format!("options adopted from the attached model \"{name}\": {adopted}")
             }
             _ => format!(
                 "the options of the attached model \"{name}\" are omitted; those of the model itself apply"
@@ -159,7 +159,7 @@ impl Composer<'_, '_> {
         Ok(())
     }
 
-    fn note(&mut self, note: String) {
+    fn add_note(&mut self, note: String) {
         if !self.shared.notes.contains(&note) {
             self.shared.notes.push(note);
         }
@@ -201,10 +201,10 @@ impl Composer<'_, '_> {
         if let Some((part, class)) = worlds.find_map(|world| find(world, tag, name, None)) {
             return Ok((part.clone(), class.map(str::to_owned)));
         }
-        let mut around = None;
+        let mut enclosing_class = None;
         for (depth, level) in open.iter().enumerate() {
-            let Some((part, class)) = find(&level.element, tag, name, around) else {
-                around = class_within(&level.element).or(around);
+            let Some((part, class)) = find(&level.element, tag, name, enclosing_class) else {
+                enclosing_class = class_within(&level.element).or(enclosing_class);
                 continue;
             };
             let class = class.map(str::to_owned);
@@ -247,14 +247,14 @@ impl Composer<'_, '_> {
     }
 }
 
-/// Returns a body or frame by name, and the default class around it.
+/// Returns a body or frame by name, and its enclosing default class.
 fn find<'a>(
-    around: &'a Element,
+    enclosing: &'a Element,
     tag: &str,
     name: &str,
     class: Option<&'a str>,
 ) -> Option<(&'a Element, Option<&'a str>)> {
-    let mut pending = vec![(around, class)];
+    let mut pending = vec![(enclosing, class)];
     while let Some((element, class)) = pending.pop() {
         if element.tag == tag && element.text("name") == Some(name) {
             return Some((element, class));

@@ -28,13 +28,13 @@ pub(super) struct Composer<'a, 's> {
 /// An element of the tree whose children are being expanded.
 pub(super) struct Level {
     pub element: Element,
-    pub left: std::vec::IntoIter<Element>,
+    pub remaining: std::vec::IntoIter<Element>,
 }
 
 impl Level {
     pub(super) fn new(mut element: Element) -> Self {
         Level {
-            left: std::mem::take(&mut element.children).into_iter(),
+            remaining: std::mem::take(&mut element.children).into_iter(),
             element,
         }
     }
@@ -58,7 +58,7 @@ impl Composer<'_, '_> {
     pub(super) fn expand(&mut self, world: Element) -> Result<(), LoadError> {
         let mut open = vec![Level::new(world)];
         while let Some(level) = open.last_mut() {
-            let Some(child) = level.left.next() else {
+            let Some(child) = level.remaining.next() else {
                 let Some(Level { element, .. }) = open.pop() else {
                     break;
                 };

@@ -24,7 +24,7 @@ use std::collections::HashMap;
 ///
 /// # Errors
 /// Returns an error if the model cannot be read or a vector is longer than the model's.
-pub(super) fn cut(
+pub(super) fn split(
     root: &mut Element,
     attached: Vec<AttachedKeyframe>,
     shared: &mut Shared,
@@ -34,7 +34,7 @@ pub(super) fn cut(
     }
     number(root, shared);
     let layout = Layout::read(root, shared)?;
-    let own = entries(root, "keyframe").map(|key| layout.cut(key));
+    let own = entries(root, "keyframe").map(|key| layout.split(key));
     let mut keyframes = own.collect::<Result<Vec<_>, _>>()?;
     keyframes.extend(attached);
     Ok(keyframes)
@@ -79,8 +79,8 @@ impl Layout {
         let joints = || bodies.iter().flat_map(|body| &body.joints);
         let sizes = joints().map(|joint| [joint.kind.nq(), joint.kind.nv()]);
         let yielding = |spring: f64, count| if spring > 0.0 { count } else { 0 };
-        let rests = joints().map(|joint| yielding(joint.springyield, joint.kind.nq()));
-        let mut springs: Vec<_> = numbers.joints.iter().copied().zip(rests).collect();
+        let plastic_sizes = joints().map(|joint| yielding(joint.springyield, joint.kind.nq()));
+        let mut springs: Vec<_> = numbers.joints.iter().copied().zip(plastic_sizes).collect();
         for element in entries(root, "tendon") {
             let spec = relations::read_tendon(element, &shared.sources)?;
             springs.push((element.number, yielding(spec.springyield, 2)));
@@ -101,7 +101,7 @@ impl Layout {
         })
     }
 
-    fn cut(&self, element: &Element) -> Result<AttachedKeyframe, LoadError> {
+    fn split(&self, element: &Element) -> Result<AttachedKeyframe, LoadError> {
         let mut spec = keyframe::read(element)?;
         let mut parts = Vec::new();
         let vectors = [
@@ -121,15 +121,15 @@ impl Layout {
                 [spec.mocap_pos.take(), spec.mocap_quat.take()],
             ),
         ];
-        for (elements, names, given) in vectors {
-            let given = given.map(Option::unwrap_or_default);
+        for (elements, names, numbers) in vectors {
+            let numbers = numbers.map(Option::unwrap_or_default);
             for k in [0, 1] {
                 let counts = elements.iter().map(|(_, counts)| counts[k]);
-                require_whole(element, names[k], &given[k], counts)?;
+                require_whole(element, names[k], &numbers[k], counts)?;
             }
-            let mut rest = given.each_ref().map(Vec::as_slice);
+            let mut rest = numbers.each_ref().map(Vec::as_slice);
             for &(number, counts) in elements {
-                let [first, second] = [0, 1].map(|k| take(&mut rest[k], counts[k]));
+                let [first, second] = [0, 1].map(|k| split_front(&mut rest[k], counts[k]));
                 parts.push(Fragment {
                     number,
                     first,
@@ -138,16 +138,16 @@ impl Layout {
                 });
             }
         }
-        let given = spec.plastic.take().unwrap_or_default();
+        let numbers = spec.plastic.take().unwrap_or_default();
         let counts = self.springs.iter().map(|&(_, count)| count);
-        require_whole(element, "plastic", &given, counts)?;
-        let mut rest = given.as_slice();
+        require_whole(element, "plastic", &numbers, counts)?;
+        let mut rest = numbers.as_slice();
         for &(number, count) in self.springs.iter().filter(|(_, count)| *count > 0) {
             parts.push(Fragment {
                 number,
                 first: Vec::new(),
                 second: Vec::new(),
-                plastic: take(&mut rest, count),
+                plastic: split_front(&mut rest, count),
             });
         }
         Ok(AttachedKeyframe { spec, parts })
@@ -158,7 +158,7 @@ impl Layout {
 fn require_whole(
     element: &Element,
     name: &str,
-    given: &[f64],
+    numbers: &[f64],
     counts: impl Iterator<Item = usize>,
 ) -> Result<(), LoadError> {
     let mut end = 0;
@@ -166,16 +166,16 @@ fn require_whole(
         end += count;
         end
     });
-    let count = given.len();
+    let count = numbers.len();
     if count == 0 || ends.any(|end| end == count) {
         return Ok(());
     }
-    let what = "which is more than the model has, or ends within one of its elements";
-    Err(element.error(format!("{name} has {count} numbers, {what}")))
+    let reason = "which is more than the model has, or ends within one of its elements";
+    Err(element.error(format!("{name} has {count} numbers, {reason}")))
 }
 
 /// Takes the first numbers of a vector; none if it has fewer, as in a keyframe of only the leading part of the state.
-fn take(rest: &mut &[f64], count: usize) -> Vec<f64> {
+fn split_front(rest: &mut &[f64], count: usize) -> Vec<f64> {
     match rest.split_at_checked(count) {
         Some((taken, others)) => {
             *rest = others;
@@ -241,22 +241,22 @@ pub(crate) fn resolve(
     root: &Element,
     numbers: body::Numbers,
 ) -> Vec<KeyframeSpec> {
-    let mut meant = HashMap::new();
-    let mut mean = |numbers: Vec<u32>, element: fn(usize) -> KeyframeElement| {
+    let mut elements = HashMap::new();
+    let mut assign = |numbers: Vec<u32>, element: fn(usize) -> KeyframeElement| {
         for (index, number) in numbers.into_iter().enumerate() {
-            meant.entry(number).or_insert(element(index));
+            elements.entry(number).or_insert(element(index));
         }
     };
-    mean(numbers.joints, KeyframeElement::Joint);
-    mean(numbers.mocaps, KeyframeElement::Mocap);
+    assign(numbers.joints, KeyframeElement::Joint);
+    assign(numbers.mocaps, KeyframeElement::Mocap);
     let listed = |section| entries(root, section).map(|entry| entry.number).collect();
-    mean(listed("actuator"), KeyframeElement::Actuator);
-    mean(listed("tendon"), KeyframeElement::Tendon);
+    assign(listed("actuator"), KeyframeElement::Actuator);
+    assign(listed("tendon"), KeyframeElement::Tendon);
     let spec = |keyframe: &AttachedKeyframe| KeyframeSpec {
         parts: (keyframe.parts.iter())
             .filter_map(|part| {
                 Some(KeyframePart {
-                    element: *meant.get(&part.number)?,
+                    element: *elements.get(&part.number)?,
                     first: part.first.clone(),
                     second: part.second.clone(),
                     plastic: part.plastic.clone(),

@@ -183,7 +183,7 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError>
     shared.open.push(identity);
     let (settings, attached) = compose_model(&mut root, directory, shared)?;
     shared.open.pop();
-    let keyframes = keyframes::cut(&mut root, attached, shared)?;
+    let keyframes = keyframes::split(&mut root, attached, shared)?;
     Ok(Part {
         root,
         settings,

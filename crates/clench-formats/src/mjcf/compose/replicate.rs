@@ -40,7 +40,7 @@ impl Composer<'_, '_> {
             let suffixes = suffix.len() * self.count_names(&element);
             let taken = self.shared.spending.bytes(suffixes as u64);
             taken.map_err(|excess| element.error(excess))?;
-            let mut frame = frame_of(&element, &self.place(&mut replicas, number, &element));
+            let mut frame = frame_of(&element, &self.next_pose(&mut replicas, number, &element));
             frame.children.clone_from(&element.children);
             for child in &mut frame.children {
                 namespace.rename_tree(child);
@@ -74,15 +74,15 @@ impl Composer<'_, '_> {
 
     /// Returns the pose of a replica. As in MuJoCo, angles are multiplied rather than rotations accumulated, so that no
     /// error builds up.
-    fn place(&self, replicas: &mut Replicas, number: usize, element: &Element) -> Pose {
+    fn next_pose(&self, replicas: &mut Replicas, number: usize, element: &Element) -> Pose {
         let compiler = &self.shared.sources.of(element).compiler;
         let quat = compiler.euler(replicas.euler.map(|angle| angle * number as f64));
-        let place = Pose {
+        let pose = Pose {
             quat,
             ..replicas.displaced
         };
-        replicas.displaced = place.then(replicas.step);
-        place
+        replicas.displaced = pose.then(replicas.step);
+        pose
     }
 
     fn count_names(&self, element: &Element) -> usize {
@@ -135,11 +135,11 @@ impl Composer<'_, '_> {
             let copied = self.copy_following(at, section, &from, namespace)?;
             // A copy without references is copied again with the next replica.
             let list = self.list(section);
-            let nothing = HashSet::new();
+            let no_names = HashSet::new();
             indices.extend(
                 copied
                     .into_iter()
-                    .filter(|&copy| concerns(&list[copy], &nothing)),
+                    .filter(|&copy| concerns(&list[copy], &no_names)),
             );
         }
         Ok(())
@@ -183,15 +183,15 @@ fn name_of(section: &str, element: &Element) -> Option<(Kind, String)> {
 }
 
 /// Creates a frame at the location of an element, with its class.
-fn frame_of(element: &Element, place: &Pose) -> Element {
+fn frame_of(element: &Element, pose: &Pose) -> Element {
     let mut frame = Element::with_location_of(element, "frame");
     let words = |numbers: &[f64]| {
         let words: Vec<String> = numbers.iter().map(f64::to_string).collect();
         words.join(" ")
     };
     let pose = [
-        ("pos", words(&place.pos.to_array())),
-        ("quat", words(&place.quat.to_array())),
+        ("pos", words(&pose.pos.to_array())),
+        ("quat", words(&pose.quat.to_array())),
     ];
     frame
         .attributes

@@ -123,27 +123,27 @@ impl Settings {
         if let Some(groups) = other.groups().filter(|_| rule == Conflict::Merge) {
             option.push(("actuatorgroupdisable".to_owned(), groups)); // Those of the model itself stay disabled.
         }
-        Ok(self.take(other, option, sizes, flags))
+        Ok(self.append(other, option, sizes, flags))
     }
 
     /// Appends sections with values of an attached model. Returns the names of the values.
-    fn take(
+    fn append(
         &mut self,
         other: &Settings,
         option: Vec<(String, String)>,
         sizes: Vec<(String, String)>,
         flags: Vec<(String, String)>,
     ) -> Vec<String> {
-        let Some(place) = other.0.last() else {
+        let Some(last) = other.0.last() else {
             return Vec::new();
         };
         let names: Vec<String> = (option.iter().chain(&sizes).chain(&flags))
             .map(|(name, _)| name.clone())
             .collect();
-        let mut section = Element::with_location_of(place, "option");
+        let mut section = Element::with_location_of(last, "option");
         section.attributes = option;
         if !flags.is_empty() {
-            let mut flag = Element::with_location_of(place, "flag");
+            let mut flag = Element::with_location_of(last, "flag");
             flag.attributes = flags;
             section.children.push(flag);
         }
@@ -151,7 +151,7 @@ impl Settings {
             self.0.push(section);
         }
         if !sizes.is_empty() {
-            let mut section = Element::with_location_of(place, "size");
+            let mut section = Element::with_location_of(last, "size");
             section.attributes = sizes;
             self.0.push(section);
         }

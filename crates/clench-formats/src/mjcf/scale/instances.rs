@@ -17,12 +17,12 @@ impl Frames {
             return;
         }
         let shapes = self.instances.entry(asset.clone()).or_default();
-        let known = shapes.iter().position(|&other| other == linear_map);
-        let number = known.unwrap_or_else(|| {
+        let found = shapes.iter().position(|&other| other == linear_map);
+        let number = found.unwrap_or_else(|| {
             shapes.push(linear_map);
             let number = shapes.len() - 1;
             if number > 0 {
-                self.made.push((asset.clone(), number));
+                self.further_shapes.push((asset.clone(), number));
             }
             number
         });
@@ -73,7 +73,7 @@ impl Frames {
     ) -> Result<(), LoadError> {
         let meshes = numbered(builder.meshes.iter().map(|mesh| &mesh.name));
         let fields = numbered(builder.height_fields.iter().map(|field| &field.name));
-        for (name, number) in &self.made {
+        for (name, number) in &self.further_shapes {
             let shape = self.instances[name][*number];
             if let Some(&place) = meshes.get(name) {
                 let mesh = &builder.meshes[place];

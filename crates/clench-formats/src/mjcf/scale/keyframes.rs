@@ -2,7 +2,7 @@
 //! 4.0.
 
 use super::actuators::States;
-use super::{FrameId, Frames, PlacedJoint};
+use super::{FrameId, Frames, JointScaling};
 use crate::mjcf::linear_map::LinearMap;
 use clench_builder::{KeyframeElement, KeyframePart, KeyframeSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;
@@ -30,12 +30,12 @@ impl Frames {
         joints.sort_by_key(|joint| joint.body);
         joints
             .into_iter()
-            .map(|joint| self.of_placed(joint))
+            .map(|joint| self.scaling_of(joint))
             .collect()
     }
 
-    fn of_placed(&self, joint: PlacedJoint) -> OfJoint {
-        let PlacedJoint { frame, kind, .. } = joint;
+    fn scaling_of(&self, joint: JointScaling) -> OfJoint {
+        let JointScaling { frame, kind, .. } = joint;
         let along = match kind {
             JointKind::Slide => joint.length,
             _ => 1.0,

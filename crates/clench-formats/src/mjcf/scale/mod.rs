@@ -232,13 +232,13 @@ pub(super) struct Frames {
     list: Vec<Frame>,
     /// The frames of bodies, with the maps of positions in their axes.
     bodies: BTreeMap<String, (FrameId, LinearMap)>,
-    joints: BTreeMap<String, PlacedJoint>,
+    joints: BTreeMap<String, JointScaling>,
     geoms: BTreeMap<String, FrameId>,
     sites: BTreeMap<String, FrameId>,
     cameras: BTreeMap<String, FrameId>,
     tendons: BTreeMap<String, (FrameId, Coordinate)>,
     /// All joints, in the order of reading.
-    all_joints: Vec<PlacedJoint>,
+    all_joints: Vec<JointScaling>,
     /// The frames and coordinates of tendons, in order.
     all_tendons: Vec<(FrameId, Coordinate)>,
     /// The frames of mocap bodies.
@@ -246,14 +246,14 @@ pub(super) struct Frames {
     /// The shapes of a mesh or height field, in the order of the elements that use them.
     instances: BTreeMap<String, Vec<LinearMap>>,
     /// The shapes after the first ones, in the order of use.
-    made: Vec<(String, usize)>,
+    further_shapes: Vec<(String, usize)>,
     /// Scaled mesh geoms whose mass derives from a density: body, index in it, and scale of lengths.
     meshes: Vec<(usize, usize, f64)>,
 }
 
 /// The data for scaling a joint's numbers.
 #[derive(Clone, Copy, Debug)]
-struct PlacedJoint {
+struct JointScaling {
     body: usize,
     frame: FrameId,
     kind: JointKind,
@@ -285,7 +285,7 @@ impl Default for Frames {
             all_tendons: Vec::new(),
             mocaps: Vec::new(),
             instances: BTreeMap::new(),
-            made: Vec::new(),
+            further_shapes: Vec::new(),
             meshes: Vec::new(),
         }
     }
@@ -293,7 +293,7 @@ impl Default for Frames {
 
 impl Frames {
     /// Reads the scale of a nested frame, and composes its map with that of its pose in the body.
-    pub(super) fn enter(
+    pub(super) fn add_frame(
         &mut self,
         element: &Element,
         outer: FrameId,
@@ -304,12 +304,12 @@ impl Frames {
             return Ok(outer);
         }
         pose.linear_map = pose.linear_map.after(linear_map);
-        let around = self.list[outer];
+        let enclosing = self.list[outer];
         self.list.push(Frame {
             outer,
-            scale: around.scale.then(own),
+            scale: enclosing.scale.then(own),
             position: pose.pos,
-            unscaled: around.unscaled(pose.pos),
+            unscaled: enclosing.unscaled(pose.pos),
             linear_map: pose.linear_map.rotated(pose.quat.conjugate()),
         });
         Ok(self.list.len() - 1)
@@ -353,7 +353,7 @@ impl Frames {
         frame: FrameId,
         length: f64,
     ) {
-        let placed = PlacedJoint {
+        let placed = JointScaling {
             body,
             frame,
             kind: joint.kind,

@@ -125,8 +125,8 @@ fn write_attribute<'x>(
     Ok(match (option.mjcf(), value) {
         (Mjcf::Attribute(name), OptionValue::Count(n)) => tag.integer(name, n as i64),
         (Mjcf::Attribute(name), OptionValue::Number(x)) => tag.numbers(name, &[x]),
-        (Mjcf::Attribute(name), value) => tag.text(name, word(option, value, value.words())?),
-        (Mjcf::Words(name, words), value) => tag.text(name, word(option, value, words)?),
+        (Mjcf::Attribute(name), value) => tag.text(name, keyword(option, value, value.keywords())?),
+        (Mjcf::Words(name, keywords), value) => tag.text(name, keyword(option, value, keywords)?),
         (Mjcf::Flag(..) | Mjcf::Text(_), _) => tag,
         // Its effect was checked before.
         (Mjcf::Nowhere, _) if option == RigidOption::constraint_timeconst => tag,
@@ -135,13 +135,13 @@ fn write_attribute<'x>(
     })
 }
 
-fn word(
+fn keyword(
     option: RigidOption,
     value: OptionValue,
-    words: &[(&'static str, OptionValue)],
+    keywords: &[(&'static str, OptionValue)],
 ) -> Result<&'static str, SaveError> {
     let missing = || unwritable(option.name(), &format!("MJCF has no keyword for {value}"));
-    value.word(words).ok_or_else(missing)
+    value.keyword_in(keywords).ok_or_else(missing)
 }
 
 /// Returns the flags that differ from MJCF's defaults.
@@ -151,8 +151,8 @@ fn flags(model: &Model) -> Result<Vec<(&'static str, bool)>, SaveError> {
         if let (Mjcf::Flag(name, [disabled, enabled]), Some(value)) =
             (option.mjcf(), model.options.get(option))
         {
-            let words = [("disable", disabled), ("enable", enabled)];
-            flags.push((name, word(option, value, &words)? == "enable"));
+            let keywords = [("disable", disabled), ("enable", enabled)];
+            flags.push((name, keyword(option, value, &keywords)? == "enable"));
         }
     }
     let Flags {

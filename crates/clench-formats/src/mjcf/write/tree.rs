@@ -63,7 +63,7 @@ fn write_body(model: &Model, b: usize, xml: &mut Xml) -> Result<(), SaveError> {
     if b == 0 {
         xml.tag("worldbody").open();
     } else {
-        let mut tag = placed(xml.tag("body").name(name), p.body_pos[b], p.body_quat[b]);
+        let mut tag = write_pose(xml.tag("body").name(name), p.body_pos[b], p.body_quat[b]);
         if mocap.is_some() {
             tag = tag.boolean("mocap", true);
         }
@@ -111,7 +111,7 @@ fn sleep_policy(policy: SleepPolicy) -> &'static str {
 }
 
 /// Writes the pose of an element in its body.
-fn placed<'a>(tag: Tag<'a>, pos: Vec3<f64>, quat: Quat<f64>) -> Tag<'a> {
+fn write_pose<'a>(tag: Tag<'a>, pos: Vec3<f64>, quat: Quat<f64>) -> Tag<'a> {
     tag.numbers_unless("pos", &pos.to_array(), &[0.0; 3])
         .numbers_unless("quat", &quat.to_array(), &IDENTITY_QUAT)
 }
@@ -245,7 +245,7 @@ fn write_geom(model: &Model, g: usize, xml: &mut Xml) -> Result<(), SaveError> {
     } else {
         tag = tag.numbers("size", &p.geom_size[g].to_array());
     }
-    tag = placed(tag, pos, quat)
+    tag = write_pose(tag, pos, quat)
         .integer_unless("contype", (*contype as i32).into(), 1)
         .integer_unless("conaffinity", (*conaffinity as i32).into(), 1)
         .integer_unless("condim", (*condim).into(), 3)
@@ -302,7 +302,7 @@ fn write_site(model: &Model, s: usize, xml: &mut Xml) {
     let p = &model.params;
     let rgba = colour(&model.visuals, model.visuals.sites[s]);
     let tag = xml.tag("site").name(name).text("type", geom_type(*kind));
-    let tag = placed(tag, p.site_pos[s], p.site_quat[s]);
+    let tag = write_pose(tag, p.site_pos[s], p.site_quat[s]);
     let tag = match mesh {
         Some(mesh) => tag.text("mesh", &model.meshes[*mesh].name),
         None => tag.numbers("size", &p.site_size[s].to_array()),
@@ -338,7 +338,7 @@ fn write_camera(model: &Model, c: usize, xml: &mut Xml) -> Result<(), SaveError>
     if *orthographic {
         tag = tag.text("projection", "orthographic");
     }
-    tag = placed(tag, p.cam_pos[c], p.cam_quat[c])
+    tag = write_pose(tag, p.cam_pos[c], p.cam_quat[c])
         .integers("resolution", resolution.iter().map(|&n| n as i64))
         .numbers_unless("user", user, &[]);
     let [focal_x, focal_y, principal_x, principal_y] = p.cam_intrinsic[c];

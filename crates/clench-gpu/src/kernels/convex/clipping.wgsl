@@ -8,7 +8,7 @@ var<private> polygon_count: u32;
 // A projected edge or face: the offset and number of its corners, and the slope of its height. For a round cap also its
 // radius (else zero), two axes in its plane, and a point with its centre's coordinates along them.
 struct Projected {
-    place: u32,
+    offset: u32,
     count: u32,
     slope: vec2f,
     radius: f32,
@@ -17,16 +17,16 @@ struct Projected {
     center: vec3f,
 }
 
-// Returns the projection of a feature whose corners, from `place` on, are already projected; the columns of `axes` are
+// Returns the projection of a feature whose corners, from `offset` on, are already projected; the columns of `axes` are
 // its body's.
-fn project_feature(place: u32, f: Feature, axes: mat3x3f, center: vec3f) -> Projected {
+fn project_feature(offset: u32, f: Feature, axes: mat3x3f, center: vec3f) -> Projected {
     let normal = axes * f.normal;
     var slope = -normal.xy / normal.z;
     if (f.count == 2u) {
-        let apart = feature_corners[place + 1u] - feature_corners[place];
+        let apart = feature_corners[offset + 1u] - feature_corners[offset];
         slope = apart.xy * (apart.z / max(dot(apart.xy, apart.xy), SMALLEST));
     }
-    return Projected(place, f.count, slope, f.radius, axes[0], axes[1], center);
+    return Projected(offset, f.count, slope, f.radius, axes[0], axes[1], center);
 }
 
 fn is_cap(f: Projected) -> bool {
@@ -35,12 +35,12 @@ fn is_cap(f: Projected) -> bool {
 
 // Returns a corner; after the last comes the first.
 fn corner_of_feature(f: Projected, k: u32) -> vec3f {
-    return feature_corners[f.place + select(k, 0u, k == f.count)];
+    return feature_corners[f.offset + select(k, 0u, k == f.count)];
 }
 
 // Returns the height of a feature's plane at a point of the projection.
 fn height_of(f: Projected, p: vec2f) -> f32 {
-    let origin = feature_corners[f.place];
+    let origin = feature_corners[f.offset];
     return origin.z + dot(f.slope, p - origin.xy);
 }
 
@@ -92,10 +92,10 @@ fn nearest_along(along: vec2f, to: vec2f) -> f32 {
 
 // Returns the crossing of two segments in the projection, or the middle between their nearest points.
 fn crossing(a: Projected, b: Projected) -> vec3f {
-    let p = feature_corners[a.place];
-    let q = feature_corners[b.place];
-    let u = feature_corners[a.place + 1u] - p;
-    let v = feature_corners[b.place + 1u] - q;
+    let p = feature_corners[a.offset];
+    let q = feature_corners[b.offset];
+    let u = feature_corners[a.offset + 1u] - p;
+    let v = feature_corners[b.offset + 1u] - q;
     let inverse = 1.0 / cross_2d(u.xy, v.xy);
     let at = vec2f(cross_2d((q - p).xy, v.xy), cross_2d((q - p).xy, u.xy)) * inverse;
     var ends = clamp(at, vec2f(0.0), vec2f(1.0));
@@ -109,8 +109,8 @@ fn crossing(a: Projected, b: Projected) -> vec3f {
 }
 
 fn is_parallel(a: Projected, b: Projected) -> bool {
-    let u = (feature_corners[a.place + 1u] - feature_corners[a.place]).xy;
-    let v = (feature_corners[b.place + 1u] - feature_corners[b.place]).xy;
+    let u = (feature_corners[a.offset + 1u] - feature_corners[a.offset]).xy;
+    let v = (feature_corners[b.offset + 1u] - feature_corners[b.offset]).xy;
     let area = cross_2d(u, v);
     return area * area <= dot(u, u) * dot(v, v) * CLIP_PARALLEL * CLIP_PARALLEL;
 }
@@ -153,8 +153,8 @@ fn chord(cap: Projected, p: vec2f, q: vec2f) -> vec2f {
 // Fills the polygon with the part of an edge or a face within a round cap.
 fn clip_to_cap(cap: Projected, cut: Projected, slack: f32) {
     if (cut.count == 2u) {
-        let p = feature_corners[cut.place];
-        let edge = feature_corners[cut.place + 1u] - p;
+        let p = feature_corners[cut.offset];
+        let edge = feature_corners[cut.offset + 1u] - p;
         let ends = clamp(chord(cap, p.xy, (p + edge).xy), vec2f(0.0), vec2f(1.0));
         push_corner(p + edge * ends.x);
         push_corner(p + edge * ends.y);
@@ -180,11 +180,11 @@ fn clip_to_cap(cap: Projected, cut: Projected, slack: f32) {
             push_corner(p);
         }
     }
-    sort_around();
+    sort_by_angle();
 }
 
 // Sorts the corners of the polygon around their centre, from the first. Overwrites their heights.
-fn sort_around() {
+fn sort_by_angle() {
     var sum = vec3f();
     for (var k = 0u; k < polygon_count; k++) {
         sum += polygon[k];
@@ -199,12 +199,12 @@ fn sort_around() {
         let pseudo_angle = 1.0 - along / size;
         // The key grows with the angle from the first corner, 0 to 4. Corners next to the first tie with it.
         let corner = vec3f(polygon[k].xy, select(pseudo_angle, 4.0 - pseudo_angle, aside < -size * (EPSILON * 1e3)));
-        var place = k;
-        while (place > 0u && polygon[max(place, 1u) - 1u].z > corner.z) {
-            polygon[place] = polygon[place - 1u];
-            place--;
+        var index = k;
+        while (index > 0u && polygon[max(index, 1u) - 1u].z > corner.z) {
+            polygon[index] = polygon[index - 1u];
+            index--;
         }
-        polygon[place] = corner;
+        polygon[index] = corner;
     }
 }
 

@@ -24,7 +24,7 @@ fn find_largest_gap(range: f32) -> bool {
         if (overlapping) {
             done = expand(curved);
         }
-        if (curved && !(overlapping && done && refined) && !best.settled) {
+        if (curved && !(overlapping && done && refined) && !best.is_exact) {
             find_edges();
             let improved = improve(refine(best.normal));
             refined = refined || improved;
@@ -33,7 +33,7 @@ fn find_largest_gap(range: f32) -> bool {
             break;
         }
     }
-    if (overlapping && !known) {
+    if (overlapping && !converged) {
         try_crossings();
     }
     return best.gap - radii <= range;
@@ -54,7 +54,7 @@ fn find_touching(given_gap: bool, range: f32) -> bool {
         return false;
     }
     // For separate bodies it gives no distance.
-    if (direct.settled && direct.gap <= 0.0) {
+    if (direct.is_exact && direct.gap <= 0.0) {
         certain = true;
         best = direct;
     }

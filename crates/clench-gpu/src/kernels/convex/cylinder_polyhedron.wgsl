@@ -86,11 +86,11 @@ fn crease_of(hull: u32, k: u32) -> Crease {
         let rotation = vec2f(cosine, sqrt(max(1.0 - cosine * cosine, 0.0)));
         return Crease(start, along, cross(start, along), edge.zw, rotation);
     }
-    let place = words[hull + HULL_CREASES] + 8u * k;
-    let start = shape3(place) * box_scale;
-    let along = shape3(place + 3u);
+    let offset = words[hull + HULL_CREASES] + 8u * k;
+    let start = shape3(offset) * box_scale;
+    let along = shape3(offset + 3u);
     let faces = words[hull + HULL_CREASE_FACES] + 2u * k;
-    let rotation = vec2f(numbers[place + 6u], numbers[place + 7u]);
+    let rotation = vec2f(numbers[offset + 6u], numbers[offset + 7u]);
     return Crease(start, along, cross(start, along), vec2u(words[faces], words[faces + 1u]), rotation);
 }
 

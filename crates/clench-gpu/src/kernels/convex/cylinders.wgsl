@@ -76,7 +76,7 @@ fn holds(size: vec3f, p: vec3f) -> bool {
     return abs(p.z) <= size.y && dot(p.xy, p.xy) <= size.x * size.x;
 }
 
-// Returns the largest gap of two overlapping cylinders, or a positive one. It is not settled if either may be across
+// Returns the largest gap of two overlapping cylinders, or a positive one. It is not exact if either may be across
 // two cap circles, or no common point is known; it is −UNMOVABLE if the axes are parallel.
 fn cylinders_gap() -> Gap {
     let own_axis = vec3f(0.0, 0.0, 1.0);
@@ -125,6 +125,6 @@ fn cylinders_gap() -> Gap {
     let inside = holds(body_a.size, offset_b + rotation_b * furthest.b)
         || holds(body_b.size, transpose(rotation_b) * (furthest.a - offset_b));
     let depth = -largest_gap.gap;
-    largest_gap.settled = depth < 0.0 || (!circles_cross(a, b, cosine, sine, depth) && (axes_pass || inside));
+    largest_gap.is_exact = depth < 0.0 || (!circles_cross(a, b, cosine, sine, depth) && (axes_pass || inside));
     return largest_gap;
 }

@@ -88,7 +88,7 @@ fn corners_of(face: u32) -> vec3u {
 // and whether the depth is known.
 var<private> touching: vec3u;
 var<private> refined: bool;
-var<private> known: bool;
+var<private> converged: bool;
 
 // Begins with the depth along the start direction of the search.
 fn begin_expansion(start: vec3f) {
@@ -96,7 +96,7 @@ fn begin_expansion(start: vec3f) {
     best = Gap(start, first_gap, false);
     touching = corners_of(0u);
     refined = false;
-    known = false;
+    converged = false;
 }
 
 // Grows the polytope until the depth is known, in `best`, or, for curved bodies, until a better direction is worth
@@ -106,13 +106,13 @@ fn expand(curved: bool) -> bool {
         let face = nearest_face_of_polytope();
         let distance = fetch(face_at(face) + 10u);
         // The amount by which the depth through the nearest face may still be smaller.
-        let slack = select(exactness, max(smallest * EPA_SLACK, exactness), best.settled);
+        let slack = select(exactness, max(smallest * EPA_SLACK, exactness), best.is_exact);
         let corners = corners_of(face);
-        known = -best.gap - distance <= slack;
-        if (known && !best.settled && distance < UNMOVABLE) {
+        converged = -best.gap - distance <= slack;
+        if (converged && !best.is_exact && distance < UNMOVABLE) {
             touching = corners;
         }
-        if (known || vertex_count == POLYTOPE_VERTICES) {
+        if (converged || vertex_count == POLYTOPE_VERTICES) {
             break;
         }
         let outward = fetch3(face_at(face) + 6u);
@@ -121,11 +121,11 @@ fn expand(curved: bool) -> bool {
         let movable = -raw.gap - distance;
         let better = improve(raw);
         refined = refined && !better;
-        known = movable <= exactness;
-        if (better || (known && !best.settled)) {
+        converged = movable <= exactness;
+        if (better || (converged && !best.is_exact)) {
             touching = corners;
         }
-        if (known) {
+        if (converged) {
             break;
         }
         if (!add_to_polytope(face, vertex)) {

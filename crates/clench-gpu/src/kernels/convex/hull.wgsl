@@ -50,7 +50,7 @@ fn face_across(hull: u32, vertex: u32, d: vec3f) -> u32 {
 
 // Stores the corners of a face; of many, only every second, third and so on. Then the furthest vertex is kept too, but
 // for a level face only if it is noticeably further than the others.
-fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Feature {
+fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, offset: u32) -> Feature {
     let corners = words[body.hull + HULL_FACE_CORNERS] + face;
     let begin = words[corners];
     let count = words[corners + 1u] - begin;
@@ -66,7 +66,7 @@ fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Fea
     for (var k = 0u; k < count; k++) {
         let corner = words[begin + k];
         if (k % stride == 0u || (needed && corner == vertex)) {
-            feature_corners[place + kept] = vertex_of_hull(body.hull, corner);
+            feature_corners[offset + kept] = vertex_of_hull(body.hull, corner);
             kept++;
         }
     }
@@ -74,11 +74,11 @@ fn face_of_hull(body: Body, face: u32, vertex: u32, d: vec3f, place: u32) -> Fea
 }
 
 // Stores the most nearly level face or edge at the furthest vertex, if one is level enough.
-fn feature_of_hull(body: Body, d: vec3f, place: u32) -> Feature {
+fn feature_of_hull(body: Body, d: vec3f, offset: u32) -> Feature {
     let vertex = furthest_of_hull(body.hull, d);
     let face = face_across(body.hull, vertex, d);
     if (face != NONE) {
-        return face_of_hull(body, face, vertex, d, place);
+        return face_of_hull(body, face, vertex, d, offset);
     }
     let corner = vertex_of_hull(body.hull, vertex);
     let neighbors = words[body.hull + HULL_NEIGHBORS] + vertex;
@@ -94,12 +94,12 @@ fn feature_of_hull(body: Body, d: vec3f, place: u32) -> Feature {
             neighbor = words[k];
         }
     }
-    feature_corners[place] = corner;
+    feature_corners[offset] = corner;
     if (neighbor == NONE) {
         return Feature(1u, d, 0.0);
     }
     let is_first = vertex < neighbor;
-    feature_corners[place + select(0u, 1u, is_first)] = vertex_of_hull(body.hull, neighbor);
-    feature_corners[place + select(1u, 0u, is_first)] = corner;
+    feature_corners[offset + select(0u, 1u, is_first)] = vertex_of_hull(body.hull, neighbor);
+    feature_corners[offset + select(1u, 0u, is_first)] = corner;
     return Feature(2u, d, 0.0);
 }

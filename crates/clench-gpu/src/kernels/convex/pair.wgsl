@@ -23,7 +23,7 @@ struct Vertex {
 struct Gap {
     normal: vec3f,
     gap: f32,
-    settled: bool,
+    is_exact: bool,
 }
 
 // The largest gap found so far.
@@ -51,7 +51,7 @@ fn start_direction() -> vec3f {
 }
 
 // Returns the vertex along `n`, a direction of any length; among ties, the one furthest against `side`.
-fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
+fn vertex_against(n: vec3f, side: vec3f) -> Vertex {
     let back = transpose(rotation_b);
     var points = array<vec3f, 2>();
     // One call site, because the text of a support function is long with hulls.
@@ -70,14 +70,14 @@ fn vertex_beside(n: vec3f, side: vec3f) -> Vertex {
 }
 
 fn vertex_along(n: vec3f) -> Vertex {
-    return vertex_beside(n, n);
+    return vertex_against(n, n);
 }
 
-// Takes the other gap if it is larger; among equals, to the tolerance, a settled one. Returns true if it did.
+// Takes the other gap if it is larger; among equals, to the tolerance, an exact one. Returns true if it did.
 fn improve(other: Gap) -> bool {
     var handicap: f32 = 0.0;
-    if (best.settled != other.settled) {
-        handicap = select(-exactness, exactness, best.settled);
+    if (best.is_exact != other.is_exact) {
+        handicap = select(-exactness, exactness, best.is_exact);
     }
     if (other.gap > best.gap + handicap) {
         best = other;

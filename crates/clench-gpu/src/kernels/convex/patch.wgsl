@@ -165,11 +165,11 @@ fn first_direction(a: Projected, b: Projected) -> vec2f {
     }
     if (is_cap(cap)) {
         // From the opposite corner to the first; those of the second body are in reverse order.
-        let start = cap.place + select(0u, CAP_CORNERS - 1u, cap.place > 0u);
-        let opposite = cap.place + select(CAP_CORNERS / 2u, CAP_CORNERS / 2u - 1u, cap.place > 0u);
+        let start = cap.offset + select(0u, CAP_CORNERS - 1u, cap.offset > 0u);
+        let opposite = cap.offset + select(CAP_CORNERS / 2u, CAP_CORNERS / 2u - 1u, cap.offset > 0u);
         return (feature_corners[start] - feature_corners[opposite]).xy;
     }
-    return (feature_corners[a.place + 1u] - feature_corners[a.place]).xy;
+    return (feature_corners[a.offset + 1u] - feature_corners[a.offset]).xy;
 }
 
 // Adds the contacts of two features that are both more than a corner.

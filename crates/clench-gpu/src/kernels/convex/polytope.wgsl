@@ -15,8 +15,8 @@ var<private> horizon_count: u32;
 // A point inside.
 var<private> middle: vec3f;
 
-fn fetch_index(place: u32) -> u32 {
-    return u32(fetch(place));
+fn fetch_index(offset: u32) -> u32 {
+    return u32(fetch(offset));
 }
 
 fn polytope_w(k: u32) -> vec3f {
@@ -44,7 +44,7 @@ fn visibility() -> f32 {
 }
 
 fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
-    let place = face_at(face);
+    let offset = face_at(face);
     let a = polytope_w(corners.x);
     let crossed = cross(polytope_w(corners.y) - a, polytope_w(corners.z) - a);
     let area = length(crossed);
@@ -52,12 +52,12 @@ fn insert_face(face: u32, corners: vec3u, sides: vec3u) {
     let is_flat = dot(crossed, a - middle) <= area * visibility();
     let normal = select(crossed / max(area, SMALLEST), vec3f(), is_flat);
     let distance = dot(normal, a);
-    put3(place, vec3f(corners));
-    put3(place + 3u, vec3f(sides));
-    put3(place + 6u, normal);
-    put(place + 9u, distance);
-    put(place + 10u, select(distance, UNMOVABLE, is_flat));
-    put(place + 11u, 0.0);
+    put3(offset, vec3f(corners));
+    put3(offset + 3u, vec3f(sides));
+    put3(offset + 6u, normal);
+    put(offset + 9u, distance);
+    put(offset + 10u, select(distance, UNMOVABLE, is_flat));
+    put(offset + 11u, 0.0);
     face_count = max(face_count, face + 1u);
 }
 
@@ -123,24 +123,24 @@ fn find_horizon(first: u32, w: vec3f) {
         let side = fetch_index(thread_field(POLYTOPE_STACK) + depth);
         let face = side >> 2u;
         let start = side & 3u;
-        let place = face_at(face);
-        if (fetch(place + 11u) == 1.0) {
+        let offset = face_at(face);
+        if (fetch(offset + 11u) == 1.0) {
             continue;
         }
-        let normal = fetch3(place + 6u);
+        let normal = fetch3(offset + 6u);
         // A face without area has no normal and is removed with its neighbours.
-        if (any(normal != vec3f()) && dot(normal, w) - fetch(place + 9u) <= visibility()) {
+        if (any(normal != vec3f()) && dot(normal, w) - fetch(offset + 9u) <= visibility()) {
             if (horizon_count < POLYTOPE_FACES) {
                 put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count, f32(side));
-                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count + 1u, fetch(place + start));
-                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count + 2u, fetch(place + (start + 1u) % 3u));
+                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count + 1u, fetch(offset + start));
+                put(thread_field(POLYTOPE_HORIZON) + 3u * horizon_count + 2u, fetch(offset + (start + 1u) % 3u));
             }
             horizon_count++;
             continue;
         }
         remove_face(face);
-        put(thread_field(POLYTOPE_STACK) + depth, fetch(place + 3u + (start + 2u) % 3u));
-        put(thread_field(POLYTOPE_STACK) + depth + 1u, fetch(place + 3u + (start + 1u) % 3u));
+        put(thread_field(POLYTOPE_STACK) + depth, fetch(offset + 3u + (start + 2u) % 3u));
+        put(thread_field(POLYTOPE_STACK) + depth + 1u, fetch(offset + 3u + (start + 1u) % 3u));
         depth += 2u;
     }
 }

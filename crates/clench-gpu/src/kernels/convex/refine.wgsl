@@ -60,7 +60,7 @@ fn edge_holds(n: vec3f) -> bool {
     }
     for (var k = 0u; k < bound(2u); k++) {
         let side = select(-edges[0], edges[0], k == 0u);
-        if (dot(side, vertex_beside(n, n + side * ROOT_OF_EPSILON).w) > exactness) {
+        if (dot(side, vertex_against(n, n + side * ROOT_OF_EPSILON).w) > exactness) {
             return false;
         }
     }
@@ -104,7 +104,7 @@ fn newton_step(at: Gap, w: vec3f) -> vec4f {
     return vec4f(rotation, select(f32(1.0), f32(2.0), mean - spread > -least));
 }
 
-// Returns the best cap of a cylinder that roughly faces `n`, if the gap across it is larger than `gap`. It is settled
+// Returns the best cap of a cylinder that roughly faces `n`, if the gap across it is larger than `gap`. It is exact
 // if the cap touches; else, if the gap grows next to it, the normal is a start direction.
 fn refine_cap(n: vec3f, gap: f32) -> Gap {
     var found = Gap(n, gap, false);
@@ -179,7 +179,7 @@ fn refine(n: vec3f) -> Gap {
             // Only once.
             may_leave = false;
             let from_cap = refine_cap(tried, gap);
-            if (from_cap.settled) {
+            if (from_cap.is_exact) {
                 return from_cap;
             }
             if (from_cap.gap > gap) {
@@ -188,7 +188,7 @@ fn refine(n: vec3f) -> Gap {
             }
         }
         if (size <= CONVERGED_ROTATION && gap - before <= exactness) {
-            at.settled = step.w == 2.0 && edge_holds(tried);
+            at.is_exact = step.w == 2.0 && edge_holds(tried);
             return at;
         }
         step = newton_step(at, w);

@@ -45,10 +45,10 @@ fn weigh_rows(nblock: u32) -> u32 {
             dim = block(b, BLOCK_DIM);
         }
         let sums = sums_up_to(vec4f(f32(dim), 0.0, 0.0, 0.0));
-        let place = count + u32(sums.before.x);
+        let offset = count + u32(sums.before.x);
         count += u32(sums.all.x);
         for (var a = 0u; a < dim; a++) {
-            put_row(STIFF + place + a, f32(block(b, BLOCK_ROW) + a));
+            put_row(STIFF + offset + a, f32(block(b, BLOCK_ROW) + a));
         }
     }
     for (var k = lane; k < nblock * NV; k += GROUP) {

@@ -18,7 +18,7 @@ fn begin_cell(cell: vec2i) {
 }
 
 // Returns the position within the cell, each from 0 to 1.
-fn place_in_cell(p: vec3f) -> vec2f {
+fn position_in_cell(p: vec3f) -> vec2f {
     return (p.xy - cell_corner) / grid.step;
 }
 
@@ -30,7 +30,7 @@ fn rise_of_triangle(right: bool) -> vec2f {
 
 // Returns the height of a point over that triangle.
 fn height_over(p: vec3f, right: bool) -> f32 {
-    return p.z - (cell_heights.x + dot(rise_of_triangle(right), place_in_cell(p)));
+    return p.z - (cell_heights.x + dot(rise_of_triangle(right), position_in_cell(p)));
 }
 
 fn point_at(line: Line, distance: f32) -> vec3f {
@@ -39,9 +39,9 @@ fn point_at(line: Line, distance: f32) -> vec3f {
 
 // Returns the hit of the ray on the surface within the cell, between two distances.
 fn cross_surface(line: Line, start: f32, end: f32, above: bool) -> Hit {
-    let places = mat2x2f(place_in_cell(point_at(line, start)), place_in_cell(point_at(line, end)));
-    let first = places[0].x - places[0].y;
-    let last = places[1].x - places[1].y;
+    let positions = mat2x2f(position_in_cell(point_at(line, start)), position_in_cell(point_at(line, end)));
+    let first = positions[0].x - positions[0].y;
+    let last = positions[1].x - positions[1].y;
     let changes = (first < 0.0) != (last < 0.0);
     let share = first / select(f32(1.0), first - last, changes);
     var right = select(first > 0.0, last > 0.0, first == 0.0);
@@ -101,8 +101,8 @@ fn hit_terrain(field: u32, line: Line) -> Hit {
     let start = max(t.x, 0.0);
     let p = point_at(line, start);
     begin_cell(cell_at(p.x, p.y));
-    let place = place_in_cell(p);
-    let above = height_over(p, place.x > place.y) >= 0.0;
+    let position = position_in_cell(p);
+    let above = height_over(p, position.x > position.y) >= 0.0;
     // Through a side or the bottom.
     let enters_ground = !above && t.x >= 0.0;
     let in_terrain = !above && line.origin.z > 0.0;

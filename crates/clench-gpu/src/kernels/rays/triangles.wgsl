@@ -23,11 +23,11 @@ fn shear_of(line: Line) -> Shear {
     return Shear(line, longest, along.xy / along.z);
 }
 
-// Returns true if a ray enters the box at `place` before a limit. A ray perpendicular to an axis is perturbed.
-fn enters(line: Line, place: u32, limit: f32) -> bool {
+// Returns true if a ray enters the box at `offset` before a limit. A ray perpendicular to an axis is perturbed.
+fn enters(line: Line, offset: u32, limit: f32) -> bool {
     let steep = select(max(line.along, vec3f(1e-20)), min(line.along, vec3f(-1e-20)), line.along < vec3f());
-    let low = (shape3(place) - line.origin) / steep;
-    let high = (shape3(place + 3u) - line.origin) / steep;
+    let low = (shape3(offset) - line.origin) / steep;
+    let high = (shape3(offset + 3u) - line.origin) / steep;
     let near = min(low, high);
     let far = max(low, high) * (1.0 + 4.0 * EPSILON);
     return max(max(near.x, near.y), max(near.z, 0.0)) <= min(min(far.x, far.y), min(far.z, limit));
@@ -43,16 +43,16 @@ fn side_of(a: vec3f, b: vec3f) -> f32 {
 }
 
 // Returns a corner in the ray's frame: its position across the ray, and along it.
-fn sheared(shear: Shear, place: u32) -> vec3f {
-    let v = in_order(shape3(place) - shear.line.origin, shear.longest);
+fn sheared(shear: Shear, offset: u32) -> vec3f {
+    let v = in_order(shape3(offset) - shear.line.origin, shear.longest);
     return vec3f(v.xy - shear.slope * v.z, v.z);
 }
 
-// Returns the hit distance of a ray on the triangle at `place`, NOWHERE if it misses.
-fn hit_triangle(shear: Shear, place: u32) -> f32 {
-    let p = sheared(shear, place);
-    let q = sheared(shear, place + 3u);
-    let r = sheared(shear, place + 6u);
+// Returns the hit distance of a ray on the triangle at `offset`, NOWHERE if it misses.
+fn hit_triangle(shear: Shear, offset: u32) -> f32 {
+    let p = sheared(shear, offset);
+    let q = sheared(shear, offset + 3u);
+    let r = sheared(shear, offset + 6u);
     let sides = vec3f(side_of(r, q), side_of(p, r), side_of(q, p));
     let whole = dot(sides, vec3f(1.0));
     let inside = all(sides >= vec3f()) || all(sides <= vec3f());

@@ -1,6 +1,6 @@
 //! A ball whose centre is above a triangle: the result of GJK in closed form.
 
-use super::{Search, grid::Triangle, keep_deeper};
+use super::{Search, grid::Triangle, replace_if_deeper};
 use crate::narrow::convex::{pair::Gap, simplex::on_triangle};
 use crate::narrow::per_lane::Point;
 use clench_math::{Scalar, Vec3};
@@ -22,10 +22,10 @@ impl<S: Scalar> Search<S> {
         if distance > self.margin {
             return true;
         }
-        let known = Gap {
+        let gap_along = Gap {
             normal,
             gap,
-            settled: true,
+            is_exact: true,
         };
         let half = S::new(0.5);
         let point = Point {
@@ -33,11 +33,11 @@ impl<S: Scalar> Search<S> {
             normal,
             distance,
         };
-        if near.is_inside() || triangle.admits_normal(&triangle.feature(known)) {
-            keep_deeper(&mut self.deepest, point);
+        if near.is_inside() || triangle.admits_normal(&triangle.feature(gap_along)) {
+            replace_if_deeper(&mut self.deepest, point);
             self.found.add(point);
         } else {
-            keep_deeper(&mut self.rejected, point);
+            replace_if_deeper(&mut self.rejected, point);
         }
         true
     }

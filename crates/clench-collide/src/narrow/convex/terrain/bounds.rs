@@ -19,23 +19,23 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Computes the bounds of a finite body, enlarged by `around`, its radius and margin.
+    /// Computes the bounds of a finite body, enlarged by `padding`, its radius and margin.
     pub(super) fn new<S: Scalar>(
         body: &Body<S>,
         rotation: &Mat3<S>,
         offset: Vec3<S>,
-        around: S,
+        padding: S,
         grid: &TerrainGrid,
     ) -> Option<Self> {
-        let known = body.bounding_radius + offset.norm_squared();
-        if !(known.to_f64().is_finite() && around > -S::INFINITY) {
+        let size = body.bounding_radius + offset.norm_squared();
+        if !(size.to_f64().is_finite() && padding > -S::INFINITY) {
             return None;
         }
         let furthest = |d: Vec3<f64>| {
             let (d, length) = Vec3::<S>::from_f64(d.to_array()).normalize();
             let local = rotation.transpose_mul(d);
             let point = *rotation * body.support(local, local) + offset;
-            (point, ((point.dot(d) + around) * length).to_f64())
+            (point, ((point.dot(d) + padding) * length).to_f64())
         };
         let largest = |d: Vec3<f64>| furthest(d).1;
         let extent = |d: Vec3<f64>| (-largest(-d), largest(d));

@@ -8,7 +8,7 @@ use crate::narrow::{per_lane::Point, polygon::Polygon};
 use clench_math::{Mat3, Real, Scalar, Vec3};
 
 /// The tolerance, relative to the body, by which a corner outside a triangle still belongs to it; at least rounding.
-const BESIDE: f64 = 1e-9;
+const OUTSIDE_TOLERANCE: f64 = 1e-9;
 
 /// A triangle, and the body in its frame.
 pub(super) struct FaceClip<'a, S> {
@@ -75,8 +75,8 @@ impl<S: Scalar> FaceClip<'_, S> {
     fn side(&self, from: Vec3<S>, to: Vec3<S>) -> Side<S> {
         let out = (to - from).cross(self.normal);
         let size = out.x.abs().max(out.y.abs()).max(out.z.abs());
-        let beside = Real::max(S::new(BESIDE), S::EPSILON * S::new(8.0));
-        let slack = self.body.bounding_radius * beside * size;
+        let tolerance = Real::max(S::new(OUTSIDE_TOLERANCE), S::EPSILON * S::new(8.0));
+        let slack = self.body.bounding_radius * tolerance * size;
         Side {
             out,
             limit: out.dot(from) + slack,

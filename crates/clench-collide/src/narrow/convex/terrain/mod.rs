@@ -71,8 +71,8 @@ fn points<S: Scalar>(a: Placed<Terrain<S>, S>, b: AnyPlaced<S>, margin: S, point
     let grid = TerrainGrid::new(field);
     let mut search = Search::new(a, b, margin);
     let body = Body::new(&b.shape);
-    let around = body.radius + margin + search.tolerance;
-    let Some(bounds) = Bounds::new(&body, &search.rotation, search.offset, around, &grid) else {
+    let padding = body.radius + margin + search.tolerance;
+    let Some(bounds) = Bounds::new(&body, &search.rotation, search.offset, padding, &grid) else {
         return;
     };
     let Some([rows, columns]) = bounds.window(&grid) else {
@@ -134,7 +134,7 @@ struct Search<S> {
 type Largest<S> = (Gap<S>, Option<Simplex<S>>);
 
 /// Keeps the deeper of two points.
-fn keep_deeper<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
+fn replace_if_deeper<S: Scalar>(deepest: &mut Option<Point<S>>, point: Point<S>) {
     if deepest.is_none_or(|old| point.distance < old.distance) {
         *deepest = Some(point);
     }
@@ -198,7 +198,7 @@ impl<S: Scalar> Search<S> {
         // Deep within its walls, the smallest depth of the prism is through its face.
         let foot = lowest - normal * height.max(S::ZERO);
         if triangle.surrounds(foot, (-height).max(S::ZERO)) {
-            keep_deeper(&mut self.deepest, clip.contact(lowest));
+            replace_if_deeper(&mut self.deepest, clip.contact(lowest));
             clip.touch(self.margin, &mut self.found);
             return;
         }
@@ -276,7 +276,7 @@ impl<S: Scalar> Search<S> {
             let touching = self.patch(clip, pair, best, simplex);
             touching
                 .iter()
-                .for_each(|p| keep_deeper(&mut self.deepest, *p));
+                .for_each(|p| replace_if_deeper(&mut self.deepest, *p));
             if !level || !clip.touch(self.margin, &mut self.found) {
                 touching.iter().for_each(|p| self.found.add(*p));
                 // Beside a level face the field may rise above the feature. If the capacity is exceeded, the feature is
@@ -290,7 +290,7 @@ impl<S: Scalar> Search<S> {
                 let touching = self.patch(clip, pair, best, simplex);
                 touching
                     .iter()
-                    .for_each(|p| keep_deeper(&mut self.rejected, *p));
+                    .for_each(|p| replace_if_deeper(&mut self.rejected, *p));
             }
             if clip.touch(self.margin, &mut self.provisional) {
                 self.shallowest = Real::max(self.shallowest, distance);

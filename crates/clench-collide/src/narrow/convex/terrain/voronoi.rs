@@ -14,7 +14,7 @@ pub(super) struct VoronoiFeature<S> {
 }
 
 /// The offsets from a grid point to those that share an edge with it.
-const AROUND: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
+const NEIGHBORS: [Node; 6] = [[0, 1], [1, 1], [1, 0], [0, -1], [-1, -1], [-1, 0]];
 
 impl<S: Scalar> Triangle<'_, S> {
     /// Returns the feature that is furthest along the normal of a gap.
@@ -50,7 +50,7 @@ impl<S: Scalar> Triangle<'_, S> {
             _ => (0..3).all(|k| {
                 let [row, column] = self.nodes[k];
                 let beside = |[r, c]: Node| below(corners[k], self.node([row + r, column + c]));
-                !touches[k] || AROUND.into_iter().all(beside)
+                !touches[k] || NEIGHBORS.into_iter().all(beside)
             }),
         }
     }

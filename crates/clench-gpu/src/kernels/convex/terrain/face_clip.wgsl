@@ -38,10 +38,10 @@ fn slack_of_side(out: vec3f) -> f32 {
 }
 
 // Returns true if the plane of the triangle ends at a side that contains the point.
-fn face_ends_at(place: vec3f) -> bool {
+fn face_ends_at(position: vec3f) -> bool {
     for (var k = 0u; k < bound(3u); k++) {
         let side = side_of_triangle(k);
-        let on_side = dot(side.xyz, place) > side.w - slack_of_side(side.xyz) * 4.0;
+        let on_side = dot(side.xyz, position) > side.w - slack_of_side(side.xyz) * 4.0;
         if (on_side && abs(rise_across(k)) > SAME_DIRECTION) {
             return true;
         }
@@ -58,11 +58,11 @@ fn find_face_contacts(range: f32) {
     // The minimum distance of all corners beyond each side.
     var beyond = vec3f(UNMOVABLE);
     for (var k = 0u; k < feature.count; k++) {
-        let place = offset_b + rotation_b * feature_corners[first + k];
-        feature_corners[first + k] = place;
+        let position = offset_b + rotation_b * feature_corners[first + k];
+        feature_corners[first + k] = position;
         for (var side = 0u; side < bound(3u); side++) {
             let line = side_of_triangle(side);
-            beyond[side] = min(beyond[side], dot(line.xyz, place) - line.w);
+            beyond[side] = min(beyond[side], dot(line.xyz, position) - line.w);
         }
     }
     if (any(beyond > vec3f())) {
@@ -85,13 +85,13 @@ fn find_face_contacts(range: f32) {
     }
     for (var k = 0u; k < polygon_count; k++) {
         let corner = polygon[k];
-        let place = corner * view;
+        let position = corner * view;
         var is_own = false;
         for (var other = 0u; other < feature.count; other++) {
             is_own = is_own || all(own[other] == corner);
         }
-        if (is_own || face_ends_at(place)) {
-            add_to_face(place, range);
+        if (is_own || face_ends_at(position)) {
+            add_to_face(position, range);
         } else if (corner.z - body_b.radius <= range) {
             face_touches = true;
         }

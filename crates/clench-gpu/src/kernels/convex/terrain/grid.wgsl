@@ -24,7 +24,7 @@ fn begin_triangle(cell: vec2i, half: u32) {
     triangle_nodes[2] = cell + select(vec2i(1, 1), vec2i(1, 0), half == 0u);
     triangle_origin = vec3f(corner_of_cell(cell), height_at(cell));
     for (var k = 0u; k < bound(3u); k++) {
-        triangle[k] = place_of_node(triangle_nodes[k]);
+        triangle[k] = position_of_node(triangle_nodes[k]);
     }
     triangle_normal = direction(cross(triangle[1], triangle[2])).xyz;
     let bottom = -triangle_origin.z - grid.base;
@@ -39,7 +39,7 @@ fn is_node(node: vec2i) -> bool {
 }
 
 // Returns a grid point in the triangle's frame.
-fn place_of_node(node: vec2i) -> vec3f {
+fn position_of_node(node: vec2i) -> vec3f {
     let apart = node - triangle_nodes[0];
     return vec3f(vec2f(f32(apart.y), f32(apart.x)) * grid.step, height_at(node) - triangle_origin.z);
 }
@@ -67,7 +67,7 @@ fn rise_across(k: u32) -> f32 {
     if (!is_node(node)) {
         return -UNMOVABLE;
     }
-    let edge = place_of_node(node) - triangle[(k + 1u) % 3u];
+    let edge = position_of_node(node) - triangle[(k + 1u) % 3u];
     return dot(triangle_normal, edge) / length(edge);
 }
 
@@ -103,7 +103,7 @@ fn falls_to(n: vec3f, corner: vec3f, node: vec2i) -> bool {
     if (!is_node(node)) {
         return true;
     }
-    let edge = level_with(n, place_of_node(node)) - level_with(n, corner);
+    let edge = level_with(n, position_of_node(node)) - level_with(n, corner);
     return dot(edge, n) <= length(edge) * SAME_DIRECTION;
 }
 

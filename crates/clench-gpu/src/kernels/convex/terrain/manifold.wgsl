@@ -31,14 +31,14 @@ var<private> facet_at: array<vec2f, FACET_POINTS>;
 var<private> facet_hull: array<u32, 2u * FACET_POINTS + 2u>;
 var<private> facet_hull_count: u32;
 
-fn terrain_point(place: u32) -> TerrainPoint {
-    return TerrainPoint(fetch3(place), fetch3(place + 3u), fetch(place + 6u));
+fn terrain_point(offset: u32) -> TerrainPoint {
+    return TerrainPoint(fetch3(offset), fetch3(offset + 3u), fetch(offset + 6u));
 }
 
-fn put_terrain_point(place: u32, point: TerrainPoint) {
-    put3(place, point.position);
-    put3(place + 3u, point.normal);
-    put(place + 6u, point.distance);
+fn put_terrain_point(offset: u32, point: TerrainPoint) {
+    put3(offset, point.position);
+    put3(offset + 3u, point.normal);
+    put(offset + 6u, point.distance);
 }
 
 // Returns the offset of a point of a manifold.
@@ -193,18 +193,18 @@ fn sort_facet() {
     for (var k = 0u; k < facet_count; k++) {
         let point = facet[k];
         let at = vec2f(dot(frame.e, point.position), dot(frame.f, point.position));
-        var place = k;
-        while (place > 0u) {
-            let before = facet_at[place - 1u];
+        var index = k;
+        while (index > 0u) {
+            let before = facet_at[index - 1u];
             if (before.x < at.x || (before.x == at.x && before.y <= at.y)) {
                 break;
             }
-            facet[place] = facet[place - 1u];
-            facet_at[place] = before;
-            place--;
+            facet[index] = facet[index - 1u];
+            facet_at[index] = before;
+            index--;
         }
-        facet[place] = point;
-        facet_at[place] = at;
+        facet[index] = point;
+        facet_at[index] = at;
     }
 }
 

@@ -82,7 +82,7 @@ fn reach_of_prism() -> f32 {
 }
 
 // Stores the face that lies against the plane across the unit direction `d`, else the edge, else the corner.
-fn feature_of_prism(d: vec3f, place: u32) -> Feature {
+fn feature_of_prism(d: vec3f, offset: u32) -> Feature {
     // A cosine, as the squares of the two lengths of which it is the quotient.
     var steepest = vec2f(FACE_COSINE * FACE_COSINE, 1.0);
     var face = NONE;
@@ -104,12 +104,12 @@ fn feature_of_prism(d: vec3f, place: u32) -> Feature {
     if (face != NONE) {
         let corners = corners_of_prism(face);
         for (var k = 0u; k < bound(4u); k++) {
-            feature_corners[place + k] = prism[corners[k]];
+            feature_corners[offset + k] = prism[corners[k]];
         }
         return Feature(select(4u, 3u, face < 2u), direction(normal).xyz, 0.0);
     }
     let corner = furthest_of_prism(d);
-    feature_corners[place] = prism[corner];
+    feature_corners[offset] = prism[corner];
     // The squared rise and length of the best edge.
     var best_edge = vec2f(EDGE_SINE * EDGE_SINE, 1.0);
     var count = 1u;
@@ -120,7 +120,7 @@ fn feature_of_prism(d: vec3f, place: u32) -> Feature {
         let square = dot(edge, edge);
         if (rise * best_edge.y <= best_edge.x * square) {
             best_edge = vec2f(rise, square);
-            feature_corners[place + 1u] = end;
+            feature_corners[offset + 1u] = end;
             count = 2u;
         }
     }

@@ -1,4 +1,4 @@
-//! The models that a user gives for a batch.
+//! The models of a batch.
 
 use crate::arrays::indices;
 use crate::device::{self, Device, DeviceReal};
@@ -9,7 +9,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// The models that a user gave, and the model of each environment.
+/// The models of a batch, and the model of each environment.
 pub(crate) struct Models {
     pub(crate) objects: Vec<Py<Model>>,
     models: Vec<Arc<clench::Model>>,

@@ -6,18 +6,18 @@ use crate::Precision;
 impl<T: Precision> Sim<T> {
     /// Runs a step if everything is asleep as the last step left it. Returns true if it did; no further check is then
     /// needed.
-    pub(super) fn rest(&mut self) -> bool {
-        let as_left = self.settings.flags.sleep
+    pub(super) fn step_asleep(&mut self) -> bool {
+        let is_unchanged = self.settings.flags.sleep
             && !self.halfway
             && self.validity.is_complete()
             && self.state.fits(&self.model);
-        if !as_left {
+        if !is_unchanged {
             return false;
         }
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
         let ws = &mut self.ws;
         computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
-            T::rest(model, params, settings, state, ws)
+            T::step_asleep(model, params, settings, state, ws)
         })
     }
 }
