@@ -1,20 +1,11 @@
-"""Parts of the gradients of steps that PyTorch and JAX share."""
+"""The step that PyTorch and JAX share."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clench._core import Batch, Sim
 from clench.errors import SimulationError
-
-Floats = NDArray[np.float64]
-
-
-def rows(vectors: Floats, matrices: Floats) -> Floats:
-    """Returns the products of row vectors (..., n) and matrices (..., n, m)."""
-    product: Floats = (vectors[..., None, :] @ matrices)[..., 0, :]
-    return product
 
 
 def advance_all(sim: Sim | Batch) -> None:

@@ -33,8 +33,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clench._core import Batch, Sim
-from clench._gradients import advance_all, rows
-from clench._tangent import Tangent
+from clench._gradients import advance_all
+from clench._tangent import tangent_of
 
 __all__ = ["state", "step", "view"]
 
@@ -81,7 +81,7 @@ def step(sim: Sim | Batch) -> Any:
     """
     if sim.precision == "64" and not jax.config.jax_enable_x64:
         raise ValueError('the simulation needs double precision: call jax.config.update("jax_enable_x64", True) first')
-    model, base, tangent = sim.model, sim.state, Tangent(sim.model)
+    model, base, tangent = sim.model, sim.state, tangent_of(sim.model)
     parts = tuple(jax.ShapeDtypeStruct(part.shape, part.dtype) for part in (sim.qpos, sim.qvel, sim.act, sim.ctrl))
 
     def write(qpos: Any, qvel: Any, act: Any, ctrl: Any) -> None:
@@ -95,11 +95,11 @@ def step(sim: Sim | Batch) -> Any:
 
     def multiply(qpos: Any, qvel: Any, act: Any, ctrl: Any, after: Any, *gradients: Any) -> tuple[Any, ...]:
         by_qpos, by_qvel, by_act = (np.asarray(gradient, dtype=np.float64) for gradient in gradients)
-        by_motion = rows(by_qpos, tangent.basis(np.asarray(after, dtype=np.float64)))
+        by_motion = tangent.by_motion(np.asarray(after, dtype=np.float64), by_qpos)
         write(qpos, qvel, act, ctrl)
         by_state, by_ctrl, _ = sim.vjp(np.concatenate([by_motion, by_qvel, by_act], axis=-1))
         by_motion, by_qvel, by_act = np.split(by_state, [model.nv, 2 * model.nv], axis=-1)
-        by_qpos = rows(by_motion, tangent.inverse(np.asarray(qpos, dtype=np.float64)))
+        by_qpos = tangent.by_coordinates(np.asarray(qpos, dtype=np.float64), by_motion)
         return tuple(part.astype(sim.qpos.dtype) for part in (by_qpos, by_qvel, by_act, by_ctrl))
 
     def call(state: _State, ctrl: Any) -> Any:

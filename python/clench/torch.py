@@ -31,8 +31,8 @@ from torch import Tensor
 from torch.autograd.function import once_differentiable
 
 from clench._core import Batch, Sim
-from clench._gradients import advance_all, rows
-from clench._tangent import Tangent, state_size
+from clench._gradients import advance_all
+from clench._tangent import state_size, tangent_of
 
 __all__ = ["rollout", "state", "step"]
 
@@ -150,9 +150,9 @@ class _Rollout(torch.autograd.Function):
     @once_differentiable
     def backward(ctx: Any, *gradients: Tensor) -> tuple[Tensor | None, ...]:
         sim, (first, ctrl, after) = ctx.sim, ctx.saved_tensors
-        nv, tangent, present = sim.model.nv, Tangent(sim.model), sim.state
+        nv, tangent, present = sim.model.nv, tangent_of(sim.model), sim.state
         by_qpos, by_qvel, by_act = (gradient.double().numpy() for gradient in gradients)
-        by_motion = rows(by_qpos, tangent.basis(after.double().numpy()))
+        by_motion = tangent.by_motion(after.double().numpy(), by_qpos)
         known = np.concatenate([by_motion, by_qvel, by_act], axis=-1)
         # A function depends on no other fields than these.
         by_rows = np.zeros((*known.shape[:-1], state_size(sim)))
@@ -167,6 +167,6 @@ class _Rollout(torch.autograd.Function):
         finally:
             sim.state = present
         by_first, by_qvel, by_act = np.split(by_state[..., : known.shape[-1]], [nv, 2 * nv], axis=-1)
-        by_qpos = rows(by_first, tangent.inverse(first.double().numpy()))
+        by_qpos = tangent.by_coordinates(first.double().numpy(), by_first)
         arrays = (by_qpos, by_qvel, by_act, by_ctrl)
         return None, *(torch.from_numpy(array).to(first.dtype) for array in arrays)
