@@ -80,10 +80,12 @@ class Tangent:
         return others
 
 
-@functools.lru_cache(maxsize=1)
+_last = functools.lru_cache(maxsize=1)(Tangent)
+
+
 def tangent_of(model: Model) -> Tangent:
     """Returns the tangent of a model; that of the last model is stored."""
-    return Tangent(model)
+    return _last(model)
 
 
 def state_size(sim: Sim | Batch) -> int:
