@@ -36,16 +36,16 @@ pub struct InverseDerivatives<T> {
     cfrc: Vec<Force<T>>,
     /// w × s − ṡ × u of each dof (nv).
     swing: Vec<Motion<T>>,
-    /// Sums for products.
+    /// The sums of products (nbody).
     sums: Vec<Sums<T>>,
 }
 
-/// Sums over dofs with the factors λ of a product (nbody).
+/// Sums over dofs, with the factors λ of a product.
 #[derive(Clone, Copy, Debug)]
 struct Sums<T> {
-    /// λ s over the dofs that move a body.
+    /// Σ λ s of the dofs that move a body.
     motion: Motion<T>,
-    /// λ I s and λ s · B over the dofs of a body and all below it.
+    /// Σ λ I s and Σ λ s · B of the dofs of a body and of all below it.
     momentum: Force<T>,
     along: Vec3<T>,
 }
