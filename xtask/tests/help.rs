@@ -4,7 +4,7 @@ use std::process::Command;
 
 fn xtask(arguments: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-    // No environment, and nothing to build one with.
+    // A command that builds or installs anything fails with these.
     let output = command
         .args(arguments)
         .env("PIP_NO_INDEX", "1")

@@ -145,7 +145,7 @@ impl<T: Real> Prediction<T> {
         (self.system).solve(hessian, &self.pressing, &mut self.residual, &mut self.dofs);
         let mut jammed = T::Mask::splat(false);
         for (i, (&k, &delta)) in self.unknowns.iter().zip(&self.residual).enumerate() {
-            // Where it jams, δ stays f − λ.
+            // The δ of a contact that jams stays f − λ.
             let jams = self.system.jams(i);
             jammed |= jams & mask;
             self.delta[k] = T::select(mask & !jams, delta, self.delta[k]);

@@ -58,17 +58,6 @@ impl<T: Real> Sums<T> {
     };
 }
 
-/// A dof's effect on the force on the bodies that it moves.
-struct Effect<T> {
-    /// The changes of the force with the position, in a frame that moves with the dof, and with the velocity.
-    by_position: Force<T>,
-    by_velocity: Force<T>,
-    /// I s.
-    momentum: Force<T>,
-    /// s · B.
-    along: Vec3<T>,
-}
-
 /// An acceleration, and the motion at which it acts.
 #[derive(Clone, Copy, Debug)]
 pub struct Accelerated<'a, T> {
@@ -128,32 +117,47 @@ impl<T: Real> InverseDerivatives<T> {
         [self.swing[dof], self.drift[dof]]
     }
 
-    /// Returns the effect of a dof.
+    /// Returns the changes of the force on the bodies below a dof with its position, in a frame that moves with it, and
+    /// with its velocity.
     #[inline(always)]
-    fn effect(
+    fn force_changes(
         &self,
         model: &Model,
         pos: &Positions<T>,
         vel: Option<&Velocities<T>>,
         i: usize,
-    ) -> Effect<T> {
+    ) -> [Force<T>; 2] {
         let (axis, b) = (pos.cdof[i], model.dofs[i].body);
         let inertia = pos.crb[b];
-        let mut effect = Effect {
-            by_position: inertia * self.swing[i],
-            by_velocity: Force::ZERO,
-            momentum: inertia * axis,
-            along: Vec3::ZERO,
+        let mut by_position = inertia * self.swing[i];
+        let Some(vel) = vel else {
+            return [by_position, Force::ZERO];
         };
-        if let Some(vel) = vel {
-            effect.by_velocity = inertia * self.drift[i];
+        let mut by_velocity = inertia * self.drift[i];
+        for (c, &rate) in self.rates[b].iter().enumerate() {
+            by_position += rate * vel.cdof_dot[i].angular[c];
+            by_velocity += rate * axis.angular[c];
+        }
+        [by_position, by_velocity]
+    }
+
+    /// Returns I s of a dof and, in motion, s · B.
+    #[inline(always)]
+    fn momentum(
+        &self,
+        model: &Model,
+        pos: &Positions<T>,
+        moves: bool,
+        i: usize,
+    ) -> (Force<T>, Vec3<T>) {
+        let (axis, b) = (pos.cdof[i], model.dofs[i].body);
+        let mut along = Vec3::ZERO;
+        if moves {
             for (c, &rate) in self.rates[b].iter().enumerate() {
-                effect.by_position += rate * vel.cdof_dot[i].angular[c];
-                effect.by_velocity += rate * axis.angular[c];
-                effect.along[c] = axis.dot(rate);
+                along[c] = axis.dot(rate);
             }
         }
-        effect
+        (pos.crb[b] * axis, along)
     }
 
     /// Adds the entries of dof `i` with itself and the dofs above it.
@@ -167,29 +171,24 @@ impl<T: Real> InverseDerivatives<T> {
         out: &mut ForceDerivatives<'_, T>,
     ) {
         let nv = model.nv;
-        let effect = self.effect(model, pos, vel, i);
-        let turned = pos.cdof[i].cross_force(self.cfrc[model.dofs[i].body]);
-        let fixed = effect.by_position + turned;
+        let [by_position, by_velocity] = self.force_changes(model, pos, vel, i);
+        let (momentum, along) = self.momentum(model, pos, vel.is_some(), i);
+        let fixed = by_position + pos.cdof[i].cross_force(self.cfrc[model.dofs[i].body]);
         let together = first_turning(model, i);
         for &j in model.tree.row(i) {
             let j = j as usize;
             let other = pos.cdof[j];
-            let below = j >= together;
-            out.add(
-                j,
-                i,
-                other.dot(if below { effect.by_position } else { fixed }),
-            );
-            let mut by_position = self.swing[j].dot(effect.momentum);
-            if let Some(vel) = vel {
-                out.add(j, nv + i, other.dot(effect.by_velocity));
-                by_position += vel.cdof_dot[j].angular.dot(effect.along);
-            }
+            let turned = if j >= together { by_position } else { fixed };
+            out.add(j, i, other.dot(turned));
             if j != i {
-                out.add(i, j, by_position);
-                if vel.is_some() {
-                    let along = other.angular.dot(effect.along);
-                    out.add(i, nv + j, self.drift[j].dot(effect.momentum) + along);
+                let carried = vel.map_or(T::ZERO, |vel| vel.cdof_dot[j].angular.dot(along));
+                out.add(i, j, self.swing[j].dot(momentum) + carried);
+            }
+            if vel.is_some() {
+                out.add(j, nv + i, other.dot(by_velocity));
+                if j != i {
+                    let by_other = self.drift[j].dot(momentum) + other.angular.dot(along);
+                    out.add(i, nv + j, by_other);
                 }
             }
         }
@@ -221,10 +220,10 @@ impl<T: Real> InverseDerivatives<T> {
                     false => own,
                 };
                 sums.motion += own;
-                let effect = self.effect(model, pos, vel, i);
+                let [by_position, by_velocity] = self.force_changes(model, pos, vel, i);
                 let turned = pos.cdof[i].cross_force(self.cfrc[b]);
-                product[i] += sums.motion.dot(effect.by_position + turned) - turning.dot(turned);
-                product[nv + i] += sums.motion.dot(effect.by_velocity);
+                product[i] += sums.motion.dot(by_position + turned) - turning.dot(turned);
+                product[nv + i] += sums.motion.dot(by_velocity);
             }
             self.sums[b] = sums;
         }
@@ -242,13 +241,15 @@ impl<T: Real> InverseDerivatives<T> {
                     let turned = pos.cdof[i].angular.dot(along);
                     product[nv + i] += self.drift[i].dot(momentum) + turned;
                 }
-                let effect = self.effect(model, pos, vel, i);
-                momentum += effect.momentum * factors[i];
-                along += effect.along * factors[i];
+                let (own, own_along) = self.momentum(model, pos, vel.is_some(), i);
+                momentum += own * factors[i];
+                along += own_along * factors[i];
             }
-            let above = &mut self.sums[body.parent];
-            above.momentum += momentum;
-            above.along += along;
+            if body.parent != 0 {
+                let above = &mut self.sums[body.parent];
+                above.momentum += momentum;
+                above.along += along;
+            }
         }
     }
 

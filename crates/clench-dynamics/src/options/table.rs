@@ -3,7 +3,7 @@
 /// Passes all rows to the macro `$then`: the group `solver`, then the group `step`.
 ///
 /// ```text
-/// /// What it is; default DEFAULT.
+/// /// DESCRIPTION; default DEFAULT.
 /// name: Type = default => default in single precision, Range, Argument, Mjcf;
 /// ```
 ///

@@ -1,4 +1,4 @@
-//! Builtin meshes of the points of a lattice, whose convex hull they are: `grid`, `box`, `cylinder` and `ellipsoid`.
+//! Builtin meshes that are convex hulls of points of a lattice: `grid`, `box`, `cylinder` and `ellipsoid`.
 //! MuJoCo also makes tetrahedra between the points, for flexes; a geom has only the hull.
 
 use super::bytes;

@@ -276,8 +276,8 @@ fn constants_of_moved_bodies_hold_them_where_they_are() {
         relpose,
         torquescale: 1.0,
     };
-    let held = |x: f64, turn: [f64; 4]| {
-        let mut builder = ModelBuilder::new("held");
+    let placed = |x: f64, turn: [f64; 4]| {
+        let mut builder = ModelBuilder::new("anchored");
         let arm = bob("arm", 1.0).at([x, 0.0, 1.0]).turned(turn);
         builder.add_body(ModelBuilder::WORLD, arm.joint(JointSpec::hinge("h", Y)));
         let mut hand = BodySpec::new("hand").at([0.0, x, 2.0]);
@@ -290,19 +290,21 @@ fn constants_of_moved_bodies_hold_them_where_they_are() {
         ] {
             builder.equalities.push(EqualitySpec::new("", kind));
         }
-        Arc::new(builder.build().unwrap())
+        Arc::new(builder.build().expect("valid"))
     };
-    let model = held(0.5, [1.0, 0.0, 0.0, 0.0]);
-    let moved = held(0.8, [0.8, 0.0, 0.6, 0.0]);
-    let mut sim = Sim::<f64>::new(model).unwrap();
+    let model = placed(0.5, [1.0, 0.0, 0.0, 0.0]);
+    let moved = placed(0.8, [0.8, 0.0, 0.6, 0.0]);
+    let mut sim = Sim::<f64>::new(model).expect("a simulation");
     for field in ["body_pos", "body_quat"] {
-        let row = moved.params.read_lane(ParamField::find(field).unwrap(), 0);
-        sim.set_param(field, &row).unwrap();
+        let row = moved
+            .params
+            .read_lane(ParamField::find(field).expect("a field"), 0);
+        sim.set_param(field, &row).expect("valid");
     }
-    sim.set_constants().unwrap();
+    sim.set_constants().expect("positive");
     for field in CONSTANTS {
         let (actual, expected) = (
-            sim.param(field.name()).unwrap(),
+            sim.param(field.name()).expect("a field"),
             moved.params.read_lane(field, 0),
         );
         assert_eq!(actual, expected, "{}", field.name());

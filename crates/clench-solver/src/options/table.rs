@@ -4,7 +4,7 @@
 /// Passes the rows to the macro `$then`, followed by `$rest`:
 ///
 /// ```text
-/// /// What it is; default DEFAULT.
+/// /// DESCRIPTION; default DEFAULT.
 /// name: Type = default => default in single precision, Range, Argument, Mjcf;
 /// ```
 ///

@@ -229,7 +229,8 @@ fn added_masses_follow_the_sizes_of_the_own_geoms() {
         world(""),
         world("<geom name='rock' size='.1' pos='9 0 0'/>"),
     ];
-    let mut batch = Batch::<f64>::of_models(&models, &[0, 1, 1], BatchOptions::default()).unwrap();
+    let mut batch =
+        Batch::<f64>::of_models(&models, &[0, 1, 1], BatchOptions::default()).expect("a batch");
     let mut alone = singles(&batch, RigidOptions::new());
     let before = batch.param("geom_virtualmass", 2).expect("a field");
     for (env, sim) in alone.iter_mut().enumerate().take(2) {
