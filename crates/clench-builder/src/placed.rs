@@ -18,7 +18,7 @@ pub(super) struct Assets<'a> {
     pub(super) uses: GeomUses<'a>,
     names: Names<'a>,
     field_names: Names<'a>,
-    /// The meshes. With `discardvisual`, the error of one matters only if a geom, site or sensor uses it.
+    /// The meshes. With `discardvisual`, an invalid one is an error only if a geom, site or sensor uses it.
     meshes: Vec<Result<Processed, BuildError>>,
     pub height_fields: Vec<Arc<HeightField>>,
     /// The appearance of elements.

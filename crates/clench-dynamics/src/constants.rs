@@ -280,7 +280,7 @@ impl Constants {
 /// Sets the inertia of the medium that ellipsoids move.
 fn set_added_masses(model: &Model, params: &mut Params<f64>) {
     for (g, geom) in model.geoms.iter().enumerate() {
-        // Geoms that a world of several lacks move nothing.
+        // A layout of several models also has geoms that this model lacks.
         if geom.fluid_ellipsoid && params.geom_rbound[g] >= 0.0 {
             let added = AddedMass::of_ellipsoid(semi_axes(geom.kind, params.geom_size[g]));
             params.geom_virtualmass[g] = added.mass;
