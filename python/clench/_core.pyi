@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
+from typing import Any, Final, Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,6 +80,9 @@ _Source: TypeAlias = Literal[
 _Floats: TypeAlias = NDArray[np.float64]
 _Codes: TypeAlias = NDArray[np.int32]
 _Flags: TypeAlias = NDArray[np.bool_]
+
+class _Memory(Protocol):  # of an array, or of a tensor
+    def __dlpack__(self, *args: Any, **kwargs: Any) -> Any: ...
 
 __version__: str
 OUTPUTS: tuple[str, ...]
@@ -947,7 +950,7 @@ class Sim(_Outputs):
         camera: _Cameras = None,
         kind: Literal["rgb", "depth", "geom"] = "rgb",
         groups: Sequence[int] | None = None,
-        out: NDArray[Any] | None = None,
+        out: _Memory | None = None,
         device: Literal["gpu", "cpu"] | None = None,
         appearance: dict[str, Any] | None = None,
     ) -> NDArray[Any]: ...  # (height, width) or (height, width, 3); (cameras, ...) for a sequence of cameras
@@ -975,7 +978,7 @@ class Sim(_Outputs):
         site: str | SupportsIndex | None = None,
         camera: str | SupportsIndex | None = None,
         point: ArrayLike | None = None,  # (3,)
-        out: NDArray[Any] | None = None,  # (2, 3, nv)
+        out: _Memory | None = None,  # (2, 3, nv)
     ) -> NDArray[Any]: ...  # (2, 3, nv): translation, rotation
     def jacobian_rate(
         self,
@@ -986,13 +989,13 @@ class Sim(_Outputs):
         site: str | SupportsIndex | None = None,
         camera: str | SupportsIndex | None = None,
         point: ArrayLike | None = None,  # (3,)
-        out: NDArray[Any] | None = None,  # (2, 3, nv)
+        out: _Memory | None = None,  # (2, 3, nv)
     ) -> NDArray[Any]: ...  # (2, 3, nv): translation, rotation
     def subtree_jacobian(
         self,
         body: str | SupportsIndex,
         *,
-        out: NDArray[Any] | None = None,  # (3, nv)
+        out: _Memory | None = None,  # (3, nv)
     ) -> NDArray[Any]: ...  # (3, nv)
     def velocity(
         self,
@@ -1192,7 +1195,7 @@ class Batch(_Outputs):
         camera: _Cameras = None,
         kind: Literal["rgb", "depth", "geom"] = "rgb",
         groups: Sequence[int] | None = None,
-        out: NDArray[Any] | None = None,
+        out: _Memory | None = None,
         device: Literal["gpu", "cpu"] | None = None,
         appearance: dict[str, Any] | None = None,
     ) -> NDArray[Any]: ...  # as for Sim.render; (n, ...) unless env is an index

@@ -1,10 +1,10 @@
 //! Results as arrays: new ones or an `out` array of the caller, and functions that apply to each row.
 
-use crate::arrays::{numbers, require_shape, shape_text};
+use crate::arrays::{memory, numbers, shape_text};
 use crate::error::sim_error;
 use clench::{Precision, SimError};
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Returns the numbers in a new array of this shape, or writes them to `out` if it is given.
@@ -17,14 +17,7 @@ pub(crate) fn answer<'py, S: Element + Copy>(
     let Some(out) = out else {
         return Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any());
     };
-    let Ok(array) = out.cast::<PyArrayDyn<S>>() else {
-        return Err(PyTypeError::new_err(format!(
-            "out must be an array of {}",
-            numpy::dtype::<S>(py)
-        )));
-    };
-    require_shape("out", array.shape(), shape)?;
-    let mut writable = array.try_readwrite()?;
+    let mut writable = memory::<S>(out, shape)?.try_readwrite()?;
     for (to, value) in writable.as_array_mut().iter_mut().zip(values) {
         *to = value;
     }

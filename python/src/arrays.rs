@@ -31,6 +31,27 @@ pub(crate) fn shaped<'py, S: Element>(
     Ok(array)
 }
 
+/// Returns the array of `S` over the memory of `out`, which is an array or a tensor that shares its memory by DLPack.
+pub(crate) fn memory<'py, S: Element>(
+    out: &Bound<'py, PyAny>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<S>>> {
+    let py = out.py();
+    let array = match out.cast::<PyUntypedArray>() {
+        Ok(_) => out.clone(),
+        Err(_) if out.hasattr(intern!(py, "__dlpack__"))? => {
+            numpy(py)?.call_method1(intern!(py, "from_dlpack"), (out,))?
+        }
+        Err(_) => out.clone(),
+    };
+    let Ok(array) = array.cast_into::<PyArrayDyn<S>>() else {
+        let text = format!("out must be an array of {}", dtype::<S>(py));
+        return Err(PyTypeError::new_err(text));
+    };
+    require_shape("out", array.shape(), shape)?;
+    Ok(array)
+}
+
 /// Converts a value to `n` booleans, one for each element.
 pub(crate) fn mask(name: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<bool>> {
     let array = as_array(value)?;

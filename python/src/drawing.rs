@@ -1,6 +1,6 @@
 //! Pictures as arrays.
 
-use crate::arrays::require_shape;
+use crate::arrays::memory;
 use crate::batch::AnyBatch;
 use crate::busy::lock;
 use crate::envs::{Envs, Scene};
@@ -14,10 +14,8 @@ use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
 use clench_render::{Looks, Picture, Planes, RayCaster, RenderError, Renderer, View};
 use clench_view::Viewed;
-use numpy::{
-    Element, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods, dtype,
-};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{Element, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods, dtype};
+use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
@@ -342,13 +340,7 @@ fn writable<'py, S: Element>(
     out: &Bound<'py, PyAny>,
     shape: &[usize],
 ) -> PyResult<PyReadwriteArrayDyn<'py, S>> {
-    let Ok(array) = out.cast::<PyArrayDyn<S>>() else {
-        let name = dtype::<S>(out.py());
-        return Err(PyTypeError::new_err(format!(
-            "out must be an array of {name}"
-        )));
-    };
-    require_shape("out", array.shape(), shape)?;
+    let array = memory::<S>(out, shape)?;
     if !array.is_c_contiguous() {
         let text = "out must be contiguous in C order";
         return Err(PyValueError::new_err(text));

@@ -42,8 +42,9 @@ impl Sim {
     ///     The object: the frame of a body, its centre of mass, a geom, a site or a camera.
     /// point : array_like, optional
     ///     With `body`: the point of the body that is currently at this position in the world (3,), m.
-    /// out : numpy.ndarray, optional
-    ///     An array to write to: (2, 3, nv), of the precision of the simulation.
+    /// out : numpy.ndarray or tensor, optional
+    ///     An array to write to, or a tensor that shares its memory by DLPack: (2, 3, nv), in the precision
+    ///     of the simulation.
     ///
     /// Returns
     /// -------
@@ -96,8 +97,9 @@ impl Sim {
     ///     The object, see `jacobian`.
     /// point : array_like, optional
     ///     With `body`: the point of the body that is currently at this position in the world (3,), m.
-    /// out : numpy.ndarray, optional
-    ///     An array to write to: (2, 3, nv), of the precision of the simulation.
+    /// out : numpy.ndarray or tensor, optional
+    ///     An array to write to, or a tensor that shares its memory by DLPack: (2, 3, nv), in the precision
+    ///     of the simulation.
     ///
     /// Returns
     /// -------
@@ -147,8 +149,9 @@ impl Sim {
     /// ----------
     /// body : str or int
     ///     The body; 0, the world, for the centre of mass of everything.
-    /// out : numpy.ndarray, optional
-    ///     An array to write to: (3, nv), of the precision of the simulation.
+    /// out : numpy.ndarray or tensor, optional
+    ///     An array to write to, or a tensor that shares its memory by DLPack: (3, nv), in the precision
+    ///     of the simulation.
     ///
     /// Returns
     /// -------

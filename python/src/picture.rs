@@ -54,8 +54,8 @@ impl Sim {
     ///     The quantity of each pixel.
     /// groups : sequence of int, optional
     ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
-    /// out : numpy.ndarray, optional
-    ///     The contiguous array to write to.
+    /// out : numpy.ndarray or tensor, optional
+    ///     The contiguous array to write to, or a tensor that shares its memory by DLPack.
     /// device : {"gpu", "cpu"}, optional
     ///     "gpu": a graphics device, or Mesa's software device. "cpu": rays on the processor, for "depth" and "geom"
     ///     only. By default the first; if there is none (see `render_device`), rays.
@@ -163,8 +163,8 @@ impl Batch {
     ///     The quantity of each pixel.
     /// groups : sequence of int, optional
     ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
-    /// out : numpy.ndarray, optional
-    ///     The contiguous array to write to.
+    /// out : numpy.ndarray or tensor, optional
+    ///     The contiguous array to write to, or a tensor that shares its memory by DLPack.
     /// device : {"gpu", "cpu"}, optional
     ///     "gpu": a graphics device, or Mesa's software device. "cpu": rays on the processor, for "depth" and "geom"
     ///     only. By default the first; if there is none (see `render_device`), rays.

@@ -1,6 +1,7 @@
 //! Geoms and sites.
 
 use super::element::Element;
+use super::meshes::reach;
 use super::placed::Assets;
 use super::{BuildError, GeomSpec, SiteSpec};
 use clench_collide::ShapeKind;
@@ -99,7 +100,7 @@ pub(super) fn add_site(
         mesh: mesh.map(|(index, _)| index),
         user: Arc::clone(&spec.user),
     });
-    let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| mesh.reach());
+    let size = mesh.map_or(Vec3::from_array(spec.size), |(_, mesh)| reach(mesh));
     model.params.site_size.push(size);
     let (pos, quat) = moved_pose(moved, spec.pos, spec.quat);
     model.params.site_pos.push(pos);

@@ -58,6 +58,7 @@ mod meshes;
 mod model_builder;
 mod physics;
 mod placed;
+mod processed_meshes;
 mod relations;
 mod resolve;
 mod sensor_specs;

@@ -18,25 +18,19 @@ const UNCERTAINTY: f64 = 1e-7;
 /// The amount by which a principal moment may exceed the sum of the others, as a fraction of it and in m⁵.
 const IMPLAUSIBLE: (f64, f64) = (1e-6, 1e-9);
 
-/// A mesh, and its data for geoms.
-#[derive(Clone, Debug)]
-pub(super) struct Processed {
-    pub mesh: Mesh,
-    /// Volume in m³, or area of a shell in m².
-    pub measure: f64,
-    /// Half sizes of the box of the same mass and inertia, m.
-    pub half_box: Vec3<f64>,
-    /// Bounding box in the mesh's frame, m.
-    pub low: Vec3<f64>,
-    pub high: Vec3<f64>,
+/// Returns the bounding box of a mesh in its frame, m: its lowest and its highest corner.
+pub(super) fn bounding_box(mesh: &Mesh) -> [Vec3<f64>; 2] {
+    [f64::min as fn(f64, f64) -> f64, f64::max].map(|pick| {
+        let all = mesh.vertices.iter().copied();
+        all.reduce(|a, b| Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z)))
+            .unwrap_or(Vec3::ZERO)
+    })
 }
 
-impl Processed {
-    /// Returns the maximum distance of the mesh from its origin along each axis, m.
-    pub(super) fn reach(&self) -> Vec3<f64> {
-        let (low, high) = (self.low.to_array(), self.high.to_array());
-        Vec3::from_array(std::array::from_fn(|i| low[i].abs().max(high[i].abs())))
-    }
+/// Returns the maximum distance of a mesh from its origin along each axis, m.
+pub(super) fn reach(mesh: &Mesh) -> Vec3<f64> {
+    let [low, high] = bounding_box(mesh).map(Vec3::to_array);
+    Vec3::from_array(std::array::from_fn(|i| low[i].abs().max(high[i].abs())))
 }
 
 /// Processes a mesh for use in a model. `keeps_hull` requests its convex hull.
@@ -44,7 +38,7 @@ impl Processed {
 /// # Errors
 /// Returns an error if there are too few vertices, an index is out of range, a number is not finite, the volume is
 /// zero, or the triangles are not consistently oriented.
-pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, BuildError> {
+pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Mesh, BuildError> {
     check(spec)?;
     let needs_hull = keeps_hull || spec.faces.is_empty() || spec.inertia == MeshInertia::Convex;
     let surface = match needs_hull {
@@ -71,32 +65,22 @@ pub(super) fn process(spec: &MeshSpec, keeps_hull: bool) -> Result<Processed, Bu
     let tangents = (spec.tangents.iter())
         .map(|pair| tangents_in_own_frame(spec, pair).map(|tangent| turn.rotate(tangent)))
         .collect();
-    let by_axis = |pick: fn(f64, f64) -> f64| {
-        let all = vertices.iter().copied();
-        all.reduce(|a, b| Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z)))
-            .unwrap_or(Vec3::ZERO)
-    };
-    Ok(Processed {
+    Ok(Mesh {
+        name: spec.name.clone(),
+        pos: mass.pos,
+        quat: mass.quat,
         measure: mass.measure,
         half_box: mass.half_box,
-        low: by_axis(f64::min),
-        high: by_axis(f64::max),
-        mesh: Mesh {
-            name: spec.name.clone(),
-            pos: mass.pos,
-            quat: mass.quat,
-            hull: surface
-                .filter(|_| keeps_hull)
-                .map(|s| Hull::new(&s, &vertices)),
-            texcoords: spec.texcoords.clone(),
-            face_texcoords: face_texcoords(spec, &faces),
-            tangents,
-            spec: spec.clone(),
-            on_demand: Default::default(),
-            vertices,
-            faces,
-            origin: spec.origin.clone(),
-        },
+        hull: surface
+            .filter(|_| keeps_hull)
+            .map(|s| Hull::new(&s, &vertices)),
+        texcoords: spec.texcoords.clone(),
+        face_texcoords: face_texcoords(spec, &faces),
+        tangents,
+        spec: spec.clone(),
+        on_demand: Default::default(),
+        vertices,
+        faces,
     })
 }
 

@@ -1,14 +1,15 @@
 //! The use of meshes and height fields by geoms: their own frame and size, or a fitted primitive.
 
 use super::element::Element;
-use super::meshes::{Processed, process};
+use super::meshes::{bounding_box, reach};
 use super::model_builder::ModelBuilder;
+use super::processed_meshes::{find_or_process, keep};
 use super::resolve::Names;
 use super::uses::GeomUses;
 use super::visuals::Palette;
 use super::{BuildError, GeomSpec, SensorSubject, SiteSpec};
 use clench_collide::{Shape, ShapeKind};
-use clench_dynamics::model::{HeightField, Model};
+use clench_dynamics::model::{HeightField, Mesh, Model};
 use clench_math::{Motion, Quat, Vec3};
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ pub(super) struct Assets<'a> {
     names: Names<'a>,
     field_names: Names<'a>,
     /// The meshes. With `discardvisual`, an invalid one is an error only if a geom, site or sensor uses it.
-    meshes: Vec<Result<Processed, BuildError>>,
+    meshes: Vec<Result<Arc<Mesh>, BuildError>>,
     pub height_fields: Vec<Arc<HeightField>>,
     /// The appearance of elements.
     pub palette: Arc<Palette>,
@@ -39,7 +40,7 @@ pub(super) struct PlacedGeom<'a> {
     /// Radius of its bounding sphere about its origin; 0 for a plane.
     pub(crate) rbound: f64,
     /// For mesh geoms.
-    pub mesh: Option<(usize, &'a Processed)>,
+    pub mesh: Option<(usize, &'a Mesh)>,
     /// For height fields.
     pub height_field: Option<usize>,
 }
@@ -66,10 +67,12 @@ impl<'a> Assets<'a> {
             }
         }
         let meshes = (builder.meshes.iter().zip(needs_hull))
-            .map(|(spec, needs_hull)| match process(spec, needs_hull) {
-                Err(error) if !builder.compiler.discardvisual => Err(error),
-                processed => Ok(processed),
-            })
+            .map(
+                |(spec, needs_hull)| match find_or_process(spec, needs_hull) {
+                    Err(error) if !builder.compiler.discardvisual => Err(error),
+                    mesh => Ok(mesh),
+                },
+            )
             .collect::<Result<_, _>>()?;
         let height_fields = (builder.height_fields.iter())
             .map(|spec| {
@@ -125,12 +128,13 @@ impl<'a> Assets<'a> {
             }
         }
         let mut number = vec![0; used.len()];
-        for (index, processed) in self.meshes.into_iter().enumerate() {
+        for (index, mesh) in self.meshes.into_iter().enumerate() {
             number[index] = model.meshes.len();
             if used[index] {
-                model.meshes.push(Arc::new(processed?.mesh));
+                model.meshes.push(mesh?);
             }
         }
+        keep(&model.meshes);
         let geoms = model.geoms.iter_mut().map(|geom| &mut geom.mesh);
         let sites = model.sites.iter_mut().map(|site| &mut site.mesh);
         for mesh in geoms.chain(sites).flatten() {
@@ -144,10 +148,10 @@ impl<'a> Assets<'a> {
     ///
     /// # Errors
     /// Returns an error if the mesh is unknown or invalid.
-    fn mesh(&self, name: &str, user: &impl Element) -> Result<(usize, &Processed), BuildError> {
+    fn mesh(&self, name: &str, user: &impl Element) -> Result<(usize, &Mesh), BuildError> {
         let index = self.names.find(name, user)?;
-        let processed = self.meshes[index].as_ref();
-        Ok((index, processed.map_err(Clone::clone)?))
+        let mesh = self.meshes[index].as_ref();
+        Ok((index, mesh.map_err(Clone::clone)?))
     }
 
     /// Checks a geom that is omitted from the model. Its mesh may be invalid.
@@ -168,7 +172,7 @@ impl<'a> Assets<'a> {
     pub(super) fn mesh_of_site(
         &self,
         spec: &SiteSpec,
-    ) -> Result<Option<(usize, &Processed)>, BuildError> {
+    ) -> Result<Option<(usize, &Mesh)>, BuildError> {
         match (spec.kind == ShapeKind::Mesh, spec.mesh.is_empty()) {
             (false, true) => Ok(None),
             (false, false) => Err(spec.error("only a site of type mesh can refer to a mesh")),
@@ -220,12 +224,7 @@ impl<'a> PlacedGeom<'a> {
     }
 
     /// Uses the mesh itself, or the primitive that fits it, in the mesh's frame.
-    fn use_mesh(
-        &mut self,
-        index: usize,
-        mesh: &'a Processed,
-        fitaabb: bool,
-    ) -> Result<(), BuildError> {
+    fn use_mesh(&mut self, index: usize, mesh: &'a Mesh, fitaabb: bool) -> Result<(), BuildError> {
         let mut center = Vec3::ZERO;
         if self.spec.kind == ShapeKind::Mesh {
             if self.spec.shellinertia {
@@ -233,16 +232,17 @@ impl<'a> PlacedGeom<'a> {
                     "shellinertia is not for meshes: set inertia=\"shell\" of the mesh asset",
                 ));
             }
-            self.size = mesh.reach();
+            self.size = reach(mesh);
             self.mesh = Some((index, mesh));
         } else if fitaabb {
-            center = (mesh.low + mesh.high) * 0.5;
-            self.size = enclosing_size(self.spec, mesh.high - center)? * self.spec.fitscale;
+            let [low, high] = bounding_box(mesh);
+            center = (low + high) * 0.5;
+            self.size = enclosing_size(self.spec, high - center)? * self.spec.fitscale;
         } else {
             self.size = equivalent_size(self.spec, mesh.half_box)? * self.spec.fitscale;
         }
-        let quat = mesh.mesh.quat;
-        let pos = mesh.mesh.pos + quat.rotate(center);
+        let quat = mesh.quat;
+        let pos = mesh.pos + quat.rotate(center);
         self.surfacevel = surfacevel_in_frame(&self.surfacevel, pos, quat);
         self.pos += self.quat.rotate(pos);
         self.quat = (self.quat * quat).normalize();

@@ -168,3 +168,20 @@ fn sizes_of_assets_are_the_same_in_every_environment() {
     assert!(error.contains("mesh or height field"), "{error}");
     assert_eq!(radii[1], sizes[1].norm());
 }
+
+/// Models share meshes while one of them exists; a mesh that differs in any number is another.
+#[test]
+fn models_share_equal_meshes() {
+    let mesh = |x: f64| MeshSpec::hull("shared", &corners()).scaled([x, 1.0, 1.0]);
+    let [model, same, other] = [0.25, 0.25, 0.5].map(|x| build(mesh(x)));
+    assert!(Arc::ptr_eq(&model.meshes[0], &same.meshes[0]));
+    assert!(!Arc::ptr_eq(&model.meshes[0], &other.meshes[0]));
+    assert_ne!(model.meshes[0].measure, other.meshes[0].measure);
+
+    // Without a colliding geom the mesh has no hull.
+    let mut unused = ModelBuilder::new("mesh");
+    unused.meshes.push(mesh(0.25));
+    let unused = unused.build().expect("the mesh is valid");
+    assert!(unused.meshes[0].hull.is_none());
+    assert!(!Arc::ptr_eq(&model.meshes[0], &unused.meshes[0]));
+}

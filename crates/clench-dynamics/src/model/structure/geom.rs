@@ -49,6 +49,10 @@ pub struct Mesh {
     pub pos: Vec3<f64>,
     /// Orientation of its principal axes there.
     pub quat: Quat<f64>,
+    /// Volume, m³, or area of a shell, m².
+    pub measure: f64,
+    /// Half sizes of the box of the same mass and inertia, m.
+    pub half_box: Vec3<f64>,
     /// Vertices, m.
     pub vertices: Vec<Vec3<f64>>,
     /// Triangles, counter-clockwise seen from outside.
@@ -65,8 +69,6 @@ pub struct Mesh {
     pub spec: MeshSpec,
     /// Data for queries, computed on demand.
     pub on_demand: OnDemand,
-    /// The source location.
-    pub origin: Option<Origin>,
 }
 
 /// Data of a mesh that only queries use.
