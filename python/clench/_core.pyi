@@ -1234,6 +1234,17 @@ class Batch(_Outputs):
         geom: str | SupportsIndex | None = None,
         site: str | SupportsIndex | None = None,
         camera: str | SupportsIndex | None = None,
+        point: ArrayLike | None = None,  # (3,) or (n, 3)
+    ) -> NDArray[Any]: ...  # (n, 2, 3, nv): translation, rotation
+    def jacobian_rate(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        point: ArrayLike | None = None,  # (3,) or (n, 3)
     ) -> NDArray[Any]: ...  # (n, 2, 3, nv): translation, rotation
     def subtree_jacobian(self, body: str | SupportsIndex) -> NDArray[Any]: ...  # (n, 3, nv)
     def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # (n, nv)

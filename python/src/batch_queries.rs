@@ -10,8 +10,11 @@ use crate::queries::ray_filter;
 use crate::scan::{RayHits, rays};
 use crate::table::Table;
 use crate::target::{Choice, Choices};
+use clench::Anchors;
 use clench::rigid::batch::Rows;
+use clench::rigid::model::FrameObject;
 use numpy::{Element, PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Returns the rows of a table as an array of this shape.
@@ -24,6 +27,37 @@ fn rows_array<'py, S: Element + Copy>(
     Ok(array.reshape(shape)?.into_any())
 }
 
+impl Batch {
+    /// Computes Jacobians, or their time derivatives.
+    fn jacobians<'py>(
+        &self,
+        py: Python<'py>,
+        choices: &Choices<'_, 'py>,
+        point: Choice<'_, 'py>,
+        rate: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let model = self.described();
+        let object = choices.one(model)?;
+        let mut guard = lock(self.inner(), "batch")?;
+        each!(&mut *guard, batch => {
+            let places = point.map(|point| Table::row_of("point", point, 3, Some(self.count())));
+            let places = places.transpose()?;
+            let anchors = match (object, &places) {
+                (object, None) => Anchors::Object(object),
+                (FrameObject::Body(body), Some(places)) => {
+                    Anchors::Points { body, places: places.input() }
+                }
+                (_, Some(_)) => return Err(PyValueError::new_err("point needs body")),
+            };
+            let found = py.detach(|| match rate {
+                true => batch.jacobian_rate(anchors),
+                false => batch.jacobian(anchors),
+            });
+            rows_array(py, &found.map_err(sim_error)?, &[self.count(), 2, 3, model.nv])
+        })
+    }
+}
+
 #[pymethods]
 impl Batch {
     /// Computes the Jacobian of an object in every environment, in the current states; see `Sim.jacobian`. The
@@ -33,12 +67,16 @@ impl Batch {
     /// ----------
     /// body, body_com, geom, site, camera : str or int
     ///     The object: the frame of a body, its centre of mass, a geom, a site or a camera.
+    /// point : array_like, optional
+    ///     With `body`: the point of the body that is currently at this position in the world, m: (3,) for all
+    ///     environments, or (n, 3) with one row for each.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     (n, 2, 3, nv): translation, then rotation, in world axes; NaN where a state is not finite.
-    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None))]
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -47,14 +85,37 @@ impl Batch {
         geom: Choice<'_, 'py>,
         site: Choice<'_, 'py>,
         camera: Choice<'_, 'py>,
+        point: Choice<'_, 'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let model = self.described();
-        let object = Choices([body, body_com, geom, site, camera]).one(model)?;
-        let mut guard = lock(self.inner(), "batch")?;
-        each!(&mut *guard, batch => {
-            let found = py.detach(|| batch.jacobian(object)).map_err(sim_error)?;
-            rows_array(py, &found, &[self.count(), 2, 3, model.nv])
-        })
+        let choices = Choices([body, body_com, geom, site, camera]);
+        self.jacobians(py, &choices, point, false)
+    }
+
+    /// Computes the time derivative of the Jacobian of an object in every environment; see `Sim.jacobian_rate`.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, body_com, geom, site, camera, point
+    ///     The object, see `jacobian`.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     (n, 2, 3, nv): of the translational part, then of the rotational part; NaN where a state is not finite.
+    #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None))]
+    #[allow(clippy::too_many_arguments)] // They are keywords.
+    fn jacobian_rate<'py>(
+        &self,
+        py: Python<'py>,
+        body: Choice<'_, 'py>,
+        body_com: Choice<'_, 'py>,
+        geom: Choice<'_, 'py>,
+        site: Choice<'_, 'py>,
+        camera: Choice<'_, 'py>,
+        point: Choice<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let choices = Choices([body, body_com, geom, site, camera]);
+        self.jacobians(py, &choices, point, true)
     }
 
     /// Computes the Jacobian of the centre of mass of a body's subtree in every environment, in the current states.

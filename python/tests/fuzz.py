@@ -317,8 +317,8 @@ class Fuzz:
         asked: dict[str, Callable[[], Any]] = {
             "velocity": lambda: owner.velocity(**thing, local=self.maybe(lambda: True)),
             "acceleration": lambda: owner.acceleration(**thing),
-            "jacobian": lambda: owner.jacobian(**thing, point=self.maybe(lambda: None)),
-            "jacobian_rate": lambda: owner.jacobian_rate(**thing, out=self.maybe(lambda: None)),
+            "jacobian": lambda: owner.jacobian(**thing, point=self.maybe(lambda: self.choose((None, point)))),
+            "jacobian_rate": lambda: owner.jacobian_rate(**thing, point=self.maybe(lambda: self.choose((None, point)))),
             "subtree_jacobian": lambda: owner.subtree_jacobian(name),
             "joint_forces": lambda: owner.joint_forces(name, point, self.numbers(3), self.numbers(3)),
             "mul_mass": lambda: owner.mul_mass(x),

@@ -174,6 +174,10 @@ def test_questions_are_answered_as_by_a_batch_alone() -> None:
             drive(batch, 2, np.random.default_rng(3))
         np.testing.assert_array_equal(spread.mass_matrix(), alone.mass_matrix())
         np.testing.assert_array_equal(spread.jacobian(body=2), alone.jacobian(body=2))
+        np.testing.assert_array_equal(spread.jacobian_rate(body=2), alone.jacobian_rate(body=2))
+        for point in (np.ones(3), np.random.default_rng(4).normal(size=(len(alone), 3))):
+            np.testing.assert_array_equal(spread.jacobian(body=2, point=point), alone.jacobian(body=2, point=point))
+            np.testing.assert_array_equal(spread.jacobian_rate(body=2, point=point), alone.jacobian_rate(body=2, point=point))
         np.testing.assert_array_equal(spread.subtree_jacobian(1), alone.subtree_jacobian(1))
         np.testing.assert_array_equal(spread.inverse(alone.qacc), alone.inverse(alone.qacc))
         np.testing.assert_array_equal(spread.body(1).xpos, alone.body(1).xpos)

@@ -186,7 +186,7 @@ pub use clench_solver as solver;
 pub use clench_formats::{
     LoadError, Loader, SaveError, SaveModel, load, load_str, load_str_within, load_within,
 };
-pub use clench_rigid::batch::{Controls, QueryInput};
+pub use clench_rigid::batch::{Anchors, Controls, QueryInput};
 pub use clench_rigid::{
     Acceleration, Anchor, Axes, Batch, BatchOptions, Budget, DynamicConstraint, EnvStatus, Fault,
     Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Output, Precision, RayFilter,

@@ -55,9 +55,19 @@ class Queries:
         """Computes joint-space mass matrices (n, nv, nv)."""
         return self._gather("mass_matrix")
 
-    def jacobian(self, **chosen: str | SupportsIndex) -> Array:
+    def jacobian(self, *, point: ArrayLike | None = None, **chosen: str | SupportsIndex) -> Array:
         """Computes Jacobians of an object, (n, 2, 3, nv); see `clench.Batch.jacobian`."""
-        return self._gather("jacobian", **chosen)
+        return self._at_point("jacobian", point, chosen)
+
+    def jacobian_rate(self, *, point: ArrayLike | None = None, **chosen: str | SupportsIndex) -> Array:
+        """Computes time derivatives of these Jacobians; see `clench.Batch.jacobian_rate`."""
+        return self._at_point("jacobian_rate", point, chosen)
+
+    def _at_point(self, method: str, point: ArrayLike | None, chosen: dict[str, str | SupportsIndex]) -> Array:
+        """Returns the rows of a query of an object, or of a point of a body in each environment."""
+        if point is None:
+            return self._gather(method, **chosen)
+        return self._gather_rows(f"{method}_at", [(point, 2, "point")], **chosen)
 
     def subtree_jacobian(self, body: str | SupportsIndex) -> Array:
         """Computes Jacobians of the centre of mass of a body's subtree, (n, 3, nv)."""

@@ -100,6 +100,12 @@ class Shard:
     def _rays(self, *arguments: Any, **chosen: Any) -> RayHits:
         return RayHits.of(self._batch.rays(*arguments, **chosen))
 
+    def _jacobian_at(self, point: Array, **chosen: Any) -> Array:
+        return self._batch.jacobian(point=point, **chosen)
+
+    def _jacobian_rate_at(self, point: Array, **chosen: Any) -> Array:
+        return self._batch.jacobian_rate(point=point, **chosen)
+
     def _ik(self, targets: Sequence[Any], start: Array | None, **search: Any) -> IkResult:
         return IkResult.of(self._batch.ik(targets, start=start, **search))
 

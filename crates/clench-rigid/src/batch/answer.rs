@@ -9,8 +9,9 @@ use crate::query::{cast, sample};
 use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
 use clench_dynamics::Step;
+use clench_dynamics::dynamics::chains::BodyPoint;
 use clench_dynamics::dynamics::frames::{Axes, Frames, along};
-use clench_dynamics::dynamics::jacobian::{point_jacobian, subtree_jacobian};
+use clench_dynamics::dynamics::jacobian::{point_jacobian, point_jacobian_rate, subtree_jacobian};
 use clench_dynamics::geometry::{Geoms, RayFilter};
 use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::{FrameObject, Model, Params};
@@ -52,10 +53,18 @@ impl<S: Copy> QueryInput<'_, S> {
     }
 }
 
+/// An object, or a point of a body. Input: none, or the world position of the point.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    Object(FrameObject),
+    PointOf(usize),
+}
+
 /// The kind of a query.
 pub enum Query<'a, S> {
-    /// The Jacobian of an object. No input.
-    Jacobian(FrameObject),
+    /// A Jacobian, or its time derivative. Input: that of the place.
+    Jacobian(Place),
+    JacobianRate(Place),
     /// The Jacobian of the centre of mass of a subtree. No input.
     SubtreeJacobian(usize),
     /// The velocity or acceleration of an object. No input.
@@ -139,6 +148,7 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
                 update_body_forces(self.model, params, state, ws);
             }
             Query::Jacobian(_)
+            | Query::JacobianRate(_)
             | Query::SubtreeJacobian(_)
             | Query::Velocity(..)
             | Query::MulMass
@@ -150,7 +160,7 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
             // Answered above.
             Query::Kinematics { .. } | Query::Inverse(_) => {}
         }
-        if let Query::Velocity(..) = self.query {
+        if let Query::Velocity(..) | Query::JacobianRate(_) = self.query {
             let parts = ws.sleep.computed();
             let (pos, vel) = (&ws.position, &mut ws.velocity);
             (Step::compiled().velocities)(self.model, parts, pos, &state.qvel, vel);
@@ -162,6 +172,7 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
             }
             Query::SolveMass => !ws.singular,
             Query::Jacobian(_)
+            | Query::JacobianRate(_)
             | Query::SubtreeJacobian(_)
             | Query::Velocity(..)
             | Query::MulMass
@@ -187,10 +198,15 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
             position: pos,
         };
         match self.query {
-            Query::Jacobian(object) => {
+            Query::Jacobian(place) => {
                 out.resize(6 * model.nv, T::ZERO);
-                let point = Frames::of(geoms).point(object);
+                let point = body_point(geoms, place, input);
                 point_jacobian(model, pos, &point, out);
+            }
+            Query::JacobianRate(place) => {
+                out.resize(6 * model.nv, T::ZERO);
+                let point = body_point(geoms, place, input);
+                point_jacobian_rate(model, (pos, &ws.velocity), &point, out);
             }
             Query::SubtreeJacobian(body) => {
                 out.resize(3 * model.nv, T::ZERO);
@@ -230,6 +246,16 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
         lanes.resize(width, T::ZERO);
         for (lane, env) in group.fill() {
             write_lane(input.row(env, width), lane, lanes);
+        }
+    }
+}
+
+/// Returns the point at a place; `input` is its input.
+fn body_point<T: Real>(geoms: Geoms<'_, T>, place: Place, input: &[T]) -> BodyPoint<T> {
+    match place {
+        Place::Object(object) => Frames::of(geoms).point(object),
+        Place::PointOf(body) => {
+            BodyPoint::new(geoms.model, geoms.position, body, Vec3::from_slice(input))
         }
     }
 }

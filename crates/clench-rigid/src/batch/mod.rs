@@ -43,6 +43,7 @@ use env_rows::ParamRows;
 use job::Stepper;
 use mirror::Mirror;
 use models::Models;
+pub use motion_queries::Anchors;
 pub use options::BatchOptions;
 pub(crate) use quality::StepResults;
 pub use quality::{DeepContact, Quality, Violation};

@@ -1,13 +1,62 @@
 //! Queries of all environments at once about the motion of objects and the mass matrix.
 
-use super::answer::{Query, QueryInput};
+use super::answer::{Place, Query, QueryInput};
 use super::{Batch, Precision, Rows};
-use crate::query::check_object;
+use crate::query::{check_body, check_object};
 use clench_dynamics::dynamics::frames::Axes;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::FrameObject;
 
+/// An object, or a point of a body in each environment.
+#[derive(Clone, Copy, Debug)]
+pub enum Anchors<'a, S> {
+    /// The position of an object.
+    Object(FrameObject),
+    /// The points of a body that are at world positions now, m.
+    Points {
+        /// The body.
+        body: usize,
+        /// The world positions, three numbers per environment.
+        places: QueryInput<'a, S>,
+    },
+}
+
 impl<S: Precision> Batch<S> {
+    /// Returns the Jacobian of an object or point in each environment (n, 6 × nv), see
+    /// [`Sim::jacobian`](crate::Sim::jacobian).
+    ///
+    /// # Errors
+    /// Returns an error if there is no such object, if the number of positions is wrong or one is not finite, or as
+    /// [`step`](Self::step) does.
+    pub fn jacobian(&mut self, anchors: Anchors<'_, S>) -> Result<Rows<S>, SimError> {
+        let (place, input) = self.place(anchors)?;
+        self.run_query(Query::Jacobian(place), input, 6 * self.model.nv)
+    }
+
+    /// Returns the time derivative of that Jacobian (n, 6 × nv), see
+    /// [`Sim::jacobian_rate`](crate::Sim::jacobian_rate).
+    ///
+    /// # Errors
+    /// See [`jacobian`](Self::jacobian).
+    pub fn jacobian_rate(&mut self, anchors: Anchors<'_, S>) -> Result<Rows<S>, SimError> {
+        let (place, input) = self.place(anchors)?;
+        self.run_query(Query::JacobianRate(place), input, 6 * self.model.nv)
+    }
+
+    fn place<'a>(&self, anchors: Anchors<'a, S>) -> Result<(Place, QueryInput<'a, S>), SimError> {
+        match anchors {
+            Anchors::Object(object) => {
+                check_object(&self.model, object)?;
+                Ok((Place::Object(object), QueryInput::Shared(&[])))
+            }
+            Anchors::Points { body, places } => {
+                check_body(&self.model, body)?;
+                self.check_numbers("point", &places, 3)?;
+                Ok((Place::PointOf(body), places))
+            }
+        }
+    }
+
     /// Returns the velocity of an object in the present state of each environment (n, 6), linear, then angular, see
     /// [`Sim::velocity`](crate::Sim::velocity).
     ///

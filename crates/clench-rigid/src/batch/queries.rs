@@ -10,9 +10,7 @@ use super::env_rows::EnvRows;
 use super::run::for_each_group;
 use super::{Batch, Precision, Rows};
 use crate::ik::{Ik, IkSolution};
-use crate::query::{
-    HIT, RAY, check_acceleration, check_body, check_object, check_places, check_rays,
-};
+use crate::query::{HIT, RAY, check_acceleration, check_body, check_places, check_rays};
 use clench_dynamics::check::{check_length, check_values};
 use clench_dynamics::error::SimError;
 use clench_dynamics::geometry::RayFilter;
@@ -20,16 +18,6 @@ use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::FrameObject;
 
 impl<S: Precision> Batch<S> {
-    /// Returns the Jacobian of an object in each environment (n, 6 × nv), see [`Sim::jacobian`](crate::Sim::jacobian).
-    ///
-    /// # Errors
-    /// Returns an error if there is no such object, or as [`step`](Self::step) does.
-    pub fn jacobian(&mut self, object: FrameObject) -> Result<Rows<S>, SimError> {
-        check_object(&self.model, object)?;
-        let width = 6 * self.model.nv;
-        self.run_query(Query::Jacobian(object), QueryInput::Shared(&[]), width)
-    }
-
     /// Returns the Jacobian of the centre of mass of a body's subtree (n, 3 × nv), see
     /// [`Sim::subtree_jacobian`](crate::Sim::subtree_jacobian).
     ///

@@ -2,7 +2,7 @@
 
 use crate::batches::*;
 use clench_math::{Instructions, Vec3};
-use clench_rigid::batch::QueryInput;
+use clench_rigid::batch::{Anchors, QueryInput};
 use clench_rigid::builder::{GeomSpec, HeightFieldSpec, ModelBuilder};
 use clench_rigid::model::FrameObject;
 use clench_rigid::options::RigidOptions;
@@ -68,12 +68,34 @@ fn ground(sim: &Sim) -> usize {
 
 fn jacobians<S: Precision>(batch: &mut Batch<S>, sims: &mut [Sim<S>]) {
     let object = hand(&sims[0]);
-    let found = batch.jacobian(object).unwrap();
+    let body = sims[0].model().nbody() - 2;
+    let places: Vec<S> = (0..3 * ENVS).map(|i| S::new(0.1 * i as f64)).collect();
+    let points = Anchors::Points {
+        body,
+        places: QueryInput::Each(&places),
+    };
     let trees = batch.subtree_jacobian(0).unwrap();
+    for anchors in [Anchors::Object(object), points] {
+        let found = batch.jacobian(anchors).expect("the states are valid");
+        let rates = batch.jacobian_rate(anchors).expect("the states are valid");
+        for (env, sim) in sims.iter_mut().enumerate() {
+            let anchor = match anchors {
+                Anchors::Object(object) => Anchor::Object(object),
+                Anchors::Points { body, .. } => Anchor::Point {
+                    body,
+                    place: Vec3::from_slice(&places[3 * env..]),
+                },
+            };
+            let mut own = vec![S::ZERO; 6 * sim.model().nv];
+            sim.jacobian(anchor, &mut own).expect("the state is valid");
+            assert_bits(found.row(env), &own, &|| format!("jacobian {env}"));
+            sim.jacobian_rate(anchor, &mut own)
+                .expect("the state is valid");
+            assert_bits(rates.row(env), &own, &|| format!("rate {env}"));
+        }
+    }
     for (env, sim) in sims.iter_mut().enumerate() {
         let mut own = vec![S::ZERO; 6 * sim.model().nv];
-        sim.jacobian(Anchor::Object(object), &mut own).unwrap();
-        assert_bits(found.row(env), &own, &|| format!("jacobian {env}"));
         own.truncate(3 * sim.model().nv);
         sim.subtree_jacobian(0, &mut own).unwrap();
         assert_bits(trees.row(env), &own, &|| format!("subtree {env}"));
@@ -251,9 +273,9 @@ fn inverse_kinematics_are_those_of_each_alone() {
 fn an_environment_that_fails_a_query_is_reported_and_disturbs_no_other() {
     let (mut batch, sims) = pair::<f64>(Instructions::widest(), 1);
     let object = hand(&sims[0]);
-    let good = batch.jacobian(object).unwrap();
+    let good = batch.jacobian(Anchors::Object(object)).unwrap();
     batch.state.qpos.row_mut(3)[0] = f64::NAN;
-    let found = batch.jacobian(object).unwrap();
+    let found = batch.jacobian(Anchors::Object(object)).unwrap();
     for env in 0..ENVS {
         if env == 3 {
             assert!(found.row(env).iter().all(|x| x.is_nan()));
