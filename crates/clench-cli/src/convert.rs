@@ -2,7 +2,7 @@
 
 use crate::options::ModelFile;
 use crate::replacement::{Replacement, require_other};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use clench::SaveModel;
 use std::io::Write;
@@ -21,6 +21,13 @@ pub(crate) struct Arguments {
 /// Reads one file and writes the other.
 pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let path = &arguments.output;
+    ensure!(
+        !path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("urdf")),
+        "OUTPUT {}: convert writes MJCF, not URDF; name a file such as robot.xml",
+        path.display()
+    );
     require_other(("OUTPUT", path), &[("MODEL", Some(&arguments.model.model))])?;
     let text = arguments.model.load()?.to_mjcf()?;
     let cannot = || format!("cannot write {}", path.display());

@@ -76,6 +76,17 @@ fn the_model_is_the_first_argument_of_a_conversion() {
 }
 
 #[test]
+fn a_conversion_to_urdf_is_refused() {
+    let folder = folder();
+    let path = folder.path().join("pendulum.urdf");
+    let mut command = command("convert");
+    let output = command.args([&model("pendulum"), &path]).output();
+    let output = output.expect("the program can be run");
+    refused(&output, &["pendulum.urdf", "MJCF, not URDF"]);
+    assert!(!path.exists());
+}
+
+#[test]
 fn elements_of_mjcf_are_found_by_their_own_name() {
     assert!(printed("mjcf touch").starts_with("sensor/touch\n"));
     assert!(printed("mjcf sensor/touch").starts_with("sensor/touch\n"));
