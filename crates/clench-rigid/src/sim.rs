@@ -253,7 +253,7 @@ impl<T: Precision> Sim<T> {
             return Err(no_such("keyframe", index, self.model.keyframes.len()));
         };
         self.state.copy_from(&self.initial);
-        self.state.set_keyframe(key);
+        self.state.set_keyframe(&self.model, key);
         self.validity.invalidate();
         Ok(())
     }

@@ -336,9 +336,15 @@ impl<T: Real> State<T> {
         time
     }
 
-    /// Copies a keyframe of the model to every lane.
-    pub fn set_keyframe(&mut self, key: &Keyframe) {
+    /// Copies a keyframe of the model to every lane of an initial state. As in MuJoCo, the stored past of a keyframe of
+    /// a later time is that before time zero.
+    pub fn set_keyframe(&mut self, model: &Model, key: &Keyframe) {
         self.time = T::Clock::splat(key.time);
+        for history in model.histories() {
+            for time in &mut self.history[history.times()] {
+                *time -= T::new(key.time.max(0.0));
+            }
+        }
         for (to, from) in [
             (&mut self.qpos, &key.qpos),
             (&mut self.qvel, &key.qvel),
