@@ -86,3 +86,22 @@ def test_delays_after_a_keyframe_with_a_time(interp: str, time: float) -> None:
         np.testing.assert_allclose(sim.sensordata, data.sensordata, atol=1e-12)
         np.testing.assert_allclose(sim.qvel, data.qvel, atol=1e-12)
     np.testing.assert_array_equal(batch.qpos, np.tile(sim.qpos, (2, 1)))
+
+
+def test_forces_of_open_contacts_by_coulombs_law_are_those_of_one_to_the_bit() -> None:
+    bodies = "".join(
+        f'<body pos="{x} 0 {z}" euler="{4 + 20 * x} 11 0"><freejoint/><geom type="{kind}" size=".1 .08 .09" condim="4"/></body>'
+        for x, z, kind in ((0, 0.097, "box"), (0.25, 0.113, "capsule"), (0.5, 0.091, "sphere"))
+    )
+    model = clench.Model.from_xml(f"""<mujoco>
+      <worldbody><geom name="floor" type="plane" size="1 1 1" margin="0.02" condim="4"/>{bodies}</worldbody>
+      <sensor><contact geom1="floor" num="8" data="found force torque"/></sensor></mujoco>""")
+    options = clench.RigidOptions(contact_model="coulomb")
+    batch = clench.Batch(model, 8, options=options, record=["sensordata"])
+    batch.qvel = 2 * np.random.default_rng(6).normal(size=(8, model.nv))
+    sims = [batch.sim(env) for env in range(8)]
+    for _ in range(20):
+        batch.step()
+        for env, sim in enumerate(sims):
+            sim.step()
+            assert batch.sensordata[env].tobytes() == sim.sensordata.tobytes(), env
