@@ -59,6 +59,10 @@ class ElementView:
         self._alone = is_alone(owner)
         self._computed: dict[str, Any] = {}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Returns what a copy or pickle is made of: the owner, which is copied too, and the index."""
+        return type(self), (self._owner, self._row)
+
     @property
     def element(self) -> Element:
         """The element of the model, with its structure."""

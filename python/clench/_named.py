@@ -272,6 +272,10 @@ class Parameters:
     def __init__(self, owner: Sim | Batch) -> None:
         object.__setattr__(self, "_owner", owner)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Returns what a copy or pickle is made of: the owner, which is copied too."""
+        return type(self), (self._owner,)
+
     def __getattr__(self, name: str) -> NDArray[Any]:
         if name.startswith("_"):
             # This also applies before any attribute is set, as in a copy that is being made.

@@ -141,3 +141,30 @@ def test_a_mass_matrix_that_is_not_positive_definite_is_told() -> None:
         np.testing.assert_array_equal(batch.param(name), before[name], err_msg=name)
     with pytest.raises(ValueError, match="mask"):
         batch.set_constants([True])
+
+
+@pytest.mark.parametrize("kind", ["connect", "weld"])
+def test_equalities_between_sites_follow_the_sites(kind: str) -> None:
+    bodies = "".join(
+        f'<body pos="{x} 0 1"><freejoint/><geom size=".1"/><site name="{name}" pos=".1 0 0" euler="10 20 30"/></body>'
+        for name, x in (("a", 0), ("b", 0.3))
+    )
+    equality = f'<equality><{kind} site1="a" site2="b"/></equality>'
+    text = f'<mujoco><option tolerance="0"/><worldbody>{bodies}</worldbody>{equality}</mujoco>'
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    sim, batch = clench.Sim(clench.Model.from_xml(text)), clench.Batch(clench.Model.from_xml(text), 2)
+    rng = np.random.default_rng(0)
+    model.site_pos += rng.uniform(-0.05, 0.05, model.site_pos.shape)
+    model.site_quat += rng.uniform(-0.2, 0.2, model.site_quat.shape)
+    model.site_quat /= np.linalg.norm(model.site_quat, axis=1, keepdims=True)
+    model.site_sameframe[:] = 0
+    for field in ("site_pos", "site_quat"):
+        sim.set_param(field, getattr(model, field))
+        batch.randomize(field, getattr(model, field)[None], [1])
+    mujoco.mj_step(model, data, 5)
+    sim.step(5)
+    batch.step(5)
+    np.testing.assert_allclose(sim.qpos, data.qpos, atol=1e-9)
+    np.testing.assert_array_equal(batch.qpos[1], sim.qpos)
+    assert np.abs(batch.qpos[0] - data.qpos).max() > 1e-3

@@ -52,6 +52,63 @@ def test_copies_move_on_to_the_bit(kind: str, precision: str, way: Any) -> None:
     assert other.state != own.state
 
 
+@pytest.mark.parametrize("way", [copy.deepcopy, lambda own: pickle.loads(pickle.dumps(own))], ids=["deep", "pickle"])
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_views_are_copied_with_their_owner(kind: str, way: Any) -> None:
+    own: Any = moving(kind)
+    own.qpos[...] += 0.1
+    owner, arm, params = way((own, own.body("arm"), own.params))
+    np.testing.assert_array_equal(arm.mass, own.body("arm").mass)
+    arm.mass = 0.7
+    params.gravity = [0, 0, -1]
+    np.testing.assert_array_equal(owner.body("arm").mass, arm.mass)
+    np.testing.assert_array_equal(owner.param("gravity"), params.gravity)
+    assert (own.param("gravity") != owner.param("gravity")).any()
+
+
+@pytest.mark.parametrize("way", [copy.copy, copy.deepcopy, lambda own: pickle.loads(pickle.dumps(own))], ids=["copy", "deep", "pickle"])
+def test_copies_of_a_batch_have_the_outputs_of_its_last_step(way: Any) -> None:
+    own: Any = moving("batch")
+    own.record("xpos", "qacc")
+    own.step(20)
+    other = way(own)
+    for name in ("xpos", "qacc"):
+        np.testing.assert_array_equal(other.output(name), own.output(name))
+    other.qpos[0] += 0.1
+    assert (other.xpos[0] != own.xpos[0]).any()
+    np.testing.assert_array_equal(other.xpos[1:], own.xpos[1:])
+
+
+def test_a_camera_survives_a_pickle() -> None:
+    camera = clench.FreeCamera([1, 2, 3], 4, 5, 6, fovy=7)
+    for other in (copy.deepcopy(camera), pickle.loads(pickle.dumps(camera))):
+        for name in ("lookat", "distance", "azimuth", "elevation", "fovy"):
+            assert getattr(other, name) == getattr(camera, name), name
+
+
+@pytest.mark.parametrize("precision", ["64", "32"])
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_constants_survive_a_pickle(kind: str, precision: Any) -> None:
+    model: Any = example("humanoid")
+    own: Any = clench.Sim(model, precision=precision) if kind == "sim" else clench.Batch(model, 3, precision)
+    own.params.body_mass = own.param("body_mass") * 1.1
+    own.set_constants()
+    other = copy.copy(own)
+    for name in clench.PARAMETERS:
+        np.testing.assert_array_equal(other.param(name), own.param(name), name)
+
+
+def test_anchors_that_differ_from_their_sites_survive_a_pickle() -> None:
+    bodies = "".join(f'<body name="{n}"><freejoint/><geom size=".1"/><site name="{n}"/></body>' for n in "ab")
+    text = f'<mujoco><worldbody>{bodies}</worldbody><equality><weld site1="a" site2="b"/></equality></mujoco>'
+    sim = clench.Sim(clench.Model.from_xml(text))
+    sim.set_param("site_pos", np.full((2, 3), 0.1))
+    sim.set_param("eq_anchor1", np.zeros((1, 3)))
+    other = copy.copy(sim)
+    for field in ("eq_anchor1", "eq_anchor2"):
+        np.testing.assert_array_equal(other.param(field), sim.param(field))
+
+
 def test_they_are_sent_to_spawned_workers() -> None:
     sim = moving("sim")
     with multiprocessing.get_context("spawn").Pool(1) as pool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import clench
+import mujoco  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
@@ -60,3 +61,47 @@ def test_forces_and_accelerations_of_bodies() -> None:
     np.testing.assert_allclose(sim.cfrc_int[ball], np.zeros(6), atol=1e-8 * weight)
     np.testing.assert_allclose(sim.cam_xpos[0], [0, -1, 0.2])
     assert sim.cam_xmat.shape == (1, 9)
+
+
+@pytest.mark.parametrize("interp", ["zoh", "linear", "cubic"])
+@pytest.mark.parametrize("time", [0, 0.013, 1.5])
+def test_delays_after_a_keyframe_with_a_time(interp: str, time: float) -> None:
+    delay = f'delay="0.025" nsample="6" interp="{interp}"'
+    text = f"""<mujoco><option timestep="0.01"/>
+      <worldbody><body><joint name="j" type="slide"/><geom size="0.1"/></body></worldbody>
+      <actuator><motor joint="j" {delay}/></actuator>
+      <sensor><jointpos joint="j" {delay}/><jointpos joint="j" interval="0.025" nsample="3"/></sensor>
+      <keyframe><key time="{time}" qpos="0.3" ctrl="0.7"/></keyframe></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    sim, batch = clench.Sim(clench.Model.from_xml(text)), clench.Batch(clench.Model.from_xml(text), 2)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    sim.reset(0)
+    batch.reset(keyframe=0)
+    for step in range(12):
+        data.ctrl[:] = sim.ctrl[:] = batch.ctrl[:] = step
+        mujoco.mj_step(model, data)
+        sim.step()
+        batch.step()
+        np.testing.assert_allclose(sim.sensordata, data.sensordata, atol=1e-12)
+        np.testing.assert_allclose(sim.qvel, data.qvel, atol=1e-12)
+    np.testing.assert_array_equal(batch.qpos, np.tile(sim.qpos, (2, 1)))
+
+
+def test_forces_of_open_contacts_by_coulombs_law_are_those_of_one_to_the_bit() -> None:
+    bodies = "".join(
+        f'<body pos="{x} 0 {z}" euler="{4 + 20 * x} 11 0"><freejoint/><geom type="{kind}" size=".1 .08 .09" condim="4"/></body>'
+        for x, z, kind in ((0, 0.097, "box"), (0.25, 0.113, "capsule"), (0.5, 0.091, "sphere"))
+    )
+    model = clench.Model.from_xml(f"""<mujoco>
+      <worldbody><geom name="floor" type="plane" size="1 1 1" margin="0.02" condim="4"/>{bodies}</worldbody>
+      <sensor><contact geom1="floor" num="8" data="found force torque"/></sensor></mujoco>""")
+    options = clench.RigidOptions(contact_model="coulomb")
+    batch = clench.Batch(model, 8, options=options, record=["sensordata"])
+    batch.qvel = 2 * np.random.default_rng(6).normal(size=(8, model.nv))
+    sims = [batch.sim(env) for env in range(8)]
+    for _ in range(20):
+        batch.step()
+        for env, sim in enumerate(sims):
+            sim.step()
+            assert batch.sensordata[env].tobytes() == sim.sensordata.tobytes(), env

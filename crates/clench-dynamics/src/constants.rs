@@ -254,16 +254,11 @@ impl Constants {
     /// Sets the anchors. A connect's second anchor coincides with the first at qpos0, as do the frames of a weld
     /// without a pose of its own; sites are their own anchors.
     fn set_anchors(&self, model: &Model, params: &mut Params<f64>) {
+        params.derive(model, ParamField::site_pos);
+        params.derive(model, ParamField::site_quat);
         for (i, equality) in model.equalities.iter().enumerate() {
             match (equality.sites, equality.target.coupled()) {
-                (Some([site1, site2]), coupled) => {
-                    params.eq_anchor1[i] = params.site_pos[site1];
-                    params.eq_anchor2[i] = params.site_pos[site2];
-                    if let Coupled::Frames(_) = coupled {
-                        params.eq_quat1[i] = params.site_quat[site1];
-                        params.eq_quat2[i] = params.site_quat[site2];
-                    }
-                }
+                (Some(_), _) => {}
                 (None, Coupled::Points(bodies)) => {
                     params.eq_anchor2[i] = carry(&self.pose, bodies, params.eq_anchor1[i]);
                 }

@@ -247,7 +247,7 @@ pub enum Fault {
     /// The motion diverged: a number is not finite, or a position, velocity or acceleration is beyond 1e10 (MuJoCo's
     /// `mjMAXVAL`).
     #[error(
-        "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value}{}",
+        "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value:e}{}",
         at(place)
     )]
     Diverged {

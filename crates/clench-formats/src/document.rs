@@ -74,13 +74,17 @@ impl Drop for Element {
 /// older files.
 ///
 /// # Errors
-/// Returns an error if the content is empty, not well-formed, nested too deeply, uses namespaced names, or exceeds the
-/// budget.
+/// Returns an error if the content is empty, UTF-16, not well-formed, nested too deeply, uses namespaced names, or
+/// exceeds the budget.
 pub(crate) fn parse(
     bytes: &[u8],
     file: &Arc<str>,
     spending: &mut Spending,
 ) -> Result<Element, LoadError> {
+    if let [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] = bytes {
+        let message = "the text is encoded as UTF-16: save it as UTF-8";
+        return Err(LoadError::file(file, message));
+    }
     let text = String::from_utf8_lossy(bytes);
     if text.trim().is_empty() {
         return Err(LoadError::file(file, "the file is empty"));

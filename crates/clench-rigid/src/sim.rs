@@ -86,6 +86,7 @@ impl<T: Precision> Sim<T> {
         }
         let settings = StepSettings::supported::<T>(&model, options)?;
         let model = settings.adapt(model);
+        State::<T>::check_memory(&model, 3)?; // The state, the last good one and the initial one.
         let initial = State::new(&model);
         let mut ws = T::workspace(&model);
         ws.sensors.wanted = true;
@@ -252,7 +253,7 @@ impl<T: Precision> Sim<T> {
             return Err(no_such("keyframe", index, self.model.keyframes.len()));
         };
         self.state.copy_from(&self.initial);
-        self.state.set_keyframe(key);
+        self.state.set_keyframe(&self.model, key);
         self.validity.invalidate();
         Ok(())
     }

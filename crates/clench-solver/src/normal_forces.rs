@@ -88,7 +88,10 @@ impl<T: Real> NormalForces<T> {
         for b in blocks(problem) {
             let (k, force) = (b.active_start, force[b.row]);
             let residual = force - self.lambda[k];
-            moves |= !residual.eq(T::ZERO);
+            let moved = !residual.eq(T::ZERO);
+            moves |= moved;
+            // A λ that stays keeps the sign of a zero, which friction would take over if it is evaluated again.
+            let lambda = T::select(moved, force, self.lambda[k]);
             let growth = residual - self.residual[k];
             overlap += residual * growth;
             square += growth * growth;
@@ -96,7 +99,7 @@ impl<T: Real> NormalForces<T> {
                 (&mut self.change[k], force - self.force[k]),
                 (&mut self.force[k], force),
                 (&mut self.residual[k], residual),
-                (&mut self.lambda[k], force),
+                (&mut self.lambda[k], lambda),
             ] {
                 *to = T::select(mask, from, *to);
             }

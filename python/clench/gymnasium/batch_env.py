@@ -19,6 +19,7 @@ from clench.gymnasium.checks import check_action_space, checked_action, checked_
 from clench.gymnasium.drawn import Drawn
 from clench.gymnasium.models import Source, action_space, loaded
 from clench.gymnasium.task_methods import TaskMethods
+from clench.gymnasium.views import attached, detached
 
 Array = NDArray[Any]
 
@@ -179,6 +180,15 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         self.elapsed = np.zeros(num_envs, dtype=np.int64)
         self._generators: list[np.random.Generator | None] = [None] * num_envs
         self._seeds: list[int | None] = [None] * num_envs
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Returns the attributes of a copy or pickle, without views of the batch's memory."""
+        state = dict(self.__dict__)
+        return detached(state, self.batch) if "batch" in state else state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Sets the attributes of a copy, with views of its own batch's memory."""
+        self.__dict__.update(attached(state, state["batch"]) if "batch" in state else state)
 
     # The API of gymnasium.
 

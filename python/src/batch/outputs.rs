@@ -1,6 +1,8 @@
 //! Outputs that a batch records.
 
-use super::Batch;
+use super::{AnyBatch, Batch};
+use crate::arrays::numbers;
+use crate::busy::lock;
 use crate::error::sim_error;
 use crate::recorded::not_recorded;
 use crate::sim::sensor_numbers;
@@ -8,6 +10,7 @@ use clench::Output;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
+use std::collections::HashMap;
 
 #[pymethods]
 impl Batch {
@@ -83,5 +86,18 @@ impl Batch {
         let numbers = sensor_numbers(py, self.model.get().inner(), which)?;
         let all = self.output(py, "sensordata")?.into_bound(py);
         all.get_item((PySlice::full(py), numbers))
+    }
+
+    /// Replaces all recorded outputs by those of a batch with the same states, for pickles; see `clench._pickle`.
+    fn _restore_outputs(&self, outputs: HashMap<String, Bound<'_, PyAny>>) -> PyResult<()> {
+        let mut guard = lock(&self.inner, "batch")?;
+        each!(&mut *guard, batch => {
+            let values = outputs.iter().map(|(name, values)| {
+                let values = numbers(name, values)?.as_slice()?.to_vec();
+                Ok((name.as_str(), values))
+            });
+            let values = values.collect::<PyResult<Vec<_>>>()?;
+            batch.restore_outputs(&values).map_err(sim_error)
+        })
     }
 }

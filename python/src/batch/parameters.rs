@@ -12,9 +12,9 @@ impl Batch {
     /// Gives environments their own values of a parameter in place of the model's.
     ///
     /// Directly dependent fields are updated too (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from
-    /// ``geom_size``); quaternions and axes are normalized. A reset keeps the values. The other dependent constants,
-    /// such as the inverse inertias that scale constraints, stay the model's unless ``consistent`` is set (see
-    /// `set_constants`).
+    /// ``geom_size``, the frames of equalities between sites from ``site_pos`` and ``site_quat``); quaternions and axes
+    /// are normalized. A reset keeps the values. The other dependent constants, such as the inverse inertias that scale
+    /// constraints, stay the model's unless ``consistent`` is set (see `set_constants`).
     ///
     /// Parameters
     /// ----------
@@ -53,6 +53,16 @@ impl Batch {
             let set = batch.randomize(field, &envs, values.as_slice()?);
             set.and_then(|()| if consistent { batch.set_constants(&envs) } else { Ok(()) })
                 .map_err(sim_error)
+        })
+    }
+
+    /// Sets a parameter of all environments, also one that follows from another, for pickles; see `clench._pickle`.
+    fn _restore_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
+        let shape = self.model.get().param_shape(field)?;
+        let mut guard = lock(&self.inner, "batch")?;
+        each!(&mut *guard, batch => {
+            let values = shaped(field, values, &[&[self.n_envs], &shape[..]].concat())?;
+            batch.restore_param(field, values.as_slice()?).map_err(sim_error)
         })
     }
 

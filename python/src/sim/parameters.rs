@@ -13,8 +13,8 @@ impl Sim {
     /// Replaces the values of a parameter in this simulation only.
     ///
     /// Directly dependent fields are updated too (``body_subtreemass`` from ``body_mass``, ``geom_rbound`` from
-    /// ``geom_size``); quaternions and axes are normalized. Other dependent constants do not change until
-    /// `set_constants`.
+    /// ``geom_size``, the frames of equalities between sites from ``site_pos`` and ``site_quat``); quaternions and axes
+    /// are normalized. Other dependent constants do not change until `set_constants`.
     ///
     /// Parameters
     /// ----------
@@ -33,6 +33,16 @@ impl Sim {
         each_sim!(&mut *guard, own => {
             let values = shaped(field, values, &shape)?;
             own.sim.set_param(field, values.as_slice()?).map_err(sim_error)
+        })
+    }
+
+    /// Sets a parameter, also one that follows from another, for pickles; see `clench._pickle`.
+    fn _restore_param(&self, field: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
+        let shape = self.model.get().param_shape(field)?;
+        let mut guard = lock(&self.inner, "simulation")?;
+        each_sim!(&mut *guard, own => {
+            let values = shaped(field, values, &shape)?;
+            own.sim.restore_param(field, values.as_slice()?).map_err(sim_error)
         })
     }
 

@@ -1,7 +1,7 @@
 //! The fields of [`Params`] by name: the rules of their numbers, and the fields that follow from them.
 
 use super::rule::Rule;
-use super::{Model, ParamField, Params};
+use super::{Coupled, Model, ParamField, Params};
 use crate::error::{SimError, check_length};
 use clench_collide::{Shape, ShapeKind};
 use clench_math::{Real, Scalar};
@@ -61,12 +61,15 @@ impl ParamField {
         }
     }
 
-    /// Returns the field that follows from this one, and changes with it.
-    pub fn follower(self) -> Option<ParamField> {
+    /// Returns the fields that follow from this one in a model, and change with it.
+    pub fn followers(self, model: &Model) -> &'static [ParamField] {
+        let at_sites = || model.equalities.iter().any(|e| e.sites.is_some());
         match self {
-            ParamField::body_mass => Some(ParamField::body_subtreemass),
-            ParamField::geom_size => Some(ParamField::geom_rbound),
-            _ => None,
+            ParamField::body_mass => &[ParamField::body_subtreemass],
+            ParamField::geom_size => &[ParamField::geom_rbound],
+            ParamField::site_pos if at_sites() => &[ParamField::eq_anchor1, ParamField::eq_anchor2],
+            ParamField::site_quat if at_sites() => &[ParamField::eq_quat1, ParamField::eq_quat2],
+            _ => &[],
         }
     }
 
@@ -177,9 +180,16 @@ fn normalize<S: Scalar>(
     Ok(())
 }
 
+/// Returns the equalities between sites: their indices, sites and what they couple.
+fn between_sites(model: &Model) -> impl Iterator<Item = (usize, [usize; 2], Coupled)> {
+    let equalities = model.equalities.iter().enumerate();
+    equalities.filter_map(|(i, e)| Some((i, e.sites?, e.target.coupled())))
+}
+
 impl<T: Real> Params<T> {
-    /// Computes the field that follows directly from another: the masses of subtrees from those of bodies, the bounding
-    /// radii of geoms from their sizes. The inverse inertias `*_invweight0`, which scale constraints, do not change.
+    /// Computes the fields that follow directly from another: the masses of subtrees from those of bodies, the bounding
+    /// radii of geoms from their sizes, the frames of equalities between sites from those of the sites. The inverse
+    /// inertias `*_invweight0`, which scale constraints, do not change.
     pub fn derive(&mut self, model: &Model, field: ParamField) {
         match field {
             ParamField::body_mass => {
@@ -198,6 +208,20 @@ impl<T: Real> Params<T> {
                     let exists = radius.ge(T::ZERO);
                     let derived = Shape::new(geom.kind, size).bounding_radius();
                     *radius = T::select(exists, derived, *radius);
+                }
+            }
+            ParamField::site_pos => {
+                for (i, [site1, site2], _) in between_sites(model) {
+                    self.eq_anchor1[i] = self.site_pos[site1];
+                    self.eq_anchor2[i] = self.site_pos[site2];
+                }
+            }
+            ParamField::site_quat => {
+                for (i, [site1, site2], coupled) in between_sites(model) {
+                    if let Coupled::Frames(_) = coupled {
+                        self.eq_quat1[i] = self.site_quat[site1];
+                        self.eq_quat2[i] = self.site_quat[site2];
+                    }
                 }
             }
             _ => {}

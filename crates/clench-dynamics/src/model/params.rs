@@ -2,7 +2,7 @@
 
 use super::flat::{Broadcast, Flat, FlatMut, Numbers};
 use super::rule::Rule;
-use clench_math::{Quat, Real, Vec3};
+use clench_math::{Quat, Real, Scalar, Vec3};
 
 macro_rules! params {
     // The rows of this file, and those of the table of element numbers.
@@ -129,6 +129,27 @@ impl<T: Real> Params<T> {
         for lane in 0..T::LANES {
             self.write_lane(field, lane, row);
         }
+    }
+}
+
+impl Params<f64> {
+    /// Replaces the numbers of a field by those of a simulation of a model. Numbers that are the model's in the
+    /// precision of the simulation are the model's in double precision.
+    pub fn write_of_simulation<S: Scalar>(
+        &mut self,
+        field: ParamField,
+        row: &[S],
+        model: &Params<f64>,
+    ) {
+        let of_model = model.read_lane(field, 0);
+        let numbers = of_model
+            .iter()
+            .zip(row)
+            .map(|(&of_model, &x)| match S::new(of_model) == x {
+                true => of_model,
+                false => x.to_f64(),
+            });
+        self.write_lane(field, 0, &Vec::from_iter(numbers));
     }
 }
 

@@ -5,6 +5,7 @@ pub mod kind;
 pub(crate) mod slots;
 mod table;
 
+use crate::error::SimError;
 use crate::model::{ControlInput, Joint, Keyframe, Model};
 use clench_math::{Clock, Mask, Quat, Real, Scalar, Vec3, broadcast, kernel};
 use kind::Kind;
@@ -110,7 +111,7 @@ pub struct Field {
 impl Field {
     /// Returns the number of numbers of the field.
     pub fn numbers(self, model: &Model) -> usize {
-        self.width * self.size.of(model)
+        self.width.saturating_mul(self.size.of(model))
     }
 }
 
@@ -256,6 +257,22 @@ crate::state_fields!(declare_moving);
 impl<T: Real> Eq for State<T> {}
 
 impl<T: Real> State<T> {
+    /// Checks that there is memory for several states of a model. Options choose how many elements some fields have.
+    ///
+    /// # Errors
+    /// Returns an error if there is not.
+    pub fn check_memory(model: &Model, count: usize) -> Result<(), SimError> {
+        let numbers = FIELDS.iter().map(|field| field.numbers(model));
+        let bytes = numbers
+            .fold(0, usize::saturating_add)
+            .saturating_mul(size_of::<T>());
+        let mut attempt = Vec::<u8>::new();
+        let fits = attempt.try_reserve_exact(bytes.saturating_mul(count));
+        // An allocation that nothing uses would be removed by the compiler.
+        std::hint::black_box(&mut attempt);
+        fits.map_err(|_| SimError::OutOfMemory { count, bytes })
+    }
+
     /// Creates the initial state of a model.
     pub fn new(model: &Model) -> Self {
         let mut state = State::zero(model);
@@ -319,9 +336,15 @@ impl<T: Real> State<T> {
         time
     }
 
-    /// Copies a keyframe of the model to every lane.
-    pub fn set_keyframe(&mut self, key: &Keyframe) {
+    /// Copies a keyframe of the model to every lane of an initial state. As in MuJoCo, the stored past of a keyframe of
+    /// a later time is that before time zero.
+    pub fn set_keyframe(&mut self, model: &Model, key: &Keyframe) {
         self.time = T::Clock::splat(key.time);
+        for history in model.histories() {
+            for time in &mut self.history[history.times()] {
+                *time -= T::new(key.time.max(0.0));
+            }
+        }
         for (to, from) in [
             (&mut self.qpos, &key.qpos),
             (&mut self.qvel, &key.qvel),

@@ -99,6 +99,18 @@ fn bytes_that_are_not_utf8_stand_for_some_character() {
 }
 
 #[test]
+fn a_file_in_utf16_is_an_error_that_says_so() {
+    let path = std::env::temp_dir().join(format!("clench-utf16-{}.xml", std::process::id()));
+    for order in [u16::to_le_bytes, u16::to_be_bytes] {
+        let units = "\u{feff}<mujoco/>".encode_utf16();
+        std::fs::write(&path, Vec::from_iter(units.flat_map(order))).expect("a file");
+        let error = load(&path).expect_err("not UTF-8");
+        assert!(error.message.contains("UTF-16"), "{error}");
+    }
+    std::fs::remove_file(&path).expect("a file");
+}
+
+#[test]
 fn nesting_has_a_bottom() {
     for depth in [600, 200_000] {
         let text = format!(

@@ -14,16 +14,34 @@ impl<S: Precision> Batch<S> {
     /// [`Params`](crate::model::Params); `values` are, for each of `envs` in turn, all values of the field, element by
     /// element.
     ///
-    /// Dependent fields are updated: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions
-    /// and axes are normalized. All other derived values stay the model's until [`set_constants`](Self::set_constants).
-    /// Only fields that were set in some environment take memory. An environment keeps its values when it is reset or
-    /// restored.
+    /// Dependent fields are updated: `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`, the frames of
+    /// equalities between sites from `site_pos` and `site_quat`. Quaternions and axes are normalized. All other derived
+    /// values stay the model's until [`set_constants`](Self::set_constants). Only fields that were set in some
+    /// environment take memory. An environment keeps its values when it is reset or restored.
     ///
     /// # Errors
     /// Returns an error if the name is unknown, if the field is derived from another, if there is no such environment,
     /// if the number of values is wrong, or if a value is invalid. No parameter changes.
     pub fn randomize(&mut self, field: &str, envs: &[usize], values: &[S]) -> Result<(), SimError> {
-        let field = ParamField::settable(field)?;
+        self.check_and_assign(ParamField::settable(field)?, envs, values)
+    }
+
+    /// Assigns a field of every environment as [`randomize`](Self::randomize) does, for a copy of a batch: also a field
+    /// that follows from another, after that one.
+    ///
+    /// # Errors
+    /// Returns an error as [`randomize`](Self::randomize) does.
+    pub fn restore_param(&mut self, field: &str, values: &[S]) -> Result<(), SimError> {
+        let envs = Vec::from_iter(0..self.count());
+        self.check_and_assign(ParamField::find(field)?, &envs, values)
+    }
+
+    fn check_and_assign(
+        &mut self,
+        field: ParamField,
+        envs: &[usize],
+        values: &[S],
+    ) -> Result<(), SimError> {
         self.check_envs(envs)?;
         let width = self.model.params.width(field);
         check_length(field.name(), values.len(), width * envs.len())?;
@@ -44,7 +62,9 @@ impl<S: Precision> Batch<S> {
         };
         for &(field, _) in changes {
             self.param_rows(field)?;
-            field.follower().map(|f| self.param_rows(f)).transpose()?;
+            for &follower in field.followers(&self.model) {
+                self.param_rows(follower)?;
+            }
         }
         for (field, values) in changes {
             self.assign_field(*field, envs, values)?;
@@ -58,25 +78,30 @@ impl<S: Precision> Batch<S> {
         }
     }
 
-    /// Assigns a field and its follower on the processor.
+    /// Assigns a field and its followers on the processor.
     fn assign_field(
         &mut self,
         field: ParamField,
         envs: &[usize],
         values: &[S],
     ) -> Result<(), SimError> {
-        let follower = field.follower();
-        let mut follower = follower.map(|f| (f, self.model.params.broadcast::<S>()));
+        let followers = field.followers(&self.model);
+        let mut params = (!followers.is_empty()).then(|| self.model.params.broadcast::<S>());
         for (&env, row) in envs.iter().zip(rows_of(&self.model, field, values)) {
             Model::clear_structural_guarantees(&mut self.model, field, row);
             self.param_rows(field)?.row_mut(env).copy_from_slice(row);
-            if let Some((follower, params)) = &mut follower {
-                let old = self.param_rows(*follower)?.row(env).to_vec();
-                params.write_lane(*follower, 0, &old);
-                params.write_lane(field, 0, row);
-                params.derive(&self.model, field);
-                let row = params.read_lane(*follower, 0);
-                let rows = self.param_rows(*follower)?;
+            let Some(params) = &mut params else {
+                continue;
+            };
+            for &follower in followers {
+                let old = self.param_rows(follower)?.row(env);
+                params.write_lane(follower, 0, old);
+            }
+            params.write_lane(field, 0, row);
+            params.derive(&self.model, field);
+            for &follower in followers {
+                let row = params.read_lane(follower, 0);
+                let rows = self.param_rows(follower)?;
                 rows.row_mut(env).copy_from_slice(&row);
             }
         }
@@ -100,8 +125,7 @@ impl<S: Precision> Batch<S> {
             }
             for own in &self.params {
                 let row = self.models.own_row(env, own.field, own.rows.row(env));
-                let row = Vec::from_iter(row.iter().map(|x| x.to_f64()));
-                params.write_lane(own.field, 0, &row);
+                params.write_of_simulation(own.field, &row, &model.params);
             }
             let rows = constants::<S>(model, &mut params);
             let rows = rows.map_err(|singular| singular.error(model, Some(env)))?;

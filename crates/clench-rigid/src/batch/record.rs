@@ -90,6 +90,32 @@ impl<S: Precision> Batch<S> {
         find(&self.outputs, name)
     }
 
+    /// Replaces the recorded outputs by those of a batch with the same states, so that a copy also has the outputs of
+    /// the last step. `values` has all recorded outputs by name, each with its values environment by environment.
+    ///
+    /// # Errors
+    /// Returns an error if an output is missing, or if a number of values is wrong. No output then changes.
+    pub fn restore_outputs(&mut self, values: &[(&str, Vec<S>)]) -> Result<(), SimError> {
+        check_length("outputs", values.len(), self.outputs.len())?;
+        let found = |own: &OutputRows<S>| {
+            let name = own.output.name();
+            let given = values.iter().find(|(given, _)| *given == name);
+            let given = given.map_or(&[][..], |(_, values)| values);
+            check_length(name, given.len(), own.rows.as_slice().len()).map(|()| given)
+        };
+        let found = self.outputs.iter().map(found);
+        let found = found.collect::<Result<Vec<_>, _>>()?;
+        for (own, values) in self.outputs.iter_mut().zip(found) {
+            own.rows.as_mut_slice().copy_from_slice(values);
+        }
+        if let Some(recorded) = &mut self.recorded {
+            for env in 0..self.status.len() {
+                recorded.record_row(env, &self.state);
+            }
+        }
+        Ok(())
+    }
+
     /// Advances every running environment by `steps` time steps and records outputs, by their names in [`Output`],
     /// after each. The controls override those in [`state`](Self::state), which do not change.
     ///

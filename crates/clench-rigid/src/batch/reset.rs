@@ -31,7 +31,7 @@ impl<S: Precision> Batch<S> {
             return Err(no_such("keyframe", key, keyframes.len()));
         };
         self.scratch.copy_from(self.models.initial(env));
-        self.scratch.set_keyframe(keyframe);
+        self.scratch.set_keyframe(&self.model, keyframe);
         self.state.write(env, &self.scratch)?;
         self.status[env] = EnvStatus::Running;
         Ok(())

@@ -10,14 +10,27 @@ use clench_dynamics::settings::StepSettings;
 
 impl<T: Precision> Sim<T> {
     /// Replaces the values of a field of [`params`](Self::params), element by element, and updates dependent fields:
-    /// `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`. Quaternions and axes are normalized. All
-    /// other derived values stay the same until [`set_constants`](Self::set_constants).
+    /// `body_subtreemass` from `body_mass`, `geom_rbound` from `geom_size`, the frames of equalities between sites from
+    /// `site_pos` and `site_quat`. Quaternions and axes are normalized. All other derived values stay the same until
+    /// [`set_constants`](Self::set_constants).
     ///
     /// # Errors
     /// Returns an error if the name is unknown, if the field is derived from another, if the number of values is wrong,
     /// or if a value is invalid. The parameters are then unchanged.
     pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
-        let field = ParamField::settable(field)?;
+        self.assign_param(ParamField::settable(field)?, values)
+    }
+
+    /// Assigns a field as [`set_param`](Self::set_param) does, for a copy of a simulation: also a field that follows
+    /// from another, after that one.
+    ///
+    /// # Errors
+    /// Returns an error as [`set_param`](Self::set_param) does.
+    pub fn restore_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
+        self.assign_param(ParamField::find(field)?, values)
+    }
+
+    fn assign_param(&mut self, field: ParamField, values: &[T]) -> Result<(), SimError> {
         let mut row = values.to_vec();
         field.check_row(&self.model, &mut row)?;
         Model::clear_structural_guarantees(&mut self.model, field, &row);
@@ -40,7 +53,7 @@ impl<T: Precision> Sim<T> {
         let mut params = self.model.params.clone();
         for &field in ParamField::ALL {
             let row = self.params.read_lane(field, 0);
-            params.write_lane(field, 0, &Vec::from_iter(row.iter().map(|x| x.to_f64())));
+            params.write_of_simulation(field, &row, &self.model.params);
         }
         let rows = constants(&self.model, &mut params);
         let rows = rows.map_err(|singular| singular.error(&self.model, None))?;

@@ -2,7 +2,7 @@
 
 use crate::batches::*;
 use clench_math::Instructions;
-use clench_rigid::builder::ModelBuilder;
+use clench_rigid::builder::{ConnectAnchor, EqualityKind, EqualitySpec, ModelBuilder, SiteSpec};
 use clench_rigid::model::ParamField;
 use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, BatchOptions, EnvStatus, Model, Precision, Sim, SimError};
@@ -11,6 +11,30 @@ use std::sync::Arc;
 const ENVS: usize = 11;
 /// Fields that are derived from others.
 const FOLLOWERS: [&str; 2] = ["body_subtreemass", "geom_rbound"];
+
+/// Builds two boxes whose sites are welded.
+fn tied_sites() -> ModelBuilder {
+    let mut b = world();
+    for (name, x) in [("left", -0.3), ("right", 0.3)] {
+        let solid = cuboid([0.1, 0.08, 0.06]);
+        let body = add(&mut b, 0, name, [x, 0.0, 1.0], free(), vec![solid]);
+        b.bodies[body].sites.push(SiteSpec {
+            name: name.into(),
+            ..SiteSpec::default()
+        });
+    }
+    let anchor = ConnectAnchor::Sites {
+        site1: "left".into(),
+        site2: "right".into(),
+    };
+    let kind = EqualityKind::Weld {
+        anchor,
+        relpose: None,
+        torquescale: 1.0,
+    };
+    b.equalities.push(EqualitySpec::new("tie", kind));
+    b
+}
 
 /// Returns a batch with different values of `fields` in each environment (the last uses the model's), and single
 /// simulations with equal values. `change(field, env, i, x)` changes a value of the model.
@@ -206,6 +230,31 @@ fn masses_and_sizes_update_derived_parameters() {
 }
 
 #[test]
+fn equalities_between_sites_follow_the_sites() {
+    let model = model(&tied_sites());
+    let moved = [0.1, 0.0, 0.2, -0.1, 0.3, 0.0];
+    let turned = [0.8, 0.6, 0.0, 0.0, 0.0, 0.0, 0.6, -0.8];
+    let mut batch = Batch::<f64>::new(model.clone(), 2).expect("valid");
+    let mut sim = Sim::<f64>::new(model.clone()).expect("valid");
+    for (field, numbers) in [("site_pos", &moved[..]), ("site_quat", &turned[..])] {
+        batch.randomize(field, &[1], numbers).expect("valid");
+        sim.set_param(field, numbers).expect("valid");
+    }
+    for (field, second) in [("eq_anchor", 3), ("eq_quat", 4)] {
+        let all = if second == 3 { &moved[..] } else { &turned[..] };
+        for (end, expected) in [("1", &all[..second]), ("2", &all[second..])] {
+            let field = &format!("{field}{end}");
+            assert_eq!(sim.param(field).expect("known"), expected, "{field}");
+            assert_eq!(batch.param(field, 1).expect("known"), expected, "{field}");
+            let of_model = model
+                .params
+                .read_lane(ParamField::find(field).expect("known"), 0);
+            assert_eq!(batch.param(field, 0).expect("known"), of_model, "{field}");
+        }
+    }
+}
+
+#[test]
 fn directions_are_made_unit() {
     let model = model(&walker());
     let mut batch = Batch::<f64>::new(model.clone(), 1).expect("valid");
@@ -342,5 +391,25 @@ fn bad_parameters_are_errors_and_change_nothing() {
         let expected = model.params.read_lane(*field, 0);
         assert_eq!(batch.param(field.name(), 0).expect("known"), expected);
         assert_eq!(sim.params().read_lane(*field, 0), expected);
+    }
+}
+
+#[test]
+fn constants_in_single_precision_are_those_of_a_simulation() {
+    let model = model(&walker());
+    let heavier: Vec<f32> = model
+        .params
+        .body_mass
+        .iter()
+        .map(|m| 1.1 * *m as f32)
+        .collect();
+    let mut batch = Batch::<f32>::new(model.clone(), 2).expect("valid");
+    let mut sim = Sim::<f32>::new(model).expect("valid");
+    batch.randomize("body_mass", &[1], &heavier).expect("valid");
+    sim.set_param("body_mass", &heavier).expect("valid");
+    batch.set_constants(&[1]).expect("positive");
+    sim.set_constants().expect("positive");
+    for field in ParamField::ALL.iter().map(|field| field.name()) {
+        assert_eq!(batch.param(field, 1), sim.param(field), "{field}");
     }
 }

@@ -95,7 +95,7 @@ fn environments_are_reset_individually() {
     let model = batch.model().clone();
     let initial = State::<f64>::new(&model);
     let mut keyed = initial.clone();
-    keyed.set_keyframe(&model.keyframes[0]);
+    keyed.set_keyframe(&model, &model.keyframes[0]);
     batch.state.ctrl.as_mut_slice().fill(1.0);
     batch.state.qpos.row_mut(2)[3] = f64::INFINITY;
     batch.step().expect("valid");

@@ -272,6 +272,22 @@ fn lanes_that_constrain_different_bodies_equal_a_single_one_in_single_precision(
 }
 
 #[test]
+fn more_slots_than_memory_are_an_error() {
+    let mut found = boxes().build().expect("valid");
+    found.max_dynamic_constraints = usize::MAX / 1000;
+    let model = Arc::new(found);
+    for error in [
+        Sim::<f64>::new(model.clone()).err(),
+        Batch::<f64>::new(model, 2).err(),
+    ] {
+        assert!(
+            matches!(error, Some(SimError::OutOfMemory { .. })),
+            "{error:?}"
+        );
+    }
+}
+
+#[test]
 fn if_one_environment_fails_all_stay_unchanged() {
     let mut found = boxes().build().expect("valid");
     found.max_dynamic_constraints = 1;

@@ -153,7 +153,7 @@ fn keyframes_store_plastic_states() {
     let built = model(&b);
     let mut state = State::<f64>::new(&built);
     for (index, rest) in [0.7, 0.1].into_iter().enumerate() {
-        state.set_keyframe(&built.keyframes[index]);
+        state.set_keyframe(&built, &built.keyframes[index]);
         assert_eq!(state.plastic, [rest]);
     }
     b.keyframes = vec![key(Some(vec![0.7, 0.8]))];
