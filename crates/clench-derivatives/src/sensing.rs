@@ -55,8 +55,10 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
             let rates = recursive.acceleration(dof);
             set(qacc, recursive.qacc[dof], rates, columns);
         }
-        ws.sensors.wanted = !request.omits_sensors;
-        evaluate_sensors(model, params, settings, before, ws);
+        if !request.omits_sensors {
+            ws.sensors.wanted = true;
+            evaluate_sensors(model, params, settings, before, ws);
+        }
         outputs.clear();
         outputs.extend_from_slice(&ws.sensors.data[..request.sensors_len(model)]);
         let mut from = OutputSource {
@@ -82,7 +84,6 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
             ws.invalidate_poses();
             let computed = Computed::all(&parts);
             poses(model, params, before, computed, &mut ws.position);
-            ws.contacts.clear();
             if reads.contacts {
                 detect(model, params, settings, ws);
             }
@@ -108,15 +109,15 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
     fn set_forces(&mut self, source: Source<'_>, reads: Reads, columns: &[usize]) {
         let DualPass { ws, recursive, .. } = self;
         let plain = &recursive.plain;
-        if source.start == Stage::Positions {
-            for contact in plain.contacts.iter().skip(ws.contacts.len()) {
-                ws.contacts.push(Contact::convert(contact, Real::new));
-            }
-            for (contact, plain) in ws.contacts.iter_mut().zip(&plain.contacts) {
-                contact.block = plain.block;
-            }
+        for (contact, plain) in ws.contacts.iter_mut().zip(&plain.contacts) {
+            contact.block = plain.block;
         }
         if source.first {
+            if !reads.contacts {
+                let contacts = plain.contacts.iter();
+                ws.contacts.clear();
+                (ws.contacts).extend(contacts.map(|contact| Contact::convert(contact, Real::new)));
+            }
             // No derivative by the pose of a site that only selects contacts.
             for (s, site) in source.model.sites.iter().enumerate() {
                 if site.body >= reads.bodies {
