@@ -1,8 +1,9 @@
 //! Sensors of forces and accelerations, and of some bodies alone.
 
 use super::bodies::tied;
-use super::check_text;
 use super::coordinates::{curved, fingers};
+use super::{check, check_text};
+use clench_rigid::options::RigidOptions;
 
 /// Returns a model with sensors, and with a site in each of some bodies.
 fn with(text: &str, sites: &[(&str, &str)], sensors: &str) -> String {
@@ -52,6 +53,19 @@ fn sensors_of_a_robot() {
     check_text(&with(&implicit, &sites, &all), &["contact"], |_| {});
     let runge_kutta = text.replace("<option", r#"<option integrator="RK4""#);
     check_text(&with(&runge_kutta, &sites, IMU), &["contact"], |_| {});
+}
+
+/// Sensors that read other results of a step, or forces at its start after others overwrote them, need passes.
+#[test]
+fn other_sensors_need_passes() {
+    let text = include_str!("../../../../../models/quadruped.xml");
+    let sites = [("front_left_shank", "left"), ("rear_right_shank", "right")];
+    let other = r#"<e_kinetic/><jointlimitpos joint="front_left_knee"/>"#;
+    let runge_kutta = text.replace("<option", r#"<option integrator="RK4""#);
+    for text in [with(text, &[], other), with(&runge_kutta, &sites, FEET)] {
+        let model = clench_formats::load_str(&text).expect("a model");
+        assert!(check(model, RigidOptions::new(), 60) > 1);
+    }
 }
 
 #[test]
