@@ -89,13 +89,13 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
             }
         }
         let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);
-        if start < Stage::Forces && (reads.stage >= Stage::Velocities) {
+        if start < Stage::Forces && reads.stage >= Stage::Velocities {
             velocities(model, &parts, pos, &before.qvel, vel);
             if reads.accelerations {
                 bias_forces(model, params, &parts, pos, vel, &before.qvel, force);
             }
-            if reads.stage == Stage::Forces {
-                // Gravity compensation acts through actuators.
+            // Gravity compensation may act through actuators, which then read all bodies.
+            if reads.stage == Stage::Forces && reads.bodies == model.nbody() {
                 let at = (pos, &*vel);
                 passive_forces(model, params, &parts, at, before, &[], force);
             }
@@ -118,7 +118,7 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
                 ws.contacts.clear();
                 (ws.contacts).extend(contacts.map(|contact| Contact::convert(contact, Real::new)));
             }
-            // No derivative by the pose of a site that only selects contacts.
+            // Sites of other bodies only select contacts, so that their poses need no derivatives.
             for (s, site) in source.model.sites.iter().enumerate() {
                 if site.body >= reads.bodies {
                     let (from, to) = (&plain.position, &mut ws.position);

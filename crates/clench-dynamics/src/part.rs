@@ -21,8 +21,8 @@ impl Part {
         Part::first(model, model.nbody())
     }
 
-    /// Creates the part of the first bodies. If their trees continue, centres of mass, about which spatial vectors are,
-    /// are those of these bodies alone.
+    /// Creates the part of the first bodies. If their trees continue, `subtree_com` holds other points than centres of
+    /// mass, about which spatial vectors are still consistent.
     pub fn first(model: &Model, bodies: usize) -> Self {
         let joints = model.bodies[..bodies]
             .last()

@@ -79,10 +79,9 @@ impl Frames {
                 };
                 let changes = [change(0), change(1)];
                 let force_change = spring.force(&pair.change(&changes));
-                let column = if by_position {
-                    dof
-                } else {
-                    step.model.nv + dof
+                let column = match by_position {
+                    true => dof,
+                    false => step.model.nv + dof,
                 };
                 forces.add(block, column, &force_change.map(Vec3::to_array).concat());
                 let change = pair.wrench_change(force, force_change, &changes);
