@@ -32,7 +32,7 @@ impl Linearizer {
         self.along.x.reset([nx, columns]);
         self.along.y.reset([ny, columns]);
         // The matrices are found in less time than a pass needs, but sensors need a pass.
-        let permitted = ny == 0 && request.permits_recursion(&model);
+        let permitted = ny == 0 && request.reads(&model).is_some();
         let recursed = permitted && self.recurse(source)?;
         direction::list(&model, &sim.state, request, &mut self.directions);
         if recursed {

@@ -1,9 +1,9 @@
 //! The matrices of a linearized step.
 
 use crate::direction::{self, Direction};
-use crate::kinematic::last_stage;
 use crate::matrix::{InputGradient, Matrix, OutputTangent, RolloutGradient, split_index};
 use crate::pass::{CreatePass, Pass};
+use crate::reads::Reads;
 use crate::request::Request;
 use crate::seed::Seed;
 use crate::source::Source;
@@ -141,13 +141,17 @@ impl Linearizer {
         self.all.clear();
         self.result.errors = ErrorBound::default();
         let sizes = [request.x_len(model), model.nu(), request.p_len()];
-        let recursed = request.permits_recursion(model) && self.recurse(source)?;
+        let reads = match request.reads(model) {
+            Some(reads) if self.recurse(source)? => Some(reads),
+            Some(_) | None => None,
+        };
+        let recursed = reads.is_some();
         self.reset(sizes, request.y_len(model), recursed);
         direction::list(model, source.state, request, &mut self.directions);
-        if recursed {
+        if let Some(reads) = reads {
             let [nx, nu, _] = sizes;
-            if request.sensors_len(model) > 0 {
-                self.sense(source, [nx, nu]);
+            if request.y_len(model) > 0 {
+                self.read(source, reads, [nx, nu]);
             }
             self.directions.retain(|&(_, column)| column >= nx + nu);
         }
@@ -236,11 +240,11 @@ impl Linearizer {
     }
 
     /// Computes C and D after recursions.
-    fn sense(&mut self, mut source: Source<'_>, [nx, nu]: [usize; 2]) {
-        let last = source.model.sensors.iter().filter_map(last_stage).max();
-        // Other directions change no sensor.
+    fn read(&mut self, mut source: Source<'_>, reads: Reads, [nx, nu]: [usize; 2]) {
+        // Other directions change no number of y.
         let directions = self.directions[..nx + nu].iter().copied();
-        let changes = |&(direction, _): &(Direction, usize)| Some(direction.start()) <= last;
+        let changes =
+            |&(direction, _): &(Direction, usize)| direction.start() <= reads.last_start();
         let directions = Vec::from_iter(directions.filter(changes));
         let Linearization { c, d, .. } = &mut self.result;
         let mut columns = Vec::new();
@@ -248,18 +252,22 @@ impl Linearizer {
         for part in directions.chunks(self.pass.directions()) {
             self.seeds.clear();
             self.seeds.extend(Seed::units(part));
-            source.start = Seed::earliest(&self.seeds);
+            source.start = match source.first {
+                true => Stage::Positions,
+                false => Seed::earliest(&self.seeds),
+            };
             columns.clear();
             columns.extend(part.iter().map(|&(_, column)| column));
             let directions = (&self.seeds[..], &columns[..]);
-            self.pass.sense(source, directions, &mut |row, values| {
-                for (&column, &value) in columns.iter().zip(values) {
-                    match column.checked_sub(nx) {
-                        None => c.values[row * nx + column] = value,
-                        Some(column) => d.values[row * nu + column] = value,
+            self.pass
+                .read(source, reads, directions, &mut |row, values| {
+                    for (&column, &value) in columns.iter().zip(values) {
+                        match column.checked_sub(nx) {
+                            None => c.values[row * nx + column] = value,
+                            Some(column) => d.values[row * nu + column] = value,
+                        }
                     }
-                }
-            });
+                });
             source.first = false;
         }
     }

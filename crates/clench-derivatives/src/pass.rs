@@ -1,13 +1,14 @@
 //! A step in dual numbers: the derivatives along a few directions.
 
 use crate::matrix::{InputGradient, Matrix};
+use crate::reads::Reads;
 use crate::recursive::{Curves, Recursive};
 use crate::request::Request;
 use crate::seed::{self, Seed};
 use crate::source::Source;
 use crate::stage::Stage;
 use crate::tangent;
-use clench_dynamics::model::{Model, Params};
+use clench_dynamics::model::{Integrator, Model, Params};
 use clench_dynamics::{State, Workspace, check, pipeline};
 use clench_math::{Dual, LaneTask, Real};
 use clench_rigid::{OutputSource, SimError, evaluate_sensors};
@@ -41,10 +42,11 @@ pub(crate) trait Pass: Send {
         gradient: &Matrix,
         result: &mut InputGradient,
     ) -> Result<bool, SimError>;
-    /// Computes the derivatives of kinematic sensors, after recursions: see [`DualPass::read_sensors`].
-    fn sense(
+    /// Computes the derivatives of sensors and outputs, after recursions: see [`DualPass::read_results`].
+    fn read(
         &mut self,
         source: Source<'_>,
+        reads: Reads,
         directions: (&[Seed], &[usize]),
         write: &mut dyn FnMut(usize, &[f64]),
     );
@@ -95,7 +97,7 @@ pub(crate) struct DualPass<L: Real<Scalar = f64>> {
     pub before: State<Number<L>>,
     state: State<Number<L>>,
     pub ws: Workspace<Number<L>>,
-    outputs: Vec<Number<L>>,
+    pub outputs: Vec<Number<L>>,
     bounds: ErrorBounds<Number<L>>,
     /// The start of the last pass.
     pub last: Stage,
@@ -198,13 +200,14 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         Ok(())
     }
 
-    fn sense(
+    fn read(
         &mut self,
         source: Source<'_>,
+        reads: Reads,
         directions: (&[Seed], &[usize]),
         write: &mut dyn FnMut(usize, &[f64]),
     ) {
-        self.read_sensors(source, directions, write);
+        self.read_results(source, reads, directions, write);
     }
 
     fn run(
@@ -257,10 +260,8 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             Stage::Velocities => pipeline::step_from_velocities,
             Stage::Forces => pipeline::step_from_forces,
         };
-        step(model, params, settings, state, ws, evaluate_sensors);
-        let good = check::good_results(state, ws);
         outputs.clear();
-        if good {
+        let mut read_outputs = |ws: &mut Workspace<_>| {
             let mut from = OutputSource {
                 model,
                 params,
@@ -269,6 +270,19 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
             };
             for output in &request.outputs {
                 output.read(&mut from, outputs);
+            }
+        };
+        // After a Runge-Kutta step, the workspace holds the results of its last stage.
+        let stages = model.integrator == Integrator::Rk4;
+        if stages && !request.outputs.is_empty() {
+            pipeline::forward(model, params, settings, before, ws, evaluate_sensors);
+            read_outputs(ws);
+        }
+        step(model, params, settings, state, ws, evaluate_sensors);
+        let good = check::good_results(state, ws);
+        if good {
+            if !stages {
+                read_outputs(ws);
             }
             let mut row = 0;
             let mut next = |values: &[f64]| {
@@ -297,7 +311,11 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
 }
 
 /// Removes the derivatives of the stages that the pass reuses from the last one, which began with stage `last`.
-fn remove_reused_derivatives<T: Real>(ws: &mut Workspace<T>, last: Stage, source: Source<'_>) {
+pub(crate) fn remove_reused_derivatives<T: Real>(
+    ws: &mut Workspace<T>,
+    last: Stage,
+    source: Source<'_>,
+) {
     let reused = last..source.start;
     if reused.contains(&Stage::Positions) && source.constant_factor {
         ws.remove_position_derivatives();

@@ -1,7 +1,7 @@
 //! The choice of results and inputs.
 
 use crate::field::StateField;
-use crate::kinematic::last_stage;
+use crate::reads::Reads;
 use clench_dynamics::Model;
 use clench_dynamics::model::ParamField;
 use clench_rigid::Output;
@@ -31,13 +31,15 @@ impl Request {
         StateField::MEMORY.into_iter().filter(move |_| wanted)
     }
 
-    /// Returns true if the results are the next positions, velocities and activations, and sensors that follow from
-    /// motion, and x is the present positions, velocities and activations.
-    pub(crate) fn permits_recursion(&self, model: &Model) -> bool {
-        let no_memory = self.x_len(model) == 2 * model.nv + model.na;
-        let mut sensors = model.sensors.iter();
-        let sensed = self.omits_sensors || sensors.all(|sensor| last_stage(sensor).is_some());
-        self.y_len(model) == self.sensors_len(model) && sensed && no_memory && !self.errors
+    /// Returns what y reads; `None` if the derivatives need passes, as do those of other fields of x and by them, and
+    /// bounds of errors.
+    pub(crate) fn reads(&self, model: &Model) -> Option<Reads> {
+        let permitted = self.x_len(model) == 2 * model.nv + model.na && !self.errors;
+        let sensors = match self.omits_sensors {
+            true => &[],
+            false => &model.sensors[..],
+        };
+        Reads::new(model, sensors, &self.outputs).filter(|_| permitted)
     }
 
     /// Returns the length of y.

@@ -47,7 +47,7 @@ impl Linearizer {
     ) -> Result<(), SimError> {
         let (model, request) = (source.model, source.request);
         let of_state = request.y_len(model) == 0 && request.p_len() == 0;
-        if of_state && request.permits_recursion(model) {
+        if of_state && request.reads(model).is_some() {
             let result = &mut self.gradient;
             if self.pass.pull_back(source, &gradient.x, result)? {
                 return Ok(());

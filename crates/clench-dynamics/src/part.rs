@@ -18,17 +18,25 @@ pub struct Part {
 impl Part {
     /// Creates the part that is the whole model.
     pub fn whole(model: &Model) -> Self {
+        Part::first(model, model.nbody())
+    }
+
+    /// Creates the part of the first bodies. If their trees continue, `subtree_com` holds other points than centres of
+    /// mass, about which spatial vectors are still consistent.
+    pub fn first(model: &Model, bodies: usize) -> Self {
+        let joints = model.bodies[..bodies]
+            .last()
+            .map_or(0, |body| body.joints.end);
         Part {
-            bodies: 0..model.nbody(),
-            joints: 0..model.joints.len(),
-            dofs: 0..model.nv,
+            bodies: 0..bodies,
+            joints: 0..joints,
+            dofs: 0..first_dof(model, joints),
         }
     }
 
     /// Replaces `parts` by those of the bodies for which `includes` returns true.
     pub(crate) fn list(model: &Model, includes: &dyn Fn(usize) -> bool, parts: &mut Vec<Part>) {
         parts.clear();
-        let dof = |joint: usize| model.joints.get(joint).map_or(model.nv, |joint| joint.dof);
         for (b, body) in model.bodies.iter().enumerate() {
             if !includes(b) {
                 continue;
@@ -37,14 +45,19 @@ impl Part {
             match parts.last_mut() {
                 Some(last) if last.bodies.end == b => {
                     last.bodies.end = b + 1;
-                    (last.joints.end, last.dofs.end) = (joints.end, dof(joints.end));
+                    (last.joints.end, last.dofs.end) = (joints.end, first_dof(model, joints.end));
                 }
                 _ => parts.push(Part {
                     bodies: b..b + 1,
-                    dofs: dof(joints.start)..dof(joints.end),
+                    dofs: first_dof(model, joints.start)..first_dof(model, joints.end),
                     joints,
                 }),
             }
         }
     }
+}
+
+/// Returns the first dof of a joint and of those after it.
+fn first_dof(model: &Model, joint: usize) -> usize {
+    model.joints.get(joint).map_or(model.nv, |joint| joint.dof)
 }

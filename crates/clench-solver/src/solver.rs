@@ -150,6 +150,10 @@ impl<T: Real> Solver<T> {
     pub fn force(&self) -> &[T] {
         &self.results.force
     }
+    /// Returns the constraint forces, which a caller replaces who knows them without a solve.
+    pub fn force_mut(&mut self) -> &mut Vec<T> {
+        &mut self.results.force
+    }
     /// Returns Jᵀ f, length nv.
     pub fn qfrc_constraint(&self) -> &[T] {
         &self.results.qfrc_constraint

@@ -6,6 +6,7 @@
 
 use super::contact::Contacts;
 use super::frames::Frames;
+use super::row_forces::RowForces;
 use super::rows::Rows;
 use super::slopes::Slopes;
 use super::step::Step;
@@ -21,6 +22,7 @@ pub(super) struct Blocks {
     contacts: Contacts,
     frames: Frames,
     rows: Rows,
+    pub forces: RowForces,
 }
 
 /// A kind of constraint by the motion of its rows.
@@ -47,6 +49,8 @@ impl Blocks {
             return false;
         }
         self.contacts.find_accelerations(step);
+        let forces = &mut self.forces;
+        forces.clear(plain.problem.nrow());
         for (block, record) in plain.problem.blocks().zip(&plain.record.blocks) {
             let y = &response.residual()[block.rows()];
             if block.d[0] <= 0.0 || is_idle(&block, y) {
@@ -60,16 +64,21 @@ impl Blocks {
                     let Some(slopes) = slopes else {
                         return false;
                     };
-                    (self.contacts).subtract(step, &block, contact, force, &slopes, gradient);
+                    forces.set_slopes(&block, &slopes.by_residual);
+                    let slopes = (force, &slopes, &mut *forces);
+                    (self.contacts).subtract(step, &block, contact, slopes, gradient);
                 }
                 Kind::Frames => {
-                    (self.frames).subtract((step, inverse), &block, source, (y, force), gradient);
+                    let forces = (y, force, &mut *forces);
+                    (self.frames).subtract((step, inverse), &block, source, forces, gradient);
                 }
                 Kind::Row => {
                     let Some(slopes) = Slopes::new(step, &block, (source, None), y) else {
                         return false;
                     };
-                    (self.rows).subtract(step, &block, source, (force[0], &slopes), gradient);
+                    forces.set_slopes(&block, &slopes.by_residual);
+                    let slopes = (force[0], &slopes, &mut *forces);
+                    (self.rows).subtract(step, &block, source, slopes, gradient);
                 }
             }
         }

@@ -10,6 +10,7 @@
 //!
 //! A dof that moves both bodies moves the contact with them, but for the tangents, which may follow the world's axes.
 
+use super::row_forces::RowForces;
 use super::slopes::Slopes;
 use super::step::Step;
 use clench_collide::{MovingPoint, Pose, moving_points};
@@ -89,12 +90,11 @@ impl Contacts {
         step: &Step<'_>,
         block: &Block<'_, f64>,
         contact: &Contact<f64>,
-        force: &[f64],
-        slopes: &Slopes,
+        forces: (&[f64], &Slopes, &mut RowForces),
         gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         let point = self.moving_point(step, contact);
-        self.find_arms(step, block, (contact, &point), force, slopes);
+        self.find_arms(step, block, (contact, &point), forces);
         let common = self.arms.len() - block.dofs.len();
         match gradient {
             ForceDerivatives::Product { factors, row } => {
@@ -185,8 +185,7 @@ impl Contacts {
         step: &Step<'_>,
         block: &Block<'_, f64>,
         (contact, point): (&Contact<f64>, &MovingPoint),
-        force: &[f64],
-        slopes: &Slopes,
+        (force, slopes, forces): (&[f64], &Slopes, &mut RowForces),
     ) {
         let (model, plain) = (step.model, step.plain);
         let bodies = contact.geoms.map(|geom| model.geoms[geom].body);
@@ -241,6 +240,8 @@ impl Contacts {
             }
             let by_position = slopes.force(block.dim, change.distance, &residual);
             let by_velocity = slopes.force(block.dim, 0.0, &rate);
+            forces.add(block, dof, &by_position);
+            forces.add(block, model.nv + dof, &by_velocity);
             let changed = change.wrench(force, wrench) + self::wrench(&axes, &by_position);
             self.arms.push(Arm {
                 dof,

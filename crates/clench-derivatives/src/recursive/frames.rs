@@ -11,9 +11,10 @@
 //! ```
 
 use super::pair::{Anchor, Pair, Rows};
+use super::row_forces::RowForces;
 use super::step::Step;
 use clench_dynamics::constraint::AnchorFrames;
-use clench_dynamics::constraint::at_distance::equality_softness;
+use clench_dynamics::constraint::at_distance::{MAX_DIM, equality_softness};
 use clench_dynamics::dynamics::chains::{Chains, Side};
 use clench_dynamics::dynamics::force_derivatives::ForceDerivatives;
 use clench_dynamics::dynamics::inverse_derivatives::{InverseDerivatives, first_turning};
@@ -49,7 +50,7 @@ impl Frames {
         (step, inverse): (&Step<'_>, &InverseDerivatives<f64>),
         block: &Block<'_, f64>,
         source: ConstraintSource,
-        (y, force): (&[f64], &[f64]),
+        (y, force, forces): (&[f64], &[f64], &mut RowForces),
         gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         let Some((frames, weld)) = frames(step, source) else {
@@ -59,6 +60,7 @@ impl Frames {
         let Some(spring) = Spring::new(step, source, &pair, (block.dim, y)) else {
             return;
         };
+        forces.set_slopes(block, &spring.slopes());
         let force = parts(force);
         let wrench = pair.wrench(force);
         let bodies = [wrench, -wrench];
@@ -77,6 +79,11 @@ impl Frames {
                 };
                 let changes = [change(0), change(1)];
                 let force_change = spring.force(&pair.change(&changes));
+                let column = match by_position {
+                    true => dof,
+                    false => step.model.nv + dof,
+                };
+                forces.add(block, column, &force_change.map(Vec3::to_array).concat());
                 let change = pair.wrench_change(force, force_change, &changes);
                 [change, -change]
             });
@@ -195,6 +202,15 @@ impl Spring {
             d: d.map(|d| d.value),
             by_norm: [by_norm(0), by_norm(1)],
         })
+    }
+
+    /// Returns the derivatives of the force of each row by the accelerations of the rows.
+    fn slopes(&self) -> [[f64; MAX_DIM]; MAX_DIM] {
+        let mut slopes = [[0.0; MAX_DIM]; MAX_DIM];
+        for (k, row) in slopes.iter_mut().enumerate() {
+            row[k] = -self.d[k / 3];
+        }
+        slopes
     }
 
     /// Returns the change of the force with those of the rows.

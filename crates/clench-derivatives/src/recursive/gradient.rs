@@ -14,7 +14,7 @@ pub(super) struct Gradient {
     pub inverse: InverseDerivatives<f64>,
     pub local: Local,
     weight: Weight,
-    blocks: Blocks,
+    pub blocks: Blocks,
     response: Response<f64>,
     /// The derivatives: nv rows of `width` numbers, by positions, velocities, activations and controls, then zeros.
     pub columns: Vec<f64>,
@@ -34,6 +34,13 @@ impl Gradient {
             // Rows fill whole registers.
             width: columns.max(1).next_multiple_of(16),
         }
+    }
+
+    /// Selects whether the derivatives of constraint forces are wanted.
+    pub(super) fn select_forces(&mut self, wanted: bool) {
+        self.blocks
+            .forces
+            .set_width(if wanted { self.width } else { 0 });
     }
 
     /// Computes the derivatives, and factors the Hessian. Returns false if recursions do not cover the contacts.

@@ -23,6 +23,7 @@ mod implicit;
 mod local;
 mod pair;
 mod pull_back;
+mod row_forces;
 mod rows;
 mod runge_kutta;
 mod scope;
@@ -40,6 +41,7 @@ use clench_rigid::SimError;
 pub(crate) use curves::Curves;
 use gradient::Gradient;
 use implicit::is_implicit;
+use row_forces::RowForces;
 use runge_kutta::RungeKutta;
 use step::Step;
 
@@ -52,8 +54,8 @@ pub(crate) struct Recursive {
     advance: Advance,
     runge_kutta: RungeKutta,
     curves: Curves,
-    /// The acceleration at the start of the step (nv), and its derivatives by state and controls, nv rows; only with
-    /// sensors.
+    /// The acceleration at the start of the step (nv), and its derivatives by state and controls, nv rows; only if y
+    /// is not empty.
     pub(crate) qacc: Vec<f64>,
     acceleration: Vec<f64>,
 }
@@ -79,6 +81,11 @@ impl Recursive {
     /// Returns the derivatives of the acceleration of a dof by state and controls, at the start of the step.
     pub(crate) fn acceleration(&self, dof: usize) -> &[f64] {
         &self.acceleration[dof * self.gradient.width..][..self.gradient.width]
+    }
+
+    /// Returns the derivatives of the forces of constraints at the start of the step, if y reads them.
+    pub(crate) fn row_forces(&self) -> &RowForces {
+        &self.gradient.blocks.forces
     }
 
     pub(crate) fn set_params(&mut self, params: &Params<f64>) {
@@ -145,6 +152,9 @@ impl Recursive {
         find_curves(source.state, &mut self.curves);
         let model = source.model;
         let step = Step::new(source, source.state, &self.plain, &self.curves);
+        let reads = source.request.reads(model);
+        self.gradient
+            .select_forces(reads.is_some_and(|reads| reads.forces));
         if !self.gradient.find(&step) {
             return Ok(false);
         }
@@ -152,9 +162,10 @@ impl Recursive {
         let mut columns = std::mem::take(&mut self.gradient.columns);
         self.gradient.solve(&mut columns);
         let width = self.gradient.width;
-        if source.request.sensors_len(model) > 0 {
+        if source.request.y_len(model) > 0 {
             self.qacc.clone_from(&step.plain.qacc);
             self.acceleration.clone_from(&columns);
+            (self.gradient.blocks.forces).complete(&step.plain.problem, &columns);
         }
         if is_implicit(&step) {
             let Gradient { inverse, local, .. } = &mut self.gradient;
@@ -206,7 +217,7 @@ impl Recursive {
         if !covered {
             return Ok(false);
         }
-        if source.request.sensors_len(model) > 0 {
+        if source.request.y_len(model) > 0 {
             qacc.clone_from(&plain.qacc);
             acceleration.clear();
             acceleration.extend_from_slice(runge_kutta.accelerations(model.nv));

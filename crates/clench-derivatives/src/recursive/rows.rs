@@ -1,6 +1,7 @@
 //! The derivatives of the forces of single rows: limits, dry friction and equalities of joints and tendons.
 
 use super::coordinate::{AlongForce, Coordinate};
+use super::row_forces::RowForces;
 use super::slopes::Slopes;
 use super::step::Step;
 use clench_dynamics::constraint::equality_rates;
@@ -24,7 +25,7 @@ impl Rows {
         step: &Step<'_>,
         block: &Block<'_, f64>,
         source: ConstraintSource,
-        (force, slopes): (f64, &Slopes),
+        (force, slopes, forces): (f64, &Slopes, &mut RowForces),
         gradient: &mut ForceDerivatives<'_, f64>,
     ) {
         self.find_rates(step, block, source);
@@ -42,6 +43,11 @@ impl Rows {
         };
         let (qacc, qvel) = (&step.plain.qacc, &step.before.qvel);
         let moving = |dof: usize| by_residual * (qacc[dof] + damping * qvel[dof]);
+        for (k, (dof, arm)) in row.iter().enumerate() {
+            let change = force.by_length * arm + row.change(k, moving);
+            forces.add(block, dof, &[change]);
+            forces.add(block, step.model.nv + dof, &[force.by_velocity * arm]);
+        }
         row.subtract((step.model.nv, gradient), force, moving, |_| 1.0);
     }
 

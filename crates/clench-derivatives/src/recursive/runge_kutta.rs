@@ -12,6 +12,7 @@
 
 use super::advance::{Advance, rotation};
 use super::gradient::Gradient;
+use super::row_forces::add_row;
 use super::step::Step;
 use clench_dynamics::dynamics::integration::Integration;
 use clench_dynamics::dynamics::rk4::{WEIGHTS, increment_rate};
@@ -188,14 +189,5 @@ impl RungeKutta {
 fn add_identity(matrix: &mut [f64], width: usize, column: usize) {
     for (i, row) in matrix.chunks_exact_mut(width).enumerate() {
         row[column + i] += 1.0;
-    }
-}
-
-/// Computes `sum += factor · row`.
-#[inline(always)]
-fn add_row(sum: &mut [f64], factor: f64, row: &[f64]) {
-    // Dofs of different branches do not affect each other.
-    if factor != 0.0 {
-        sum.iter_mut().zip(row).for_each(|(x, &y)| *x += factor * y);
     }
 }

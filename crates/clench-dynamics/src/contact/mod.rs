@@ -65,21 +65,27 @@ pub struct Contact<T: Real> {
 impl<T: Real> Contact<T> {
     /// Copies the contact of one environment to every lane.
     pub fn splat(contact: &Contact<T::Scalar>) -> Self {
-        let [x, y, z] = contact.frame.rows.map(Vec3::splat);
+        Self::convert(contact, T::splat)
+    }
+
+    /// Converts the numbers of the contact of one environment.
+    pub fn convert<S: Real<Mask = bool>>(contact: &Contact<S>, number: impl Fn(S) -> T) -> Self {
+        let vector = |v: Vec3<S>| Vec3::from_array(v.to_array().map(&number));
+        let [x, y, z] = contact.frame.rows.map(vector);
         Contact {
             geoms: contact.geoms,
             active: T::Mask::splat(contact.active),
             dim: contact.dim,
-            dist: T::splat(contact.dist),
-            pos: Vec3::splat(contact.pos),
+            dist: number(contact.dist),
+            pos: vector(contact.pos),
             frame: Mat3::from_rows(x, y, z),
-            includemargin: T::splat(contact.includemargin),
-            friction: contact.friction.map(T::splat),
-            solref: contact.solref.map(T::splat),
-            solreffriction: contact.solreffriction.map(T::splat),
-            solimp: contact.solimp.map(T::splat),
-            adhesion: T::splat(contact.adhesion),
-            surfacevel: contact.surfacevel.map(T::splat),
+            includemargin: number(contact.includemargin),
+            friction: contact.friction.map(&number),
+            solref: contact.solref.map(&number),
+            solreffriction: contact.solreffriction.map(&number),
+            solimp: contact.solimp.map(&number),
+            adhesion: number(contact.adhesion),
+            surfacevel: contact.surfacevel.map(&number),
             block: contact.block,
         }
     }

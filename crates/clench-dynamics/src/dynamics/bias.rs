@@ -11,7 +11,7 @@ use clench_math::{Force, Motion, Real, Vec3, kernel};
 
 /// Computes `qfrc_bias` of some parts, on the left side of the equation of motion.
 #[kernel]
-pub(crate) fn bias_forces<T: Real>(
+pub fn bias_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     parts: &[Part],

@@ -19,7 +19,7 @@ use clench_math::{Force, Mask, Real, Vec3, kernel};
 /// of some parts, which include all dofs of tendons. Gravity compensation of joints with `actgravcomp` belongs to the
 /// actuators. As in MuJoCo, disabling springs and dampers disables all passive forces.
 #[kernel]
-pub(crate) fn passive_forces<T: Real>(
+pub fn passive_forces<T: Real>(
     model: &Model,
     params: &Params<T>,
     parts: &[Part],

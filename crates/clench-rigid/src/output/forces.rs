@@ -50,14 +50,18 @@ pub(crate) fn external_forces<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     }
     let mut add = |body: usize, sign: T, wrench: &Wrench<T>| {
         if body != 0 {
-            let force = wrench.about(com(body)) * sign;
-            accumulate(&mut out[start + 6 * body..], force.to_array());
+            add_wrench(&mut out[start + 6 * body..], wrench, com(body), sign);
         }
     };
-    each_contact(s, |bodies, wrench| {
-        add(bodies[0], -T::ONE, &wrench);
-        add(bodies[1], T::ONE, &wrench);
-    });
+    each_contact(
+        s,
+        #[inline(always)]
+        |bodies, wrench| {
+            for (body, sign) in [(bodies[0], -T::ONE), (bodies[1], T::ONE)] {
+                add(body, sign, &wrench);
+            }
+        },
+    );
     each_joint_of_bodies(s, |_, bodies, wrenches| {
         add(bodies[0], T::ONE, &wrenches[0]);
         add(bodies[1], -T::ONE, &wrenches[1]);
@@ -89,6 +93,14 @@ pub(super) fn of_contacts<T: Real>(s: &Source<T>, out: &mut Vec<T>) {
     });
 }
 
+/// Adds the torque and force of a wrench about `origin`, times a sign.
+#[kernel]
+fn add_wrench<T: Real>(out: &mut [T], wrench: &Wrench<T>, origin: Vec3<T>, sign: T) {
+    let force = wrench.about(origin) * sign;
+    accumulate(out, force.to_array());
+}
+
+#[inline(always)]
 fn accumulate<T: Real, const N: usize>(row: &mut [T], values: [T; N]) {
     for (sum, value) in row.iter_mut().zip(values) {
         *sum += value;
@@ -96,6 +108,7 @@ fn accumulate<T: Real, const N: usize>(row: &mut [T], values: [T; N]) {
 }
 
 /// Returns the forces of a block's rows, zero in the lanes that do not have it.
+#[kernel]
 fn rows<T: Real>(ws: &Workspace<T>, block: usize) -> [T; 6] {
     let active = ws.record.blocks[block].active;
     let mut forces = [T::ZERO; 6];
@@ -124,10 +137,9 @@ fn each_contact<T: Real>(s: &Source<T>, mut show: impl FnMut([usize; 2], Wrench<
         let Some([n, t1, t2, spin, roll1, roll2]) = of_contact(s.ws, contact) else {
             continue;
         };
-        let world = |v: Vec3<T>| contact.frame.transpose_mul(v);
         let wrench = Wrench {
-            force: world(Vec3::new(n, t1, t2)),
-            couple: world(Vec3::new(spin, roll1, roll2)),
+            force: contact.frame.transpose_mul(Vec3::new(n, t1, t2)),
+            couple: contact.frame.transpose_mul(Vec3::new(spin, roll1, roll2)),
             at: contact.pos,
         };
         show(contact.geoms.map(|g| s.model.geoms[g].body), wrench);

@@ -168,6 +168,12 @@ impl Output {
         self.shape(model).iter().product()
     }
 
+    /// Returns true if its numbers depend on positions alone.
+    #[doc(hidden)]
+    pub fn follows_from_positions(self) -> bool {
+        self.requires() == Computed::Positions
+    }
+
     /// Returns true for a part of the state.
     pub(crate) fn is_state(self) -> bool {
         matches!(

@@ -12,26 +12,13 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Force, Motion, Real, Vec3, kernel};
 
-/// Computes body accelerations and joint forces from the last forward pass.
+/// Computes body accelerations from the last forward pass. The bias accelerations contain gravity and all velocity
+/// terms; the joint accelerations are added to them.
 #[kernel]
-pub(crate) fn update<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
-    let mut bodies = std::mem::take(&mut ws.sensors.bodies);
+pub(super) fn update_accelerations<T: Real>(model: &Model, ws: &mut Workspace<T>) {
+    let bodies = &mut ws.sensors.bodies;
     bodies.allocate(model.nbody());
-    let source = Source {
-        model,
-        params,
-        state,
-        ws,
-    };
-    external_forces(&source, &mut bodies.external);
-    // The bias accelerations contain gravity and all velocity terms; the joint accelerations are added to them.
     bodies.cacc[0] = Motion::ZERO;
-    bodies.cfrc_int[0] = Force::ZERO;
     for (b, body) in model.bodies.iter().enumerate().skip(1) {
         let mut cacc = bodies.cacc[body.parent];
         for i in body.dofs.clone() {
@@ -42,6 +29,26 @@ pub(crate) fn update<T: Real>(
     for b in 0..model.nbody() {
         bodies.cacc[b] += ws.force.cacc[b];
     }
+}
+
+/// Computes body accelerations and joint forces from the last forward pass.
+#[kernel]
+pub(crate) fn update<T: Real>(
+    model: &Model,
+    params: &Params<T>,
+    state: &State<T>,
+    ws: &mut Workspace<T>,
+) {
+    update_accelerations(model, ws);
+    let mut bodies = std::mem::take(&mut ws.sensors.bodies);
+    let source = Source {
+        model,
+        params,
+        state,
+        ws,
+    };
+    external_forces(&source, &mut bodies.external);
+    bodies.cfrc_int[0] = Force::ZERO;
     for b in 1..model.nbody() {
         let cacc = bodies.cacc[b];
         let (inertia, cvel) = (ws.position.cinert[b], ws.velocity.cvel[b]);

@@ -36,9 +36,11 @@ pub fn evaluate<T: Real>(
         return;
     }
     let mut data = std::mem::take(&mut ws.sensors.data);
-    let needs_bodies = |sensor: &Sensor| sensor.kind.needs_body_forces();
-    if model.sensors.iter().any(needs_bodies) {
+    let sensed = |reads: fn(SensorKind) -> bool| model.sensors.iter().any(|s| reads(s.kind));
+    if sensed(|kind| matches!(kind, SensorKind::Force | SensorKind::Torque)) {
         bodies::update(model, params, state, ws);
+    } else if sensed(SensorKind::needs_body_forces) {
+        bodies::update_accelerations(model, ws);
     }
     let source = Reading {
         model,

@@ -6,7 +6,7 @@ use clench_math::Vec3;
 use clench_rigid::options::RigidOptions;
 
 /// Connects and welds between bodies of one tree, of two trees, and of a tree and the world.
-fn tied(integrator: &str) -> String {
+pub(super) fn tied(integrator: &str) -> String {
     format!(
         r#"<mujoco>
           <option integrator="{integrator}" timestep="0.004"/>

@@ -4,7 +4,7 @@ use super::check_text;
 
 /// Fixed tendons with springs, dampers, inertia, friction and limits, with actuators, on branches of a tree, and
 /// equalities that make joints and tendons follow others by curves.
-fn fingers(integrator: &str) -> String {
+pub(super) fn fingers(integrator: &str) -> String {
     let finger = |name: &str, y: f64| {
         format!(
             r#"<body pos=".1 {y} 0">

@@ -1,7 +1,8 @@
-//! Compares derivatives by recursion with those of passes in dual numbers, which a requested output needs.
+//! Compares derivatives by recursion with those of passes in dual numbers, which bounds of errors need.
 
 mod bodies;
 mod coordinates;
+mod sensors;
 
 use crate::common::{Random, load};
 use clench_derivatives::{
@@ -47,9 +48,13 @@ struct Seen {
 fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
     let mut linearizer = Linearizer::new(sim.model()).expect("lanes of this processor");
     let mut random = Random(1);
-    let with_output = Request {
+    let request = Request {
         outputs: vec![Output::find("subtree_com").expect("an output")],
         ..Request::default()
+    };
+    let with_passes = Request {
+        errors: true,
+        ..request.clone()
     };
     let mut seen = Seen::default();
     for step in 0..steps {
@@ -67,14 +72,14 @@ fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
             }
         }
         if step % 5 == 0 {
-            let recursive = linearizer.linearize(sim, &Request::default());
+            let recursive = linearizer.linearize(sim, &request);
             let recursive = recursive.expect("derivatives").clone();
-            let passes = linearizer.linearize(sim, &with_output);
+            let passes = linearizer.linearize(sim, &with_passes);
             let passes = passes.expect("derivatives");
             compare(&recursive.a, &passes.a);
             compare(&recursive.b, &passes.b);
-            compare_sensors(&recursive.c, &passes.c);
-            compare_sensors(&recursive.d, &passes.d);
+            compare(&recursive.c, &passes.c);
+            compare(&recursive.d, &passes.d);
             seen.recursed |= recursive.a != passes.a;
             assert_eq!(recursive.switching.len(), passes.switching.len());
             let [a, b] = [passes.a.clone(), passes.b.clone()];
@@ -83,14 +88,6 @@ fn check_sim(sim: &mut Sim<f64>, steps: usize) -> Seen {
         }
     }
     seen
-}
-
-/// Compares the derivatives of sensors, which precede those of outputs.
-fn compare_sensors(recursive: &Matrix, passes: &Matrix) {
-    let mut passes = passes.clone();
-    passes.shape[0] = recursive.shape[0];
-    passes.values.truncate(recursive.values.len());
-    compare(recursive, &passes);
 }
 
 /// Compares the gradients of two functions of the next state with products of its derivatives by state and controls.
@@ -143,7 +140,7 @@ fn compare_parameters(linearizer: &mut Linearizer, sim: &Sim<f64>) {
     };
     let apart = linearizer.linearize(sim, &request);
     let apart = apart.expect("derivatives").clone();
-    request.outputs = vec![Output::find("subtree_com").expect("an output")];
+    request.errors = true;
     let together = linearizer.linearize(sim, &request).expect("derivatives");
     compare(&apart.a, &together.a);
     compare(&apart.e, &together.e);
@@ -239,13 +236,6 @@ fn check_text(text: &str, forces: &[&str], prepare: impl Fn(&mut Sim<f64>)) {
 #[test]
 fn other_steps_need_passes() {
     let free = r#"<joint type="free"/>"#;
-    // The site of a force sensor.
-    let sensed = coordinates::curved("Euler").replace(
-        "</actuator>",
-        r#"</actuator><sensor><accelerometer site="a1"/><force site="a1"/></sensor>"#,
-    );
-    let sensed = clench_formats::load_str(&sensed).expect("a model");
-    check(sensed, RigidOptions::new(), 20);
     for integrator in ["implicit", "discrete"] {
         let model = clench_formats::load_str(&mixed(integrator, free)).expect("a model");
         check(model, RigidOptions::new(), 20);
