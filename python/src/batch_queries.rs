@@ -75,6 +75,13 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     (n, 2, 3, nv): translation, then rotation, in world axes; NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, the model does not have its name, or `point` has another shape.
+    /// IndexError
+    ///     If an index is negative or too large.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian<'py>(
@@ -102,6 +109,11 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     (n, 2, 3, nv): of the translational part, then of the rotational part; NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError, IndexError
+    ///     As for `jacobian`.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, point = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn jacobian_rate<'py>(
@@ -129,6 +141,13 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     (n, 3, nv), in world axes; NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have the name.
+    /// IndexError
+    ///     If the index is negative or too large.
     fn subtree_jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -156,6 +175,13 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     (n, 2, 3): linear, m/s, of its position, then angular, rad/s; NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, or the model does not have its name.
+    /// IndexError
+    ///     If an index is negative or too large.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn velocity<'py>(
@@ -191,6 +217,13 @@ impl Batch {
     /// numpy.ndarray
     ///     (n, 2, 3): linear, m/s², of its position, then angular, rad/s²; NaN where a single `Sim` would raise
     ///     SimulationError.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If not exactly one object is chosen, or the model does not have its name.
+    /// IndexError
+    ///     If an index is negative or too large.
     #[pyo3(signature = (*, body = None, body_com = None, geom = None, site = None, camera = None, local = false))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn acceleration<'py>(
@@ -222,6 +255,11 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     The forces along dofs that cause them (n, nv), N and N m; NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If `x` has another shape or is not finite.
     fn mul_mass<'py>(&self, py: Python<'py>, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.described().nv;
         let mut guard = lock(self.inner(), "batch")?;
@@ -243,6 +281,11 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     The accelerations that they cause (n, nv); NaN where a state is not finite or a mass matrix is singular.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If `x` has another shape or is not finite.
     fn solve_mass<'py>(
         &self,
         py: Python<'py>,
@@ -277,6 +320,13 @@ impl Batch {
     /// -------
     /// RayHits
     ///     One hit for each ray, with the environments as first axis. Distances are NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have a name, or an array has another shape or is not finite.
+    /// IndexError
+    ///     If an index or a group is out of range.
     #[pyo3(signature = (origins, directions, *, body = None, body_com = None, geom = None, site = None, camera = None,
                         groups = None, fixed = true, exclude_body = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
@@ -322,6 +372,14 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     Heights in the world (n, k), m; NaN where a state is not finite.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the geom is no height field, the model does not have a name, or `places` has another shape or is not
+    ///     finite.
+    /// IndexError
+    ///     If an index is negative or too large.
     #[pyo3(signature = (hfield, places, *, body = None, body_com = None, geom = None, site = None, camera = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn heights<'py>(
@@ -360,6 +418,11 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     Forces along dofs (n, nv), N and N m; NaN where a single `Sim` would raise SimulationError.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a shape is wrong, a number is not finite, or `discrete` is used with the Runge-Kutta integrator.
     #[pyo3(signature = (qacc, *, discrete = None))]
     fn inverse<'py>(
         &self,

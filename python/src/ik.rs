@@ -279,6 +279,11 @@ impl Batch {
     /// -------
     /// IkResult
     ///     The results, with the environments as first axis.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have an object, a shape is wrong, or a number is not finite.
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
                         max_step = None, limits = true, dofs = None, restarts = Count(0)),
            text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]

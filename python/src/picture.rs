@@ -177,6 +177,13 @@ impl Batch {
     /// numpy.ndarray
     ///     As for `Sim.render`, with an axis of environments in front unless `env` is an int. With several cameras the
     ///     next axis is theirs: (n, cameras, height, width, 3).
+    ///
+    /// Raises
+    /// ------
+    /// ClenchError, TypeError, ValueError
+    ///     As for `Sim.render`.
+    /// IndexError
+    ///     If an index of an environment is out of range.
     #[pyo3(signature = (env = None, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None,
                         out = None, device = None, appearance = None))]
     #[allow(clippy::too_many_arguments)] // They are keywords.

@@ -1,17 +1,17 @@
 //! Live arrays of a state.
 
-use crate::arrays::shape_text;
+use crate::arrays::{as_array, shape_text};
 use crate::view::{Keeper, view};
 use clench::Precision;
 use clench::rigid::batch::{Rows, StateRows};
 use clench::rigid::state::Size;
 use clench::rigid::state::kind::{self, Kind};
-use numpy::Element;
+use numpy::{Element, PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
 /// The description of a state field for Python.
 pub(crate) struct StateField {
@@ -257,9 +257,20 @@ fn state_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     STATE.import(py, "clench._state", "State")
 }
 
-/// Copies values into an array as NumPy does, but only between dtypes of the same kind.
+/// Copies values into an array as NumPy does, but only between dtypes of the same kind, and from integers to booleans:
+/// MuJoCo's `eq_active` holds integers.
 fn copy_to(array: &Bound<'_, PyAny>, values: &Bound<'_, PyAny>) -> PyResult<()> {
     static COPYTO: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let copyto = COPYTO.import(array.py(), "numpy", "copyto")?;
-    copyto.call1((array, values)).map(|_| ())
+    let py = array.py();
+    let copyto = COPYTO.import(py, "numpy", "copyto")?;
+    let copied = copyto.call1((array, values));
+    let kind = |array: &Bound<'_, PyUntypedArray>| array.dtype().kind();
+    if copied.is_err()
+        && array.cast().is_ok_and(|to| kind(to) == b'b')
+        && matches!(kind(&as_array(values)?), b'i' | b'u')
+    {
+        let unsafely = [("casting", "unsafe")].into_py_dict(py)?;
+        return copyto.call((array, values), Some(&unsafely)).map(|_| ());
+    }
+    copied.map(|_| ())
 }

@@ -139,12 +139,14 @@ def test_assignments_that_make_no_sense(name: str, values: Any, error: type[Exce
     assert same_state(sim.state, before)
 
 
-def test_switches_take_nothing_but_booleans() -> None:
+def test_switches_take_nothing_but_booleans_and_integers() -> None:
     sim = clench.Sim(puppet())
     with pytest.raises(TypeError):
         sim.eq_active = [0.5, 0.5]
     sim.eq_active = [False, True]
     np.testing.assert_array_equal(sim.eq_active, [False, True])
+    sim.eq_active = np.array([1, 0], np.uint8)
+    np.testing.assert_array_equal(sim.eq_active, [True, False])
 
 
 @pytest.mark.parametrize("name", ["qpos", "time", "model", "contacts", "xpos", "solver_stats", "nonsense"])

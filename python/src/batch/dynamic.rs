@@ -80,6 +80,11 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     The constraint in each of these environments, in their order, as codes for `remove`, int64.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     As for `Sim.add_connect`. The states do not change then.
     #[pyo3(signature = (body1, body2, anchor, envs = None))]
     fn add_connect<'py>(
         &self,
@@ -138,6 +143,11 @@ impl Batch {
     ///     The equality, by name or index.
     /// envs : array_like of int, optional
     ///     Indices of environments; by default all.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the equality is of another kind.
     #[pyo3(signature = (which, envs = None))]
     fn weld_here(&self, which: &Bound<'_, PyAny>, envs: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let equality = Kind::Equality.find(self.model.get().inner(), which)?;

@@ -197,6 +197,11 @@ impl Batch {
     /// -------
     /// Sim
     ///     A separate simulation: no memory is shared.
+    ///
+    /// Raises
+    /// ------
+    /// IndexError
+    ///     If there is no such environment.
     fn sim<'py>(&self, py: Python<'py>, env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Sim>> {
         let env = self.env(env)?;
         let guard = lock(&self.inner, "batch")?;

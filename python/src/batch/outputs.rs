@@ -26,6 +26,11 @@ impl Batch {
     /// ----------
     /// *names : str
     ///     Names of outputs, see `clench.OUTPUTS`.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If no output has a name.
     #[pyo3(signature = (*names))]
     fn record(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
         self.record_outputs(py, &names)

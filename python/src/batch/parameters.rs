@@ -102,6 +102,11 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     A copy: the field's shape in the model after an axis of environments.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If no parameter has the name.
     fn param<'py>(&self, py: Python<'py>, field: &str) -> PyResult<Bound<'py, PyAny>> {
         let shape = self.model.get().param_shape(field)?;
         let guard = lock(&self.inner, "batch")?;

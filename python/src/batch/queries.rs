@@ -145,6 +145,11 @@ impl Batch {
     ///     From the origin, in lengths of the direction (n), float64; infinite if nothing is hit.
     /// geom : numpy.ndarray
     ///     The geoms (n), int64; -1 if nothing is hit.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError, IndexError
+    ///     As for `Sim.ray`.
     #[pyo3(signature = (origin, direction, *, groups = None, fixed = true, exclude_body = None))]
     #[allow(clippy::type_complexity)] // Two arrays.
     fn ray<'py>(
@@ -200,6 +205,13 @@ impl Batch {
     /// numpy.ndarray
     ///     Signed distances (n), m, float64; infinite beyond the limit, if the distance is not defined, as for two
     ///     planes, and in environments whose model has not both geoms.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have a name.
+    /// IndexError
+    ///     If an index is negative or too large.
     #[pyo3(signature = (geom1, geom2, limit = None))]
     fn distance<'py>(
         &self,
@@ -238,6 +250,13 @@ impl Batch {
     ///     The equality, by name or index.
     /// active : bool or array_like of bool
     ///     True to make it active, for all or each (n) environment. `eq_active` shows all switches.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the model does not have the name, or `active` has another shape.
+    /// IndexError
+    ///     If the index is negative or too large.
     fn set_equality(
         this: &Bound<'_, Self>,
         which: &Bound<'_, PyAny>,

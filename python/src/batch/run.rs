@@ -68,6 +68,11 @@ impl Batch {
     /// -------
     /// int
     ///     Number of environments that failed in this call.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the mask has another shape.
     #[pyo3(signature = (mask = None))]
     fn forward(&self, py: Python<'_>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
         let chosen = self.mask(mask)?;
@@ -145,6 +150,11 @@ impl Batch {
     /// ----------
     /// mask : array_like of bool, optional
     ///     Mask of environments (n); by default all.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the mask has another shape.
     #[pyo3(signature = (mask = None))]
     fn revive(&self, mask: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let chosen = self.mask(mask)?;

@@ -46,6 +46,11 @@ impl Batch {
     /// -------
     /// str or None
     ///     None if it runs.
+    ///
+    /// Raises
+    /// ------
+    /// IndexError
+    ///     If there is no such environment.
     fn fault(&self, env: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
         let env = self.env(env)?;
         let guard = lock(&self.inner, "batch")?;
