@@ -149,6 +149,22 @@ def test_derivatives_are_those_of_the_state_on_the_device() -> None:
         np.testing.assert_array_equal(found, expected)
 
 
+def test_external_forces_include_the_inertia_of_tendons() -> None:
+    model = clench.Model.from_xml(
+        """<mujoco><worldbody>
+             <body pos="0 0 1"><joint type="ball"/><geom size=".1" pos=".1 0 0"/><site name="s" pos=".2 0 0"/></body>
+             <site name="t" pos="0.8 .1 1"/>
+           </worldbody>
+           <tendon><spatial armature="0.3"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
+    )
+    device, sim = clench.Batch(model, 1, "64", device="gpu", record=["cfrc_ext"]), clench.Sim(model)
+    device.qvel[:] = sim.qvel[:] = [0.1, 0.5, 0.2]
+    device.step()
+    sim.forward()
+    assert np.abs(sim.cfrc_ext).max() > 1e-3
+    np.testing.assert_allclose(device.cfrc_ext[0], sim.cfrc_ext, rtol=0, atol=1e-9)
+
+
 def test_environments_train_on_a_device() -> None:
     class Stand(BatchEnv):
         model = example("humanoid")

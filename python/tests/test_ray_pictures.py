@@ -32,6 +32,8 @@ SHAPES = """<mujoco>
     <camera name="above" pos="0 0 3" fovy="3" projection="orthographic"/>
     <camera name="near" pos="-0.7 -0.8 0.32" xyaxes="1 0 0 0 0 1" fovy="110"/>
     <camera name="below" pos="0.1 0 -1.5" xyaxes="1 0 0 0 -1 0" fovy="60"/>
+    <camera name="sensor" pos="2.5 -2 1.2" xyaxes="0.6 0.8 0 -0.25 0.19 0.95" resolution="30 20" sensorsize="0.03 0.02"
+            focal="0.02 0.01" principal="0.003 -0.002"/>
   </worldbody>
 </mujoco>"""
 
@@ -49,6 +51,10 @@ def by_single_rays(sim: clench.Sim, camera: str, width: int, height: int) -> tup
     half = fovy / 2 if parallel else np.tan(np.radians(fovy) / 2)
     x = half * (2 * np.arange(width) + 1 - width) / height
     y = half * (height - 1 - 2 * np.arange(height)) / height
+    if camera == "sensor":
+        # The sensor is 1.5 x 2 at distance 1, and its middle is aside of the optical axis, as MuJoCo draws it.
+        x = 0.15 + 0.75 * (2 * np.arange(width) + 1 - width) / width
+        y = y + 0.2
     grid = np.stack(np.broadcast_arrays(x[None, :], y[:, None], 0), -1).reshape(-1, 3)
     ahead = np.array([[0.0, 0.0, -1.0]])
     origins, directions = (grid, ahead) if parallel else (np.zeros((1, 3)), grid + ahead)
@@ -56,14 +62,14 @@ def by_single_rays(sim: clench.Sim, camera: str, width: int, height: int) -> tup
     return hits.geom.reshape(height, width), hits.distance.reshape(height, width)
 
 
-@pytest.mark.parametrize("camera", ["side", "above", "near"])
+@pytest.mark.parametrize("camera", ["side", "above", "near", "sensor"])
 def test_pixels_are_the_hits_of_rays(camera: str) -> None:
     sim = clench.Sim(clench.Model.from_xml(SHAPES))
     # A width that fills no register.
     geoms, depth = by_single_rays(sim, camera, 123, 90)
     drawn = sim.render(123, 90, camera=camera, kind="geom", device="cpu")
     # A camera in a ball sees its inside only.
-    assert drawn.dtype == np.int32 and len(np.unique(drawn)) == {"side": 9, "above": 8, "near": 1}[camera]
+    assert drawn.dtype == np.int32 and len(np.unique(drawn)) == {"side": 9, "above": 8, "near": 1, "sensor": 9}[camera]
     # Cameras are in single precision, so that a ray at an edge may miss.
     same = drawn == geoms
     assert same.mean() > 0.998
@@ -91,7 +97,7 @@ def assert_alike(sim: clench.Sim, camera: str | int | clench.FreeCamera | None, 
 
 
 @pytest.mark.skipif(not has_device(), reason="no graphics device draws here")
-@pytest.mark.parametrize("camera", ["side", "above", "near", "below", None])
+@pytest.mark.parametrize("camera", ["side", "above", "near", "below", "sensor", None])
 def test_rays_see_what_a_device_draws(camera: str | None) -> None:
     assert_alike(clench.Sim(clench.Model.from_xml(SHAPES)), camera, 120, 0.004)
 
@@ -141,6 +147,20 @@ def test_geoms_have_their_present_sizes() -> None:
     seen = batch.render(None, 64, 64, camera=camera, kind="geom", device="cpu")
     areas = (batch.model.geom_bodyid[np.maximum(seen, 0)] == 1).sum((1, 2))
     assert 3 < areas[1] / areas[0] < 5
+
+
+@pytest.mark.skipif(not has_device(), reason="no graphics device draws here")
+def test_a_device_draws_the_present_sizes() -> None:
+    model = clench.Model.from_xml(SHAPES.replace('size="0 0 1"', 'size="3 2.5 1"'))
+    batch = clench.Batch(model, 2)
+    sizes = batch.param("geom_size")
+    stretched = [g for g in range(model.ngeom) if g not in (1, model.ngeom - 1)]  # the terrain and the mesh
+    sizes[1, stretched] *= [1.4, 0.7, 1.2]
+    batch.randomize("geom_size", sizes)
+    batch.set_constants()
+    seen = [batch.render(None, 120, 90, camera="side", kind="geom", device=by) for by in ("gpu", "cpu")]
+    assert (seen[0][0] != seen[0][1]).mean() > 0.05
+    assert (seen[0] != seen[1]).mean() < 0.004
 
 
 @pytest.mark.parametrize("kind", ["depth", "geom"])

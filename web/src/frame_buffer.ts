@@ -47,8 +47,8 @@ export class FrameBuffer {
     }
     const data = JSON.stringify({ scene: { ...this.scene, active: false }, frames: shown.map(({ bytes }) => letters(bytes)) });
     const page = new DOMParser().parseFromString(await reply.text(), "text/html");
-    // In HTML, any `</` could end a script.
-    page.getElementById("recording")!.textContent = data.replaceAll("</", "<\\/");
+    // In HTML, `</script` ends a script, and `<!--` followed by `<script` keeps the next `</script` from ending it.
+    page.getElementById("recording")!.textContent = data.replaceAll("<", "\\u003c");
     const text = `<!doctype html>\n${page.documentElement.outerHTML}`;
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([text], { type: "text/html" }));

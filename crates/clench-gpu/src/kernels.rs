@@ -89,7 +89,7 @@ kernels! {
     /// Gathers contacts.
     CONTACTS = "contacts", Team: "team", "near_pairs", "contacts";
     /// Computes smooth forces and the resulting acceleration.
-    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
+    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_acceleration", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
     /// Finds active constraints and their softness.
     CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "constraints";
@@ -103,7 +103,7 @@ kernels! {
     /// Computes camera poses, on request.
     CAMERAS = "cameras", Thread: "cameras";
     /// Computes accelerations of bodies, forces between them and the energy, on request.
-    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "tendon_forces", "wrap", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "tendon_forces", "wrap", "tendon_acceleration", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
     /// Traces the rays of sensors, on request.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// Reads sensors, on request.

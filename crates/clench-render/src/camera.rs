@@ -82,9 +82,40 @@ pub(crate) struct CameraPose {
     pub eye: [f32; 3],
     /// The unit vectors to the right, upwards and backwards.
     pub axes: [[f32; 3]; 3],
-    /// Half the height of the image at distance 1 or, for an orthographic camera, in metres.
-    pub half: f32,
+    pub lens: Lens,
     pub parallel: bool,
+}
+
+/// The part of the plane at distance 1 that an image shows; for an orthographic camera, in metres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens {
+    /// Half the height.
+    pub half: f32,
+    /// Half the width; none if pixels are square.
+    pub half_width: Option<f32>,
+    /// The centre, to the right and upwards of the viewing direction.
+    pub center: [f32; 2],
+}
+
+impl Lens {
+    /// Creates a lens of square pixels whose image is centred on the viewing direction.
+    pub(crate) fn central(half: f32) -> Self {
+        Lens {
+            half,
+            half_width: None,
+            center: [0.0; 2],
+        }
+    }
+
+    /// Creates the lens of a sensor's size, focal lengths and principal point. As in MuJoCo, the whole sensor fills the
+    /// image, whatever its aspect ratio.
+    fn of_sensor(size: [f64; 2], [fx, fy, px, py]: [f64; 4]) -> Self {
+        Lens {
+            half: (0.5 * size[1] / fy) as f32,
+            half_width: Some((0.5 * size[0] / fx) as f32),
+            center: [(px / fx) as f32, (-py / fy) as f32],
+        }
+    }
 }
 
 impl View {
@@ -104,12 +135,20 @@ impl View {
                 let number = |x: T| x.to_f64() as f32;
                 let rotation = rotation[9 * index..].iter().map(|&x| number(x));
                 let rotation: Vec<f32> = rotation.take(9).collect();
-                let parallel = sim.model().cameras[index].orthographic;
-                let fovy = sim.params().cam_fovy[index].lane(0).to_f64();
+                let camera = &sim.model().cameras[index];
+                let (parallel, params) = (camera.orthographic, sim.params());
+                let wide = |x: T::SingleEnv| x.lane(0).to_f64();
+                let lens = match camera.intrinsic && !parallel {
+                    true => Lens::of_sensor(
+                        params.cam_sensorsize[index].map(wide),
+                        params.cam_intrinsic[index].map(wide),
+                    ),
+                    false => Lens::central(half(wide(params.cam_fovy[index]), parallel)),
+                };
                 Ok(CameraPose {
                     eye: [0, 1, 2].map(|k| number(eye[3 * index + k])),
                     axes: [0, 1, 2].map(|k| [rotation[k], rotation[3 + k], rotation[6 + k]]),
-                    half: half(fovy, parallel),
+                    lens,
                     parallel,
                 })
             }
@@ -145,7 +184,7 @@ impl FreeCamera {
         CameraPose {
             eye: narrow([0, 1, 2].map(|k| self.lookat[k] - self.distance * ahead[k])),
             axes: [narrow(right), narrow(up), narrow(ahead.map(|x| -x))],
-            half: half(self.fovy, false),
+            lens: Lens::central(half(self.fovy, false)),
             parallel: false,
         }
     }
@@ -162,7 +201,7 @@ impl CameraPose {
     pub(crate) fn pixels(&self, distance: f32, height: u32) -> f32 {
         let distance = if self.parallel { 1.0 } else { distance };
         match distance > 0.0 {
-            true => height as f32 / (2.0 * self.half * distance),
+            true => height as f32 / (2.0 * self.lens.half * distance),
             false => f32::INFINITY,
         }
     }
@@ -185,9 +224,16 @@ impl CameraPose {
             }
             false => ([0.0, 0.0, 0.0, near], scaled(back, -1.0)),
         };
+        let Lens {
+            half,
+            half_width,
+            center,
+        } = self.lens;
+        // A point at the lens's centre times its distance is in the middle of the image.
+        let centred = |k: usize| [0, 1, 2, 3].map(|i| rows[k][i] - center[k] * w[i]);
         let all = [
-            scaled(rows[0], 1.0 / (self.half * aspect)),
-            scaled(rows[1], 1.0 / self.half),
+            scaled(centred(0), 1.0 / half_width.unwrap_or(half * aspect)),
+            scaled(centred(1), 1.0 / half),
             depth,
             w,
         ];

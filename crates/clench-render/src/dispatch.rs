@@ -3,7 +3,7 @@
 use crate::camera::CameraPose;
 use crate::canvas::Form;
 use crate::items::{self, Item, Surface};
-use crate::light::{Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
+use crate::light::{FAR, Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
 use crate::looks::Looks;
 use crate::scene::Scene;
 use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE, Sight};
@@ -96,6 +96,10 @@ impl Snapshot {
         }
         for (item, pose) in items.iter_mut().zip(items::poses(sim)?) {
             item.pose = pose;
+        }
+        let stretches = items::stretches(sim, FAR * scene.extent);
+        for (item, stretch) in items.iter_mut().zip(stretches) {
+            item.stretch = stretch;
         }
         let marks = scene.groups.len();
         let seen = |&k: &usize| groups.contains(&scene.groups[k]) && items[k].color[3] > 0.0;
@@ -193,8 +197,7 @@ impl Dispatch {
 
     /// Returns the draw call of an item of the last environment.
     fn draw(&self, scene: &Scene, shown: &Snapshot, k: usize, sight: &Sight) -> Drawn {
-        let [x, y, z, _] = shown.items[k].pose[3];
-        let (vertices, hidden) = scene.shapes.at(k, [x, y, z], sight);
+        let (vertices, hidden) = scene.shapes.at(k, &shown.items[k], sight);
         Drawn {
             vertices,
             items: self.of_last(shown, k..k + 1),

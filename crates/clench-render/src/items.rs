@@ -2,6 +2,7 @@
 
 use clench::Model;
 use clench::collide::ShapeKind;
+use clench::math::{Real, Vec3};
 use clench::rigid::model::{Appearance, TextureKind};
 use clench::rigid::readout::TendonLine;
 use clench::rigid::{Precision, Sim};
@@ -12,10 +13,15 @@ use clench_view::surfaces::texture;
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Item {
     pub pose: [[f32; 4]; 4],
+    /// The factors of the model's size along the axes, and how far the halves of a capsule move apart, m.
+    pub stretch: [f32; 4],
     pub color: [f32; 4],
     pub surface: [f32; 4],
     pub lines: [f32; 4],
 }
+
+/// The stretch of an item of the model's size.
+const UNSTRETCHED: [f32; 4] = [1.0, 1.0, 1.0, 0.0];
 
 /// The surface of an item, for which the shader is specialized; see there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +96,7 @@ pub(crate) fn add_ground(
     let column = |k: usize| [0, 1, 2, 3].map(|row| f32::from(u8::from(row == k)));
     Some(Item {
         pose: [column(0), column(1), column(2), [0.0, 0.0, lowest, 1.0]],
+        stretch: UNSTRETCHED,
         color: [0.0; 4],
         surface: [0.0, 0.0, 0.0, -1.0],
         lines: [cell, 1.0, 0.0, 0.0],
@@ -132,6 +139,7 @@ fn item_of(model: &Model, appearance: Appearance) -> Item {
     let material = appearance.material.and_then(|m| visuals.materials.get(m));
     Item {
         pose: [[0.0; 4]; 4],
+        stretch: UNSTRETCHED,
         color: shown(model, visuals.rgba(appearance)),
         surface: material.map_or([0.5, 0.5, 0.0, -1.0], |m| {
             [m.specular, m.shininess, m.emission, -1.0]
@@ -149,6 +157,45 @@ pub(crate) fn poses<T: Precision>(
         poses.extend(poses_of(sim, "site_xpos", "site_xmat")?);
     }
     Ok(poses)
+}
+
+/// Returns the stretch of each geom, then of each site, from the sizes of the model to those of a simulation; `far` is
+/// the size of an infinite plane, m.
+pub(crate) fn stretches<T: Precision>(sim: &Sim<T>, far: f32) -> Vec<[f32; 4]> {
+    let (model, own) = (sim.model(), sim.params());
+    let wide = |size: Vec3<T::SingleEnv>| size.to_array().map(|x| x.lane(0).to_f64());
+    let initial = &model.params;
+    let geoms = model.geoms.iter().enumerate().map(|(g, geom)| {
+        let sizes = [wide(own.geom_size[g]), initial.geom_size[g].to_array()];
+        stretch(geom.kind, sizes, far)
+    });
+    let sites = model.sites.iter().enumerate().map(|(s, site)| {
+        let sizes = [wide(own.site_size[s]), initial.site_size[s].to_array()];
+        stretch(site.kind, sizes, far)
+    });
+    geoms.chain(sites).collect()
+}
+
+/// Returns the stretch of a shape to the first of two sizes.
+fn stretch(kind: ShapeKind, [own, initial]: [[f64; 3]; 2], far: f32) -> [f32; 4] {
+    let factor = |own: f64, initial: f64| match own == initial {
+        true => 1.0,
+        false => (own / initial) as f32,
+    };
+    let [x, y, z] = [0, 1, 2].map(|k| factor(own[k], initial[k]));
+    let reach = |side: f64| if side > 0.0 { side } else { f64::from(far) };
+    match kind {
+        ShapeKind::Sphere => [x, x, x, 0.0],
+        ShapeKind::Capsule => [x, x, x, (own[1] - f64::from(x) * initial[1]) as f32],
+        ShapeKind::Cylinder => [x, x, y, 0.0],
+        ShapeKind::Ellipsoid | ShapeKind::Box => [x, y, z, 0.0],
+        ShapeKind::Plane => {
+            let [x, y] = [0, 1].map(|k| factor(reach(own[k]), reach(initial[k])));
+            [x, y, 1.0, 0.0]
+        }
+        // Their sizes are those of their assets.
+        ShapeKind::Mesh | ShapeKind::HeightField => UNSTRETCHED,
+    }
 }
 
 fn poses_of<T: Precision>(

@@ -1,6 +1,6 @@
 //! The camera and light parameters of the shader, and the shadow of the sun or of a light.
 
-use crate::camera::CameraPose;
+use crate::camera::{CameraPose, Lens};
 use crate::device::Gpu;
 use crate::passes::Passes;
 use clench::rigid::model::{Headlight, Light, LightKind};
@@ -121,13 +121,13 @@ fn sight(light: &Light, place: &[[f64; 3]; 2], centre: [f32; 3], reach: f32) -> 
         LightKind::Spot => CameraPose {
             eye: pos,
             axes: axes(dir.map(|x| -x)),
-            half: light.properties.cutoff.clamp(1.0, 75.0).to_radians().tan() as f32,
+            lens: Lens::central(light.properties.cutoff.clamp(1.0, 75.0).to_radians().tan() as f32),
             parallel: false,
         },
         LightKind::Point => CameraPose {
             eye: pos,
             axes: axes(unit(away.map(|x| -x))),
-            half: (reach / length(away).max(1e-6)).clamp(0.1, 3.0),
+            lens: Lens::central((reach / length(away).max(1e-6)).clamp(0.1, 3.0)),
             parallel: false,
         },
     }
@@ -199,7 +199,7 @@ fn far_away(centre: [f32; 3], to_light: [f32; 3], reach: f32) -> CameraPose {
     CameraPose {
         eye: [0, 1, 2].map(|k| centre[k] + 3.0 * reach * to_light[k]),
         axes: axes(to_light),
-        half: reach,
+        lens: Lens::central(reach),
         parallel: true,
     }
 }

@@ -34,6 +34,8 @@ struct Light {
 
 struct Item {
     pose: mat4x4<f32>,
+    // The factors of the model's size along the axes, and how far the halves of a capsule move apart.
+    stretch: vec4<f32>,
     // In linear values in a model without lights.
     color: vec4<f32>,
     // Strength and sharpness of highlights, emission, index of the geom.
@@ -67,6 +69,12 @@ struct Corner {
     @location(3) @interpolate(flat) item: u32,
 }
 
+// The place of a vertex of the model's size, in the frame of its item.
+fn stretched(place: vec3<f32>, item: u32) -> vec4<f32> {
+    let by = items[item].stretch;
+    return vec4(place * by.xyz + vec3(0.0, 0.0, by.w * sign(place.z)), 1.0);
+}
+
 @vertex
 fn corner(
     @location(0) place: vec3<f32>,
@@ -76,8 +84,8 @@ fn corner(
 ) -> Corner {
     let pose = items[item].pose;
     var out: Corner;
-    out.place = (pose * vec4(place, 1.0)).xyz;
-    out.normal = (pose * vec4(normal, 0.0)).xyz;
+    out.place = (pose * stretched(place, item)).xyz;
+    out.normal = (pose * vec4(normal / items[item].stretch.xyz, 0.0)).xyz;
     out.texcoord = texcoord;
     out.item = item;
     out.position = view.camera * vec4(out.place, 1.0);
@@ -86,7 +94,7 @@ fn corner(
 
 @vertex
 fn shadow_corner(@location(0) place: vec3<f32>, @builtin(instance_index) item: u32) -> @builtin(position) vec4<f32> {
-    return view.sun * items[item].pose * vec4(place, 1.0);
+    return view.sun * items[item].pose * stretched(place, item);
 }
 
 // Screens show sRGB; daylight is added in linear values.

@@ -2,6 +2,7 @@
 
 use crate::camera::CameraPose;
 use crate::device::Gpu;
+use crate::items::Item;
 use crate::light::FAR;
 use crate::simplify::{bounds, closed, simplified};
 use crate::triangles::{self, Vertex};
@@ -90,15 +91,18 @@ impl Shapes {
         Shapes { corners, all }
     }
 
-    /// Returns the vertices of a shape at a position, as they are drawn for a camera. The back sides of their triangles
-    /// are hidden if the second value is true.
-    pub(crate) fn at(&self, shape: usize, position: [f32; 3], sight: &Sight) -> (Range<u32>, bool) {
+    /// Returns the vertices of a shape with the pose and stretch of an item, as they are drawn for a camera. The back
+    /// sides of their triangles are hidden if the second value is true.
+    pub(crate) fn at(&self, shape: usize, item: &Item, sight: &Sight) -> (Range<u32>, bool) {
         let shape = &self.all[shape];
-        let nearest = sight.camera.distance(position) - shape.radius;
+        let ([x, y, z, _], [a, b, c, apart]) = (item.pose[3], item.stretch);
+        let stretch = a.max(b).max(c);
+        let radius = shape.radius * stretch + apart.abs();
+        let nearest = sight.camera.distance([x, y, z]) - radius;
         let pixels = sight.camera.pixels(nearest, sight.height);
         // A camera in a shape, or cut off by the near plane, shows its inside.
         let hidden = shape.closed && nearest > sight.near;
-        (shape.level(sight.tolerance / pixels), hidden)
+        (shape.level(sight.tolerance / pixels / stretch), hidden)
     }
 
     /// Returns the vertices of tendon segments; their largest radius has `pixels` pixels.

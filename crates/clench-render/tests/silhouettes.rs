@@ -21,6 +21,8 @@ const SCENE: &str = "<mujoco>
     <body pos='0.7 0 0.3' euler='0 0 30'><freejoint/><geom type='mesh' mesh='wedge'/></body>
     <camera name='side' pos='2.5 -2 1.2' xyaxes='0.6 0.8 0 -0.25 0.19 0.95' fovy='50'/>
     <camera name='above' pos='0 0 3' fovy='3' projection='orthographic'/>
+    <camera name='sensor' pos='2.5 -2 1.2' xyaxes='0.6 0.8 0 -0.25 0.19 0.95' resolution='30 20' sensorsize='0.03 0.02'
+      focal='0.02 0.01' principal='0.003 -0.002'/>
   </worldbody>
 </mujoco>";
 
@@ -108,6 +110,23 @@ fn lines_of_sight_can_be_parallel() {
     let (place, [right, up, back]) = camera(&mut sim, 1);
     let rays = |x: f64, y: f64| (place + right * (1.5 * x) + up * (1.5 * y), back * -1.0);
     let Some([geoms, depth]) = agreement(&mut sim, View::Camera(1), rays) else {
+        return;
+    };
+    assert!(geoms > 0.995, "{geoms}");
+    assert!(depth > 0.99, "{depth}");
+}
+
+#[test]
+fn a_sensor_fills_the_picture() {
+    let mut sim = sim();
+    let (place, [right, up, back]) = camera(&mut sim, 2);
+    // The sensor is 1.5 x 2 at distance 1, and its middle is aside of the optical axis, as MuJoCo draws it.
+    let aspect = WIDTH as f64 / HEIGHT as f64;
+    let rays = |x: f64, y: f64| {
+        let aside = right * (0.15 + 0.75 * x / aspect) + up * (0.2 + y);
+        (place, aside - back)
+    };
+    let Some([geoms, depth]) = agreement(&mut sim, View::Camera(2), rays) else {
         return;
     };
     assert!(geoms > 0.995, "{geoms}");

@@ -37,7 +37,7 @@ pub use mcap::McapRecorder;
 pub use page::Page;
 pub use passive::PassiveViewer;
 pub use player::Player;
-pub use recording::{RecordError, Recording};
+pub use recording::{ReadError, RecordError, Recording};
 pub use scene::Scene;
 pub use server::{ServeError, Server, ServerOptions};
 pub use viewed::{Stepped, Viewed};

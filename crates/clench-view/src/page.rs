@@ -100,15 +100,15 @@ impl Page {
 
     /// Returns the page with embedded data, which it shows instead of connecting to a server.
     pub(crate) fn with_data(&self, json: &str) -> String {
-        // In HTML, any `</` could end a script.
-        let data = json.replace("</", "<\\/");
+        // In HTML, `</script` ends a script, and `<!--` followed by `<script` keeps the next `</script` from ending it.
+        // In JSON, only strings contain `<`, where `\u003c` is equivalent.
+        let data = json.replace('<', "\\u003c");
         (self.0).replacen(BEFORE_DATA, &format!("{BEFORE_DATA}{data}"), 1)
     }
 
     /// Returns the data embedded in such a page.
     pub(crate) fn data(html: &str) -> Option<&str> {
         let (_, rest) = html.split_once(BEFORE_DATA)?;
-        // In JSON, `<\/` is equivalent to `</`.
         let (data, _) = rest.split_once(AFTER_DATA)?;
         (!data.is_empty()).then_some(data)
     }

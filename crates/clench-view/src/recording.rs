@@ -6,7 +6,7 @@ use crate::{Page, Scene};
 use clench::SimError;
 use clench::formats::base64;
 use clench::rigid::{Precision, Sim};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// The frames of a simulation.
 pub struct Recording {
@@ -109,11 +109,13 @@ impl Recording {
     /// Returns an error if the document contains no recording, one of another version, or one above the limit.
     pub fn from_html(html: &str, limit: usize) -> Result<Self, ReadError> {
         let data = Page::data(html).ok_or(ReadError::None)?;
-        let mut data: Value = serde_json::from_str(data).map_err(|_| ReadError::None)?;
-        let Value::Array(frames) = data["frames"].take() else {
+        let mut data: Map<String, Value> =
+            serde_json::from_str(data).map_err(|_| ReadError::None)?;
+        let (Some(Value::Array(frames)), Some(scene)) =
+            (data.remove("frames"), data.remove("scene"))
+        else {
             return Err(ReadError::None);
         };
-        let scene = data["scene"].take();
         let sections = SECTIONS
             .iter()
             .map(|s| json!({"name": s.name, "width": s.width}));

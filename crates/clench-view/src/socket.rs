@@ -61,14 +61,14 @@ pub(crate) fn serve(stream: TcpStream, shared: &Shared) -> Result<(), Error> {
     // The last frame that this browser received; it may have skipped others.
     let mut last = Bytes::new();
     loop {
-        let message = match socket.read() {
+        let read = socket.read();
+        // A page that asks for frames without a pause never lets a read time out.
+        if shared.closing.load(Relaxed) {
+            return socket.close(None);
+        }
+        let message = match read {
             Ok(message) => message,
-            Err(Error::Io(error)) if is_timeout(&error) => {
-                if shared.closing.load(Relaxed) {
-                    return socket.close(None);
-                }
-                continue;
-            }
+            Err(Error::Io(error)) if is_timeout(&error) => continue,
             Err(error) => return Err(error),
         };
         match message {

@@ -51,7 +51,7 @@ pub trait Viewed {
     /// Changes the state of an environment.
     ///
     /// # Errors
-    /// Returns an error if the environment does not exist or the change fails.
+    /// Returns an error if the environment does not exist or the change fails; the state has not changed then.
     fn change(
         &mut self,
         env: usize,
@@ -122,7 +122,8 @@ impl<S: Precision> Viewed for Sim<S> {
         _: usize,
         change: impl FnOnce(&mut Sim<S>) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
-        change(self)
+        let before = self.state.clone();
+        change(self).inspect_err(|_| self.state.copy_from(&before))
     }
 
     fn reset(&mut self, _: usize, keyframe: Option<usize>) -> Result<(), SimError> {

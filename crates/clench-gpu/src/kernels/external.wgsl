@@ -65,12 +65,25 @@ fn tendon_constraint_force(t: u32) -> f32 {
     return sum;
 }
 
+// Returns the force of the inertia of tendon `t` along it.
+fn tendon_inertial_force(t: u32) -> f32 {
+    let armature = parameter(TENDON_ARMATURE + t);
+    if (armature == 0.0) {
+        return 0.0;
+    }
+    var acceleration = tendon_bias_acceleration(t);
+    for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
+        acceleration += fetch(TEN_JACOBIAN + k) * fetch(QACC + words[TENDON_DOF + k]);
+    }
+    return -armature * acceleration;
+}
+
 fn push_strings() {
     for (var t = 0u; t < NTENDON; t++) {
         if (words[TENDON_SECTION + t] == words[TENDON_SECTION + t + 1u]) {
             continue;
         }
-        var force = tendon_passive_force(t) + tendon_constraint_force(t);
+        var force = tendon_passive_force(t) + tendon_inertial_force(t) + tendon_constraint_force(t);
         for (var k = words[TENDON_PULL + t]; k < words[TENDON_PULL + t + 1u]; k++) {
             force += fetch(ACTUATOR_FORCE + words[PULL_OUTPUT + k]) * parameter(PULL_GEAR + k);
         }

@@ -1,35 +1,14 @@
-// The bias force of tendons with inertia, due to changes of their gradients. CPU counterparts:
-// `dynamics/tendon_armature.rs` and `tendon_path.rs`.
-
-// Returns d²length/dt² of a straight part of a string at zero dof acceleration.
-fn span_acceleration(span: Span) -> f32 {
-    if (span.bodies.x == span.bodies.y) {
-        return 0.0;
-    }
-    let unit = direction(span.last - span.first);
-    let apart = velocity_at(span.bodies.y, span.last).linear - velocity_at(span.bodies.x, span.first).linear;
-    var both = vec3f();
-    for (var side = 0u; side < bound(2u); side++) {
-        let is_last = side == 1u;
-        let at = select(span.first, span.last, is_last);
-        both += bias_acceleration(select(span.bodies.x, span.bodies.y, is_last), at).linear * select(f32(-1.0), f32(1.0), is_last);
-    }
-    let along = dot(unit.xyz, apart);
-    let across = select((dot(apart, apart) - along * along) / max(unit.w, TINY), 0.0, unit.w < TINY);
-    return dot(unit.xyz, both) + across;
-}
+// The bias force of tendons with inertia, due to changes of their gradients. CPU counterpart:
+// `dynamics/tendon_armature.rs`.
 
 // Tendons share dofs, so one thread adds them all.
 fn tendon_bias() {
     for (var t = 0u; is_first() && t < NTENDON; t++) {
         let armature = parameter(TENDON_ARMATURE + t);
-        var acceleration: f32 = 0.0;
-        for (var s = words[TENDON_SECTION + t]; armature != 0.0 && s < words[TENDON_SECTION + t + 1u]; s++) {
-            let path = section_path(s);
-            for (var k = 0u; k < bound(span_count(path)); k++) {
-                acceleration += parameter(SECTION_SHARE + s) * span_acceleration(span_of(s, path, k));
-            }
+        if (armature == 0.0) {
+            continue;
         }
+        let acceleration = tendon_bias_acceleration(t);
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             add(QFRC_BIAS + words[TENDON_DOF + k], fetch(TEN_JACOBIAN + k) * armature * acceleration);
         }

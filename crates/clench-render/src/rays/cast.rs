@@ -72,15 +72,15 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
     let [right, up, back] = eye.axes.map(Vec3::<T>::splat);
     let position = Vec3::<T>::splat(eye.position);
     let [near, far] = [eye.near, eye.far].map(T::new);
-    let pixel = eye.half / height;
+    let ([wide, high], [middle, level]) = (eye.pixel, eye.center);
     let drawn = facts.rows.clone();
     for row in rows.start.max(drawn.start)..rows.end.min(drawn.end) {
-        let across = up * T::new(pixel * (height - 2.0 * row as f64 - 1.0));
+        let across = up * T::new(high * (height - 2.0 * row as f64 - 1.0) + level);
         for start in columns.clone().step_by(T::LANES) {
             let count = T::LANES.min(eye.size[0] - start);
             let first = (row - drawn.start) * eye.size[0] + start;
             let column = lanes + lanes + T::new(2.0 * start as f64 + 1.0 - width);
-            let aside = right * (column * T::new(pixel)) + across;
+            let aside = right * (column * T::new(wide) + T::new(middle)) + across;
             let (from, direction) = match eye.parallel {
                 true => (position + aside, -back),
                 false => (position, aside - back),

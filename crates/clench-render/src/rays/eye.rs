@@ -10,8 +10,10 @@ pub(super) struct Eye {
     pub(super) position: Vec3<f64>,
     /// The unit vectors to the right, upwards and backwards.
     pub(super) axes: [Vec3<f64>; 3],
-    /// Half the height of the picture at distance 1 or, if the rays are parallel, in metres.
-    pub(super) half: f64,
+    /// Half the width and height of a pixel at distance 1 or, if the rays are parallel, in metres.
+    pub(super) pixel: [f64; 2],
+    /// The centre of the picture at distance 1, to the right and upwards of the viewing direction.
+    pub(super) center: [f64; 2],
     pub(super) parallel: bool,
     /// The distances along the viewing direction between which a ray hits, m.
     pub(super) near: f64,
@@ -32,10 +34,17 @@ impl Eye {
     /// an orthographic camera have an end.
     pub(super) fn new(camera: &CameraPose, size: [u32; 2], [near, far]: [f64; 2]) -> Self {
         let wide = |v: [f32; 3]| Vec3::from_array(v.map(f64::from));
+        let lens = camera.lens;
+        let [width, height] = size.map(f64::from);
+        let high = f64::from(lens.half) / height;
         Eye {
             position: wide(camera.eye),
             axes: camera.axes.map(wide),
-            half: f64::from(camera.half),
+            pixel: [
+                (lens.half_width).map_or(high, |half| f64::from(half) / width),
+                high,
+            ],
+            center: lens.center.map(f64::from),
             parallel: camera.parallel,
             near,
             far: if camera.parallel { far } else { f64::INFINITY },
@@ -70,10 +79,10 @@ impl Eye {
         if nearest <= 0.0 && !self.parallel {
             return self.whole();
         }
-        // The bounds of the ball's box at distance 1, in halves of the picture's height.
+        // The bounds of the ball's box at distance 1.
         let scaled = |along: f64, divisor: f64| match self.parallel {
-            true => along / self.half,
-            false => along / (divisor * self.half),
+            true => along,
+            false => along / divisor,
         };
         let bounds = |along: f64| {
             let (low, high) = (along - radius, along + radius);
@@ -84,15 +93,16 @@ impl Eye {
             ]
         };
         let [width, height] = self.size;
-        let pixels = |middle: f64, [low, high]: [f64; 2], most: usize| {
-            let at = |x: f64| middle + 0.5 * height as f64 * x;
+        let pixels = |[low, high]: [f64; 2], half: f64, most: usize| {
+            let at = |x: f64| 0.5 * (most as f64 + x / half);
             let (first, end) = (at(low).floor().max(0.0), at(high).ceil().max(0.0));
             (first as usize).min(most)..(end as usize).min(most)
         };
-        let [low, high] = bounds(y);
+        let [across, up] = self.center;
+        let ([left, right], [low, high]) = (bounds(x), bounds(y));
         Window {
-            rows: pixels(0.5 * height as f64, [-high, -low], height),
-            columns: pixels(0.5 * width as f64, bounds(x), width),
+            rows: pixels([up - high, up - low], self.pixel[1], height),
+            columns: pixels([left - across, right - across], self.pixel[0], width),
         }
     }
 }

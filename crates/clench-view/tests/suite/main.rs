@@ -2,4 +2,5 @@
 
 mod deltas;
 mod pushes;
+mod recordings;
 mod server;

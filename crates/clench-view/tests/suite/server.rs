@@ -408,3 +408,37 @@ fn a_port_in_use_is_named() {
         "{error}"
     );
 }
+
+#[test]
+fn a_page_that_asks_without_a_pause_learns_that_the_server_closed() {
+    let mut player = player();
+    let server = server(&player);
+    server.publish(player.frame().expect("the pendulum has a frame"));
+    let mut socket = connect(&server);
+    text(&mut socket);
+    say(&mut socket, r#"{"do": "next"}"#);
+    drop(server);
+    let asked = (0..1000).find(|_| {
+        let next = socket.send(Message::text(r#"{"do": "next"}"#));
+        next.is_err() || !matches!(socket.read(), Ok(Message::Binary(_)))
+    });
+    assert!(asked.is_some(), "the closed server still answers");
+}
+
+#[test]
+fn a_position_that_cannot_be_evaluated_is_not_kept() {
+    let model = "<mujoco><worldbody><body><joint axis='0 1 0' stiffness='1e6'/><geom size='0.1' pos='1 0 0'/></body>
+        </worldbody></mujoco>";
+    let model = Arc::new(load_str(model).expect("the model is valid"));
+    let mut player = Player::new(Sim::<f64>::new(model).expect("it can be simulated"), true);
+    let far = Command::Position {
+        index: 0,
+        value: 1e10,
+    };
+    let refused = player
+        .apply(far)
+        .expect_err("the acceleration is too large");
+    assert!(refused.contains("qacc[0]"), "{refused}");
+    assert_eq!(player.viewed().state.qpos[0], 0.0);
+    player.frame().expect("the state can still be shown");
+}
