@@ -12,8 +12,9 @@ impl Sim {
     /// Computes the exact derivatives of the next step, like MuJoCo's ``mjd_transitionFD`` without finite differences.
     ///
     /// Every feature of a step has derivatives: contacts that move, all cones, equalities, actuators, fluids,
-    /// integrators, noslip. The derivative of a constraint that switches is that of the active side. Derivatives are
-    /// computed in double precision. The state does not change.
+    /// integrators, noslip. The derivative of a constraint that switches is that of the active side; that of a control
+    /// or activation at an end of its range is that of the inside. Derivatives are computed in double precision. The
+    /// state does not change.
     ///
     /// Parameters
     /// ----------

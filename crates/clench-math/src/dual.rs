@@ -320,6 +320,17 @@ impl<L: Real<Scalar = f64>, const K: usize> Real for Dual<L, K> {
             other
         }
     }
+    /// At an end of the range the derivative is that of the inside: a control at its limit can still be lowered.
+    #[inline(always)]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        let bounded = self.max(low).min(high);
+        let within = low.value <= self.value && self.value <= high.value;
+        if within && low.value < high.value {
+            self
+        } else {
+            bounded
+        }
+    }
     #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
         if self.value.is_sign_negative() == sign.value.is_sign_negative() {

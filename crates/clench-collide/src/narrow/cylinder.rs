@@ -206,12 +206,13 @@ impl<T: Real> LocalCylinder<T> {
             found |= last.le(enough);
         }
         if T::IS_DUAL && !(at_low | at_high).any() {
-            // Bisection has no derivatives. A step of Newton's method from the zero has.
+            // Bisection has no derivatives. A step of Newton's method from the zero has. Where the slope is zero all
+            // around, any point is valid, and the one found does not move.
             let fixed = T::from_value(t.value());
             let (slope, bend) = self.slope(segment, fixed);
             let mut refined = fixed - slope / bend;
             refined.set_value(t.value());
-            t = T::select(bend.gt(T::new(1e-9)), refined, t);
+            t = T::select(bend.gt(T::new(1e-9)), refined, fixed);
         }
         t
     }

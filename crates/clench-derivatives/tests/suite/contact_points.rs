@@ -120,3 +120,44 @@ fn all_have(steps: &[Vec<ContactPoint<f64>>; 4], i: usize) -> Option<[&ContactPo
 fn contact_points_have_exact_derivatives() {
     PAIRS.into_iter().for_each(check);
 }
+
+/// Shapes of equal sizes at round offsets, with parallel and perpendicular axes: many points are equally near.
+#[test]
+fn symmetric_placements_have_finite_derivatives() {
+    let random = &mut Random(6);
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let turns = [(1.0, 0.0), (half, half), (0.0, 1.0)];
+    let offsets = [0.0, 0.05, 0.1, 0.15, 0.2].into_iter().flat_map(|z| {
+        let level = [V::ZERO, V::new(0.05, 0.0, 0.0), V::new(0.1, 0.1, 0.0)];
+        level.map(|level| level + V::new(0.0, 0.0, z))
+    });
+    for (offset, (w, x)) in offsets.flat_map(|offset| turns.map(|turn| (offset, turn))) {
+        for (a, b) in PAIRS.into_iter().filter(|&(_, b)| b != ShapeKind::Mesh) {
+            let pose = |position: V, (w, x): (f64, f64)| Pose {
+                position,
+                rotation: Quat::new(w, x, 0.0, 0.0).to_matrix(),
+            };
+            let size = V::new(0.1, 0.1, 0.1);
+            let scene = Scene {
+                a: Shape::new(a, size),
+                pose_a: pose(V::ZERO, (1.0, 0.0)),
+                b: Shape::new(b, size),
+                pose_b: pose(offset, (w, x)),
+                margin: 0.01,
+            };
+            // Of a capsule and a cylinder, the cylinder is the second shape.
+            let swapped = Scene {
+                pose_a: pose(offset, (w, x)),
+                pose_b: pose(V::ZERO, (1.0, 0.0)),
+                ..scene
+            };
+            let motion = Motion::new(random);
+            for scene in [scene, swapped] {
+                for number in motion.points(&scene, seeded()).iter().flat_map(numbers) {
+                    let rate = number.derivative(0);
+                    assert!(rate.is_finite(), "{a:?}, {b:?}, {offset:?}, {w}, {x}");
+                }
+            }
+        }
+    }
+}

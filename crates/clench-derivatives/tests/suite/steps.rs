@@ -170,6 +170,71 @@ fn many_controls() {
     );
 }
 
+/// Every muscle at rest, and every command of zero, is at an end of a range. The derivatives there are those of the
+/// inside, from which a command can come and to which it can go.
+#[test]
+fn controls_and_activations_at_an_end_of_their_range() {
+    let text = r#"<mujoco>
+      <worldbody>
+        <body>
+          <joint name="j" axis="0 1 0" range="-90 90"/>
+          <geom size=".1" pos=".1 0 0"/>
+        </body>
+      </worldbody>
+      <actuator>
+        <motor joint="j" ctrlrange="0 1" forcerange="0 5"/>
+        <damper joint="j" kv="2" ctrlrange="0 1"/>
+        <muscle joint="j" ctrlrange="0 1"/>
+        <general joint="j" dyntype="filter" dynprm=".1" actrange="0 1" ctrlrange="0 1"/>
+      </actuator>
+    </mujoco>"#;
+    let model = Arc::new(clench_formats::load_str(text).expect("a model"));
+    let mut sim = Sim::<f64>::new(model.clone()).expect("a simulation");
+    let mut linearizer = Linearizer::new(&model).expect("lanes of this processor");
+    let after = |sim: &mut Sim<f64>| {
+        sim.step().expect("a step");
+        [&sim.state.qpos[..], &sim.state.qvel, &sim.state.act].concat()
+    };
+    // A muscle at its command switches between activation and deactivation.
+    for (muscle, errors) in [((0.2, 0.0), false), ((0.0, 0.5), false), ((0.0, 0.5), true)] {
+        sim.state.qvel[0] = 0.3;
+        (sim.state.ctrl[2], sim.state.act[0]) = muscle;
+        let from = sim.state.clone();
+        let request = Request {
+            errors,
+            ..Request::default()
+        };
+        let result = linearizer.linearize(&sim, &request).expect("derivatives");
+        let (a, b) = (result.a.clone(), result.b.clone());
+        let still = after(&mut sim);
+        let h = 1e-7;
+        for column in 0..model.na + model.nu() {
+            sim.state.copy_from(&from);
+            let (matrix, k) = match column.checked_sub(model.na) {
+                None => {
+                    sim.state.act[column] += h;
+                    (&a, 2 * model.nv + column)
+                }
+                Some(u) => {
+                    sim.state.ctrl[u] += h;
+                    (&b, u)
+                }
+            };
+            let moved = after(&mut sim);
+            for (row, (moved, still)) in moved.iter().zip(&still).enumerate() {
+                let difference = (moved - still) / h;
+                let exact = matrix.values[row * matrix.shape[1] + k];
+                let error = (difference - exact).abs();
+                assert!(
+                    error < 1e-5,
+                    "row {row}, column {column}: {difference}, {exact}"
+                );
+            }
+        }
+        sim.state.copy_from(&from);
+    }
+}
+
 /// Rotations have no axis at rest.
 #[test]
 fn joints_at_rest() {

@@ -164,7 +164,9 @@ pub struct IkSolution<T> {
 pub struct Ik {
     pub(crate) tasks: Vec<IkTask>,
     pub(crate) options: IkOptions,
-    /// The dofs that are solved for, ascending.
+    /// The dofs that may move, ascending.
+    pub(crate) movable: Vec<u32>,
+    /// Those of them that are solved for: a task depends on them.
     pub(crate) dofs: Vec<u32>,
 }
 
@@ -218,11 +220,16 @@ impl Ik {
             check_length("dofs", options.dofs.len(), model.nv)?;
         }
         let moves = |dof: &usize| options.dofs.get(*dof).is_none_or(|&moves| moves);
-        let may_move = Vec::from_iter((0..model.nv).filter(moves));
-        let counts = |dof: &usize| tasks.iter().any(|task| task.is_moved_by(model, *dof));
-        let dofs = may_move.into_iter().filter(counts);
+        let movable = Vec::from_iter((0..model.nv).filter(moves).map(|dof| dof as u32));
+        let counts = |dof: u32| {
+            tasks
+                .iter()
+                .any(|task| task.is_moved_by(model, dof as usize))
+        };
+        let dofs = movable.iter().copied().filter(|&dof| counts(dof));
         Ok(Ik {
-            dofs: dofs.map(|dof| dof as u32).collect(),
+            dofs: dofs.collect(),
+            movable,
             tasks,
             options,
         })

@@ -105,7 +105,7 @@ impl<T: Real> Search<T> {
     #[kernel]
     pub fn run(&mut self, model: &Model, params: &Params<T>, ik: &Ik) {
         if ik.options.limits {
-            project(model, params, ik, &mut self.state.qpos);
+            project(model, params, &ik.movable, &mut self.state.qpos);
         }
         self.iterations = T::ZERO;
         self.descend(model, params, ik, T::Mask::splat(true));
@@ -217,7 +217,7 @@ impl<T: Real> Search<T> {
         let qpos = &mut self.state.qpos;
         (self.compiled.integrate_positions)(model, qpos, &self.velocity, T::ONE);
         if ik.options.limits {
-            project(model, params, ik, &mut self.state.qpos);
+            project(model, params, &ik.dofs, &mut self.state.qpos);
         }
         self.evaluate(model, params, ik);
         T::select(positive, promised, T::splat(T::Scalar::INFINITY))
@@ -285,12 +285,12 @@ impl IkStatus {
     }
 }
 
-/// Projects the positions of joints that are solved for onto their ranges. A ball joint is rotated back about its
-/// rotation axis.
+/// Projects the positions of the joints of some dofs, in ascending order, onto their ranges. A ball joint is rotated
+/// back about its rotation axis.
 #[inline(always)]
-fn project<T: Real>(model: &Model, params: &Params<T>, ik: &Ik, qpos: &mut [T]) {
+fn project<T: Real>(model: &Model, params: &Params<T>, dofs: &[u32], qpos: &mut [T]) {
     let mut last = usize::MAX;
-    for &dof in &ik.dofs {
+    for &dof in dofs {
         let j = model.dofs[dof as usize].joint;
         let joint = &model.joints[j];
         if !joint.limited || joint.kind == JointKind::Free || last == j {

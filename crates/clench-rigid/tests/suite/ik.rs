@@ -150,6 +150,29 @@ fn limits_are_respected_and_unreachable_targets_approached() {
     assert!(free.qpos.iter().any(|q| q.abs() > 0.3));
 }
 
+/// The hinges beyond the middle of the arm cannot bring it to its goal, which it has reached.
+#[test]
+fn a_start_outside_the_limits_is_moved_inside_also_where_no_task_depends_on_it() {
+    let model = arm(1.0);
+    let middle = FrameObject::Body(4);
+    let mut sim = Sim::<f64>::new(Arc::clone(&model)).expect("a simulation");
+    let goal = [0.0, 0.0, 0.8];
+    let start = [0.0, 0.0, 0.0, 0.0, 0.0, 1.5, -2.0];
+    let mut solve = |dofs: Vec<bool>| {
+        let options = IkOptions {
+            dofs,
+            ..IkOptions::default()
+        };
+        let tasks = vec![IkTask::new(&model, IkTarget::Position(middle), 1.0)];
+        let ik = Ik::new(&model, tasks, options).expect("valid tasks");
+        sim.ik(&ik, &goal, Some(&start)).expect("a solution").qpos
+    };
+    assert_eq!(solve(Vec::new()), [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0]);
+    // A dof that may not move does not, wherever it is.
+    let held = vec![true, true, true, true, true, true, false];
+    assert_eq!(solve(held), [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -2.0]);
+}
+
 #[test]
 fn a_goal_beyond_the_arm_is_pointed_at() {
     let model = arm(2.5);
