@@ -105,3 +105,27 @@ def test_forces_of_open_contacts_by_coulombs_law_are_those_of_one_to_the_bit() -
         for env, sim in enumerate(sims):
             sim.step()
             assert batch.sensordata[env].tobytes() == sim.sensordata.tobytes(), env
+
+
+def test_forces_of_tendons_after_a_step_are_those_of_its_start() -> None:
+    model = clench.Model.from_xml("""
+        <mujoco>
+          <worldbody>
+            <body pos="0 0 1">
+              <joint axis="0 1 0"/><geom size=".1" pos=".1 0 0"/>
+              <body pos=".2 0 0"><joint axis="1 0 0"/><geom size=".1" pos=".1 .1 0"/><site name="s" pos=".2 .1 0"/></body>
+            </body>
+            <site name="t" pos="1 .1 1"/>
+          </worldbody>
+          <tendon>
+            <spatial armature=".3" stiffness="200" springlength=".2" springyield=".02"><site site="s"/><site site="t"/></spatial>
+          </tendon>
+        </mujoco>""")
+    batch = clench.Batch(model, 1, record=["cfrc_ext", "cfrc_int"])
+    batch.qvel = [[5, 7]]
+    batch.forward()
+    before = batch.cfrc_ext.copy(), batch.cfrc_int.copy()
+    assert abs(before[0]).max() > 50
+    batch.step()
+    np.testing.assert_array_equal(batch.cfrc_ext, before[0])
+    np.testing.assert_array_equal(batch.cfrc_int, before[1])

@@ -13,6 +13,7 @@ use clench_dynamics::dynamics::actuation::actuation;
 use clench_dynamics::dynamics::bias::bias_forces;
 use clench_dynamics::dynamics::kinematics::Computed;
 use clench_dynamics::dynamics::passive::passive_forces;
+use clench_dynamics::dynamics::tendon_armature::add_tendon_bias;
 use clench_dynamics::dynamics::velocity::velocities;
 use clench_dynamics::part::Part;
 use clench_dynamics::pipeline::poses;
@@ -93,6 +94,9 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
             velocities(model, &parts, pos, &before.qvel, vel);
             if reads.accelerations {
                 bias_forces(model, params, &parts, pos, vel, &before.qvel, force);
+                if reads.bodies == model.nbody() {
+                    add_tendon_bias(model, params, pos, vel, &before.qvel, force);
+                }
             }
             // Gravity compensation may act through actuators, which then read all bodies.
             if reads.stage == Stage::Forces && reads.bodies == model.nbody() {

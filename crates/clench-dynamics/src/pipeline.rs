@@ -138,8 +138,7 @@ pub fn velocity_stage<T: Real>(
     let at = (pos, &*vel);
     passive_forces(model, params, parts, at, state, &ws.contacts, force);
     bias_forces(model, params, parts, pos, vel, &state.qvel, force);
-    let bias = &mut force.qfrc_bias;
-    add_tendon_bias(model, params, pos, vel, &state.qvel, bias);
+    add_tendon_bias(model, params, pos, vel, &state.qvel, force);
     ws.clock.lap(Stage::Velocity as usize);
 }
 

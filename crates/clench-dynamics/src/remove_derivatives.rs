@@ -42,6 +42,8 @@ impl<T: Real> Workspace<T> {
         let Forces {
             qfrc_bias,
             qfrc_spring,
+            ten_spring,
+            ten_bias,
             qfrc_damper,
             qfrc_gravcomp,
             qfrc_fluid,
@@ -61,6 +63,8 @@ impl<T: Real> Workspace<T> {
         for forces in [
             qfrc_bias,
             qfrc_spring,
+            ten_spring,
+            ten_bias,
             qfrc_damper,
             qfrc_gravcomp,
             qfrc_fluid,

@@ -133,6 +133,10 @@ pub struct Forces<T> {
     pub qfrc_spring: Vec<T>,
     /// Damper forces.
     pub qfrc_damper: Vec<T>,
+    /// Forces of springs along tendons (ntendon).
+    pub ten_spring: Vec<T>,
+    /// Accelerations of the lengths of spatial tendons with inertia at zero dof acceleration, J̇ v (ntendon).
+    pub ten_bias: Vec<T>,
     /// Gravity compensation.
     pub qfrc_gravcomp: Vec<T>,
     /// Fluid forces.

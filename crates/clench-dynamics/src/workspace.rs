@@ -98,6 +98,8 @@ impl<T: Real> Workspace<T> {
                 qfrc_actuator: zeros(nv),
                 qfrc_smooth: zeros(nv),
                 actuator_force: zeros(nout),
+                ten_spring: zeros(model.tendons.len()),
+                ten_bias: zeros(model.tendons.len()),
                 ten_actuator_force: zeros(model.tendons.len()),
                 ctrl: zeros(model.nu()),
                 act_dot: zeros(model.na),

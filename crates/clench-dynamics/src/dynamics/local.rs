@@ -77,6 +77,7 @@ impl<T: Real> LocalStages<T> {
                 qfrc_passive: zeros(nv),
                 qfrc_actuator: zeros(nv),
                 actuator_force: zeros(nout),
+                ten_spring: zeros(ntendon),
                 ten_actuator_force: zeros(ntendon),
                 ctrl: zeros(model.nu()),
                 act_dot: zeros(model.na),

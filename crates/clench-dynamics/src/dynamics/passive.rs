@@ -44,7 +44,7 @@ pub fn passive_forces<T: Real>(
         return;
     }
     if model.flags.spring {
-        springs(model, params, parts, pos, state, &mut force.qfrc_spring);
+        springs(model, params, parts, pos, state, force);
     }
     if model.flags.damper {
         let qfrc = &mut force.qfrc_damper;
@@ -72,8 +72,9 @@ fn springs<T: Real>(
     parts: &[Part],
     pos: &Positions<T>,
     state: &State<T>,
-    qfrc: &mut [T],
+    force: &mut Forces<T>,
 ) {
+    let qfrc = &mut force.qfrc_spring;
     for j in parts.iter().flat_map(|part| part.joints.clone()) {
         let spring = joint_spring(params, j);
         let qfrc = &mut qfrc[model.joints[j].dof..];
@@ -89,8 +90,8 @@ fn springs<T: Real>(
     }
     for t in 0..model.tendons.len() {
         let elongation = tendon_elongation(model, params, &state.plastic, t, pos.ten_length[t]);
-        let force = -elongation * tendon_spring(params, t).stiffness(elongation);
-        add_tendon_force(model, pos, t, force, qfrc);
+        force.ten_spring[t] = -elongation * tendon_spring(params, t).stiffness(elongation);
+        add_tendon_force(model, pos, t, force.ten_spring[t], qfrc);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::dynamics::reflected::tendon_armature;
 use crate::dynamics::tendon::{add_tendon_force, gradient};
 use crate::dynamics::tendon_path::bias_acceleration;
 use crate::model::{Model, Params};
-use crate::stages::{Positions, Velocities};
+use crate::stages::{Forces, Positions, Velocities};
 use clench_math::{Mask, Real, kernel};
 use clench_solver::TreeMatrix;
 
@@ -28,13 +28,13 @@ pub fn add_tendon_inertia<T: Real>(
 
 /// Adds the inertial forces of tendons at zero dof acceleration, due to changing gradients, to `qfrc_bias`.
 #[kernel]
-pub(crate) fn add_tendon_bias<T: Real>(
+pub fn add_tendon_bias<T: Real>(
     model: &Model,
     params: &Params<T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
     qvel: &[T],
-    qfrc_bias: &mut [T],
+    force: &mut Forces<T>,
 ) {
     for t in 0..model.tendons.len() {
         let armature = tendon_armature(model, params, t);
@@ -42,6 +42,7 @@ pub(crate) fn add_tendon_bias<T: Real>(
             continue;
         }
         let acceleration = bias_acceleration(model, params, pos, vel, qvel, t);
-        add_tendon_force(model, pos, t, armature * acceleration, qfrc_bias);
+        force.ten_bias[t] = acceleration;
+        add_tendon_force(model, pos, t, armature * acceleration, &mut force.qfrc_bias);
     }
 }

@@ -7,9 +7,8 @@
 use super::source::Source;
 use clench_dynamics::constraint::{ConstraintSource, equality_slope};
 use clench_dynamics::dynamics::reflected::{tendon_armature, tendon_damper};
-use clench_dynamics::dynamics::spring::{tendon_elongation, tendon_spring};
 use clench_dynamics::dynamics::tendon::gradient;
-use clench_dynamics::dynamics::tendon_path::{Span, bias_acceleration, each_span};
+use clench_dynamics::dynamics::tendon_path::{Span, each_span};
 use clench_dynamics::model::{Coupled, Transmission};
 use clench_math::{Mask, Real, kernel};
 
@@ -40,14 +39,7 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     let (model, params, ws) = (s.model, s.params, &s.ws);
     let mut force = T::ZERO;
     if model.flags.spring {
-        let elongation = tendon_elongation(
-            model,
-            params,
-            &s.state.plastic,
-            t,
-            ws.position.ten_length[t],
-        );
-        force -= elongation * tendon_spring(params, t).stiffness(elongation);
+        force += ws.force.ten_spring[t];
     }
     if model.flags.damper {
         let velocity = ws.velocity.ten_velocity[t];
@@ -60,9 +52,8 @@ fn smooth_force<T: Real>(s: &Source<T>, t: usize) -> T {
     }
     let armature = tendon_armature(model, params, t);
     if !armature.eq(T::ZERO).all() {
-        let (pos, vel) = (&ws.position, &ws.velocity);
-        let mut acceleration = bias_acceleration(model, params, pos, vel, &s.state.qvel, t);
-        for (dof, arm) in gradient(model, pos, t) {
+        let mut acceleration = ws.force.ten_bias[t];
+        for (dof, arm) in gradient(model, &ws.position, t) {
             acceleration += arm * ws.qacc[dof];
         }
         force -= armature * acceleration;
