@@ -183,7 +183,7 @@ fn impossible_images_are_errors() {
     for (width, height, view) in [
         (0, 5, View::All),
         (5, 1 << 20, View::All),
-        (5, 5, View::Camera(2)),
+        (5, 5, View::Camera(3)),
     ] {
         let picture = Picture {
             views: vec![view],
