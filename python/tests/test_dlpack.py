@@ -224,7 +224,8 @@ def test_torch_refuses_what_has_no_array(torch: Any) -> None:
 def test_results_are_written_to_tensors(torch: Any, precision: Any) -> None:
     sim = clench.Sim(example("arm_and_box"), precision=precision)
     out = torch.zeros((2, 3, sim.model.nv), dtype=torch.float64 if precision == "64" else torch.float32)
-    assert sim.jacobian(body="hand", out=out) is out
+    written: Any = sim.jacobian(body="hand", out=out)
+    assert written is out
     assert (out.numpy() == sim.jacobian(body="hand")).all() and out.any()
     with pytest.raises(TypeError, match="out must be an array of float"):
         sim.jacobian(body="hand", out=out.half())
