@@ -102,8 +102,10 @@ impl Batch {
     ///
     /// Parameters
     /// ----------
-    /// body, body_com, geom, site, camera, point
+    /// body, body_com, geom, site, camera : str or int
     ///     The object, see `jacobian`.
+    /// point : array_like, optional
+    ///     With `body`: a point of the body, see `jacobian`.
     ///
     /// Returns
     /// -------
