@@ -12,8 +12,8 @@ static PROCESSED: Mutex<ProcessedMeshes> = Mutex::new(ProcessedMeshes {
 });
 
 struct ProcessedMeshes {
-    /// The meshes that exist, by their numbers of vertices and faces.
-    existing: BTreeMap<[usize; 2], Vec<Weak<Mesh>>>,
+    /// The meshes that exist, by name. Those that were dropped since the last model are still listed.
+    existing: BTreeMap<String, Vec<Weak<Mesh>>>,
     /// The meshes of the last model. They stay, for users who edit a description and build it again.
     last: Vec<Arc<Mesh>>,
 }
@@ -23,23 +23,19 @@ struct ProcessedMeshes {
 /// # Errors
 /// Returns the errors of [`process`].
 pub(super) fn find_or_process(spec: &MeshSpec, keeps_hull: bool) -> Result<Arc<Mesh>, BuildError> {
-    let key = [spec.vertices.len(), spec.faces.len()];
-    let similar: Vec<_> = with_processed(|processed| {
-        let similar = processed.existing.get(&key).into_iter().flatten();
-        similar.filter_map(Weak::upgrade).collect()
+    let namesakes: Vec<_> = with_processed(|processed| {
+        let namesakes = processed.existing.get(&spec.name).into_iter().flatten();
+        namesakes.filter_map(Weak::upgrade).collect()
     });
     let is_equal =
         |mesh: &Arc<Mesh>| mesh.hull.is_some() == keeps_hull && are_equal(&mesh.spec, spec);
-    if let Some(mesh) = similar.into_iter().find(is_equal) {
+    if let Some(mesh) = namesakes.into_iter().find(is_equal) {
         return Ok(mesh);
     }
     let mesh = Arc::new(process(spec, keeps_hull)?);
     with_processed(|ProcessedMeshes { existing, .. }| {
-        existing.retain(|_, similar| {
-            similar.retain(|mesh| mesh.strong_count() > 0);
-            !similar.is_empty()
-        });
-        existing.entry(key).or_default().push(Arc::downgrade(&mesh));
+        let namesakes = existing.entry(spec.name.clone()).or_default();
+        namesakes.push(Arc::downgrade(&mesh));
     });
     Ok(mesh)
 }
@@ -49,8 +45,13 @@ pub(super) fn keep(meshes: &[Arc<Mesh>]) {
     if meshes.is_empty() {
         return;
     }
-    let mut last = meshes.to_vec();
-    with_processed(|processed| std::mem::swap(&mut processed.last, &mut last));
+    with_processed(|ProcessedMeshes { existing, last }| {
+        *last = meshes.to_vec();
+        existing.retain(|_, namesakes| {
+            namesakes.retain(|mesh| mesh.strong_count() > 0);
+            !namesakes.is_empty()
+        });
+    });
 }
 
 fn with_processed<R>(work: impl FnOnce(&mut ProcessedMeshes) -> R) -> R {

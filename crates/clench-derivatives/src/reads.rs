@@ -81,7 +81,7 @@ fn of_sensor(model: &Model, sensor: &Sensor) -> Option<Reads> {
         SensorTarget::Frame { object, reference } => {
             of_object(object).max(reference.map_or(0, of_object))
         }
-        // Sensors of other elements do not read it.
+        // Of a sensor of another element than a site, `own` is not used.
         SensorTarget::Element(site) => model.sites.get(site).map_or(all, |site| site.body + 1),
         SensorTarget::Nothing
         | SensorTarget::Inside { .. }

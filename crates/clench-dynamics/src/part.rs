@@ -57,7 +57,7 @@ impl Part {
     }
 }
 
-/// Returns the first dof of a joint and of those after it.
+/// Returns the first dof of the joints from `joint` on.
 fn first_dof(model: &Model, joint: usize) -> usize {
     model.joints.get(joint).map_or(model.nv, |joint| joint.dof)
 }

@@ -323,12 +323,10 @@ impl<L: Real<Scalar = f64>, const K: usize> Real for Dual<L, K> {
     /// At an end of the range the derivative is that of the inside: a control at its limit can still be lowered.
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
-        let bounded = self.max(low).min(high);
-        let within = low.value <= self.value && self.value <= high.value;
-        if within && low.value < high.value {
+        if low.value < high.value && (low.value..=high.value).contains(&self.value) {
             self
         } else {
-            bounded
+            self.max(low).min(high)
         }
     }
     #[inline(always)]

@@ -90,7 +90,8 @@ impl<T: Real> NormalForces<T> {
             let residual = force - self.lambda[k];
             let moved = !residual.eq(T::ZERO);
             moves |= moved;
-            // A λ that stays keeps the sign of a zero, which friction would take over if it is evaluated again.
+            // An unchanged λ keeps the sign of a zero. Friction takes over that sign whenever it is evaluated, which other
+            // lanes may cause.
             let lambda = T::select(moved, force, self.lambda[k]);
             let growth = residual - self.residual[k];
             overlap += residual * growth;

@@ -150,7 +150,7 @@ impl<T: Real> Solver<T> {
     pub fn force(&self) -> &[T] {
         &self.results.force
     }
-    /// Returns the constraint forces, which a caller replaces who knows them without a solve.
+    /// Returns the constraint forces, so that a caller that knows them without a solve can set them.
     pub fn force_mut(&mut self) -> &mut Vec<T> {
         &mut self.results.force
     }

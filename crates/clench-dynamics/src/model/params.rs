@@ -133,8 +133,8 @@ impl<T: Real> Params<T> {
 }
 
 impl Params<f64> {
-    /// Replaces the numbers of a field by those of a simulation of a model. Numbers that are the model's in the
-    /// precision of the simulation are the model's in double precision.
+    /// Replaces the numbers of a field by those of a simulation of a model. A number that equals the model's in the
+    /// precision of the simulation becomes the model's in double precision.
     pub fn write_of_simulation<S: Scalar>(
         &mut self,
         field: ParamField,

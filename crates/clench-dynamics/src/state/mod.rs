@@ -336,8 +336,8 @@ impl<T: Real> State<T> {
         time
     }
 
-    /// Copies a keyframe of the model to every lane of an initial state. As in MuJoCo, the stored past of a keyframe of
-    /// a later time is that before time zero.
+    /// Copies a keyframe of the model to every lane of an initial state. As in MuJoCo, the stored past of controls and
+    /// sensors is that before time zero, also at a keyframe of a later time.
     pub fn set_keyframe(&mut self, model: &Model, key: &Keyframe) {
         self.time = T::Clock::splat(key.time);
         for history in model.histories() {

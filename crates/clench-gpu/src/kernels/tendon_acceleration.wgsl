@@ -1,4 +1,4 @@
-// The accelerations of tendons, as their inertia feels them. CPU counterpart: `dynamics/tendon_path.rs`.
+// Accelerations of the lengths of tendons at zero dof acceleration. CPU counterpart: `dynamics/tendon_path.rs`.
 
 // Returns d²length/dt² of a straight part of a string at zero dof acceleration.
 fn span_acceleration(span: Span) -> f32 {
