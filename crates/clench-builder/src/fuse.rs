@@ -55,6 +55,7 @@ pub(super) fn fuse(builder: &ModelBuilder, assets: &Assets) -> Result<Vec<BodySp
                 parent: on.body,
                 pos: here.pos,
                 quat: here.quat,
+                written: body.written.or(Some((body.pos, body.quat))),
                 ..body.clone()
             });
             stayed.push((b, Vec::new()));
@@ -125,22 +126,26 @@ fn affects_motion(builder: &ModelBuilder, masses: &[Mass], b: usize, target: usi
         || from_geoms && (masses[b].adjusted || masses[target].adjusted)
 }
 
-/// Combines the masses of a body and of those fused into it.
+/// Combines the masses of a body and of those fused into it. As in MuJoCo, parts without mass are ignored, but the
+/// body's own inertia counts even if it has no mass.
 fn total(
     builder: &ModelBuilder,
     body: &BodySpec,
     own: MassProperties,
     parts: &[MassProperties],
 ) -> Result<InertialSpec, BuildError> {
-    let heavy: Vec<_> = std::iter::once(&own)
-        .chain(parts)
-        .filter(|part| part.mass > 0.0)
+    let counts = own.mass > 0.0 || own.moments != Vec3::ZERO;
+    let heavy = parts.iter().filter(|part| part.mass > 0.0);
+    let summed: Vec<_> = counts
+        .then_some(&own)
+        .into_iter()
+        .chain(heavy)
         .copied()
         .collect();
-    let sum = match heavy[..] {
+    let sum = match summed[..] {
         [] => own,
         [one] => one,
-        _ => combine(body, &heavy, &builder.compiler)?,
+        _ => combine(body, &summed, &builder.compiler)?,
     };
     let inertial = body.inertial.as_ref();
     Ok(InertialSpec {

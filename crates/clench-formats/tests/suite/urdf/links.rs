@@ -62,6 +62,45 @@ fn links_that_no_joint_moves_become_part_of_their_parents() {
     assert!(fused.iter().zip(&apart).all(|(a, b)| (a - b).abs() < 1e-12));
 }
 
+/// MuJoCo 4.0's numbers.
+#[test]
+fn a_link_without_mass_has_its_inertia_and_its_own_offset() {
+    let inertial = |mass: f64, inertia: f64| {
+        format!(
+            "<inertial><origin xyz='0.1 0 0.2'/><mass value='{mass}'/><inertia ixx='{inertia}' \
+             iyy='{inertia}' izz='{inertia}' ixy='0' ixz='0' iyz='0'/></inertial>"
+        )
+    };
+    let named = |name: &str, more: &str| format!("<link name='{name}'>{more}</link>");
+    let model = loaded(&[
+        named("base", ""),
+        named("a", &inertial(0.0, 0.2)),
+        named("b", &inertial(1.0, 0.1)),
+        named("c", &inertial(0.0, 0.3)),
+        joint("j", "revolute", "base", "a", ""),
+        joint("f", "fixed", "a", "b", "<origin xyz='0 0 1'/>"),
+        joint("g", "fixed", "b", "c", "<origin xyz='0 1 0'/>"),
+    ]);
+    // The moments of `a` and `b`; `c` is ignored.
+    let moments = model.params.body_inertia[1].to_array();
+    assert!(
+        moments.iter().all(|m| (m - 0.3).abs() < 1e-15),
+        "{moments:?}"
+    );
+    assert_eq!(model.params.body_ipos[1].to_array(), [0.1, 0.0, 1.2]);
+
+    let empty = loaded(&[
+        "<mujoco><compiler boundmass='0.5' boundinertia='0.01'/></mujoco>".to_owned(),
+        named("base", ""),
+        named("stand", ""),
+        named("tip", ""),
+        joint("f", "fixed", "base", "stand", "<origin xyz='1 0 0'/>"),
+        joint("j", "revolute", "stand", "tip", "<origin xyz='0 0 2'/>"),
+    ]);
+    assert_eq!(empty.params.body_pos[1].to_array(), [1.0, 0.0, 2.0]);
+    assert_eq!(empty.params.body_ipos[1].to_array(), [0.0, 0.0, 2.0]);
+}
+
 #[test]
 fn the_link_world_is_the_world() {
     let model = loaded(&[
