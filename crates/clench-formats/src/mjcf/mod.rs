@@ -12,7 +12,7 @@ pub(crate) mod compiler;
 mod compose;
 mod contact;
 mod controller;
-mod custom;
+pub(crate) mod custom;
 mod defaults;
 mod equality;
 pub(crate) mod files;

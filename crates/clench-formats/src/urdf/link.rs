@@ -9,29 +9,43 @@ use crate::spending::Spending;
 use clench_builder::{BodySpec, InertiaSpec, InertialSpec, ModelBuilder};
 use clench_math::{Mat3, Quat, Vec3};
 
-/// Reads a link into the world or the next body.
+/// Reads a link other than the world into the next body, without shapes.
 ///
 /// # Errors
 /// Returns an error if the link is invalid.
-pub(super) fn read(
+pub(super) fn read_body(
+    link: &Link,
+    builder: &mut ModelBuilder,
+    spending: &mut Spending,
+) -> Result<(), LoadError> {
+    if link.body == 0 {
+        return Ok(());
+    }
+    let element = link.element;
+    let name = element.string("name");
+    consume(element, size_of::<BodySpec>(), &[&name], spending)?;
+    builder.bodies.push(BodySpec {
+        name,
+        parent: link.parent,
+        quat: Quat::IDENTITY,
+        inertial: read_inertial(element).map_err(inside(element))?,
+        origin: Some(element.origin.clone()),
+        ..BodySpec::default()
+    });
+    Ok(())
+}
+
+/// Reads the shapes of a link into its body.
+///
+/// # Errors
+/// Returns an error if a shape is invalid.
+pub(super) fn read_shapes(
     link: &Link,
     geoms: &mut GeomReader,
     builder: &mut ModelBuilder,
     spending: &mut Spending,
 ) -> Result<(), LoadError> {
     let element = link.element;
-    if link.body > 0 {
-        let name = element.string("name");
-        consume(element, size_of::<BodySpec>(), &[&name], spending)?;
-        builder.bodies.push(BodySpec {
-            name,
-            parent: link.parent,
-            quat: Quat::IDENTITY,
-            inertial: read_inertial(element).map_err(inside(element))?,
-            origin: Some(element.origin.clone()),
-            ..BodySpec::default()
-        });
-    }
     let shapes = geoms.read(element, &mut builder.notes, spending);
     builder.bodies[link.body].geoms = shapes.map_err(inside(element))?;
     Ok(())

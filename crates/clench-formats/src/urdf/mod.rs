@@ -52,7 +52,11 @@ pub(crate) fn read(
         discard_visual: builder.compiler.discardvisual,
     };
     for link in tree.links() {
-        link::read(&link, &mut geoms, &mut builder, spending)?;
+        link::read_body(&link, &mut builder, spending)?;
+    }
+    // As in MuJoCo, the order of the file decides about names that several shapes or meshes have.
+    for link in tree.links_as_written() {
+        link::read_shapes(&link, &mut geoms, &mut builder, spending)?;
     }
     joint::read_all(&tree, &mut builder, spending)?;
     if floating {

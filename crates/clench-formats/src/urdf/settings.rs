@@ -4,7 +4,7 @@ use crate::document::Element;
 use crate::error::LoadError;
 use crate::mjcf::compiler::{self, CompilerOptions};
 use crate::mjcf::option::OptionReader;
-use crate::mjcf::{keyframe, schema};
+use crate::mjcf::{custom, keyframe, schema};
 use clench_builder::{CompilerSpec, ModelBuilder};
 
 /// The sections of MJCF that are permitted in `<mujoco>`.
@@ -46,6 +46,7 @@ pub(super) fn read(
     options.finish(builder);
     if let Some(section) = extension.child("size")? {
         keyframe::pad(section, &mut builder.keyframes)?;
+        custom::read_widths(section, &mut builder.user_widths)?;
     }
     Ok(notation)
 }

@@ -83,11 +83,20 @@ impl<'a> Tree<'a> {
 
     /// Returns the links, each after its parent.
     pub(super) fn links(&self) -> impl Iterator<Item = Link<'a>> {
-        self.order.iter().map(|&link| Link {
+        self.order.iter().map(|&link| self.link(link))
+    }
+
+    /// Returns the links in the order of the file.
+    pub(super) fn links_as_written(&self) -> impl Iterator<Item = Link<'a>> {
+        (0..self.links.len()).map(|link| self.link(link))
+    }
+
+    fn link(&self, link: usize) -> Link<'a> {
+        Link {
             element: self.links[link],
             body: self.body[link],
             parent: self.above[link].map_or(0, |joint| self.body[self.joints[joint].parent]),
-        })
+        }
     }
 
     /// Returns the body that a joint moves.

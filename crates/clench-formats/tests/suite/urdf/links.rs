@@ -62,6 +62,24 @@ fn links_that_no_joint_moves_become_part_of_their_parents() {
     assert!(fused.iter().zip(&apart).all(|(a, b)| (a - b).abs() < 1e-12));
 }
 
+#[test]
+fn the_first_shape_of_the_file_keeps_a_name() {
+    let ball = |name: &str| {
+        let ball = "<collision name='ball'><geometry><sphere radius='0.1'/></geometry></collision>";
+        link(name, ball)
+    };
+    let model = loaded(&[
+        ball("c"),
+        ball("a"),
+        ball("b"),
+        joint("j", "revolute", "a", "b", ""),
+        joint("k", "revolute", "b", "c", ""),
+    ]);
+    // Bodies are in the order of the tree; the link `c` is the first of the file.
+    assert_eq!(names(model.geoms.iter().map(|g| &g.name)), ["", "", "ball"]);
+    assert_eq!(model.notes.len(), 2);
+}
+
 /// MuJoCo 4.0's numbers.
 #[test]
 fn a_link_without_mass_has_its_inertia_and_its_own_offset() {
@@ -166,7 +184,7 @@ fn visual_geoms_are_omitted_unless_the_file_keeps_them() {
 fn settings_of_mujoco_may_stand_in_a_file() {
     let model = loaded(&[
         "<mujoco><compiler boundmass='0.5' boundinertia='0.01'/><option timestep='0.001' gravity='0 0 -1'><flag contact='disable'/></option>\
-         <size nkey='2'/></mujoco>"
+         <size nkey='2' nuser_body='3'/></mujoco>"
             .to_owned(),
         "<link name='a'/><link name='b'/>".to_owned(),
         joint("j", "revolute", "a", "b", ""),
@@ -175,6 +193,7 @@ fn settings_of_mujoco_may_stand_in_a_file() {
     assert!(!model.flags.contact);
     assert_eq!(model.keyframes.len(), 2);
     assert_eq!(model.params.body_mass[1], 0.5);
+    assert_eq!(model.bodies[1].user.len(), 3);
 }
 
 #[test]
