@@ -39,6 +39,21 @@ pub(crate) struct Class {
     pub actuator: ActuatorDraft,
 }
 
+impl Class {
+    /// Returns the assets that an element of the class refers to by default: the attributes and the names.
+    pub(super) fn assets_of(&self, tag: &str) -> Vec<(&'static str, &str)> {
+        let [mesh, hfield, material] = self.geom.assets();
+        let [site_mesh, site_material] = self.site.assets();
+        match tag {
+            "geom" => vec![("mesh", mesh), ("hfield", hfield), ("material", material)],
+            "site" => vec![("mesh", site_mesh), ("material", site_material)],
+            "spatial" => vec![("material", &self.tendon.appearance.material)],
+            "material" => vec![("texture", &self.material.texture)],
+            _ => Vec::new(),
+        }
+    }
+}
+
 /// All classes of a model; the first is `main`, the root of all others.
 #[derive(Debug)]
 pub(crate) struct Classes {

@@ -112,6 +112,12 @@ impl GeomDraft {
         self.spec.mesh.len() + self.spec.hfield.len()
     }
 
+    /// Returns the names of assets that it has: of a mesh, of a height field and of a material.
+    pub(super) fn assets(&self) -> [&str; 3] {
+        let geom = &self.spec;
+        [&geom.mesh, &geom.hfield, &geom.appearance.material]
+    }
+
     /// Returns the geom in its body, with shorthand resolved, and the deformation of its shape by the enclosing frames.
     pub(super) fn finish(
         mut self,

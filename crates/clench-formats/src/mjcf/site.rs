@@ -65,6 +65,11 @@ impl SiteDraft {
         read_appearance(element, &mut self.appearance)
     }
 
+    /// Returns the names of assets that it has: of a mesh and of a material.
+    pub(super) fn assets(&self) -> [&str; 2] {
+        [&self.mesh, &self.appearance.material]
+    }
+
     /// Returns the site in its body, and the deformation of its shape by the enclosing frames.
     pub(super) fn finish(
         mut self,

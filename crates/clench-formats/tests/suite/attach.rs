@@ -73,6 +73,51 @@ fn an_attached_body_brings_its_references_and_the_settings_of_its_file() {
     assert!(model.build().is_ok());
 }
 
+/// The names are MuJoCo's. A class that the enclosing model uses refers to that model's assets.
+#[test]
+fn assets_that_classes_name_are_those_of_the_attached_file() {
+    let arm = "<mujoco model='arm'>
+      <default>
+        <geom material='mat'/><tendon material='mat'/><material texture='tex'/>
+        <default class='x'><geom type='mesh' mesh='m'/><site material='mat'/></default>
+      </default>
+      <asset>
+        <mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/><material name='mat'/>
+        <texture name='tex' type='2d' builtin='flat' width='2' height='2'/>
+      </asset>
+      <worldbody>
+        <body name='A' childclass='x'><geom/><site name='s'/><geom class='main' size='1'/></body>
+        <site name='t'/>
+      </worldbody>
+      <tendon><spatial><site site='s'/><site site='t'/></spatial></tendon>
+    </mujoco>";
+    let main = "<mujoco>
+      <asset><model name='arm' file='arm.xml'/><mesh name='m' vertex='0 0 0 2 0 0 0 1 0 0 0 1'/>
+        <material name='mat'/></asset>
+      <worldbody>
+        <frame><attach model='arm' prefix='p_'/></frame><frame><attach model='arm' prefix='q_'/></frame>
+        <geom class='q_x'/>
+      </worldbody></mujoco>";
+    let files = Files::new(&[("main.xml", main), ("arm.xml", arm)]);
+    let model = files.read().expect("it is a valid model");
+    for (body, prefix) in [(1, "p_"), (2, "q_")] {
+        let (mesh, material) = (format!("{prefix}m"), format!("{prefix}mat"));
+        let body = &model.bodies[body];
+        assert_eq!(names(&body.geoms, |g| &g.mesh), [&mesh, ""]);
+        assert_eq!(
+            names(&body.geoms, |g| &g.appearance.material),
+            [&material; 2]
+        );
+        assert_eq!(&*body.sites[0].appearance.material, material);
+    }
+    assert_eq!(model.bodies[0].geoms[0].mesh, "m");
+    let tendons = names(&model.tendons, |t| &t.appearance.material);
+    assert_eq!(tendons, ["p_mat", "q_mat"]);
+    let textures = names(&model.materials, |m| &m.texture);
+    assert_eq!(textures, ["", "p_tex", "q_tex"]);
+    assert!(model.build().is_ok());
+}
+
 #[test]
 fn a_whole_world_stands_where_it_is_attached() {
     let model = attached("<attach model='arm' prefix='q'/>", "");

@@ -7,6 +7,7 @@
 mod attach;
 mod attached_keyframe;
 mod composer;
+mod inherited;
 pub(crate) mod keyframes;
 mod models;
 mod names;
@@ -182,6 +183,7 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError>
     shared.check(&mut root)?;
     shared.open.push(identity);
     let (settings, attached) = compose_model(&mut root, directory, shared)?;
+    inherited::write_assets(&mut root, shared)?;
     shared.open.pop();
     let keyframes = keyframes::split(&mut root, attached, shared)?;
     Ok(Part {
