@@ -1,12 +1,12 @@
 //! `<asset>`: meshes and height fields. A referenced material must exist.
 
-use super::sections::{entries, sections};
+use super::sections::entries;
 use super::source::Sources;
 use super::{hfield, schema};
 use crate::document::Element;
 use crate::error::LoadError;
 use crate::spending::Spending;
-use clench_builder::ModelBuilder;
+use clench_builder::{AppearanceSpec, ModelBuilder, Origin};
 use std::collections::BTreeSet;
 
 /// Reads the meshes and height fields.
@@ -37,29 +37,34 @@ pub(crate) fn read(
     Ok(())
 }
 
-/// Checks that every material referenced in the body tree exists.
-pub(crate) fn check_materials(root: &Element) -> Result<(), LoadError> {
-    let materials = entries(root, "asset").filter(|asset| asset.tag == "material");
-    let known = materials
-        .filter_map(|material| material.text("name"))
-        .collect();
-    for section in sections(root, "worldbody") {
-        let mut pending = vec![section];
-        while let Some(element) = pending.pop() {
-            check_material(element, &known)?;
-            pending.extend(element.children.iter().rev());
+/// Checks that the material of every geom, site and tendon exists, whether the element, its class or its mesh names it.
+pub(crate) fn check_materials(builder: &ModelBuilder) -> Result<(), LoadError> {
+    let materials = builder.materials.iter();
+    let known: BTreeSet<&str> = materials.map(|m| m.surface.name.as_str()).collect();
+    let check = |tag: &str, name: &str, appearance: &AppearanceSpec, origin: &Option<Origin>| {
+        let material = &*appearance.material;
+        let Some(origin) = origin else {
+            return Ok(());
+        };
+        if material.is_empty() || known.contains(material) {
+            return Ok(());
+        }
+        let element = match name.is_empty() {
+            true => tag.to_owned(),
+            false => format!("{tag} \"{name}\""),
+        };
+        let hint = schema::suggestion(material, known.iter().copied());
+        let message = format!("there is no material \"{material}\"{hint}");
+        Err(LoadError::element(origin, element, message))
+    };
+    for body in &builder.bodies {
+        for geom in &body.geoms {
+            check("geom", &geom.name, &geom.appearance, &geom.origin)?;
+        }
+        for site in &body.sites {
+            check("site", &site.name, &site.appearance, &site.origin)?;
         }
     }
-    Ok(())
-}
-
-fn check_material(element: &Element, known: &BTreeSet<&str>) -> Result<(), LoadError> {
-    let unknown = |name: &&str| !name.is_empty() && !known.contains(name);
-    match element.text("material").filter(unknown) {
-        Some(name) => {
-            let hint = schema::suggestion(name, known.iter().copied());
-            Err(element.error(format!("there is no material \"{name}\"{hint}")))
-        }
-        None => Ok(()),
-    }
+    let mut tendons = builder.tendons.iter();
+    tendons.try_for_each(|tendon| check("tendon", &tendon.name, &tendon.appearance, &tendon.origin))
 }

@@ -39,6 +39,7 @@ mod shortcut;
 mod site;
 mod source;
 mod support;
+mod targets;
 mod tendon;
 mod texture;
 mod transmission;
@@ -74,7 +75,6 @@ pub(crate) fn read(
     let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
     Includes::new(path, spending).expand(&mut root, directory, spending)?;
     let composed = compose::compose(root, path, packages, ignore_unsupported, spending)?;
-    assets::check_materials(&composed.root)?;
     read_model(&composed, spending)
 }
 
@@ -112,6 +112,8 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     builder
         .keyframes
         .extend(compose::keyframes::resolve(keyframes, root, numbers));
+    assets::check_materials(&builder)?;
+    targets::check(root, &builder.bodies)?;
     for size in sections(root, "size") {
         keyframe::pad(size, &mut builder.keyframes)?;
         custom::read_widths(size, &mut builder.user_widths)?;

@@ -49,22 +49,32 @@ pub(crate) fn read(
     }
     match discarded {
         true => Ok(()),
-        false => check_textures(root, builder),
+        false => check_textures(root, sources, builder),
     }
 }
 
 /// Checks that every texture that a material refers to exists.
-fn check_textures(root: &Element, builder: &ModelBuilder) -> Result<(), LoadError> {
+fn check_textures(
+    root: &Element,
+    sources: &Sources,
+    builder: &ModelBuilder,
+) -> Result<(), LoadError> {
     let textures = entries(root, "asset").filter(|asset| asset.tag == "texture");
     let known: BTreeSet<&str> = (textures.filter_map(|texture| texture.text("name")))
         .chain(builder.textures.iter().map(|texture| texture.name.as_str()))
         .collect();
     let materials = entries(root, "asset").filter(|asset| asset.tag == "material");
     for element in materials {
+        let class = sources.of(element).classes.of(element)?;
+        let inherited = (element, Some(&*class.material.texture));
         let layers = element.children.iter().filter(|child| child.tag == "layer");
-        for part in layers.chain([element]) {
-            let named = part.text("texture").filter(|name| !name.is_empty());
-            if let Some(name) = named.filter(|name| !known.contains(name)) {
+        let named = layers
+            .chain([element])
+            .map(|part| (part, part.text("texture")));
+        let overridden = !element.children.is_empty() || element.text("texture").is_some();
+        for (part, name) in named.chain((!overridden).then_some(inherited)) {
+            let name = name.filter(|name| !name.is_empty());
+            if let Some(name) = name.filter(|name| !known.contains(name)) {
                 let hint = schema::suggestion(name, known.iter().copied());
                 return Err(part.error(format!("there is no texture \"{name}\"{hint}")));
             }

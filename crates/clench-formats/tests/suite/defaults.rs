@@ -156,3 +156,35 @@ fn unsupported_attributes_are_accepted_in_unused_classes() {
                   <worldbody><geom class='c' type='box' size='1 1 1'/></worldbody>";
     assert_eq!(read(shaped).bodies[0].geoms.len(), 1);
 }
+
+#[test]
+fn assets_that_classes_name_must_exist() {
+    let expect = |sections: &str, message: &str| {
+        let text = format!("<mujoco>{sections}</mujoco>");
+        let error = read_str(&text).expect_err(sections).to_string();
+        assert!(error.starts_with(message), "{error}");
+    };
+    let worldbody = "<worldbody><site name='s'/><site name='t'/><body><geom name='g' size='1'/></body></worldbody>";
+    let string = "<tendon><spatial name='c'><site site='s'/><site site='t'/></spatial></tendon>";
+    for (tag, element) in [
+        ("geom", "geom \"g\""),
+        ("site", "site \"s\""),
+        ("tendon", "tendon \"c\""),
+    ] {
+        expect(
+            &format!("<default><{tag} material='no'/></default>{worldbody}{string}"),
+            &format!("line 1: {element}: there is no material \"no\""),
+        );
+    }
+    expect(
+        "<default><material texture='no'/></default><asset><material name='m'/></asset>",
+        "line 1: material \"m\": there is no texture \"no\"",
+    );
+    // A mesh lends its material to its geoms; without any, none is needed.
+    let mesh = "<asset><mesh name='m' material='no' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset>";
+    read(mesh);
+    expect(
+        &format!("{mesh}<worldbody><geom type='mesh' mesh='m'/></worldbody>"),
+        "line 1: geom: there is no material \"no\"",
+    );
+}

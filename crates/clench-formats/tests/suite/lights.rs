@@ -66,6 +66,7 @@ fn numbers_are_those_of_the_file_or_of_mujoco() {
     for (light, words) in [
         ("dir='0 0 0'", "must not be zero"),
         ("mode='targetbody' target='x'", "\"x\""),
+        ("target='x'", "\"x\""),
         ("directional='true' type='point'", "directional"),
     ] {
         let text = format!("<mujoco><worldbody><light {light}/></worldbody></mujoco>");
