@@ -25,16 +25,22 @@ pub(crate) fn read(element: &Element) -> Result<KeyframeSpec, LoadError> {
 /// The maximum number of keyframes.
 const MAX_KEYFRAMES: usize = 10_000;
 
-/// Adds keyframes in the initial state up to the number that a `<size>` requests.
-pub(crate) fn pad(size: &Element, keyframes: &mut Vec<KeyframeSpec>) -> Result<(), LoadError> {
+/// Adds keyframes in the initial state until they and those of attached models, which follow, are as many as a `<size>`
+/// requests.
+pub(crate) fn pad(
+    size: &Element,
+    keyframes: &mut Vec<KeyframeSpec>,
+    attached: usize,
+) -> Result<(), LoadError> {
     // MuJoCo writes -1 for "as many as there are".
     let requested = size.integer("nkey")?.unwrap_or(-1).max(-1);
     let requested = usize::try_from(requested).unwrap_or(0);
     if requested > MAX_KEYFRAMES {
         return Err(size.error(format!("nkey is more than {MAX_KEYFRAMES}")));
     }
-    if keyframes.len() < requested {
-        keyframes.resize_with(requested, KeyframeSpec::default);
+    let own = requested.saturating_sub(attached);
+    if keyframes.len() < own {
+        keyframes.resize_with(own, KeyframeSpec::default);
     }
     Ok(())
 }

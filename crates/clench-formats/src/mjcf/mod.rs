@@ -109,15 +109,15 @@ fn read_model(composed: &Composed, spending: &mut Spending) -> Result<ModelBuild
     }
     let (numbers, frames) = bodies.finish();
     relations::read(root, sources, &mut builder)?;
-    builder
-        .keyframes
-        .extend(compose::keyframes::resolve(keyframes, root, numbers));
     assets::check_materials(&builder)?;
     targets::check(root, &builder.bodies)?;
     for size in sections(root, "size") {
-        keyframe::pad(size, &mut builder.keyframes)?;
+        keyframe::pad(size, &mut builder.keyframes, keyframes.len())?;
         custom::read_widths(size, &mut builder.user_widths)?;
     }
+    builder
+        .keyframes
+        .extend(compose::keyframes::resolve(keyframes, root, numbers));
     let shortcuts = relations::shortcuts(root, sources)?;
     frames.scale_remaining(&shortcuts, &mut builder, spending)?;
     builder.custom = custom::read(root, &mut builder.options, spending)?;

@@ -45,7 +45,7 @@ pub(super) fn read(
     }
     options.finish(builder);
     if let Some(section) = extension.child("size")? {
-        keyframe::pad(section, &mut builder.keyframes)?;
+        keyframe::pad(section, &mut builder.keyframes, 0)?;
         custom::read_widths(section, &mut builder.user_widths)?;
     }
     Ok(notation)

@@ -162,3 +162,26 @@ fn near(found: &[f64], expected: &[f64]) {
         "{found:?} {expected:?}"
     );
 }
+
+#[test]
+fn those_that_a_size_requests_come_before_those_of_attached_models() {
+    let times = |conflict: &str, own: &str, attached: &str| {
+        let part = format!(
+            "<mujoco>{attached}<worldbody><body><joint/><geom size='1'/></body></worldbody>
+             <keyframe><key name='a' time='3'/><key name='b' time='4'/></keyframe></mujoco>"
+        );
+        let main = format!(
+            "<mujoco><compiler conflict='{conflict}'/>{own}<asset><model name='part' file='part.xml'/></asset>
+             <worldbody><frame><attach model='part' prefix='x_'/></frame></worldbody>
+             <keyframe><key time='1'/></keyframe></mujoco>"
+        );
+        let files = Files::new(&[("main.xml", main.as_str()), ("part.xml", part.as_str())]);
+        let model = files.read().expect("it is a valid model");
+        Vec::from_iter(model.keyframes.iter().map(|key| key.time))
+    };
+    let [four, five] = ["<size nkey='4'/>", "<size nkey='5'/>"];
+    assert_eq!(times("warning", four, ""), [1.0, 0.0, 3.0, 4.0]);
+    assert_eq!(times("warning", "", five), [1.0, 3.0, 4.0]);
+    assert_eq!(times("merge", four, five), [1.0, 0.0, 0.0, 3.0, 4.0]);
+    assert_eq!(times("merge", five, four), [1.0, 0.0, 0.0, 3.0, 4.0]);
+}

@@ -47,6 +47,7 @@ const OPTIONS: &[(&str, Merge)] = &[
 
 /// The attributes of `<size>`, merged to the largest value; -1 means unset.
 const SIZES: &[&str] = &[
+    "nkey",
     "nuser_body",
     "nuser_jnt",
     "nuser_geom",
