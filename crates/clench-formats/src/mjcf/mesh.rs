@@ -131,10 +131,11 @@ fn read_or_written(
     if name.is_empty() {
         name.clone_from(&file.stem);
     }
-    let format = match element.text("content_type") {
-        Some(media_type) => Format::from_media_type(media_type),
-        None => Format::from_extension(&file.extension),
-    };
+    // As in MuJoCo, the name counts if the type is not one of a mesh.
+    let of_type = element
+        .text("content_type")
+        .and_then(Format::from_media_type);
+    let format = of_type.or_else(|| Format::from_extension(&file.extension));
     let wrong = || {
         element.error("a mesh file is STL, OBJ, MSH, Collada (.dae) or glTF (.glb, .gltf), and its name says which")
     };

@@ -80,7 +80,10 @@ pub(super) fn read(
 /// Returns the media type of a texture file, from the element or the file name.
 fn media_type(element: &Element, file: &Content) -> Result<&'static str, LoadError> {
     let extension = file.extension.to_ascii_lowercase();
-    let said = element.text("content_type").unwrap_or(match &*extension {
+    let written = element
+        .text("content_type")
+        .filter(|written| !written.is_empty());
+    let said = written.unwrap_or(match &*extension {
         "png" => "image/png",
         "ktx" => "image/ktx",
         _ => "",

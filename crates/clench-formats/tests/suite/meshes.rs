@@ -20,6 +20,8 @@ fn every_format_reads_the_same_cube() {
             r"file='deep\cube.obj'",
             "file='cube.msh'",
             "file='cube.bin' content_type='model/vnd.mujoco.msh'",
+            "file='cube.msh' content_type=''",
+            "file='cube.stl' content_type='application/octet-stream'",
             &written(),
         ] {
             let model = folder.load_mesh(&format!("{source} inertia='{inertia}'"));

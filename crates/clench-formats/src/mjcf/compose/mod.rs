@@ -193,17 +193,15 @@ fn read_model(element: &Element, shared: &mut Shared) -> Result<Part, LoadError>
     })
 }
 
-/// Rejects a file that is not MJCF by its content type or its name.
+/// Rejects a file that is MJCF neither by its content type nor by its name.
 pub(crate) fn check_type(element: &Element, name: &str) -> Result<(), LoadError> {
-    let known = match element.text("content_type") {
-        Some(media_type) => ["text/xml", "application/xml"].contains(&media_type),
-        None => Path::new(name).extension().is_some_and(|extension| {
-            ["xml", "mjcf", "urdf"]
-                .iter()
-                .any(|known| extension.eq_ignore_ascii_case(known))
-        }),
+    let media_type = element.text("content_type").unwrap_or_default();
+    let is_known = |extension: &std::ffi::OsStr| {
+        let mut known = ["xml", "mjcf", "urdf"].into_iter();
+        known.any(|known| extension.eq_ignore_ascii_case(known))
     };
-    match known {
+    let named = Path::new(name).extension().is_some_and(is_known);
+    match named || ["text/xml", "application/xml"].contains(&media_type) {
         true => Ok(()),
         false => Err(element.error("a model's file is MJCF: \".xml\", or content_type text/xml")),
     }
