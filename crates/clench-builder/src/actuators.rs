@@ -158,11 +158,9 @@ fn reflect(
     model: &mut Model,
 ) -> Result<(), BuildError> {
     if spec.damping != [0.0; 3] || spec.armature != 0.0 {
-        // As in MuJoCo, the target of an orientation servo gets neither.
-        use Transmission::{Joint, JointInParent, Rotation, RotationInFrame, Tendon};
-        let (Joint(_) | JointInParent(_) | Tendon(_) | Rotation(_) | RotationInFrame(_)) =
-            transmission
-        else {
+        // As in MuJoCo, the ball joint of an orientation servo gets neither.
+        use Transmission::{Joint, JointInParent, Rotation, Tendon};
+        let (Joint(_) | JointInParent(_) | Tendon(_) | Rotation(_)) = transmission else {
             return Err(spec.error("damping and armature of an actuator need a joint or a tendon"));
         };
         model.let_reflect(model.actuators.len() - 1);

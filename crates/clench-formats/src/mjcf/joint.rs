@@ -56,7 +56,7 @@ pub(crate) fn read_free(element: &Element) -> Result<JointSpec, LoadError> {
 /// As in MuJoCo, degrees apply to the range of hinge and ball joints if it is a limit, their yield, and the reference
 /// angles of hinge joints.
 pub(crate) fn finish(mut joint: JointSpec, compiler: &CompilerOptions, frame: &Pose) -> JointSpec {
-    let limits = joint.limited != Some(false);
+    let limits = joint.limited.unwrap_or(joint.range[0] < joint.range[1]);
     if limits && matches!(joint.kind, JointKind::Hinge | JointKind::Ball) {
         joint.range = joint.range.map(|angle| compiler.radians(angle));
     }

@@ -355,3 +355,22 @@ fn fused_bodies_are_those_that_nothing_needs() {
         "<contact><pair geom1='on_f' geom2='on_b'/></contact>"
     ));
 }
+
+/// MuJoCo 4.0's numbers: degrees are converted only if the range is a limit.
+#[test]
+fn a_range_that_is_no_limit_is_stored_as_written() {
+    let range = |joint: &str| {
+        let text = format!(
+            "<mujoco><worldbody><body><joint {joint}/><geom size='1'/></body></worldbody></mujoco>"
+        );
+        let model = load_str(&text).expect("it is a valid model");
+        (model.joints[0].limited, model.params.jnt_range[0])
+    };
+    assert_eq!(range("range='-180 180'"), (true, [-PI, PI]));
+    assert_eq!(range("range='20 10'"), (false, [20.0, 10.0]));
+    assert_eq!(range("type='ball' range='20 10'"), (false, [20.0, 10.0]));
+    assert_eq!(
+        range("range='0 180' limited='false'"),
+        (false, [0.0, 180.0])
+    );
+}

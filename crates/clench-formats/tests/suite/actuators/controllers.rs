@@ -146,3 +146,19 @@ fn a_general_of_a_motors_class_has_its_activations_and_no_range_of_them() {
         (None, [-1.0, 1.0])
     );
 }
+
+#[test]
+fn an_orientation_servo_between_sites_damps_nothing() {
+    let load = |servo: &str| {
+        clench_formats::load_str(&format!(
+            "<mujoco><default><general damping='1'/></default>
+             <worldbody>
+               <site name='w'/><body><joint name='j' type='ball'/><geom size='1'/><site name='s'/></body>
+             </worldbody>
+             <actuator><orientation {servo}/></actuator></mujoco>"
+        ))
+    };
+    load("joint='j'").expect("it is a valid model");
+    let error = load("site='s' refsite='w'").expect_err("MuJoCo refuses it");
+    assert!(error.message.contains("damping and armature"), "{error}");
+}
