@@ -185,7 +185,7 @@ fn principal(
     };
     if moments.z < least {
         return Err(body.error(format!(
-            "inertia must be positive definite, but its smallest principal moment is {}",
+            "inertia must be positive definite, but its smallest principal moment is {:?}",
             moments.z
         )));
     }

@@ -1,20 +1,28 @@
 //! Conversion of text that MuJoCo's XML parser, TinyXML, accepts to strict XML.
 //!
-//! Comments may contain `--`, values `<` and a bare `&`, and attributes may follow each other without a space. Text
-//! between elements and elements after the first are ignored. Line numbers are preserved for errors.
+//! Comments may contain `--`, values `<` and a bare `&`, and attributes may follow each other without a space. Prefixes
+//! of names need no declaration. Text between elements is ignored, and so is all that follows the first element or a
+//! NUL. Line numbers are preserved for errors.
+
+/// The maximum number of prefixes that are declared; the parser copies declarations from element to element.
+const MAX_PREFIXES: usize = 10;
 
 /// Converts text that TinyXML accepts to strict XML.
 pub(crate) fn strict(text: &str) -> String {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut writer = Writer {
-        rest: text.strip_prefix('\u{feff}').unwrap_or(text),
+        rest: text.split('\0').next().unwrap_or_default(),
         out: String::with_capacity(text.len() + text.len() / 8),
         depth: 0,
         complete: false,
+        root: None,
+        prefixes: Vec::new(),
     };
     while !writer.rest.is_empty() && !writer.complete {
         writer.piece();
     }
     writer.end();
+    writer.declare();
     writer.out
 }
 
@@ -25,6 +33,10 @@ struct Writer<'a> {
     depth: usize,
     /// True if the first element has ended.
     complete: bool,
+    /// The end of the first element's name in the output.
+    root: Option<usize>,
+    /// The prefixes of names.
+    prefixes: Vec<String>,
 }
 
 impl<'a> Writer<'a> {
@@ -89,6 +101,7 @@ impl<'a> Writer<'a> {
         while let Some((at, c)) = chars.next() {
             match c {
                 '>' => {
+                    self.root.get_or_insert(self.out.len());
                     self.out.push('>');
                     self.rest = &self.rest[at + 1..];
                     match (closes, last) {
@@ -121,6 +134,12 @@ impl<'a> Writer<'a> {
                     return;
                 }
                 c => {
+                    if c == ':' {
+                        self.prefix();
+                    }
+                    if self.root.is_none() && (c.is_whitespace() || c == '/') {
+                        self.root = Some(self.out.len());
+                    }
                     self.out.push(c);
                     if !c.is_whitespace() {
                         last = c;
@@ -129,6 +148,29 @@ impl<'a> Writer<'a> {
             }
         }
         self.rest = "";
+    }
+
+    /// Records the name at the end of the output, which precedes a colon.
+    fn prefix(&mut self) {
+        let is_border = |c: char| c.is_whitespace() || "<>/=\"'".contains(c);
+        let name = self.out.rsplit(is_border).next().unwrap_or_default();
+        let known = ["", "xml", "xmlns"].contains(&name) || self.prefixes.iter().any(|p| p == name);
+        if !known && self.prefixes.len() < MAX_PREFIXES {
+            self.prefixes.push(name.to_owned());
+        }
+    }
+
+    /// Declares the prefixes that are used and not declared, in the first element.
+    fn declare(&mut self) {
+        let Some(root) = self.root else {
+            return;
+        };
+        for prefix in std::mem::take(&mut self.prefixes) {
+            if !self.out.contains(&format!("xmlns:{prefix}")) {
+                let declaration = format!(" xmlns:{prefix}=\"{prefix}\"");
+                self.out.insert_str(root, &declaration);
+            }
+        }
     }
 
     /// Writes a value in quotes.

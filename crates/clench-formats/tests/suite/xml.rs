@@ -30,6 +30,13 @@ fn elements_after_the_model_do_not_count() {
 }
 
 #[test]
+fn a_file_ends_at_a_nul() {
+    loads("<mujoco/>\n\0");
+    loads("<mujoco/>\0text");
+    assert!(read_str("<mujoco>\0</mujoco>").is_err());
+}
+
+#[test]
 fn text_between_elements_does_not_count() {
     loads(
         "<mujoco>a & b<worldbody>x<body name='b'>y</body></worldbody><![CDATA[ <foo> ]]></mujoco>",
@@ -61,6 +68,25 @@ fn the_root_may_name_its_schema() {
     loads(
         "<mujoco xmlns:xsi='http://www.w3.org/2001/XMLSchema-instance' xsi:noNamespaceSchemaLocation='mjcf.xsd'/>",
     );
+}
+
+#[test]
+fn prefixes_need_no_declaration() {
+    let robot = |root: &str| {
+        format!(
+            "<robot{root}>\n<link name='a'/><link name='b'><inertial><mass value='1'/>
+             <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>
+             <drake:joint name='k' type='fixed'/><joint name='j' type='revolute'>
+             <parent link='a'/><child link='b'/><limit drake:acceleration='2' lower='-1' upper='1'/></joint></robot>"
+        )
+    };
+    for root in ["", " name='r'", " xml:lang='en' name='a:b'", " foo:bar='1'"] {
+        let read = clench_formats::load_str(&robot(root)).expect("MuJoCo loads it");
+        assert_eq!(read.joints.len(), 1, "{root}");
+    }
+    loads("<mujoco xsi:noNamespaceSchemaLocation='mjcf.xsd'/>");
+    let error = read_str("<mujoco>\n<worldbody><a:geom/></worldbody></mujoco>");
+    assert_eq!(error.expect_err("MuJoCo refuses it").line, Some(2));
 }
 
 #[test]
