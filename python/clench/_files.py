@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from pathlib import Path
 
+from clench._tolerant import meshes_of_urdf, root_name, tree
 from clench.errors import LoadError
 
 # Attributes that name files of assets.
@@ -85,8 +86,8 @@ class Files:
 
     def _read_meshes_of_urdf(self, path: Path) -> None:
         """Reads the meshes that lie where an attached URDF file says, or beside it. The build reports others."""
-        for mesh in ET.fromstring(self.assets[path.name]).iter("mesh"):
-            file = mesh.get("filename", "").replace("\\", "/")
+        for name in meshes_of_urdf(self.assets[path.name].decode("utf-8", "replace")):
+            file = name.replace("\\", "/")
             place = _first([path.parent / file, path.parent / Path(file).name])
             if place.is_file():
                 self.add_files({file: read(place, str(place))})
@@ -116,7 +117,7 @@ def read(path: Path, source: str) -> bytes:
 
 def parsed(text: str, source: str) -> ET.Element:
     try:
-        root = ET.fromstring(text)
+        root = tree(text)
     except ET.ParseError as error:
         raise LoadError(str(error), source, error.position[0]) from None
     if root.tag not in ("mujoco", "mujocoinclude"):
@@ -126,7 +127,4 @@ def parsed(text: str, source: str) -> ET.Element:
 
 def is_urdf(path: Path) -> bool:
     """Returns true if a file describes a robot in URDF."""
-    try:
-        return ET.fromstring(read(path, str(path)).decode("utf-8", "replace")).tag == "robot"
-    except ET.ParseError:
-        return False
+    return root_name(read(path, str(path)).decode("utf-8", "replace")).lower() == "robot"

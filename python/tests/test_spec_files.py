@@ -62,3 +62,24 @@ def test_files_are_found_as_in_a_model(tmp_path: Path) -> None:
     built, loaded = clench.ModelSpec.from_file(path).build(), clench.Model.from_file(path)
     np.testing.assert_array_equal(built.body_mass, loaded.body_mass)
     assert built.body_mass[2] == pytest.approx(8 * built.body_mass[1])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<!-- a -- b --><mujoco model='a &amp; b'><worldbody/></mujoco>",
+        "\ufeff<!DOCTYPE mujoco>\n<mujoco model='a & b'><worldbody/></mujoco>\n<mujoco/>",
+        "<mujoco model='a & b'>1 & 2<worldbody/></mujoco>\n\0",
+        "<mujoco model='a & b'><size nuser_body='1'nuser_geom='2'/><worldbody/></mujoco>",
+    ],
+)
+def test_text_that_mujoco_accepts_beyond_xml(text: str, tmp_path: Path) -> None:
+    (tmp_path / "model.xml").write_text(text)
+    clench.Model.from_file(tmp_path / "model.xml")
+    spec = clench.ModelSpec.from_file(tmp_path / "model.xml")
+    assert spec.name == "a & b" and spec.build().nbody == 1
+
+
+def test_a_robot_is_recognized_by_its_first_element(tmp_path: Path) -> None:
+    (tmp_path / "a.urdf").write_text("\n<?xml version='1.0'?><!-- <mujoco> -- --><Robot name='r'><link name='a'/>&</Robot>")
+    assert clench.ModelSpec.from_file(tmp_path / "a.urdf").build().nbody == 1
