@@ -129,3 +129,32 @@ def test_forces_of_tendons_after_a_step_are_those_of_its_start() -> None:
     batch.step()
     np.testing.assert_array_equal(batch.cfrc_ext, before[0])
     np.testing.assert_array_equal(batch.cfrc_int, before[1])
+
+
+def test_a_distance_of_bodies_is_the_least_of_their_geoms() -> None:
+    """Also where they overlap, and beyond the cutoff."""
+    shapes = {"sphere": ".1", "capsule": ".05 .2", "box": ".1 .2 .05", "ellipsoid": ".2 .1 .05", "cylinder": ".1 .05"}
+    spec = clench.ModelSpec()
+    spec.world.add_geom(name="w0", type="plane", size=[1, 1, 1])
+    for name, x in (("a", 0.0), ("b", 0.9)):
+        body = spec.world.add_body(name=name, pos=[x, 0, 0.6])
+        body.add_freejoint()
+        for k, (shape, size) in enumerate(shapes.items()):
+            pos, euler = [0.1 * k, 0.2 * (k % 2), -0.1 * k], [30 * k, 20, 0]
+            body.add_geom(name=f"{name}{k}", type=shape, size=size, pos=pos, euler=euler)
+    names = {"a": [f"a{k}" for k in range(5)], "b": [f"b{k}" for k in range(5)], "world": ["w0"]}
+    pairs = [("a", "b"), ("b", "a"), ("a", "world"), ("world", "b")]
+    for first, second in pairs:
+        spec.add_sensor("distance", body1=first, body2=second, cutoff=0.6)
+        for a in names[first]:
+            for b in names[second]:
+                spec.add_sensor("distance", geom1=a, geom2=b, cutoff=0.6)
+    sim = clench.Sim(spec.build())
+    rng = np.random.default_rng(3)
+    for _ in range(30):
+        sim.qpos[:] = rng.normal(0.3, 0.5, 14)
+        found, at = sim.sensordata, 0
+        for first, second in pairs:
+            count = len(names[first]) * len(names[second])
+            assert found[at] == found[at + 1 : at + 1 + count].min()
+            at += 1 + count

@@ -81,5 +81,6 @@ def test_text_that_mujoco_accepts_beyond_xml(text: str, tmp_path: Path) -> None:
 
 
 def test_a_robot_is_recognized_by_its_first_element(tmp_path: Path) -> None:
-    (tmp_path / "a.urdf").write_text("\n<?xml version='1.0'?><!-- <mujoco> -- --><Robot name='r'><link name='a'/>&</Robot>")
+    text = "\n<?xml version='1.0'?><!-- <mujoco> -- --><Robot name='r'><link name='a'/>&</Robot>"
+    (tmp_path / "a.urdf").write_text(text)
     assert clench.ModelSpec.from_file(tmp_path / "a.urdf").build().nbody == 1

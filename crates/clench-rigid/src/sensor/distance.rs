@@ -1,7 +1,7 @@
 //! The smallest distance between two sets of geoms. Each lane is searched separately.
 
 use super::read::Reading;
-use clench_collide::{Pose, Separation, Shape, distance};
+use clench_collide::{Bound, Pose, Separation, Shape, distance, near};
 use clench_dynamics::model::{Sensor, SensorKind};
 use clench_dynamics::sensor_group;
 use clench_math::{Real, Vec3};
@@ -49,11 +49,13 @@ impl<T: Real> Reading<'_, T> {
     ) -> Option<Separation<T::Scalar>> {
         let mut best: Option<Separation<T::Scalar>> = None;
         for a in first.clone() {
+            let (shape_a, pose_a) = self.solid(a, lane);
+            let bound = Bound::new(&shape_a, &pose_a);
             for b in second.clone() {
-                let (shape_a, pose_a) = self.solid(a, lane);
                 let (shape_b, pose_b) = self.solid(b, lane);
                 let reach = best.map_or(limit, |best| best.distance);
-                if let Some(found) = distance(&shape_a, &pose_a, &shape_b, &pose_b, reach)
+                if near(&bound, &Bound::new(&shape_b, &pose_b), reach)
+                    && let Some(found) = distance(&shape_a, &pose_a, &shape_b, &pose_b, reach)
                     && best.is_none_or(|best| found.distance < best.distance)
                 {
                     best = Some(found);
