@@ -170,7 +170,13 @@ def _stored(file: Path) -> list[NDArray[np.float64]] | None:
 
 
 def _replace_file(path: Path, write: Callable[[IO[bytes]], object]) -> None:
-    """Writes a file, which replaces an older one only when it is complete."""
+    """Writes a file, which replaces an older one only when it is complete. A link stays, and its target is replaced;
+    what is no regular file, such as a pipe, is written to."""
+    if path.exists() and not path.is_file():
+        with path.open("wb") as file:
+            write(file)
+        return
+    path = path.resolve()
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         with partial.open("wb") as file:
@@ -246,12 +252,18 @@ def _mesh_geoms(spec: ModelSpec) -> tuple[Model, list[tuple[Document, ET.Element
     model = named_all.build()
     index_of = {name: index for index, name in enumerate(model.names("geom"))}
     in_pairs = {*np.ravel(model.pair_geom1).tolist(), *np.ravel(model.pair_geom2).tolist()}
+    names = {twin.get("name", "") for _, _, twin in pairs}
+    copies: dict[str, int] = {}
+    if spec._document.has_copies():
+        # Replicas have the name of the element and a number. Of two names that begin a third, it is the longer one.
+        for other, index in index_of.items():
+            ends = range(len(other) if other not in names else 0, 0, -1)
+            copies.setdefault(next((other[:end] for end in ends if other[:end] in names), ""), index)
     found = []
     for document, node, twin in pairs:
         name = twin.get("name", "")
-        # Replicas have the name of the element and a number. Geoms that the compiler discards do not collide.
-        copies = [i for other, i in index_of.items() if other.startswith(name)] if spec._document.has_copies() else []
-        geom = index_of.get(name, copies[0] if copies else None)
+        # Geoms that the compiler discards do not collide.
+        geom = index_of.get(name, copies.get(name))
         if geom is not None and model.geom_type[geom] == _MESH:
             collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom] or geom in in_pairs)
             found.append((document, node, model.names("mesh")[model.geom_dataid[geom]], collides))

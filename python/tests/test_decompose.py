@@ -256,6 +256,24 @@ def test_the_program_writes_a_file_that_loads_anywhere(tmp_path: Path) -> None:
     assert not (tmp_path / "out.xml").exists()
 
 
+def test_replicas_are_found_beside_longer_names() -> None:
+    text = (
+        '<mujoco><asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset><worldbody><geom name="gripper" size="1"/>'
+        '<replicate count="2" sep="-"><geom name="g" type="mesh" mesh="m"/><geom name="grip" size="1"/></replicate>'
+        "</worldbody></mujoco>"
+    )
+    assert clench.decompose.colliding_meshes(clench.ModelSpec.from_xml(text)) == ["m"]
+
+
+def test_the_output_of_the_program_may_be_a_link_or_no_file(tmp_path: Path) -> None:
+    (tmp_path / "in.xml").write_text("<mujoco/>")
+    (tmp_path / "link.xml").symlink_to("out.xml")
+    assert clench.decompose.main([str(tmp_path / "in.xml"), str(tmp_path / "link.xml")]) == 0
+    assert (tmp_path / "link.xml").is_symlink() and (tmp_path / "out.xml").read_text().startswith("<mujoco")
+    assert clench.decompose.main([str(tmp_path / "in.xml"), "/dev/null"]) == 0
+    assert not Path("/dev/null").is_file()
+
+
 def test_decompose_refuses() -> None:
     spec = scene()
     spec.add_asset("mesh", name="unused", builtin="sphere", params=[1])
