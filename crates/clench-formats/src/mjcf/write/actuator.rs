@@ -44,7 +44,7 @@ fn write_actuator(model: &Model, u: usize, xml: &mut Xml) -> Result<(), SaveErro
     let [quadratic, cubic] = p.actuator_dampingpoly[u];
     let tag = write_transmission(model, u, xml.tag("general").name(name))?;
     let ranges = &p.actuator_ctrlrange[controls.clone()];
-    let mut tag = write_controls(inputs, ctrllimited, ranges, tag)
+    let mut tag = write_controls(*gain, inputs, ctrllimited, ranges, tag)
         .numbers_unless("forcerange", &p.actuator_forcerange[u], &[0.0; 2])
         .boolean("forcelimited", *forcelimited)
         .numbers_unless("actrange", &p.actuator_actrange[u], &[0.0; 2])
@@ -101,6 +101,7 @@ fn write_transmission<'a>(model: &Model, u: usize, tag: Tag<'a>) -> Result<Tag<'
 
 /// Writes the control inputs and their ranges.
 fn write_controls<'a>(
+    gain: GainKind,
     inputs: &[ControlInput],
     limited: &[bool],
     ranges: &[[f64; 2]],
@@ -124,9 +125,9 @@ fn write_controls<'a>(
         tag = tag.words("input", names.iter().copied());
     }
     // Velocity and feedforward of a PID controller have separate ranges; all other controls share one.
-    let own = |input: &ControlInput| match input {
-        ControlInput::Velocity => "velrange",
-        ControlInput::Feedforward => "ffrange",
+    let own = |input: &ControlInput| match (gain, input) {
+        (GainKind::Pid, ControlInput::Velocity) => "velrange",
+        (GainKind::Pid, ControlInput::Feedforward) => "ffrange",
         _ => "ctrlrange",
     };
     let mut written: Vec<&str> = Vec::new();

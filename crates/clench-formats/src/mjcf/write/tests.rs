@@ -393,6 +393,21 @@ fn an_option_that_mujoco_lacks_comes_back() {
 }
 
 #[test]
+fn controls_that_share_a_range_have_it_again() {
+    let text =
+        "<mujoco><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody><actuator>
+        <dcmotor joint='j' input='vel' ctrlrange='-1 2' resistance='1' motorconst='1'/>
+        <dcmotor joint='j' input='vel ff' ctrlrange='-3 4' resistance='1' motorconst='1'/>
+        <pid joint='j' input='vel' velrange='-5 6' kp='1'/></actuator></mujoco>";
+    let model = load_str(text).expect("a model");
+    let again = saved("ranges", &model);
+    let ranges = [[-1.0, 2.0], [-3.0, 4.0], [-3.0, 4.0], [-5.0, 6.0]];
+    assert_eq!(again.params.actuator_ctrlrange, ranges);
+    let mut limited = again.actuators.iter().flat_map(|a| &a.ctrllimited);
+    assert!(limited.all(|&is_limited| is_limited));
+}
+
+#[test]
 fn names_are_written_as_xml_wants_them() {
     let odd = "<mujoco model='a &lt; b &amp; \"c\"'><worldbody><body name='tab&#9;&apos;&#xe9;'><freejoint/><geom size='1'/></body></worldbody></mujoco>";
     let model = load_str(odd).unwrap();
