@@ -3,9 +3,10 @@
 use super::actuator::write_history;
 use super::names::{SaveError, body_name, label, named};
 use super::xml::{Tag, Xml};
+use clench_collide::ShapeKind;
 use clench_dynamics::Model;
 use clench_dynamics::model::{
-    Attachment, ContactQuery, ContactReduction, ContactSide, FrameObject, RaySource, Sensor,
+    Attachment, Body, ContactQuery, ContactReduction, ContactSide, FrameObject, RaySource, Sensor,
     SensorData, SensorTarget,
 };
 use std::ops::Range;
@@ -104,8 +105,10 @@ fn write_target<'a>(
             .text("mesh", &model.meshes[*mesh].name)
             .text("geom", named("geom", &model.geoms[*geom].name, *geom)?),
         (SensorTarget::Geoms([first, second]), _) => {
-            let set = |geoms| geoms_name(model, geoms).ok_or_else(|| no_name(sensor, index));
-            let ([of1, name1], [of2, name2]) = (set(first)?, set(second)?);
+            let set = |geoms, is_second| {
+                geoms_name(model, geoms, is_second).ok_or_else(|| no_name(sensor, index))
+            };
+            let ([of1, name1], [of2, name2]) = (set(first, false)?, set(second, true)?);
             let attribute = |of| match of {
                 "geom" => ["geom1", "geom2"],
                 _ => ["body1", "body2"],
@@ -170,13 +173,29 @@ fn write_frame<'a>(
     Ok(tag.text(kind, of).text(name, found))
 }
 
-/// Returns a geom with a name, or a body with exactly these geoms.
-fn geoms_name<'a>(model: &'a Model, geoms: &Range<usize>) -> Option<[&'a str; 2]> {
-    if geoms.len() == 1 && !model.geoms[geoms.start].name.is_empty() {
-        return Some(["geom", &model.geoms[geoms.start].name]);
+/// Returns a geom with a name, or a body with exactly these geoms. MuJoCo accepts a height field only as the geom of a
+/// body. Among bodies without geoms, the second set is named by the last, because the two names must differ.
+fn geoms_name<'a>(model: &'a Model, geoms: &Range<usize>, is_second: bool) -> Option<[&'a str; 2]> {
+    let has_these = |body: &Body| body.geoms == *geoms;
+    let body = match is_second {
+        true => model.bodies.iter().rposition(has_these),
+        false => model.bodies.iter().position(has_these),
+    };
+    let body = body.and_then(|body| Some(["body", body_name(model, body).ok()?]));
+    let [geom] = &model.geoms[geoms.clone()] else {
+        return body;
+    };
+    let geom_name = (!geom.name.is_empty()).then_some(["geom", &geom.name[..]]);
+    match geom.kind {
+        ShapeKind::HeightField => body.or(geom_name),
+        ShapeKind::Plane
+        | ShapeKind::Sphere
+        | ShapeKind::Capsule
+        | ShapeKind::Ellipsoid
+        | ShapeKind::Cylinder
+        | ShapeKind::Box
+        | ShapeKind::Mesh => geom_name.or(body),
     }
-    let body = model.bodies.iter().position(|body| body.geoms == *geoms)?;
-    Some(["body", body_name(model, body).ok()?])
 }
 
 /// Writes the contacts that a sensor selects, and the fields of each.

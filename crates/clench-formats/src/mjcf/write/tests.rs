@@ -408,6 +408,23 @@ fn controls_that_share_a_range_have_it_again() {
 }
 
 #[test]
+fn distances_are_between_two_elements_that_mujoco_accepts() {
+    let text =
+        "<mujoco><asset><hfield name='h' nrow='2' ncol='2' size='1 1 1 1'/></asset><worldbody>
+        <geom name='ground' type='hfield' hfield='h'/><body name='a' mocap='true'/><body name='b'/>
+        <body name='ball'><geom name='g' size='1'/></body></worldbody><sensor>
+        <distance body1='b' body2='a'/><fromto body1='world' body2='ball'/></sensor></mujoco>";
+    let model = load_str(text).expect("a model");
+    let text = model.to_mjcf().expect("it can be saved");
+    for expected in [
+        "<distance body1=\"a\" body2=\"b\"",
+        "<fromto body1=\"world\" geom2=\"g\"",
+    ] {
+        assert!(text.contains(expected), "{text}");
+    }
+}
+
+#[test]
 fn names_are_written_as_xml_wants_them() {
     let odd = "<mujoco model='a &lt; b &amp; \"c\"'><worldbody><body name='tab&#9;&apos;&#xe9;'><freejoint/><geom size='1'/></body></worldbody></mujoco>";
     let model = load_str(odd).unwrap();
