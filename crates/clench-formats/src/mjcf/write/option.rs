@@ -73,12 +73,10 @@ fn write_option(model: &Model, xml: &mut Xml) -> Result<(), SaveError> {
         .numbers_unless("magnetic", &p.magnetic.to_array(), &[0.0, -0.5, 0.0])
         .number_unless("density", p.density, 0.0)
         .number_unless("viscosity", p.viscosity, 0.0)
+        .number_unless("sleep_tolerance", p.sleep_tolerance, 1e-3)
         .text("integrator", integrator);
     for &option in RigidOption::ALL {
         tag = write_attribute(model, option, tag)?;
-    }
-    if model.flags.sleep {
-        tag = tag.numbers("sleep_tolerance", &[p.sleep_tolerance]);
     }
     if model.override_contacts {
         tag = tag

@@ -50,7 +50,7 @@ fn fate(field: ParamField) -> Fate {
         F::jnt_solref | F::jnt_solimp => Written,
         F::dof_armature | F::dof_damping | F::dof_dampingpoly | F::dof_frictionloss => Written,
         F::dof_solref | F::dof_solimp => Written,
-        F::sleep_tolerance => InPart,
+        F::sleep_tolerance => Written,
         F::dof_invweight0 | F::dof_length => Computed,
         F::geom_pos | F::geom_quat | F::geom_size => InPart,
         F::geom_rbound => Computed,
