@@ -104,10 +104,15 @@ impl<V: Stepped> Player<V> {
             self.past.truncate(at + 1);
         }
         self.remember();
+        let before = self.time();
         let pulled = self.interaction.pull(&mut self.viewed);
         let done = pulled.and_then(|()| self.viewed.step());
         if done.is_err() {
             self.interaction.paused = true;
+        }
+        // A motion that diverged may have been reset. The moments before belong to another motion, at the same times.
+        if self.time() < before {
+            self.past.clear();
         }
         done
     }
