@@ -5,7 +5,7 @@
 //! under a name that is not this machine's (`Host`, after DNS rebinding).
 
 use std::io::{self, Read, Write};
-use std::net::{IpAddr, TcpStream};
+use std::net::{IpAddr, Shutdown, TcpStream};
 use std::time::{Duration, Instant};
 
 /// The maximum length of the head of a request, bytes.
@@ -14,6 +14,8 @@ const MAX_HEAD: usize = 16 * 1024;
 const MAX_FIELDS: usize = 64;
 /// The time limit for the head of a request.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// The time that a refused client has to send the rest of its request.
+const LINGER: Duration = Duration::from_millis(100);
 
 /// The content of a valid request.
 #[derive(Debug, PartialEq)]
@@ -162,7 +164,8 @@ pub(crate) fn send_page(stream: &mut TcpStream, html: &str) -> io::Result<()> {
     send(stream, "200 OK", "text/html; charset=utf-8", html)
 }
 
-/// Sends the reason of a refusal.
+/// Sends the reason of a refusal, and reads what the client still sends. A connection that is closed with unread data
+/// is reset, and the client may lose the reply.
 ///
 /// # Errors
 /// Returns an error if the connection breaks.
@@ -170,7 +173,12 @@ pub(crate) fn send_refusal(
     stream: &mut TcpStream,
     Refusal(status, text): &Refusal,
 ) -> io::Result<()> {
-    send(stream, status, "text/plain; charset=utf-8", text)
+    send(stream, status, "text/plain; charset=utf-8", text)?;
+    stream.shutdown(Shutdown::Write)?;
+    stream.set_read_timeout(Some(LINGER))?;
+    // A client that sends nothing, or more than this, is not waited for.
+    let _ = stream.read(&mut [0; MAX_HEAD]);
+    Ok(())
 }
 
 fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
