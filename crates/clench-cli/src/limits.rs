@@ -25,7 +25,7 @@ pub fn steps_in(time: f64, timestep: f64) -> Result<usize> {
     let steps = (time / timestep).round();
     ensure!(
         steps < MAX_STEPS,
-        "--time: {time} s in steps of {timestep} s are {steps:.3e} steps, more than the maximum of {MAX_STEPS:.0e}"
+        "--time: {time:e} s in steps of {timestep:e} s are {steps:.3e} steps, more than the maximum of {MAX_STEPS:.0e}"
     );
     Ok(steps as usize)
 }
@@ -77,7 +77,11 @@ impl MemoryLimit {
             return Ok(());
         }
         let (needed, limit) = (needed / GIGABYTE, self.bytes / GIGABYTE);
-        bail!("{what} take {needed:.3} GB, more than the {limit} GB that --max-memory allows")
+        let needed = match needed < 0.001 {
+            true => format!("{needed:.2e}"),
+            false => format!("{needed:.3}"),
+        };
+        bail!("{what} take {needed} GB, more than the {limit} GB that --max-memory allows")
     }
 }
 

@@ -247,7 +247,8 @@ pub enum Fault {
     /// The motion diverged: a number is not finite, or a position, velocity or acceleration is beyond 1e10 (MuJoCo's
     /// `mjMAXVAL`).
     #[error(
-        "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value:e}{}",
+        "the simulation diverged in the step from t = {time} s: {field}[{index}] became {value:e}{}; a shorter timestep or weaker \
+         forces and springs may prevent it",
         at(place)
     )]
     Diverged {

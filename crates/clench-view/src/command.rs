@@ -135,7 +135,10 @@ impl Command {
         let within =
             |name: &str, value: f64, [low, high]: [f64; 2]| match (low..=high).contains(&value) {
                 true => Ok(()),
-                false => Err(format!("{name} is {value}, not between {low} and {high}")),
+                false if value.abs() < 1e10 => {
+                    Err(format!("{name} is {value}, not between {low} and {high}"))
+                }
+                false => Err(format!("{name} is {value:e}, not between {low} and {high}")),
             };
         match *self {
             Command::Step { count } => within("count", count.into(), [1.0, MAX_STEPS.into()]),

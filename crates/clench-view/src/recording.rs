@@ -26,7 +26,7 @@ pub enum RecordError {
     Sim(#[from] SimError),
     /// The recording would exceed the limit.
     #[error("a recording of {0} frames reaches the limit of {1} MB: record fewer frames")]
-    Full(usize, usize),
+    Full(usize, f64),
 }
 
 /// An error of reading a recording from a page.
@@ -40,7 +40,7 @@ pub enum ReadError {
     Version,
     /// The recording exceeds the limit.
     #[error("this recording exceeds the limit of {0} MB")]
-    Full(usize),
+    Full(f64),
 }
 
 impl Recording {
@@ -85,7 +85,7 @@ impl Recording {
         marks.shown();
         let frame = base64::encode(&frame);
         if self.bytes + frame.len() > self.limit {
-            return Err(RecordError::Full(self.frames.len(), self.limit / 1_000_000));
+            return Err(RecordError::Full(self.frames.len(), megabytes(self.limit)));
         }
         self.bytes += frame.len();
         self.frames.push(frame);
@@ -129,7 +129,7 @@ impl Recording {
         let frames: Vec<_> = frames.into_iter().map(text).collect::<Result<_, _>>()?;
         let bytes = frames.iter().map(String::len).sum();
         if bytes > limit {
-            return Err(ReadError::Full(limit / 1_000_000));
+            return Err(ReadError::Full(megabytes(limit)));
         }
         Ok(Recording {
             scene,
@@ -138,6 +138,11 @@ impl Recording {
             limit,
         })
     }
+}
+
+/// Converts bytes to megabytes.
+fn megabytes(bytes: usize) -> f64 {
+    bytes as f64 / 1e6
 }
 
 /// Returns the time of a frame; `None` if it is invalid.

@@ -46,7 +46,10 @@ fn an_array_is_as_large_as_memory_may_be() {
         &["large.npy", "80.000 GB", "4 GB", "--max-memory"],
     );
     npy(&path, 1, &header(1000, 1), None, &[0.0; 1000]);
-    refused(&with_ctrl(&path, "--max-memory 1e-6"), &["--max-memory"]);
+    refused(
+        &with_ctrl(&path, "--max-memory 1e-6"),
+        &["8.00e-6 GB", "0.000001 GB", "--max-memory"],
+    );
     let done = with_ctrl(&path, "--steps 3");
     assert_eq!(code(&done), 0, "{}", errors(&done));
 }
@@ -82,6 +85,8 @@ fn a_billion_steps_need_an_explicit_flag() {
     refused(&done, &["1e-300", "1.000e300 steps", "--steps", "--time"]);
     let done = simulate(&model("pendulum"), "--timestep 1e-300 --time 1", &[]);
     refused(&done, &["--time", "steps", "1e15"]);
+    let done = simulate(&model("pendulum"), "--time 1e300", &[]);
+    refused(&done, &["--time: 1e300 s in steps of 2e-3 s"]);
     let done = simulate(&model("pendulum"), "--timestep 1e-300 --steps 2", &[]);
     assert_eq!(code(&done), 0, "{}", errors(&done));
 }

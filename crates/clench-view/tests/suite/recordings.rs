@@ -1,7 +1,7 @@
 //! Pages with recordings return what was recorded; other pages are errors.
 
 use clench::{Sim, load_str};
-use clench_view::{Marks, Page, ReadError, Recording, Scene};
+use clench_view::{Marks, Page, ReadError, RecordError, Recording, Scene};
 use std::sync::Arc;
 
 const MARKERS: [&str; 2] = [
@@ -45,4 +45,18 @@ fn data_of_another_form_is_an_error() {
         let read = Recording::from_html(&html, 1_000_000);
         assert!(matches!(read, Err(ReadError::None)), "{data}");
     }
+}
+
+#[test]
+fn a_small_limit_is_named() {
+    let errors = [
+        RecordError::Full(3, 0.0005).to_string(),
+        ReadError::Full(0.0005).to_string(),
+    ];
+    assert!(
+        errors
+            .iter()
+            .all(|error| error.contains("limit of 0.0005 MB")),
+        "{errors:?}"
+    );
 }
