@@ -94,7 +94,9 @@ pub(crate) struct Part {
 impl Part {
     /// Creates an empty file with a unique name and the permissions of ordinary files.
     fn create(folder: &Path, name: &OsStr) -> io::Result<Self> {
-        let start = format!(".{}.", name.to_string_lossy());
+        // The end of a long name is omitted, because file systems limit names to 255 bytes.
+        let name: String = name.to_string_lossy().chars().take(MAX_START).collect();
+        let start = format!(".{name}.");
         remove_abandoned(folder, &start);
         let process = process::id();
         let mut attempt = 0_u32;
@@ -129,6 +131,8 @@ impl Drop for Part {
     }
 }
 
+/// The number of characters of a name with which the name of its temporary file starts.
+const MAX_START: usize = 50;
 /// The suffix of temporary files.
 const PART: &str = ".part";
 

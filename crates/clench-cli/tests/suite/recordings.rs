@@ -58,6 +58,15 @@ fn a_record_replaces_an_old_one() {
 }
 
 #[test]
+fn a_record_may_have_the_longest_name_of_the_file_system() {
+    let folder = folder();
+    let path = folder.path().join(format!("{}.npz", "é".repeat(125)));
+    let done = simulate(&model("pendulum"), "--steps 3", &[("--record", &path)]);
+    assert_eq!(code(&done), 0, "{}", errors(&done));
+    assert!(path.is_file());
+}
+
+#[test]
 fn a_run_that_is_refused_leaves_the_old_record() {
     let folder = folder();
     let path = folder.path().join("out.npz");
