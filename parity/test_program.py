@@ -215,6 +215,13 @@ def test_a_reader_that_leaves_is_no_error(command):
     process.stderr.close()
 
 
+def test_an_address_that_cannot_be_printed_is_an_error():
+    words = [str(program.CLENCH), "view", str(program.ROOT / "models/pendulum.xml"), "--no-open"]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+    assert done.returncode == 2 and done.stderr.startswith("error: standard output: ")
+
+
 def test_a_record_that_cannot_be_written_costs_no_run(tmp_path):
     path = tmp_path / "no such folder" / "out.npz"
     done = program.run("simulate", program.ROOT / "models/humanoid.xml", "--time", 1e6, "--record", path)

@@ -5,11 +5,12 @@ use crate::limits::MemoryArguments;
 use crate::message::print_message;
 use crate::options::ModelArguments;
 use crate::simulate::StartArguments;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Args;
 use clench::{Batch, BatchOptions, Sim};
 use clench_view::{Page, Player, Scene, Server, ServerOptions, Stepped};
 use std::env;
+use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::thread::sleep;
@@ -99,22 +100,23 @@ fn show<V: Stepped>(arguments: &Arguments, viewed: V) -> Result<ExitCode> {
     let scene = Scene::new(viewed.model()).of_envs(viewed.envs());
     let interrupt = Interrupt::listen()?;
     let server = Server::start(&options, page, &scene)?;
-    announce(arguments, &server);
+    announce(arguments, &server)?;
     let mut player = Player::new(viewed, arguments.paused);
     player.interaction().selection.count = player.viewed().envs().min(AT_FIRST);
     play(player, &server, &interrupt);
     Ok(ExitCode::SUCCESS)
 }
 
-fn announce(arguments: &Arguments, server: &Server) {
+fn announce(arguments: &Arguments, server: &Server) -> Result<()> {
     let url = server.url();
     if !server.is_local() {
         print_message("note: other machines can reach the viewer, if they know the token");
     }
-    println!("{url}");
+    writeln!(io::stdout(), "{url}").context("standard output")?;
     if !arguments.no_open && open::that_detached(&url).is_err() {
         print_message("note: no browser could be opened; open the address above");
     }
+    Ok(())
 }
 
 /// Steps and publishes frame by frame, and executes the commands of users.
@@ -123,6 +125,10 @@ fn play<V: Stepped>(mut player: Player<V>, server: &Server, interrupt: &Interrup
     let mut last = Instant::now();
     while interrupt.signal().is_none() {
         for command in server.commands() {
+            // Each command may take many steps.
+            if interrupt.signal().is_some() {
+                return;
+            }
             if let Err(why) = player.apply(command) {
                 server.notify(&why);
             }
