@@ -441,3 +441,10 @@ fn unsupported_attributes_without_effect_are_accepted() {
     )
     .unwrap();
 }
+
+#[test]
+fn a_place_in_a_text_is_a_line() {
+    let model = load_str("<mujoco>\n<worldbody><body/></worldbody></mujoco>").expect("valid");
+    let place = model.bodies[1].origin.as_ref().expect("it is known");
+    assert_eq!(place.to_string(), "line 2");
+}

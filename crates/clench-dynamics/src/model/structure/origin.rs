@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// A file and a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
-    /// File name as the user gave it, or as an include names it.
+    /// File name as the user gave it, or as an include names it; empty for a text.
     pub file: Arc<str>,
     /// Line, counted from one.
     pub line: u32,
@@ -14,6 +14,9 @@ pub struct Origin {
 
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.file, self.line)
+        match &*self.file {
+            "" => write!(f, "line {}", self.line),
+            file => write!(f, "{file}:{}", self.line),
+        }
     }
 }
