@@ -84,14 +84,15 @@ impl<S: Precision> Batch<S> {
     /// or from `start` (nq per environment), see [`Sim::ik`](crate::Sim::ik).
     ///
     /// # Errors
-    /// Returns an error if the number of goal or start values is wrong or one is not finite, or as [`step`](Self::step)
-    /// does.
+    /// Returns an error if the tasks are of a model with other objects, if the number of goal or start values is wrong
+    /// or one is not finite, or as [`step`](Self::step) does.
     pub fn ik(
         &mut self,
         ik: &Ik,
         goals: QueryInput<S>,
         start: Option<QueryInput<S>>,
     ) -> Result<Vec<IkSolution<S>>, SimError> {
+        ik.check_model(&self.model)?;
         self.check_numbers("goals", &goals, ik.goal_len(&self.model))?;
         if let Some(start) = &start {
             self.check_numbers("start", start, self.model.nq)?;

@@ -77,6 +77,18 @@ impl IkTask {
             weights: vec![weight; target.weight_len(model)],
         }
     }
+
+    /// Returns an error if the model lacks the object, or the number of weights is wrong.
+    fn check_sizes(&self, model: &Model) -> Result<(), SimError> {
+        match self.target {
+            IkTarget::Position(object) | IkTarget::Orientation(object) => {
+                check_object(model, object)?;
+            }
+            IkTarget::CentreOfMass(body) => check_body(model, body)?,
+            IkTarget::Posture => {}
+        }
+        check_length("weights", self.weights.len(), self.target.weight_len(model))
+    }
 }
 
 /// Options of inverse kinematics.
@@ -164,6 +176,8 @@ pub struct IkSolution<T> {
 pub struct Ik {
     pub(crate) tasks: Vec<IkTask>,
     pub(crate) options: IkOptions,
+    /// The number of dofs of the model.
+    nv: usize,
     /// The dofs that may move, ascending.
     pub(crate) movable: Vec<u32>,
     /// Those of them that are solved for: a task depends on them.
@@ -178,14 +192,7 @@ impl Ik {
     /// of range.
     pub fn new(model: &Model, tasks: Vec<IkTask>, options: IkOptions) -> Result<Self, SimError> {
         for task in &tasks {
-            match task.target {
-                IkTarget::Position(object) | IkTarget::Orientation(object) => {
-                    check_object(model, object)?;
-                }
-                IkTarget::CentreOfMass(body) => check_body(model, body)?,
-                IkTarget::Posture => {}
-            }
-            check_length("weights", task.weights.len(), task.target.weight_len(model))?;
+            task.check_sizes(model)?;
             let is_weight = |w: &f64| *w >= 0.0 && w.is_finite();
             if let Some(&value) = task.weights.iter().find(|w| !is_weight(w)) {
                 let (field, range) = ("weight", "finite and not negative");
@@ -228,11 +235,20 @@ impl Ik {
         };
         let dofs = movable.iter().copied().filter(|&dof| counts(dof));
         Ok(Ik {
+            nv: model.nv,
             dofs: dofs.collect(),
             movable,
             tasks,
             options,
         })
+    }
+
+    /// Returns an error if the tasks are of a model with other objects.
+    pub(crate) fn check_model(&self, model: &Model) -> Result<(), SimError> {
+        check_length("dofs", self.nv, model.nv)?;
+        self.tasks
+            .iter()
+            .try_for_each(|task| task.check_sizes(model))
     }
 
     /// Returns the number of goal values of all tasks together, task by task.

@@ -12,14 +12,15 @@ impl<T: Precision> Sim<T> {
     /// state or from `start` (nq). The state does not change.
     ///
     /// # Errors
-    /// Returns an error if goals or start have a wrong length or values that are not finite, or if [`step`](Self::step)
-    /// would refuse the state.
+    /// Returns an error if the tasks are of a model with other objects, if goals or start have a wrong length or values
+    /// that are not finite, or if [`step`](Self::step) would refuse the state.
     pub fn ik(
         &mut self,
         ik: &Ik,
         goals: &[T],
         start: Option<&[T]>,
     ) -> Result<IkSolution<T>, SimError> {
+        ik.check_model(self.model())?;
         check_values("goals", goals, ik.goal_len(self.model()))?;
         if let Some(start) = start {
             check_values("start", start, self.model().nq)?;

@@ -320,3 +320,20 @@ fn bad_tasks_and_goals_are_errors() {
     let found: IkSolution<f64> = sim.ik(&nothing, &[], None).unwrap();
     assert_eq!((found.status, found.iterations), (IkStatus::Reached, 0));
 }
+
+#[test]
+fn tasks_of_another_model_are_refused() {
+    let model = arm(1.0);
+    let ik = Ik::new(&model, pose_of_tip(&model), IkOptions::default()).expect("valid tasks");
+    let other = Arc::new(crate::machines::world("empty").build().expect("valid"));
+    let mut sim = Sim::<f64>::new(Arc::clone(&other)).expect("valid");
+    let error = sim.ik(&ik, &[0.0; 7], None).expect_err("no dofs");
+    assert!(
+        error.to_string().starts_with("dofs has 7 numbers"),
+        "{error}"
+    );
+    let mut batch = Batch::<f64>::new(other, 2).expect("valid");
+    batch
+        .ik(&ik, QueryInput::Shared(&[0.0; 7]), None)
+        .expect_err("no dofs");
+}
