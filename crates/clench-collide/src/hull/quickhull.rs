@@ -2,9 +2,9 @@
 //!
 //! Start from a tetrahedron and assign each other point to a triangle that it is strictly outside of. While a triangle
 //! has such points, take the furthest, remove the triangles visible from it and close the hole with a cone from it to
-//! the horizon. The sign of a determinant, computed exactly by `robust`, decides if a point is outside. So the
-//! triangles visible from a point form a disk, and the surface stays closed and convex, however thin or fine it is.
-//! Rounded distances only choose the order.
+//! the horizon. The sign of a determinant decides if a point is outside; where a rounded distance leaves it open,
+//! `robust` computes it exactly. So the triangles visible from a point form a disk, and the surface stays closed and
+//! convex, however thin or fine it is. Rounded distances also choose the order.
 
 use super::error::HullError;
 use clench_math::Vec3;
@@ -12,6 +12,9 @@ use robust::{Coord3D, orient3d};
 
 /// The ratio of thickness to extent below which points are flat: the rounding error of a plane rotated in `f64`.
 const FLAT: f64 = 1e-14;
+/// The error of a distance from a triangle's plane, in units of ε times the extent of the points and the products in
+/// the triangle's normal. Counting the roundings gives at most 6.
+const ROUNDING: f64 = 16.0;
 const NONE: u32 = u32::MAX;
 
 /// A triangle of the growing surface.
@@ -21,6 +24,8 @@ struct Facet {
     /// The facet across the edge from each corner to the next.
     across: [u32; 3],
     normal: Vec3<f64>,
+    /// The bound of the error of distances from its plane.
+    slack: f64,
     /// The points that are strictly outside and belong to no other facet.
     outside: Vec<u32>,
     /// The distance and index of the furthest of them.
@@ -41,6 +46,8 @@ struct HorizonRidge {
 
 pub(super) struct Quickhull<'a> {
     points: &'a [Vec3<f64>],
+    /// The maximum difference of a coordinate between two points.
+    extent: f64,
     facets: Vec<Facet>,
     /// The facets that may have points outside.
     pending: Vec<u32>,
@@ -60,6 +67,7 @@ pub(super) fn triangles(
 ) -> Result<Vec<[u32; 3]>, HullError> {
     let mut hull = Quickhull {
         points,
+        extent: extent(points, among),
         facets: Vec::new(),
         pending: Vec::new(),
         round: 0,
@@ -77,6 +85,18 @@ pub(super) fn triangles(
     let mut triangles: Vec<[u32; 3]> = alive.map(|facet| smallest_first(facet.corners)).collect();
     triangles.sort_unstable();
     Ok(triangles)
+}
+
+/// Returns the maximum difference of a coordinate between two points.
+fn extent(points: &[Vec3<f64>], among: &[u32]) -> f64 {
+    let along = |axis: usize| {
+        let coordinates = among.iter().map(|&i| points[i as usize][axis]);
+        let (low, high) = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        high - low
+    };
+    along(0).max(along(1)).max(along(2))
 }
 
 fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
@@ -136,6 +156,25 @@ fn simplex(points: &[Vec3<f64>], among: &[u32]) -> Result<[u32; 4], HullError> {
     }
 }
 
+impl Facet {
+    /// Returns the distance of a point from the plane, rounded; positive outside.
+    #[inline(always)]
+    fn distance(&self, points: &[Vec3<f64>], point: u32) -> f64 {
+        let offset = points[point as usize] - points[self.corners[0] as usize];
+        self.normal.dot(offset)
+    }
+
+    /// Returns true if a point is strictly outside.
+    #[inline(always)]
+    fn is_visible(&self, points: &[Vec3<f64>], point: u32) -> bool {
+        let distance = self.distance(points, point);
+        if distance.abs() > self.slack {
+            return distance > 0.0;
+        }
+        side(points, self.corners, point) > 0
+    }
+}
+
 impl Quickhull<'_> {
     fn at(&self, point: u32) -> Vec3<f64> {
         self.points[point as usize]
@@ -143,10 +182,17 @@ impl Quickhull<'_> {
 
     fn facet(&self, corners: [u32; 3], across: [u32; 3]) -> Facet {
         let [a, b, c] = corners.map(|i| self.at(i));
+        let (u, v) = (b - a, c - a);
+        let normal = u.cross(v);
+        let length = normal.norm();
+        let product = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
+        let products = product(1, 2) + product(2, 0) + product(0, 1);
         Facet {
             corners,
             across,
-            normal: (b - a).cross(c - a).normalize().0,
+            normal: normal * (1.0 / length),
+            // Without an area the distance is no number, and no comparison with it is true.
+            slack: ROUNDING * f64::EPSILON * self.extent * (products / length),
             outside: Vec::new(),
             farthest: (f64::NEG_INFINITY, NONE),
             alive: true,
@@ -171,11 +217,9 @@ impl Quickhull<'_> {
     /// Assigns each point to the first facet from `first` on that it is outside of; drops inside points.
     fn assign(&mut self, candidates: &[u32], first: usize) {
         for &point in candidates {
-            let position = self.points[point as usize];
-            let visible_from = |facet: &&mut Facet| side(self.points, facet.corners, point) > 0;
+            let visible_from = |facet: &&mut Facet| facet.is_visible(self.points, point);
             if let Some(facet) = self.facets[first..].iter_mut().find(visible_from) {
-                let corner = self.points[facet.corners[0] as usize];
-                let distance = facet.normal.dot(position - corner);
+                let distance = facet.distance(self.points, point);
                 facet.outside.push(point);
                 if distance > facet.farthest.0 || facet.farthest.1 == NONE {
                     facet.farthest = (distance, point);
@@ -258,7 +302,7 @@ impl Quickhull<'_> {
                 let neighbor = &mut self.facets[other as usize];
                 if neighbor.alive && neighbor.visited != self.round {
                     neighbor.visited = self.round;
-                    neighbor.alive = side(self.points, neighbor.corners, point) <= 0;
+                    neighbor.alive = !neighbor.is_visible(self.points, point);
                     if !neighbor.alive {
                         stack.push(other);
                     }

@@ -60,6 +60,7 @@ pub fn convex_hull(
         .collect();
 
     let mut among: Vec<u32> = (0..points.len() as u32).collect();
+    // The hull of all corners of a complete hull is that of all points.
     loop {
         let triangles = triangles(&points, &among, max_vertices)?;
         let between = between(&points, &triangles);
@@ -69,8 +70,19 @@ pub fn convex_hull(
                 points: points.len(),
             });
         }
+        if max_vertices.is_none() {
+            among = corners(&triangles);
+        }
         among.retain(|i| between.binary_search(i).is_err());
     }
+}
+
+/// Returns the corners of triangles, ascending.
+fn corners(triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut corners: Vec<u32> = triangles.iter().flatten().copied().collect();
+    corners.sort_unstable();
+    corners.dedup();
+    corners
 }
 
 /// Returns the corners that lie within an edge or a face, ascending: fewer than three bent edges meet there.
@@ -85,9 +97,7 @@ fn between(points: &[Vec3<f64>], triangles: &[[u32; 3]]) -> Vec<u32> {
         }
     }
     bent.sort_unstable();
-    let mut corners: Vec<u32> = triangles.iter().flatten().copied().collect();
-    corners.sort_unstable();
-    corners.dedup();
+    let mut corners = corners(triangles);
     let meeting = |c: u32| bent.partition_point(|&b| b <= c) - bent.partition_point(|&b| b < c);
     corners.retain(|&corner| meeting(corner) < 3);
     corners

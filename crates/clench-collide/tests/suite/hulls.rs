@@ -66,6 +66,11 @@ fn clouds() -> Vec<(String, Vec<Vec3<f64>>)> {
             [-1.0, 0.0, 1.0].map(|z| Vec3::new(cos, sin, z))
         };
         add("cylinder", (0..n).flat_map(ring).collect());
+        let rounded = corners_of_box([1.0; 3])
+            .into_iter()
+            .flat_map(|corner| (0..n).map(move |_| corner))
+            .map(|corner| corner + noise.vector() * 1e-8);
+        add("box with tiny triangles at its corners", rounded.collect());
         let thin = 10f64.powi(-(round as i32) / 2);
         let plate = (0..n).map(|_| noise.vector().scale_by(Vec3::new(1.0, 1.0, thin)));
         add("plate", plate.collect());
