@@ -123,6 +123,12 @@ class Document(Files):
         """Returns the root document of the family."""
         return self if self._outer is None else self._outer.first()
 
+    def enclosing(self) -> Iterator[Document]:
+        """Iterates over this document, the one that it is attached to, and so on."""
+        yield self
+        if self._outer is not None:
+            yield from self._outer.enclosing()
+
     def family(self) -> Iterator[Document]:
         """Iterates over this document and all documents attached to it."""
         yield self

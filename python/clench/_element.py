@@ -8,6 +8,7 @@ from typing import Protocol
 
 from clench._check import check, limit
 from clench._document import Document, Value, file_of, written
+from clench._keyframes import kept
 
 
 class Attachable(Protocol):
@@ -226,8 +227,8 @@ class SpecElement:
 
         Its elements become elements of this model, with names that begin with `prefix`: they are found, changed,
         renamed, removed and referred to like all others. They are read with the units, classes and inertia rules of
-        their own model. A keyframe of this model lists the numbers of the complete model in order: where attached
-        joints or actuators precede others, insert their numbers into its vectors.
+        their own model. Keyframes of this model retain the numbers of its joints, if it can be built; attached joints
+        before them get their initial positions.
 
         >>> hand = clench.ModelSpec("hand")
         >>> _ = hand.world.add_body(name="palm").add_geom(size=0.1)
@@ -260,19 +261,28 @@ class SpecElement:
             have the body.
         """
         document = self._document
-        name = document.attach(other._source, prefix, body)
-        assets = document.root.find("asset")
-        section = ET.SubElement(document.root, "asset") if assets is None else assets
-        SpecElement(document, section).add("model", name=name, file=file_of(name))
-        # The names already have their prefix.
-        return self.add("attach", model=name, prefix="", **({} if body is None else {"body": prefix + body}))
+        with kept(document):
+            name = document.attach(other._source, prefix, body)
+            assets = document.root.find("asset")
+            section = ET.SubElement(document.root, "asset") if assets is None else assets
+            SpecElement(document, section).add("model", name=name, file=file_of(name))
+            # The names already have their prefix.
+            return self.add("attach", model=name, prefix="", **({} if body is None else {"body": prefix + body}))
 
     def remove(self) -> None:
         """Removes this element, its descendants, and everything that refers to them: removing a joint removes its
-        sensors."""
+        sensors. If the model can be built, its keyframes lose the numbers of joints, actuators and mocap bodies that
+        are removed.
+
+        Raises
+        ------
+        ValueError
+            If it was already removed, or is the document itself.
+        """
         if self._node not in self._document.parents():
             raise ValueError(f"{self._described()} was already removed, or is the document itself")
-        self._document.remove(self._node)
+        with kept(self._document):
+            self._document.remove(self._node)
 
     def rename(self, name: str) -> None:
         """Renames this element and all references to it.
