@@ -11,6 +11,7 @@ two elements of a kind have the same name.
 from __future__ import annotations
 
 import copy
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -50,6 +51,8 @@ _TAGS = {
     "pair": ("pair",),
     **{kind: (kind,) for kind in ("body", "geom", "site", "camera", "mesh", "hfield", "material", "texture", "model")},
 }
+# Characters that no XML document contains.
+_NOT_IN_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 # Sections without names.
 _SETTINGS = ("compiler", "option", "size", "statistic", "visual")
 # Sections whose names refer to nothing that can be renamed or removed.
@@ -59,18 +62,27 @@ _NO_REFERENCES = ("default", "custom", *_SETTINGS)
 def written(value: Value) -> str:
     """Formats an attribute as in MJCF."""
     if isinstance(value, str):
-        return value
+        return text_of(value)
     array = np.asarray(value)
     if array.dtype.kind == "b":
         if array.ndim > 0:
             raise TypeError("MJCF has no lists of truth values")
         return "true" if array else "false"
     if array.dtype.kind == "U":
-        return " ".join(array.ravel().tolist())
+        return text_of(" ".join(array.ravel().tolist()))
     if array.dtype.kind not in "iuf":
         raise TypeError(f"an attribute is a str, a bool or numbers, not {type(value).__name__}")
     # The shortest text that parses to the same number.
     return " ".join(repr(number) for number in array.ravel().tolist())
+
+
+def text_of(text: str) -> str:
+    """Returns a text. Rejects one with characters that XML does not allow, and what is no text."""
+    if not isinstance(text, str):
+        raise TypeError(f"a name is a str, not {type(text).__name__}")
+    if found := _NOT_IN_XML.search(text):
+        raise ValueError(f"{text!r} has the character {found[0]!r}, which XML does not allow")
+    return text
 
 
 class Document(Files):
@@ -152,7 +164,7 @@ class Document(Files):
             found[0]._hide_all_but(found[1])
         for kind, taken in own._index():
             if self.find(kind, taken) is not None:
-                raise ValueError(f'there is already a {kind} "{taken}"')
+                raise ValueError(_taken(kind, taken))
         self.first().add_files(own.assets)
         self.first().folders.update(own.folders)
         own.assets, own.folders, own._outer = {}, {}, self
@@ -260,8 +272,7 @@ class Document(Files):
 
     def find(self, kind: str, name: str) -> tuple[Document, ET.Element] | None:
         """Returns the element with this kind and name, with its document."""
-        if kind not in _TAGS and kind not in _SECTIONS:
-            raise ValueError(f'there is no kind of element "{kind}": there are {", ".join([*_TAGS, *_SECTIONS])}')
+        check_kind(kind)
         return self._index().get((kind, name))
 
     def check_name(self, section: str, node: ET.Element, attribute: str, value: Value) -> None:
@@ -271,7 +282,7 @@ class Document(Files):
         kind = _kind(node, section)
         taken = self.find(kind, written(value)) if kind else None
         if taken is not None and taken[1] is not node:
-            raise ValueError(f'there is already a {kind} "{written(value)}"')
+            raise ValueError(_taken(kind, written(value)))
 
     def parents(self) -> dict[ET.Element, ET.Element]:
         return {child: parent for parent in self.root.iter() for child in parent}
@@ -313,6 +324,17 @@ class Document(Files):
                 while parents[node].tag in ("spatial", "fixed"):
                     node = parents[node]
                 document.remove(node)
+
+
+def check_kind(kind: str) -> None:
+    """Rejects an unknown kind of element."""
+    if kind not in _TAGS and kind not in _SECTIONS:
+        raise ValueError(f'there is no kind of element "{kind}": there are {", ".join([*_TAGS, *_SECTIONS])}')
+
+
+def _taken(kind: str | None, name: str) -> str:
+    """Returns the message that another element of a kind has a name."""
+    return f'there is already {"an" if kind in ("actuator", "equality") else "a"} {kind} "{name}"'
 
 
 def reference_kind(section: str, node: ET.Element, attribute: str) -> str | None:

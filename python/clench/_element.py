@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from clench._check import check, limit
-from clench._document import Document, Value, file_of, written
+from clench._document import Document, Value, file_of, text_of, written
 from clench._keyframes import kept
 
 
@@ -159,6 +159,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a body here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("body", **attributes)
 
@@ -169,6 +180,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a joint here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("joint", **attributes)
 
@@ -179,6 +201,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a free joint here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("freejoint", **attributes)
 
@@ -189,6 +222,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a geom here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("geom", **attributes)
 
@@ -199,6 +243,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a site here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("site", **attributes)
 
@@ -209,6 +264,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a camera here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("camera", **attributes)
 
@@ -219,6 +285,17 @@ class SpecElement:
         ----------
         **attributes : str, bool or array_like
             Its attributes, with MJCF's names.
+
+        Returns
+        -------
+        SpecElement
+
+        Raises
+        ------
+        ValueError
+            If another element of its kind has the name.
+        LoadError
+            If MJCF does not have a frame here or an attribute, a value is invalid, or a name is undefined.
         """
         return self.add("frame", **attributes)
 
@@ -257,12 +334,16 @@ class SpecElement:
         Raises
         ------
         ValueError
-            If the prefix or a name is taken, files have the same name but different contents, or the model does not
-            have the body.
+            If the prefix or a name is taken, files have the same name but different contents, the model does not have
+            the body, or this element is neither a body nor a frame.
+        LoadError
+            If the other model attaches files and cannot be built.
         """
         document = self._document
+        if self.tag not in ("worldbody", "body", "frame", "replicate"):
+            raise ValueError(f"nothing can be attached to {self._described()}, only to a body or frame")
         with kept(document):
-            name = document.attach(other._source, prefix, body)
+            name = document.attach(other._source, text_of(prefix), body)
             assets = document.root.find("asset")
             section = ET.SubElement(document.root, "asset") if assets is None else assets
             SpecElement(document, section).add("model", name=name, file=file_of(name))
@@ -295,8 +376,12 @@ class SpecElement:
         Raises
         ------
         ValueError
-            If another element of its kind has the name.
+            If another element of its kind has the name, or it is empty.
+        LoadError
+            If the element cannot have a name.
         """
+        if not name:
+            raise ValueError("a new name must not be empty")
         old = self.name
         kind = self._document.kind_of(self._node)
         self["name"] = name

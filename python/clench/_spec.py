@@ -17,16 +17,16 @@ from typing import Any
 
 from clench._check import located
 from clench._core import Model
-from clench._document import Document, Value, written
+from clench._document import Document, text_of
 from clench._element import SpecElement
 from clench._files import is_urdf
-from clench._state import State
+from clench._spec_sections import SpecSections
 from clench.errors import LoadError
 
 __all__ = ["ModelSpec", "SpecElement"]
 
 
-class ModelSpec:
+class ModelSpec(SpecSections):
     """A model that is built or edited in Python; `build` turns it into a `Model`.
 
     Examples
@@ -48,7 +48,7 @@ class ModelSpec:
     __slots__ = ("_document",)
 
     def __init__(self, name: str = "model") -> None:
-        self._document = Document(ET.Element("mujoco", model=name))
+        self._document = Document(ET.Element("mujoco", model=text_of(name)))
 
     @property
     def assets(self) -> dict[str, bytes]:
@@ -120,136 +120,7 @@ class ModelSpec:
 
     @name.setter
     def name(self, name: str) -> None:
-        self._document.root.set("model", name)
-
-    @property
-    def world(self) -> SpecElement:
-        """The world, to which bodies and static objects are added."""
-        return self.section("worldbody")
-
-    def section(self, tag: str) -> SpecElement:
-        """Returns a section of the document, such as "option", "default" or "contact"; creates it if there is none.
-
-        Parameters
-        ----------
-        tag : str
-            MJCF's name of the section.
-
-        Returns
-        -------
-        SpecElement
-        """
-        node = self._document.root.find(tag)
-        if node is None:
-            return SpecElement(self._document, self._document.root, ()).add(tag)
-        return SpecElement(self._document, node, ())
-
-    def add_actuator(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Adds an actuator: "motor", "position", "general" and so on.
-
-        Parameters
-        ----------
-        tag : str
-            MJCF's name of the actuator type.
-        **attributes : str, bool or array_like
-            Its attributes, with MJCF's names.
-        """
-        return self.section("actuator").add(tag, **attributes)
-
-    def add_sensor(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Adds a sensor: "jointpos", "gyro", "touch" and so on.
-
-        Parameters
-        ----------
-        tag : str
-            MJCF's name of the sensor type.
-        **attributes : str, bool or array_like
-            Its attributes, with MJCF's names.
-        """
-        return self.section("sensor").add(tag, **attributes)
-
-    def add_equality(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Adds an equality constraint: "weld", "connect", "joint" or "tendon".
-
-        Parameters
-        ----------
-        tag : str
-            MJCF's name of the constraint type.
-        **attributes : str, bool or array_like
-            Its attributes, with MJCF's names.
-        """
-        return self.section("equality").add(tag, **attributes)
-
-    def add_tendon(self, tag: str, /, **attributes: Value) -> SpecElement:
-        """Adds a tendon, "fixed" or "spatial"; its path is added to it.
-
-        Parameters
-        ----------
-        tag : str
-            MJCF's name of the tendon type.
-        **attributes : str, bool or array_like
-            Its attributes, with MJCF's names.
-        """
-        return self.section("tendon").add(tag, **attributes)
-
-    def add_keyframe(self, state: State | None = None, /, **attributes: Value) -> SpecElement:
-        """Adds a keyframe.
-
-        Parameters
-        ----------
-        state : State, optional
-            A state of a simulation of this model, such as ``sim.state``; by default the attributes define the keyframe.
-        **attributes : str, bool or array_like
-            Its attributes, with MJCF's names.
-
-        Returns
-        -------
-        SpecElement
-
-        Raises
-        ------
-        ValueError
-            If the state is that of a batch: a keyframe is of one environment.
-
-        Examples
-        --------
-        >>> spec = clench.ModelSpec.from_xml(
-        ...     "<mujoco><worldbody><body><joint type='slide'/><geom size='1'/></body></worldbody></mujoco>")
-        >>> sim = clench.Sim(spec.build())
-        >>> sim.qpos[0] = 0.25
-        >>> spec.add_keyframe(sim.state, name="here")["qpos"]
-        '0.25'
-        """
-        kept: dict[str, Value] = {}
-        if state is not None:
-            if state.qpos.ndim != 1:
-                raise ValueError("a keyframe is the state of one environment: use that of batch.sim(env)")
-            fields = {"mpos": state.mocap_pos, "mquat": state.mocap_quat}
-            fields.update({name: getattr(state, name) for name in ("time", "qpos", "qvel", "act", "plastic", "ctrl")})
-            kept = {name: values for name, values in fields.items() if values.size}
-        return self.section("keyframe").add("key", **{**kept, **attributes})
-
-    def add_asset(self, tag: str, /, data: bytes | None = None, **attributes: Value) -> SpecElement:
-        """Adds an asset: "mesh", "hfield", "material" and so on.
-
-        Parameters
-        ----------
-        tag : str
-            MJCF's name of the asset type.
-        data : bytes, optional
-            The contents of its ``file``, if that is not on the disk.
-        **attributes : str, bool or array_like
-            Its attributes, with MJCF's names.
-
-        Returns
-        -------
-        SpecElement
-        """
-        if data is not None:
-            if "file" not in attributes:
-                raise ValueError("data needs the name of a file")
-            self._document.add_files({written(attributes["file"]): data})
-        return self.section("asset").add(tag, **attributes)
+        self._document.root.set("model", text_of(name))
 
     def decompose(
         self,
@@ -299,110 +170,6 @@ class ModelSpec:
 
         return replace(self, mesh, threshold=threshold, max_hulls=max_hulls, group=group, cache=cache, **options)
 
-    def names(self, kind: str) -> list[str]:
-        """Returns the names of all elements of a kind, in the order of the document, without unnamed ones.
-
-        Parameters
-        ----------
-        kind : str
-            "body", "joint", "geom", "site", "actuator", "sensor" and so on.
-        """
-        return [name for node in self._document.elements(kind) if (name := node.get("name"))]
-
-    def find(self, kind: str, name: str) -> SpecElement:
-        """Returns the element with this kind and name.
-
-        Parameters
-        ----------
-        kind : str
-            "body", "joint", "geom", "site", "camera", "tendon", "actuator", "sensor", "equality", "keyframe", "frame", "mesh" and so on.
-        name : str
-
-        Returns
-        -------
-        SpecElement
-
-        Raises
-        ------
-        ValueError
-            If no element has the name.
-        """
-        found = self._document.find(kind, name)
-        if found is None:
-            known = ", ".join(self.names(kind)[:10])
-            raise ValueError(f'there is no {kind} "{name}"' + (f": there are {known}" if known else ""))
-        return SpecElement(*found)
-
-    def body(self, name: str) -> SpecElement:
-        """Returns the body with this name; "world" is the world.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.world if name == "world" else self.find("body", name)
-
-    def joint(self, name: str) -> SpecElement:
-        """Returns the joint with this name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.find("joint", name)
-
-    def geom(self, name: str) -> SpecElement:
-        """Returns the geom with this name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.find("geom", name)
-
-    def site(self, name: str) -> SpecElement:
-        """Returns the site with this name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.find("site", name)
-
-    def actuator(self, name: str) -> SpecElement:
-        """Returns the actuator with this name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.find("actuator", name)
-
-    def sensor(self, name: str) -> SpecElement:
-        """Returns the sensor with this name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.find("sensor", name)
-
-    def keyframe(self, name: str) -> SpecElement:
-        """Returns the keyframe with this name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        """
-        return self.find("keyframe", name)
-
     def to_xml(self) -> str:
         """Returns the document as MJCF text, which loads together with the files in `assets`.
 
@@ -441,6 +208,10 @@ class ModelSpec:
     def copy(self) -> ModelSpec:
         """Returns a copy."""
         return copy.deepcopy(self)
+
+    def __copy__(self) -> ModelSpec:
+        """Returns a copy that shares no element, as `copy` does."""
+        return self.copy()
 
     def __repr__(self) -> str:
         return f'<clench.ModelSpec "{self.name}": {len(self._document.elements("body"))} bodies>'
