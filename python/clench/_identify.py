@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -91,7 +92,9 @@ def identify(
     ModuleNotFoundError
         If SciPy is not installed.
     ValueError
-        If a name or shape is wrong, or nothing was recorded.
+        If a name or shape is wrong, a scale is not positive, or nothing was recorded.
+    TypeError
+        If `recordings` is a single mapping, or `parameters` a single name.
     IndexError
         If an index is outside its field.
     SimulationError
@@ -114,6 +117,10 @@ def identify(
         from scipy.optimize import least_squares
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError("identify needs the package scipy: pip install scipy", name="scipy") from error
+    if isinstance(recordings, Mapping):
+        raise TypeError("recordings is a sequence of mappings: give one recording as [recording]")
+    if isinstance(parameters, str):
+        raise TypeError(f'parameters is a sequence of names, such as ["{parameters}"], not a str')
     sim = Sim(model, options)
     chosen = _Chosen(sim, parameters)
     problems = [Recorded(model, recording, scale or {}) for recording in recordings]
@@ -148,7 +155,7 @@ class _Chosen:
 
     def __init__(self, sim: Sim, parameters: Sequence[str] | Mapping[str, Sequence[int]]) -> None:
         if isinstance(parameters, Mapping):
-            self.indices = {name: [int(index) for index in indices] for name, indices in parameters.items()}
+            self.indices = {name: [operator.index(index) for index in indices] for name, indices in parameters.items()}
         else:
             self.indices = {name: list(range(np.size(sim.param(name)))) for name in parameters}
         sim.linearize(parameters=self.indices)  # Checks the names and indices.

@@ -30,9 +30,12 @@ class Recorded:
             if array.shape != (self._steps, sizes[name]):
                 raise ValueError(f"{name} of a recording has shape {array.shape}, not {(self._steps, sizes[name])}")
         self._ctrl, self._initial = arrays.pop("ctrl", None), recording.get("initial")
+        row = 1 + model.nq + model.nv + model.na
+        if not isinstance(self._initial, (State, type(None))) and np.shape(self._initial) != (row,):
+            raise ValueError(f"initial of a recording has shape {np.shape(self._initial)}, not {(row,)}")
         self._measured, self._tangent = arrays, Tangent(model)
         sizes["qpos"] = model.nv
-        weights = [1.0 / np.broadcast_to(scale.get(name, 1.0), sizes[name]) for name in arrays]
+        weights = [1.0 / _scale_of(name, scale.get(name, 1.0), sizes[name]) for name in arrays]
         known = [~np.isnan(array) for array in arrays.values()]
         if "qpos" in arrays:
             # A rotation was measured if all four numbers of its quaternion were.
@@ -102,3 +105,13 @@ class Recorded:
         measured = self._measured["qpos"][k]
         measured = np.where(np.isnan(measured), sim.qpos, measured)
         return self._tangent.inverse(measured), self._tangent.nearest(measured, sim.qpos), measured
+
+
+def _scale_of(name: str, given: ArrayLike, size: int) -> Floats:
+    """Returns the standard deviation of each of the numbers with a name."""
+    scale = np.asarray(given, np.float64)
+    if scale.shape not in ((), (1,), (size,)):
+        raise ValueError(f"scale of {name} has shape {scale.shape}, not () or {(size,)}")
+    if not (scale > 0.0).all():
+        raise ValueError(f"scale of {name} has a number that is not positive")
+    return np.broadcast_to(scale, size)

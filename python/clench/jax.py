@@ -63,7 +63,7 @@ def step(sim: Sim | Batch) -> Any:
     A state has positions (nq), velocities (nv) and activations (na), with a row for each environment of a batch. All
     else that a step depends on, such as parameters, mocap poses and applied forces, is that of the simulation now. The
     function works in `jax.jit` and `jax.lax.scan`; `jax.vmap` calls it one element at a time. It uses the simulation,
-    so that one thread at a time may call it.
+    so that one thread at a time may call it. It raises `ValueError` if a shape is wrong.
 
     Parameters
     ----------
@@ -113,8 +113,16 @@ def step(sim: Sim | Batch) -> Any:
         products = jax.pure_callback(multiply, parts, *saved, *gradients, vmap_method="sequential")
         return tuple(products[:3]), products[3]
 
-    function: Any = jax.custom_vjp(call)
-    function.defvjp(forward, backward)
+    differentiable: Any = jax.custom_vjp(call)
+    differentiable.defvjp(forward, backward)
+
+    def function(state: _State, ctrl: Any) -> Any:
+        qpos, qvel, act = state
+        for name, given, needed in zip(("qpos", "qvel", "act", "ctrl"), (qpos, qvel, act, ctrl), parts):
+            if jax.numpy.shape(given) != needed.shape:
+                raise ValueError(f"{name} has shape {jax.numpy.shape(given)}, not {needed.shape}")
+        return differentiable((qpos, qvel, act), ctrl)
+
     return function
 
 

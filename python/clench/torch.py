@@ -119,12 +119,16 @@ def rollout(sim: Sim | Batch, state: _State, ctrl: Tensor) -> _State:
         If the simulation, or an environment, cannot make a step.
     """
     precision = torch.from_numpy(sim.qpos).dtype
-    for tensor in (*state, ctrl):
+    qpos, qvel, act = state
+    for tensor in (qpos, qvel, act, ctrl):
         if tensor.dtype != precision or tensor.device.type != "cpu":
             raise TypeError(f"the simulation has {precision} on the processor, not {tensor.dtype} on {tensor.device}")
     if ctrl.shape[1:] != sim.ctrl.shape:
         raise ValueError(f"controls have shape {tuple(ctrl.shape)}, not {('steps', *sim.ctrl.shape)}")
-    after: _State = _Rollout.apply(sim, *state, ctrl)
+    for name, given, needed in zip(("qpos", "qvel", "act"), state, (sim.qpos, sim.qvel, sim.act)):
+        if given.shape != needed.shape:
+            raise ValueError(f"{name} of the state has shape {tuple(given.shape)}, not {needed.shape}")
+    after: _State = _Rollout.apply(sim, qpos, qvel, act, ctrl)
     return after
 
 

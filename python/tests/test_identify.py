@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from typing import Any
+from typing import Any, cast
 
 import clench
 import numpy as np
@@ -99,6 +99,14 @@ def test_identify_refuses() -> None:
     fails(ValueError, r"shape \(9, 1\)", {**clean, "qvel": clean["qvel"][1:]}, ["dof_damping"])
     fails(ValueError, "bounds of body_mass", clean, ["dof_damping"], bounds={"body_mass": (0, 1)})
     fails(ValueError, "scale", clean, ["dof_damping"], scale={"xpos": 1.0})
+    for scale in (0.0, -1.0, np.nan):
+        fails(ValueError, "scale of qpos has a number that is not positive", clean, ["dof_damping"], scale={"qpos": scale})
+    fails(ValueError, r"scale of qpos has shape \(3,\), not \(\) or \(1,\)", clean, ["dof_damping"], scale={"qpos": [1, 1, 1]})
+    fails(ValueError, r"initial of a recording has shape \(2,\), not \(3,\)", {**clean, "initial": [0, 0]}, ["dof_damping"])
+    fails(TypeError, r'such as \["dof_damping"\], not a str', clean, "dof_damping")
+    fails(TypeError, "interpreted as an integer", clean, {"dof_damping": [0.5]})
+    with pytest.raises(TypeError, match=r"one recording as \[recording\]"):
+        clench.identify(sim.model, cast(Any, clean), ["dof_damping"])
 
 
 def test_identify_names_the_missing_package(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -80,3 +80,12 @@ def test_environments_of_a_batch_have_the_gradients_of_simulations(precision: An
 def test_double_precision_is_refused_without_x64() -> None:
     with jax.enable_x64(False), pytest.raises(ValueError, match="jax_enable_x64"):
         gradients.step(clench.Sim(ball()))
+
+
+def test_wrong_shapes_are_refused() -> None:
+    sim = clench.Sim(example("pendulum"))
+    step, (qpos, qvel, act) = gradients.step(sim), gradients.state(sim)
+    with pytest.raises(ValueError, match=r"ctrl has shape \(1, 1\), not \(1,\)"):
+        step((qpos, qvel, act), np.zeros((1, 1)))
+    with pytest.raises(ValueError, match=r"qvel has shape \(\), not \(1,\)"):
+        jax.jit(step)((qpos, 0.0, act), np.zeros(1))

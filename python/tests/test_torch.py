@@ -153,6 +153,9 @@ def test_refusals() -> None:
         gradients.step(sim, state, ctrl[0, :1])
     with pytest.raises(ValueError, match="qpos|shape"):
         gradients.step(sim, (qpos[1:], qvel, act), ctrl[0])
+    # One row of a batch is no state of a simulation, though NumPy would broadcast it.
+    with pytest.raises(ValueError, match=r"qvel of the state has shape \(1, "):
+        gradients.step(sim, (qpos, qvel[None], act), ctrl[0])
     single = clench.Sim(ball(), precision="32")
     with pytest.raises(TypeError, match="float32"):
         gradients.step(single, gradients.state(single), torch.zeros(0, dtype=torch.float64))
