@@ -352,6 +352,10 @@ class BatchEnv(TaskMethods, Drawn, VectorEnv[Any, Array, Array]):  # type: ignor
         if batch.outputs and batch.forward(mask):
             env = int(np.flatnonzero(mask & ~batch.running)[0])
             raise SimulationError(f"{self._name}: environment {env} cannot start: {batch.fault(env)}")
+        for name, values in (("qpos", qpos[envs]), ("qvel", qvel[envs])):
+            if not np.isfinite(values).all():
+                env = int(envs[np.argwhere(~np.isfinite(values))[0, 0]])
+                raise SimulationError(f"{self._name}: environment {env} cannot start: its {name} is not finite")
         self.fresh |= mask
         self._done = self._done & ~mask
         return self._checked_info(self.reset_info())

@@ -84,8 +84,9 @@ def test_initial_state_that_cannot_be() -> None:
         def initial_state(self, rng: np.random.Generator) -> Any:
             return np.array([np.nan, 0.0]), self.init_qvel
 
-    with pytest.raises(SimulationError, match="Lost: environment 0 cannot start"):
-        Lost(ENVS).reset()
+    for outputs in ((), ("xpos",)):
+        with pytest.raises(SimulationError, match="Lost: environment 0 cannot start"):
+            Lost(2, outputs=outputs).reset(seed=0)
 
 
 @pytest.mark.parametrize(
