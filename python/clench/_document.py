@@ -55,8 +55,11 @@ _TAGS = {
 _NOT_IN_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 # Sections without names.
 _SETTINGS = ("compiler", "option", "size", "statistic", "visual")
-# Sections whose names refer to nothing that can be renamed or removed.
+# Sections whose names refer to nothing that can be renamed or removed, except assets that default classes name.
 _NO_REFERENCES = ("default", "custom", *_SETTINGS)
+_ASSETS = ("mesh", "hfield", "material", "texture")
+# Kinds without which an element remains what it is.
+_LOOKS = ("material", "texture")
 
 
 def written(value: Value) -> str:
@@ -221,7 +224,7 @@ class Document(Files):
             for model in section.findall(f"model[@name='{name}']"):
                 section.remove(model)
         gone = [(document, node, section) for document in own.family() for node, section in document.nodes()]
-        return [(kind, node.get("name", "")) for _, node, section in gone if (kind := _kind(node, section))]
+        return [(kind, named(node)) for _, node, section in gone if (kind := _kind(node, section))]
 
     # Names and references.
 
@@ -292,7 +295,8 @@ class Document(Files):
         found = []
         for document in self.first().family():
             for node, section in document.nodes():
-                if section in _NO_REFERENCES and node.tag != "element":
+                in_class = section == "default" and kind in _ASSETS
+                if section in _NO_REFERENCES and node.tag != "element" and not in_class:
                     continue
                 # A model that a file attaches has its own names.
                 if node.tag == "attach" and kind != "model" and node.get("model", "") not in ("", *document.attached):
@@ -308,7 +312,7 @@ class Document(Files):
         """Removes a node, its descendants, and all references to them. If it is an attachment, the attached document is
         removed too."""
         parent = self.parents()[node]
-        gone = [(kind, part.get("name", "")) for part in node.iter() for kind in [self.kind_of(part)] if kind]
+        gone = [(kind, named(part)) for part in node.iter() for kind in [self.kind_of(part)] if kind]
         gone += [name for part in node.iter("attach") for name in self._detach(part.get("model", ""))]
         parent.remove(node)
         self.changed()
@@ -317,13 +321,18 @@ class Document(Files):
                 self._remove_references(kind, name)
 
     def _remove_references(self, kind: str, name: str) -> None:
-        for document, node, _ in self.references(kind, name):
+        for document, node, attribute in self.references(kind, name):
             parents = document.parents()
-            if node in parents:
-                # A tendon that loses a part would be a different tendon, so the whole tendon is removed.
-                while parents[node].tag in ("spatial", "fixed"):
-                    node = parents[node]
-                document.remove(node)
+            if node not in parents:
+                continue
+            section = next((tag for other, tag in document.nodes() if other is node), None)
+            if section == "default" or (kind in _LOOKS and node.tag != "layer"):
+                del node.attrib[attribute]
+                continue
+            # A tendon that loses a part would be a different tendon, so the whole tendon is removed.
+            while parents[node].tag in ("spatial", "fixed") or (parents[node].tag == "tuple" and len(parents[node]) == 1):
+                node = parents[node]
+            document.remove(node)
 
 
 def check_kind(kind: str) -> None:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from clench._check import check, limit
 from clench._document import Document, Value, file_of, text_of, written
+from clench._files import named
 from clench._keyframes import kept
 
 
@@ -51,8 +52,8 @@ class SpecElement:
 
     @property
     def name(self) -> str:
-        """Its name, possibly empty."""
-        return self._node.get("name", "")
+        """Its name, possibly empty; meshes, height fields and textures without one have that of their file."""
+        return named(self._node) if self.tag in ("mesh", "hfield", "texture") else self._node.get("name", "")
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -352,8 +353,8 @@ class SpecElement:
 
     def remove(self) -> None:
         """Removes this element, its descendants, and everything that refers to them: removing a joint removes its
-        sensors. If the model can be built, its keyframes lose the numbers of joints, actuators and mocap bodies that
-        are removed.
+        sensors. Elements with a removed material or texture remain without it. If the model can be built, its
+        keyframes lose the numbers of joints, actuators and mocap bodies that are removed.
 
         Raises
         ------

@@ -219,7 +219,7 @@ class SpecSections:
             If there is no such kind.
         """
         check_kind(kind)
-        return [name for node in self._document.elements(kind) if (name := node.get("name"))]
+        return [name for node in self._document.elements(kind) if (name := SpecElement(self._document, node).name)]
 
     def find(self, kind: str, name: str) -> SpecElement:
         """Returns the element with this kind and name.

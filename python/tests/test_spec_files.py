@@ -84,3 +84,53 @@ def test_a_robot_is_recognized_by_its_first_element(tmp_path: Path) -> None:
     text = "\n<?xml version='1.0'?><!-- <mujoco> -- --><Robot name='r'><link name='a'/>&</Robot>"
     (tmp_path / "a.urdf").write_text(text)
     assert clench.ModelSpec.from_file(tmp_path / "a.urdf").build().nbody == 1
+
+
+DRESSED = """
+<mujoco>
+  <default><default class="red"><geom material="red"/></default><default class="cubes"><geom type="mesh" mesh="cube"/></default></default>
+  <asset>
+    <mesh file="parts/cube.obj"/>
+    <texture name="grid" type="2d" builtin="checker" width="8" height="8"/>
+    <material name="red" rgba="1 0 0 1"/><material name="tiles" texture="grid"/>
+  </asset>
+  <worldbody>
+    <body name="b"><freejoint/>
+      <geom name="one" class="cubes"/><geom name="two" type="mesh" mesh="cube" material="tiles"/><geom name="three" class="red" size="0.1"/>
+    </body>
+  </worldbody>
+  <custom><tuple name="all"><element objtype="body" objname="b"/></tuple></custom>
+</mujoco>"""
+
+
+def dressed() -> clench.ModelSpec:
+    return clench.ModelSpec.from_xml(DRESSED, {"cube.obj": box(0.1).encode()})
+
+
+def test_a_mesh_with_the_name_of_its_file_is_renamed_and_removed() -> None:
+    spec = dressed()
+    assert spec.names("mesh") == ["cube"] and spec.find("mesh", "cube").name == "cube"
+    spec.find("mesh", "cube").rename("block")
+    assert spec.names("mesh") == spec.build().names("mesh") == ["block"]
+    assert spec.geom("two")["mesh"] == "block"
+    spec.geom("one").remove()
+    spec.find("mesh", "block").remove()
+    assert spec.build().names("geom") == ["three"]
+
+
+def test_materials_of_classes_are_renamed_and_removed() -> None:
+    spec, expected = dressed(), dressed().build()
+    spec.find("material", "red").rename("ruby")
+    assert spec.build().names("geom") == expected.names("geom")
+    # Geoms remain, since how they look is not what they are.
+    for kind, name in (("material", "ruby"), ("texture", "grid")):
+        spec.find(kind, name).remove()
+    assert "texture" not in spec.find("material", "tiles") and spec.geom("two")["material"] == "tiles"
+    spec.find("material", "tiles").remove()
+    np.testing.assert_array_equal(spec.build().body_inertia, expected.body_inertia)
+
+
+def test_a_tuple_goes_with_its_last_element() -> None:
+    spec = dressed()
+    spec.body("b").remove()
+    assert spec.build().nbody == 1 and not list(spec.section("custom"))
