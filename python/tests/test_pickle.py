@@ -109,6 +109,17 @@ def test_anchors_that_differ_from_their_sites_survive_a_pickle() -> None:
         np.testing.assert_array_equal(other.param(field), sim.param(field))
 
 
+@pytest.mark.parametrize("precision", ["64", "32"])
+@pytest.mark.parametrize("kind", ["sim", "batch"])
+def test_orientations_keep_their_bits_in_copies(kind: str, precision: str) -> None:
+    own: Any = moving(kind, precision)
+    assign, rng = own.set_param if kind == "sim" else own.randomize, np.random.default_rng(0)
+    for field in ("body_quat", "body_iquat", "geom_quat", "jnt_axis"):
+        for _ in range(5):
+            assign(field, rng.normal(size=own.param(field).shape))
+            np.testing.assert_array_equal(copy.copy(own).param(field), own.param(field))
+
+
 def test_they_are_sent_to_spawned_workers() -> None:
     sim = moving("sim")
     with multiprocessing.get_context("spawn").Pool(1) as pool:

@@ -176,7 +176,10 @@ fn normalize<S: Scalar>(
             range: "part of a direction whose length is finite and not too small",
         });
     }
-    direction.iter_mut().for_each(|x| *x /= norm);
+    // A unit direction stays as it is, so that numbers that were read and are set again do not change.
+    if (squared - S::ONE).abs() > S::new(8.0) * S::EPSILON {
+        direction.iter_mut().for_each(|x| *x /= norm);
+    }
     Ok(())
 }
 

@@ -4,6 +4,7 @@ use super::{Batch, Precision};
 use crate::sim::{DynamicConstraint, Sim};
 use clench_dynamics::check::check_length;
 use clench_dynamics::error::SimError;
+use clench_dynamics::model::ParamField;
 use clench_math::Vec3;
 
 impl<S: Precision> Batch<S> {
@@ -59,8 +60,12 @@ impl<S: Precision> Batch<S> {
         for &env in envs {
             let mut sim = self.sim(env)?;
             sim.weld_here(equality)?;
-            for field in ["eq_anchor1", "eq_anchor2", "eq_quat1"] {
-                self.randomize(field, &[env], &sim.param(field)?)?;
+            for field in [
+                ParamField::eq_anchor1,
+                ParamField::eq_anchor2,
+                ParamField::eq_quat1,
+            ] {
+                self.copy_param(field, &[env], &sim.param(field.name())?)?;
             }
             self.state.write(env, &sim.state)?;
         }

@@ -23,25 +23,34 @@ impl<S: Precision> Batch<S> {
     /// Returns an error if the name is unknown, if the field is derived from another, if there is no such environment,
     /// if the number of values is wrong, or if a value is invalid. No parameter changes.
     pub fn randomize(&mut self, field: &str, envs: &[usize], values: &[S]) -> Result<(), SimError> {
-        self.check_and_assign(ParamField::settable(field)?, envs, values)
+        let field = ParamField::settable(field)?;
+        let values = self.checked(field, envs, values)?;
+        self.assign(envs, &[(field, values)])
     }
 
     /// Assigns a field of every environment as [`randomize`](Self::randomize) does, for a copy of a batch: also a field
-    /// that follows from another, after that one.
+    /// that follows from another, after that one. Every bit is retained, also of directions.
     ///
     /// # Errors
     /// Returns an error as [`randomize`](Self::randomize) does.
     pub fn restore_param(&mut self, field: &str, values: &[S]) -> Result<(), SimError> {
         let envs = Vec::from_iter(0..self.count());
-        self.check_and_assign(ParamField::find(field)?, &envs, values)
+        self.copy_param(ParamField::find(field)?, &envs, values)
     }
 
-    fn check_and_assign(
+    /// Assigns a field of environments, with every bit.
+    pub(super) fn copy_param(
         &mut self,
         field: ParamField,
         envs: &[usize],
         values: &[S],
     ) -> Result<(), SimError> {
+        self.checked(field, envs, values)?;
+        self.assign(envs, &[(field, values.to_vec())])
+    }
+
+    /// Returns valid values of a field, with normalized directions.
+    fn checked(&self, field: ParamField, envs: &[usize], values: &[S]) -> Result<Vec<S>, SimError> {
         self.check_envs(envs)?;
         let width = self.model.params.width(field);
         check_length(field.name(), values.len(), width * envs.len())?;
@@ -51,7 +60,7 @@ impl<S: Precision> Batch<S> {
             field.check_row(self.models.own(&self.model, env), &mut own)?;
             self.models.layout_row(env, field, &own, row);
         }
-        self.assign(envs, &[(field, values)])
+        Ok(values)
     }
 
     /// Assigns checked values of fields to environments. Operations that may fail precede the first change.

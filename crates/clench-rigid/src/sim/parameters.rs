@@ -18,26 +18,30 @@ impl<T: Precision> Sim<T> {
     /// Returns an error if the name is unknown, if the field is derived from another, if the number of values is wrong,
     /// or if a value is invalid. The parameters are then unchanged.
     pub fn set_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
-        self.assign_param(ParamField::settable(field)?, values)
+        let field = ParamField::settable(field)?;
+        let mut row = values.to_vec();
+        field.check_row(&self.model, &mut row)?;
+        self.assign_param(field, &row);
+        Ok(())
     }
 
     /// Assigns a field as [`set_param`](Self::set_param) does, for a copy of a simulation: also a field that follows
-    /// from another, after that one.
+    /// from another, after that one. Every bit is retained, also of directions.
     ///
     /// # Errors
     /// Returns an error as [`set_param`](Self::set_param) does.
     pub fn restore_param(&mut self, field: &str, values: &[T]) -> Result<(), SimError> {
-        self.assign_param(ParamField::find(field)?, values)
+        let field = ParamField::find(field)?;
+        field.check_row(&self.model, &mut values.to_vec())?;
+        self.assign_param(field, values);
+        Ok(())
     }
 
-    fn assign_param(&mut self, field: ParamField, values: &[T]) -> Result<(), SimError> {
-        let mut row = values.to_vec();
-        field.check_row(&self.model, &mut row)?;
-        Model::clear_structural_guarantees(&mut self.model, field, &row);
-        self.params.write_lanes(field, &row);
+    fn assign_param(&mut self, field: ParamField, row: &[T]) {
+        Model::clear_structural_guarantees(&mut self.model, field, row);
+        self.params.write_lanes(field, row);
         self.params.derive(&self.model, field);
         self.invalidate();
-        Ok(())
     }
 
     /// Computes the derived parameters in the initial configuration, as MuJoCo's `mj_setConst` does: subtree masses,

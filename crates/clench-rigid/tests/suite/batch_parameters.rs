@@ -413,3 +413,29 @@ fn constants_in_single_precision_are_those_of_a_simulation() {
         assert_eq!(batch.param(field, 1), sim.param(field), "{field}");
     }
 }
+
+fn directions_keep_their_bits<S: Precision>() {
+    let model = model(&tied_sites());
+    let mut sim = Sim::<S>::new(model.clone()).expect("valid");
+    let mut batch = Batch::<S>::new(model.clone(), 1).expect("valid");
+    for field in ["body_quat", "body_iquat", "geom_quat", "eq_quat2"] {
+        for k in 1..40 {
+            let count = sim.param(field).expect("known").len();
+            let numbers = (0..count).map(|i| S::new((1.7 * (i * k) as f64 + 1.0).sin()));
+            sim.set_param(field, &Vec::from_iter(numbers))
+                .expect("valid");
+            let once = sim.param(field).expect("known");
+            let what = || format!("{field} {k}");
+            sim.set_param(field, &once).expect("valid");
+            assert_bits(&sim.param(field).expect("known"), &once, &what);
+            batch.randomize(field, &[0], &once).expect("valid");
+            assert_bits(&batch.param(field, 0).expect("known"), &once, &what);
+        }
+    }
+}
+
+#[test]
+fn directions_that_are_read_and_set_again_keep_their_bits() {
+    directions_keep_their_bits::<f64>();
+    directions_keep_their_bits::<f32>();
+}

@@ -71,6 +71,30 @@ fn a_weld_added_now_is_one_of_the_file_that_holds_the_present_pose() {
 }
 
 #[test]
+fn a_batch_adopts_the_bits_of_the_pose_that_a_simulation_adopts() {
+    let mut builder = boxes();
+    builder.equalities.push(weld("grip", "left", "right"));
+    let model = model(&builder);
+    for env in 0..40 {
+        let mut sim: Sim = alone(&model, RigidOptions::new(), env);
+        (0..20).for_each(|_| sim.step().expect("finite"));
+        let mut batch: Batch = Batch::new(model.clone(), 1).expect("valid");
+        batch.state.write(0, &sim.state).expect("it is there");
+        sim.weld_here(0).expect("a weld");
+        batch.weld_here(&[0], 0).expect("a weld");
+        let mut copy: Sim = Sim::new(model.clone()).expect("valid");
+        for field in ["eq_anchor1", "eq_anchor2", "eq_quat1"] {
+            let expected = sim.param(field).expect("known");
+            copy.restore_param(field, &expected).expect("valid");
+            for found in [batch.param(field, 0), copy.param(field)] {
+                let what = || format!("{field} of environment {env}");
+                assert_bits(&found.expect("known"), &expected, &what);
+            }
+        }
+    }
+}
+
+#[test]
 fn welded_bodies_keep_their_pose_until_they_are_released() {
     let model = model(&boxes());
     let mut sim = thrown(&model);
