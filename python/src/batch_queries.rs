@@ -326,7 +326,7 @@ impl Batch {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the model does not have a name, or an array has another shape or is not finite.
+    ///     If the model does not have a name, a direction is zero, or an array has another shape or is not finite.
     /// IndexError
     ///     If an index or a group is out of range.
     #[pyo3(signature = (origins, directions, *, body = None, body_com = None, geom = None, site = None, camera = None,

@@ -1,5 +1,6 @@
 //! The derivatives of a step, from Python.
 
+use crate::count::Index;
 use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
@@ -100,7 +101,7 @@ impl Chosen {
         };
         if let Ok(mapping) = parameters.cast::<PyMapping>() {
             for item in mapping.items()? {
-                let (name, numbers): (String, Vec<usize>) = item.extract()?;
+                let (name, numbers): (String, Vec<Index>) = item.extract()?;
                 chosen.add(model, &name, Some(numbers))?;
             }
         } else {
@@ -116,18 +117,22 @@ impl Chosen {
         &mut self,
         model: &clench::Model,
         name: &str,
-        numbers: Option<Vec<usize>>,
+        numbers: Option<Vec<Index>>,
     ) -> PyResult<()> {
         let field = Variable::find(name)?;
         let count = field.count(model);
-        let numbers = numbers.unwrap_or_else(|| (0..count).collect());
-        if let Some(number) = numbers.iter().find(|&&number| number >= count) {
+        let numbers = numbers.unwrap_or_else(|| (0..count).map(Index).collect());
+        if let Some(Index(number)) = numbers.iter().find(|number| number.0 >= count) {
+            let place = match *number {
+                usize::MAX => "with such an index".to_owned(),
+                number => format!("at index {number}"),
+            };
             return Err(PyIndexError::new_err(format!(
-                "{name} has {count} numbers, not one at index {number}"
+                "{name} has {count} numbers, not one {place}"
             )));
         }
         self.fields.push((field, numbers.len()));
-        for number in numbers {
+        for Index(number) in numbers {
             field.request(number, &mut self.request);
         }
         Ok(())

@@ -1,7 +1,9 @@
 //! Pictures of simulations as arrays.
 
+use crate::arrays::indices;
 use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
+use crate::count::Pixels;
 use crate::drawing::{DrawRequest, appearance, draw};
 use crate::envs::{Envs, Scene};
 use crate::error::sim_error;
@@ -11,6 +13,11 @@ use crate::viewed::Target;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
+
+/// Reads the groups of geoms that are visible.
+fn chosen_groups(groups: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
+    indices("groups", groups, 6)
+}
 
 #[pymethods]
 impl Model {
@@ -53,7 +60,7 @@ impl Sim {
     /// kind : {"rgb", "depth", "geom"}
     ///     The quantity of each pixel.
     /// groups : sequence of int, optional
-    ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
+    ///     The groups of geoms, 0 to 5, that are visible; 0, 1 and 2 by default, as in MuJoCo.
     /// out : numpy.ndarray or tensor, optional
     ///     The contiguous array to write to, or a tensor that shares its memory by DLPack.
     /// device : {"gpu", "cpu"}, optional
@@ -77,19 +84,22 @@ impl Sim {
     /// ValueError
     ///     If the size is invalid, no camera has the name, `out` has another shape, rays should see colours, or
     ///     the appearance has an unknown name, a wrong shape or an invalid number.
+    /// IndexError
+    ///     If an index of a camera or a group is out of range.
     /// TypeError
     ///     If `out` has another dtype.
-    #[pyo3(signature = (width = 640, height = 480, *, camera = None, kind = "rgb", groups = None, out = None,
-                        device = None, appearance = None))]
+    #[pyo3(signature = (width = Pixels(640), height = Pixels(480), *, camera = None, kind = "rgb", groups = None,
+                        out = None, device = None, appearance = None),
+           text_signature = "($self, width=640, height=480, *, camera=None, kind='rgb', groups=None, out=None, device=None, appearance=None)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
         py: Python<'py>,
-        width: u32,
-        height: u32,
+        width: Pixels,
+        height: Pixels,
         camera: Option<&Bound<'py, PyAny>>,
         kind: &str,
-        groups: Option<Vec<usize>>,
+        groups: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
         device: Option<&str>,
         appearance: Option<&Bound<'py, PyAny>>,
@@ -97,12 +107,12 @@ impl Sim {
         let request = DrawRequest {
             layout: self.described(),
             n: None,
-            size: (width, height),
+            size: (width.0, height.0),
             camera,
             kind,
             device,
             threads: 1,
-            groups,
+            groups: groups.map(chosen_groups).transpose()?,
             out,
             appearance,
         };
@@ -162,7 +172,7 @@ impl Batch {
     /// kind : {"rgb", "depth", "geom"}
     ///     The quantity of each pixel.
     /// groups : sequence of int, optional
-    ///     The groups of geoms that are visible; 0, 1 and 2 by default, as in MuJoCo.
+    ///     The groups of geoms, 0 to 5, that are visible; 0, 1 and 2 by default, as in MuJoCo.
     /// out : numpy.ndarray or tensor, optional
     ///     The contiguous array to write to, or a tensor that shares its memory by DLPack.
     /// device : {"gpu", "cpu"}, optional
@@ -183,19 +193,20 @@ impl Batch {
     /// ClenchError, TypeError, ValueError
     ///     As for `Sim.render`.
     /// IndexError
-    ///     If an index of an environment is out of range.
-    #[pyo3(signature = (env = None, width = 640, height = 480, *, camera = None, kind = "rgb", groups = None,
-                        out = None, device = None, appearance = None))]
+    ///     If an index of an environment, a camera or a group is out of range.
+    #[pyo3(signature = (env = None, width = Pixels(640), height = Pixels(480), *, camera = None, kind = "rgb",
+                        groups = None, out = None, device = None, appearance = None),
+           text_signature = "($self, env=None, width=640, height=480, *, camera=None, kind='rgb', groups=None, out=None, device=None, appearance=None)")]
     #[allow(clippy::too_many_arguments)] // They are keywords.
     fn render<'py>(
         &self,
         py: Python<'py>,
         env: Option<&Bound<'py, PyAny>>,
-        width: u32,
-        height: u32,
+        width: Pixels,
+        height: Pixels,
         camera: Option<&Bound<'py, PyAny>>,
         kind: &str,
-        groups: Option<Vec<usize>>,
+        groups: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
         device: Option<&str>,
         appearance: Option<&Bound<'py, PyAny>>,
@@ -204,12 +215,12 @@ impl Batch {
         let request = DrawRequest {
             layout: self.described(),
             n: Some(self.count()),
-            size: (width, height),
+            size: (width.0, height.0),
             camera,
             kind,
             device,
             threads: self.threads(),
-            groups,
+            groups: groups.map(chosen_groups).transpose()?,
             out,
             appearance,
         };

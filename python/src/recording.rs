@@ -2,10 +2,11 @@
 
 use crate::batch::AnyBatch;
 use crate::busy::lock;
+use crate::count::{Count, Index, check_env};
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
-use crate::viewer::{check_env, page};
+use crate::viewer::page;
 use clench::Model;
 use clench_view::{Marks, RecordError, Scene, Viewed};
 use numpy::PyArray1;
@@ -77,10 +78,10 @@ impl Recording {
 #[pymethods]
 impl Recording {
     #[new]
-    #[pyo3(signature = (*, limit = LIMIT), text_signature = "(*, limit=1000000000)")]
-    fn new(limit: usize) -> Self {
+    #[pyo3(signature = (*, limit = Count(LIMIT)), text_signature = "(*, limit=1000000000)")]
+    fn new(limit: Count) -> Self {
         Recording {
-            limit,
+            limit: limit.0,
             inner: Mutex::new(None),
         }
     }
@@ -102,9 +103,10 @@ impl Recording {
     ///     If the recording has reached its limit.
     /// ValueError
     ///     If the model is another one.
-    #[pyo3(signature = (target, env = 0))]
-    fn append(&self, target: &Bound<'_, PyAny>, env: usize) -> PyResult<()> {
+    #[pyo3(signature = (target, env = Index(0)), text_signature = "($self, target, env=0)")]
+    fn append(&self, target: &Bound<'_, PyAny>, env: Index) -> PyResult<()> {
         let target = Target::of(target)?;
+        let env = env.0;
         check_env(env, target.envs()?)?;
         let mut guard = lock(&self.inner, "recording")?;
         let appended = each_viewed!(&target, viewed => {
@@ -157,17 +159,17 @@ impl Recording {
     /// ValueError
     ///     If the file is not such a page, or was written by another version of Clench.
     #[staticmethod]
-    #[pyo3(signature = (path, *, limit = LIMIT), text_signature = "(path, *, limit=1000000000)")]
-    fn load(py: Python<'_>, path: PathBuf, limit: usize) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, limit = Count(LIMIT)), text_signature = "(path, *, limit=1000000000)")]
+    fn load(py: Python<'_>, path: PathBuf, limit: Count) -> PyResult<Self> {
         let text = py
             .detach(|| fs::read(&path))
             .map_err(|error| at(&path, &error))?;
         let text = String::from_utf8_lossy(&text);
-        let read = clench_view::Recording::from_html(&text, limit);
+        let read = clench_view::Recording::from_html(&text, limit.0);
         let recording =
             read.map_err(|error| PyValueError::new_err(format!("{}: {error}", path.display())))?;
         Ok(Recording {
-            limit,
+            limit: limit.0,
             inner: Mutex::new(Some(Contents {
                 recording,
                 model: None,

@@ -61,6 +61,7 @@ pub(crate) fn rays<S: Precision + Element>(
 ) -> PyResult<Table<S>> {
     let origins = Table::<S>::rows_of("origins", origins, 3, n)?;
     let directions = Table::<S>::rows_of("directions", directions, 3, n)?;
+    require_lengths(&directions)?;
     let count = origins.rows.max(directions.rows);
     // A single origin can be shared by all directions, as for a lidar.
     for (name, rows) in [("origins", origins.rows), ("directions", directions.rows)] {
@@ -86,6 +87,22 @@ pub(crate) fn rays<S: Precision + Element>(
         each,
         rows: count,
     })
+}
+
+/// Returns an error if a direction is zero; it names the first one.
+fn require_lengths<S: Precision>(directions: &Table<S>) -> PyResult<()> {
+    let none = |row: &[S]| row.iter().all(|x| x.abs() < S::MIN_POSITIVE);
+    let Some(k) = directions.values.chunks_exact(3).position(none) else {
+        return Ok(());
+    };
+    let (env, row) = (k / directions.rows, k % directions.rows);
+    let place = match directions.each {
+        true => format!("{env}, {row}"),
+        false => row.to_string(),
+    };
+    Err(PyValueError::new_err(format!(
+        "directions[{place}] has no length"
+    )))
 }
 
 /// Converts hits to the format of a batch: five numbers per ray.
@@ -129,7 +146,7 @@ impl Sim {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the model does not have a name, or an array has another shape or is not finite.
+    ///     If the model does not have a name, a direction is zero, or an array has another shape or is not finite.
     /// IndexError
     ///     If an index or a group is out of range.
     /// SimulationError

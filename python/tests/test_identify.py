@@ -92,7 +92,8 @@ def test_identify_refuses() -> None:
             clench.identify(sim.model, [recording], parameters, **settings)
 
     fails(ValueError, "dof_damping", clean, ["dof_dampin"])
-    fails(IndexError, "has 1 numbers", clean, {"dof_damping": [1]})
+    for index in (1, -1):
+        fails(IndexError, "dof_damping has 1 numbers, not one", clean, {"dof_damping": [index]})
     fails(ValueError, "no parameters", clean, [])
     fails(ValueError, "no measured numbers", {"ctrl": clean["ctrl"]}, ["dof_damping"])
     fails(ValueError, "velocity", {**clean, "velocity": clean["qvel"]}, ["dof_damping"])

@@ -3,7 +3,7 @@
 use crate::arrays::mask;
 use crate::batch_models::Models;
 use crate::busy::lock;
-use crate::count::Count;
+use crate::count::{Count, Index, check_env};
 use crate::derivatives::BatchMemory;
 use crate::device::Device;
 use crate::error::sim_error;
@@ -18,7 +18,7 @@ use crate::state_views::StateViews;
 use crate::view::Keeper;
 use clench::math::Instructions;
 use clench::{BatchOptions, Output};
-use pyo3::exceptions::{PyAttributeError, PyIndexError, PyOverflowError, PyRuntimeWarning};
+use pyo3::exceptions::{PyAttributeError, PyRuntimeWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::ffi::CString;
@@ -270,7 +270,7 @@ impl Batch {
     /// Model : The model, without the parameters that are set per environment. Of several models it is the common
     /// layout: on each body, in order, the geoms that any model needs there, with the numbers of the first model.
     /// Arrays over geoms, such as outputs and parameters, are in this layout; `geoms_of` returns the geoms of one
-    /// model.
+    /// model. A geom whose type differs between models is several of the layout, so that its name is an error.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<Model> {
         self.model.clone_ref(py)
@@ -388,19 +388,9 @@ impl Batch {
 
     /// Converts an index to that of an environment.
     pub(crate) fn env(&self, index: &Bound<'_, PyAny>) -> PyResult<usize> {
-        let found = match index.extract::<usize>() {
-            Err(error) if !error.is_instance_of::<PyOverflowError>(index.py()) => {
-                return Err(error);
-            }
-            found => found.ok().filter(|&env| env < self.n_envs),
-        };
-        let max = self.n_envs;
-        let missing = || {
-            PyIndexError::new_err(format!(
-                "the environment must be at least 0 and below {max}"
-            ))
-        };
-        found.ok_or_else(missing)
+        let Index(env) = index.extract()?;
+        check_env(env, self.n_envs)?;
+        Ok(env)
     }
 
     /// Converts a mask; by default it covers all environments.

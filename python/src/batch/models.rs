@@ -2,6 +2,7 @@
 
 use super::{AnyBatch, Batch};
 use crate::busy::lock;
+use crate::count::Index;
 use crate::error::sim_error;
 use crate::model::Model;
 use numpy::PyArray1;
@@ -53,9 +54,9 @@ impl Batch {
     /// ------
     /// IndexError
     ///     If there is no such model.
-    fn geoms_of<'py>(&self, py: Python<'py>, model: usize) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    fn geoms_of<'py>(&self, py: Python<'py>, model: Index) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let guard = lock(&self.inner, "batch")?;
-        let geoms = each!(&*guard, batch => batch.geoms_of(model)).map_err(sim_error)?;
+        let geoms = each!(&*guard, batch => batch.geoms_of(model.0)).map_err(sim_error)?;
         Ok(PyArray1::from_iter(
             py,
             geoms.iter().map(|&geom| geom as i64),

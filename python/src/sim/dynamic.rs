@@ -2,6 +2,7 @@
 
 use super::Sim;
 use crate::busy::lock;
+use crate::count::Index;
 use crate::error::sim_error;
 use crate::kind::Kind;
 use crate::queries::vector;
@@ -101,8 +102,8 @@ impl Sim {
     /// ------
     /// ValueError
     ///     If the constraint does not exist: it was removed, or is not part of the current state.
-    fn remove(&self, constraint: u64) -> PyResult<()> {
-        let constraint = DynamicConstraint::from_code(constraint);
+    fn remove(&self, constraint: Index) -> PyResult<()> {
+        let constraint = DynamicConstraint::from_code(constraint.0 as u64);
         let mut guard = lock(&self.inner, "simulation")?;
         each_sim!(&mut *guard, own => change(own, |sim| sim.remove(constraint)))
     }

@@ -5,13 +5,14 @@ mod draws;
 use crate::arrays::shaped;
 use crate::batch::AnyBatch;
 use crate::busy::lock;
+use crate::count::{Count, Index, check_env};
 use crate::error::{classes::ClenchError, sim_error};
 use crate::row_sim::AnySim;
 use crate::viewed::{Target, each_viewed};
 use clench_view::command::{MAX_SIDE_BY_SIDE, SPEEDS};
 use clench_view::interaction::Interaction;
 use clench_view::{Page, PassiveViewer, ServeError, ServerOptions};
-use pyo3::exceptions::{PyIndexError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard};
 use std::thread::sleep;
@@ -62,15 +63,6 @@ impl Viewer {
     }
 }
 
-/// Returns an error if there is no environment with this index.
-pub(crate) fn check_env(env: usize, envs: usize) -> PyResult<()> {
-    if env < envs {
-        return Ok(());
-    }
-    let text = format!("the environment must be at least 0 and below {envs}");
-    Err(PyIndexError::new_err(text))
-}
-
 /// Validates a speed factor; the range is that of the page.
 fn check_speed(speed: f64) -> PyResult<f64> {
     let [low, high] = SPEEDS;
@@ -96,10 +88,11 @@ fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 #[pymethods]
 impl Viewer {
     #[new]
-    #[pyo3(signature = (target, *, env = 0, host = "127.0.0.1", port = 0, paused = false, speed = 1.0))]
+    #[pyo3(signature = (target, *, env = Index(0), host = "127.0.0.1", port = 0, paused = false, speed = 1.0),
+           text_signature = "(target, *, env=0, host='127.0.0.1', port=0, paused=False, speed=1.0)")]
     fn new(
         target: &Bound<'_, PyAny>,
-        env: usize,
+        env: Index,
         host: &str,
         port: i64,
         paused: bool,
@@ -109,7 +102,7 @@ impl Viewer {
         let target = Target::of(target)?;
         target.require_one_model()?;
         let envs = target.envs()?;
-        check_env(env, envs)?;
+        check_env(env.0, envs)?;
         let options = ServerOptions {
             host: host.to_owned(),
             port: check_port(port)?,
@@ -119,7 +112,7 @@ impl Viewer {
         let page = page(py)?;
         let mut chosen = Interaction::new(paused);
         chosen.factor = speed;
-        chosen.selection.env = env;
+        chosen.selection.env = env.0;
         let viewer =
             each_viewed!(&target, viewed => PassiveViewer::start(&options, page, chosen, viewed));
         let viewer = viewer.map_err(|error| match error {
@@ -240,7 +233,8 @@ impl Viewer {
     }
 
     #[setter]
-    fn set_env(&self, env: usize) -> PyResult<()> {
+    fn set_env(&self, env: Index) -> PyResult<()> {
+        let env = env.0;
         check_env(env, self.envs)?;
         self.open(|viewer| viewer.interaction.selection.env = env)
     }
@@ -253,8 +247,9 @@ impl Viewer {
     ///     Number of environments, at most 64; 1 for only the chosen one.
     /// first : int
     ///     The index of the first one.
-    #[pyo3(signature = (count, first = 0))]
-    fn show_grid(&self, count: usize, first: usize) -> PyResult<()> {
+    #[pyo3(signature = (count, first = Index(0)), text_signature = "($self, count, first=0)")]
+    fn show_grid(&self, count: Count, first: Index) -> PyResult<()> {
+        let (count, first) = (count.0, first.0);
         check_env(first, self.envs)?;
         if !(1..=MAX_SIDE_BY_SIDE).contains(&count) {
             return Err(PyValueError::new_err(format!(
