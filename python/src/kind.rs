@@ -2,7 +2,7 @@
 
 use crate::names::unknown;
 use clench::Model;
-use pyo3::exceptions::{PyIndexError, PyOverflowError, PyTypeError};
+use pyo3::exceptions::{PyIndexError, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -117,7 +117,14 @@ impl Kind {
             let found = names
                 .iter()
                 .position(|&known| known == name && !name.is_empty());
-            return found.ok_or_else(|| unknown(kind, name, &names));
+            let found = found.ok_or_else(|| unknown(kind, name, &names))?;
+            // The common layout of several models may have several.
+            if matches!(self, Kind::Geom) && names[found + 1..].contains(&name) {
+                return Err(PyValueError::new_err(format!(
+                    "there are several geoms \"{name}\", since it has other types in some models: choose one by index"
+                )));
+            }
+            return Ok(found);
         }
         let count = names.len();
         let none = |which: &str| {
@@ -133,8 +140,13 @@ impl Kind {
             }
             Err(_) => {
                 let found = which.get_type().name()?;
+                let article = if kind.starts_with(['a', 'e']) {
+                    "an"
+                } else {
+                    "a"
+                };
                 Err(PyTypeError::new_err(format!(
-                    "a {kind} is chosen by a str or an int, not by {found}"
+                    "{article} {kind} is chosen by a str or an int, not by {found}"
                 )))
             }
         }

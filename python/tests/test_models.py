@@ -206,8 +206,14 @@ def test_mistakes_name_the_models_and_the_element(models: list[clench.Model]) ->
     batch = clench.Batch(models, 3)
     with pytest.raises(ValueError, match="models"):
         batch.reset([True, True, False], env_model=[0])
-    with pytest.raises(IndexError):
-        batch.geoms_of(4)
+    for model in (4, -1, 2**70):
+        with pytest.raises(IndexError):
+            batch.geoms_of(model)
+    # A plane in some models, a height field in others: one of them would be that of a few environments.
+    for call in (batch.geom, lambda name: batch.jacobian(geom=name), lambda name: batch.distance(name, "tool")):
+        with pytest.raises(ValueError, match='several geoms "floor", since it has other types in some models'):
+            call("floor")
+    assert batch.geom("tool").name == "tool"
     with pytest.raises(TypeError, match="common layout"):
         pickle.dumps(batch.model)
     with pytest.raises(ValueError, match="a viewer needs a batch of one model"):
