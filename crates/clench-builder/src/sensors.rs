@@ -32,6 +32,7 @@ pub(super) fn add_all(
         spec.require_not_negative("cutoff", &[spec.cutoff])?;
         spec.require_not_negative("noise", &[spec.noise])?;
         let target = target(spec, names, model)?;
+        require_limit(spec, &target, model)?;
         if let (SensorKind::Touch, &SensorTarget::Element(site)) = (spec.kind, &target)
             && model.sites[site].kind == ShapeKind::Mesh
         {
@@ -89,6 +90,39 @@ pub(super) fn add_all(
         });
     }
     Ok(())
+}
+
+/// Refuses a sensor of the limit of a joint or a tendon that has none, as in MuJoCo.
+fn require_limit(
+    spec: &SensorSpec,
+    target: &SensorTarget,
+    model: &Model,
+) -> Result<(), BuildError> {
+    let &SensorTarget::Element(element) = target else {
+        return Ok(());
+    };
+    use SensorKind as Kind;
+    let of_joint = matches!(
+        spec.kind,
+        Kind::JointLimitPos | Kind::JointLimitVel | Kind::JointLimitFrc
+    );
+    let of_tendon = matches!(
+        spec.kind,
+        Kind::TendonLimitPos | Kind::TendonLimitVel | Kind::TendonLimitFrc
+    );
+    let (kind, name, limited) = if of_joint {
+        let joint = &model.joints[element];
+        ("joint", &joint.name, joint.limited)
+    } else if of_tendon {
+        let tendon = &model.tendons[element];
+        ("tendon", &tendon.name, tendon.limited)
+    } else {
+        return Ok(());
+    };
+    match limited {
+        true => Ok(()),
+        false => Err(spec.error(format!("the {kind} \"{name}\" has no limit to be measured"))),
+    }
 }
 
 /// Returns the number of values of a sensor; `None` if it overflows.

@@ -245,6 +245,28 @@ fn a_tracking_camera_keeps_its_initial_frame() {
 }
 
 #[test]
+fn what_a_sensor_measures_must_exist() {
+    let rejected = |range: &str, sections: &str| {
+        let text = format!(
+            "<mujoco><worldbody><body name='b'><joint name='j' {range}/><geom size='1'/></body></worldbody>
+             <tendon><fixed name='t' {range}><joint joint='j' coef='1'/></fixed></tendon>{sections}</mujoco>"
+        );
+        load_str(&text).err().map(|error| error.to_string())
+    };
+    for kind in ["pos", "vel", "frc"] {
+        for (of, element) in [("joint", "j"), ("tendon", "t")] {
+            let sensor = format!("<sensor><{of}limit{kind} {of}='{element}'/></sensor>");
+            assert_eq!(rejected("range='-1 1'", &sensor), None);
+            for range in ["", "range='-1 1' limited='false'"] {
+                let error = rejected(range, &sensor).expect("an error");
+                let reason = format!("the {of} \"{element}\" has no limit to be measured");
+                assert!(error.contains(&reason), "{error}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_site_needs_a_volume() {
     for (site, reason) in [
         ("<site size='0'/>", "positive"),
