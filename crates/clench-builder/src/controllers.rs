@@ -2,7 +2,7 @@
 //! `pid`, `dcmotor` and `so3`.
 
 use super::element::Element;
-use super::{ActuatorSpec, BuildError};
+use super::{ActuatorSpec, BuildError, TransmissionSpec};
 use clench_dynamics::model::{BiasKind, ControlInput, ControllerStates, DynamicsKind, GainKind};
 
 /// The controls of an actuator, and its activations with a special meaning.
@@ -101,6 +101,9 @@ fn pid(spec: &ActuatorSpec, first: usize) -> Result<Controller, BuildError> {
     let ki = spec.gainprm[0];
     let [imax, slewmax, ..] = spec.dynprm;
     let stateful = spec.dynamics == DynamicsKind::Pid;
+    if matches!(spec.transmission, TransmissionSpec::Body(_)) {
+        return Err(spec.error("a gain of the kind pid cannot act on the contacts of a body"));
+    }
     if spec.bias != BiasKind::Affine {
         return Err(spec.error("a gain of the kind pid needs an affine bias"));
     }

@@ -1,6 +1,7 @@
 //! PID controllers and DC motors: the parameters set by their attributes, and the values inherited from their classes.
 
 use super::{actuator, rejected, servo};
+use clench_formats::load_str;
 use clench_rigid::model::{BiasKind, ControlInput, DynamicsKind, GainKind};
 
 #[test]
@@ -105,6 +106,17 @@ fn a_class_lends_the_saturation_of_its_motor() {
         <general forcerange='-5 6'/><default class='c'><motor forcerange='-.4 .2'/></default></default>";
     let found = actuator(classes, "<dcmotor class='c' joint='j'/>");
     assert_eq!(found.forcerange, [-5.0, 6.0]);
+}
+
+#[test]
+fn a_pid_cannot_act_on_the_contacts_of_a_body() {
+    let text = "<mujoco><worldbody><body name='b'><joint/><geom size='1'/></body></worldbody><actuator>
+        <general body='b' gaintype='pid' biastype='affine' gainprm='0 1 1' biasprm='0 -1 -1'/></actuator></mujoco>";
+    let error = load_str(text).expect_err("of a body").to_string();
+    assert!(
+        error.contains("cannot act on the contacts of a body"),
+        "{error}"
+    );
 }
 
 #[test]
