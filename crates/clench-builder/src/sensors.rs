@@ -33,6 +33,7 @@ pub(super) fn add_all(
         spec.require_not_negative("noise", &[spec.noise])?;
         let target = target(spec, names, model)?;
         require_limit(spec, &target, model)?;
+        require_dim_of_data(spec)?;
         if let (SensorKind::Touch, &SensorTarget::Element(site)) = (spec.kind, &target)
             && model.sites[site].kind == ShapeKind::Mesh
         {
@@ -122,6 +123,22 @@ fn require_limit(
     match limited {
         true => Ok(()),
         false => Err(spec.error(format!("the {kind} \"{name}\" has no limit to be measured"))),
+    }
+}
+
+/// Refuses the numbers of a user's sensor if they cannot be the direction or the orientation that they shall be.
+fn require_dim_of_data(spec: &SensorSpec) -> Result<(), BuildError> {
+    let SensorSubject::User(dim, data) = spec.subject else {
+        return Ok(());
+    };
+    let (what, wanted) = match data {
+        SensorData::Axis => ("a direction", 3),
+        SensorData::Quaternion => ("an orientation", 4),
+        SensorData::Real | SensorData::Positive => return Ok(()),
+    };
+    match dim == wanted {
+        true => Ok(()),
+        false => Err(spec.error(format!("{what} has {wanted} numbers, but its dim is {dim}"))),
     }
 }
 

@@ -259,6 +259,8 @@ fn read_saturation(element: &Element, motor: &mut ActuatorParams) -> Result<Satu
     motor.dynprm[1] = rate.max(0.0);
     Ok(match () {
         () if torque > 0.0 => Saturation::Torque(torque),
+        // As in MuJoCo, the positive current makes the range of a negative torque count, which the builder refuses.
+        () if torque < 0.0 && current > 0.0 => Saturation::Torque(torque),
         () if torque == 0.0 && current > 0.0 => Saturation::Torque(motor.gainprm[1] * current),
         () => Saturation::None,
     })

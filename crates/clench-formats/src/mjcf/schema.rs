@@ -23,6 +23,7 @@ const NOT_IN_DEFAULTS: &[&str] = &[
     "slidersite",
     "body",
     "lengthrange",
+    "tausmooth",
     "geom1",
     "geom2",
     "target",

@@ -267,6 +267,27 @@ fn what_a_sensor_measures_must_exist() {
 }
 
 #[test]
+fn directions_and_orientations_of_users_have_their_numbers() {
+    for dim in [0, 1, 2, 3, 4, 5] {
+        for (data, wanted) in [
+            ("axis", 3),
+            ("quaternion", 4),
+            ("real", dim),
+            ("positive", dim),
+        ] {
+            let sensor = format!("<user dim='{dim}' datatype='{data}'/>");
+            match model(&sensor) {
+                Ok(_) => assert_eq!(dim, wanted, "{sensor}"),
+                Err(error) => assert!(
+                    dim != wanted && error.contains(&format!("{wanted} numbers")),
+                    "{error}"
+                ),
+            }
+        }
+    }
+}
+
+#[test]
 fn a_site_needs_a_volume() {
     for (site, reason) in [
         ("<site size='0'/>", "positive"),

@@ -82,6 +82,25 @@ fn the_options_of_a_dc_motor_overwrite_those_of_its_class() {
     assert_eq!((free.forcerange, free.forcelimited), ([0.0; 2], None));
 }
 
+/// A positive current makes the range of a negative torque count; the builder refuses it, as MuJoCo does.
+#[test]
+fn a_negative_saturation_with_a_current_is_no_range() {
+    let motor = |saturation: &str| {
+        let element = format!("<dcmotor resistance='2' motorconst='.5' saturation='{saturation}'");
+        let found = actuator("", &format!("{element} joint='j'/>"));
+        (found.forcerange, found.forcelimited)
+    };
+    for free in ["-1", "-1 0", "-1 -1", "0 -1"] {
+        assert_eq!(motor(free), ([0.0; 2], None), "{free}");
+    }
+    assert_eq!(motor("1 -1"), ([-1.0, 1.0], Some(true)));
+    let text =
+        "<mujoco><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody><actuator>
+        <dcmotor joint='j' resistance='2' motorconst='.5' saturation='-1 1'/></actuator></mujoco>";
+    let error = load_str(text).expect_err("no range").to_string();
+    assert!(error.contains("forcerange must be increasing"), "{error}");
+}
+
 #[test]
 fn a_class_lends_the_saturation_of_its_motor() {
     let range = |within: &str, element: &str| {

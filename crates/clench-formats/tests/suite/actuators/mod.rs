@@ -188,6 +188,12 @@ fn a_muscle_has_the_same_parameters_for_gain_and_bias() {
     let expected = [0.8, 1.1, -1.0, 3.0, 0.4, 1.6, 2.0, 1.3, 1.2, 0.0];
     assert_eq!((own.gainprm, own.biasprm), (expected, expected));
     assert!(rejected("<muscle joint='j' tausmooth='-1'/>").contains("negative"));
+    let class = "<mujoco><default><muscle tausmooth='1'/></default></mujoco>";
+    let error = read_str(class).expect_err("not in a class").message;
+    assert!(
+        error.contains("tausmooth cannot be given in a default"),
+        "{error}"
+    );
 }
 
 #[test]
