@@ -9,7 +9,7 @@ use crate::spending::Spending;
 use clench_builder::{EqualityKind, EqualitySpec, JointSpec, ModelBuilder};
 use clench_dynamics::model::JointKind;
 use clench_math::{Quat, Vec3};
-use std::collections::HashMap;
+use std::collections::{HashMap, hash_map::Entry};
 
 /// The kinds of URDF joints. `spherical` is not in URDF, but in MuJoCo's and Bullet's readers.
 #[derive(Clone, Copy, PartialEq)]
@@ -34,9 +34,35 @@ const KINDS: [(&str, Kind); 7] = [
 ];
 
 impl Kind {
-    /// Returns true if its position is one number, which another joint may mimic.
-    fn is_scalar(self) -> bool {
-        matches!(self, Kind::Revolute | Kind::Continuous | Kind::Prismatic)
+    /// Returns the kind of an element.
+    fn of(element: &Element) -> Result<Kind, LoadError> {
+        let kind = element.keyword("type", &KINDS)?;
+        kind.ok_or_else(|| element.missing("type"))
+    }
+}
+
+/// The kinds of the model's joints by their names. A planar joint `j` has the joints `j_TX`, `j_TY` and `j_RZ`.
+#[derive(Default)]
+struct Named(HashMap<String, JointKind>);
+
+impl Named {
+    /// Adds a joint, or clears its name if another joint has it; returns that name.
+    fn add(&mut self, joint: &mut JointSpec) -> Option<String> {
+        match self.0.entry(joint.name.clone()) {
+            Entry::Vacant(entry) => {
+                entry.insert(joint.kind);
+                None
+            }
+            Entry::Occupied(_) => Some(std::mem::take(&mut joint.name)),
+        }
+    }
+
+    /// Returns true if the position of a joint is one number, which another joint may mimic.
+    fn is_scalar(&self, name: &str) -> bool {
+        match self.0.get(name) {
+            Some(JointKind::Slide | JointKind::Hinge) => true,
+            Some(JointKind::Free | JointKind::Ball) | None => false,
+        }
     }
 }
 
@@ -49,19 +75,17 @@ pub(super) fn read_all(
     builder: &mut ModelBuilder,
     spending: &mut Spending,
 ) -> Result<(), LoadError> {
-    let mut kinds = HashMap::new();
+    let mut named = Named::default();
     for joint in &tree.joints {
         let element = joint.element;
-        let kind = element.keyword("type", &KINDS)?;
-        let kind = kind.ok_or_else(|| element.missing("type"))?;
+        let kind = Kind::of(element)?;
         let mut notes = Vec::new();
         let mut joints = read(element, kind, &mut notes).map_err(inside(element))?;
         let name = element.required_text("name")?;
-        if kind != Kind::Fixed && kinds.insert(name, kind).is_some() {
+        for taken in joints.iter_mut().filter_map(|joint| named.add(joint)) {
             notes.push(format!(
-                "another joint has the name \"{name}\"; this one gets no name"
+                "another joint has the name \"{taken}\"; this one gets no name"
             ));
-            joints.iter_mut().for_each(|joint| joint.name.clear());
         }
         let line = element.origin.line;
         let located = notes
@@ -80,7 +104,7 @@ pub(super) fn read_all(
         body.joints = joints;
     }
     for joint in &tree.joints {
-        let mimic = read_mimic(joint.element, &kinds, &mut builder.notes);
+        let mimic = read_mimic(joint.element, &named, &mut builder.notes);
         builder
             .equalities
             .extend(mimic.map_err(inside(joint.element))?);
@@ -183,7 +207,7 @@ fn read_limit(
 /// Reads a mimic relation: an equality constraint to `multiplier · other + offset`, as in MuJoCo 4.0.
 fn read_mimic(
     element: &Element,
-    kinds: &HashMap<&str, Kind>,
+    named: &Named,
     notes: &mut Vec<String>,
 ) -> Result<Option<EqualitySpec>, LoadError> {
     let Some(mimic) = element.child("mimic")? else {
@@ -193,9 +217,8 @@ fn read_mimic(
         element.required_text("name")?,
         mimic.required_text("joint")?,
     );
-    let scalar = |name: &str| kinds.get(name).is_some_and(|kind| kind.is_scalar());
-    if !scalar(own) || !scalar(other) {
-        if kinds.contains_key(own) {
+    if !named.is_scalar(own) || !named.is_scalar(other) {
+        if Kind::of(element)? != Kind::Fixed {
             notes.push(format!(
                 "line {}: {} does not mimic \"{other}\": both must be revolute, continuous or prismatic",
                 mimic.origin.line,

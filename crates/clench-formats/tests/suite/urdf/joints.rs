@@ -171,3 +171,52 @@ fn only_joints_with_one_position_mimic_and_are_mimicked() {
         );
     }
 }
+
+/// The names and the mimic relations are MuJoCo's: those of a planar joint have endings.
+#[test]
+fn joints_share_no_names() {
+    let loaded_with = |joints: [[&str; 3]; 3]| {
+        let links = ["a", "b", "c", "d"].map(|name| link(name, ""));
+        let joints = joints.into_iter().zip(["b", "c", "d"]);
+        let joints = joints.map(|([name, kind, more], child)| joint(name, kind, "a", child, more));
+        let model = loaded(&links.into_iter().chain(joints).collect::<Vec<_>>());
+        let names: Vec<String> = model
+            .joints
+            .iter()
+            .map(|joint| joint.name.clone())
+            .collect();
+        let targets = model
+            .equalities
+            .iter()
+            .map(|equality| match equality.target {
+                EqualityTarget::Joint { joint1, joint2 } => (joint1, joint2),
+                _ => panic!("not of joints"),
+            });
+        (names.join(" "), targets.collect::<Vec<_>>())
+    };
+    let mimic = "<mimic joint='j'/>";
+    assert_eq!(
+        loaded_with([
+            ["j", "planar", ""],
+            ["j", "continuous", ""],
+            ["k", "continuous", mimic]
+        ]),
+        ("j_TX j_TY j_RZ j k".to_owned(), vec![(4, Some(3))])
+    );
+    assert_eq!(
+        loaded_with([
+            ["j", "continuous", ""],
+            ["j", "floating", ""],
+            ["k", "continuous", mimic]
+        ]),
+        ("j  k".to_owned(), vec![(2, Some(0))])
+    );
+    assert_eq!(
+        loaded_with([
+            ["i", "planar", ""],
+            ["j", "continuous", ""],
+            ["i_TX", "continuous", mimic]
+        ]),
+        ("i_TX i_TY i_RZ j ".to_owned(), vec![(0, Some(3))])
+    );
+}
