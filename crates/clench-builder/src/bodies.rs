@@ -141,7 +141,7 @@ fn add(
     }
     model.bodies[b].sites.end = model.sites.len();
     for camera in &spec.cameras {
-        cameras::add(camera, b, frame.moved, model);
+        cameras::add(camera, b, frame.moved, builder.znear, model);
     }
     model.bodies[b].cameras.end = model.cameras.len();
     for light in &spec.lights {

@@ -8,13 +8,11 @@ use super::resolve::AllNames;
 use clench_dynamics::model::{Camera, CameraMode, Model};
 use std::sync::Arc;
 
-/// The focal lengths and the principal point that MuJoCo stores for a camera with a field of view, m.
-const UNUSED_INTRINSIC: [f64; 4] = [0.01, 0.01, 0.0, 0.0];
-
-/// Adds a camera of body `b`, without a target.
-pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, model: &mut Model) {
+/// Adds a camera of body `b`, without a target. A camera with a field of view gets the unused focal lengths that MuJoCo
+/// stores: the near clipping distance.
+pub(super) fn add(spec: &CameraSpec, b: usize, moved: Moved, znear: f64, model: &mut Model) {
     let (fovy, sensorsize, intrinsic) = match spec.lens {
-        CameraLens::FieldOfView(fovy) => (fovy, [0.0; 2], UNUSED_INTRINSIC),
+        CameraLens::FieldOfView(fovy) => (fovy, [0.0; 2], [znear, znear, 0.0, 0.0]),
         CameraLens::Intrinsic {
             sensorsize,
             focal,

@@ -85,7 +85,7 @@ pub use elements::{
 pub use error::{BuildError, shorten};
 pub use height_field_spec::HeightFieldSpec;
 pub use light_spec::LightSpec;
-pub use model_builder::ModelBuilder;
+pub use model_builder::{DEFAULT_ZNEAR, ModelBuilder};
 pub use physics::{
     CompilerSpec, ContactOverride, InertiaFromGeom, LengthRangeMode, LengthRangeSpec, PhysicsSpec,
     UserWidths,

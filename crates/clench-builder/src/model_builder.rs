@@ -37,6 +37,9 @@ pub struct ModelBuilder {
     pub textures: Vec<Texture>,
     /// The light at the camera.
     pub headlight: Headlight,
+    /// The near clipping distance of cameras, relative to the size of the model: the focal lengths that cameras with a
+    /// field of view have without using them.
+    pub znear: f64,
     /// Tendons.
     pub tendons: Vec<TendonSpec>,
     /// Actuators.
@@ -61,6 +64,9 @@ pub struct ModelBuilder {
     pub user_widths: UserWidths,
 }
 
+/// The near clipping distance of a model that gives none.
+pub const DEFAULT_ZNEAR: f64 = 0.01;
+
 /// An empty world.
 impl Default for ModelBuilder {
     fn default() -> Self {
@@ -76,6 +82,7 @@ impl Default for ModelBuilder {
             materials: Vec::new(),
             textures: Vec::new(),
             headlight: Headlight::default(),
+            znear: DEFAULT_ZNEAR,
             tendons: Vec::new(),
             actuators: Vec::new(),
             sensors: Vec::new(),

@@ -272,6 +272,7 @@ mod tests {
     /// Elements missing in the models of the folders.
     const RARE: &str = "<mujoco>
       <option><flag/></option>
+      <visual><map/></visual>
       <default><equality/></default>
       <asset>
         <material name='red'/>

@@ -47,6 +47,12 @@ pub(crate) fn read(
     for element in entries(root, "visual").filter(|element| element.tag == "headlight") {
         light::read_headlight(element, &mut builder.headlight)?;
     }
+    for element in entries(root, "visual").filter(|element| element.tag == "map") {
+        element.set_number("znear", &mut builder.znear)?;
+        if builder.znear <= 0.0 || builder.znear.is_infinite() {
+            return Err(element.error("znear must be positive and finite"));
+        }
+    }
     match discarded {
         true => Ok(()),
         false => check_textures(root, sources, builder),

@@ -50,3 +50,22 @@ fn colours_materials_and_computed_textures_are_kept() {
         .collect();
     assert_eq!(saved, colours);
 }
+
+/// As in MuJoCo, a camera without a sensor size has focal lengths of the near clipping distance.
+#[test]
+fn the_near_distance_is_the_focal_length_of_cameras_without_a_sensor() {
+    let stored = |visual: &str| {
+        let cameras = "<camera/><camera sensorsize='1 1' resolution='5 5' focal='2 3'/>";
+        let text = format!("<mujoco>{visual}<worldbody>{cameras}</worldbody></mujoco>");
+        let model = load_str(&text).expect("a model");
+        let saved = load_str(&model.to_mjcf().expect("MJCF")).expect("the saved model");
+        assert_eq!(saved.params.cam_intrinsic, model.params.cam_intrinsic);
+        model.params.cam_intrinsic.clone()
+    };
+    let own = [2.0, 3.0, 0.0, 0.0];
+    assert_eq!(stored(""), [[0.01, 0.01, 0.0, 0.0], own]);
+    let visual = "<visual><map znear='0.5' zfar='9'/></visual>";
+    assert_eq!(stored(visual), [[0.5, 0.5, 0.0, 0.0], own]);
+    let error = load_str("<mujoco><visual><map znear='0'/></visual></mujoco>").expect_err("zero");
+    assert!(error.message.contains("must be positive"), "{error}");
+}

@@ -20,12 +20,13 @@ pub(super) const RULES: &[Rule] = &[
         "",
     ),
     ignored("headlight", "ambient diffuse specular active", ""),
-    ignored(
-        "map",
-        "stiffness stiffnessrot force torque alpha fogstart fogend znear zfar haze shadowclip shadowscale \
-        actuatortendon",
-        "",
-    ),
+    Rule {
+        element: "map",
+        read: "znear",
+        ignored: "stiffness stiffnessrot force torque alpha fogstart fogend zfar haze shadowclip shadowscale \
+            actuatortendon",
+        ..NONE
+    },
     ignored(
         "scale",
         "forcewidth contactwidth contactheight connect com camera light selectpoint jointlength jointwidth \

@@ -18,6 +18,7 @@ pub(super) mod xml;
 mod tests;
 
 use super::equality;
+use clench_builder::DEFAULT_ZNEAR;
 use clench_dynamics::Model;
 use clench_dynamics::model::{Custom, Keyframe, TupleEntry};
 use clench_dynamics::options::{Mjcf, RigidOption};
@@ -53,6 +54,7 @@ impl SaveModel for Model {
         xml.tag("mujoco").text("model", &self.name).open();
         option::write(self, &mut xml)?;
         write_widths(self, &mut xml);
+        write_near_distance(self, &mut xml);
         xml.section("asset", |xml| assets::write(self, xml))?;
         tree::write(self, &mut xml)?;
         xml.section("contact", |xml| relations::write_contacts(self, xml))?;
@@ -85,6 +87,19 @@ fn write_widths(model: &Model, xml: &mut Xml) {
             tag = tag.integer_unless(name, width as i64, 0);
         }
         tag.end();
+    }
+}
+
+/// Writes the near clipping distance of cameras, which those with a field of view store.
+fn write_near_distance(model: &Model, xml: &mut Xml) {
+    let mut cameras = model.cameras.iter().zip(&model.params.cam_intrinsic);
+    let stored = cameras.find(|(camera, _)| !camera.intrinsic);
+    if let Some((_, &[znear, ..])) = stored
+        && znear != DEFAULT_ZNEAR
+    {
+        xml.tag("visual").open();
+        xml.tag("map").numbers("znear", &[znear]).end();
+        xml.close();
     }
 }
 
