@@ -12,7 +12,7 @@ use clench_dynamics::constants::pose;
 use clench_dynamics::model::{Model, Params, RowPattern, SameFrames, Visuals};
 use clench_math::Vec3;
 use clench_solver::Tree;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 impl ModelBuilder {
@@ -106,6 +106,7 @@ impl ModelBuilder {
             max_stick_pairs: None,
             pairs: Vec::new(),
             excludes: HashSet::new(),
+            exclude_names: HashMap::new(),
             keyframes: Vec::new(),
             meshes: Vec::new(),
             height_fields: Vec::new(),

@@ -32,9 +32,12 @@ pub(super) fn add_all(
     for spec in &builder.excludes {
         let first = names.bodies.find(&spec.body1, spec)? as u32;
         let second = names.bodies.find(&spec.body2, spec)? as u32;
-        model
-            .excludes
-            .insert((first.min(second), first.max(second)));
+        let bodies = (first.min(second), first.max(second));
+        model.excludes.insert(bodies);
+        if !spec.name.is_empty() {
+            let named = model.exclude_names.entry(bodies);
+            named.or_insert_with(|| spec.name.clone());
+        }
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ pub use structure::{
 use crate::Budget;
 use crate::options::RigidOptions;
 use clench_solver::Tree;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -80,6 +80,8 @@ pub struct Model {
     pub pairs: Vec<Pair>,
     /// Body pairs (smaller index first) that never collide.
     pub excludes: HashSet<(u32, u32)>,
+    /// The names of those of them that have one.
+    pub exclude_names: HashMap<(u32, u32), String>,
     /// Stored states.
     pub keyframes: Vec<Keyframe>,
     /// Meshes.

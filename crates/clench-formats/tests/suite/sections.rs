@@ -1,11 +1,12 @@
 //! Compiler, options, equalities, contacts, tendons and keyframes.
 
-use clench_formats::read_str;
+use clench_formats::{SaveModel, load_str, read_str};
 use clench_math::Vec3;
 use clench_rigid::builder::{ConnectAnchor, EqualityKind, InertiaFromGeom, ModelBuilder, WrapSpec};
 use clench_rigid::model::Integrator;
 use clench_rigid::options::{ContactModel, FrictionCone, RigidOption};
 use clench_solver::{ConstraintSolver, Switch};
+use std::collections::HashMap;
 
 fn read(sections: &str) -> ModelBuilder {
     match read_str(&format!("<mujoco>{sections}</mujoco>")) {
@@ -272,6 +273,23 @@ fn pairs_have_defaults_of_their_own() {
     );
     let exclude = &model.excludes[0];
     assert_eq!((exclude.body1.as_str(), exclude.body2.as_str()), ("x", "y"));
+}
+
+#[test]
+fn a_saved_exclude_has_its_name() {
+    let body = |name: &str| format!("<body name='{name}'><joint/><geom size='1'/></body>");
+    let bodies = ["x", "y", "z"].map(body).concat();
+    let excludes = "<exclude name='own' body1='y' body2='x'/><exclude body1='y' body2='z'/>";
+    let text =
+        format!("<mujoco><worldbody>{bodies}</worldbody><contact>{excludes}</contact></mujoco>");
+    let model = load_str(&text).expect("a model");
+    let saved = load_str(&model.to_mjcf().expect("MJCF")).expect("the saved model");
+    assert_eq!(saved.excludes, model.excludes);
+    let named = HashMap::from([((1, 2), "own".to_owned())]);
+    assert_eq!(
+        (&model.exclude_names, &saved.exclude_names),
+        (&named, &named)
+    );
 }
 
 #[test]

@@ -33,7 +33,9 @@ pub(super) fn write_contacts(model: &Model, xml: &mut Xml) -> Result<(), SaveErr
     let mut excludes: Vec<_> = model.excludes.iter().copied().collect();
     excludes.sort_unstable();
     for (first, second) in excludes {
+        let name = model.exclude_names.get(&(first, second));
         xml.tag("exclude")
+            .name(name.map_or("", String::as_str))
             .text("body1", body_name(model, first as usize)?)
             .text("body2", body_name(model, second as usize)?)
             .end();
