@@ -73,6 +73,27 @@ fn an_attached_body_brings_its_references_and_the_settings_of_its_file() {
     assert!(model.build().is_ok());
 }
 
+/// MuJoCo copies such a sensor for its mesh, and drops it if no model has the geom.
+#[test]
+fn a_tactile_sensor_follows_its_mesh_to_a_geom_of_the_enclosing_model() {
+    let skinned = |geom: &str| {
+        let part = ARM.replace("geom='ga'", &format!("geom='{geom}'"));
+        let attach = "<geom name='fist' size='1'/><attach model='arm' body='A' prefix='p_'/>";
+        let main = main_file("", attach, "");
+        let files = Files::new(&[("main.xml", main.as_str()), ("parts/arm.xml", &part)]);
+        let model = files.read().expect("a model");
+        let mut sensors = model.sensors.iter();
+        sensors.find_map(|sensor| match &sensor.subject {
+            SensorSubject::Taxels { mesh, geom } => Some([mesh.clone(), geom.clone()]),
+            _ => None,
+        })
+    };
+    let both = |mesh: &str, geom: &str| Some([mesh.to_owned(), geom.to_owned()]);
+    assert_eq!(skinned("fist"), both("p_m", "fist"));
+    assert_eq!(skinned("ga"), both("p_m", "p_ga"));
+    assert_eq!(skinned("none"), None);
+}
+
 /// The names are MuJoCo's. A class that the enclosing model uses refers to that model's assets.
 #[test]
 fn assets_that_classes_name_are_those_of_the_attached_file() {

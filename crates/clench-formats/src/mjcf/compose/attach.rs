@@ -92,7 +92,11 @@ impl Composer<'_, '_> {
             )
             .map_err(|excess| element.error(excess))?;
         let own = ["tendon", "actuator"].map(|section| self.list(section).len());
-        for section in &model.children {
+        // Sensors that follow refer to assets.
+        let is_asset = |section: &&Element| section.tag == "asset";
+        let assets = model.children.iter().filter(is_asset);
+        let others = model.children.iter().filter(|section| !is_asset(section));
+        for section in assets.chain(others) {
             self.copy_section(element, section, namespace)?;
         }
         self.attach_keyframes(element, part, &mut frame, own, namespace)?;
@@ -124,6 +128,7 @@ impl Composer<'_, '_> {
                 self.shared.consume(at, asset)?;
                 let mut copy = asset.clone();
                 namespace.rename_asset(&mut copy);
+                self.names.add(tag, &copy);
                 self.list(tag).push(copy);
             }
         }

@@ -14,6 +14,7 @@ pub(super) enum Kind {
     Tendon,
     Actuator,
     Sensor,
+    Mesh,
 }
 
 /// Attributes that refer to an element of one kind.
@@ -103,6 +104,7 @@ pub(super) fn kind_of(section: &str, tag: &str) -> Option<Kind> {
         ("tendon", _) => Some(Kind::Tendon),
         ("actuator", _) => Some(Kind::Actuator),
         ("sensor", _) => Some(Kind::Sensor),
+        ("asset", "mesh") => Some(Kind::Mesh),
         _ => None,
     }
 }

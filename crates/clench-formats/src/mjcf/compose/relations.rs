@@ -41,6 +41,9 @@ pub(super) fn copy(
             for reference in references(element) {
                 fates.push(follow(&mut copy, &[reference], namespace, names));
             }
+            if brings_mesh(section, element, namespace, names) {
+                fates.push(Fate::Renamed);
+            }
         }
         "tendon" => {
             for wrap in &mut copy.children {
@@ -77,6 +80,12 @@ pub(super) fn copy(
     namespace.rename(&mut copy);
     namespace.rename_assets_of(&mut copy);
     Some(copy)
+}
+
+/// Returns true if a sensor measures with a mesh of the attached model; its geom may then be one of the other model.
+fn brings_mesh(section: &str, element: &Element, namespace: &Namespace, names: &Names) -> bool {
+    let is_new = |mesh: &str| names.has(Kind::Mesh, &namespace.apply(mesh));
+    section == "sensor" && namespace.foreign && element.text("mesh").is_some_and(is_new)
 }
 
 /// Returns the new name of a reference's target.
