@@ -74,7 +74,8 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (n, 2, 3, nv): translation, then rotation, in world axes; NaN where a state is not finite.
+    ///     (n, 2, 3, nv): translation, then rotation, in world axes; NaN where a state is not finite or the
+    ///     environment's model lacks the geom.
     ///
     /// Raises
     /// ------
@@ -110,7 +111,8 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (n, 2, 3, nv): of the translational part, then of the rotational part; NaN where a state is not finite.
+    ///     (n, 2, 3, nv): of the translational part, then of the rotational part; NaN where a state is not finite or
+    ///     the environment's model lacks the geom.
     ///
     /// Raises
     /// ------
@@ -176,7 +178,8 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     (n, 2, 3): linear, m/s, of its position, then angular, rad/s; NaN where a state is not finite.
+    ///     (n, 2, 3): linear, m/s, of its position, then angular, rad/s; NaN where a state is not finite or the
+    ///     environment's model lacks the geom.
     ///
     /// Raises
     /// ------
@@ -218,7 +221,7 @@ impl Batch {
     /// -------
     /// numpy.ndarray
     ///     (n, 2, 3): linear, m/s², of its position, then angular, rad/s²; NaN where a single `Sim` would raise
-    ///     SimulationError.
+    ///     SimulationError or the environment's model lacks the geom.
     ///
     /// Raises
     /// ------
@@ -321,7 +324,8 @@ impl Batch {
     /// Returns
     /// -------
     /// RayHits
-    ///     One hit for each ray, with the environments as first axis. Distances are NaN where a state is not finite.
+    ///     One hit for each ray, with the environments as first axis. Distances are NaN where a state is not finite
+    ///     or the environment's model lacks the geom.
     ///
     /// Raises
     /// ------
@@ -373,7 +377,7 @@ impl Batch {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Heights in the world (n, k), m; NaN where a state is not finite.
+    ///     Heights in the world (n, k), m; NaN where a state is not finite or the environment's model lacks a geom.
     ///
     /// Raises
     /// ------

@@ -278,7 +278,8 @@ impl Batch {
     /// Returns
     /// -------
     /// IkResult
-    ///     The results, with the environments as first axis.
+    ///     The results, with the environments as first axis: NaN and status NON_FINITE where the environment's model
+    ///     lacks a geom of the targets.
     ///
     /// Raises
     /// ------

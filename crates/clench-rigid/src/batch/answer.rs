@@ -92,6 +92,48 @@ pub enum Query<'a, S> {
     },
 }
 
+impl<S> Query<'_, S> {
+    /// Returns the geoms without which there is no answer.
+    pub(super) fn geoms(&self) -> Vec<usize> {
+        match *self {
+            Query::Jacobian(Place::Object(object)) | Query::JacobianRate(Place::Object(object)) => {
+                geom_of(object).into_iter().collect()
+            }
+            Query::Velocity(object, _) | Query::Acceleration(object, _) => {
+                geom_of(object).into_iter().collect()
+            }
+            Query::Rays { frame, .. } => frame.and_then(geom_of).into_iter().collect(),
+            Query::Heights { geom, frame } => {
+                let of_frame = frame.and_then(geom_of);
+                [geom].into_iter().chain(of_frame).collect()
+            }
+            Query::Kinematics { ik, .. } => {
+                let tasks = ik.tasks().iter();
+                tasks
+                    .filter_map(|task| geom_of(task.target.object()?))
+                    .collect()
+            }
+            Query::Jacobian(Place::PointOf(_))
+            | Query::JacobianRate(Place::PointOf(_))
+            | Query::SubtreeJacobian(_)
+            | Query::MulMass
+            | Query::SolveMass
+            | Query::Inverse(_) => Vec::new(),
+        }
+    }
+}
+
+/// Returns the geom that an object is, if it is one.
+fn geom_of(object: FrameObject) -> Option<usize> {
+    match object {
+        FrameObject::Geom(geom) => Some(geom),
+        FrameObject::Inertial(_)
+        | FrameObject::Body(_)
+        | FrameObject::Site(_)
+        | FrameObject::Camera(_) => None,
+    }
+}
+
 /// A query of a group of environments.
 pub struct QueryCall<'a, S: Scalar + Shared> {
     pub model: &'a Model,

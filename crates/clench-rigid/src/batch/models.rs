@@ -68,6 +68,14 @@ impl<S: Scalar> Models<S> {
         self.shared.as_ref()
     }
 
+    /// Returns true if a model has all of some geoms of the layout.
+    pub(super) fn have(&self, model: usize, geoms: &[usize]) -> bool {
+        match &self.shared {
+            Some(shared) => (geoms.iter()).all(|geom| shared.geoms(model).contains(geom)),
+            None => true,
+        }
+    }
+
     /// Gives an environment one of several models.
     pub(super) fn set(&mut self, env: usize, model: usize) {
         self.of_env[env] = model as u32;

@@ -2,7 +2,8 @@
 //! threads.
 //!
 //! No result of an earlier step is used, so that an answer always holds for the present state, even after a step. An
-//! environment whose state is invalid gets NaN. Environments that do not run are included.
+//! environment whose state is invalid, or whose model lacks a geom of the query, gets NaN. Environments that do not run
+//! are included.
 
 use super::answer::{Query, QueryCall, QueryInput};
 use super::cells::Cells;
@@ -81,7 +82,8 @@ impl<S: Precision> Batch<S> {
     }
 
     /// Returns joint positions that bring the tasks of `ik` to their goals in each environment, from the present states
-    /// or from `start` (nq per environment), see [`Sim::ik`](crate::Sim::ik).
+    /// or from `start` (nq per environment), see [`Sim::ik`](crate::Sim::ik). Environments whose model lacks a geom of
+    /// the tasks get NaN and [`IkStatus::NonFinite`](crate::ik::IkStatus::NonFinite).
     ///
     /// # Errors
     /// Returns an error if the tasks are of a model with other objects, if the number of goal or start values is wrong
@@ -137,7 +139,11 @@ impl<S: Precision> Batch<S> {
         let count = self.count();
         let mut answers = Rows::new(count, width, S::new(f64::NAN))?;
         self.order.clear();
-        self.order.extend(0..count as u32);
+        let geoms = query.geoms();
+        let models = 0..self.models().len();
+        let answers_for = Vec::from_iter(models.map(|model| self.models.have(model, &geoms)));
+        let envs = (0..count).filter(|&env| answers_for[self.models.of(env)]);
+        self.order.extend(envs.map(|env| env as u32));
         let (motion, inputs) = self.state.share();
         let call = QueryCall {
             model: &self.model,

@@ -48,6 +48,14 @@ impl IkTarget {
         }
     }
 
+    /// Returns the object that the target brings to a goal, if it is one.
+    pub(crate) fn object(self) -> Option<FrameObject> {
+        match self {
+            IkTarget::Position(object) | IkTarget::Orientation(object) => Some(object),
+            IkTarget::CentreOfMass(_) | IkTarget::Posture => None,
+        }
+    }
+
     /// Returns the number of weights: one per component of the error, but a single one for an orientation, whose error
     /// components are not independent.
     pub fn weight_len(self, model: &Model) -> usize {
@@ -135,7 +143,7 @@ pub enum IkStatus {
     Stationary,
     /// The iteration limit was reached.
     IterationLimit,
-    /// A value became infinite or undefined.
+    /// A value became infinite or undefined, or the model of the environment lacks a geom of the tasks.
     NonFinite,
 }
 

@@ -1,7 +1,11 @@
 //! The common layout of several models, and what may not differ.
 
 use crate::scenes::{models, scene};
-use clench::{Batch, BatchOptions, Model, RigidOptions, SimError, load_str};
+use clench::rigid::model::FrameObject;
+use clench::{
+    Anchors, Axes, Batch, BatchOptions, Ik, IkOptions, IkStatus, IkTarget, IkTask, Model,
+    QueryInput, RayFilter, RigidOptions, SimError, load_str,
+};
 use std::sync::Arc;
 
 fn load(text: &str) -> Arc<Model> {
@@ -139,4 +143,54 @@ fn no_model_and_stiction_are_errors() {
     };
     let refused = Batch::<f64>::of_models(&models, &[0, 1], options).err();
     assert_eq!(refused, Some(SimError::OneModel("the option stiction")));
+}
+
+#[test]
+fn queries_have_no_answer_where_a_model_lacks_the_geom() {
+    let world = |geoms: &str, terrain: &str| {
+        load(&format!(
+            "<mujoco><asset><hfield name='hills' nrow='2' ncol='2' size='1 1 .1 .1' elevation='0 1 1 0'/></asset>
+               <worldbody>{terrain}<body><joint name='turn' axis='0 1 0'/>{geoms}</body></worldbody></mujoco>"
+        ))
+    };
+    let models = [
+        world("<geom size='.1' pos='.3 0 0'/>", ""),
+        world(
+            "<geom type='box' size='.1 .1 .1' pos='.2 0 0'/>",
+            "<geom type='hfield' hfield='hills'/>",
+        ),
+    ];
+    let mut batch = Batch::<f64>::of_models(&models, &[0, 1, 0], BatchOptions::default())
+        .expect("the same joints");
+    let places = batch.geoms_of(1).expect("a model");
+    let [terrain, cube] = [0, 1].map(|own| places[own]);
+    let object = FrameObject::Geom(cube);
+    let some = QueryInput::Shared(&[0.1, 0.1, 5.0, 0.0, 0.0, -1.0][..]);
+    let at = QueryInput::Shared(&[0.1, 0.1][..]);
+    let filter = RayFilter::default();
+    let answers = [
+        batch.jacobian(Anchors::Object(object)),
+        batch.jacobian_rate(Anchors::Object(object)),
+        batch.velocity(object, Axes::World),
+        batch.acceleration(object, Axes::World),
+        batch.rays(some, Some(object), &filter),
+        batch.heights(terrain, at, None),
+    ];
+    for (query, rows) in answers.into_iter().enumerate() {
+        let rows = rows.expect("a geom of the layout");
+        for env in 0..3 {
+            let known = rows.row(env).iter().all(|number| !number.is_nan());
+            assert_eq!(known, env == 1, "query {query}, environment {env}");
+        }
+    }
+    let everywhere = batch.rays(some, None, &filter).expect("valid");
+    assert!(everywhere.as_slice().iter().all(|number| !number.is_nan()));
+    let task = IkTask::new(batch.model(), IkTarget::Position(object), 1.0);
+    let ik = Ik::new(batch.model(), vec![task], IkOptions::default()).expect("valid");
+    let goal = QueryInput::Shared(&[0.0, 0.0, 0.2][..]);
+    let found = batch.ik(&ik, goal, None).expect("valid");
+    let statuses = found.iter().map(|solution| solution.status);
+    let expected = [IkStatus::NonFinite, IkStatus::Reached, IkStatus::NonFinite];
+    assert_eq!(Vec::from_iter(statuses), expected);
+    assert!(found[0].qpos[0].is_nan() && found[0].errors[0].is_nan());
 }
