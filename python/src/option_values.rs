@@ -63,8 +63,11 @@ impl OptionType for bool {
 
 impl OptionType for Switch {
     fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
-        if value.is_instance_of::<PyString>() {
-            return choose(name, value, &[("auto", Switch::Auto)]);
+        if let Ok(text) = value.cast::<PyString>() {
+            return match text == "auto" {
+                true => Ok(Switch::Auto),
+                false => Err(out_of_range(name, value, "a bool or \"auto\"")),
+            };
         }
         match value.extract() {
             Ok(true) => Ok(Switch::On),
@@ -76,8 +79,11 @@ impl OptionType for Switch {
 
 impl OptionType for MaxContacts {
     fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
-        if value.is_instance_of::<PyString>() {
-            return choose(name, value, &[("auto", MaxContacts::Auto)]);
+        if let Ok(text) = value.cast::<PyString>() {
+            return match text == "auto" {
+                true => Ok(MaxContacts::Auto),
+                false => Err(out_of_range(name, value, "an integer or \"auto\"")),
+            };
         }
         usize::read(name, value).map(MaxContacts::Limit)
     }

@@ -111,8 +111,9 @@ def test_numbers_out_of_range() -> None:
 def test_words_that_mean_nothing() -> None:
     assert refused("constraint_solver", "newton").endswith('"Newton" or "CG"')
     assert refused("friction_cone", "").endswith('"pyramidal" or "elliptic"')
-    for name in [*SWITCHES, "max_contacts"]:
-        assert refused(name, "yes").endswith('must be "auto"')
+    for name in SWITCHES:
+        assert refused(name, "on").endswith('must be a bool or "auto"')
+    assert refused("max_contacts", "all").endswith('must be an integer or "auto"')
 
 
 def test_wrong_types() -> None:
