@@ -58,6 +58,9 @@ _SETTINGS = ("compiler", "option", "size", "statistic", "visual")
 # Sections whose names refer to nothing that can be renamed or removed, except assets that default classes name.
 _NO_REFERENCES = ("default", "custom", *_SETTINGS)
 _ASSETS = ("mesh", "hfield", "material", "texture")
+# Attributes that name a default class, and the outermost class if it has no other name. It always exists.
+_CLASSES = ("class", "childclass")
+MAIN = "main"
 # Kinds without which an element remains what it is.
 _LOOKS = ("material", "texture")
 
@@ -308,14 +311,32 @@ class Document(Files):
                         found.append((document, node, attribute))
         return found
 
+    def class_references(self, name: str) -> list[tuple[ET.Element, str]]:
+        """Returns the attributes that refer to a default class of this document."""
+        users = (node for node in self.root.iter() if node.tag != "default")
+        return [(node, attribute) for node in users for attribute in _CLASSES if node.get(attribute) == name]
+
+    def rename_class(self, node: ET.Element, name: str) -> None:
+        """Renames a default class and the references to it."""
+        taken = {part.get("class", MAIN) for part in self.root.iter("default") if part is not node}
+        if name in taken:
+            raise ValueError(f'there is already a default class "{name}"')
+        for user, attribute in self.class_references(node.get("class", MAIN)):
+            user.set(attribute, name)
+        node.set("class", name)
+
     def remove(self, node: ET.Element) -> None:
         """Removes a node, its descendants, and all references to them. If it is an attachment, the attached document is
         removed too."""
         parent = self.parents()[node]
         gone = [(kind, named(part)) for part in node.iter() for kind in [self.kind_of(part)] if kind]
         gone += [name for part in node.iter("attach") for name in self._detach(part.get("model", ""))]
+        classes = {part.get("class", MAIN) for part in node.iter("default")} - {MAIN}
         parent.remove(node)
         self.changed()
+        for name in classes - {part.get("class") for part in self.root.iter("default")}:
+            for user, attribute in self.class_references(name):
+                del user.attrib[attribute]
         for kind, name in gone:
             if name:
                 self._remove_references(kind, name)
@@ -384,8 +405,8 @@ def _prefix(node: ET.Element, prefix: str) -> None:
         node.set("name", named(node))
     for attribute, name in node.attrib.items():
         kind = node.get(_TYPED[attribute]) if attribute in _TYPED else next((k for k, of in _REFERENCES.items() if attribute in of), None)
-        is_class = attribute in ("class", "childclass")
-        is_shared = name == ("main" if is_class else "world" if kind in ("body", "xbody") else "")
+        is_class = attribute in _CLASSES
+        is_shared = name == (MAIN if is_class else "world" if kind in ("body", "xbody") else "")
         if (attribute == "name" or is_class or kind) and not is_shared:
             node.set(attribute, prefix + name)
 

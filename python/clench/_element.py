@@ -353,8 +353,8 @@ class SpecElement:
 
     def remove(self) -> None:
         """Removes this element, its descendants, and everything that refers to them: removing a joint removes its
-        sensors. Elements with a removed material or texture remain without it. If the model can be built, its
-        keyframes lose the numbers of joints, actuators and mocap bodies that are removed.
+        sensors. Elements with a removed material, texture or default class remain without it. If the model can be
+        built, its keyframes lose the numbers of joints, actuators and mocap bodies that are removed.
 
         Raises
         ------
@@ -367,7 +367,7 @@ class SpecElement:
             self._document.remove(self._node)
 
     def rename(self, name: str) -> None:
-        """Renames this element and all references to it.
+        """Renames this element and all references to it; for a ``default`` element, the class.
 
         Parameters
         ----------
@@ -383,6 +383,9 @@ class SpecElement:
         """
         if not name:
             raise ValueError("a new name must not be empty")
+        if self.tag == "default":
+            self._document.rename_class(self._node, text_of(name))
+            return
         old = self.name
         kind = self._document.kind_of(self._node)
         self["name"] = name

@@ -43,3 +43,42 @@ def test_a_shallow_copy_is_a_copy_too() -> None:
     spec = clench.ModelSpec.from_xml(ARM)
     copy.copy(spec).body("arm").rename("other")
     assert spec.names("body") == ["arm"]
+
+
+CLASSES = """
+<mujoco>
+  <default>
+    <geom friction="1"/>
+    <default class="rough"><geom friction="2"/><default class="rougher"><geom friction="3"/></default></default>
+    <default class="other"><geom friction="4"/></default>
+  </default>
+  <worldbody>
+    <body childclass="other">
+      <geom class="rough" size="1"/>
+      <geom class="rougher" size="1"/>
+      <geom class="main" size="1"/>
+      <body childclass="rough"><geom size="1"/></body>
+    </body>
+    <geom class="rougher" size="1"/>
+  </worldbody>
+</mujoco>"""
+
+
+def frictions(spec: clench.ModelSpec) -> list[float]:
+    return [geom.friction[0] for geom in map(spec.build().geom, range(5))]
+
+
+def test_a_default_class_is_renamed_and_removed_with_its_references() -> None:
+    spec = clench.ModelSpec.from_xml(CLASSES)
+    before = frictions(spec)
+    assert sorted(before) == [1, 2, 2, 3, 3]
+    main = list(spec.section("default"))
+    rough = next(element for element in main if "class" in element and element["class"] == "rough")
+    with pytest.raises(ValueError, match='there is already a default class "other"'):
+        rough.rename("other")
+    rough.rename("coarse")
+    assert 'childclass="coarse"' in spec.to_xml() and '"rough"' not in spec.to_xml()
+    assert frictions(spec) == before
+    rough.remove()
+    # One is in no body, so that it has the numbers of the outermost class.
+    assert sorted(frictions(spec)) == [1, 1, 4, 4, 4]
