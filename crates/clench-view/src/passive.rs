@@ -30,6 +30,8 @@ pub struct PassiveViewer {
     pub marks: Marks,
     /// The loop iterations that users have requested while it is paused.
     steps: u32,
+    /// True if the last call lets a paused loop take one of them.
+    steps_now: bool,
     /// The real and simulated time from which both are compared.
     anchor: Option<(Instant, f64)>,
     published: Option<Instant>,
@@ -60,6 +62,7 @@ impl PassiveViewer {
             interaction,
             marks: Marks::default(),
             steps: 0,
+            steps_now: false,
             anchor: None,
             published: None,
             resumed: None,
@@ -75,6 +78,18 @@ impl PassiveViewer {
     /// Returns the server.
     pub fn server(&self) -> &Server {
         &self.server
+    }
+
+    /// Returns true if the loop should pause. It should not in an iteration that users have requested, until the next
+    /// call of [`sync`](Self::sync).
+    pub fn paused(&self) -> bool {
+        self.interaction.paused && !self.steps_now
+    }
+
+    /// Pauses the loop, or lets it continue.
+    pub fn set_paused(&mut self, paused: bool) {
+        self.interaction.paused = paused;
+        self.steps_now = false;
     }
 
     /// Executes the commands since the last call and publishes a frame if one is due. Returns `None` if the loop may
@@ -167,6 +182,7 @@ impl PassiveViewer {
 
     /// Returns the time that the loop should wait at a simulated time, if any.
     fn wait(&mut self, time: f64) -> Option<Duration> {
+        self.steps_now = self.interaction.paused && self.steps > 0;
         if self.interaction.paused {
             self.anchor = None;
             if self.steps == 0 {

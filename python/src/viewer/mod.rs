@@ -136,7 +136,8 @@ impl Viewer {
     /// ----------
     /// block : bool
     ///     True to wait while a user of the page has paused the simulation (until it continues, or one step is
-    ///     requested), and while it is ahead of real time times `speed`. Otherwise `paused` reports the users' choice.
+    ///     requested), and while it is ahead of real time times `speed`. Otherwise `paused` reports the users' choice,
+    ///     and is false for one iteration per requested step.
     ///
     /// Raises
     /// ------
@@ -201,15 +202,16 @@ impl Viewer {
         Ok(guard.as_ref().map_or(0, |viewer| viewer.server().clients()))
     }
 
-    /// bool : True if the loop should pause. Users of the page set it too.
+    /// bool : True if the loop should pause. Users of the page set it too; it is false until the next `sync` when they
+    /// request a step.
     #[getter]
     fn paused(&self) -> PyResult<bool> {
-        self.open(|viewer| viewer.interaction.paused)
+        self.open(|viewer| viewer.paused())
     }
 
     #[setter]
     fn set_paused(&self, paused: bool) -> PyResult<()> {
-        self.open(|viewer| viewer.interaction.paused = paused)
+        self.open(|viewer| viewer.set_paused(paused))
     }
 
     /// float : The ratio of simulated to real time that `sync` maintains; 0 for as fast as possible. Users of the page

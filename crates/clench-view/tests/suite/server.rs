@@ -18,7 +18,7 @@ fn player() -> Player<Sim<f64>> {
 }
 
 /// Returns a page with a slot for data.
-fn page() -> Page {
+pub(crate) fn page() -> Page {
     let place = "<script id=\"recording\" type=\"application/json\"></script>";
     Page::of(format!("<html><body>the page{place}</body></html>")).unwrap()
 }
@@ -57,7 +57,7 @@ fn request(address: &str, target: &str, fields: &str) -> (TcpStream, String) {
     (stream, String::from_utf8(reply).unwrap())
 }
 
-fn connect(server: &Server) -> WebSocket<TcpStream> {
+pub(crate) fn connect(server: &Server) -> WebSocket<TcpStream> {
     let (address, token) = place(server);
     let fields = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n\
          Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
@@ -78,7 +78,7 @@ fn text(socket: &mut WebSocket<TcpStream>) -> String {
     }
 }
 
-fn say(socket: &mut WebSocket<TcpStream>, text: &str) {
+pub(crate) fn say(socket: &mut WebSocket<TcpStream>, text: &str) {
     socket.send(Message::text(text)).unwrap();
 }
 
