@@ -1,6 +1,7 @@
 //! Gradients of functions of a step, from Python.
 
 use crate::arrays::{numbers, require_finite, require_shape};
+use crate::busy::Signals;
 use crate::changes::{InputGradients, OutputGradients, Results};
 use crate::derivatives::{Chosen, Memory, in_env, with_linearizer};
 use crate::error::sim_error;
@@ -172,12 +173,17 @@ impl Rollouts {
         memory: &mut Memory,
         sim: &mut AnySim,
     ) -> PyResult<Results> {
+        let signals = Signals::new();
         let result = py.detach(|| {
             with_linearizer(memory, sim, |linearizer, sim| {
-                linearizer.rollout_vjp(sim, self.memory, &self.controls[0], &self.gradients[0])
+                let (controls, gradient) = (&self.controls[0], &self.gradients[0]);
+                linearizer
+                    .rollout_vjp_while(sim, self.memory, controls, gradient, &|| signals.none())
             })
         });
-        self.export(py, from_ref(result.map_err(sim_error)?))
+        let result = result.map_err(sim_error)?;
+        signals.raise()?;
+        self.export(py, from_ref(result))
     }
 
     /// Differentiates a rollout of every environment of a batch.
@@ -187,11 +193,16 @@ impl Rollouts {
         memory: &mut Option<BatchLinearizer<S>>,
         batch: &mut clench::Batch<S>,
     ) -> PyResult<Results> {
+        let signals = Signals::new();
         let results = py.detach(|| {
             let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
-            linearizer.rollout_vjp(batch, self.memory, &self.controls, &self.gradients)
+            let (controls, gradients) = (&self.controls, &self.gradients);
+            linearizer
+                .rollout_vjp_while(batch, self.memory, controls, gradients, &|| signals.none())
         });
-        self.export(py, results.map_err(|error| in_env(py, error))?)
+        let results = results.map_err(|error| in_env(py, error))?;
+        signals.raise()?;
+        self.export(py, results)
     }
 
     /// Copies results to arrays.

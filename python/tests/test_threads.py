@@ -257,6 +257,22 @@ def test_control_c_ends_a_long_step(make: Callable[[], Any]) -> None:
     assert same_state(own.state, alone.state)
 
 
+@pytest.mark.parametrize("make", [humanoid, humanoids, lambda: humanoids(2)], ids=["sim", "batch", "two threads"])
+def test_control_c_ends_the_gradient_of_a_rollout(make: Callable[[], Any]) -> None:
+    own = make()
+    before = own.qpos.copy()
+    lead = (40_000 // (ENVS if own.qpos.ndim == 2 else 1), *own.qpos.shape[:-1])
+    controls, gradients = np.zeros((*lead, own.model.nu)), np.zeros((*lead, 2 * own.model.nv + own.model.na))
+    interrupt_soon()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        own.rollout_vjp(controls, gradients)
+    assert time.perf_counter() - start < 3
+    np.testing.assert_array_equal(own.qpos, before)
+    few = own.rollout_vjp(controls[:3], gradients[:3])
+    assert all(np.isfinite(part).all() for part in few)
+
+
 def test_steps_end_where_nobody_runs() -> None:
     batch = clench.Batch(ball(), 2)
     batch.qvel[:] = np.nan

@@ -171,6 +171,25 @@ impl<S: Precision> BatchLinearizer<S> {
         controls: &[Matrix],
         gradients: &[Matrix],
     ) -> Result<&[RolloutGradient], (usize, SimError)> {
+        self.rollout_vjp_while(batch, memory, controls, gradients, &|| true)
+    }
+
+    /// Returns these gradients while `go_on` returns true, see
+    /// [`Linearizer::rollout_vjp_while`]. All threads call it.
+    ///
+    /// # Errors
+    /// See [`rollout_vjp`](Self::rollout_vjp).
+    ///
+    /// # Panics
+    /// See [`rollout_vjp`](Self::rollout_vjp).
+    pub fn rollout_vjp_while(
+        &mut self,
+        batch: &mut Batch<S>,
+        memory: bool,
+        controls: &[Matrix],
+        gradients: &[Matrix],
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<&[RolloutGradient], (usize, SimError)> {
         let results = &mut self.rollouts;
         let counts = [controls.len(), gradients.len()];
         assert_eq!(counts, [results.len(); 2], "one matrix an environment");
@@ -179,7 +198,8 @@ impl<S: Precision> BatchLinearizer<S> {
             batch,
             results,
             |linearizer, sim, env, result| {
-                linearizer.rollout_vjp(sim, memory, &controls[env], &gradients[env])?;
+                let (controls, gradient) = (&controls[env], &gradients[env]);
+                linearizer.rollout_vjp_while(sim, memory, controls, gradient, go_on)?;
                 std::mem::swap(result, &mut linearizer.rollout);
                 Ok(())
             },

@@ -25,6 +25,25 @@ impl Linearizer {
         controls: &Matrix,
         gradient: &Matrix,
     ) -> Result<&RolloutGradient, SimError> {
+        self.rollout_vjp_while(sim, memory, controls, gradient, &|| true)
+    }
+
+    /// Returns the gradient of a [`rollout_vjp`](Self::rollout_vjp) while `go_on` returns true, which is called before
+    /// each step. All numbers are NaN if it returns false.
+    ///
+    /// # Errors
+    /// See [`rollout_vjp`](Self::rollout_vjp).
+    ///
+    /// # Panics
+    /// See [`rollout_vjp`](Self::rollout_vjp).
+    pub fn rollout_vjp_while(
+        &mut self,
+        sim: &Sim<f64>,
+        memory: bool,
+        controls: &Matrix,
+        gradient: &Matrix,
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<&RolloutGradient, SimError> {
         let request = Request {
             memory,
             omits_sensors: true,
@@ -47,6 +66,12 @@ impl Linearizer {
         let mut steps = take(&mut self.steps);
         steps.resize_with(last.max(steps.len()), Default::default);
         for (step, [a, b]) in steps[..last].iter_mut().enumerate() {
+            if !go_on() {
+                self.steps = steps;
+                self.rollout.x.values.fill(f64::NAN);
+                self.rollout.u.values.fill(f64::NAN);
+                return Ok(&self.rollout);
+            }
             (state.ctrl).copy_from_slice(&controls.values[step * nu..][..nu]);
             let source = Source {
                 state: &state,

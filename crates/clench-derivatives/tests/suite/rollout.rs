@@ -5,6 +5,7 @@ use clench_derivatives::{BatchLinearizer, Linearizer, Matrix, Request};
 use clench_rigid::options::RigidOptions;
 use clench_rigid::{Batch, Model, Sim};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const STEPS: usize = 6;
 
@@ -142,4 +143,28 @@ fn environments_of_a_batch_have_their_own_rollouts() {
         let alone = linearizer.rollout_vjp(&sim, false, &controls[env], &gradients[env]);
         assert_eq!(found, alone.expect("derivatives"));
     }
+}
+
+#[test]
+fn a_stopped_rollout_has_no_gradient_and_the_next_one_has() {
+    let model = Arc::new(load("quadruped.xml"));
+    let mut batch = Batch::<f64>::new(model.clone(), 3).expect("a batch");
+    let mut random = Random(4);
+    let mut each = |columns| Vec::from_iter((0..3).map(|_| random_matrix(&mut random, columns)));
+    let (controls, gradients) = (each(model.nu()), each(2 * model.nv + model.na));
+    let mut linearizer = BatchLinearizer::new(&batch);
+    let calls = AtomicUsize::new(0);
+    let go_on = || calls.fetch_add(1, Ordering::Relaxed) < 2;
+    let stopped = linearizer.rollout_vjp_while(&mut batch, false, &controls, &gradients, &go_on);
+    for found in stopped.expect("finite states") {
+        assert_eq!(found.u.shape, [STEPS, model.nu()]);
+        let mut numbers = found.x.values.iter().chain(&found.u.values);
+        assert!(numbers.all(|number| number.is_nan()));
+    }
+    assert!(calls.into_inner() < 3 * (STEPS - 1));
+    let found = linearizer.rollout_vjp(&mut batch, false, &controls, &gradients);
+    let found = found.expect("derivatives").to_vec();
+    let mut fresh = BatchLinearizer::new(&batch);
+    let expected = fresh.rollout_vjp(&mut batch, false, &controls, &gradients);
+    assert_eq!(found, expected.expect("derivatives"));
 }
