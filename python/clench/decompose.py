@@ -256,9 +256,9 @@ def _mesh_geoms(spec: ModelSpec) -> tuple[Model, list[tuple[Document, ET.Element
     copies: dict[str, int] = {}
     if spec._document.has_copies():
         # Replicas have the name of the element and a number. Of two names that begin a third, it is the longer one.
-        for other, index in index_of.items():
-            ends = range(len(other) if other not in names else 0, 0, -1)
-            copies.setdefault(next((other[:end] for end in ends if other[:end] in names), ""), index)
+        for full, index in index_of.items():
+            ends = range(len(full) if full not in names else 0, 0, -1)
+            copies.setdefault(next((full[:end] for end in ends if full[:end] in names), ""), index)
     found = []
     for document, node, twin in pairs:
         name = twin.get("name", "")
