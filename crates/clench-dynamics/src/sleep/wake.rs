@@ -123,6 +123,9 @@ pub(crate) fn wake_pulled<T: Real>(
     settings: &StepSettings,
     ws: &mut Workspace<T>,
 ) -> bool {
+    if !settings.flags.constraint {
+        return false;
+    }
     let sleep = &mut ws.sleep;
     let mut woke = false;
     for (t, tendon) in model.tendons.iter().enumerate() {

@@ -377,6 +377,17 @@ mod policies {
     }
 
     #[test]
+    fn without_constraints_a_tendon_at_its_limit_wakes_nothing() {
+        let mut b = pair();
+        (b.bodies[1].sleep, b.physics.flags.constraint) = (SleepPolicy::Init, false);
+        b.tendons.push(tendon(0.0, &["a", "b"]));
+        (b.tendons[0].range, b.tendons[0].limited) = ([1.0, 2.0], Some(true));
+        let mut sim = sim(&b);
+        steps(&mut sim, 5);
+        assert_eq!(asleep(&sim), [true, false]);
+    }
+
+    #[test]
     fn invalid_policies_are_errors() {
         let error = |b: &ModelBuilder| b.build().expect_err("cannot be").to_string();
         let mut b = pair();
