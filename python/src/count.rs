@@ -61,11 +61,9 @@ impl FromPyObject<'_, '_> for Pixels {
             if !error.is_instance_of::<PyOverflowError>(py) {
                 return error;
             }
-            let text = format!(
-                "a picture of {} pixels along a side cannot be rendered",
-                &*object
-            );
-            PyValueError::new_err(text)
+            PyValueError::new_err(
+                "a picture must have 1 or more pixels along a side, and less than 2^32",
+            )
         })
     }
 }

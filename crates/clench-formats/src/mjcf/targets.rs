@@ -17,7 +17,7 @@ pub(super) fn check(root: &Element, bodies: &[BodySpec]) -> Result<(), LoadError
             if let Some(name) = target.filter(|name| !known.contains(name)) {
                 let hint = schema::suggestion(name, known.iter().copied());
                 let message = format!("there is no body \"{name}\" for its target{hint}");
-                return Err(element.error(message));
+                return Err(element.incomplete(message));
             }
             pending.extend(element.children.iter().rev());
         }
