@@ -126,7 +126,7 @@ fn require_limit(
     }
 }
 
-/// Refuses the numbers of a user's sensor if they cannot be the direction or the orientation that they shall be.
+/// Refuses a user sensor of directions or orientations whose number of values is another one.
 fn require_dim_of_data(spec: &SensorSpec) -> Result<(), BuildError> {
     let SensorSubject::User(dim, data) = spec.subject else {
         return Ok(());

@@ -23,7 +23,7 @@ pub(super) fn write_assets(root: &mut Element, shared: &mut Shared) -> Result<()
     Ok(())
 }
 
-/// Does so for an element of the tree and its descendants; `class` is that of elements without one.
+/// Gives these attributes to an element of the tree and to its descendants; `class` applies to elements without one.
 fn write_in_tree(
     element: &mut Element,
     class: usize,
