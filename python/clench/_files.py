@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from pathlib import Path
 
-from clench._tolerant import meshes_of_urdf, root_name, tree
+from clench._core import Model
 from clench.errors import LoadError
 
 # Attributes that name files of assets.
@@ -85,9 +85,14 @@ class Files:
         return name
 
     def _read_meshes_of_urdf(self, path: Path) -> None:
-        """Reads the meshes that lie where an attached URDF file says, or beside it. The build reports others."""
-        for name in meshes_of_urdf(self.assets[path.name].decode("utf-8", "replace")):
-            file = name.replace("\\", "/")
+        """Reads the meshes that lie where an attached URDF file says, or beside it. The build reports others, and a file
+        that is not XML."""
+        try:
+            root = _tree(self.assets[path.name].decode("utf-8", "replace"))
+        except ET.ParseError:
+            return
+        for mesh in root.iter("mesh"):
+            file = mesh.get("filename", "").replace("\\", "/")
             place = _first([path.parent / file, path.parent / Path(file).name])
             if place.is_file():
                 self.add_files({file: read(place, str(place))})
@@ -117,7 +122,7 @@ def read(path: Path, source: str) -> bytes:
 
 def parsed(text: str, source: str) -> ET.Element:
     try:
-        root = tree(text)
+        root = _tree(text)
     except ET.ParseError as error:
         raise LoadError(str(error), source, error.position[0]) from None
     if root.tag not in ("mujoco", "mujocoinclude"):
@@ -127,4 +132,18 @@ def parsed(text: str, source: str) -> ET.Element:
 
 def is_urdf(path: Path) -> bool:
     """Returns true if a file describes a robot in URDF."""
-    return root_name(read(path, str(path)).decode("utf-8", "replace")).lower() == "robot"
+    try:
+        return _tree(read(path, str(path)).decode("utf-8", "replace")).tag.lower() == "robot"
+    except ET.ParseError:
+        return False
+
+
+def _tree(text: str) -> ET.Element:
+    """Parses a text that strict parsers or the engine accept."""
+    try:
+        return ET.fromstring(text)
+    except ET.ParseError as error:
+        try:
+            return ET.fromstring(Model._strict_xml(text))
+        except ET.ParseError:
+            raise error from None

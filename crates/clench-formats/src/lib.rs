@@ -25,6 +25,9 @@ mod urdf;
 pub use error::LoadError;
 pub use loader::Loader;
 pub use mjcf::{SaveError, SaveModel, Support, supported};
+// For `ModelSpec` in Python.
+#[doc(hidden)]
+pub use tolerant::strict as strict_xml;
 
 use clench_builder::ModelBuilder;
 use clench_dynamics::{Budget, Model};

@@ -8,7 +8,7 @@
 const MAX_PREFIXES: usize = 10;
 
 /// Converts text that TinyXML accepts to strict XML.
-pub(crate) fn strict(text: &str) -> String {
+pub fn strict(text: &str) -> String {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut writer = Writer {
         rest: text.split('\0').next().unwrap_or_default(),

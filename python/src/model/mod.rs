@@ -218,6 +218,12 @@ impl Model {
         }
     }
 
+    /// Converts text that MuJoCo's parser accepts to strict XML with the same line numbers.
+    #[staticmethod]
+    fn _strict_xml(text: &str) -> String {
+        clench::formats::strict_xml(text)
+    }
+
     /// Returns the model as a self-contained MJCF file.
     ///
     /// Every number is resolved: inertials, limits and poses are explicit, angles are in radians, meshes and height

@@ -60,7 +60,6 @@ pub fn convex_hull(
         .collect();
 
     let mut among: Vec<u32> = (0..points.len() as u32).collect();
-    // The hull of all corners of a complete hull is that of all points.
     loop {
         let triangles = triangles(&points, &among, max_vertices)?;
         let between = between(&points, &triangles);
@@ -71,6 +70,7 @@ pub fn convex_hull(
             });
         }
         if max_vertices.is_none() {
+            // The hull of these corners is that of all points.
             among = corners(&triangles);
         }
         among.retain(|i| between.binary_search(i).is_err());
