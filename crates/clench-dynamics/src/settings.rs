@@ -13,6 +13,9 @@ use std::sync::Arc;
 /// The stick references that a state has room for by default: some, and more for each geom that moves.
 const MIN_STICK_PAIRS: usize = 16;
 const STICK_PAIRS_PER_GEOM: usize = 3;
+/// The smallest limit of evaluations of a line search with Coulomb's law. Shorter searches often find no step, and
+/// solves then end with friction at limits that are not those of the normal forces.
+const MIN_COULOMB_SEARCH: usize = 20;
 
 macro_rules! declare_settings {
     (
@@ -58,6 +61,10 @@ impl StepSettings {
         let options = user.or(model.options);
         options.check()?;
         let mut settings = StepSettings::resolve::<T>(options, model.flags);
+        if settings.contact_model == ContactModel::Coulomb {
+            let evaluations = &mut settings.solver.ls_iterations;
+            *evaluations = MIN_COULOMB_SEARCH.max(*evaluations);
+        }
         settings.solver.max_matrix = usize::try_from(model.budget.matrix).unwrap_or(usize::MAX);
         // A switch of the file is a setting of the file: a user option on the same subject takes precedence.
         if user.disable_constraint.is_none() {

@@ -130,6 +130,21 @@ fn a_sphere_thrown_with_back_spin_ends_rolling_at_the_speed_that_its_spin_leaves
     }
 }
 
+/// Files for MJX have such limits.
+#[test]
+fn a_small_limit_of_line_searches_does_not_leave_other_normal_forces() {
+    let law = RigidOptions::new().contact_model(ContactModel::Coulomb);
+    let options = law.impratio(100.0).ls_iterations(4);
+    let builder = on_floor(0.0, 0.5, 0.15, sphere(0.1));
+    let mut sim = Sim::with_options(model(&builder), options).expect("valid");
+    sim.state.qvel[4] = -40.0;
+    for _ in 0..300 {
+        sim.step().expect("finite");
+        let residual = sim.stats().normal_residual;
+        assert!(residual < 1e-6, "{residual} N");
+    }
+}
+
 #[test]
 fn a_rod_that_jams_against_the_floor_ends_its_slide_the_same_way_each_time() {
     // Painlevé's rod: at this angle and friction the linear equations of sliding have no solution.
