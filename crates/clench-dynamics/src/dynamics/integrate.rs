@@ -8,6 +8,7 @@ use crate::dynamics::orientation;
 use crate::dynamics::plastic::yield_springs;
 use crate::model::{GainKind, JointKind, Model, Params};
 use crate::part::Part;
+use crate::sleep::stop_sleeping;
 use crate::stages::{Lengths, Positions, Velocities};
 use crate::state::State;
 use crate::stiction::advance_friction;
@@ -192,6 +193,7 @@ pub(crate) fn advance_semi_implicit<T: Real>(
     let (at, act_dot) = ((&ws.position, &ws.velocity), &ws.force.act_dot);
     advance_activations(model, params, at, act_dot, &mut state.act);
     add_scaled(&mut state.qvel, &ws.integration.qacc, h);
+    stop_sleeping(model, &ws.sleep, &mut state.qvel);
     let parts = ws.sleep.computed();
     integrate_parts(model, parts, &mut state.qpos, &state.qvel, h);
     let motion = (&state.qpos[..], &state.qvel[..]);

@@ -139,6 +139,19 @@ impl<T: Real> Sleep<T> {
     }
 }
 
+/// Sets the velocities (nv) of sleeping trees to zero, whatever acceleration the integrator has found for them.
+#[kernel]
+pub fn stop_sleeping<T: Real>(model: &Model, sleep: &Sleep<T>, qvel: &mut [T]) {
+    for (tree, &awake) in model.trees.iter().zip(&sleep.awake) {
+        if awake.all() {
+            continue;
+        }
+        for qvel in &mut qvel[tree.dofs.clone()] {
+            *qvel = T::select(awake, *qvel, T::ZERO);
+        }
+    }
+}
+
 /// Stores in the state which trees sleep, and resets those to their sleeping positions, independently of the
 /// integrator.
 #[kernel]
@@ -147,9 +160,6 @@ pub fn restore_sleeping<T: Real>(model: &Model, state: &mut State<T>, ws: &Works
     for (tree, &awake) in model.trees.iter().zip(&ws.sleep.awake) {
         if awake.all() {
             continue;
-        }
-        for i in tree.dofs.clone() {
-            state.qvel[i] = T::select(awake, state.qvel[i], T::ZERO);
         }
         for q in tree.qpos.clone() {
             state.qpos[q] = T::select(awake, state.qpos[q], state.pose_asleep[q]);

@@ -15,7 +15,7 @@ mod skipped_work;
 mod wake;
 
 pub use fall::fall_asleep;
-pub(crate) use fall::restore_sleeping;
+pub(crate) use fall::{restore_sleeping, stop_sleeping};
 pub(crate) use skipped_work::{is_idle, sleeps_unchanged};
 pub use wake::wake_in_state;
 pub(crate) use wake::{wake_coupled, wake_pulled, wake_touched, wake_touching};

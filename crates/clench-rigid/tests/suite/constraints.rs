@@ -234,3 +234,27 @@ fn dry_friction_holds_a_pendulum_and_brakes_a_wheel() {
         "the arm creeps at {creep} rad/s"
     );
 }
+
+#[test]
+fn dry_friction_that_sticks_holds_the_same_load_after_sleep() {
+    let mut b = world();
+    b.physics.flags.sleep = true;
+    let ball = || vec![crate::scenes::ghost(sphere(0.05))];
+    let stiff = JointSpec {
+        frictionloss: 100.0 * G,
+        damping: [10.0, 0.0, 0.0],
+        ..joint(JointKind::Slide, "stiff", [0.0, 0.0, 1.0])
+    };
+    add(&mut b, 0, "load", [0.0; 3], vec![stiff], ball());
+    let loose = joint(JointKind::Slide, "loose", [0.0, 0.0, 1.0]);
+    add(&mut b, 0, "falls", [1.0, 0.0, 0.0], vec![loose], ball());
+    let options = RigidOptions::new().stiction(true);
+    let mut sim = Sim::with_options(crate::scenes::model(&b), options).expect("valid");
+    while sim.state.tree_asleep[0] < 0.0 {
+        sim.step().expect("finite");
+        assert!(sim.state.time < 10.0, "it falls asleep");
+    }
+    let displacement = sim.state.stick_friction[0];
+    run(&mut sim, 1.0);
+    assert_eq!(sim.state.stick_friction[0], displacement);
+}
