@@ -308,6 +308,25 @@ def test_delayed_controls_are_in_the_extended_state() -> None:
     np.testing.assert_allclose((linear.A @ linear.A @ linear.B)[:, 1, 0], 0.005)
 
 
+def test_gradients_contain_stick_references() -> None:
+    model, options = example("quadruped"), clench.RigidOptions(stiction=True)
+    sim, batch = clench.Sim(model, options), clench.Batch(model, 1, options=options)
+    sim.step(300)
+    batch.qpos[0], batch.stick_references[0] = sim.qpos, sim.stick_references
+    batch.qvel[0], batch.qacc_warmstart[0] = sim.qvel, sim.qacc_warmstart
+    matrix = sim.linearize(memory=True).A
+    gradient = np.random.default_rng(0).normal(size=len(matrix))
+    expected = gradient @ matrix
+    assert np.abs(expected[2 * model.nv :]).max() > 1.0
+    for found in (
+        sim.vjp(gradient, memory=True),
+        sim.rollout_vjp([sim.ctrl], [gradient], memory=True),
+        batch.vjp([gradient], memory=True),
+        batch.rollout_vjp([batch.ctrl], [[gradient]], memory=True),
+    ):
+        np.testing.assert_allclose(np.ravel(found[0]), expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
 def test_only_a_contact_that_touches_has_derivatives() -> None:
     sim = clench.Sim(ball())
     for height, touches in ((0.1001, False), (0.0999, True)):

@@ -99,6 +99,8 @@ pub(crate) struct Batch {
     /// The model, or the common layout of several.
     model: Py<Model>,
     models: Vec<Py<Model>>,
+    /// The same with the slots for stick references that the options require.
+    layout: Arc<clench::Model>,
     n_envs: usize,
     precision: Bits,
     threads: usize,
@@ -160,6 +162,7 @@ impl Batch {
             recorded: Recorded::default(),
             model: models.layout(py, &layout)?,
             models: models.objects,
+            layout,
             n_envs: n_envs.0,
             precision,
             threads,
@@ -365,7 +368,7 @@ impl Batch {
 
     /// Returns the model, without the parameters that are set per environment.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
-        self.model.get().inner()
+        &self.layout
     }
 
     /// Returns the number of environments.

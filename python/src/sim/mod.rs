@@ -66,6 +66,8 @@ pub(crate) fn sensor_numbers<'py>(
 pub(crate) struct Sim {
     inner: Arc<Mutex<AnySim>>,
     model: Py<Model>,
+    /// The model with the slots for stick references that the options require.
+    layout: Arc<clench::Model>,
     precision: Bits,
     /// The memory of derivatives, created on demand.
     linearizer: Mutex<Memory>,
@@ -94,7 +96,7 @@ impl Sim {
 
     /// Returns the model, without the parameters that are set in this simulation.
     pub(crate) fn described(&self) -> &Arc<clench::Model> {
-        self.model.get().inner()
+        &self.layout
     }
 
     /// Creates the Python object of a simulation.
@@ -106,13 +108,17 @@ impl Sim {
         let precision = sim.precision();
         let inner = Arc::new(Mutex::new(sim));
         let keeper = Keeper::new(py, inner.clone())?;
-        let views = {
+        let (views, layout) = {
             let mut guard = lock(&inner, "simulation")?;
-            each_sim!(&mut *guard, own => StateViews::new(&keeper, &mut own.rows, true))?
+            each_sim!(&mut *guard, own => {
+                let views = StateViews::new(&keeper, &mut own.rows, true)?;
+                (views, Arc::clone(own.sim.model()))
+            })
         };
         Ok(PyClassInitializer::from(views).add_subclass(Sim {
             inner,
             model,
+            layout,
             precision,
             linearizer: Mutex::default(),
         }))
