@@ -8,6 +8,9 @@ use clench_math::Vec3;
 const MAX_COORDINATE: f64 = 1e60;
 /// The minimum coordinate (m); smaller ones, whose products underflow, count as zero.
 const MIN_COORDINATE: f64 = 1e-60;
+/// The minimum coordinate relative to the largest. Files have smaller ones for zero; rotations of the hull would round
+/// away an edge between points that only these distinguish, and a climb would end at the wrong one.
+const NOISE: f64 = 1e-12;
 
 /// The surface of a convex hull: triangles of point indices.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +32,7 @@ impl HullSurface {
 }
 
 /// Computes the convex hull of points: exact in their coordinates, however thin it is, and without corners that lie
-/// within an edge or a face.
+/// within an edge or a face. Coordinates below 1e-12 of the largest count as zero.
 ///
 /// `max_vertices` limits the number of corners. The furthest points are added first, so the others lie only slightly
 /// outside.
@@ -54,7 +57,10 @@ pub fn convex_hull(
     if let Some(bad) = points.iter().position(|p| !usable(p)) {
         return Err(HullError::NotFinite(bad));
     }
-    let flush = |x: f64| if x.abs() < MIN_COORDINATE { 0.0 } else { x };
+    let all = points.iter().flat_map(|p| p.to_array());
+    let largest = all.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let least = MIN_COORDINATE.max(NOISE * largest);
+    let flush = |x: f64| if x.abs() < least { 0.0 } else { x };
     let points: Vec<Vec3<f64>> = (points.iter())
         .map(|p| Vec3::new(flush(p.x), flush(p.y), flush(p.z)))
         .collect();

@@ -183,6 +183,35 @@ fn the_farthest_vertex_is_found_along_any_direction() {
     }
 }
 
+/// Files have zeros that are not quite zero.
+#[test]
+fn points_that_only_noise_parts_hide_no_vertex() {
+    let mut noise = Noise(15_485_863);
+    let mut points = Vec::new();
+    for _ in 0..300 {
+        let p = noise.vector().normalize().0;
+        let rim = Vec3::new(0.0, p.y, p.z).normalize().0;
+        points.extend([
+            p,
+            Vec3::new(5e-18, rim.y, rim.z),
+            Vec3::new(-5e-18, rim.y, rim.z),
+        ]);
+    }
+    let surface = convex_hull(&points, None).expect("a hull");
+    for _ in 0..20 {
+        let turn = noise.turn();
+        let turned = Vec::from_iter(points.iter().map(|&p| turn.rotate(p)));
+        let hull = Hull::new(&surface, &turned);
+        for _ in 0..200 {
+            let direction = noise.vector().normalize().0;
+            let reach = |v: &Vec3<f64>| v.dot(direction);
+            let found = reach(&hull.vertices()[hull.support(direction)]);
+            let farthest = turned.iter().map(reach).fold(f64::MIN, f64::max);
+            assert!(farthest - found <= 1e-14, "{found} {farthest}");
+        }
+    }
+}
+
 #[test]
 fn boxes_have_six_faces_however_thin_and_turned() {
     let mut noise = Noise(521_288_629_362_436_069);
