@@ -13,6 +13,10 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`step`](Self::step).
     pub fn step1(&mut self) -> Result<(), SimError> {
+        self.with_autoreset(Self::try_step1)
+    }
+
+    fn try_step1(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         self.on_threads(|model, params, settings, state, ws| {
             T::before_forces(model, params, settings, state, ws);
@@ -30,11 +34,11 @@ impl<T: Precision> Sim<T> {
     /// See [`step`](Self::step).
     pub fn step2(&mut self) -> Result<(), SimError> {
         let begun = self.halfway && self.validity.computed(&self.state) == Computed::Positions;
-        if !begun || !self.validity.same_velocities(&self.state) || self.settings.flags.sleep {
+        let valid = self.validity.same_velocities(&self.state) && self.check_state().is_ok();
+        if !begun || !valid || self.settings.flags.sleep {
             return self.step();
         }
         self.halfway = false;
-        self.check_state()?;
         self.last_good.copy_moving_from(&self.state);
         self.on_threads(T::step_from_forces);
         let result = self.check_result(self.last_good.time);

@@ -139,6 +139,36 @@ fn with_autoreset_a_failure_from_the_initial_state_is_a_fault() {
     assert_eq!(alone.step(), Err(SimError::Fault(fault)));
 }
 
+/// An input that is not finite, before the first half of a step or between the halves, resets as in a whole step.
+#[test]
+fn with_autoreset_halves_of_a_step_restart_as_a_whole_step() {
+    let model = model(&stiff(Integrator::Euler));
+    for before in [true, false] {
+        let options = RigidOptions::new().autoreset(true);
+        let mut sim = Sim::<f64>::with_options(model.clone(), options).expect("valid");
+        let mut whole = Sim::<f64>::with_options(model.clone(), options).expect("valid");
+        for sim in [&mut sim, &mut whole] {
+            sim.state.qpos[0] = 0.1;
+            sim.step().expect("valid");
+        }
+        let spoil = |sim: &mut Sim<f64>| match before {
+            true => sim.state.qpos[0] = f64::NAN,
+            false => sim.state.qfrc_applied[0] = f64::NAN,
+        };
+        spoil(&mut whole);
+        whole.step().expect("it goes on");
+        if before {
+            spoil(&mut sim);
+        }
+        sim.step1().expect("it goes on");
+        if !before {
+            spoil(&mut sim);
+        }
+        sim.step2().expect("it goes on");
+        assert_eq!((sim.resets(), &sim.state), (whole.resets(), &whole.state));
+    }
+}
+
 /// After 3 × 10⁷ steps of 1/1024 s, the last digit of a single-precision clock is 1/512 s.
 #[test]
 fn the_clock_is_exact_in_single_precision() {
