@@ -57,6 +57,12 @@ impl<T: Real> Problem<T> {
         if !plain.shape.is_empty() || plain.cost.has_shape() {
             check_length("shape", plain.shape.len(), dim)?;
         }
+        if !plain.r.iter().all(|r| r.gt(T::ZERO).all()) {
+            return Err(ProblemError::Block {
+                block: self.nblock(),
+                reason: "R is not positive",
+            });
+        }
         let acts = |dof: &u32| {
             (0..dim).any(|i| (!plain.jacobian[i * nv + *dof as usize].eq(T::ZERO)).any())
         };

@@ -59,8 +59,10 @@ fn wrong_problems_are_refused_with_a_reason() {
     );
     assert!(message(Problem::from_arrays(&[f64::NAN], &[0.0], &[])).contains("finite"));
     assert!(message(arrays(&[stop(f64::INFINITY, 1.0)])).contains("aref"));
-    assert!(message(arrays(&[stop(0.0, 0.0)])).contains("finite"));
-    assert!(message(arrays(&[stop(0.0, -1.0)])).contains("negative"));
+    for r in [0.0, -1.0, f64::NAN] {
+        let blocks = [stop(0.0, 1.0), stop(0.0, r)];
+        assert!(message(arrays(&blocks)).contains("block 1: R is not positive"));
+    }
     let short = PlainBlock {
         jacobian: vec![1.0],
         ..stop(0.0, 1.0)
