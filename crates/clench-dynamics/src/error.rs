@@ -325,5 +325,5 @@ pub fn check_length(field: &'static str, found: usize, expected: usize) -> Resul
 
 /// Checks that the length is a multiple of `each`.
 pub fn check_count(field: &'static str, found: usize, each: usize) -> Result<(), SimError> {
-    check_length(field, found, found / each * each)
+    check_length(field, found, found.next_multiple_of(each))
 }

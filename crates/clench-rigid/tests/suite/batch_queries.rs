@@ -288,11 +288,9 @@ fn an_environment_that_fails_a_query_is_reported_and_disturbs_no_other() {
         }
     }
     assert_eq!(batch.statuses().len(), ENVS);
-    assert!(
-        batch
-            .rays(QueryInput::Shared(&[1.0; 5]), None, &RayFilter::default())
-            .is_err()
-    );
+    let refused = batch.rays(QueryInput::Shared(&[1.0; 5]), None, &RayFilter::default());
+    let text = refused.expect_err("a ray has six numbers").to_string();
+    assert_eq!(text, "rays has 5 numbers where the model needs 6");
     assert!(
         batch
             .heights(0, QueryInput::Shared(&[1.0; 2]), None)
