@@ -174,6 +174,7 @@
 //! | [`collide`] | shapes in, contact points, distances and ray hits out |
 //! | [`rigid`] | models, dynamics, constraints, simulations and batches |
 //! | [`formats`] | model files |
+//! | `derivatives`, with the feature of that name | exact derivatives of a step |
 
 pub use clench_collide as collide;
 #[cfg(feature = "derivatives")]
@@ -187,6 +188,7 @@ pub use clench_formats::{
     LoadError, Loader, SaveError, SaveModel, load, load_str, load_str_within, load_within,
 };
 pub use clench_rigid::batch::{Anchors, Controls, QueryInput};
+pub use clench_rigid::model::FrameObject;
 pub use clench_rigid::{
     Acceleration, Anchor, Axes, Batch, BatchOptions, Budget, DynamicConstraint, EnvStatus, Fault,
     Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Output, Precision, RayFilter,
