@@ -53,12 +53,10 @@ impl ParamField {
         self.name().starts_with("geom_")
     }
 
-    /// Returns the number of numbers per element, at least one.
+    /// Returns the number of numbers per element, at least one. A single vector, such as gravity, is an element.
     pub fn element_width(self, model: &Model) -> usize {
-        match self.shape(model)[..] {
-            [elements, ref width @ ..] if elements > 0 => width.iter().product(),
-            _ => model.params.width(self).max(1),
-        }
+        let numbers: usize = self.shape(model).iter().skip(1).product();
+        numbers.max(model.params.flat(self).element_width())
     }
 
     /// Returns the fields that follow from this one in a model, and change with it.

@@ -63,6 +63,15 @@ impl<T: Real> Flat<'_, T> {
         }
     }
 
+    /// Returns the number of numbers of a vector or quaternion, else 1.
+    pub(super) fn element_width(&self) -> usize {
+        match self {
+            Flat::Numbers(_) => 1,
+            Flat::Vectors(_) => 3,
+            Flat::Quats(_) => 4,
+        }
+    }
+
     /// Returns a number by its index.
     pub(super) fn number(&self, index: usize) -> T {
         match self {

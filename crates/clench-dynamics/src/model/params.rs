@@ -74,7 +74,7 @@ macro_rules! params {
                 match field { $(ParamField::$name => self.$name.shape(),)* }
             }
 
-            fn flat(&self, field: ParamField) -> Flat<'_, T> {
+            pub(super) fn flat(&self, field: ParamField) -> Flat<'_, T> {
                 match field { $(ParamField::$name => self.$name.flat(),)* }
             }
 

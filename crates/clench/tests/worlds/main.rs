@@ -86,6 +86,25 @@ fn environments_of_many_models_equal_single_simulations() {
 }
 
 #[test]
+fn models_may_differ_in_gravity_wind_and_the_magnetic_field() {
+    let model = |option: &str| {
+        let text = format!(
+            r#"<mujoco><option density="20" {option}/><worldbody>
+                 <body><freejoint/><geom size=".1"/><site name="s"/></body>
+               </worldbody><sensor><magnetometer site="s"/></sensor></mujoco>"#
+        );
+        Arc::new(clench::load_str(&text).expect("valid"))
+    };
+    let options = ["", "gravity='0 0 -5'", "wind='0 3 0'", "magnetic='0 0 2'"];
+    let models = options.map(model);
+    let own = BatchOptions::default();
+    let mut batch = Batch::<f64>::of_models(&models, &[3, 1, 2, 0], own).expect("same joints");
+    batch.record(&["sensordata"]).expect("an output");
+    let mut alone = singles(&batch, RigidOptions::new());
+    compare(&mut batch, &mut alone, 20);
+}
+
+#[test]
 fn options_act_on_all_models() {
     let elliptic = RigidOptions::new().friction_cone(clench::prelude::FrictionCone::Elliptic);
     let widest = Instructions::all_available::<f64>()
