@@ -161,9 +161,6 @@ impl SharedLayout {
         geoms.iter().for_each(|&slot| present[slot] = true);
         for absent in (0..present.len()).filter(|&slot| !present[slot]) {
             params.geom_rbound[absent] = f64::NEG_INFINITY;
-            params.geom_fluidcoef[absent] = [0.0; 5];
-            params.geom_virtualmass[absent] = [0.0; 3];
-            params.geom_virtualinertia[absent] = [0.0; 3];
         }
         for &field in ParamField::ALL {
             let row = own.params.read_lane(field, 0);

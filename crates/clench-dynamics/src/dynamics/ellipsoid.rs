@@ -16,6 +16,7 @@
 //! A_max is the largest area, J_i = 8/15 π r_i max(r_j, r_k)⁴. C_b, C_s, C_a, C_K, C_M are the geom's `fluidcoef`:
 //! blunt, slender and angular drag, and both lifts.
 
+use crate::contact::exists;
 use crate::dynamics::project::{force_at, local_velocity};
 use crate::model::{Model, Params};
 use crate::stages::{Positions, Velocities};
@@ -80,7 +81,8 @@ impl<T: Real> Ellipsoid<T> {
         let arm = pos.geom_xpos[geom] - pos.subtree_com[model.bodies[b].root];
         let mut velocity = local_velocity(vel.cvel[b], arm, &pos.geom_xmat[geom]);
         velocity.linear -= pos.geom_xmat[geom].transpose_mul(params.wind);
-        let heavy = params.body_mass[b].ge(T::new(TINY));
+        // The fluid does not act on a geom that the environment does not have.
+        let heavy = params.body_mass[b].ge(T::new(TINY)) & exists(params, geom);
         let density = T::select(heavy, params.density.max(T::ZERO), T::ZERO);
         let viscosity = T::select(heavy, params.viscosity.max(T::ZERO), T::ZERO);
         let r = semi_axes(model.geoms[geom].kind, params.geom_size[geom]);

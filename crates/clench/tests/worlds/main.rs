@@ -236,6 +236,25 @@ fn a_failed_environment_starts_over_from_its_own_model() {
 }
 
 #[test]
+fn the_fluid_acts_on_the_own_geoms_alone() {
+    let world = |condim: u32| {
+        let text = format!(
+            "<mujoco><option density='50' viscosity='.1'/><worldbody><body><freejoint/>
+               <geom type='ellipsoid' size='.2 .1 .05' fluidshape='ellipsoid' condim='{condim}'/>
+             </body></worldbody><sensor><clock/></sensor></mujoco>"
+        );
+        Arc::new(clench::load_str(&text).expect("valid"))
+    };
+    let models = [world(1), world(3)];
+    let mut batch =
+        Batch::<f64>::of_models(&models, &[0, 1, 1], BatchOptions::default()).expect("a batch");
+    batch.record(&["sensordata"]).expect("an output");
+    assert_eq!(batch.model().geoms.len(), 2);
+    let mut alone = singles(&batch, RigidOptions::new());
+    compare(&mut batch, &mut alone, 20);
+}
+
+#[test]
 fn added_masses_follow_the_sizes_of_the_own_geoms() {
     let world = |extra: &str| {
         let text = format!(
