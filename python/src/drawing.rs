@@ -302,10 +302,7 @@ fn with_renderer<R>(
     call: impl FnOnce(&mut Renderer) -> Result<R, Failure>,
 ) -> Result<R, Failure> {
     let mut renderers = (model.renderers().lock()).unwrap_or_else(PoisonError::into_inner);
-    match &mut renderers.device {
-        Some(renderer) => call(renderer),
-        none => call(none.insert(Renderer::new(model.inner())?)),
-    }
+    call(renderers.device.get(model.inner())?)
 }
 
 /// Returns the ray caster of a model. The interpreter must not be held.

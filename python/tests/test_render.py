@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, TypeAlias
 
@@ -177,6 +179,23 @@ def test_threads_draw_at_once() -> None:
 
     with ThreadPoolExecutor(3) as pool:
         list(pool.map(draw, range(3)))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_forked_process_draws_and_releases_what_it_inherits() -> None:
+    sims = [clench.Sim(ball()) for _ in range(2)]
+    before = [sim.render(24, 24) for sim in sims]
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)
+        try:
+            del sims[1]
+            os._exit(0 if (sims[0].render(24, 24) == before[0]).all() else 1)
+        finally:
+            os._exit(2)
+    assert os.waitpid(child, 0)[1] == 0
+    assert (sims[1].render(24, 24) == before[1]).all()
 
 
 def test_bad_arguments_are_named() -> None:
