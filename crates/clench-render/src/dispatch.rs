@@ -3,7 +3,7 @@
 use crate::camera::CameraPose;
 use crate::canvas::Form;
 use crate::items::{self, Item, Surface};
-use crate::light::{FAR, Lamp, Lighting, NEAR, REACH, Uniforms, sun_planes};
+use crate::light::{FAR, Lamp, Lighting, REACH, Uniforms};
 use crate::looks::Looks;
 use crate::scene::Scene;
 use crate::shapes::{COLOR_TOLERANCE, FACT_TOLERANCE, SHADOW_TOLERANCE, Sight};
@@ -128,7 +128,6 @@ impl Dispatch {
         let casting = (form.colors && shown.lighting.casts).then(|| {
             let sight = Sight {
                 camera: &shown.lighting.sun,
-                near: sun_planes(&shown.lighting.sun, scene.extent)[0],
                 height: form.shadow(),
                 tolerance: SHADOW_TOLERANCE,
             };
@@ -167,7 +166,6 @@ impl Dispatch {
         };
         let sight = |tolerance| Sight {
             camera,
-            near: NEAR * scene.extent,
             height,
             tolerance,
         };
@@ -197,14 +195,13 @@ impl Dispatch {
 
     /// Returns the draw call of an item of the last environment.
     fn draw(&self, scene: &Scene, shown: &Snapshot, k: usize, sight: &Sight) -> Drawn {
-        let (vertices, hidden) = scene.shapes.at(k, &shown.items[k], sight);
+        let (vertices, culls) = scene.shapes.at(k, &shown.items[k], sight);
         Drawn {
             vertices,
             items: self.of_last(shown, k..k + 1),
             surface: scene.surface_of[k],
             texture: scene.texture_of[k],
-            // The back sides of transparent items are seen through their fronts.
-            culls: hidden && shown.items[k].color[3] >= 1.0,
+            culls,
         }
     }
 
@@ -222,7 +219,7 @@ impl Dispatch {
             items: self.of_last(shown, shown.strings.clone()),
             surface: Surface::Plain,
             texture: None,
-            culls: false,
+            culls: true,
         })
     }
 

@@ -163,7 +163,7 @@ impl Uniforms {
 }
 
 /// Returns the distances of the near and far planes of the view that casts the shadow, m.
-pub(crate) fn sun_planes(sun: &CameraPose, extent: f32) -> [f32; 2] {
+fn sun_planes(sun: &CameraPose, extent: f32) -> [f32; 2] {
     match sun.parallel {
         true => [0.1 * REACH * extent, 6.0 * REACH * extent],
         false => [NEAR * extent, FAR * extent],

@@ -4,7 +4,7 @@ use crate::camera::CameraPose;
 use crate::device::Gpu;
 use crate::items::Item;
 use crate::light::FAR;
-use crate::simplify::{bounds, closed, simplified};
+use crate::simplify::{bounds, simplified};
 use crate::triangles::{self, Vertex};
 use clench::Model;
 use clench::collide::ShapeKind;
@@ -37,8 +37,6 @@ pub(crate) struct Shapes {
 /// A camera, and the accuracy that its image requires of shapes.
 pub(crate) struct Sight<'a> {
     pub camera: &'a CameraPose,
-    /// The distance of the near plane, m.
-    pub near: f32,
     /// The height of the image, pixels.
     pub height: u32,
     /// The largest deviation from the exact shapes, pixels.
@@ -51,8 +49,8 @@ struct Shape {
     levels: Vec<(Range<u32>, f32)>,
     /// The radius of a sphere around the origin that contains the shape, m.
     radius: f32,
-    /// True if the triangles enclose a volume and are wound counterclockwise as seen from outside.
-    closed: bool,
+    /// True if the back sides of triangles are hidden.
+    solid: bool,
 }
 
 impl Shapes {
@@ -92,7 +90,7 @@ impl Shapes {
     }
 
     /// Returns the vertices of a shape with the pose and stretch of an item, as they are drawn for a camera. The back
-    /// sides of their triangles are hidden if the second value is true.
+    /// sides of their triangles are hidden if the second value is true: as in MuJoCo, a camera in a shape looks out.
     pub(crate) fn at(&self, shape: usize, item: &Item, sight: &Sight) -> (Range<u32>, bool) {
         let shape = &self.all[shape];
         let ([x, y, z, _], [a, b, c, apart]) = (item.pose[3], item.stretch);
@@ -100,9 +98,7 @@ impl Shapes {
         let radius = shape.radius * stretch + apart.abs();
         let nearest = sight.camera.distance([x, y, z]) - radius;
         let pixels = sight.camera.pixels(nearest, sight.height);
-        // A camera in a shape, or cut off by the near plane, shows its inside.
-        let hidden = shape.closed && nearest > sight.near;
-        (shape.level(sight.tolerance / pixels / stretch), hidden)
+        (shape.level(sight.tolerance / pixels / stretch), shape.solid)
     }
 
     /// Returns the vertices of tendon segments; their largest radius has `pixels` pixels.
@@ -115,37 +111,36 @@ impl Shapes {
 struct Round {
     /// The largest radius of the circles that segments replace, m.
     radius: f32,
-    closed: bool,
+    solid: bool,
 }
 
 impl Round {
     fn new(kind: ShapeKind, size: [f64; 3]) -> Self {
-        let (radius, closed) = match kind {
+        let (radius, solid) = match kind {
             ShapeKind::Sphere | ShapeKind::Capsule | ShapeKind::Cylinder => (size[0], true),
             ShapeKind::Ellipsoid => (size.into_iter().fold(0.0, f64::max), true),
-            ShapeKind::Box => (0.0, true),
-            // The triangles of mesh files may have any order.
-            ShapeKind::Plane | ShapeKind::Mesh | ShapeKind::HeightField => (0.0, false),
+            ShapeKind::Box | ShapeKind::Mesh | ShapeKind::HeightField => (0.0, true),
+            ShapeKind::Plane => (0.0, false),
         };
         Round {
             radius: radius as f32,
-            closed,
+            solid,
         }
     }
 }
 
 impl Shape {
-    fn empty(closed: bool) -> Self {
+    fn empty(solid: bool) -> Self {
         Shape {
             levels: Vec::new(),
             radius: 0.0,
-            closed,
+            solid,
         }
     }
 
     /// Appends the vertices of a shape; `of` creates them for a number of segments of a circle.
     fn new(corners: &mut Vec<Vertex>, round: Round, of: impl Fn(usize) -> Vec<Vertex>) -> Self {
-        let mut shape = Shape::empty(round.closed);
+        let mut shape = Shape::empty(round.solid);
         let levels = match round.radius > 0.0 {
             true => &CIRCLE_SEGMENTS[..],
             false => &CIRCLE_SEGMENTS[..1],
@@ -159,7 +154,7 @@ impl Shape {
 
     /// Appends the vertices of a mesh.
     fn of_mesh(corners: &mut Vec<Vertex>, mesh: &[Vertex]) -> Self {
-        let mut shape = Shape::empty(closed(mesh));
+        let mut shape = Shape::empty(true);
         let (_, side) = bounds(mesh);
         // A flat or empty mesh has no volume to divide into cells.
         for cells in CELLS.into_iter().filter(|_| side > 0.0) {

@@ -2,7 +2,7 @@
 //! approximations for rendering complex scenes", 1993.
 
 use crate::triangles::{Vertex, normal_of};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// Returns the triangles that are left if the vertices of each cell of a grid become one, their mean. The longest side
 /// of the mesh has `cells` cells.
@@ -59,36 +59,6 @@ pub(crate) fn bounds(triangles: &[Vertex]) -> ([f32; 3], f32) {
     (low, side)
 }
 
-/// Returns true if triangles enclose a volume and are wound counterclockwise as seen from outside: each edge occurs as
-/// often in one direction as in the other, and the volume is positive.
-pub(crate) fn closed(triangles: &[Vertex]) -> bool {
-    let mut edges = HashMap::new();
-    let mut volume = 0.0;
-    for triangle in triangles.as_chunks::<3>().0 {
-        let [a, b, c] = triangle
-            .each_ref()
-            .map(|vertex| vertex.position.map(f32::to_bits));
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            match from < to {
-                true => *edges.entry((from, to)).or_insert(0) += 1,
-                false => *edges.entry((to, from)).or_insert(0) -= 1,
-            }
-        }
-        volume += signed_volume(
-            triangle
-                .each_ref()
-                .map(|vertex| vertex.position.map(f64::from)),
-        );
-    }
-    volume > 0.0 && edges.values().all(|&count| count == 0)
-}
-
-/// Returns six times the volume of the tetrahedron of a triangle and the origin.
-fn signed_volume([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let minor = |i: usize, k: usize| b[i] * c[k] - b[k] * c[i];
-    a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)
-}
-
 /// The mean of vertices.
 #[derive(Default)]
 struct Mean {
@@ -120,6 +90,37 @@ impl Mean {
 mod tests {
     use super::*;
     use crate::triangles::string;
+    use std::collections::HashMap;
+
+    /// Returns true if triangles enclose a volume and are wound counterclockwise as seen from outside: each edge occurs
+    /// as often in one direction as in the other, and the volume is positive.
+    fn closed(triangles: &[Vertex]) -> bool {
+        let mut edges = HashMap::new();
+        let mut volume = 0.0;
+        for triangle in triangles.as_chunks::<3>().0 {
+            let [a, b, c] = triangle
+                .each_ref()
+                .map(|vertex| vertex.position.map(f32::to_bits));
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                match from < to {
+                    true => *edges.entry((from, to)).or_insert(0) += 1,
+                    false => *edges.entry((to, from)).or_insert(0) -= 1,
+                }
+            }
+            volume += signed_volume(
+                triangle
+                    .each_ref()
+                    .map(|vertex| vertex.position.map(f64::from)),
+            );
+        }
+        volume > 0.0 && edges.values().all(|&count| count == 0)
+    }
+
+    /// Returns six times the volume of the tetrahedron of a triangle and the origin.
+    fn signed_volume([a, b, c]: [[f64; 3]; 3]) -> f64 {
+        let minor = |i: usize, k: usize| b[i] * c[k] - b[k] * c[i];
+        a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)
+    }
 
     #[test]
     fn a_simplified_surface_is_closed_and_near_the_surface() {

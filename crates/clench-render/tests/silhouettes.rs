@@ -2,7 +2,7 @@
 
 use clench::math::Vec3;
 use clench::{RayFilter, Sim, load_str};
-use clench_render::{FreeCamera, Picture, RenderError, Renderer, View};
+use clench_render::{FreeCamera, Picture, Planes, RayCaster, RenderError, Renderer, View};
 use std::sync::Arc;
 
 const SCENE: &str = "<mujoco>
@@ -172,6 +172,48 @@ fn a_free_camera_looks_at_its_point() {
         .unwrap();
     let seen = (0..8).filter(|geom| all.geoms.contains(geom)).count();
     assert!(seen >= 7, "{seen}");
+}
+
+#[test]
+fn a_camera_in_a_shape_looks_out_of_it() {
+    for shape in [
+        "size='0.3'",
+        "type='box' size='0.2 0.3 0.4'",
+        "type='cylinder' size='0.3 0.2'",
+        "type='capsule' size='0.3 0.2' rgba='1 1 1 0.5'",
+        "type='ellipsoid' size='0.2 0.3 0.4'",
+        "type='mesh' mesh='open'",
+    ] {
+        let xml = format!(
+            "<mujoco><asset><mesh name='open' inertia='shell' vertex='-1 -1 -1  1 -1 -1  0 1 -1  0 0 1'
+              face='0 2 1  0 1 3  1 2 3'/></asset><worldbody><geom size='0.5' pos='0 0 -3'/><geom {shape}/>
+              <camera/></worldbody></mujoco>"
+        );
+        let model = Arc::new(load_str(&xml).expect("the scene is complete"));
+        let mut sim = Sim::<f64>::new(model).expect("the scene is at rest");
+        let Some(mut renderer) = renderer(&sim) else {
+            return;
+        };
+        let picture = Picture {
+            views: vec![View::Camera(0)],
+            ..Picture::new(9, 9)
+        };
+        let image = renderer.draw_facts(&mut sim, &picture).expect("a picture");
+        assert_eq!(image.geoms[40], 0, "{shape}");
+        assert!((image.depth[40] - 2.5).abs() < 1e-3, "{shape}");
+        // By rays too.
+        let (mut geoms, mut depth) = ([0; 81], [0.0; 81]);
+        let caster = RayCaster::new(sim.model()).expect("the scene has a size");
+        let planes = Planes {
+            rgb: &mut [],
+            depth: &mut depth,
+            geoms: &mut geoms,
+        };
+        let mut rays = caster.pictures(&picture, 1, planes, 1).expect("a size");
+        rays.add(&mut sim, 0, None).expect("a picture");
+        rays.finish();
+        assert_eq!((geoms[40], depth[40]), (0, 2.5), "{shape}");
+    }
 }
 
 #[test]

@@ -6,6 +6,9 @@ use clench::collide::{Hit, Pose, Ray, Shape, ShapeKind, Terrain, UnitRay, ray};
 use clench::math::{Instructions, LaneTask, Mask, Mat3, Real, Scalar, Vec3, kernel};
 use std::ops::Range;
 
+/// The step from a back side of a shape to the next hit, over its distance and the shape's radius.
+const STEP: f64 = 1e-7;
+
 /// The distances and geom indices of some rows of a picture.
 #[derive(Default)]
 pub(super) struct Facts {
@@ -98,7 +101,7 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
             if !may_hit.any() {
                 continue;
             }
-            let distance = shape.hit(&line).distance;
+            let distance = shape.front(&line);
             let nearer = may_hit & distance.lt(within);
             if !nearer.any() {
                 continue;
@@ -159,6 +162,25 @@ impl<'a, T: Real<Scalar = f64>> Aim<'a, T> {
         match self.radius {
             Some(radius) => UnitRay::of(line).may_intersect(self.pose.position, radius, within),
             None => T::Mask::splat(true),
+        }
+    }
+
+    /// Returns the distance of the first front side: as in the pictures of a device, a camera in a shape looks out.
+    #[inline(always)]
+    fn front(&self, line: &Ray<T>) -> T {
+        let step = self.radius.unwrap_or(T::ZERO);
+        let mut passed = T::ZERO;
+        loop {
+            let hit = self.hit(&Ray {
+                origin: line.origin + line.direction * passed,
+                direction: line.direction,
+            });
+            let distance = passed + hit.distance;
+            let back = hit.normal.dot(line.direction).gt(T::ZERO);
+            if !back.any() {
+                return distance;
+            }
+            passed = T::select(back, distance + (distance + step) * T::new(STEP), passed);
         }
     }
 
