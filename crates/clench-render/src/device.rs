@@ -73,7 +73,10 @@ impl Gpu {
         let name = adapter.get_info().name;
         let opened = pollster::block_on(adapter.request_device(&DeviceDescriptor {
             label: Some("clench"),
-            required_limits: Limits::default().using_resolution(adapter.limits()),
+            required_limits: Limits {
+                max_buffer_size: adapter.limits().max_buffer_size,
+                ..Limits::default().using_resolution(adapter.limits())
+            },
             ..DeviceDescriptor::default()
         }));
         let (device, queue) =

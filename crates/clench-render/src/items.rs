@@ -6,22 +6,93 @@ use clench::math::{Real, Vec3};
 use clench::rigid::model::{Appearance, TextureKind};
 use clench::rigid::readout::TendonLine;
 use clench::rigid::{Precision, Sim};
-use clench_view::surfaces::texture;
+use clench_view::surfaces::{texture, texture_scale};
 
 /// The parameters of one drawn item; see the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, zerocopy::IntoBytes, zerocopy::Immutable)]
 pub(crate) struct Item {
     pub pose: [[f32; 4]; 4],
-    /// The factors of the model's size along the axes, and how far the halves of a capsule move apart, m.
+    /// The factors of the design's size along the axes, and how far the halves of a capsule move apart, m.
     pub stretch: [f32; 4],
     pub color: [f32; 4],
     pub surface: [f32; 4],
     pub lines: [f32; 4],
 }
 
-/// The stretch of an item of the model's size.
+/// The stretch of an item of its design's size.
 const UNSTRETCHED: [f32; 4] = [1.0, 1.0, 1.0, 0.0];
+
+/// The properties of an item that decide its vertices.
+#[derive(PartialEq)]
+pub(crate) struct Design {
+    pub kind: ShapeKind,
+    /// The mesh or the height field.
+    asset: Option<usize>,
+    pub size: [f64; 3],
+    /// The kind and the scale of the texture.
+    pub texture: Option<(TextureKind, [f64; 3])>,
+}
+
+impl Design {
+    /// Returns the design of a geom.
+    pub(crate) fn of_geom(model: &Model, geom: usize) -> Self {
+        let described = &model.geoms[geom];
+        let asset = described.mesh.or(described.height_field);
+        let size = model.params.geom_size[geom];
+        Self::new(
+            model,
+            model.visuals.geoms[geom],
+            described.kind,
+            size,
+            asset,
+        )
+    }
+
+    /// Returns the design of a site.
+    pub(crate) fn of_site(model: &Model, site: usize) -> Self {
+        let size = model.params.site_size[site];
+        Self::new(
+            model,
+            model.visuals.sites[site],
+            model.sites[site].kind,
+            size,
+            None,
+        )
+    }
+
+    fn new(
+        model: &Model,
+        appearance: Appearance,
+        kind: ShapeKind,
+        size: Vec3<f64>,
+        asset: Option<usize>,
+    ) -> Self {
+        let scale = |t: usize| {
+            let scale = texture_scale(model, appearance, kind, size);
+            (model.visuals.textures[t].kind, scale)
+        };
+        let texture = texture(model, appearance).map(scale);
+        let own_size = match kind {
+            ShapeKind::Plane | ShapeKind::Mesh | ShapeKind::HeightField => true,
+            ShapeKind::Sphere
+            | ShapeKind::Capsule
+            | ShapeKind::Cylinder
+            | ShapeKind::Ellipsoid
+            | ShapeKind::Box => false,
+        };
+        Design {
+            kind,
+            asset,
+            // Without a texture one shape serves for all sizes.
+            size: match own_size || texture.is_some() {
+                true => size.to_array(),
+                false => [1.0; 3],
+            },
+            texture,
+        }
+    }
+}
 
 /// The surface of an item, for which the shader is specialized; see there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,38 +230,38 @@ pub(crate) fn poses<T: Precision>(
     Ok(poses)
 }
 
-/// Returns the stretch of each geom, then of each site, from the sizes of the model to those of a simulation; `far` is
-/// the size of an infinite plane, m.
+/// Returns the stretch of each geom, then of each site, from the sizes of their designs to those of a simulation; `far`
+/// is the size of an infinite plane, m.
 pub(crate) fn stretches<T: Precision>(sim: &Sim<T>, far: f32) -> Vec<[f32; 4]> {
     let (model, own) = (sim.model(), sim.params());
     let wide = |size: Vec3<T::SingleEnv>| size.to_array().map(|x| x.lane(0).to_f64());
-    let initial = &model.params;
-    let geoms = model.geoms.iter().enumerate().map(|(g, geom)| {
-        let sizes = [wide(own.geom_size[g]), initial.geom_size[g].to_array()];
-        stretch(geom.kind, sizes, far)
+    let geoms = (0..model.geoms.len()).map(|g| {
+        let design = Design::of_geom(model, g);
+        stretch(design.kind, [wide(own.geom_size[g]), design.size], far)
     });
-    let sites = model.sites.iter().enumerate().map(|(s, site)| {
-        let sizes = [wide(own.site_size[s]), initial.site_size[s].to_array()];
-        stretch(site.kind, sizes, far)
+    let sites = (0..model.sites.len()).map(|s| {
+        let design = Design::of_site(model, s);
+        stretch(design.kind, [wide(own.site_size[s]), design.size], far)
     });
     geoms.chain(sites).collect()
 }
 
 /// Returns the stretch of a shape to the first of two sizes.
-fn stretch(kind: ShapeKind, [own, initial]: [[f64; 3]; 2], far: f32) -> [f32; 4] {
-    let factor = |own: f64, initial: f64| match own == initial {
+fn stretch(kind: ShapeKind, [own, design]: [[f64; 3]; 2], far: f32) -> [f32; 4] {
+    let factor = |own: f64, design: f64| match own == design {
         true => 1.0,
-        false => (own / initial) as f32,
+        false => (own / design) as f32,
     };
-    let [x, y, z] = [0, 1, 2].map(|k| factor(own[k], initial[k]));
+    let [x, y, z] = [0, 1, 2].map(|k| factor(own[k], design[k]));
     let reach = |side: f64| if side > 0.0 { side } else { f64::from(far) };
     match kind {
         ShapeKind::Sphere => [x, x, x, 0.0],
-        ShapeKind::Capsule => [x, x, x, (own[1] - f64::from(x) * initial[1]) as f32],
-        ShapeKind::Cylinder => [x, x, y, 0.0],
+        ShapeKind::Capsule | ShapeKind::Cylinder => {
+            [x, x, x, (own[1] - f64::from(x) * design[1]) as f32]
+        }
         ShapeKind::Ellipsoid | ShapeKind::Box => [x, y, z, 0.0],
         ShapeKind::Plane => {
-            let [x, y] = [0, 1].map(|k| factor(reach(own[k]), reach(initial[k])));
+            let [x, y] = [0, 1].map(|k| factor(reach(own[k]), reach(design[k])));
             [x, y, 1.0, 0.0]
         }
         // Their sizes are those of their assets.

@@ -44,7 +44,7 @@ impl Scene {
         let groups = model.geoms.iter().map(|geom| geom.group);
         let groups = groups.chain(model.sites.iter().map(|site| site.group));
         Ok(Scene {
-            shapes: Shapes::new(gpu, model, extent, ground.is_some()),
+            shapes: Shapes::new(gpu, model, extent, ground.is_some())?,
             textures: Textures::new(gpu, passes, model),
             groups: groups.map(|group| group as usize).collect(),
             model: Arc::clone(model),

@@ -34,7 +34,7 @@ struct Light {
 
 struct Item {
     pose: mat4x4<f32>,
-    // The factors of the model's size along the axes, and how far the halves of a capsule move apart.
+    // The factors of the size of its vertices along the axes, and how far the halves of a capsule move apart.
     stretch: vec4<f32>,
     // In linear values in a model without lights.
     color: vec4<f32>,
@@ -69,7 +69,7 @@ struct Corner {
     @location(3) @interpolate(flat) item: u32,
 }
 
-// The place of a vertex of the model's size, in the frame of its item.
+// The place of a vertex, in the frame of its item.
 fn stretched(place: vec3<f32>, item: u32) -> vec4<f32> {
     let by = items[item].stretch;
     return vec4(place * by.xyz + vec3(0.0, 0.0, by.w * sign(place.z)), 1.0);

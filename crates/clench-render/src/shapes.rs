@@ -1,8 +1,8 @@
 //! The shapes of geoms, sites and tendons on the device, in several levels of detail.
 
 use crate::camera::CameraPose;
-use crate::device::Gpu;
-use crate::items::Item;
+use crate::device::{Gpu, RenderError};
+use crate::items::{Design, Item};
 use crate::light::FAR;
 use crate::simplify::{bounds, simplified};
 use crate::triangles::{self, Vertex};
@@ -44,6 +44,7 @@ pub(crate) struct Sight<'a> {
 }
 
 /// A shape in several levels of detail.
+#[derive(Clone)]
 struct Shape {
     /// The vertices and the deviation from the exact shape, m; the coarsest level is the first.
     levels: Vec<(Range<u32>, f32)>,
@@ -55,25 +56,46 @@ struct Shape {
 
 impl Shapes {
     /// Uploads the shapes of a model of a size, m; with a ground if the model has none.
-    pub(crate) fn new(gpu: &Gpu, model: &Model, extent: f32, ground: bool) -> Self {
+    ///
+    /// # Errors
+    /// Returns an error if the device has no room for them.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        model: &Model,
+        extent: f32,
+        ground: bool,
+    ) -> Result<Self, RenderError> {
         let far = FAR * extent;
         let mut corners: Vec<Vertex> = Vec::new();
-        let mut all = Vec::new();
-        let params = &model.params;
+        let mut all: Vec<Shape> = Vec::new();
+        let mut designs: Vec<(Design, usize)> = Vec::new();
+        let mut share =
+            |all: &mut Vec<Shape>, design: Design, of: &mut dyn FnMut(&Design) -> Shape| {
+                let same = designs.iter().find(|(other, _)| *other == design);
+                all.push(match same {
+                    Some(&(_, index)) => all[index].clone(),
+                    None => of(&design),
+                });
+                if same.is_none() {
+                    designs.push((design, all.len() - 1));
+                }
+            };
         for (g, geom) in model.geoms.iter().enumerate() {
-            let round = Round::new(geom.kind, params.geom_size[g].to_array());
-            let of = |segments| triangles::of_geom(model, params, g, far, segments);
             // The mean of texture coordinates of a file can be anywhere in the texture.
             let simple = geom.kind == ShapeKind::Mesh && !triangles::has_own_texcoords(model, g);
-            all.push(match simple {
-                true => Shape::of_mesh(&mut corners, &of(0)),
-                false => Shape::new(&mut corners, round, of),
+            share(&mut all, Design::of_geom(model, g), &mut |design| {
+                let of = |segments| triangles::of_geom(model, design, g, far, segments);
+                match simple {
+                    true => Shape::of_mesh(&mut corners, &of(0)),
+                    false => Shape::new(&mut corners, Round::new(design.kind, design.size), of),
+                }
             });
         }
-        for (s, site) in model.sites.iter().enumerate() {
-            let round = Round::new(site.kind, params.site_size[s].to_array());
-            let of = |segments| triangles::of_site(model, params, s, segments);
-            all.push(Shape::new(&mut corners, round, of));
+        for s in 0..model.sites.len() {
+            share(&mut all, Design::of_site(model, s), &mut |design| {
+                let of = |segments| triangles::of_site(design, segments);
+                Shape::new(&mut corners, Round::new(design.kind, design.size), of)
+            });
         }
         if ground {
             let plane = Round::new(ShapeKind::Plane, [0.0; 3]);
@@ -81,12 +103,17 @@ impl Shapes {
         }
         let string = Round::new(ShapeKind::Cylinder, [1.0; 3]);
         all.push(Shape::new(&mut corners, string, triangles::string));
+        let (contents, most) = (corners.as_bytes(), gpu.device.limits().max_buffer_size);
+        if contents.len() as u64 > most {
+            let reason = format!("shapes of {} bytes exceed its {most}", contents.len());
+            return Err(RenderError::Failed(gpu.name.clone(), reason));
+        }
         let corners = gpu.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("corners"),
-            contents: corners.as_bytes(),
+            contents,
             usage: BufferUsages::VERTEX,
         });
-        Shapes { corners, all }
+        Ok(Shapes { corners, all })
     }
 
     /// Returns the vertices of a shape with the pose and stretch of an item, as they are drawn for a camera. The back

@@ -1,9 +1,10 @@
 //! Triangles of the shapes of geoms, in the geom frames, wound counterclockwise as seen from outside.
 
+use crate::items::Design;
 use clench::Model;
 use clench::collide::ShapeKind;
-use clench::rigid::model::{Mesh, Params, TextureKind};
-use clench_view::surfaces::{texture, texture_scale};
+use clench::rigid::model::{Mesh, TextureKind};
+use clench_view::surfaces::texture;
 use std::f32::consts::PI;
 
 /// The number of segments of a circle over that from the equator to a pole.
@@ -30,18 +31,16 @@ impl Vertex {
     }
 }
 
-/// Returns the triangles of a geom; `far` is the size of an infinite plane, `segments` the number of segments of a
-/// circle.
+/// Returns the triangles of a geom's design; `far` is the size of an infinite plane, `segments` the number of segments
+/// of a circle.
 pub(crate) fn of_geom(
     model: &Model,
-    params: &Params<f64>,
+    design: &Design,
     geom: usize,
     far: f32,
     segments: usize,
 ) -> Vec<Vertex> {
     let described = &model.geoms[geom];
-    let size = params.geom_size[geom];
-    let appearance = model.visuals.geoms[geom];
     let mut shape = match described.kind {
         ShapeKind::Mesh => (described.mesh.and_then(|m| model.meshes.get(m)))
             .map(|found| mesh(found))
@@ -50,12 +49,10 @@ pub(crate) fn of_geom(
             .and_then(|f| model.height_fields.get(f))
             .map(|field| terrain(&field.shape))
             .unwrap_or_default(),
-        kind => primitive(kind, size.to_array().map(|x| x as f32), far, segments),
+        _ => primitive(design, far, segments),
     };
     if !has_own_texcoords(model, geom) {
-        let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
-        let scale = texture_scale(model, appearance, described.kind, size);
-        cover(&mut shape, scale.map(|x| x as f32), texture);
+        cover(&mut shape, design);
     }
     shape
 }
@@ -73,25 +70,17 @@ pub(crate) fn ground(far: f32) -> Vec<Vertex> {
     plane([0.0; 3], far)
 }
 
-/// Returns the triangles of a site.
-pub(crate) fn of_site(
-    model: &Model,
-    params: &Params<f64>,
-    site: usize,
-    segments: usize,
-) -> Vec<Vertex> {
-    let (kind, size) = (model.sites[site].kind, params.site_size[site]);
-    let appearance = model.visuals.sites[site];
-    let mut shape = primitive(kind, size.to_array().map(|x| x as f32), 0.0, segments);
-    let texture = texture(model, appearance).map(|t| model.visuals.textures[t].kind);
-    let scale = texture_scale(model, appearance, kind, size);
-    cover(&mut shape, scale.map(|x| x as f32), texture);
+/// Returns the triangles of a site's design.
+pub(crate) fn of_site(design: &Design, segments: usize) -> Vec<Vertex> {
+    let mut shape = primitive(design, 0.0, segments);
+    cover(&mut shape, design);
     shape
 }
 
 /// Returns the triangles of a shape without an asset; `far` is the size of an infinite plane.
-fn primitive(kind: ShapeKind, size: [f32; 3], far: f32, segments: usize) -> Vec<Vertex> {
-    match kind {
+fn primitive(design: &Design, far: f32, segments: usize) -> Vec<Vertex> {
+    let size = design.size.map(|x| x as f32);
+    match design.kind {
         ShapeKind::Plane => plane(size, far),
         ShapeKind::Sphere => round([size[0]; 3], 0.0, segments),
         ShapeKind::Ellipsoid => round(size, 0.0, segments),
@@ -102,13 +91,16 @@ fn primitive(kind: ShapeKind, size: [f32; 3], far: f32, segments: usize) -> Vec<
     }
 }
 
-/// Sets the texture coordinates of each vertex; see [`texture_scale`].
-fn cover(shape: &mut [Vertex], scale: [f32; 3], texture: Option<TextureKind>) {
+/// Sets the texture coordinates of each vertex; see [`clench_view::surfaces::texture_scale`].
+fn cover(shape: &mut [Vertex], design: &Design) {
+    let Some((kind, scale)) = design.texture else {
+        return;
+    };
     for vertex in shape {
-        let [x, y, z] = [0, 1, 2].map(|k| scale[k] * vertex.position[k]);
-        vertex.texcoord = match texture {
-            Some(TextureKind::Plane) => [x - 0.5, -y - 0.5, 0.0],
-            _ => [x, y, z],
+        let [x, y, z] = [0, 1, 2].map(|k| scale[k] as f32 * vertex.position[k]);
+        vertex.texcoord = match kind {
+            TextureKind::Plane => [x - 0.5, -y - 0.5, 0.0],
+            TextureKind::Cube | TextureKind::Sky => [x, y, z],
         };
     }
 }

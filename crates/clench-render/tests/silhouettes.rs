@@ -217,6 +217,36 @@ fn a_camera_in_a_shape_looks_out_of_it() {
 }
 
 #[test]
+fn many_geoms_of_different_sizes_are_drawn() {
+    // Balls and cylinders on a grid, seen from above.
+    let geom = |k: usize| {
+        let (x, y, size) = (k % 30, k / 30, 0.2 + 2e-4 * k as f64);
+        let kind = ["sphere", "cylinder"][k % 2];
+        format!("<geom type='{kind}' size='{size} {size}' pos='{x} {y} 0'/>")
+    };
+    let geoms: String = (0..900).map(geom).collect();
+    let xml = format!(
+        "<mujoco><worldbody>{geoms}<camera pos='14.5 14.5 9' fovy='30' projection='orthographic'/></worldbody></mujoco>"
+    );
+    let mut sim = Sim::<f64>::new(Arc::new(load_str(&xml).expect("the scene is complete")))
+        .expect("the scene is at rest");
+    let Some(mut renderer) = renderer(&sim) else {
+        return;
+    };
+    let picture = Picture {
+        views: vec![View::Camera(0)],
+        ..Picture::new(600, 600)
+    };
+    let image = renderer.draw_facts(&mut sim, &picture).expect("a picture");
+    for k in [0, 449, 450, 899] {
+        let pixels = image.geoms.iter().filter(|&&geom| geom == k).count() as f64;
+        let radius = 20.0 * (0.2 + 2e-4 * f64::from(k));
+        let area = std::f64::consts::PI * radius * radius;
+        assert!((pixels / area - 1.0).abs() < 0.15, "{k}: {pixels} {area}");
+    }
+}
+
+#[test]
 fn impossible_images_are_errors() {
     let mut sim = sim();
     let Some(mut renderer) = renderer(&sim) else {
