@@ -128,6 +128,9 @@ pub(crate) fn of_model(model: &Model) -> Vec<Item> {
     let geoms = visuals.geoms.iter().enumerate().map(|(g, &appearance)| {
         let mut item = item_of(model, appearance);
         item.surface[3] = g as f32;
+        let size = model.params.geom_size[g];
+        let endless = model.geoms[g].kind == ShapeKind::Plane && size.x.min(size.y) <= 0.0;
+        item.lines[2] = f32::from(u8::from(endless));
         item
     });
     let sites = visuals
@@ -170,7 +173,7 @@ pub(crate) fn add_ground(
         stretch: UNSTRETCHED,
         color: [0.0; 4],
         surface: [0.0, 0.0, 0.0, -1.0],
-        lines: [cell, 1.0, 0.0, 0.0],
+        lines: [cell, 1.0, 1.0, 0.0],
     })
 }
 

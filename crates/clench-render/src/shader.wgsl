@@ -10,7 +10,7 @@ struct View {
     // The direction to the sun; in w the size of a texel of the shadow map, in texture coordinates.
     to_sun: vec4<f32>,
     sky: vec4<f32>,
-    // The distances between which items fade into the sky, and the normal offset of shadow lookups.
+    // The distances between which infinite planes fade into the sky, and the normal offset of shadow lookups.
     fog: vec4<f32>,
     // The ambient light of all lights, the headlight's diffuse light and its highlights. The w components of the first
     // two are the number of lights and the index of the first.
@@ -40,7 +40,7 @@ struct Item {
     color: vec4<f32>,
     // Strength and sharpness of highlights, emission, index of the geom.
     surface: vec4<f32>,
-    // The spacing of grid lines, m; 1 if only the lines are drawn.
+    // The spacing of grid lines, m; 1 if only the lines are drawn; 1 for an infinite plane.
     lines: vec4<f32>,
 }
 
@@ -250,7 +250,7 @@ fn picture(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
     } else {
         light = shown(daylight(item.color.rgb * texel, item.surface, in.place, normal, to_eye));
     }
-    let fog = smoothstep(view.fog.x, view.fog.y, distance);
+    let fog = item.lines.z * smoothstep(view.fog.x, view.fog.y, distance);
     if (kind == 1u) {
         let lines = grid_cover(in.place.xy, item.lines.x);
         if (item.lines.y > 0.0) {

@@ -277,3 +277,15 @@ fn a_ground_without_a_picture_has_lines_as_on_the_page() {
         assert!(most - least <= 4, "{row:?}");
     }
 }
+
+#[test]
+fn a_large_scene_around_a_small_body_does_not_fade() {
+    // The camera is two hundred sizes of the body away.
+    let text = "<mujoco><visual><headlight ambient='1 1 1' diffuse='0 0 0' specular='0 0 0'/></visual><worldbody>
+      <light active='false'/><geom type='plane' size='9 9 1' rgba='1 0 0 1'/>
+      <body><freejoint/><geom size='0.01'/></body></worldbody></mujoco>";
+    let Some(image) = drawn(text, None) else {
+        return;
+    };
+    assert_eq!(at(&image, 20, 20), R);
+}
