@@ -70,6 +70,9 @@ impl<S: Precision> BatchLinearizer<S> {
     /// Returns the error of the first environment that has one, with its index. A batch of several models has no
     /// derivatives by parameters of geoms, and none of outputs whose number differs between models; nor are there any
     /// if the processor lacks the compiled instructions.
+    ///
+    /// # Panics
+    /// Panics if the batch has another number of environments than the one that this was created for.
     pub fn linearize(
         &mut self,
         batch: &mut Batch<S>,
@@ -216,6 +219,7 @@ fn run<S: Precision, R: Send>(
     results: &mut [R],
     each: impl Fn(&mut Linearizer, &Sim<f64>, usize, &mut R) -> Result<(), SimError> + Sync,
 ) -> Result<(), (usize, SimError)> {
+    assert_eq!(batch.count(), results.len(), "the batch of this memory");
     let (batch, each) = (&Mutex::new(batch), &each);
     let share = results.len().div_ceil(workers.len()).max(1);
     let parts = workers.iter_mut().zip(results.chunks_mut(share));

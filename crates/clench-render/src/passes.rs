@@ -230,7 +230,8 @@ fn make(device: &Device, module: &ShaderModule, options: &PipelineOptions) -> Re
         depth_stencil: Some(DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(options.writes_depth),
-            depth_compare: Some(CompareFunction::Greater),
+            // Of two items at one depth the later is drawn, as in MuJoCo.
+            depth_compare: Some(CompareFunction::GreaterEqual),
             stencil: Default::default(),
             bias: Default::default(),
         }),

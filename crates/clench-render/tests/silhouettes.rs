@@ -189,30 +189,45 @@ fn a_camera_in_a_shape_looks_out_of_it() {
               face='0 2 1  0 1 3  1 2 3'/></asset><worldbody><geom size='0.5' pos='0 0 -3'/><geom {shape}/>
               <camera/></worldbody></mujoco>"
         );
-        let model = Arc::new(load_str(&xml).expect("the scene is complete"));
-        let mut sim = Sim::<f64>::new(model).expect("the scene is at rest");
-        let Some(mut renderer) = renderer(&sim) else {
+        let Some([drawn, cast]) = in_the_middle(&xml) else {
             return;
         };
-        let picture = Picture {
-            views: vec![View::Camera(0)],
-            ..Picture::new(9, 9)
-        };
-        let image = renderer.draw_facts(&mut sim, &picture).expect("a picture");
-        assert_eq!(image.geoms[40], 0, "{shape}");
-        assert!((image.depth[40] - 2.5).abs() < 1e-3, "{shape}");
-        // By rays too.
-        let (mut geoms, mut depth) = ([0; 81], [0.0; 81]);
-        let caster = RayCaster::new(sim.model()).expect("the scene has a size");
-        let planes = Planes {
-            rgb: &mut [],
-            depth: &mut depth,
-            geoms: &mut geoms,
-        };
-        let mut rays = caster.pictures(&picture, 1, planes, 1).expect("a size");
-        rays.add(&mut sim, 0, None).expect("a picture");
-        rays.finish();
-        assert_eq!((geoms[40], depth[40]), (0, 2.5), "{shape}");
+        assert_eq!(drawn.0, 0, "{shape}");
+        assert!((drawn.1 - 2.5).abs() < 1e-3, "{shape}");
+        assert_eq!(cast, (0, 2.5), "{shape}");
+    }
+}
+
+/// Returns the geom in the middle of a picture by the first camera of a scene, and its distance: drawn, and by rays.
+fn in_the_middle(xml: &str) -> Option<[(i32, f32); 2]> {
+    let model = Arc::new(load_str(xml).expect("the scene is complete"));
+    let mut sim = Sim::<f64>::new(model).expect("the scene is at rest");
+    let mut renderer = renderer(&sim)?;
+    let picture = Picture {
+        views: vec![View::Camera(0)],
+        ..Picture::new(9, 9)
+    };
+    let image = renderer.draw_facts(&mut sim, &picture).expect("a picture");
+    let (mut geoms, mut depth) = ([0; 81], [0.0; 81]);
+    let caster = RayCaster::new(sim.model()).expect("the scene has a size");
+    let planes = Planes {
+        rgb: &mut [],
+        depth: &mut depth,
+        geoms: &mut geoms,
+    };
+    let mut rays = caster.pictures(&picture, 1, planes, 1).expect("a size");
+    rays.add(&mut sim, 0, None).expect("a picture");
+    rays.finish();
+    Some([(image.geoms[40], image.depth[40]), (geoms[40], depth[40])])
+}
+
+/// As in MuJoCo.
+#[test]
+fn of_two_geoms_in_one_place_the_later_is_seen() {
+    let geom = "<geom type='box' size='0.2 0.3 0.4' pos='0 0 -3'/>";
+    let xml = format!("<mujoco><worldbody>{geom}{geom}<camera/></worldbody></mujoco>");
+    if let Some(seen) = in_the_middle(&xml) {
+        assert_eq!(seen.map(|(geom, _)| geom), [1, 1]);
     }
 }
 

@@ -102,7 +102,8 @@ fn cast<T: Real<Scalar = f64>>(target: &Target, eye: &Eye, facts: &mut Facts) {
                 continue;
             }
             let distance = shape.front(&line);
-            let nearer = may_hit & distance.lt(within);
+            // Of two geoms at one distance the later is seen, as in pictures of a device.
+            let nearer = may_hit & distance.le(within) & distance.is_finite();
             if !nearer.any() {
                 continue;
             }
