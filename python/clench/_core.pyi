@@ -855,11 +855,10 @@ class _Outputs(StateViews):
     @property
     def params(self) -> Parameters: ...
 
-@final
-class Sim(_Outputs):
-    def __new__(
-        cls, model: Model, options: RigidOptions | None = None, *, precision: _Precision = "64", threads: SupportsIndex = 1
-    ) -> Self: ...
+class _Shared(_Outputs):
+    # The calls of both `Sim` and `Batch`. Shapes are those of a simulation; in a batch the environments are the first
+    # axis of results. Arguments are the same for all of its environments, or have that axis too; those of `jvp`, `vjp`
+    # and `rollout_vjp` always have it (the second axis of one with T rows).
     @property
     def model(self) -> Model: ...
     @property
@@ -867,51 +866,14 @@ class Sim(_Outputs):
     @options.setter
     def options(self, options: RigidOptions) -> None: ...
     @property
-    def threads(self) -> int: ...
-    @threads.setter
-    def threads(self, threads: SupportsIndex) -> None: ...
-    @property
     def precision(self) -> _Precision: ...
-    @property
-    def time(self) -> float: ...
-    @time.setter
-    def time(self, values: ArrayLike) -> None: ...
     @property
     def state(self) -> State: ...
     @state.setter
     def state(self, state: State) -> None: ...
-    def step(self, n: SupportsIndex = 1, control: Callable[[Sim], object] | None = None) -> None: ...
-    def step1(self) -> None: ...
-    def step2(self) -> None: ...
-    def forward(self) -> None: ...
-    def reset(self, keyframe: str | SupportsIndex | None = None) -> None: ...
-    @property
-    def _last_serial(self) -> int: ...
-    @_last_serial.setter
-    def _last_serial(self, serial: int) -> None: ...
-    def add_weld(self, body1: str | SupportsIndex, body2: str | SupportsIndex) -> int: ...
-    def add_connect(self, body1: str | SupportsIndex, body2: str | SupportsIndex, anchor: ArrayLike) -> int: ...
-    def remove(self, constraint: SupportsIndex) -> None: ...
-    @property
-    def dynamic_constraints(self) -> list[int]: ...
-    def weld_here(self, which: str | SupportsIndex) -> None: ...
-    def set_equality(self, which: str | SupportsIndex, active: bool | np.bool_) -> None: ...
-    def set_param(self, field: str, values: ArrayLike) -> None: ...
+    def param(self, field: str) -> NDArray[Any]: ...  # as in the model
     def _restore_param(self, field: str, values: NDArray[Any]) -> None: ...
-    def set_constants(self) -> None: ...
-    def param(self, field: str) -> NDArray[Any]: ...
-    def output(self, name: str) -> Any: ...  # an array, or a float if the output is a single number
     def sensor(self, which: str | SupportsIndex) -> NDArray[Any]: ...  # (sensor_dim,)
-    @property
-    def contacts(self) -> Contacts: ...
-    @property
-    def constraints(self) -> Constraints: ...
-    @property
-    def solver_stats(self) -> SolverStats: ...
-    @property
-    def resets(self) -> int: ...
-    @property
-    def contact_overflow(self) -> bool: ...
     def linearize(
         self,
         outputs: Sequence[str] = (),
@@ -945,6 +907,110 @@ class Sim(_Outputs):
         memory: bool | np.bool_ = False,
     ) -> tuple[_Floats, _Floats]: ...  # (2 nv + na,) and (T, nu)
     def mass_matrix(self) -> _Floats: ...  # (nv, nv)
+    def velocity(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        local: bool = False,
+    ) -> NDArray[Any]: ...  # (2, 3): linear, angular
+    def acceleration(
+        self,
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        local: bool = False,
+    ) -> NDArray[Any]: ...  # (2, 3): linear, angular
+    def mul_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (nv,); in a simulation also (k, nv)
+    def solve_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # likewise
+    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # likewise
+    def rays(
+        self,
+        origins: ArrayLike,  # (k, 3) or (1, 3)
+        directions: ArrayLike,  # (k, 3) or (1, 3)
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+        groups: ArrayLike | None = None,
+        fixed: bool | np.bool_ = True,
+        exclude_body: str | SupportsIndex | None = None,
+    ) -> RayHits: ...
+    def heights(
+        self,
+        hfield: str | SupportsIndex,
+        places: ArrayLike,  # (k, 2)
+        *,
+        body: str | SupportsIndex | None = None,
+        body_com: str | SupportsIndex | None = None,
+        geom: str | SupportsIndex | None = None,
+        site: str | SupportsIndex | None = None,
+        camera: str | SupportsIndex | None = None,
+    ) -> NDArray[Any]: ...  # (k,)
+    def ik(
+        self,
+        targets: Iterable[FrameTarget | ComTarget | PostureTarget],
+        *,
+        start: ArrayLike | None = None,  # (nq,)
+        iterations: SupportsIndex = 100,
+        tolerance: float = 1e-6,
+        damping: float = 1e-3,
+        max_step: float | None = None,
+        limits: bool = True,
+        dofs: ArrayLike | None = None,  # (nv,)
+        restarts: SupportsIndex = 0,
+    ) -> IkResult: ...
+
+@final
+class Sim(_Shared):
+    def __new__(
+        cls, model: Model, options: RigidOptions | None = None, *, precision: _Precision = "64", threads: SupportsIndex = 1
+    ) -> Self: ...
+    @property
+    def threads(self) -> int: ...
+    @threads.setter
+    def threads(self, threads: SupportsIndex) -> None: ...
+    @property
+    def time(self) -> float: ...
+    @time.setter
+    def time(self, values: ArrayLike) -> None: ...
+    def step(self, n: SupportsIndex = 1, control: Callable[[Sim], object] | None = None) -> None: ...
+    def step1(self) -> None: ...
+    def step2(self) -> None: ...
+    def forward(self) -> None: ...
+    def reset(self, keyframe: str | SupportsIndex | None = None) -> None: ...
+    @property
+    def _last_serial(self) -> int: ...
+    @_last_serial.setter
+    def _last_serial(self, serial: int) -> None: ...
+    def add_weld(self, body1: str | SupportsIndex, body2: str | SupportsIndex) -> int: ...
+    def add_connect(self, body1: str | SupportsIndex, body2: str | SupportsIndex, anchor: ArrayLike) -> int: ...
+    def remove(self, constraint: SupportsIndex) -> None: ...
+    @property
+    def dynamic_constraints(self) -> list[int]: ...
+    def weld_here(self, which: str | SupportsIndex) -> None: ...
+    def set_equality(self, which: str | SupportsIndex, active: bool | np.bool_) -> None: ...
+    def set_param(self, field: str, values: ArrayLike) -> None: ...
+    def set_constants(self) -> None: ...
+    def output(self, name: str) -> Any: ...  # an array, or a float if the output is a single number
+    @property
+    def contacts(self) -> Contacts: ...
+    @property
+    def constraints(self) -> Constraints: ...
+    @property
+    def solver_stats(self) -> SolverStats: ...
+    @property
+    def resets(self) -> int: ...
+    @property
+    def contact_overflow(self) -> bool: ...
     def render(
         self,
         width: SupportsIndex = 640,
@@ -1000,28 +1066,6 @@ class Sim(_Outputs):
         *,
         out: _Memory | None = None,  # (3, nv)
     ) -> NDArray[Any]: ...  # (3, nv)
-    def velocity(
-        self,
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-        local: bool = False,
-    ) -> NDArray[Any]: ...  # (2, 3): linear, angular
-    def acceleration(
-        self,
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-        local: bool = False,
-    ) -> NDArray[Any]: ...  # (2, 3): linear, angular
-    def mul_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (nv,) or (k, nv)
-    def solve_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (nv,) or (k, nv)
     def joint_forces(
         self,
         body: str | SupportsIndex,
@@ -1029,52 +1073,13 @@ class Sim(_Outputs):
         torque: ArrayLike | None = None,  # (3,)
         point: ArrayLike | None = None,  # (3,)
     ) -> NDArray[Any]: ...  # (nv,)
-    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # (nv,) or (k, nv)
-    def rays(
-        self,
-        origins: ArrayLike,  # (k, 3) or (1, 3)
-        directions: ArrayLike,  # (k, 3) or (1, 3)
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-        groups: ArrayLike | None = None,
-        fixed: bool | np.bool_ = True,
-        exclude_body: str | SupportsIndex | None = None,
-    ) -> RayHits: ...
-    def heights(
-        self,
-        hfield: str | SupportsIndex,
-        places: ArrayLike,  # (k, 2)
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-    ) -> NDArray[Any]: ...  # (k,)
-    def ik(
-        self,
-        targets: Iterable[FrameTarget | ComTarget | PostureTarget],
-        *,
-        start: ArrayLike | None = None,  # (nq,)
-        iterations: SupportsIndex = 100,
-        tolerance: float = 1e-6,
-        damping: float = 1e-3,
-        max_step: float | None = None,
-        limits: bool = True,
-        dofs: ArrayLike | None = None,  # (nv,)
-        restarts: SupportsIndex = 0,
-    ) -> IkResult: ...
 
     actuator_power: Final[float]  # Power input of actuators, W; without those that brake.
     contact_count: Final[float]
     solver_iterations: Final[float]
 
 @final
-class Batch(_Outputs):
+class Batch(_Shared):
     def __new__(
         cls,
         model: Model | Sequence[Model],
@@ -1088,20 +1093,12 @@ class Batch(_Outputs):
         env_model: ArrayLike | None = None,  # (n,)
     ) -> Self: ...
     @property
-    def model(self) -> Model: ...
-    @property
     def models(self) -> tuple[Model, ...]: ...
     @property
     def env_model(self) -> NDArray[np.int64]: ...  # (n,)
     def geoms_of(self, model: SupportsIndex) -> NDArray[np.int64]: ...  # (ngeom of that model,)
     @property
-    def options(self) -> RigidOptions: ...
-    @options.setter
-    def options(self, options: RigidOptions) -> None: ...
-    @property
     def n_envs(self) -> int: ...
-    @property
-    def precision(self) -> _Precision: ...
     @property
     def device(self) -> str: ...
     @property
@@ -1114,10 +1111,6 @@ class Batch(_Outputs):
     def time(self) -> _Floats: ...  # (n,)
     @time.setter
     def time(self, values: ArrayLike) -> None: ...
-    @property
-    def state(self) -> State: ...
-    @state.setter
-    def state(self, state: State) -> None: ...
     def set_state(self, state: State, envs: ArrayLike | None = None) -> None: ...
     def step(self, n: SupportsIndex = 1) -> int: ...
     def forward(self, mask: ArrayLike | None = None) -> int: ...
@@ -1140,44 +1133,10 @@ class Batch(_Outputs):
         self, field: str, values: ArrayLike, envs: ArrayLike | None = None, *, consistent: bool | np.bool_ = False
     ) -> None: ...
     def set_constants(self, mask: ArrayLike | None = None) -> None: ...
-    def param(self, field: str) -> NDArray[Any]: ...  # (n, ...)
-    def linearize(
-        self,
-        outputs: Sequence[str] = (),
-        parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
-        *,
-        memory: bool | np.bool_ = False,
-        sensors: bool | np.bool_ = True,
-        errors: bool | np.bool_ = False,
-    ) -> Linearization: ...
-    def jvp(
-        self,
-        x: ArrayLike | None = None,  # (n, 2 nv + na) or (n, 2 nv + na, k)
-        u: ArrayLike | None = None,  # (n, nu) or (n, nu, k)
-        parameters: Mapping[str, ArrayLike] | None = None,  # (n, numbers) or (n, numbers, k)
-        outputs: Sequence[str] = (),
-    ) -> tuple[_Floats, _Floats]: ...  # (n, 2 nv + na) and (n, nsensordata + outputs), or with k columns
-    def vjp(
-        self,
-        x: ArrayLike | None = None,  # (n, 2 nv + na)
-        y: ArrayLike | None = None,  # (n, nsensordata + outputs)
-        parameters: Sequence[str] | Mapping[str, Sequence[int]] | None = None,
-        outputs: Sequence[str] = (),
-        *,
-        memory: bool | np.bool_ = False,
-    ) -> tuple[_Floats, _Floats, dict[str, _Floats]]: ...  # (n, 2 nv + na), (n, nu) and (n, numbers)
-    def rollout_vjp(
-        self,
-        ctrl: ArrayLike,  # (T, n, nu)
-        x: ArrayLike,  # (T, n, 2 nv + na)
-        *,
-        memory: bool | np.bool_ = False,
-    ) -> tuple[_Floats, _Floats]: ...  # (n, 2 nv + na) and (T, n, nu)
     def record(self, *names: str) -> None: ...
     @property
     def outputs(self) -> tuple[str, ...]: ...
     def output(self, name: str) -> NDArray[Any]: ...  # (n, ...)
-    def sensor(self, which: str | SupportsIndex) -> NDArray[Any]: ...  # (n, sensor_dim)
     def rollout(
         self,
         initial: State | ArrayLike | None = None,  # or (n, 1 + nq + nv + na), or one for all: time, qpos, qvel, act
@@ -1202,7 +1161,6 @@ class Batch(_Outputs):
         device: Literal["gpu", "cpu"] | None = None,
         appearance: dict[str, Any] | None = None,
     ) -> NDArray[Any]: ...  # as for Sim.render; (n, ...) unless env is an index
-    def mass_matrix(self) -> _Floats: ...  # (n, nv, nv)
     def ray(
         self,
         origin: ArrayLike,
@@ -1220,7 +1178,6 @@ class Batch(_Outputs):
     @_last_serials.setter
     def _last_serials(self, serials: list[int]) -> None: ...
     def _restore_outputs(self, outputs: Mapping[str, NDArray[Any]]) -> None: ...
-    def _restore_param(self, field: str, values: NDArray[Any]) -> None: ...
     def add_weld(
         self, body1: str | SupportsIndex, body2: str | SupportsIndex, envs: ArrayLike | None = None
     ) -> NDArray[np.int64]: ...  # (len(envs),)
@@ -1252,67 +1209,6 @@ class Batch(_Outputs):
         point: ArrayLike | None = None,  # (3,) or (n, 3)
     ) -> NDArray[Any]: ...  # (n, 2, 3, nv): translation, rotation
     def subtree_jacobian(self, body: str | SupportsIndex) -> NDArray[Any]: ...  # (n, 3, nv)
-    def inverse(self, qacc: ArrayLike, *, discrete: bool | None = None) -> NDArray[Any]: ...  # (n, nv)
-    def velocity(
-        self,
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-        local: bool = False,
-    ) -> NDArray[Any]: ...  # (n, 2, 3): linear, angular
-    def acceleration(
-        self,
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-        local: bool = False,
-    ) -> NDArray[Any]: ...  # (n, 2, 3): linear, angular
-    def mul_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (n, nv)
-    def solve_mass(self, x: ArrayLike) -> NDArray[Any]: ...  # (n, nv)
-    def rays(
-        self,
-        origins: ArrayLike,  # (k, 3) or (n, k, 3)
-        directions: ArrayLike,  # (k, 3) or (n, k, 3)
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-        groups: ArrayLike | None = None,
-        fixed: bool | np.bool_ = True,
-        exclude_body: str | SupportsIndex | None = None,
-    ) -> RayHits: ...
-    def heights(
-        self,
-        hfield: str | SupportsIndex,
-        places: ArrayLike,  # (k, 2) or (n, k, 2)
-        *,
-        body: str | SupportsIndex | None = None,
-        body_com: str | SupportsIndex | None = None,
-        geom: str | SupportsIndex | None = None,
-        site: str | SupportsIndex | None = None,
-        camera: str | SupportsIndex | None = None,
-    ) -> NDArray[Any]: ...  # (n, k)
-    def ik(
-        self,
-        targets: Iterable[FrameTarget | ComTarget | PostureTarget],
-        *,
-        start: ArrayLike | None = None,  # (nq,) or (n, nq)
-        iterations: SupportsIndex = 100,
-        tolerance: float = 1e-6,
-        damping: float = 1e-3,
-        max_step: float | None = None,
-        limits: bool = True,
-        dofs: ArrayLike | None = None,  # (nv,)
-        restarts: SupportsIndex = 0,
-    ) -> IkResult: ...
     def __len__(self) -> int: ...
 
     actuator_power: Final[NDArray[Any]]  # (n,)
