@@ -8,13 +8,11 @@ use crate::output::{Output, Source};
 use crate::readout::{self, Push, TendonLine};
 use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
-use clench_dynamics::dynamics::energy::Energy;
-use clench_dynamics::inverse::Acceleration;
+use clench_dynamics::check;
 use clench_dynamics::model::{Model, Params};
-use clench_dynamics::settings::StepSettings;
+use clench_dynamics::sensors::Sensors;
 use clench_dynamics::state::State;
-use clench_dynamics::workspace::{EnergyScratch, Workspace};
-use clench_dynamics::{Step, check};
+use clench_dynamics::workspace::Workspace;
 use clench_math::{Instructions, Mask, Scalar};
 
 /// A number type of simulations and batches: `f64` or `f32`.
@@ -32,8 +30,9 @@ type SingleEnv<S> = <S as Scalar>::SingleEnv;
 /// Declares the functions of [`Lanewise`] with their bodies, and compiles them for both precisions.
 macro_rules! compile {
     ($($(#[$doc:meta])* fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block)*) => {
-        /// The operations of simulations and batches for a number type; only its name is public. They are not generic,
-        /// so that all kernels are compiled with this crate, and not with its users.
+        /// The operations of simulations and batches for a number type that [`Step`](clench_dynamics::Step) does not
+        /// have; only the name of this trait is public. They are not generic, so that all kernels are compiled with
+        /// this crate, and not with its users.
         pub trait Lanewise: Scalar + Shared {
             $($(#[$doc])* fn $name($($argument: $type),*) $(-> $result)?;)*
         }
@@ -57,11 +56,6 @@ compile! {
         model.params.broadcast()
     }
 
-    /// Creates a workspace for one environment.
-    fn workspace(model: &Model) -> Workspace<SingleEnv<Self>> {
-        (Step::compiled().workspace)(model)
-    }
-
     /// Returns true if a step can start from the state of one environment.
     fn good_inputs(state: &State<Self>) -> bool {
         check::good_inputs(state, check::has_occasional(state))
@@ -72,79 +66,9 @@ compile! {
         check::well_computed(ws).lane(0) && check::well_moved(state)
     }
 
-    /// Runs [`pipeline::step`](clench_dynamics::pipeline::step) for one environment.
-    fn step(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        settings: &StepSettings,
-        state: &mut State<SingleEnv<Self>>,
-        ws: &mut Workspace<SingleEnv<Self>>,
-    ) {
-        (Step::compiled().step)(model, params, settings, state, ws, sensor::evaluate);
-    }
-
-    /// Runs [`pipeline::forward`](clench_dynamics::pipeline::forward) for one environment.
-    fn forward(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        settings: &StepSettings,
-        state: &State<SingleEnv<Self>>,
-        ws: &mut Workspace<SingleEnv<Self>>,
-    ) {
-        (Step::compiled().forward)(model, params, settings, state, ws, sensor::evaluate);
-    }
-
-    /// Runs [`pipeline::step_asleep`](clench_dynamics::pipeline::step_asleep) for one environment.
-    fn step_asleep(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        settings: &StepSettings,
-        state: &mut State<SingleEnv<Self>>,
-        ws: &mut Workspace<SingleEnv<Self>>,
-    ) -> bool {
-        (Step::compiled().step_asleep)(model, params, settings, state, ws, sensor::evaluate)
-    }
-
-    /// Runs [`pipeline::before_forces`](clench_dynamics::pipeline::before_forces) for one environment.
-    fn before_forces(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        settings: &StepSettings,
-        state: &State<SingleEnv<Self>>,
-        ws: &mut Workspace<SingleEnv<Self>>,
-    ) {
-        (Step::compiled().before_forces)(model, params, settings, state, ws);
-    }
-
-    /// Runs [`pipeline::step_from_forces`](clench_dynamics::pipeline::step_from_forces) for one environment.
-    fn step_from_forces(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        settings: &StepSettings,
-        state: &mut State<SingleEnv<Self>>,
-        ws: &mut Workspace<SingleEnv<Self>>,
-    ) {
-        (Step::compiled().step_from_forces)(model, params, settings, state, ws, sensor::evaluate);
-    }
-
-    /// Runs [`pipeline::position_stage`](clench_dynamics::pipeline::position_stage) for one environment.
-    fn position_stage(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        state: &State<SingleEnv<Self>>,
-        ws: &mut Workspace<SingleEnv<Self>>,
-    ) {
-        (Step::compiled().position_stage)(model, params, state, ws);
-    }
-
-    /// Runs [`pipeline::state_energy`](clench_dynamics::pipeline::state_energy) for one environment.
-    fn state_energy(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        state: &State<SingleEnv<Self>>,
-        scratch: &mut EnergyScratch<SingleEnv<Self>>,
-    ) -> Energy<SingleEnv<Self>> {
-        (Step::compiled().state_energy)(model, params, state, scratch)
+    /// Returns the function that computes the sensors of one environment.
+    fn sensors() -> Sensors<SingleEnv<Self>> {
+        sensor::evaluate
     }
 
     /// Appends an output of one environment to `out`.
@@ -174,18 +98,5 @@ compile! {
     /// Runs inverse kinematics for one environment.
     fn ik(model: &Model, params: &Params<SingleEnv<Self>>, ik: &Ik, search: &mut Search<SingleEnv<Self>>) {
         search.run(model, params, ik);
-    }
-
-    /// Runs [`inverse`](clench_dynamics::inverse::inverse) for one environment.
-    fn inverse(
-        model: &Model,
-        params: &Params<SingleEnv<Self>>,
-        settings: &StepSettings,
-        state: &State<SingleEnv<Self>>,
-        acceleration: (&[SingleEnv<Self>], Acceleration),
-        ws: &mut Workspace<SingleEnv<Self>>,
-        qfrc_inverse: &mut [SingleEnv<Self>],
-    ) {
-        (Step::compiled().inverse)(model, params, settings, state, acceleration, ws, qfrc_inverse);
     }
 }

@@ -16,6 +16,7 @@ pub use dynamic::DynamicConstraint;
 use crate::output::{Output, Source};
 use crate::validity::{Computed, Validity};
 use crate::{Precision, readout};
+use clench_dynamics::Step;
 use clench_dynamics::check::{self, check_values};
 use clench_dynamics::contact::Contact;
 use clench_dynamics::dynamics::energy::Energy;
@@ -88,7 +89,7 @@ impl<T: Precision> Sim<T> {
         let model = settings.adapt(model);
         State::<T>::check_memory(&model, 3)?; // The state, the last good one and the initial one.
         let initial = State::new(&model);
-        let mut ws = T::workspace(&model);
+        let mut ws = (Step::compiled().workspace)(&model);
         ws.sensors.wanted = true;
         Ok(Sim {
             state: initial.clone(),
@@ -152,7 +153,9 @@ impl<T: Precision> Sim<T> {
         self.check_state()?;
         self.last_good.copy_moving_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
-        self.on_threads(T::step);
+        self.on_threads(|model, params, settings, state, ws| {
+            (Step::compiled().step)(model, params, settings, state, ws, T::sensors());
+        });
         let result = self.check_result(self.last_good.time);
         self.record_validity(&result);
         if result.is_err() {
@@ -173,7 +176,7 @@ impl<T: Precision> Sim<T> {
     fn try_forward(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         self.on_threads(|model, params, settings, state, ws| {
-            T::forward(model, params, settings, state, ws);
+            (Step::compiled().forward)(model, params, settings, state, ws, T::sensors());
         });
         let result = self.check_result(self.state.time);
         self.record_validity(&result);
@@ -232,7 +235,7 @@ impl<T: Precision> Sim<T> {
         self.ws.invalidate_poses();
         let (model, params, ws) = (&self.model, &self.params, &mut self.ws);
         computed_state::read(&self.state, &mut self.lane_copy, |state| {
-            T::position_stage(model, params, state, ws);
+            (Step::compiled().position_stage)(model, params, state, ws);
         });
         self.validity.record(Computed::Positions, &self.state);
         Ok(())
@@ -396,13 +399,14 @@ impl<T: Precision> Sim<T> {
     ) -> Result<(), SimError> {
         self.check_state()?;
         let (model, state) = (&self.model, &self.state);
-        let ws = (self.inverse_ws).get_or_insert_with(|| Box::new(T::workspace(model)));
+        let (step, inverse_ws) = (Step::compiled(), &mut self.inverse_ws);
+        let ws = inverse_ws.get_or_insert_with(|| Box::new((step.workspace)(model)));
         let splat = |numbers: &[T]| numbers.iter().copied().map(T::SingleEnv::splat).collect();
         let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
         let input = (&qacc[..], kind);
         let (params, settings) = (&self.params, &self.settings);
         computed_state::read(state, &mut self.lane_copy, |state| {
-            T::inverse(model, params, settings, state, input, ws, &mut forces);
+            (step.inverse)(model, params, settings, state, input, ws, &mut forces);
         });
         read_lane(&forces, 0, qfrc_inverse);
         match T::good_results(state, ws) {
@@ -429,7 +433,7 @@ impl<T: Precision> Sim<T> {
         let (model, params) = (&self.model, &self.params);
         let scratch = self.ws.energy_scratch(model);
         let energy = computed_state::read(&self.state, &mut self.lane_copy, |state| {
-            T::state_energy(model, params, state, scratch)
+            (Step::compiled().state_energy)(model, params, state, scratch)
         });
         Ok(Energy {
             potential: energy.potential.lane(0),

@@ -3,6 +3,7 @@
 use super::Sim;
 use crate::Precision;
 use crate::validity::Computed;
+use clench_dynamics::Step;
 use clench_dynamics::error::SimError;
 use clench_dynamics::profile::Stage;
 
@@ -19,7 +20,7 @@ impl<T: Precision> Sim<T> {
     fn try_step1(&mut self) -> Result<(), SimError> {
         self.check_state()?;
         self.on_threads(|model, params, settings, state, ws| {
-            T::before_forces(model, params, settings, state, ws);
+            (Step::compiled().before_forces)(model, params, settings, state, ws);
         });
         self.validity.record(Computed::Positions, &self.state);
         self.halfway = true;
@@ -40,7 +41,10 @@ impl<T: Precision> Sim<T> {
         }
         self.halfway = false;
         self.last_good.copy_moving_from(&self.state);
-        self.on_threads(T::step_from_forces);
+        self.on_threads(|model, params, settings, state, ws| {
+            let step = Step::compiled().step_from_forces;
+            step(model, params, settings, state, ws, T::sensors());
+        });
         let result = self.check_result(self.last_good.time);
         self.record_validity(&result);
         if result.is_ok() {

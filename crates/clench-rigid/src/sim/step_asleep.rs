@@ -2,6 +2,7 @@
 
 use super::{Sim, computed_state};
 use crate::Precision;
+use clench_dynamics::Step;
 
 impl<T: Precision> Sim<T> {
     /// Runs a step if everything is asleep as the last step left it. Returns true if it did; no further check is then
@@ -17,7 +18,7 @@ impl<T: Precision> Sim<T> {
         let (model, params, settings) = (&self.model, &self.params, &self.settings);
         let ws = &mut self.ws;
         computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
-            T::step_asleep(model, params, settings, state, ws)
+            (Step::compiled().step_asleep)(model, params, settings, state, ws, T::sensors())
         })
     }
 }
