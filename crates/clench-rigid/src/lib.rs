@@ -34,7 +34,7 @@ pub use output::Output;
 #[doc(hidden)]
 pub use output::Source as OutputSource;
 pub use precision::Precision;
-pub use query::Anchor;
+pub use query::{Anchor, Place, Query};
 #[doc(hidden)]
 pub use sensor::evaluate as evaluate_sensors;
 pub use sim::{DynamicConstraint, Sim};

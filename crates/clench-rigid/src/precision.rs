@@ -5,6 +5,7 @@ use crate::batch::shared::Shared;
 use crate::batch::stepper::MakeStepper;
 use crate::ik::{Ik, Search};
 use crate::output::{Output, Source};
+use crate::query::Query;
 use crate::readout::{self, Push, TendonLine};
 use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
@@ -79,6 +80,16 @@ compile! {
     /// Computes the joint reactions on bodies of one environment.
     fn body_forces(source: &mut Source<SingleEnv<Self>>) {
         update_body_forces(source.model, source.params, source.state, source.ws);
+    }
+
+    /// Appends the answer to a query about one environment.
+    fn answer(
+        query: Query<'_>,
+        computed: (&Model, &Params<SingleEnv<Self>>, &Workspace<SingleEnv<Self>>),
+        input: &[SingleEnv<Self>],
+        out: &mut Vec<SingleEnv<Self>>,
+    ) {
+        query.write(computed, input, out);
     }
 
     /// Returns the forces of the constraints of one environment.

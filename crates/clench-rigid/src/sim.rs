@@ -375,7 +375,7 @@ impl<T: Precision> Sim<T> {
     pub(crate) fn change(
         &mut self,
         values: &mut [T],
-        compute: impl FnOnce(&Self, &mut [T::SingleEnv]),
+        compute: impl FnOnce(&Self, &mut Vec<T::SingleEnv>),
     ) {
         let mut numbers = std::mem::take(&mut self.numbers);
         numbers.clear();

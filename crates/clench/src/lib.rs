@@ -191,8 +191,8 @@ pub use clench_rigid::batch::{Anchors, Controls, QueryInput};
 pub use clench_rigid::model::FrameObject;
 pub use clench_rigid::{
     Acceleration, Anchor, Axes, Batch, BatchOptions, Budget, DynamicConstraint, EnvStatus, Fault,
-    Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Output, Precision, RayFilter,
-    RayHit, RigidOptions, Sim, SimError, State,
+    Ik, IkOptions, IkSolution, IkStatus, IkTarget, IkTask, Model, Output, Place, Precision, Query,
+    RayFilter, RayHit, RigidOptions, Sim, SimError, State,
 };
 
 #[cfg(doctest)]

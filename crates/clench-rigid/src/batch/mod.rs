@@ -36,7 +36,7 @@ mod summary;
 mod targets;
 
 pub use crate::precision::Precision;
-pub use answer::QueryInput;
+pub use crate::query::QueryInput;
 pub use backend::{Backend, Outcome, StepFailure};
 pub use divergence::Divergence;
 use env_rows::ParamRows;

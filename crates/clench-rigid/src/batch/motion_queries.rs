@@ -1,8 +1,7 @@
 //! Queries of all environments at once about the motion of objects and the mass matrix.
 
-use super::answer::{Place, Query, QueryInput};
 use super::{Batch, Precision, Rows};
-use crate::query::{check_body, check_object};
+use crate::query::{Place, Query, QueryInput};
 use clench_dynamics::dynamics::frames::Axes;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::FrameObject;
@@ -29,8 +28,8 @@ impl<S: Precision> Batch<S> {
     /// Returns an error if there is no such object, if the number of positions is wrong or one is not finite, or as
     /// [`step`](Self::step) does.
     pub fn jacobian(&mut self, anchors: Anchors<'_, S>) -> Result<Rows<S>, SimError> {
-        let (place, input) = self.place(anchors)?;
-        self.run_query(Query::Jacobian(place), input, 6 * self.model.nv)
+        let (place, input) = place(anchors);
+        self.answer(Query::Jacobian(place), input)
     }
 
     /// Returns the time derivative of that Jacobian (n, 6 × nv), see
@@ -39,22 +38,8 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// See [`jacobian`](Self::jacobian).
     pub fn jacobian_rate(&mut self, anchors: Anchors<'_, S>) -> Result<Rows<S>, SimError> {
-        let (place, input) = self.place(anchors)?;
-        self.run_query(Query::JacobianRate(place), input, 6 * self.model.nv)
-    }
-
-    fn place<'a>(&self, anchors: Anchors<'a, S>) -> Result<(Place, QueryInput<'a, S>), SimError> {
-        match anchors {
-            Anchors::Object(object) => {
-                check_object(&self.model, object)?;
-                Ok((Place::Object(object), QueryInput::Shared(&[])))
-            }
-            Anchors::Points { body, places } => {
-                check_body(&self.model, body)?;
-                self.check_numbers("point", &places, 3)?;
-                Ok((Place::PointOf(body), places))
-            }
-        }
+        let (place, input) = place(anchors);
+        self.answer(Query::JacobianRate(place), input)
     }
 
     /// Returns the velocity of an object in the present state of each environment (n, 6), linear, then angular, see
@@ -63,8 +48,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// See [`jacobian`](Self::jacobian).
     pub fn velocity(&mut self, object: FrameObject, axes: Axes) -> Result<Rows<S>, SimError> {
-        check_object(&self.model, object)?;
-        self.run_query(Query::Velocity(object, axes), QueryInput::Shared(&[]), 6)
+        self.answer(Query::Velocity(object, axes), QueryInput::Shared(&[]))
     }
 
     /// Returns the acceleration of an object in the same form, see [`Sim::acceleration`](crate::Sim::acceleration). It
@@ -73,12 +57,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// See [`jacobian`](Self::jacobian).
     pub fn acceleration(&mut self, object: FrameObject, axes: Axes) -> Result<Rows<S>, SimError> {
-        check_object(&self.model, object)?;
-        self.run_query(
-            Query::Acceleration(object, axes),
-            QueryInput::Shared(&[]),
-            6,
-        )
+        self.answer(Query::Acceleration(object, axes), QueryInput::Shared(&[]))
     }
 
     /// Returns M x (n, nv) with the mass matrices of the present states, see [`Sim::mul_mass`](crate::Sim::mul_mass).
@@ -86,9 +65,7 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// Returns an error if the number of values is wrong or one is not finite, or as [`step`](Self::step) does.
     pub fn mul_mass(&mut self, x: QueryInput<S>) -> Result<Rows<S>, SimError> {
-        let nv = self.model.nv;
-        self.check_numbers("x", &x, nv)?;
-        self.run_query(Query::MulMass, x, nv)
+        self.answer(Query::MulMass, x)
     }
 
     /// Returns M⁻¹ x (n, nv), see [`Sim::solve_mass`](crate::Sim::solve_mass); NaN for a singular mass matrix.
@@ -96,8 +73,14 @@ impl<S: Precision> Batch<S> {
     /// # Errors
     /// See [`mul_mass`](Self::mul_mass).
     pub fn solve_mass(&mut self, x: QueryInput<S>) -> Result<Rows<S>, SimError> {
-        let nv = self.model.nv;
-        self.check_numbers("x", &x, nv)?;
-        self.run_query(Query::SolveMass, x, nv)
+        self.answer(Query::SolveMass, x)
+    }
+}
+
+/// Returns the place and input of a Jacobian.
+fn place<S>(anchors: Anchors<'_, S>) -> (Place, QueryInput<'_, S>) {
+    match anchors {
+        Anchors::Object(object) => (Place::Object(object), QueryInput::Shared(&[])),
+        Anchors::Points { body, places } => (Place::PointOf(body), places),
     }
 }

@@ -5,29 +5,36 @@
 //! environment whose state is invalid, or whose model lacks a geom of the query, gets NaN. Environments that do not run
 //! are included.
 
-use super::answer::{Query, QueryCall, QueryInput};
+use super::answer::{QueryCall, Question};
 use super::cells::Cells;
 use super::env_rows::EnvRows;
 use super::run::for_each_group;
 use super::{Batch, Precision, Rows};
 use crate::ik::{Ik, IkSolution};
-use crate::query::{HIT, RAY, check_acceleration, check_body, check_places, check_rays};
-use clench_dynamics::check::{check_length, check_values};
+use crate::query::{Query, QueryInput};
 use clench_dynamics::error::SimError;
 use clench_dynamics::geometry::RayFilter;
 use clench_dynamics::inverse::Acceleration;
 use clench_dynamics::model::FrameObject;
 
 impl<S: Precision> Batch<S> {
+    /// Answers a query about the present state of each environment; NaN where there is no answer.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such object, if the number of input values is wrong or one is not finite, or as
+    /// [`step`](Self::step) does.
+    pub fn answer(&mut self, query: Query<'_>, input: QueryInput<S>) -> Result<Rows<S>, SimError> {
+        let width = query.check(&self.model, &input, self.count())?;
+        self.ask(Question::Query(query), input, width)
+    }
+
     /// Returns the Jacobian of the centre of mass of a body's subtree (n, 3 × nv), see
     /// [`Sim::subtree_jacobian`](crate::Sim::subtree_jacobian).
     ///
     /// # Errors
     /// See [`jacobian`](Self::jacobian).
     pub fn subtree_jacobian(&mut self, body: usize) -> Result<Rows<S>, SimError> {
-        check_body(&self.model, body)?;
-        let width = 3 * self.model.nv;
-        self.run_query(Query::SubtreeJacobian(body), QueryInput::Shared(&[]), width)
+        self.answer(Query::SubtreeJacobian(body), QueryInput::Shared(&[]))
     }
 
     /// Returns the first hit of each ray in each environment, see [`Sim::rays`](crate::Sim::rays), as five values per
@@ -42,10 +49,7 @@ impl<S: Precision> Batch<S> {
         frame: Option<FrameObject>,
         filter: &RayFilter,
     ) -> Result<Rows<S>, SimError> {
-        let width = self.check_input("rays", &rays)?;
-        check_rays(&self.model, frame, rays.all())?;
-        let query = Query::Rays { frame, filter };
-        self.run_query(query, rays, width / RAY * HIT)
+        self.answer(Query::Rays { frame, filter }, rays)
     }
 
     /// Returns heights of a height field in each environment (n, k), see [`Sim::heights`](crate::Sim::heights).
@@ -59,9 +63,7 @@ impl<S: Precision> Batch<S> {
         places: QueryInput<S>,
         frame: Option<FrameObject>,
     ) -> Result<Rows<S>, SimError> {
-        let width = self.check_input("places", &places)?;
-        check_places(&self.model, geom, frame, places.all())?;
-        self.run_query(Query::Heights { geom, frame }, places, width / 2)
+        self.answer(Query::Heights { geom, frame }, places)
     }
 
     /// Returns the forces along dofs (n, nv) that cause the accelerations `qacc` in the present states, see
@@ -75,10 +77,7 @@ impl<S: Precision> Batch<S> {
         qacc: QueryInput<S>,
         kind: Acceleration,
     ) -> Result<Rows<S>, SimError> {
-        let nv = self.model.nv;
-        self.check_numbers("qacc", &qacc, nv)?;
-        check_acceleration(&self.model, kind)?;
-        self.run_query(Query::Inverse(kind), qacc, nv)
+        self.answer(Query::Inverse(kind), qacc)
     }
 
     /// Returns joint positions that bring the tasks of `ik` to their goals in each environment, from the present states
@@ -95,42 +94,19 @@ impl<S: Precision> Batch<S> {
         start: Option<QueryInput<S>>,
     ) -> Result<Vec<IkSolution<S>>, SimError> {
         ik.check_model(&self.model)?;
-        self.check_numbers("goals", &goals, ik.goal_len(&self.model))?;
+        goals.check("goals", ik.goal_len(&self.model), self.count())?;
         if let Some(start) = &start {
-            self.check_numbers("start", start, self.model.nq)?;
+            start.check("start", self.model.nq, self.count())?;
         }
         let width = IkSolution::<S>::width(&self.model, ik);
-        let rows = self.run_query(Query::Kinematics { ik, start }, goals, width)?;
+        let rows = self.ask(Question::Kinematics { ik, start }, goals, width)?;
         let nq = self.model.nq;
         Ok(rows.iter().map(|row| IkSolution::read(row, nq)).collect())
     }
 
-    /// Checks for `width` finite values per environment.
-    pub(super) fn check_numbers(
-        &self,
-        name: &'static str,
-        input: &QueryInput<S>,
-        width: usize,
-    ) -> Result<(), SimError> {
-        let total = match input {
-            QueryInput::Shared(_) => width,
-            QueryInput::Each(_) => width.saturating_mul(self.count()),
-        };
-        check_values(name, input.all(), total)
-    }
-
-    /// Returns the number of values per environment.
-    fn check_input(&self, name: &'static str, input: &QueryInput<S>) -> Result<usize, SimError> {
-        let width = input.width(self.count());
-        if let QueryInput::Each(values) = input {
-            check_length(name, values.len(), width * self.count())?;
-        }
-        Ok(width)
-    }
-
-    pub(super) fn run_query(
+    fn ask(
         &mut self,
-        query: Query<S>,
+        question: Question<S>,
         input: QueryInput<S>,
         width: usize,
     ) -> Result<Rows<S>, SimError> {
@@ -139,7 +115,7 @@ impl<S: Precision> Batch<S> {
         let count = self.count();
         let mut answers = Rows::new(count, width, S::new(f64::NAN))?;
         self.order.clear();
-        let geoms = query.geoms();
+        let geoms = question.geoms();
         let models = 0..self.models().len();
         let answers_for = Vec::from_iter(models.map(|model| self.models.have(model, &geoms)));
         let envs = (0..count).filter(|&env| answers_for[self.models.of(env)]);
@@ -154,7 +130,7 @@ impl<S: Precision> Batch<S> {
                 models: &self.models,
                 params: &self.params,
             },
-            query,
+            question,
             width: input.width(count),
             input,
             answers: Cells::new(&mut answers),

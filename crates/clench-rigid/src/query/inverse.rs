@@ -1,20 +1,12 @@
 //! Inverse dynamics of a simulation.
 
+use super::checks::check_acceleration;
+use super::table::Query;
+use crate::Precision;
 use crate::sim::Sim;
-use crate::{Model, Precision};
 use clench_dynamics::check::{check_length, check_values};
 use clench_dynamics::error::SimError;
 use clench_dynamics::inverse::Acceleration;
-use clench_dynamics::model::Integrator;
-
-/// Returns an error if inverse dynamics do not support this kind of acceleration.
-pub(crate) fn check_acceleration(model: &Model, kind: Acceleration) -> Result<(), SimError> {
-    let stages = model.integrator == Integrator::Rk4;
-    match kind {
-        Acceleration::Discrete if stages => Err(SimError::NoDiscreteInverse),
-        Acceleration::Discrete | Acceleration::Continuous => Ok(()),
-    }
-}
 
 impl<T: Precision> Sim<T> {
     /// Writes to `qfrc_inverse` (nv) the forces along dofs that cause the acceleration `qacc` (nv) in the present
@@ -38,6 +30,6 @@ impl<T: Precision> Sim<T> {
         check_values("qacc", qacc, self.model().nv)?;
         check_length("qfrc_inverse", qfrc_inverse.len(), qacc.len())?;
         check_acceleration(self.model(), kind)?;
-        self.invert(qacc, kind, qfrc_inverse)
+        self.write_answer(Query::Inverse(kind), qacc, qfrc_inverse)
     }
 }

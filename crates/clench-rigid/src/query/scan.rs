@@ -1,44 +1,13 @@
 //! Many rays and terrain heights at once, for example for a lidar or a walking policy.
 
-use super::cast::{HIT, RAY, cast, sample};
-use super::check_object;
+use super::cast::HIT;
+use super::table::Query;
+use crate::Precision;
 use crate::sim::Sim;
-use crate::validity::Computed;
-use crate::{Model, Precision};
-use clench_dynamics::check::{check_count, check_values};
-use clench_dynamics::error::{SimError, no_such};
+use clench_dynamics::error::SimError;
 use clench_dynamics::geometry::{RayFilter, RayHit};
 use clench_dynamics::model::FrameObject;
-use clench_math::{Real, Scalar, Vec3};
-
-/// Returns an error unless rays and frame are valid.
-pub(crate) fn check_rays<S: Scalar>(
-    model: &Model,
-    frame: Option<FrameObject>,
-    rays: &[S],
-) -> Result<(), SimError> {
-    frame.map_or(Ok(()), |frame| check_object(model, frame))?;
-    check_count("rays", rays.len(), RAY)?;
-    check_values("rays", rays, rays.len())
-}
-
-/// Returns an error unless positions, geom and frame are valid.
-pub(crate) fn check_places<S: Scalar>(
-    model: &Model,
-    geom: usize,
-    frame: Option<FrameObject>,
-    places: &[S],
-) -> Result<(), SimError> {
-    if geom >= model.geoms.len() {
-        return Err(no_such("geom", geom, model.geoms.len()));
-    }
-    if model.heights(geom).is_none() {
-        return Err(SimError::NoHeightField { geom });
-    }
-    frame.map_or(Ok(()), |frame| check_object(model, frame))?;
-    check_count("places", places.len(), 2)?;
-    check_values("places", places, places.len())
-}
+use clench_math::Vec3;
 
 impl<T: Precision> Sim<T> {
     /// Returns the first hit of each ray (k, 6: origin, direction), see [`ray`](Self::ray). With a `frame`, rays are in
@@ -53,12 +22,7 @@ impl<T: Precision> Sim<T> {
         frame: Option<FrameObject>,
         filter: &RayFilter,
     ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
-        check_rays(self.model(), frame, rays)?;
-        self.require(Computed::Positions)?;
-        let rays = Vec::from_iter(rays.iter().copied().map(T::SingleEnv::splat));
-        let mut hits = Vec::new();
-        cast(self.geoms(), frame, &rays, filter, &mut hits);
-        let hits = Vec::from_iter(hits.iter().map(|number| number.lane(0)));
+        let hits = self.answer(Query::Rays { frame, filter }, rays)?;
         let hit = |numbers: &[T]| {
             (numbers[0] >= T::ZERO).then(|| RayHit {
                 geom: numbers[0].to_f64() as usize,
@@ -81,11 +45,6 @@ impl<T: Precision> Sim<T> {
         places: &[T],
         frame: Option<FrameObject>,
     ) -> Result<Vec<T>, SimError> {
-        check_places(self.model(), geom, frame, places)?;
-        self.require(Computed::Positions)?;
-        let places = Vec::from_iter(places.iter().copied().map(T::SingleEnv::splat));
-        let mut heights = Vec::new();
-        sample(self.geoms(), geom, frame, &places, &mut heights);
-        Ok(heights.iter().map(|height| height.lane(0)).collect())
+        self.answer(Query::Heights { geom, frame }, places)
     }
 }
