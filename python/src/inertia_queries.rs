@@ -1,59 +1,40 @@
-//! Queries of `Sim` about forces and accelerations.
+//! Queries of `Sim` and `Batch` about forces and accelerations.
 
-use crate::answer::{answer, each_row};
+use crate::answer::answer;
 use crate::busy::lock;
 use crate::error::sim_error;
 use crate::kind::Kind;
+use crate::one_or_many::one_or_many;
 use crate::queries::vector;
 use crate::row_sim::{AnySim, each_sim};
 use crate::sim::Sim;
 use crate::target::Choice;
 use clench::math::{Real, Vec3};
-use clench::{Acceleration, Model};
+use clench::{Acceleration, Query};
 use pyo3::prelude::*;
 
-/// Returns the kind of acceleration: that of the argument, or by default the model's.
-pub(crate) fn acceleration_kind(model: &Model, discrete: Option<bool>) -> Acceleration {
-    match discrete {
-        None => Acceleration::of(model),
-        Some(true) => Acceleration::Discrete,
-        Some(false) => Acceleration::Continuous,
-    }
-}
-
-#[pymethods]
-impl Sim {
+one_or_many! {
     /// Computes M x, the forces along dofs that cause given accelerations, like MuJoCo's ``mj_mulM``. `mass_matrix`
-    /// returns M itself.
+    /// returns M itself. A `Sim` uses the poses that queries use (see `Sim`), a `Batch` the current states.
     ///
     /// Parameters
     /// ----------
     /// x : array_like
-    ///     Accelerations (nv,), or rows of them (k, nv).
+    ///     Accelerations (nv,), or rows of them (k, nv). In a `Batch`, one row for all environments, or (n, nv).
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     The forces, in the shape of `x`.
+    ///     The forces, N and N m, in the shape of `x`; of a `Batch` (n, nv), NaN where a state is not finite.
     ///
     /// Raises
     /// ------
     /// ValueError
     ///     If `x` has another shape or is not finite.
     /// SimulationError
-    ///     If the state is not finite.
-    fn mul_mass<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let nv = self.described().nv;
-        let mut guard = lock(self.inner(), "simulation")?;
-        each_sim!(&mut *guard, own => {
-            let sim = own.current().map_err(sim_error)?;
-            let mut product = vec![Real::ZERO; nv];
-            each_row("x", x, nv, |row| {
-                sim.mul_mass(row, &mut product)?;
-                row.copy_from_slice(&product);
-                Ok(())
-            })
-        })
+    ///     If the state of a `Sim` is not finite.
+    fn mul_mass<'py>(&self, py: Python<'py>, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        self.replace(py, Query::MulMass, ("x", x))
     }
 
     /// Computes M⁻¹ x, the accelerations caused by forces along dofs, like MuJoCo's ``mj_solveM``.
@@ -61,28 +42,70 @@ impl Sim {
     /// Parameters
     /// ----------
     /// x : array_like
-    ///     Forces (nv,), or rows of them (k, nv).
+    ///     Forces (nv,), or rows of them (k, nv). In a `Batch`, one row for all environments, or (n, nv).
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     The accelerations, in the shape of `x`.
+    ///     The accelerations, in the shape of `x`; of a `Batch` (n, nv), NaN where a state is not finite or a mass
+    ///     matrix is singular.
     ///
     /// Raises
     /// ------
     /// ValueError
     ///     If `x` has another shape or is not finite.
     /// SimulationError
-    ///     If the mass matrix is singular.
-    fn solve_mass<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let nv = self.described().nv;
-        let mut guard = lock(self.inner(), "simulation")?;
-        each_sim!(&mut *guard, own => {
-            let sim = own.current().map_err(sim_error)?;
-            each_row("x", x, nv, |row| sim.solve_mass(row))
-        })
+    ///     If the mass matrix of a `Sim` is singular.
+    fn solve_mass<'py>(&self, py: Python<'py>, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        self.replace(py, Query::SolveMass, ("x", x))
     }
 
+    /// Computes inverse dynamics: the forces along dofs that cause an acceleration in the current state, contacts and
+    /// all other constraints included, like MuJoCo's ``mj_inverse``.
+    ///
+    /// This is the required sum of actuator and applied forces: ``qfrc_actuator + qfrc_applied`` and ``xfrc_applied``
+    /// mapped to dofs. The computation is direct, without iterations. Outputs do not change; sleeping trees are
+    /// included.
+    ///
+    /// Parameters
+    /// ----------
+    /// qacc : array_like
+    ///     Accelerations (nv,), or rows of them (k, nv). In a `Batch`, one row for all environments, or (n, nv).
+    /// discrete : bool, optional
+    ///     True if a step changes the velocity by them, ``(v1 - v0) / timestep``; false if they are those that
+    ///     `forward` finds. They differ if forces are integrated implicitly. The default is the model's flag
+    ///     ``invdiscrete``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Forces, N and N m, in the shape of `qacc`; of a `Batch` (n, nv), NaN where a single `Sim` would raise
+    ///     SimulationError.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a shape is wrong, a number is not finite, or `discrete` is used with the Runge-Kutta integrator.
+    /// SimulationError
+    ///     As for `step` of a `Sim`.
+    #[pyo3(signature = (qacc, *, discrete = None))]
+    fn inverse<'py>(
+        &self,
+        py: Python<'py>,
+        qacc: &Bound<'py, PyAny>,
+        discrete: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let kind = match discrete {
+            None => Acceleration::of(self.described()),
+            Some(true) => Acceleration::Discrete,
+            Some(false) => Acceleration::Continuous,
+        };
+        self.replace(py, Query::Inverse(kind), ("qacc", qacc))
+    }
+}
+
+#[pymethods]
+impl Sim {
     /// Computes the forces along dofs of a force and a torque on a body, like MuJoCo's ``mj_applyFT``.
     ///
     /// Parameters
@@ -135,53 +158,6 @@ impl Sim {
             });
             done.map_err(sim_error)?;
             answer(py, qfrc, &[model.nv], None)
-        })
-    }
-
-    /// Computes inverse dynamics: the forces along dofs that cause an acceleration in the current state, contacts and
-    /// all other constraints included, like MuJoCo's ``mj_inverse``.
-    ///
-    /// This is the required sum of actuator and applied forces: ``qfrc_actuator + qfrc_applied`` and ``xfrc_applied``
-    /// mapped to dofs. The computation is direct, without iterations. Outputs do not change; sleeping trees are
-    /// included.
-    ///
-    /// Parameters
-    /// ----------
-    /// qacc : array_like
-    ///     Accelerations (nv,), or rows of them (k, nv).
-    /// discrete : bool, optional
-    ///     True if a step changes the velocity by them, ``(v1 - v0) / timestep``; false if they are those that
-    ///     `forward` finds. They differ if forces are integrated implicitly. The default is the model's flag
-    ///     ``invdiscrete``.
-    ///
-    /// Returns
-    /// -------
-    /// numpy.ndarray
-    ///     Forces, N and N m, in the shape of `qacc`.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If a shape is wrong, a number is not finite, or `discrete` is used with the Runge-Kutta integrator.
-    /// SimulationError
-    ///     As for `step`.
-    #[pyo3(signature = (qacc, *, discrete = None))]
-    fn inverse<'py>(
-        &self,
-        qacc: &Bound<'py, PyAny>,
-        discrete: Option<bool>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let model = self.described();
-        let kind = acceleration_kind(model, discrete);
-        let mut guard = lock(self.inner(), "simulation")?;
-        each_sim!(&mut *guard, own => {
-            let sim = own.current().map_err(sim_error)?;
-            let mut forces = vec![Real::ZERO; model.nv];
-            each_row("qacc", qacc, model.nv, |row| {
-                sim.inverse(row, kind, &mut forces)?;
-                row.copy_from_slice(&forces);
-                Ok(())
-            })
         })
     }
 }

@@ -15,6 +15,15 @@ pub(crate) struct Table<S> {
 }
 
 impl<S: Precision + Element> Table<S> {
+    /// Returns no numbers.
+    pub(crate) fn empty() -> Self {
+        Table {
+            values: Vec::new(),
+            each: false,
+            rows: 1,
+        }
+    }
+
     /// Reads rows of `width` numbers: (k, width) or, for `n` environments, (n, k, width).
     pub(crate) fn rows_of(
         name: &str,
