@@ -8,6 +8,7 @@ use crate::count::Count;
 use crate::error::sim_error;
 use crate::ik_targets::{ComTarget, FrameTarget, PostureTarget};
 use crate::kind::Kind;
+use crate::one_or_many::one_or_many;
 use crate::row_sim::{AnySim, each_sim};
 use crate::sim::Sim;
 use crate::table::Table;
@@ -137,41 +138,20 @@ impl<S: Precision + Element> Goals<S> {
     }
 }
 
-/// Creates the options of the search.
-fn search(
-    model: &Model,
-    (iterations, restarts): (Count, Count),
-    (tolerance, damping, max_step): (f64, f64, Option<f64>),
-    limits: bool,
-    dofs: Choice,
-) -> PyResult<IkOptions> {
-    let dofs = dofs.map(|dofs| mask("dofs", dofs, model.nv)).transpose()?;
-    Ok(IkOptions {
-        iterations: iterations.0,
-        restarts: restarts.0,
-        tolerance,
-        damping,
-        max_step: max_step.unwrap_or(f64::INFINITY),
-        limits,
-        dofs: dofs.unwrap_or_default(),
-    })
-}
-
-#[pymethods]
-impl Sim {
+one_or_many! {
     /// Solves inverse kinematics: finds joint positions that bring targets to their goals, by damped least squares
     /// within the joint limits.
     ///
     /// Minimises half the sum of the squared errors times their costs, descending from the start: other starts may lead
     /// to other minima. Equality constraints, tendon limits and collisions are ignored. The state is not changed:
-    /// assign ``sim.qpos[:] = result.qpos``.
+    /// assign ``sim.qpos[:] = result.qpos``. A `Batch` solves for every environment.
     ///
     /// Parameters
     /// ----------
     /// targets : iterable of FrameTarget, ComTarget and PostureTarget
-    ///     The targets and their goals.
+    ///     The targets and their goals, which in a `Batch` may have the environments (n) as first axis.
     /// start : array_like, optional
-    ///     Initial positions (nq,); by default those of the current state.
+    ///     Initial positions, (nq,) or in a `Batch` also (n, nq); by default those of the current state.
     /// iterations : int
     ///     Maximum number of iterations from one start.
     /// tolerance : float
@@ -193,7 +173,8 @@ impl Sim {
     /// Returns
     /// -------
     /// IkResult
-    ///     The positions and their errors.
+    ///     The positions and their errors, of a `Batch` with the environments as first axis: NaN and status NON_FINITE
+    ///     where the environment's model lacks a geom of the targets.
     ///
     /// Raises
     /// ------
@@ -202,7 +183,6 @@ impl Sim {
     #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
                         max_step = None, limits = true, dofs = None, restarts = Count(0)),
            text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]
-    #[allow(clippy::too_many_arguments)] // They are keywords.
     fn ik<'py>(
         &self,
         py: Python<'py>,
@@ -216,14 +196,28 @@ impl Sim {
         dofs: Choice<'_, 'py>,
         restarts: Count,
     ) -> PyResult<IkResult> {
-        let model = self.described();
-        let options = search(
-            model,
-            (iterations, restarts),
-            (tolerance, damping, max_step),
+        let dofs = dofs.map(|dofs| mask("dofs", dofs, self.described().nv)).transpose()?;
+        let options = IkOptions {
+            iterations: iterations.0,
+            restarts: restarts.0,
+            tolerance,
+            damping,
+            max_step: max_step.unwrap_or(f64::INFINITY),
             limits,
-            dofs,
-        )?;
+            dofs: dofs.unwrap_or_default(),
+        };
+        self.search(py, (targets, start), options)
+    }
+}
+
+impl Sim {
+    fn search<'py>(
+        &self,
+        py: Python<'py>,
+        (targets, start): (&Bound<'py, PyAny>, Choice<'_, 'py>),
+        options: IkOptions,
+    ) -> PyResult<IkResult> {
+        let model = self.described();
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let goals = Goals::of(model, targets, None)?;
@@ -246,70 +240,14 @@ impl Sim {
     }
 }
 
-#[pymethods]
 impl Batch {
-    /// Solves inverse kinematics in every environment, from the current states; see `Sim.ik`.
-    ///
-    /// Parameters
-    /// ----------
-    /// targets : iterable of FrameTarget, ComTarget and PostureTarget
-    ///     The targets and their goals. Goals may be the same for all environments, or have the environments as first
-    ///     axis.
-    /// start : array_like, optional
-    ///     Initial positions, (nq,) or (n, nq); by default those of the current states.
-    /// iterations : int
-    ///     Maximum number of iterations from one start.
-    /// tolerance : float
-    ///     The error, m or rad, below which a goal counts as reached. Postures do not have to be reached if there are
-    ///     other targets.
-    /// damping : float
-    ///     Initial damping, relative to the current cost; it adapts.
-    /// max_step : float, optional
-    ///     Maximum motion of any dof in an iteration, m or rad; by default unlimited. With one iteration, it limits how
-    ///     far a control loop moves towards its goals.
-    /// limits : bool
-    ///     True to keep joints in their ranges; a start outside is moved inside.
-    /// dofs : array_like of bool, optional
-    ///     Mask of the dofs that may move (nv,); by default all.
-    /// restarts : int
-    ///     Number of new starts if the goals are not reached, from postures spread evenly over the ranges of the
-    ///     joints. The best result is returned.
-    ///
-    /// Returns
-    /// -------
-    /// IkResult
-    ///     The results, with the environments as first axis: NaN and status NON_FINITE where the environment's model
-    ///     lacks a geom of the targets.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If the model does not have an object, a shape is wrong, or a number is not finite.
-    #[pyo3(signature = (targets, *, start = None, iterations = Count(100), tolerance = 1e-6, damping = 1e-3,
-                        max_step = None, limits = true, dofs = None, restarts = Count(0)),
-           text_signature = "($self, targets, *, start=None, iterations=100, tolerance=1e-06, damping=0.001, max_step=None, limits=True, dofs=None, restarts=0)")]
-    #[allow(clippy::too_many_arguments)] // They are keywords.
-    fn ik<'py>(
+    fn search<'py>(
         &self,
         py: Python<'py>,
-        targets: &Bound<'py, PyAny>,
-        start: Choice<'_, 'py>,
-        iterations: Count,
-        tolerance: f64,
-        damping: f64,
-        max_step: Option<f64>,
-        limits: bool,
-        dofs: Choice<'_, 'py>,
-        restarts: Count,
+        (targets, start): (&Bound<'py, PyAny>, Choice<'_, 'py>),
+        options: IkOptions,
     ) -> PyResult<IkResult> {
         let (model, n) = (self.described(), self.count());
-        let options = search(
-            model,
-            (iterations, restarts),
-            (tolerance, damping, max_step),
-            limits,
-            dofs,
-        )?;
         let mut guard = lock(self.inner(), "batch")?;
         each!(&mut *guard, batch => {
             let goals = Goals::of(model, targets, Some(n))?;
