@@ -1,6 +1,7 @@
 //! The derivatives of a step, from Python.
 
 use crate::count::Index;
+use crate::differentiated::{Derivative, Memory, Own};
 use crate::error::sim_error;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
@@ -16,15 +17,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyMapping};
 use std::ops::Range;
 use std::slice::from_ref;
-
-/// The memory of a simulation's derivatives, created on demand.
-pub(crate) type Memory = Option<Linearizer>;
-/// The memory of a batch's derivatives, created on demand.
-#[derive(Default)]
-pub(crate) struct BatchMemory {
-    pub(crate) double: Option<BatchLinearizer<f64>>,
-    pub(crate) single: Option<BatchLinearizer<f32>>,
-}
 
 /// A field by whose numbers a step has derivatives.
 #[derive(Clone, Copy)]
@@ -138,38 +130,6 @@ impl Chosen {
         Ok(())
     }
 
-    /// Linearizes the next step of a simulation.
-    pub(crate) fn of_sim(
-        &self,
-        py: Python<'_>,
-        memory: &mut Memory,
-        sim: &mut AnySim,
-    ) -> PyResult<Linearization> {
-        let request = &self.request;
-        let result = py.detach(|| {
-            with_linearizer(memory, sim, |linearizer, sim| {
-                linearizer.linearize(sim, request)
-            })
-        });
-        self.export(py, from_ref(result.map_err(sim_error)?), &[])
-    }
-
-    /// Linearizes the next step of every environment of a batch.
-    pub(crate) fn of_batch<S: Precision>(
-        &self,
-        py: Python<'_>,
-        memory: &mut Option<BatchLinearizer<S>>,
-        batch: &mut clench::Batch<S>,
-    ) -> PyResult<Linearization> {
-        let count = batch.count();
-        let results = py.detach(|| {
-            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
-            linearizer.linearize(batch, &self.request)
-        });
-        let results = results.map_err(|error| in_env(py, error))?;
-        self.export(py, results, &[count])
-    }
-
     /// Returns the names of the variables, and the columns of their numbers in p: inputs follow the parameters.
     pub(crate) fn columns(&self) -> impl Iterator<Item = (&'static str, Range<usize>)> {
         let (mut of_parameters, mut of_inputs) = (0, self.request.parameters.len());
@@ -250,6 +210,40 @@ impl Chosen {
             error: error.unbind(),
             reach: reach.unbind(),
         })
+    }
+}
+
+impl Derivative for Chosen {
+    type Result = Linearization;
+
+    fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<Self::Result> {
+        let request = &self.request;
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                linearizer.linearize(sim, request)
+            })
+        });
+        self.export(py, from_ref(result.map_err(sim_error)?), &[])
+    }
+
+    fn of_batch<S: Precision>(
+        &self,
+        py: Python<'_>,
+        memory: &mut Own<S>,
+        batch: &mut clench::Batch<S>,
+    ) -> PyResult<Self::Result> {
+        let count = batch.count();
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            linearizer.linearize(batch, &self.request)
+        });
+        let results = results.map_err(|error| in_env(py, error))?;
+        self.export(py, results, &[count])
     }
 }
 

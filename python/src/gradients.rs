@@ -3,7 +3,8 @@
 use crate::arrays::{numbers, require_finite, require_shape};
 use crate::busy::Signals;
 use crate::changes::{InputGradients, OutputGradients, Results};
-use crate::derivatives::{Chosen, Memory, in_env, with_linearizer};
+use crate::derivatives::{Chosen, in_env, with_linearizer};
+use crate::differentiated::{Derivative, Memory, Own};
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
 use clench::derivatives::{
@@ -64,35 +65,6 @@ impl Gradients {
         })
     }
 
-    /// Differentiates the next step of a simulation.
-    pub(crate) fn of_sim(
-        &self,
-        py: Python<'_>,
-        memory: &mut Memory,
-        sim: &mut AnySim,
-    ) -> PyResult<InputGradients> {
-        let result = py.detach(|| {
-            with_linearizer(memory, sim, |linearizer, sim| {
-                linearizer.vjp(sim, &self.chosen.request, &self.each[0])
-            })
-        });
-        self.export(py, from_ref(result.map_err(sim_error)?))
-    }
-
-    /// Differentiates the next step of every environment of a batch.
-    pub(crate) fn of_batch<S: Precision>(
-        &self,
-        py: Python<'_>,
-        memory: &mut Option<BatchLinearizer<S>>,
-        batch: &mut clench::Batch<S>,
-    ) -> PyResult<InputGradients> {
-        let results = py.detach(|| {
-            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
-            linearizer.vjp(batch, &self.chosen.request, &self.each)
-        });
-        self.export(py, results.map_err(|error| in_env(py, error))?)
-    }
-
     /// Copies results to arrays.
     fn export(&self, py: Python<'_>, results: &[InputGradient]) -> PyResult<InputGradients> {
         let array = |of: &dyn Fn(&InputGradient) -> &[f64]| {
@@ -114,6 +86,37 @@ impl Gradients {
             array(&|result| &result.u.values)?,
             by_parameters.unbind(),
         ))
+    }
+}
+
+impl Derivative for Gradients {
+    type Result = InputGradients;
+
+    fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<Self::Result> {
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                linearizer.vjp(sim, &self.chosen.request, &self.each[0])
+            })
+        });
+        self.export(py, from_ref(result.map_err(sim_error)?))
+    }
+
+    fn of_batch<S: Precision>(
+        &self,
+        py: Python<'_>,
+        memory: &mut Own<S>,
+        batch: &mut clench::Batch<S>,
+    ) -> PyResult<Self::Result> {
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            linearizer.vjp(batch, &self.chosen.request, &self.each)
+        });
+        self.export(py, results.map_err(|error| in_env(py, error))?)
     }
 }
 
@@ -166,45 +169,6 @@ impl Rollouts {
         })
     }
 
-    /// Differentiates a rollout of a simulation.
-    pub(crate) fn of_sim(
-        &self,
-        py: Python<'_>,
-        memory: &mut Memory,
-        sim: &mut AnySim,
-    ) -> PyResult<Results> {
-        let signals = Signals::new();
-        let result = py.detach(|| {
-            with_linearizer(memory, sim, |linearizer, sim| {
-                let (controls, gradient) = (&self.controls[0], &self.gradients[0]);
-                linearizer
-                    .rollout_vjp_while(sim, self.memory, controls, gradient, &|| signals.none())
-            })
-        });
-        let result = result.map_err(sim_error)?;
-        signals.raise()?;
-        self.export(py, from_ref(result))
-    }
-
-    /// Differentiates a rollout of every environment of a batch.
-    pub(crate) fn of_batch<S: Precision>(
-        &self,
-        py: Python<'_>,
-        memory: &mut Option<BatchLinearizer<S>>,
-        batch: &mut clench::Batch<S>,
-    ) -> PyResult<Results> {
-        let signals = Signals::new();
-        let results = py.detach(|| {
-            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
-            let (controls, gradients) = (&self.controls, &self.gradients);
-            linearizer
-                .rollout_vjp_while(batch, self.memory, controls, gradients, &|| signals.none())
-        });
-        let results = results.map_err(|error| in_env(py, error))?;
-        signals.raise()?;
-        self.export(py, results)
-    }
-
     /// Copies results to arrays.
     fn export(&self, py: Python<'_>, results: &[RolloutGradient]) -> PyResult<Results> {
         let array = |of: fn(&RolloutGradient) -> &Matrix, lead: &[usize]| {
@@ -223,5 +187,46 @@ impl Rollouts {
             array(|result| &result.x, &[])?,
             array(|result| &result.u, &[steps])?,
         ))
+    }
+}
+
+impl Derivative for Rollouts {
+    type Result = Results;
+
+    fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<Self::Result> {
+        let signals = Signals::new();
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                let (controls, gradient) = (&self.controls[0], &self.gradients[0]);
+                linearizer
+                    .rollout_vjp_while(sim, self.memory, controls, gradient, &|| signals.none())
+            })
+        });
+        let result = result.map_err(sim_error)?;
+        signals.raise()?;
+        self.export(py, from_ref(result))
+    }
+
+    fn of_batch<S: Precision>(
+        &self,
+        py: Python<'_>,
+        memory: &mut Own<S>,
+        batch: &mut clench::Batch<S>,
+    ) -> PyResult<Self::Result> {
+        let signals = Signals::new();
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            let (controls, gradients) = (&self.controls, &self.gradients);
+            linearizer
+                .rollout_vjp_while(batch, self.memory, controls, gradients, &|| signals.none())
+        });
+        let results = results.map_err(|error| in_env(py, error))?;
+        signals.raise()?;
+        self.export(py, results)
     }
 }

@@ -1,16 +1,14 @@
 //! Directional derivatives of a step: methods of `Sim` and `Batch`.
 
-use crate::batch::{AnyBatch, Batch};
-use crate::busy::lock;
 use crate::changes::Results;
-use crate::sim::Sim;
+use crate::one_or_many::one_or_many;
 use crate::tangents::Tangents;
 use pyo3::prelude::*;
 
-#[pymethods]
-impl Sim {
+one_or_many! {
     /// Computes the directional derivative of the next step: A dx + B du and C dx + D du of `linearize`, without the
-    /// matrices, at the cost of one of the passes that compute them.
+    /// matrices, at the cost of one of the passes that compute them. In a `Batch` each environment has its own change:
+    /// arrays have the environments (n) as first axis.
     ///
     /// Parameters
     /// ----------
@@ -28,14 +26,15 @@ impl Sim {
     /// Returns
     /// -------
     /// tuple of numpy.ndarray
-    ///     The change of the next x, shape (2 nv + na,), and that of y; or both with k columns.
+    ///     The change of the next x, shape (2 nv + na,), and that of y; or both with k columns. Of a `Batch` they have
+    ///     the environments as first axis.
     ///
     /// Raises
     /// ------
     /// ValueError
     ///     If a name is unknown, a parameter follows from another, or an array has another shape or is not finite.
     /// SimulationError
-    ///     If `step` would raise it.
+    ///     If `step` of a `Sim` would raise it, or the step of an environment fails.
     ///
     /// Examples
     /// --------
@@ -55,62 +54,8 @@ impl Sim {
         parameters: Option<&Bound<'_, PyAny>>,
         outputs: Vec<String>,
     ) -> PyResult<Results> {
-        let changes = [x, u, parameters];
-        let tangents = Tangents::new(self.described(), &outputs, changes, &[])?;
-        let mut memory = lock(self.linearizer(), "simulation")?;
-        let mut guard = lock(self.inner(), "simulation")?;
-        tangents.of_sim(py, &mut memory, &mut guard)
-    }
-}
-
-#[pymethods]
-impl Batch {
-    /// Computes the directional derivative of the next step of every environment, each along its own change; see
-    /// `Sim.jvp`.
-    ///
-    /// Parameters
-    /// ----------
-    /// x : array_like, shape (n, 2 nv + na) or (n, 2 nv + na, k), optional
-    ///     Changes of x.
-    /// u : array_like, shape (n, nu) or (n, nu, k), optional
-    ///     Changes of the controls.
-    /// parameters : mapping of str to array_like, optional
-    ///     Changes of parameters, shape (n, numbers) or (n, numbers, k).
-    /// outputs : sequence of str
-    ///     Outputs that follow the sensors in y.
-    ///
-    /// Returns
-    /// -------
-    /// tuple of numpy.ndarray
-    ///     The changes of the next x, shape (n, 2 nv + na), and those of y; or both with k columns.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If a name is unknown, a parameter follows from another, or an array has another shape or is not finite.
-    /// SimulationError
-    ///     If the step of an environment fails.
-    #[pyo3(signature = (x = None, u = None, parameters = None, outputs = Vec::new()),
-           text_signature = "($self, x=None, u=None, parameters=None, outputs=())")]
-    fn jvp(
-        &self,
-        py: Python<'_>,
-        x: Option<&Bound<'_, PyAny>>,
-        u: Option<&Bound<'_, PyAny>>,
-        parameters: Option<&Bound<'_, PyAny>>,
-        outputs: Vec<String>,
-    ) -> PyResult<Results> {
-        let mut memory = lock(self.linearizer(), "batch")?;
-        let mut guard = lock(self.inner(), "batch")?;
-        let count = match &*guard {
-            AnyBatch::F64(batch) => batch.count(),
-            AnyBatch::F32(batch) => batch.count(),
-        };
-        let changes = [x, u, parameters];
-        let tangents = Tangents::new(self.described(), &outputs, changes, &[count])?;
-        match &mut *guard {
-            AnyBatch::F64(batch) => tangents.of_batch(py, &mut memory.double, batch),
-            AnyBatch::F32(batch) => tangents.of_batch(py, &mut memory.single, batch),
-        }
+        let (changes, envs) = ([x, u, parameters], self.envs());
+        let tangents = Tangents::new(self.described(), &outputs, changes, envs.as_slice())?;
+        self.differentiate(py, &tangents)
     }
 }

@@ -18,6 +18,7 @@ mod count;
 #[cfg_attr(not(feature = "derivatives"), path = "no_derivatives.rs")]
 mod derivatives;
 mod device;
+mod differentiated;
 #[cfg_attr(not(feature = "render"), path = "no_drawing.rs")]
 mod drawing;
 mod element;

@@ -2,14 +2,43 @@
 
 use crate::batch::{AnyBatch, Batch};
 use crate::busy::lock;
-use crate::derivatives;
+use crate::derivatives::Chosen;
+use crate::differentiated::Derivative;
 use crate::linearization::Linearization;
+use crate::one_or_many::one_or_many;
 use crate::sim::Sim;
 use pyo3::prelude::*;
 
-#[pymethods]
 impl Sim {
-    /// Computes the exact derivatives of the next step, like MuJoCo's ``mjd_transitionFD`` without finite differences.
+    pub(crate) fn differentiate<D: Derivative>(
+        &self,
+        py: Python<'_>,
+        wanted: &D,
+    ) -> PyResult<D::Result> {
+        let mut memory = lock(self.linearizer(), "simulation")?;
+        let mut guard = lock(self.inner(), "simulation")?;
+        wanted.of_sim(py, &mut memory, &mut guard)
+    }
+}
+
+impl Batch {
+    pub(crate) fn differentiate<D: Derivative>(
+        &self,
+        py: Python<'_>,
+        wanted: &D,
+    ) -> PyResult<D::Result> {
+        let mut memory = lock(self.linearizer(), "batch")?;
+        let mut guard = lock(self.inner(), "batch")?;
+        match &mut *guard {
+            AnyBatch::F64(batch) => wanted.of_batch(py, &mut memory.double, batch),
+            AnyBatch::F32(batch) => wanted.of_batch(py, &mut memory.single, batch),
+        }
+    }
+}
+
+one_or_many! {
+    /// Computes the exact derivatives of the next step, of every environment of a `Batch`, like MuJoCo's
+    /// ``mjd_transitionFD`` without finite differences.
     ///
     /// Every feature of a step has derivatives: contacts that move, all cones, equalities, actuators, fluids,
     /// integrators, noslip. The derivative of a constraint that switches is that of the active side; that of a control
@@ -36,7 +65,7 @@ impl Sim {
     /// Returns
     /// -------
     /// Linearization
-    ///     The matrices.
+    ///     The matrices; those of a `Batch` are stacked.
     ///
     /// Raises
     /// ------
@@ -45,7 +74,7 @@ impl Sim {
     /// IndexError
     ///     If a parameter does not have a number.
     /// SimulationError
-    ///     If `step` would raise it.
+    ///     If `step` of a `Sim` would raise it, or the step of an environment fails.
     ///
     /// Examples
     /// --------
@@ -67,64 +96,7 @@ impl Sim {
         sensors: bool,
         errors: bool,
     ) -> PyResult<Linearization> {
-        let model = self.described();
-        let chosen =
-            derivatives::Chosen::new(model, &outputs, parameters, [memory, sensors, errors])?;
-        let mut linearizer = lock(self.linearizer(), "simulation")?;
-        let mut guard = lock(self.inner(), "simulation")?;
-        chosen.of_sim(py, &mut linearizer, &mut guard)
-    }
-}
-
-#[pymethods]
-impl Batch {
-    /// Computes the exact derivatives of the next step of every environment; see `Sim.linearize`.
-    ///
-    /// Parameters
-    /// ----------
-    /// outputs : sequence of str
-    ///     Outputs that follow the sensors in y.
-    /// parameters : sequence of str, or mapping of str to sequence of int
-    ///     Parameters or inputs to differentiate by.
-    /// memory : bool
-    ///     True to extend x by the other fields that a step changes.
-    /// sensors : bool
-    ///     False to omit the sensors from y.
-    /// errors : bool
-    ///     True to bound the errors that the tolerance of the solver leaves.
-    ///
-    /// Returns
-    /// -------
-    /// Linearization
-    ///     The matrices, stacked.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If a name is unknown, or a parameter follows from another.
-    /// IndexError
-    ///     If a parameter does not have a number.
-    /// SimulationError
-    ///     If the step of an environment fails.
-    #[pyo3(signature = (outputs = Vec::new(), parameters = None, *, memory = false, sensors = true, errors = false),
-           text_signature = "($self, outputs=(), parameters=None, *, memory=False, sensors=True, errors=False)")]
-    fn linearize(
-        &self,
-        py: Python<'_>,
-        outputs: Vec<String>,
-        parameters: Option<&Bound<'_, PyAny>>,
-        memory: bool,
-        sensors: bool,
-        errors: bool,
-    ) -> PyResult<Linearization> {
-        let model = self.described();
-        let chosen =
-            derivatives::Chosen::new(model, &outputs, parameters, [memory, sensors, errors])?;
-        let mut linearizer = lock(self.linearizer(), "batch")?;
-        let mut guard = lock(self.inner(), "batch")?;
-        match &mut *guard {
-            AnyBatch::F64(batch) => chosen.of_batch(py, &mut linearizer.double, batch),
-            AnyBatch::F32(batch) => chosen.of_batch(py, &mut linearizer.single, batch),
-        }
+        let kinds = [memory, sensors, errors];
+        self.differentiate(py, &Chosen::new(self.described(), &outputs, parameters, kinds)?)
     }
 }

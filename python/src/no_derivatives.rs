@@ -1,6 +1,7 @@
 //! Replacement of `derivatives`, `tangents` and `gradients` in a package that is built without them.
 
 use crate::changes::{Changes, InputGradients, OutputGradients, Results};
+use crate::differentiated::{Derivative, Memory, Own};
 use crate::error::classes::ClenchError;
 use crate::linearization::Linearization;
 use crate::row_sim::AnySim;
@@ -8,15 +9,6 @@ use clench::rigid::batch::Precision;
 use pyo3::prelude::*;
 use std::convert::Infallible;
 use std::marker::PhantomData;
-
-/// The memory of a simulation's derivatives: none.
-pub(crate) type Memory = ();
-/// The memory of a batch's derivatives: none.
-#[derive(Default)]
-pub(crate) struct BatchMemory {
-    pub(crate) double: (),
-    pub(crate) single: (),
-}
 
 /// A request for derivatives, which cannot exist.
 pub(crate) struct Absent<R>(Infallible, PhantomData<R>);
@@ -77,15 +69,17 @@ impl Rollouts {
     }
 }
 
-impl<R> Absent<R> {
-    pub(crate) fn of_sim(&self, _: Python<'_>, (): &mut Memory, _: &mut AnySim) -> PyResult<R> {
+impl<R> Derivative for Absent<R> {
+    type Result = R;
+
+    fn of_sim(&self, _: Python<'_>, (): &mut Memory, _: &mut AnySim) -> PyResult<R> {
         match self.0 {}
     }
 
-    pub(crate) fn of_batch<S: Precision>(
+    fn of_batch<S: Precision>(
         &self,
         _: Python<'_>,
-        (): &mut (),
+        _: &mut Own<S>,
         _: &mut clench::Batch<S>,
     ) -> PyResult<R> {
         match self.0 {}

@@ -2,7 +2,8 @@
 
 use crate::arrays::{numbers, require_finite, require_shape};
 use crate::changes::{Changes, Results};
-use crate::derivatives::{Memory, Variable, in_env, with_linearizer};
+use crate::derivatives::{Variable, in_env, with_linearizer};
+use crate::differentiated::{Derivative, Memory, Own};
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
 use clench::Output;
@@ -91,35 +92,6 @@ impl Tangents {
         })
     }
 
-    /// Differentiates the next step of a simulation.
-    pub(crate) fn of_sim(
-        &self,
-        py: Python<'_>,
-        memory: &mut Memory,
-        sim: &mut AnySim,
-    ) -> PyResult<Results> {
-        let result = py.detach(|| {
-            with_linearizer(memory, sim, |linearizer, sim| {
-                linearizer.jvp(sim, &self.request, &self.each[0]).cloned()
-            })
-        });
-        self.export(py, from_ref(&result.map_err(sim_error)?))
-    }
-
-    /// Differentiates the next step of every environment of a batch.
-    pub(crate) fn of_batch<S: Precision>(
-        &self,
-        py: Python<'_>,
-        memory: &mut Option<BatchLinearizer<S>>,
-        batch: &mut clench::Batch<S>,
-    ) -> PyResult<Results> {
-        let results = py.detach(|| {
-            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
-            linearizer.jvp(batch, &self.request, &self.each)
-        });
-        self.export(py, results.map_err(|error| in_env(py, error))?)
-    }
-
     /// Copies results to arrays.
     fn export(&self, py: Python<'_>, results: &[OutputTangent]) -> PyResult<Results> {
         let array = |of: fn(&OutputTangent) -> &Matrix| {
@@ -130,6 +102,37 @@ impl Tangents {
             Ok::<_, PyErr>(array.reshape(shape)?.unbind())
         };
         Ok((array(|result| &result.x)?, array(|result| &result.y)?))
+    }
+}
+
+impl Derivative for Tangents {
+    type Result = Results;
+
+    fn of_sim(
+        &self,
+        py: Python<'_>,
+        memory: &mut Memory,
+        sim: &mut AnySim,
+    ) -> PyResult<Self::Result> {
+        let result = py.detach(|| {
+            with_linearizer(memory, sim, |linearizer, sim| {
+                linearizer.jvp(sim, &self.request, &self.each[0]).cloned()
+            })
+        });
+        self.export(py, from_ref(&result.map_err(sim_error)?))
+    }
+
+    fn of_batch<S: Precision>(
+        &self,
+        py: Python<'_>,
+        memory: &mut Own<S>,
+        batch: &mut clench::Batch<S>,
+    ) -> PyResult<Self::Result> {
+        let results = py.detach(|| {
+            let linearizer = memory.get_or_insert_with(|| BatchLinearizer::new(batch));
+            linearizer.jvp(batch, &self.request, &self.each)
+        });
+        self.export(py, results.map_err(|error| in_env(py, error))?)
     }
 }
 

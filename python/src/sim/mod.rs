@@ -6,7 +6,7 @@ mod queries;
 
 use crate::busy::{in_portions, lock};
 use crate::count::Count;
-use crate::derivatives::Memory;
+use crate::differentiated::Memory;
 use crate::error::sim_error;
 use crate::kind::Kind;
 use crate::model::Model;
