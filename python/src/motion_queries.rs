@@ -3,7 +3,6 @@
 use crate::batch::Batch;
 use crate::kind::Kind;
 use crate::one_or_many::{Form, Input, one_or_many};
-use crate::queries::vector;
 use crate::sim::Sim;
 use crate::target::{Choice, Choices};
 use clench::rigid::model::FrameObject;
@@ -11,21 +10,15 @@ use clench::{Axes, Model, Place, Query};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Returns the place of a query, an object or a point of a body, and its input. The point is one of a single
-/// environment or has `envs`.
+/// Returns the place of a query, an object or a point of a body, and its input.
 fn place<'a, 'py>(
     model: &Model,
     choices: &Choices<'a, 'py>,
     point: Choice<'a, 'py>,
-    envs: Option<usize>,
 ) -> PyResult<(Place, Input<'a, 'py>)> {
     match (choices.one(model)?, point) {
         (object, None) => Ok((Place::Object(object), Input::None)),
         (FrameObject::Body(body), Some(point)) => {
-            if envs.is_none() {
-                // The message names the number that is not finite.
-                vector::<f64>("point", point)?;
-            }
             Ok((Place::PointOf(body), Input::Row("point", point, 3)))
         }
         (_, Some(_)) => Err(PyValueError::new_err("point needs body")),
@@ -87,7 +80,7 @@ macro_rules! jacobians {
                 $($out: Choice<'_, 'py>)?
             ) -> PyResult<Bound<'py, PyAny>> {
                 let choices = Choices([body, body_com, geom, site, camera]);
-                let (place, input) = place(self.described(), &choices, point, self.envs())?;
+                let (place, input) = place(self.described(), &choices, point)?;
                 let shape = [2, 3, self.described().nv];
                 let form = Form::Array(&shape, None$(.or($out))?);
                 self.answer(py, Query::Jacobian(place), &input, form)
@@ -127,7 +120,7 @@ macro_rules! jacobians {
                 $($out: Choice<'_, 'py>)?
             ) -> PyResult<Bound<'py, PyAny>> {
                 let choices = Choices([body, body_com, geom, site, camera]);
-                let (place, input) = place(self.described(), &choices, point, self.envs())?;
+                let (place, input) = place(self.described(), &choices, point)?;
                 let shape = [2, 3, self.described().nv];
                 let form = Form::Array(&shape, None$(.or($out))?);
                 self.answer(py, Query::JacobianRate(place), &input, form)

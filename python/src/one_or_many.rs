@@ -1,6 +1,7 @@
 //! Calls that `Sim` and `Batch` share: each is written once, and answered for one environment or for many.
 
 use crate::answer::{answer, each_row};
+use crate::arrays::require_finite;
 use crate::batch::{AnyBatch, Batch, each};
 use crate::busy::lock;
 use crate::error::sim_error;
@@ -45,10 +46,17 @@ pub(crate) enum Input<'a, 'py> {
 impl Input<'_, '_> {
     /// Reads the numbers for `n` environments, or for one. Returns the first dimensions of the answer, too.
     fn read<S: Precision + Element>(&self, n: Option<usize>) -> PyResult<(Table<S>, Vec<usize>)> {
-        let mut lead = Vec::from_iter(n);
+        let mut lead = n.map_or_else(Vec::new, |n| vec![n]);
         let table = match *self {
             Input::None => Table::empty(),
-            Input::Row(name, values, width) => Table::row_of(name, values, width, n)?,
+            Input::Row(name, values, width) => {
+                let row = Table::<S>::row_of(name, values, width, n)?;
+                if n.is_none() {
+                    // The message names the number that is not finite.
+                    require_finite(name, &Vec::from_iter(row.values.iter().map(|x| x.to_f64())))?;
+                }
+                row
+            }
             Input::Rows(name, values, width) => Table::rows_of(name, values, width, n)?,
             Input::Rays(origins, directions) => rays(origins, directions, n)?,
         };
@@ -75,6 +83,7 @@ fn export<'py, S: Precision + Element>(
     form: Form<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     match form {
+        Form::Array(last, out) if lead.is_empty() => answer(py, numbers, last, out),
         Form::Array(last, out) => answer(py, numbers, &[lead, last].concat(), out),
         Form::Hits => Ok(Bound::new(py, RayHits::new(py, &numbers, lead)?)?.into_any()),
     }
@@ -97,8 +106,10 @@ impl Sim {
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let (input, lead) = input.read(None)?;
-            let found = own.current().and_then(|sim| sim.answer(query, &input.values));
-            export(py, found.map_err(sim_error)?, &lead, form)
+            let mut found = Vec::new();
+            let done = own.current().and_then(|sim| sim.answer(query, &input.values, &mut found));
+            done.map_err(sim_error)?;
+            export(py, found, &lead, form)
         })
     }
 
@@ -113,8 +124,9 @@ impl Sim {
         let mut guard = lock(self.inner(), "simulation")?;
         each_sim!(&mut *guard, own => {
             let sim = own.current().map_err(sim_error)?;
+            let mut found = Vec::new();
             each_row(name, rows, nv, |row| {
-                let found = sim.answer(query, row)?;
+                sim.answer(query, row, &mut found)?;
                 row.copy_from_slice(&found);
                 Ok(())
             })

@@ -28,7 +28,7 @@ use clench_dynamics::profile::{Profile, Stage};
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
-use clench_math::{Mask, Real, read_lane};
+use clench_math::{Mask, Real};
 use clench_solver::LaneStats;
 use computed_state::LaneCopy;
 use std::sync::Arc;
@@ -371,18 +371,9 @@ impl<T: Precision> Sim<T> {
         })
     }
 
-    /// Calls `compute` to change values in the number type that the environment is computed in.
-    pub(crate) fn change(
-        &mut self,
-        values: &mut [T],
-        compute: impl FnOnce(&Self, &mut Vec<T::SingleEnv>),
-    ) {
-        let mut numbers = std::mem::take(&mut self.numbers);
-        numbers.clear();
-        numbers.extend(values.iter().copied().map(T::SingleEnv::splat));
-        compute(self, &mut numbers);
-        read_lane(&numbers, 0, values);
-        self.numbers = numbers;
+    /// Returns scratch memory for answers of queries.
+    pub(crate) fn numbers(&mut self) -> &mut Vec<T::SingleEnv> {
+        &mut self.numbers
     }
 
     /// Computes the joint reactions on bodies from the results of a forward pass.
@@ -390,25 +381,23 @@ impl<T: Precision> Sim<T> {
         self.read(T::body_forces);
     }
 
-    /// Computes inverse dynamics of the present state in a separate workspace, so that other results stay valid.
+    /// Computes inverse dynamics of the present state in a separate workspace, so that other results stay valid, and
+    /// leaves the forces in [`numbers`](Self::numbers).
     pub(crate) fn invert(
         &mut self,
-        qacc: &[T],
+        qacc: &[T::SingleEnv],
         kind: Acceleration,
-        qfrc_inverse: &mut [T],
     ) -> Result<(), SimError> {
         self.check_state()?;
-        let (model, state) = (&self.model, &self.state);
+        let (model, state, forces) = (&self.model, &self.state, &mut self.numbers);
+        forces.clear();
+        forces.resize(qacc.len(), T::SingleEnv::ZERO);
         let (step, inverse_ws) = (Step::compiled(), &mut self.inverse_ws);
         let ws = inverse_ws.get_or_insert_with(|| Box::new((step.workspace)(model)));
-        let splat = |numbers: &[T]| numbers.iter().copied().map(T::SingleEnv::splat).collect();
-        let (qacc, mut forces): (Vec<_>, Vec<_>) = (splat(qacc), splat(qfrc_inverse));
-        let input = (&qacc[..], kind);
         let (params, settings) = (&self.params, &self.settings);
         computed_state::read(state, &mut self.lane_copy, |state| {
-            (step.inverse)(model, params, settings, state, input, ws, &mut forces);
+            (step.inverse)(model, params, settings, state, (qacc, kind), ws, forces);
         });
-        read_lane(&forces, 0, qfrc_inverse);
         match T::good_results(state, ws) {
             true => Ok(()),
             false => Err(check::result_fault(model, state.time, state, ws, 0).into()),

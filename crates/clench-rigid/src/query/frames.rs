@@ -35,7 +35,8 @@ impl<T: Precision> Sim<T> {
     /// Returns an error if there is no such object or a length is wrong, or as [`refresh`](Self::refresh) does.
     pub fn jacobian(&mut self, anchor: Anchor<T>, jacobian: &mut [T]) -> Result<(), SimError> {
         let (place, input) = self.check_jacobian(anchor, jacobian.len())?;
-        self.write_answer(Query::Jacobian(place), &input, jacobian)
+        let input = input.as_slice().as_flattened();
+        self.write_answer(Query::Jacobian(place), input, jacobian)
     }
 
     /// Writes the time derivative of that Jacobian (6, nv), as MuJoCo's `mj_jacDot`: 1/s times the units of the
@@ -45,7 +46,8 @@ impl<T: Precision> Sim<T> {
     /// See [`jacobian`](Self::jacobian).
     pub fn jacobian_rate(&mut self, anchor: Anchor<T>, rate: &mut [T]) -> Result<(), SimError> {
         let (place, input) = self.check_jacobian(anchor, rate.len())?;
-        self.write_answer(Query::JacobianRate(place), &input, rate)
+        let input = input.as_slice().as_flattened();
+        self.write_answer(Query::JacobianRate(place), input, rate)
     }
 
     /// Writes the Jacobian of the centre of mass of a body's subtree to `jacobian` (3, nv), as MuJoCo's
@@ -65,7 +67,7 @@ impl<T: Precision> Sim<T> {
     /// # Errors
     /// See [`jacobian`](Self::jacobian).
     pub fn velocity(&mut self, object: FrameObject, axes: Axes) -> Result<[Vec3<T>; 2], SimError> {
-        self.two_vectors(Query::Velocity(object, axes))
+        self.two_vectors(object, Query::Velocity(object, axes))
     }
 
     /// Returns the acceleration of an object in the same form, as MuJoCo's `mj_objectAcceleration`: that of an
@@ -78,11 +80,17 @@ impl<T: Precision> Sim<T> {
         object: FrameObject,
         axes: Axes,
     ) -> Result<[Vec3<T>; 2], SimError> {
-        self.two_vectors(Query::Acceleration(object, axes))
+        self.two_vectors(object, Query::Acceleration(object, axes))
     }
 
-    fn two_vectors(&mut self, query: Query<'_>) -> Result<[Vec3<T>; 2], SimError> {
-        let values = self.answer(query, &[])?;
+    fn two_vectors(
+        &mut self,
+        object: FrameObject,
+        query: Query<'_>,
+    ) -> Result<[Vec3<T>; 2], SimError> {
+        check_object(self.model(), object)?;
+        let mut values = [T::ZERO; 6];
+        self.write_answer(query, &[], &mut values)?;
         Ok([Vec3::from_slice(&values), Vec3::from_slice(&values[3..])])
     }
 
@@ -91,15 +99,15 @@ impl<T: Precision> Sim<T> {
         &self,
         anchor: Anchor<T>,
         length: usize,
-    ) -> Result<(Place, Vec<T>), SimError> {
+    ) -> Result<(Place, Option<[T; 3]>), SimError> {
         let found = match anchor {
             Anchor::Object(object) => {
                 check_object(self.model(), object)?;
-                (Place::Object(object), Vec::new())
+                (Place::Object(object), None)
             }
             Anchor::Point { body, place } => {
                 check_body(self.model(), body)?;
-                (Place::PointOf(body), place.to_array().to_vec())
+                (Place::PointOf(body), Some(place.to_array()))
             }
         };
         check_length("jacobian", length, 6 * self.model().nv)?;

@@ -9,7 +9,7 @@ use clench_dynamics::check::{check_length, check_values};
 use clench_dynamics::dynamics::chains::BodyPoint;
 use clench_dynamics::dynamics::jacobian::add_point_forces;
 use clench_dynamics::error::SimError;
-use clench_math::Vec3;
+use clench_math::{Real, Vec3, read_lane};
 
 impl<T: Precision> Sim<T> {
     /// Writes M x to `product` (nv) at the poses of [`refresh`](Self::refresh): for accelerations x, the required
@@ -50,11 +50,11 @@ impl<T: Precision> Sim<T> {
         check_length("qfrc", qfrc.len(), self.model().nv)?;
         self.require(Computed::Positions)?;
         let wrench = (Vec3::splat(force), Vec3::splat(torque));
-        self.change(qfrc, |sim, qfrc| {
-            let pos = &sim.workspace().position;
-            let point = BodyPoint::new(sim.model(), pos, body, Vec3::splat(place));
-            add_point_forces(sim.model(), pos, &point, wrench, qfrc);
-        });
+        let (model, pos) = (self.model(), &self.workspace().position);
+        let point = BodyPoint::new(model, pos, body, Vec3::splat(place));
+        let mut forces = Vec::from_iter(qfrc.iter().copied().map(T::SingleEnv::splat));
+        add_point_forces(model, pos, &point, wrench, &mut forces);
+        read_lane(&forces, 0, qfrc);
         Ok(())
     }
 }

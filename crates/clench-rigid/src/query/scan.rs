@@ -22,7 +22,8 @@ impl<T: Precision> Sim<T> {
         frame: Option<FrameObject>,
         filter: &RayFilter,
     ) -> Result<Vec<Option<RayHit<T>>>, SimError> {
-        let hits = self.answer(Query::Rays { frame, filter }, rays)?;
+        let mut hits = Vec::new();
+        self.answer(Query::Rays { frame, filter }, rays, &mut hits)?;
         let hit = |numbers: &[T]| {
             (numbers[0] >= T::ZERO).then(|| RayHit {
                 geom: numbers[0].to_f64() as usize,
@@ -45,6 +46,8 @@ impl<T: Precision> Sim<T> {
         places: &[T],
         frame: Option<FrameObject>,
     ) -> Result<Vec<T>, SimError> {
-        self.answer(Query::Heights { geom, frame }, places)
+        let mut heights = Vec::new();
+        self.answer(Query::Heights { geom, frame }, places, &mut heights)?;
+        Ok(heights)
     }
 }

@@ -216,5 +216,7 @@ fn body_point<T: Real>(geoms: Geoms<'_, T>, place: Place, input: &[T]) -> BodyPo
 }
 
 fn write_vectors<T: Real>(vectors: [Vec3<T>; 2], out: &mut Vec<T>) {
-    out.extend(vectors.iter().flat_map(|vector| vector.to_array()));
+    for vector in vectors {
+        out.extend_from_slice(&vector.to_array());
+    }
 }
