@@ -12,7 +12,7 @@ use clench_dynamics::model::{
     Actuator, BiasKind, Flags, GainKind, Integrator, Model, Transmission,
 };
 use clench_dynamics::options::RigidOptions;
-use clench_dynamics::{Fault, SimError, State, Step, StepSettings, Workspace, check};
+use clench_dynamics::{Fault, SimError, State, Step, StepContext, StepSettings, Workspace, check};
 
 /// The minimum time constant of the decay of velocities, s.
 const MIN_TIMECONST: f64 = 0.01;
@@ -245,19 +245,13 @@ impl<'a> Search<'a> {
         Ok(length)
     }
 
-    /// Takes a step of the simulation. The model's sensors are off.
+    /// Takes a step of the simulation.
     fn advance(&mut self) -> Result<(), Fault> {
         self.check()?;
         let (model, time) = (&self.model, self.state.time);
         let (state, ws) = (&mut self.state, &mut self.ws);
-        (self.step.step)(
-            model,
-            &model.params,
-            &self.options,
-            state,
-            ws,
-            |_, _, _, _, _| (),
-        );
+        let context = StepContext::without_sensors(model, &model.params, &self.options);
+        (self.step.step)(context, state, ws);
         match check::good_results(state, ws) {
             true => Ok(()),
             false => Err(check::result_fault(model, time, state, ws, 0)),

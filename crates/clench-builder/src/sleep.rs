@@ -5,6 +5,7 @@ use super::element::Element;
 use super::model_builder::ModelBuilder;
 use super::{BodySpec, BuildError};
 use clench_dynamics::contact::check_supported;
+use clench_dynamics::context::StepContext;
 use clench_dynamics::model::{KinematicTree, Model, SleepPolicy, Transmission};
 use clench_dynamics::options::RigidOptions;
 use clench_dynamics::settings::StepSettings;
@@ -150,19 +151,13 @@ pub(super) fn begin_asleep(model: &mut Model) -> Result<(), BuildError> {
         return Ok(());
     }
     let (mut state, mut ws) = (State::new(model), Workspace::new(model));
-    pipeline::forward(
-        model,
-        &model.params,
-        &settings,
-        &state,
-        &mut ws,
-        |_, _, _, _, _| (),
-    );
+    let context = StepContext::without_sensors(model, &model.params, &settings);
+    pipeline::forward(context, &state, &mut ws);
     for (tree, counter) in model.trees.iter().zip(&mut state.tree_asleep) {
         *counter = if begins_asleep(tree) { READY } else { AWAKE };
     }
     ws.sleep.begin(model, &state);
-    sleep::fall_asleep(model, &model.params, &settings, &mut state, &mut ws);
+    sleep::fall_asleep(context, &mut state, &mut ws);
     for (t, tree) in model.trees.iter().enumerate() {
         let counter = ws.sleep.counters()[t];
         let restless = begins_asleep(tree) && counter < 0.0;

@@ -11,7 +11,7 @@ use crate::tangent;
 use clench_dynamics::model::{Integrator, Model, Params};
 use clench_dynamics::{State, Workspace, check, pipeline};
 use clench_math::{Dual, LaneTask, Real};
-use clench_rigid::{OutputSource, SimError, evaluate_sensors};
+use clench_rigid::{OutputSource, SimError};
 use clench_solver::{ErrorBound, ErrorBounds};
 
 /// The number of registers of derivatives in a dual number. With one or four, a humanoid takes 20% longer.
@@ -217,12 +217,7 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
         seeds: &[Seed],
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), SimError> {
-        let Source {
-            model,
-            settings,
-            request,
-            ..
-        } = source;
+        let (model, request) = (source.model, source.request);
         self.recursed = false;
         if source.first {
             self.before.set_values(source.state);
@@ -272,13 +267,14 @@ impl<L: Real<Scalar = f64>> Pass for DualPass<L> {
                 output.read(&mut from, outputs);
             }
         };
+        let context = source.context(params);
         // After a Runge-Kutta step, the workspace holds the results of its last stage.
         let stages = model.integrator == Integrator::Rk4;
         if stages && !request.outputs.is_empty() {
-            pipeline::forward(model, params, settings, before, ws, evaluate_sensors);
+            pipeline::forward(context, before, ws);
             read_outputs(ws);
         }
-        step(model, params, settings, state, ws, evaluate_sensors);
+        step(context, state, ws);
         let good = check::good_results(state, ws);
         if good {
             if !stages {

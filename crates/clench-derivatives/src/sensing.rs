@@ -31,7 +31,7 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
         (seeds, columns): (&[Seed], &[usize]),
         write: &mut dyn FnMut(usize, &[f64]),
     ) {
-        let (model, settings, request) = (source.model, source.settings, source.request);
+        let (model, request) = (source.model, source.request);
         if source.first {
             self.before.set_values(source.state);
         } else {
@@ -58,7 +58,7 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
         }
         if !request.omits_sensors {
             ws.sensors.wanted = true;
-            evaluate_sensors(model, params, settings, before, ws);
+            evaluate_sensors(source.context(params), before, ws);
         }
         outputs.clear();
         outputs.extend_from_slice(&ws.sensors.data[..request.sensors_len(model)]);
@@ -78,7 +78,7 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
 
     /// Runs the stages that y reads, from the first that changes on.
     fn run_stages(&mut self, source: Source<'_>, reads: Reads) {
-        let (model, settings, start) = (source.model, source.settings, source.start);
+        let (model, start) = (source.model, source.start);
         let (params, before, ws) = (&self.params, &self.before, &mut self.ws);
         let parts = [Part::first(model, reads.bodies)];
         if start == Stage::Positions {
@@ -86,7 +86,7 @@ impl<L: Real<Scalar = f64>> DualPass<L> {
             let computed = Computed::all(&parts);
             poses(model, params, before, computed, &mut ws.position);
             if reads.contacts {
-                detect(model, params, settings, ws);
+                detect(source.context(params), ws);
             }
         }
         let (pos, vel, force) = (&ws.position, &mut ws.velocity, &mut ws.force);

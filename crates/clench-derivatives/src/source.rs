@@ -3,7 +3,9 @@
 use crate::request::Request;
 use crate::stage::Stage;
 use clench_dynamics::model::{Model, Params};
-use clench_dynamics::{State, StepSettings};
+use clench_dynamics::{State, StepContext, StepSettings};
+use clench_math::Real;
+use clench_rigid::evaluate_sensors;
 
 /// The input of a step.
 #[derive(Clone, Copy)]
@@ -19,4 +21,21 @@ pub(crate) struct Source<'a> {
     pub start: Stage,
     /// True if the factor of the mass matrix needs no derivatives.
     pub constant_factor: bool,
+}
+
+impl<'a> Source<'a> {
+    /// Returns the context of passes in dual numbers, which evaluate sensors.
+    pub(crate) fn context<T: Real>(&self, params: &'a Params<T>) -> StepContext<'a, T> {
+        StepContext {
+            model: self.model,
+            params,
+            settings: self.settings,
+            sensors: evaluate_sensors,
+        }
+    }
+
+    /// Returns the context of passes in plain numbers, which evaluate no sensors.
+    pub(crate) fn without_sensors(&self) -> StepContext<'a, f64> {
+        StepContext::without_sensors(self.model, self.params, self.settings)
+    }
 }

@@ -16,6 +16,7 @@
 
 use crate::constraint::assemble;
 use crate::contact::detect;
+use crate::context::StepContext;
 use crate::dynamics::actuation::actuation;
 use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::discrete::{add_metric_forces, apply_metric};
@@ -23,7 +24,6 @@ use crate::dynamics::euler::{damped_inertia, damped_lanes};
 use crate::dynamics::implicit::{add_gyroscopic_products, full_inertia, symmetric_inertia};
 use crate::model::{Integrator, Model, Params};
 use crate::pipeline::{position_stage, velocity_stage};
-use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Real, kernel};
@@ -51,16 +51,15 @@ impl Acceleration {
 /// forces to `ws.qfrc_constraint` and the solver, and the required actuator and applied forces along dofs to
 /// `qfrc_inverse` (nv). Sleeping trees take part.
 pub fn inverse<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     state: &State<T>,
     (qacc, given): (&[T], Acceleration),
     ws: &mut Workspace<T>,
     qfrc_inverse: &mut [T],
 ) {
+    let StepContext { model, params, .. } = context;
     position_stage(model, params, state, ws);
-    detect(model, params, settings, ws);
+    detect(context, ws);
     adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
     ws.qacc.copy_from_slice(qacc);
@@ -68,11 +67,11 @@ pub fn inverse<T: Real>(
         // The derivatives of actuators depend on their forces.
         let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
         actuation(model, params, state, pos, vel, T::ZERO, force);
-        apply_metric(model, params, settings, state, ws);
+        apply_metric(context, state, ws);
     } else if given == Acceleration::Discrete {
         make_continuous(model, params, state, ws);
     }
-    assemble(model, params, settings, state, ws);
+    assemble(context, state, ws);
     (ws.solver.evaluate(&ws.problem, &ws.qacc))
         .expect("the arrays of a workspace have the model's lengths");
     let constraint = ws.solver.qfrc_constraint();

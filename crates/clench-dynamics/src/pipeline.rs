@@ -2,6 +2,7 @@
 
 use crate::constraint::{assemble, constraint_stage};
 use crate::contact::detect;
+use crate::context::StepContext;
 use crate::dynamics::actuation::actuation;
 use crate::dynamics::adhesion::adhesion;
 use crate::dynamics::articulated::articulated_factor;
@@ -23,8 +24,6 @@ use crate::dynamics::velocity::velocities;
 use crate::model::{Integrator, Model, Params};
 use crate::part::Part;
 use crate::profile::Stage;
-use crate::sensors::Sensors;
-use crate::settings::StepSettings;
 use crate::sleep;
 use crate::stages::Positions;
 use crate::state::State;
@@ -144,17 +143,16 @@ pub fn velocity_stage<T: Real>(
 
 /// Computes actuator forces, the sum of all smooth forces, and the unconstrained acceleration.
 pub(crate) fn force_stage<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
+    let StepContext { model, params, .. } = context;
     let (pos, vel, force) = (&ws.position, &ws.velocity, &mut ws.force);
     actuation(model, params, state, pos, vel, ws.integration.offset, force);
     smooth_forces(model, ws.sleep.computed(), state, pos, force);
     if ws.metric.acts() {
-        apply_metric(model, params, settings, state, ws);
+        apply_metric(context, state, ws);
     }
     let parts = (ws.sleep.computed(), ws.sleep.rows(model));
     let forces = (&ws.force.qfrc_smooth[..], &ws.metric.shift[..]);
@@ -163,82 +161,61 @@ pub(crate) fn force_stage<T: Real>(
 }
 
 /// Computes everything that follows from the state: forward dynamics and sensors.
-pub fn forward<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
-) {
-    forward_dynamics(model, params, settings, state, ws);
-    sensors(model, params, settings, state, ws);
+pub fn forward<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    forward_dynamics(context, state, ws);
+    (context.sensors)(context, state, ws);
     ws.clock.lap(Stage::Sensors as usize);
 }
 
 /// Computes forward dynamics, up to `ws.qacc` and the constraint forces.
-fn forward_dynamics<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
-    before_forces(model, params, settings, state, ws);
-    from_forces(model, params, settings, state, ws);
+fn forward_dynamics<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    before_forces(context, state, ws);
+    from_forces(context, state, ws);
 }
 
 /// Computes the first half of forward dynamics, before controls act: everything that depends only on positions and
 /// velocities, contacts included. (MuJoCo's `mj_step1`.)
-pub fn before_forces<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
+pub fn before_forces<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     ws.clock.start();
     if settings.flags.sleep {
-        wake(model, params, settings, state, ws);
+        wake(context, state, ws);
     } else {
         positions(model, params, state, ws);
-        detect(model, params, settings, ws);
+        detect(context, ws);
     }
     adhesion(model, &ws.contacts, &mut ws.position);
     velocity_stage(model, params, state, ws);
 }
 
 /// Computes positions and contacts of awake trees, and wakes trees as soon as the cause is computed.
-fn wake<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
+fn wake<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let StepContext { model, params, .. } = context;
     sleep::wake_touched(model, state, ws);
     ws.sleep.find_parts(model, state, &ws.fixed);
     positions(model, params, state, ws);
-    let mut woke = sleep::wake_pulled(model, params, settings, ws);
-    detect(model, params, settings, ws);
+    let mut woke = sleep::wake_pulled(context, ws);
+    detect(context, ws);
     while sleep::wake_touching(model, ws) {
         woke = true;
-        detect(model, params, settings, ws);
+        detect(context, ws);
     }
     woke |= sleep::wake_coupled(model, state, ws);
     ws.sleep.add_woken(model, state, &ws.fixed, woke);
 }
 
 /// Computes the second half of forward dynamics: forces, including those of controls, and constraints.
-fn from_forces<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
-    force_stage(model, params, settings, state, ws);
-    constraint_stage(model, params, settings, state, ws);
+fn from_forces<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model, settings, ..
+    } = context;
+    force_stage(context, state, ws);
+    constraint_stage(context, state, ws);
     if settings.flags.sleep {
         ws.sleep.clear_sleeping(model, &mut ws.qacc);
         if !ws.singular.any() {
@@ -248,87 +225,65 @@ fn from_forces<T: Real>(
 }
 
 /// Advances the state by one time step. The next step's solver starts from this step's acceleration.
-pub fn step<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &mut State<T>,
-    ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
-) {
-    if step_asleep(model, params, settings, state, ws, sensors) {
+pub fn step<T: Real>(context: StepContext<T>, state: &mut State<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model, settings, ..
+    } = context;
+    if step_asleep(context, state, ws) {
         return;
     }
     if settings.flags.sleep && sleep::is_idle(model, state, ws) {
-        idle(model, params, settings, state, ws, sensors);
+        idle(context, state, ws);
         return;
     }
-    before_forces(model, params, settings, state, ws);
-    step_from_forces(model, params, settings, state, ws, sensors);
+    before_forces(context, state, ws);
+    step_from_forces(context, state, ws);
 }
 
 /// Does the step if everything sleeps as the last step left it, so that only time changes. Returns true if it did.
 pub fn step_asleep<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     state: &mut State<T>,
     ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
 ) -> bool {
+    let StepContext {
+        model, settings, ..
+    } = context;
     let unchanged = settings.flags.sleep && sleep::sleeps_unchanged(model, state, ws);
     if unchanged {
-        advance_time(model, params, settings, state, ws, sensors);
+        advance_time(context, state, ws);
     }
     unchanged
 }
 
 /// Does a step that only advances time.
-fn advance_time<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &mut State<T>,
-    ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
-) {
-    sensors(model, params, settings, state, ws);
+fn advance_time<T: Real>(context: StepContext<T>, state: &mut State<T>, ws: &mut Workspace<T>) {
+    let StepContext { params, .. } = context;
+    (context.sensors)(context, state, ws);
     state.pass(params.timestep);
 }
 
 /// Does a step in which nothing is awake.
-fn idle<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &mut State<T>,
-    ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
-) {
+fn idle<T: Real>(context: StepContext<T>, state: &mut State<T>, ws: &mut Workspace<T>) {
+    let StepContext { model, .. } = context;
     if !ws.sleep.is_at_rest() {
-        clear(model, params, settings, state, ws);
+        clear(context, state, ws);
     }
-    advance_time(model, params, settings, state, ws, sensors);
+    advance_time(context, state, ws);
     sleep::restore_sleeping(model, state, ws);
     state.qacc_warmstart.fill(T::ZERO);
 }
 
 /// Clears contacts, constraints and failures in the workspace. Its poses and forces are not updated.
-fn clear<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
+fn clear<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
     ws.sleep.invalidate();
     ws.contacts.clear();
     ws.collision.excess = T::ZERO;
     ws.collision.overflow = T::Mask::splat(false);
     ws.singular = T::Mask::splat(false);
     ws.problem.qacc_smooth.fill(T::ZERO);
-    assemble(model, params, settings, state, ws);
-    (ws.solver.solve(&ws.problem, &settings.solver, None))
+    assemble(context, state, ws);
+    (ws.solver.solve(&ws.problem, &context.settings.solver, None))
         .expect("a problem without constraints has the model's lengths");
     ws.qacc.fill(T::ZERO);
     ws.qfrc_constraint.fill(T::ZERO);
@@ -337,34 +292,35 @@ fn clear<T: Real>(
 /// Does the remainder of a step after positions and contacts: reuses those of the last pass, which was for the same
 /// positions. Trees must not sleep.
 pub fn step_from_velocities<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     state: &mut State<T>,
     ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
 ) {
+    let StepContext { model, params, .. } = context;
     velocity_stage(model, params, state, ws);
-    step_from_forces(model, params, settings, state, ws, sensors);
+    step_from_forces(context, state, ws);
 }
 
 /// Does the remainder of a step after [`before_forces`], for the same positions and velocities. (MuJoCo's `mj_step2`.)
 pub fn step_from_forces<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     state: &mut State<T>,
     ws: &mut Workspace<T>,
-    sensors: Sensors<T>,
 ) {
-    from_forces(model, params, settings, state, ws);
-    sensors(model, params, settings, state, ws);
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
+    from_forces(context, state, ws);
+    (context.sensors)(context, state, ws);
     ws.clock.lap(Stage::Sensors as usize);
     if settings.stiction {
         drag(model, params, state, ws);
     }
     if settings.flags.sleep {
-        sleep::fall_asleep(model, params, settings, state, ws);
+        sleep::fall_asleep(context, state, ws);
     }
     match model.integrator {
         Integrator::Euler => euler(model, params, state, ws),
@@ -372,7 +328,7 @@ pub fn step_from_forces<T: Real>(
         Integrator::Implicit => implicit(model, params, state, ws),
         Integrator::Discrete => discrete(model, params, state, ws),
         Integrator::Rk4 => rk4(model, params, state, ws, |state, ws| {
-            forward_dynamics(model, params, settings, state, ws);
+            forward_dynamics(context, state, ws);
         }),
     }
     if settings.flags.sleep {

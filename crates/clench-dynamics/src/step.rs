@@ -1,5 +1,6 @@
 //! The step, compiled in this crate for each number type. Dependent crates call it without compiling it again.
 
+use crate::context::StepContext;
 use crate::dynamics::energy::{Energy, energy};
 use crate::dynamics::integrate::integrate_positions;
 use crate::dynamics::kinematics::Computed;
@@ -8,8 +9,6 @@ use crate::inverse::{Acceleration, inverse};
 use crate::model::{Model, Params};
 use crate::part::Part;
 use crate::pipeline;
-use crate::sensors::Sensors;
-use crate::settings::StepSettings;
 use crate::stages::{Positions, Velocities};
 use crate::state::State;
 use crate::workspace::{EnergyScratch, Workspace};
@@ -26,17 +25,15 @@ pub struct Step<T: Real> {
     /// [`State::splat_from`].
     pub splat_state: fn(&mut State<T>, &State<T::Scalar>),
     /// [`pipeline::step`].
-    pub step: fn(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>, Sensors<T>),
+    pub step: fn(StepContext<T>, &mut State<T>, &mut Workspace<T>),
     /// [`pipeline::forward`].
-    pub forward: fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>, Sensors<T>),
+    pub forward: fn(StepContext<T>, &State<T>, &mut Workspace<T>),
     /// [`pipeline::step_asleep`].
-    pub step_asleep:
-        fn(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>, Sensors<T>) -> bool,
+    pub step_asleep: fn(StepContext<T>, &mut State<T>, &mut Workspace<T>) -> bool,
     /// [`pipeline::before_forces`].
-    pub before_forces: fn(&Model, &Params<T>, &StepSettings, &State<T>, &mut Workspace<T>),
+    pub before_forces: fn(StepContext<T>, &State<T>, &mut Workspace<T>),
     /// [`pipeline::step_from_forces`].
-    pub step_from_forces:
-        fn(&Model, &Params<T>, &StepSettings, &mut State<T>, &mut Workspace<T>, Sensors<T>),
+    pub step_from_forces: fn(StepContext<T>, &mut State<T>, &mut Workspace<T>),
     /// [`pipeline::position_stage`].
     pub position_stage: fn(&Model, &Params<T>, &State<T>, &mut Workspace<T>),
     /// [`pipeline::poses`].
@@ -56,15 +53,7 @@ pub struct Step<T: Real> {
     /// [`TreeFactor::solve`].
     pub solve: fn(&TreeFactor<T>, &Tree, &mut [T]),
     /// [`inverse`].
-    pub inverse: fn(
-        &Model,
-        &Params<T>,
-        &StepSettings,
-        &State<T>,
-        (&[T], Acceleration),
-        &mut Workspace<T>,
-        &mut [T],
-    ),
+    pub inverse: fn(StepContext<T>, &State<T>, (&[T], Acceleration), &mut Workspace<T>, &mut [T]),
 }
 
 impl<T: Real> Step<T> {

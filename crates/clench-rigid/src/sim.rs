@@ -16,7 +16,6 @@ pub use dynamic::DynamicConstraint;
 use crate::output::{Output, Source};
 use crate::validity::{Computed, Validity};
 use crate::{Precision, readout};
-use clench_dynamics::Step;
 use clench_dynamics::check::{self, check_values};
 use clench_dynamics::contact::Contact;
 use clench_dynamics::dynamics::energy::Energy;
@@ -28,6 +27,7 @@ use clench_dynamics::profile::{Profile, Stage};
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
+use clench_dynamics::{Step, StepContext};
 use clench_math::{Mask, Real};
 use clench_solver::LaneStats;
 use computed_state::LaneCopy;
@@ -153,9 +153,7 @@ impl<T: Precision> Sim<T> {
         self.check_state()?;
         self.last_good.copy_moving_from(&self.state);
         self.ws.clock.lap(Stage::Rows as usize);
-        self.on_threads(|model, params, settings, state, ws| {
-            (Step::compiled().step)(model, params, settings, state, ws, T::sensors());
-        });
+        self.on_threads(Step::compiled().step);
         let result = self.check_result(self.last_good.time);
         self.record_validity(&result);
         if result.is_err() {
@@ -175,9 +173,7 @@ impl<T: Precision> Sim<T> {
 
     fn try_forward(&mut self) -> Result<(), SimError> {
         self.check_state()?;
-        self.on_threads(|model, params, settings, state, ws| {
-            (Step::compiled().forward)(model, params, settings, state, ws, T::sensors());
-        });
+        self.on_threads(|context, state, ws| (Step::compiled().forward)(context, state, ws));
         let result = self.check_result(self.state.time);
         self.record_validity(&result);
         result
@@ -394,9 +390,9 @@ impl<T: Precision> Sim<T> {
         forces.resize(qacc.len(), T::SingleEnv::ZERO);
         let (step, inverse_ws) = (Step::compiled(), &mut self.inverse_ws);
         let ws = inverse_ws.get_or_insert_with(|| Box::new((step.workspace)(model)));
-        let (params, settings) = (&self.params, &self.settings);
+        let context = StepContext::without_sensors(model, &self.params, &self.settings);
         computed_state::read(state, &mut self.lane_copy, |state| {
-            (step.inverse)(model, params, settings, state, (qacc, kind), ws, forces);
+            (step.inverse)(context, state, (qacc, kind), ws, forces);
         });
         match T::good_results(state, ws) {
             true => Ok(()),

@@ -103,11 +103,10 @@ impl Recursive {
     /// # Errors
     /// Returns an error if the step fails.
     pub(crate) fn step(&mut self, source: Source<'_>) -> Result<(), SimError> {
-        let (model, params, settings) = (source.model, source.params, source.settings);
         self.state.copy_from(source.state);
         let step = clench_dynamics::Step::<f64>::compiled().step;
         let (state, plain) = (&mut self.state, &mut self.plain);
-        step(model, params, settings, state, plain, |_, _, _, _, _| {});
+        step(source.without_sensors(), state, plain);
         self.check(source)
     }
 
@@ -193,7 +192,7 @@ impl Recursive {
         find_curves: &mut FindCurves<'_>,
         write: &mut dyn FnMut(&[f64]),
     ) -> Result<bool, SimError> {
-        let (model, params, settings) = (source.model, source.params, source.settings);
+        let (model, params, context) = (source.model, source.params, source.without_sensors());
         let forward = clench_dynamics::Step::<f64>::compiled().forward;
         let Recursive {
             state,
@@ -212,7 +211,7 @@ impl Recursive {
             runge_kutta.add_stage(&step, gradient)
         };
         state.copy_from(source.state);
-        forward(model, params, settings, state, plain, |_, _, _, _, _| {});
+        forward(context, state, plain);
         let mut covered = add_stage(runge_kutta, state, plain);
         if !covered {
             return Ok(false);
@@ -226,7 +225,7 @@ impl Recursive {
             let from = &plain.integration;
             let (start, rates) = (&from.start.position, &from.stage.position);
             runge_kutta.reach(model, start, rates, from.offset);
-            forward(model, params, settings, state, plain, |_, _, _, _, _| {});
+            forward(context, state, plain);
             covered = covered && add_stage(runge_kutta, state, plain);
         });
         state.qacc_warmstart.copy_from_slice(&plain.qacc);

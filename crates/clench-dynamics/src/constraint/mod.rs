@@ -30,8 +30,9 @@ pub use softness::{DEFAULT_SOLIMP, DEFAULT_SOLREF, Softness, impedance};
 pub use weld::weld_torque;
 
 use crate::contact::Contact;
+use crate::context::StepContext;
 use crate::dynamics::discrete::{append_couplings, couple_smooth, spin_freely, subtract_couplings};
-use crate::model::{EqualityTarget, Model, Params};
+use crate::model::{EqualityTarget, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
 use crate::state::State;
@@ -48,19 +49,19 @@ use implicit::ImplicitRows;
 ///
 /// Reads poses, velocities and contacts of the workspace, and the problem's factored mass and unconstrained
 /// acceleration.
-pub fn constraint_stage<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
+pub fn constraint_stage<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     let in_metric = ws.metric.acts();
     if in_metric {
         couple_smooth(model, &settings.solver, ws);
     }
     if !(T::IS_DUAL && ws.reuse_constraints) {
-        assemble(model, params, settings, state, ws);
+        assemble(context, state, ws);
     }
     if in_metric {
         append_couplings(model, &settings.solver, ws);
@@ -82,13 +83,13 @@ pub fn constraint_stage<T: Real>(
 
 /// Replaces the problem's blocks with those of the configuration.
 #[kernel]
-pub fn assemble<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
+pub fn assemble<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     ws.problem.clear_constraints();
     ws.record.clear();
     ws.stiction.clear();

@@ -5,6 +5,7 @@ use super::bounding_sphere::{self, may_touch};
 use super::collision::{Collision, Excess};
 use super::pair_finder::PairFinder;
 use super::{Candidate, Contact, contact_params, contact_range, surface};
+use crate::context::StepContext;
 use crate::model::{Model, Params};
 use crate::profile::Stage;
 use crate::settings::StepSettings;
@@ -41,12 +42,13 @@ const MIN_PAIRS: usize = 8;
 
 /// Fills `ws.contacts` from the geoms' poses, in canonical order.
 #[kernel]
-pub fn detect<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    ws: &mut Workspace<T>,
-) {
+pub fn detect<T: Real>(context: StepContext<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     let (collision, contacts, pos) = (&mut ws.collision, &mut ws.contacts, &ws.position);
     let awake = Awake {
         model,
@@ -93,7 +95,7 @@ pub fn detect<T: Real>(
         }
     }
     ws.clock.lap(Stage::BroadPhase as usize);
-    find_points(model, params, settings, pos, &ws.threads, collision);
+    find_points(context, pos, &ws.threads, collision);
     let finders = std::mem::take(&mut collision.finders);
     for (candidate, points) in finders.iter().flat_map(PairFinder::touching) {
         let candidate = collision.candidates[candidate as usize];
@@ -149,13 +151,17 @@ fn find_near<T: Real>(
 
 /// Finds the points of all near candidates, in order, with a number of finders that suits the work.
 fn find_points<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     pos: &Positions<T>,
     threads: &Threads,
     collision: &mut Collision<T>,
 ) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     let (near, candidates, axes) = (&collision.near, &collision.candidates, &mut collision.axes);
     axes.begin(near.len());
     let limit = (threads.count() > 1).then_some(threads.count() * FINDERS_PER_THREAD);

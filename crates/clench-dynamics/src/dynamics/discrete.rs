@@ -5,13 +5,13 @@
 //! velocity over h, so only positions remain to be integrated. A free body that is its own tree, without constraints or
 //! couplings of the metric, is solved once more with its gyroscopic forces.
 
+use crate::context::StepContext;
 use crate::dynamics::ellipsoid::FluidForces;
 use crate::dynamics::gyroscopic::{gyroscopic_product, is_free_tree, solve_gyroscopic};
 use crate::dynamics::integrate::{add_scaled, advance_semi_implicit};
 use crate::dynamics::metric::{Metric, add_metric, each_arm};
 use crate::model::{Model, Params};
 use crate::record::ConstraintRecord;
-use crate::settings::StepSettings;
 use crate::stages::Positions;
 use crate::state::State;
 use crate::workspace::Workspace;
@@ -24,12 +24,16 @@ const EXACT_STEPS: usize = 4;
 /// Replaces the mass matrix with the metric of the state, after actuators have their forces.
 #[kernel]
 pub(crate) fn apply_metric<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
+    context: StepContext<T>,
     state: &State<T>,
     ws: &mut Workspace<T>,
 ) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     let stages = (&ws.position, &ws.velocity, &ws.force);
     let mass = &mut ws.problem.mass;
     add_metric(model, params, state, stages, &mut ws.metric, mass);

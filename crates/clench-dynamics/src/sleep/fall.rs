@@ -6,8 +6,8 @@
 
 use super::wake::is_free;
 use super::{AWAKE, READY, Sleep, is_blank, mocap_pose};
+use crate::context::StepContext;
 use crate::model::{KinematicTree, Model, Params, SleepPolicy};
-use crate::settings::StepSettings;
 use crate::state::State;
 use crate::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
@@ -16,13 +16,13 @@ use clench_solver::{Problem, Switch};
 /// Counts the steps in which trees are slow, and deactivates the islands whose trees have all been slow for long
 /// enough: their velocities and accelerations become zero. The islands follow from the constraints of `ws`.
 #[kernel]
-pub fn fall_asleep<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &mut State<T>,
-    ws: &mut Workspace<T>,
-) {
+pub fn fall_asleep<T: Real>(context: StepContext<T>, state: &mut State<T>, ws: &mut Workspace<T>) {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     let sleep = &mut ws.sleep;
     // Without islands, trees fall asleep only in lanes without constraints, as in MuJoCo.
     let counting = match settings.solver.islands {

@@ -4,8 +4,8 @@
 //! is touched or pulled takes the counter of the tree that wakes it, because both must be at rest to sleep again.
 
 use super::{AWAKE, Sleep, all_blank, is_blank, mocap_pose};
-use crate::model::{Coupled, KinematicTree, Model, Params, SleepPolicy};
-use crate::settings::StepSettings;
+use crate::context::StepContext;
+use crate::model::{Coupled, KinematicTree, Model, SleepPolicy};
 use crate::state::State;
 use crate::state::slots::each_tie;
 use crate::workspace::Workspace;
@@ -117,12 +117,13 @@ fn no_wrench<T: Real>(forces: &[Force<T>]) -> T::Mask {
 /// Wakes trees by tendons that connect them to others, if such a tendon is at a limit or has dry friction. Returns true
 /// if there were any.
 #[kernel]
-pub(crate) fn wake_pulled<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    ws: &mut Workspace<T>,
-) -> bool {
+pub(crate) fn wake_pulled<T: Real>(context: StepContext<T>, ws: &mut Workspace<T>) -> bool {
+    let StepContext {
+        model,
+        params,
+        settings,
+        ..
+    } = context;
     if !settings.flags.constraint {
         return false;
     }

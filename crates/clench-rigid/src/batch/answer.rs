@@ -9,6 +9,7 @@ use crate::query::{Query, QueryInput, geom_of};
 use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
 use clench_dynamics::Step;
+use clench_dynamics::context::StepContext;
 use clench_dynamics::model::{Model, Params};
 use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
@@ -80,22 +81,21 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
                 return everywhere;
             }
         };
+        let context = StepContext {
+            model: self.model,
+            params,
+            settings: self.settings,
+            sensors: sensor::evaluate,
+        };
         if let Query::Inverse(kind) = query {
             out.resize(self.model.nv, T::ZERO);
             let input = (&input[..], kind);
-            (Step::compiled().inverse)(self.model, params, self.settings, state, input, ws, out);
+            (Step::compiled().inverse)(context, state, input, ws, out);
             return clench_dynamics::check::good_results(state, ws);
         }
         if let Query::Acceleration(..) = query {
             ws.invalidate_poses();
-            (Step::compiled().forward)(
-                self.model,
-                params,
-                self.settings,
-                state,
-                ws,
-                sensor::evaluate,
-            );
+            (Step::compiled().forward)(context, state, ws);
             update_body_forces(self.model, params, state, ws);
         } else {
             (Step::compiled().position_stage)(self.model, params, state, ws);

@@ -17,7 +17,7 @@ use clench_dynamics::profile::{Profile, Stage};
 use clench_dynamics::state::State;
 use clench_dynamics::state::kind::Number;
 use clench_dynamics::workspace::Workspace;
-use clench_dynamics::{Step, check};
+use clench_dynamics::{Step, StepContext, check};
 use clench_math::{Clock, LaneTask, Mask, Real, Scalar, write_lane};
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -198,11 +198,17 @@ where
     ) -> bool {
         let (model, settings) = (job.model, job.settings);
         let time = self.state.time;
-        let (state, params, ws) = (&mut self.state, &self.params, &mut self.ws);
+        let (state, ws) = (&mut self.state, &mut self.ws);
+        let context = StepContext {
+            model,
+            params: &self.params,
+            settings,
+            sensors: sensor::evaluate,
+        };
         if job.pass == Pass::Step {
-            (self.compiled.step)(model, params, settings, state, ws, sensor::evaluate);
+            (self.compiled.step)(context, state, ws);
         } else {
-            (self.compiled.forward)(model, params, settings, state, ws, sensor::evaluate);
+            (self.compiled.forward)(context, state, ws);
         }
         let overflow = ws.collision.overflow;
         let within = check::good_results(state, ws);

@@ -15,8 +15,8 @@ mod read;
 pub(crate) mod tactile;
 mod volume;
 
+use clench_dynamics::context::StepContext;
 use clench_dynamics::model::{Model, Params, Sensor, SensorData, SensorKind};
-use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, kernel};
@@ -24,13 +24,8 @@ use read::Reading;
 
 /// Evaluates all sensors of the model if they are read now or later.
 #[kernel]
-pub fn evaluate<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    settings: &StepSettings,
-    state: &State<T>,
-    ws: &mut Workspace<T>,
-) {
+pub fn evaluate<T: Real>(context: StepContext<T>, state: &State<T>, ws: &mut Workspace<T>) {
+    let StepContext { model, params, .. } = context;
     let stores_past = !ws.sensors.measured.is_empty();
     if !(ws.sensors.wanted || stores_past) || !model.flags.sensor {
         return;
@@ -45,7 +40,7 @@ pub fn evaluate<T: Real>(
     let source = Reading {
         model,
         params,
-        settings,
+        settings: context.settings,
         state,
         ws,
     };

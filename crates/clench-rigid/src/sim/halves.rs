@@ -19,8 +19,8 @@ impl<T: Precision> Sim<T> {
 
     fn try_step1(&mut self) -> Result<(), SimError> {
         self.check_state()?;
-        self.on_threads(|model, params, settings, state, ws| {
-            (Step::compiled().before_forces)(model, params, settings, state, ws);
+        self.on_threads(|context, state, ws| {
+            (Step::compiled().before_forces)(context, state, ws);
         });
         self.validity.record(Computed::Positions, &self.state);
         self.halfway = true;
@@ -41,10 +41,7 @@ impl<T: Precision> Sim<T> {
         }
         self.halfway = false;
         self.last_good.copy_moving_from(&self.state);
-        self.on_threads(|model, params, settings, state, ws| {
-            let step = Step::compiled().step_from_forces;
-            step(model, params, settings, state, ws, T::sensors());
-        });
+        self.on_threads(Step::compiled().step_from_forces);
         let result = self.check_result(self.last_good.time);
         self.record_validity(&result);
         if result.is_ok() {

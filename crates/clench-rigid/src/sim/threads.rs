@@ -2,9 +2,8 @@
 
 use super::{Sim, computed_state};
 use crate::Precision;
+use clench_dynamics::context::StepContext;
 use clench_dynamics::error::SimError;
-use clench_dynamics::model::{Model, Params};
-use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_solver::Threads;
@@ -49,18 +48,21 @@ impl<T: Precision> Sim<T> {
     pub(super) fn on_threads(
         &mut self,
         pass: impl FnOnce(
-            &Model,
-            &Params<T::SingleEnv>,
-            &StepSettings,
+            StepContext<T::SingleEnv>,
             &mut State<T::SingleEnv>,
             &mut Workspace<T::SingleEnv>,
         ) + Send,
     ) {
-        let (model, params, settings) = (&self.model, &self.params, &self.settings);
+        let context = StepContext {
+            model: &self.model,
+            params: &self.params,
+            settings: &self.settings,
+            sensors: T::sensors(),
+        };
         let ws = &mut self.ws;
         let threads = ws.threads.clone();
         computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
-            threads.run_awake(|| pass(model, params, settings, state, ws));
+            threads.run_awake(|| pass(context, state, ws));
         });
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::scenes::{Numbers, loose_parts};
 use clench_dynamics::Step;
+use clench_dynamics::StepContext;
 use clench_math::{Instructions, LaneTask, Mask, Real, Scalar};
 use clench_rigid::model::Integrator;
 use clench_rigid::options::{FrictionCone, RigidOptions};
@@ -68,16 +69,10 @@ fn in_lanes<T: Real<Scalar = f64>>(
         }
         state.eq_active[0].set_lane(lane, sim.state.eq_active[0]);
     }
+    let context = StepContext::without_sensors(&model, &params, &settings);
     let (mut contacts, mut overflow) = (vec![0; count], false);
     for step in 0..steps {
-        (compiled.step)(
-            &model,
-            &params,
-            &settings,
-            &mut state,
-            &mut ws,
-            |_, _, _, _, _| (),
-        );
+        (compiled.step)(context, &mut state, &mut ws);
         for (lane, sim) in alone.iter_mut().enumerate() {
             sim.step().expect("finite");
             let same = |what: &str, wide: &[T], narrow: &[f64]| {
