@@ -1,6 +1,6 @@
 //! Actuator inputs: clamped controls, activation dynamics, and setpoints on a circle.
 
-use super::actuator::{ActuatorInputs, ActuatorMotion};
+use super::actuator::{ActuatorContext, ActuatorInputs};
 use super::setpoint::nearest_setpoint;
 use crate::dynamics::dc_motor;
 use crate::model::{DynamicsKind, Model, Params};
@@ -48,30 +48,27 @@ pub(crate) fn acting_controls<T: Real>(
 }
 
 #[inline(always)]
-pub(super) fn time_constant<T: Real>(params: &Params<T>, u: usize) -> T {
-    params.actuator_dynprm[u][0].max(T::new(MIN_TIMECONST))
+pub(super) fn time_constant<T: Real>(at: ActuatorContext<T>) -> T {
+    at.dynprm()[0].max(T::new(MIN_TIMECONST))
 }
 
-/// Advances activation `a` of actuator `u` by a time step at its rate, within its range. An exact filter covers 1 −
+/// Advances activation `a` of an actuator by a time step at its rate, within its range. An exact filter covers 1 −
 /// exp(−h/τ) of the distance to its control.
 #[inline(always)]
 pub(crate) fn next_activation<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    u: usize,
+    at: ActuatorContext<T>,
     a: usize,
     (act, act_dot): (T, T),
-    velocity: T,
 ) -> T {
-    let h = params.timestep;
-    let actuator = &model.actuators[u];
+    let h = at.params.timestep;
+    let actuator = at.actuator();
     let next = match actuator.dynamics {
         DynamicsKind::FilterExact => {
-            let tau = time_constant(params, u);
+            let tau = time_constant(at);
             act + act_dot * tau * (T::ONE - (-h / tau).exp())
         }
         DynamicsKind::DcMotor => {
-            return dc_motor::next_activation(model, params, u, a, (act, act_dot), velocity);
+            return dc_motor::next_activation(at, a, (act, act_dot));
         }
         DynamicsKind::None
         | DynamicsKind::Integrator
@@ -81,51 +78,39 @@ pub(crate) fn next_activation<T: Real>(
         | DynamicsKind::User => act + act_dot * h,
     };
     if actuator.actlimited {
-        let [low, high] = params.actuator_actrange[u];
+        let [low, high] = at.params.actuator_actrange[at.u];
         next.clamp(low, high)
     } else {
         next
     }
 }
 
-/// Returns the factor of the gain of actuator `u`: its control or its activation (at the end of the step with
+/// Returns the factor of the gain of an actuator: its control or its activation (at the end of the step with
 /// `actearly`).
 #[inline(always)]
 pub(crate) fn input<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &[T],
-    u: usize,
-    at: ActuatorMotion<T>,
 ) -> T {
-    let actuator = &model.actuators[u];
+    let actuator = at.actuator();
     let input = match actuator.act() {
         None => inputs.ctrl[actuator.controls.start],
-        Some(a) => acting(model, params, inputs, act_dot, (u, a), at),
+        Some(a) => acting(at, inputs, act_dot, a),
     };
-    nearest_setpoint(model, params, u, input, at.length)
+    nearest_setpoint(at, input, at.length)
 }
 
-/// Returns activation `a` of actuator `u` for its gain: at the end of the step with `actearly`.
+/// Returns activation `a` of an actuator for its gain: at the end of the step with `actearly`.
 #[inline(always)]
 pub(crate) fn acting<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &[T],
-    (u, a): (usize, usize),
-    at: ActuatorMotion<T>,
+    a: usize,
 ) -> T {
-    match model.actuators[u].actearly {
-        true => next_activation(
-            model,
-            params,
-            u,
-            a,
-            (inputs.act[a], act_dot[a]),
-            at.velocity,
-        ),
+    match at.actuator().actearly {
+        true => next_activation(at, a, (inputs.act[a], act_dot[a])),
         false => inputs.act[a],
     }
 }

@@ -1,7 +1,7 @@
 //! Activation dynamics: the rates of change of activations.
 
 use super::activation::time_constant;
-use super::actuator::{ActuatorInputs, ActuatorMotion};
+use super::actuator::{ActuatorContext, ActuatorInputs};
 use super::setpoint::nearest_setpoint;
 use super::{dc_motor, muscle, pid};
 use crate::model::{DynamicsKind, Model, Params};
@@ -14,7 +14,7 @@ use clench_math::{Real, kernel};
 pub(crate) fn activation_rates<T: Real>(
     model: &Model,
     params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    inputs: ActuatorInputs<T>,
     pos: &Positions<T>,
     vel: &Velocities<T>,
     act_dot: &mut [T],
@@ -23,13 +23,11 @@ pub(crate) fn activation_rates<T: Real>(
         let Some(a) = actuator.act() else { continue };
         let act = inputs.act[a];
         let ctrl = || inputs.ctrl[actuator.controls.start];
-        let at = ActuatorMotion::of(model, pos, vel, u);
+        let at = ActuatorContext::new(model, params, (pos, vel), u);
         act_dot[a] = match actuator.dynamics {
             // MuJoCo leaves these rates to a user callback.
             DynamicsKind::None | DynamicsKind::User => T::ZERO,
-            DynamicsKind::Muscle => {
-                muscle::activation_rate(ctrl(), act, &params.actuator_dynprm[u])
-            }
+            DynamicsKind::Muscle => muscle::activation_rate(ctrl(), act, at.dynprm()),
             DynamicsKind::Integrator => {
                 let controls = &inputs.ctrl[actuator.controls.clone()];
                 for (a, &rate) in actuator.acts.clone().zip(controls) {
@@ -38,14 +36,14 @@ pub(crate) fn activation_rates<T: Real>(
                 continue;
             }
             DynamicsKind::Filter | DynamicsKind::FilterExact => {
-                (nearest_setpoint(model, params, u, ctrl(), act) - act) / time_constant(params, u)
+                (nearest_setpoint(at, ctrl(), act) - act) / time_constant(at)
             }
             DynamicsKind::Pid => {
-                pid::activation_rates(model, params, inputs, u, at.length, act_dot);
+                pid::activation_rates(at, inputs, act_dot);
                 continue;
             }
             DynamicsKind::DcMotor => {
-                dc_motor::activation_rates(model, params, inputs, u, at, act_dot);
+                dc_motor::activation_rates(at, inputs, act_dot);
                 continue;
             }
         };

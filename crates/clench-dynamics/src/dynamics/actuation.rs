@@ -1,7 +1,7 @@
 //! Actuator forces, force = gain · input + bias, and the resulting dof forces.
 
 use super::activation_rates::activation_rates;
-use super::actuator::{ActuatorInputs, ActuatorMotion};
+use super::actuator::{ActuatorContext, ActuatorInputs};
 use crate::dynamics::activation::acting_controls;
 use crate::dynamics::gain::unlimited_force;
 use crate::dynamics::transmission::moment;
@@ -41,11 +41,11 @@ pub fn actuation<T: Real>(
         if !actuator.disabled {
             let act_dot = &force.act_dot;
             let out = &mut force.actuator_force[actuator.outputs.clone()];
+            let at = ActuatorContext::new(model, params, (pos, vel), u);
             if actuator.gain.is_rotation() {
-                orientation::torque(model, params, inputs, act_dot, u, (pos, vel)).write(out);
+                orientation::torque(at, inputs, act_dot, (pos, vel)).write(out);
             } else {
-                let at = ActuatorMotion::of(model, pos, vel, u);
-                out[0] = unlimited_force(model, params, inputs, act_dot, u, at);
+                out[0] = unlimited_force(at, inputs, act_dot);
             }
         }
     }
@@ -66,13 +66,12 @@ pub fn actuation<T: Real>(
             force.ten_actuator_force[t] += force.actuator_force[first];
         }
         if actuator.bias == BiasKind::DcMotor && !actuator.disabled {
-            let (act_dot, length) = (&force.act_dot, pos.actuator_length[first]);
+            let at = ActuatorContext::new(model, params, (pos, vel), u);
             let inputs = ActuatorInputs {
                 ctrl: &force.ctrl,
                 act: &state.act,
             };
-            force.actuator_force[first] +=
-                dc_motor::mechanical_force(model, params, inputs, act_dot, u, length);
+            force.actuator_force[first] += dc_motor::mechanical_force(at, inputs, &force.act_dot);
         }
         for output in actuator.outputs.clone() {
             for (dof, arm) in moment(model, pos, output) {

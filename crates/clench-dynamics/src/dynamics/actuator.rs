@@ -1,6 +1,6 @@
-//! Inputs and motion of actuators.
+//! An actuator and its inputs, which all its formulas read.
 
-use crate::model::Model;
+use crate::model::{Actuator, Model, Params};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Real, Scalar};
 
@@ -13,24 +13,60 @@ pub(crate) struct ActuatorInputs<'a, T> {
     pub act: &'a [T],
 }
 
-/// Length and velocity of an actuator.
+/// An actuator at a length and velocity.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ActuatorMotion<T> {
-    /// The length of its transmission.
+pub(crate) struct ActuatorContext<'a, T> {
+    pub model: &'a Model,
+    pub params: &'a Params<T>,
+    /// The index of the actuator.
+    pub u: usize,
+    /// The length of its transmission; of several, the first.
     pub length: T,
-    /// The velocity of its transmission.
+    /// The velocity of its transmission, likewise.
     pub velocity: T,
 }
 
-impl<T: Real> ActuatorMotion<T> {
-    /// Returns the motion of the first output of actuator `u`.
+impl<'a, T: Real> ActuatorContext<'a, T> {
+    /// Returns actuator `u` at its present length and velocity.
     #[inline(always)]
-    pub(crate) fn of(model: &Model, pos: &Positions<T>, vel: &Velocities<T>, u: usize) -> Self {
+    pub(crate) fn new(
+        model: &'a Model,
+        params: &'a Params<T>,
+        (pos, vel): (&Positions<T>, &Velocities<T>),
+        u: usize,
+    ) -> Self {
         let output = model.actuators[u].outputs.start;
-        ActuatorMotion {
+        ActuatorContext {
+            model,
+            params,
+            u,
             length: pos.actuator_length[output],
             velocity: vel.actuator_velocity[output],
         }
+    }
+
+    /// Returns the actuator.
+    #[inline(always)]
+    pub(crate) fn actuator(self) -> &'a Actuator {
+        &self.model.actuators[self.u]
+    }
+
+    /// Returns the parameters of its dynamics.
+    #[inline(always)]
+    pub(crate) fn dynprm(self) -> &'a [T; 10] {
+        &self.params.actuator_dynprm[self.u]
+    }
+
+    /// Returns the parameters of its gain.
+    #[inline(always)]
+    pub(crate) fn gainprm(self) -> &'a [T; 10] {
+        &self.params.actuator_gainprm[self.u]
+    }
+
+    /// Returns the parameters of its bias.
+    #[inline(always)]
+    pub(crate) fn biasprm(self) -> &'a [T; 10] {
+        &self.params.actuator_biasprm[self.u]
     }
 }
 

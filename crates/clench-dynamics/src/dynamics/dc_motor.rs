@@ -14,9 +14,9 @@
 //! MuJoCo: `gainprm` R₀ K α T₀ kp ki kd Vmax; `dynprm` te, largest |i̇|, RT, C, ambient, σ₀, σ₁, slew rate, bound of
 //! the integral; `biasprm` A N φ F_C F_S v_S.
 
-use super::actuator::{ActuatorInputs, ActuatorMotion};
+use super::actuator::{ActuatorContext, ActuatorInputs};
 use crate::dynamics::setpoint::{Setpoints, integral_rate};
-use crate::model::{BiasKind, ControlInput, Model, Params};
+use crate::model::{BiasKind, ControlInput};
 use clench_math::{Real, kernel};
 
 /// The minimum of divisors (MuJoCo's `mjMINVAL`).
@@ -44,17 +44,10 @@ struct Circuit<T> {
 
 impl<T: Real> Circuit<T> {
     #[kernel]
-    fn new(
-        model: &Model,
-        params: &Params<T>,
-        inputs: ActuatorInputs<'_, T>,
-        u: usize,
-        at: ActuatorMotion<T>,
-    ) -> Self {
-        let actuator = &model.actuators[u];
-        let (dyn_, gain) = (&params.actuator_dynprm[u], &params.actuator_gainprm[u]);
-        let [cold, constant, tempcoef, reftemp, kp, ki, kd, vmax, ..] = *gain;
-        let setpoints = Setpoints::new(model, params, inputs, u);
+    fn new(at: ActuatorContext<T>, inputs: ActuatorInputs<T>) -> Self {
+        let actuator = at.actuator();
+        let [cold, constant, tempcoef, reftemp, kp, ki, kd, vmax, ..] = *at.gainprm();
+        let setpoints = Setpoints::new(at, inputs);
         let (mut voltage, mut voltage_slope) = (T::ZERO, T::ZERO);
         let mut voltage_length_slope = T::ZERO;
         let controlled =
@@ -74,7 +67,7 @@ impl<T: Real> Circuit<T> {
             voltage = T::select(limited, voltage.max(-vmax).min(vmax), voltage);
         }
         let resistance = match actuator.states.temperature {
-            Some(a) => cold * (T::ONE + tempcoef * (inputs.act[a] + dyn_[4] - reftemp)),
+            Some(a) => cold * (T::ONE + tempcoef * (inputs.act[a] + at.dynprm()[4] - reftemp)),
             None => cold,
         };
         Circuit {
@@ -103,21 +96,17 @@ impl<T: Real> Circuit<T> {
     }
 }
 
-/// Computes the rates of the activations of actuator `u`.
+/// Computes the rates of the activations of an actuator.
 #[kernel]
 pub(crate) fn activation_rates<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
-    u: usize,
-    at: ActuatorMotion<T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &mut [T],
 ) {
-    let states = model.actuators[u].states;
-    let prm = &params.actuator_dynprm[u];
-    let circuit = Circuit::new(model, params, inputs, u, at);
+    let (states, prm) = (at.actuator().states, at.dynprm());
+    let circuit = Circuit::new(at, inputs);
     if let Some(a) = states.slew {
-        act_dot[a] = circuit.setpoints.slew_rate(params, inputs.act[a]);
+        act_dot[a] = circuit.setpoints.slew_rate(at.params, inputs.act[a]);
     }
     if let Some(a) = states.integral {
         let error = circuit.setpoints.position - at.length;
@@ -132,7 +121,7 @@ pub(crate) fn activation_rates<T: Real>(
         act_dot[a] = (heat - inputs.act[a] / prm[2]) / prm[3];
     }
     if let Some(a) = states.bristle {
-        act_dot[a] = bristle_decay(params, u, at.velocity) * inputs.act[a] + at.velocity;
+        act_dot[a] = bristle_decay(at) * inputs.act[a] + at.velocity;
     }
     if let Some(a) = states.current {
         act_dot[a] = circuit.current_rate(prm, inputs.act[a], at.velocity);
@@ -141,32 +130,29 @@ pub(crate) fn activation_rates<T: Real>(
 
 /// Computes −σ₀ |ω| / g(ω), the decay rate of the bristle's deflection.
 #[kernel]
-fn bristle_decay<T: Real>(params: &Params<T>, u: usize, velocity: T) -> T {
-    let [_, _, _, coulomb, static_, stribeck, ..] = params.actuator_biasprm[u];
-    let ratio = velocity / divisor(stribeck);
+fn bristle_decay<T: Real>(at: ActuatorContext<T>) -> T {
+    let [_, _, _, coulomb, static_, stribeck, ..] = *at.biasprm();
+    let ratio = at.velocity / divisor(stribeck);
     let level = coulomb + (static_ - coulomb) * (-ratio * ratio).exp();
-    -params.actuator_dynprm[u][5] * velocity.abs() / divisor(level)
+    -at.dynprm()[5] * at.velocity.abs() / divisor(level)
 }
 
 /// Advances an activation of a motor by a time step. A current approaches its steady value like an exact filter, a
 /// deflection is integrated exactly at constant velocity, and an integral stays within its bound.
 #[kernel]
 pub(crate) fn next_activation<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    u: usize,
+    at: ActuatorContext<T>,
     a: usize,
     (act, act_dot): (T, T),
-    velocity: T,
 ) -> T {
-    let states = model.actuators[u].states;
-    let (h, prm) = (params.timestep, &params.actuator_dynprm[u]);
+    let states = at.actuator().states;
+    let (h, prm) = (at.params.timestep, at.dynprm());
     if states.current == Some(a) {
         let te = divisor(prm[0]);
         return act + act_dot * te * (T::ONE - (-h / te).exp());
     }
     if states.bristle == Some(a) {
-        let decay = bristle_decay(params, u, velocity);
+        let decay = bristle_decay(at);
         let remaining = (decay * h).exp();
         let moves = decay.abs().gt(T::new(MIN_DIVISOR));
         let time = T::select(
@@ -174,7 +160,7 @@ pub(crate) fn next_activation<T: Real>(
             (remaining - T::ONE) / T::select(moves, decay, T::ONE),
             h,
         );
-        return remaining * act + time * velocity;
+        return remaining * act + time * at.velocity;
     }
     let next = act + act_dot * h;
     if states.integral == Some(a) {
@@ -189,14 +175,11 @@ pub(crate) fn next_activation<T: Real>(
 /// voltage.
 #[kernel]
 pub(crate) fn gain_and_voltage<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
-    u: usize,
-    at: ActuatorMotion<T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
 ) -> (T, T) {
-    let circuit = Circuit::new(model, params, inputs, u, at);
-    let gain = match model.actuators[u].states.current {
+    let circuit = Circuit::new(at, inputs);
+    let gain = match at.actuator().states.current {
         Some(_) => circuit.constant,
         None => circuit.constant / divisor(circuit.resistance),
     };
@@ -205,73 +188,54 @@ pub(crate) fn gain_and_voltage<T: Real>(
 
 /// Returns the force that back-EMF subtracts at this gain: zero if the current is a state, whose equation includes it.
 #[inline(always)]
-pub(crate) fn back_emf<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    u: usize,
-    gain: T,
-    at: ActuatorMotion<T>,
-) -> T {
-    match model.actuators[u].states.current {
+pub(crate) fn back_emf<T: Real>(at: ActuatorContext<T>, gain: T) -> T {
+    match at.actuator().states.current {
         Some(_) => T::ZERO,
-        None => gain * params.actuator_gainprm[u][1] * at.velocity,
+        None => gain * at.gainprm()[1] * at.velocity,
     }
 }
 
 /// Computes ∂force/∂velocity of a motor's gain, and of its back-EMF if its bias is a motor's.
 #[kernel]
 pub(crate) fn electrical_slope<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &[T],
-    u: usize,
-    at: ActuatorMotion<T>,
 ) -> T {
-    let circuit = Circuit::new(model, params, inputs, u, at);
-    let actuator = &model.actuators[u];
+    let circuit = Circuit::new(at, inputs);
+    let actuator = at.actuator();
     let net = match actuator.states.current {
         None if actuator.bias != BiasKind::DcMotor => circuit.voltage_slope,
         _ => circuit.voltage_slope - circuit.constant,
     };
-    by_voltage(model, params, act_dot, u, &circuit, net)
+    by_voltage(at, act_dot, &circuit, net)
 }
 
 /// Computes ∂force/∂length of a motor's gain.
 #[kernel]
 pub(crate) fn electrical_length_slope<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &[T],
-    u: usize,
-    at: ActuatorMotion<T>,
 ) -> T {
-    let circuit = Circuit::new(model, params, inputs, u, at);
+    let circuit = Circuit::new(at, inputs);
     let net = circuit.voltage_length_slope;
-    by_voltage(model, params, act_dot, u, &circuit, net)
+    by_voltage(at, act_dot, &circuit, net)
 }
 
 /// Returns the change of the force if the driving voltage changes by `net`: a current that is a state follows it within
 /// the step only with `actearly`.
 #[inline(always)]
-fn by_voltage<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    act_dot: &[T],
-    u: usize,
-    circuit: &Circuit<T>,
-    net: T,
-) -> T {
-    let actuator = &model.actuators[u];
+fn by_voltage<T: Real>(at: ActuatorContext<T>, act_dot: &[T], circuit: &Circuit<T>, net: T) -> T {
+    let actuator = at.actuator();
     let steady = circuit.constant * net / divisor(circuit.resistance);
     match actuator.states.current {
         None => steady,
         Some(_) if !actuator.actearly => T::ZERO,
         Some(a) => {
-            let prm = &params.actuator_dynprm[u];
+            let prm = at.dynprm();
             let te = divisor(prm[0]);
-            let share = T::ONE - (-params.timestep / te).exp();
+            let share = T::ONE - (-at.params.timestep / te).exp();
             let at_limit = prm[1].gt(T::ZERO) & act_dot[a].abs().ge(prm[1]);
             T::select(at_limit, T::ZERO, steady * share)
         }
@@ -281,18 +245,15 @@ fn by_voltage<T: Real>(
 /// Computes cogging and friction, which the motor's torque limits do not clamp.
 #[kernel]
 pub(crate) fn mechanical_force<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &[T],
-    u: usize,
-    length: T,
 ) -> T {
-    let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];
-    let cogging = amplitude * (poles * length + phase).sin_cos().0;
-    match model.actuators[u].states.bristle {
+    let [amplitude, poles, phase, ..] = *at.biasprm();
+    let cogging = amplitude * (poles * at.length + phase).sin_cos().0;
+    match at.actuator().states.bristle {
         Some(a) => {
-            let prm = &params.actuator_dynprm[u];
+            let prm = at.dynprm();
             cogging - (prm[5] * inputs.act[a] + prm[6] * act_dot[a])
         }
         None => cogging,
@@ -301,16 +262,16 @@ pub(crate) fn mechanical_force<T: Real>(
 
 /// Computes ∂force/∂velocity of friction, at constant decay of the deflection.
 #[inline(always)]
-pub(crate) fn mechanical_slope<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
-    match model.actuators[u].states.bristle {
-        Some(_) => -params.actuator_dynprm[u][6],
+pub(crate) fn mechanical_slope<T: Real>(at: ActuatorContext<T>) -> T {
+    match at.actuator().states.bristle {
+        Some(_) => -at.dynprm()[6],
         None => T::ZERO,
     }
 }
 
 /// Computes ∂force/∂length of cogging.
 #[kernel]
-pub(crate) fn cogging_slope<T: Real>(params: &Params<T>, u: usize, length: T) -> T {
-    let [amplitude, poles, phase, ..] = params.actuator_biasprm[u];
-    amplitude * poles * (poles * length + phase).sin_cos().1
+pub(crate) fn cogging_slope<T: Real>(at: ActuatorContext<T>) -> T {
+    let [amplitude, poles, phase, ..] = *at.biasprm();
+    amplitude * poles * (poles * at.length + phase).sin_cos().1
 }

@@ -1,6 +1,6 @@
 //! Advances the state by a time step, given its rates of change.
 
-use super::actuator::ActuatorMotion;
+use super::actuator::ActuatorContext;
 use super::integration::Integration;
 use super::setpoint::nearest_setpoint;
 use crate::dynamics::activation::next_activation;
@@ -104,10 +104,10 @@ pub(crate) fn advance_activations<T: Real>(
             } else {
                 act_dot[a]
             };
-            let at = ActuatorMotion::of(model, pos, vel, u);
-            act[a] = next_activation(model, params, u, a, (act[a], rate), at.velocity);
+            let at = ActuatorContext::new(model, params, (pos, vel), u);
+            act[a] = next_activation(at, a, (act[a], rate));
             if actuator.gain == GainKind::Fixed {
-                act[a] = nearest_setpoint(model, params, u, act[a], at.length);
+                act[a] = nearest_setpoint(at, act[a], at.length);
             }
         }
         if actuator.gain.is_rotation() && !actuator.acts.is_empty() {

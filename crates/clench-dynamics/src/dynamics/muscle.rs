@@ -6,7 +6,7 @@
 //! parabolas from `lmin` over 1 to `lmax`; FV rises by a parabola from −1, and by another to `fvmax`; FP is a parabola
 //! beyond 1 that continues linearly.
 
-use crate::model::Params;
+use super::actuator::ActuatorContext;
 use clench_math::{Real, kernel};
 
 /// The minimum of divisors (MuJoCo's `mjMINVAL`).
@@ -57,17 +57,17 @@ pub struct Muscle<T> {
 }
 
 impl<T: Real> Muscle<T> {
-    /// Creates the muscle of actuator `u` at a length, with the parameters `prm` of its gain or bias.
+    /// Creates the muscle of an actuator at its length, with the parameters `prm` of its gain or bias.
     #[kernel]
-    pub fn new(params: &Params<T>, u: usize, prm: &[T; 10], length: T) -> Self {
+    pub(super) fn new(at: ActuatorContext<T>, prm: &[T; 10]) -> Self {
         let [low, high, force, scale, lmin, lmax, vmax, fpmax, fvmax, _] = *prm;
-        let [shortest, longest] = params.actuator_lengthrange[u];
+        let [shortest, longest] = at.params.actuator_lengthrange[at.u];
         let resting = (longest - shortest) / divisor(high - low);
-        let derived = scale / divisor(params.actuator_acc0[u]);
+        let derived = scale / divisor(at.params.actuator_acc0[at.u]);
         Muscle {
             peak_force: T::select(force.lt(T::ZERO), derived, force),
             resting,
-            length: low + (length - shortest) / divisor(resting),
+            length: low + (at.length - shortest) / divisor(resting),
             lmin,
             lmax,
             vmax,

@@ -9,8 +9,8 @@
 //! with a force each. Its target is a rotation vector, of three controls or three activations that integrate them, or a
 //! quaternion of four controls.
 
-use super::actuator::{ActuatorInputs, scaling_error};
-use crate::dynamics::activation::next_activation;
+use super::activation::acting;
+use super::actuator::{ActuatorContext, ActuatorInputs, scaling_error};
 use crate::model::{ControlInput, Model, Params};
 use crate::stages::{Positions, Velocities};
 use clench_math::{Mask, Quat, Real, Vec3, kernel};
@@ -18,35 +18,27 @@ use clench_math::{Mask, Quat, Real, Vec3, kernel};
 /// The number of lengths, moment arms and forces of a servo.
 pub const OUTPUTS: usize = 3;
 
-/// Computes the torque of servo `u` before limits.
+/// Computes the torque of a servo before limits.
 #[kernel]
 pub fn torque<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
+    at: ActuatorContext<T>,
+    inputs: ActuatorInputs<T>,
     act_dot: &[T],
-    u: usize,
     (pos, vel): (&Positions<T>, &Velocities<T>),
 ) -> Vec3<T> {
-    let outputs = model.actuators[u].outputs.clone();
+    let outputs = at.actuator().outputs.clone();
     let now = Quat::from_rotation_vector(Vec3::from_slice(&pos.actuator_length[outputs.clone()]));
     let velocity = Vec3::from_slice(&vel.actuator_velocity[outputs]);
-    let error = target(model, params, inputs, act_dot, u).difference(now);
-    let [constant, _, damping, ..] = params.actuator_biasprm[u];
+    let error = target(at, inputs, act_dot).difference(now);
+    let [constant, _, damping, ..] = *at.biasprm();
     let constant = Vec3::new(constant, constant, constant);
-    error * params.actuator_gainprm[u][0] + constant + velocity * damping
+    error * at.gainprm()[0] + constant + velocity * damping
 }
 
-/// Returns the target orientation of servo `u`.
+/// Returns the target orientation of a servo.
 #[inline(always)]
-fn target<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    inputs: ActuatorInputs<'_, T>,
-    act_dot: &[T],
-    u: usize,
-) -> Quat<T> {
-    let actuator = &model.actuators[u];
+fn target<T: Real>(at: ActuatorContext<T>, inputs: ActuatorInputs<T>, act_dot: &[T]) -> Quat<T> {
+    let actuator = at.actuator();
     let controls = &inputs.ctrl[actuator.controls.clone()];
     if actuator.inputs[0] == ControlInput::Quaternion {
         return Quat::from_slice(controls).normalize();
@@ -56,10 +48,7 @@ fn target<T: Real>(
     }
     let mut vector = [T::ZERO; OUTPUTS];
     for (a, part) in actuator.acts.clone().zip(&mut vector) {
-        *part = match actuator.actearly {
-            true => next_activation(model, params, u, a, (inputs.act[a], act_dot[a]), T::ZERO),
-            false => inputs.act[a],
-        };
+        *part = acting(at, inputs, act_dot, a);
     }
     Quat::from_rotation_vector(Vec3::from_array(vector))
 }

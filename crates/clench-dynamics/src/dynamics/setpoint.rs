@@ -1,6 +1,6 @@
 //! Setpoints of controllers: the controls of an actuator by kind, with a rate limit on the first.
 
-use super::actuator::ActuatorInputs;
+use super::actuator::{ActuatorContext, ActuatorInputs};
 use crate::model::{
     BiasKind, ControlInput, DynamicsKind, GainKind, JointKind, Model, Params, Transmission,
 };
@@ -22,11 +22,11 @@ pub(crate) struct Setpoints<T> {
 }
 
 impl<T: Real> Setpoints<T> {
-    /// Returns the setpoints of actuator `u`. A rate limit of the first control starts at its previous value, and on a
+    /// Returns the setpoints of an actuator. A rate limit of the first control starts at its previous value, and on a
     /// circle takes the shorter arc.
     #[kernel]
-    pub fn new(model: &Model, params: &Params<T>, inputs: ActuatorInputs<'_, T>, u: usize) -> Self {
-        let actuator = &model.actuators[u];
+    pub fn new(at: ActuatorContext<T>, inputs: ActuatorInputs<T>) -> Self {
+        let actuator = at.actuator();
         let mut setpoints = Setpoints {
             position: T::ZERO,
             velocity: T::ZERO,
@@ -39,17 +39,17 @@ impl<T: Real> Setpoints<T> {
             if k == 0 {
                 if let Some(a) = actuator.states.slew {
                     let rate = match actuator.dynamics {
-                        DynamicsKind::Pid => params.actuator_dynprm[u][1],
+                        DynamicsKind::Pid => at.dynprm()[1],
                         DynamicsKind::None
                         | DynamicsKind::Integrator
                         | DynamicsKind::Filter
                         | DynamicsKind::FilterExact
                         | DynamicsKind::Muscle
                         | DynamicsKind::DcMotor
-                        | DynamicsKind::User => params.actuator_dynprm[u][7],
+                        | DynamicsKind::User => at.dynprm()[7],
                     };
-                    let (before, step) = (inputs.act[a], rate * params.timestep);
-                    value = nearest_setpoint(model, params, u, value, before);
+                    let (before, step) = (inputs.act[a], rate * at.params.timestep);
+                    value = nearest_setpoint(at, value, before);
                     value = value.clamp(before - step, before + step);
                 }
                 setpoints.first = value;
@@ -118,14 +118,8 @@ pub fn whole_turn<T: Real>(model: &Model, params: &Params<T>, u: usize) -> T {
 /// Moves the setpoint of a servo by [whole turns](whole_turn) to the one nearest to `near`; returns other inputs
 /// unchanged.
 #[kernel]
-pub(crate) fn nearest_setpoint<T: Real>(
-    model: &Model,
-    params: &Params<T>,
-    u: usize,
-    input: T,
-    near: T,
-) -> T {
-    let full_turn = whole_turn(model, params, u);
+pub(crate) fn nearest_setpoint<T: Real>(at: ActuatorContext<T>, input: T, near: T) -> T {
+    let full_turn = whole_turn(at.model, at.params, at.u);
     let wraps = full_turn.gt(T::ZERO);
     if !wraps.any() {
         return input;
