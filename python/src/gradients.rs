@@ -1,12 +1,12 @@
 //! Gradients of functions of a step, from Python.
 
 use crate::arrays::{numbers, require_finite, require_shape};
-use crate::busy::Signals;
 use crate::changes::{InputGradients, OutputGradients, Results};
 use crate::derivatives::{Chosen, in_env, with_linearizer};
 use crate::differentiated::{Derivative, Memory, Own};
 use crate::error::sim_error;
 use crate::row_sim::AnySim;
+use crate::signals::Signals;
 use clench::derivatives::{
     BatchLinearizer, InputGradient, Matrix, OutputGradient, RolloutGradient,
 };

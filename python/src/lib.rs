@@ -56,6 +56,8 @@ mod rollout;
 mod row_sim;
 mod scan;
 mod scan_queries;
+#[cfg(feature = "derivatives")]
+mod signals;
 mod sim;
 mod solve;
 mod state_views;
