@@ -7,6 +7,7 @@ use clench_rigid::contact::Candidate;
 use clench_rigid::model::{Integrator, Model, Sensor};
 use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
+use clench_solver::ConstraintSolver;
 
 /// The simulation that a batch is to step.
 pub(crate) struct Simulation<'a> {
@@ -36,9 +37,10 @@ rules! {
     "environments are not reset automatically yet: check the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };
-    "only the convex contact model is supported yet": |s| {
+    "Coulomb's law needs Newton's method": |s| {
         let coulomb = s.settings.contact_model == ContactModel::Coulomb;
-        coulomb.then(|| "option contact_model".to_owned())
+        let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
+        (coulomb && cg).then(|| "option contact_model".to_owned())
     };
     "stiction is not supported yet": |s| s.settings.stiction.then(|| "option stiction".to_owned());
     "sleep is not supported yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());

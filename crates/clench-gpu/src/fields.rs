@@ -4,6 +4,7 @@
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity, has_sensor_history};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
+use clench_solver::MAX_ELIMINATED;
 
 /// A field: `width` numbers per environment, from an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -212,6 +213,16 @@ fields! {
     shape: c.rows;
     /// The inverse inertia of an elliptic cone, at its first row.
     cone_inertia: c.rows;
+    /// Coulomb's law, at the first row of a contact: λ, and of its last update the normal force, its difference from λ,
+    /// and its change.
+    lambda: if c.coulomb { c.rows } else { 0 };
+    normal_force: if c.coulomb { c.rows } else { 0 };
+    normal_residual: if c.coulomb { c.rows } else { 0 };
+    normal_change: if c.coulomb { c.rows } else { 0 };
+    /// The contacts whose sliding a Newton step predicts, the system of their normal forces, and those that jam.
+    sliding_blocks: if c.coulomb { MAX_ELIMINATED } else { 0 };
+    sliding_system: if c.coulomb { MAX_ELIMINATED * (MAX_ELIMINATED + 1) } else { 0 };
+    sliding_jams: if c.coulomb { MAX_ELIMINATED } else { 0 };
     /// J a − aref; during assembly, the inverse inertia of each row.
     residual: c.rows;
     force: c.rows;

@@ -96,8 +96,8 @@ kernels! {
     /// Computes their Jacobians.
     ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "assembly";
     /// Solves the convex problem.
-    SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/elliptic", "costs/costs", "costs/hessian",
-        "continuation", "tiles", "factor_h", "line_search", "noslip", "newton", "precondition", "substitution", "cg", "descent";
+    SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
+        "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "prediction", "newton", "precondition", "substitution", "cg", "descent";
     /// Computes the duality gap of the solve, on request.
     GAP = "gap", Team: "team", "tree", "substitution", "articulated", "factor_m", "gap";
     /// Computes camera poses, on request.
@@ -207,6 +207,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
     declare("GRID", GRID as usize);
     declare("TEAM", TEAM as usize);
     declare("NONE", NONE as usize);
+    declare("MAX_ELIMINATED", clench_solver::MAX_ELIMINATED);
     Report::ALL
         .iter()
         .for_each(|x| declare(x.constant(), x.code()));
@@ -310,11 +311,9 @@ mod tests {
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     /// Codes that no kernel compares with.
-    const UNNAMED: [&str; 5] = [
+    const UNNAMED: [&str; 4] = [
         // Kernels compare with `RUNNING` alone.
         "EXCLUDED",
-        // Refused before a batch is made.
-        "COST_COULOMB",
         // Only the CPU refuses large problems.
         "SOLVE_TOO_LARGE",
         // The affine law is the default case of each switch.

@@ -5,6 +5,8 @@ use crate::continuation::{FIRST, STAGE, STAGE_TOLERANCE, STIFF};
 use crate::descent::{Direction, NEGLIGIBLE, NOTICEABLE};
 use crate::line_search::{CURVATURE, DECREASE, RESOLUTION};
 use crate::newton::Newton;
+use crate::normal_forces::{CYCLE, MAX_FULL, MAX_PREDICTIONS, MAX_ROUNDS, MIXING};
+use crate::prediction::MIN_COSINE;
 
 /// Names and values.
 pub const METHOD_CONSTANTS: &[(&str, f64)] = &[
@@ -16,6 +18,13 @@ pub const METHOD_CONSTANTS: &[(&str, f64)] = &[
     ("CG_OVERLAP", OVERLAP),
     ("NEGLIGIBLE_ROUNDINGS", NEGLIGIBLE),
     ("NOTICEABLE_FALL", NOTICEABLE),
+    ("MAX_PREDICTIONS", MAX_PREDICTIONS),
+    ("MAX_UPDATES_BEFORE", MAX_ROUNDS),
+    ("FULL_PREDICTIONS", MAX_FULL),
+    ("PREDICTION_CYCLE", CYCLE),
+    ("MIN_COSINE", MIN_COSINE),
+    ("MIXING_LEAST", MIXING.0),
+    ("MIXING_MOST", MIXING.1),
     ("CONTINUATION_STIFF", STIFF),
     ("CONTINUATION_FIRST", FIRST),
     ("CONTINUATION_STAGE", STAGE),

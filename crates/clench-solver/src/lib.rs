@@ -60,6 +60,7 @@ pub use implicit::{ErrorBound, ErrorBounds};
 pub use options::{ConstraintSolver, Settings, SolverOptions, Switch};
 pub use partition::{Island, Partition};
 pub use plain::PlainBlock;
+pub use prediction::MAX_ELIMINATED;
 pub use problem::{Block, BlockMut, Problem};
 pub use response::{Response, block_force};
 pub use solver::Solver;

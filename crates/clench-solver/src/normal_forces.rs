@@ -21,15 +21,15 @@ use clench_math::{Mask, Real, kernel};
 /// The limits of γ. A very negative γ extrapolates too far from two iterates that are close. From 1 on, the last two
 /// changes point away from a repelling fixed point; the lower limit then replaces γ, and λ soon reaches an attracting
 /// one.
-const MIXING: (f64, f64) = (-10.0, 1.0);
+pub(crate) const MIXING: (f64, f64) = (-10.0, 1.0);
 
 /// The numbers of predictions and of updates after which λ is no longer predicted. Newton's method on pieces can cycle,
 /// and where friction jams it can move away from the solution.
-const MAX_PREDICTIONS: f64 = 20.0;
-const MAX_ROUNDS: f64 = 3.0;
+pub(crate) const MAX_PREDICTIONS: f64 = 20.0;
+pub(crate) const MAX_ROUNDS: f64 = 3.0;
 /// The number of predictions after which every third one moves λ only half of the way, which leaves most cycles.
-const MAX_FULL: f64 = 8.0;
-const CYCLE: f64 = 3.0;
+pub(crate) const MAX_FULL: f64 = 8.0;
+pub(crate) const CYCLE: f64 = 3.0;
 
 /// The normal forces λ of Coulomb blocks, each at the index of its first entry in the active set.
 #[derive(Clone, Debug, Default)]

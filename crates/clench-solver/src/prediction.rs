@@ -29,11 +29,11 @@ use clench_math::{Mask, Real, kernel};
 
 /// The maximum number of sliding contacts whose system is solved by elimination. In heaps of hundreds it takes longer,
 /// and solves need as many iterations.
-const MAX_ELIMINATED: f64 = 16.0;
+pub const MAX_ELIMINATED: usize = 16;
 
 /// The step d is taken if the cosine of its angle to the negative gradient exceeds this. With five times as much,
 /// solves take more iterations.
-const MIN_COSINE: f64 = 0.01;
+pub(crate) const MIN_COSINE: f64 = 0.01;
 
 /// The maximum number of directions, and the residual, relative to the right-hand side, at which the method stops. The
 /// next Newton step corrects the remaining error.
@@ -91,7 +91,7 @@ impl<T: Real> Prediction<T> {
         self.lowest.clear();
         (self.lowest).extend(self.blocks.iter().map(|b| iterate.force[b.row]));
         let sliding = (self.slides.iter()).fold(T::ZERO, |sum, &slides| sum + slides);
-        let many = mask & sliding.gt(T::new(MAX_ELIMINATED));
+        let many = mask & sliding.gt(T::new(MAX_ELIMINATED as f64));
         if many.any() {
             self.solve_by_residuals(problem, hessian, iterate, many);
         }

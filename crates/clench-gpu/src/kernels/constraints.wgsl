@@ -109,7 +109,7 @@ fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: 
     }
     for (var k = 1u; k < dim; k++) {
         let mu = parameter(friction + k - 1u);
-        if (ELLIPTIC_CONES) {
+        if (ELLIPTIC_CONES || COULOMB_CONTACTS) {
             let r = normal_r / IMPRATIO * mu1 * mu1 / (mu * mu);
             add_row(0.0, 0.0, friction_damping, r, mu);
         } else {
@@ -153,8 +153,8 @@ fn push_contact(contact: u32) {
         return;
     }
     let mu = parameter(friction);
-    if (ELLIPTIC_CONES) {
-        begin_block(CONTACT_ELLIPTIC, COST_ELLIPTIC, dim, contact, soft.impedance);
+    if (ELLIPTIC_CONES || COULOMB_CONTACTS) {
+        begin_block(CONTACT_ELLIPTIC, select(COST_ELLIPTIC, COST_COULOMB, COULOMB_CONTACTS), dim, contact, soft.impedance);
         push_normal(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
         var damping = soft.damping;
         let solref = vec2f(parameter(prm + PAIR_SOLREFFRICTION), parameter(prm + PAIR_SOLREFFRICTION + 1u));

@@ -14,6 +14,13 @@ const PROVE: u32 = 5u;
 // Evaluates a new stage of continuation; at the end of a solve the original problem.
 const SOFTEN: u32 = 6u;
 const DONE: u32 = 7u;
+// Coulomb's law: before the first round the limits of friction are set; at the end of a solve they are set again, and
+// mixed with the last ones if the gradient with them is too large.
+const START_LIMITS: u32 = 8u;
+const SET_LIMITS: u32 = 9u;
+const MIX_LIMITS: u32 = 10u;
+// Newton's method predicts them before a step.
+const PREDICT_LIMITS: u32 = 11u;
 
 // The maximum number of iterations without noticeable progress.
 const PATIENCE = select(CG_PATIENCE, NEWTON_PATIENCE, NEWTON);
@@ -39,6 +46,8 @@ struct Convergence {
     iterations: u32,
     evaluations: u32,
     status: u32,
+    // Coulomb's law: the status of the end if the limits of friction are those of the solution.
+    pending: u32,
     // True once the status is final.
     ended: bool,
 }
@@ -70,12 +79,30 @@ fn end(c: ptr<function, Convergence>, status: u32) -> u32 {
     return DONE;
 }
 
+// Ends the solve if friction is limited by its own normal forces. Returns the next round.
+fn end_if_consistent(c: ptr<function, Convergence>, status: u32) -> u32 {
+    if (!COULOMB_CONTACTS) {
+        return end(c, status);
+    }
+    (*c).pending = status;
+    return SET_LIMITS;
+}
+
+// Returns the round after the limits of friction were set to the normal forces.
+fn after_limits(c: ptr<function, Convergence>, nrow: u32) -> u32 {
+    if ((*c).scale * (*c).norm <= TOLERANCE || (*c).norm <= rounding(nrow)) {
+        return end(c, (*c).pending);
+    }
+    return MIX_LIMITS;
+}
+
 // Returns the next round of a solve that has not converged.
 fn go_on(c: ptr<function, Convergence>) -> u32 {
     if ((*c).iterations >= ITERATIONS) {
         return end(c, SOLVE_ITERATION_LIMIT);
     }
-    return DESCEND;
+    predicted = false;
+    return select(DESCEND, PREDICT_LIMITS, can_predict());
 }
 
 // Returns the round after the choice of the start. Newton's forces are trusted as well: the gap alone, a bound in cost,
@@ -94,7 +121,7 @@ fn after_start(c: ptr<function, Convergence>, nblock: u32) -> u32 {
 fn after_proof(c: ptr<function, Convergence>, nblock: u32) -> u32 {
     let gap_counts = !NEWTON || (*c).scale * (*c).norm <= TOLERANCE;
     if (gap_counts && (*c).scale * (*c).gap <= TOLERANCE) {
-        return end(c, SOLVE_PROVEN);
+        return end_if_consistent(c, SOLVE_PROVEN);
     }
     if (NEWTON && ELLIPTIC_CONES && start_continuation(nblock)) {
         return SOFTEN;
@@ -107,10 +134,10 @@ fn after_placing(c: ptr<function, Convergence>, round: u32, totals: vec4f, nbloc
     (*c).curved = totals.z > 0.0;
     (*c).same_hessian = false;
     (*c).started = false;
-    if (round == REFRESH || round == SOFTEN) {
+    if (round == REFRESH || round == SOFTEN || round == MIX_LIMITS) {
         (*c).best = (*c).norm;
         (*c).idle = 0.0;
-        (*c).refreshed = (*c).refreshed || round == REFRESH;
+        (*c).refreshed = ((*c).refreshed || round == REFRESH) && round != MIX_LIMITS;
         if ((*c).ended) {
             return DONE;
         }
@@ -136,7 +163,8 @@ fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f, nrow: u3
     let curved = totals.z > 0.0;
     // A full Newton step over a quadratic interval ends at the minimum: the size of that step is irrelevant.
     let exact = NEWTON && totals.y == 0.0 && !curved && !(*c).curved;
-    (*c).same_hessian = exact;
+    // Predictions change pieces as well.
+    (*c).same_hessian = exact && !COULOMB_CONTACTS;
     (*c).curved = curved;
     (*c).started = true;
     (*c).iterations++;
@@ -155,16 +183,19 @@ fn after_step(c: ptr<function, Convergence>, step: Step, totals: vec4f, nrow: u3
     let small = select((*c).gap, (*c).norm, NEWTON);
     let settled = !NEWTON || (*c).scale * step.improvement <= TOLERANCE || exact;
     if ((*c).scale * small <= TOLERANCE && settled) {
-        return end(c, SOLVE_CONVERGED);
+        return end_if_consistent(c, SOLVE_CONVERGED);
     }
     // At this minimum, a gradient that rounding of its terms explains is zero to working precision.
     if (exact && (*c).norm <= rounding(nrow)) {
-        return end(c, SOLVE_NO_PROGRESS);
+        return end_if_consistent(c, SOLVE_NO_PROGRESS);
     }
     record_progress(c, step, cost, exact);
     let stuck = step.alpha == 0.0 || (*c).idle >= PATIENCE;
     if (stuck && (*c).refreshed) {
-        return end(c, select(SOLVE_NO_PROGRESS, SOLVE_ITERATION_LIMIT, step.cut && step.alpha == 0.0));
+        if (step.cut && step.alpha == 0.0) {
+            return end(c, SOLVE_ITERATION_LIMIT);
+        }
+        return end_if_consistent(c, SOLVE_NO_PROGRESS);
     }
     if (stuck) {
         return REFRESH;
@@ -187,7 +218,7 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
     c.scale = 1.0 / inertia;
     c.best = UNBOUNDED;
     level = 0.0;
-    var next = AT_SMOOTH;
+    var next = select(AT_SMOOTH, START_LIMITS, COULOMB_CONTACTS);
     loop {
         let round = agreed(next);
         if (round == DONE) {
@@ -195,11 +226,14 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
         }
         var step = Step(0.0, 0.0, 0u, false);
         var totals = vec4f();
+        if (NEWTON && (round == DESCEND || round == PREDICT_LIMITS)) {
+            factor_newton(c.same_hessian, nblock);
+        }
         if (round == DESCEND) {
-            if (NEWTON) {
-                direct_newton(c.same_hessian, nblock);
-            } else {
+            if (!NEWTON) {
                 direct_conjugate(c.started);
+            } else if (!(COULOMB_CONTACTS && takes_prediction(c.norm))) {
+                direct_newton();
             }
             let products = prepare_ray(nrow, nblock);
             step = search(nblock, products, TOLERANCE * LS_TOLERANCE * inertia);
@@ -207,6 +241,16 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
         } else if (round < DESCEND || round == REFRESH) {
             start_at(round);
             refresh(nrow, round == AT_SMOOTH || round == BACK_AT_SMOOTH);
+        } else if (COULOMB_CONTACTS && round == START_LIMITS) {
+            start_normal_forces(nrow, nblock);
+            next = AT_SMOOTH;
+            continue;
+        } else if (COULOMB_CONTACTS && round == SET_LIMITS) {
+            replace_normal_forces(nblock);
+        } else if (COULOMB_CONTACTS && round == MIX_LIMITS) {
+            mix_normal_forces(nblock);
+        } else if (COULOMB_CONTACTS && round == PREDICT_LIMITS) {
+            predict(nblock);
         }
         if (round != PROVE) {
             totals = evaluate(nblock);
@@ -224,6 +268,13 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
             }
             case PROVE: {
                 next = after_proof(&c, nblock);
+            }
+            case SET_LIMITS: {
+                next = after_limits(&c, nrow);
+            }
+            case PREDICT_LIMITS: {
+                c.same_hessian = true;
+                next = DESCEND;
             }
             default: {
                 next = after_placing(&c, round, totals, nblock);

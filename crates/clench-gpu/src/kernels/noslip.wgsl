@@ -18,7 +18,7 @@ fn first_friction(b: u32) -> u32 {
         case COST_HUBER: {
             return first;
         }
-        case COST_PYRAMID, COST_ELLIPTIC: {
+        case COST_PYRAMID, COST_ELLIPTIC, COST_COULOMB: {
             return first + 1u;
         }
         case COST_QUADRATIC, COST_ONE_SIDED, default: {
@@ -207,7 +207,7 @@ fn improve_friction(b: u32, start: u32) -> f32 {
     let cost = block(b, BLOCK_COST);
     fill_friction(start, count);
     var change = array<f32, MAX_FRICTIONS>();
-    if (ELLIPTIC_CONES && cost == COST_ELLIPTIC) {
+    if ((ELLIPTIC_CONES || COULOMB_CONTACTS) && (cost == COST_ELLIPTIC || cost == COST_COULOMB)) {
         change = change_ellipse(start, count);
     } else {
         change = change_rows(start, count, cost == COST_PYRAMID);

@@ -6,7 +6,7 @@ use crate::codes::row;
 use clench_rigid::dynamics::ellipsoid::{ellipsoids, semi_axes};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
-use clench_rigid::options::FrictionCone;
+use clench_rigid::options::{ContactModel, FrictionCone};
 use clench_rigid::settings::StepSettings;
 
 use std::f64::consts::PI;
@@ -123,7 +123,10 @@ impl Tables {
         self.real("TIMESTEP", h);
         self.real("MIN_TIMECONST", least);
         self.real("IMPRATIO", s.impratio);
-        self.flag("ELLIPTIC_CONES", s.friction_cone == FrictionCone::Elliptic);
+        let coulomb = s.contact_model == ContactModel::Coulomb;
+        let elliptic = s.friction_cone == FrictionCone::Elliptic;
+        self.flag("ELLIPTIC_CONES", elliptic && !coulomb);
+        self.fixed_flag("COULOMB_CONTACTS", coulomb);
         self.flag("EXACT_DIAGONAL", s.flags.diagexact);
         self.flag("WARMSTART", s.solver.warmstart);
         self.count("ITERATIONS", s.solver.iterations);

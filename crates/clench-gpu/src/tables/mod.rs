@@ -27,6 +27,7 @@ use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
 use clench_rigid::dynamics::articulated::articulated_bodies;
 use clench_rigid::model::Model;
+use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 use std::fmt::Write;
 
@@ -87,6 +88,8 @@ pub(crate) struct Capacity {
     pub vectors: usize,
     /// True if any contact has adhesion.
     pub adheres: bool,
+    /// True with the contact model `coulomb`.
+    pub coulomb: bool,
 }
 
 impl Tables {
@@ -123,6 +126,7 @@ impl Tables {
         tables.settings(model, settings);
         let mut capacity = Capacity {
             articulated: articulated_bodies::<S>(model).len(),
+            coulomb: settings.contact_model == ContactModel::Coulomb,
             ..Capacity::default()
         };
         tables.flag("LONG_PATHS", capacity.articulated > 0);
@@ -185,6 +189,11 @@ impl Tables {
             self.layout.flag(name, value);
             return;
         }
+        self.fixed_flag(name, value);
+    }
+
+    /// Adds a flag that general kernels do not serve both values of: either takes them long to compile.
+    fn fixed_flag(&mut self, name: &str, value: bool) {
         let _ = writeln!(self.constants, "const {name}: bool = {value};");
     }
 }

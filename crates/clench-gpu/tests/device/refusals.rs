@@ -41,8 +41,8 @@ fn unsupported_features_are_refused_by_name() {
             "insidesite sensor \"in\": a sensor of this kind is not supported yet",
         ),
         (
-            model("<custom><text name='clench.contact_model' data='coulomb'/></custom>"),
-            "option contact_model: only the convex contact model",
+            model("<option solver='CG'/><custom><text name='clench.contact_model' data='coulomb'/></custom>"),
+            "option contact_model: Coulomb's law needs Newton's method",
         ),
         (
             model("<custom><text name='clench.stiction' data='true'/></custom>"),

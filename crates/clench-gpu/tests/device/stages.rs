@@ -1,8 +1,8 @@
 //! Tests that each stage on the device equals its processor counterpart on random states.
 
-use crate::common::{self, batch, own, text};
-use clench_rigid::Batch;
+use crate::common::{self, batch, own, text, upload};
 use clench_rigid::model::Model;
+use clench_rigid::{Batch, Sim};
 use std::sync::Arc;
 
 /// Asserts agreement, contacts and hard solves.
@@ -176,6 +176,52 @@ fn elliptic_cones() {
         "<option cone=\"elliptic\" impratio=\"2\" integrator=\"RK4\" ",
     );
     agree(&text(&elliptic), 100, 0.7);
+}
+
+/// Uses kernels of the models' own, which compile sooner.
+#[test]
+fn coulombs_law() {
+    let law = "<custom><text name='clench.contact_model' data='coulomb'/></custom><worldbody>";
+    for (name, option) in [
+        ("medley", "<option "),
+        (
+            "surfaces",
+            "<option noslip_iterations='3' noslip_tolerance='0' ",
+        ),
+    ] {
+        let file = own(name).replacen("<worldbody>", law, 1);
+        let Some(mut batch) = batch(&text(&file.replace("<option ", option)), 40) else {
+            return;
+        };
+        common::forward_agrees(&mut batch, 1e-4, 0, 0.7);
+    }
+}
+
+/// The device solves as the processor does: it predicts normal forces from sliding contacts, up to 16 of them.
+#[test]
+fn coulombs_law_takes_as_many_iterations() {
+    let law = "<custom><text name='clench.contact_model' data='coulomb'/></custom>
+        <option><flag island='disable'/></option><worldbody>";
+    let model = text(&own("medley").replacen("<worldbody>", law, 1));
+    let states = common::some_states(&model, 40);
+    let Some(mut device) = batch(&model, states.len()) else {
+        return;
+    };
+    upload(&mut device, &states);
+    device.forward().expect("a device");
+    let mut sim = Sim::<f32>::new(model.clone()).expect("a good model");
+    let (mut found, mut expected) = (0, 0);
+    for (state, solve) in states.iter().zip(device.solves().expect("a device")) {
+        sim.state = common::convert(&model, state);
+        sim.forward().expect("a good state");
+        found += solve.iterations;
+        expected += sim.stats().iterations;
+    }
+    assert!(expected > 40, "{expected}");
+    assert!(
+        found.abs_diff(expected) <= expected / 20 + 2,
+        "{found} {expected}"
+    );
 }
 
 /// Runs three sweeps, which still improve by more than rounding.

@@ -20,6 +20,9 @@ fn block_along(b: u32, alpha: f32) -> Along {
     if (ELLIPTIC_CONES && cost == COST_ELLIPTIC) {
         return elliptic_along(first, block(b, BLOCK_DIM), alpha);
     }
+    if (COULOMB_CONTACTS && cost == COST_COULOMB) {
+        return coulomb_along(first, block(b, BLOCK_DIM), alpha);
+    }
     switch cost {
         case COST_QUADRATIC: {
             return Along(0.0, 0.0, 0.0);
@@ -48,6 +51,9 @@ fn evaluate_block(b: u32) -> Value {
     let cost = block(b, BLOCK_COST);
     if (ELLIPTIC_CONES && cost == COST_ELLIPTIC) {
         return evaluate_elliptic(first, block(b, BLOCK_DIM));
+    }
+    if (COULOMB_CONTACTS && cost == COST_COULOMB) {
+        return evaluate_coulomb(first, block(b, BLOCK_DIM));
     }
     switch cost {
         case COST_QUADRATIC: {

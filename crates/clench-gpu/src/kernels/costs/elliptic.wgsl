@@ -1,5 +1,5 @@
-// Frictional contact with the exact cone. CPU counterparts: `clench-solver/src/costs/elliptic.rs`, which derives the
-// formulas, and `slip.rs`.
+// Frictional contact with the exact cone. CPU counterpart: `clench-solver/src/costs/elliptic.rs`, which derives the
+// formulas.
 
 // A block at y + α dy, in coordinates in which its cone is circular.
 struct Zone {
@@ -8,39 +8,27 @@ struct Zone {
     // N − μT and μN + T, each if negative.
     p: f32,
     q: f32,
-    // T, and 1 / T, which is 0 without slip.
-    t: f32,
-    inverse: f32,
+    slip: Slip,
     // μ² − μ N/T in the middle zone.
     c: f32,
     // 0 top, 1 middle, 2 bottom.
     piece: u32,
 }
 
-fn scaled_residual(a: u32, alpha: f32) -> f32 {
-    return row(SHAPE + a) * (row(RESIDUAL + a) + alpha * row(RAY + a));
-}
-
 fn zone(first: u32, dim: u32, alpha: f32) -> Zone {
     let mu = row(SHAPE + first);
     let k = row(D + first) / (mu * mu * (1.0 + mu * mu) * stiffening(first));
     let n = mu * (row(RESIDUAL + first) + alpha * row(RAY + first));
-    var t2: f32 = 0.0;
-    for (var a = first + 1u; a < first + dim; a++) {
-        let u = scaled_residual(a, alpha);
-        t2 += u * u;
-    }
-    let t = sqrt(t2);
-    let inverse = select(0.0, 1.0 / max(t, SMALLEST), t > 0.0);
-    let above = n - mu * t;
-    let below = mu * n + t;
+    let slip = slip_of(first, dim, alpha);
+    let above = n - mu * slip.t;
+    let below = mu * n + slip.t;
     if (above >= 0.0) {
-        return Zone(k, mu, 0.0, 0.0, t, inverse, 0.0, 0u);
+        return Zone(k, mu, 0.0, 0.0, slip, 0.0, 0u);
     }
     if (below <= 0.0) {
-        return Zone(k, mu, above, below, t, inverse, 0.0, 2u);
+        return Zone(k, mu, above, below, slip, 0.0, 2u);
     }
-    return Zone(k, mu, above, 0.0, t, inverse, mu * mu - mu * n * inverse, 1u);
+    return Zone(k, mu, above, 0.0, slip, mu * mu - mu * n * slip.inverse, 1u);
 }
 
 fn evaluate_elliptic(first: u32, dim: u32) -> Value {
@@ -49,47 +37,15 @@ fn evaluate_elliptic(first: u32, dim: u32) -> Value {
     let slip = z.k * (z.mu * z.p - z.q);
     put_row(FORCE + first, -(z.k * z.mu * (z.p + z.mu * z.q)));
     for (var a = first + 1u; a < first + dim; a++) {
-        put_row(FORCE + a, slip * scaled_residual(a, 0.0) * z.inverse * row(SHAPE + a));
+        put_row(FORCE + a, slip * scaled_residual(a, 0.0) * z.slip.inverse * row(SHAPE + a));
     }
     return Value(0.5 * z.k * (z.p * z.p + z.q * z.q), z.piece, z.piece == 1u);
-}
-
-// The slip along the ray, from y to y + α dy.
-struct SlipPath {
-    // |U'|².
-    squares: f32,
-    // u₀·U'.
-    along: f32,
-    // The growth of u·U'.
-    turn: f32,
-    // T₁ − T₀ − α u₀·U' ≥ 0.
-    bend: f32,
-}
-
-// Computes the differences in a form that avoids cancellation for small steps.
-fn slip_path(first: u32, dim: u32, alpha: f32, before: Zone, after: Zone) -> SlipPath {
-    var along: f32 = 0.0;
-    var squares: f32 = 0.0;
-    for (var a = first + 1u; a < first + dim; a++) {
-        let du = row(SHAPE + a) * row(RAY + a);
-        along += scaled_residual(a, 0.0) * before.inverse * du;
-        squares += du * du;
-    }
-    // T₁² = (T₀ + α u₀·U')² + α² (|U'|² − (u₀·U')²). The bend is the height of T₁ above its tangent T₀ + α u₀·U'.
-    let across = max(squares - along * along, 0.0);
-    let straight = before.t + alpha * along;
-    let ahead = straight > 0.0;
-    let sum = select(1.0, after.t + straight, ahead);
-    let bend = select(after.t - straight, alpha * alpha * across / sum, ahead);
-    let slips = after.t > 0.0;
-    let turn = (alpha * across - along * bend) / select(1.0, after.t, slips);
-    return SlipPath(squares, along, select(-along, turn, slips), bend);
 }
 
 fn elliptic_along(first: u32, dim: u32, alpha: f32) -> Along {
     let before = zone(first, dim, 0.0);
     let after = zone(first, dim, alpha);
-    let slip = slip_path(first, dim, alpha, before, after);
+    let slip = slip_path(first, dim, alpha, before.slip, after.slip);
     let k = after.k;
     let mu = after.mu;
     let dn = mu * row(RAY + first);
@@ -126,13 +82,13 @@ fn weigh_elliptic(first: u32, dim: u32, i: u32) {
     let normal = z.mu * row(JACOBIAN + first * NV + i);
     var along: f32 = 0.0;
     for (var a = first + 1u; a < first + dim; a++) {
-        along += scaled_residual(a, 0.0) * z.inverse * row(SHAPE + a) * row(JACOBIAN + a * NV + i);
+        along += scaled_residual(a, 0.0) * z.slip.inverse * row(SHAPE + a) * row(JACOBIAN + a * NV + i);
     }
     // w·(F J), with w = (1, −μ u).
     let surface = normal - z.mu * along;
     put_row(WEIGHED + first * NV + i, z.k * z.mu * surface);
     for (var a = first + 1u; a < first + dim; a++) {
-        let u = scaled_residual(a, 0.0) * z.inverse;
+        let u = scaled_residual(a, 0.0) * z.slip.inverse;
         let scaled = row(SHAPE + a) * row(JACOBIAN + a * NV + i);
         let entry = z.c * (scaled - u * along) - z.mu * u * surface;
         put_row(WEIGHED + a * NV + i, z.k * row(SHAPE + a) * entry);

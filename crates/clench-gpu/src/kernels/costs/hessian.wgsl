@@ -12,6 +12,10 @@ fn weigh(b: u32, i: u32) {
         weigh_elliptic(first, block(b, BLOCK_DIM), i);
         return;
     }
+    if (COULOMB_CONTACTS && cost == COST_COULOMB) {
+        weigh_coulomb(b, first, block(b, BLOCK_DIM), i);
+        return;
+    }
     switch cost {
         case COST_PYRAMID: {
             weigh_pyramid(b, first, block(b, BLOCK_DIM), i);
@@ -29,7 +33,11 @@ fn weigh(b: u32, i: u32) {
 // Returns true if a block is on a piece with curvature.
 fn is_stiff(b: u32) -> bool {
     let active_set = row(ACTIVE_SET + b);
-    if (block(b, BLOCK_COST) == COST_HUBER) {
+    let cost = block(b, BLOCK_COST);
+    if (COULOMB_CONTACTS && cost == COST_COULOMB) {
+        return is_stiff_coulomb(b);
+    }
+    if (cost == COST_HUBER) {
         return active_set == 1.0;
     }
     return active_set != 0.0;
