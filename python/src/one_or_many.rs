@@ -24,7 +24,7 @@ macro_rules! one_or_many {
         }
 
         #[pymethods]
-        #[allow(clippy::too_many_arguments)]
+        #[allow(clippy::too_many_arguments)] // They are keywords.
         impl $crate::batch::Batch {
             $($methods)*
         }

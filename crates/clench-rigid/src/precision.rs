@@ -10,8 +10,9 @@ use crate::readout::{self, Push, TendonLine};
 use crate::sensor;
 use crate::sensor::bodies::update as update_body_forces;
 use clench_dynamics::check;
-use clench_dynamics::context::Sensors;
+use clench_dynamics::context::StepContext;
 use clench_dynamics::model::{Model, Params};
+use clench_dynamics::settings::StepSettings;
 use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Instructions, Mask, Scalar};
@@ -30,18 +31,18 @@ type SingleEnv<S> = <S as Scalar>::SingleEnv;
 
 /// Declares the functions of [`Lanewise`] with their bodies, and compiles them for both precisions.
 macro_rules! compile {
-    ($($(#[$doc:meta])* fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block)*) => {
+    ($($(#[$doc:meta])* fn $name:ident$(<$life:lifetime>)?($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block)*) => {
         /// The operations of simulations and batches for a number type that [`Step`](clench_dynamics::Step) does not
         /// have; only the name of this trait is public. They are not generic, so that all kernels are compiled with
         /// this crate, and not with its users.
         pub trait Lanewise: Scalar + Shared {
-            $($(#[$doc])* fn $name($($argument: $type),*) $(-> $result)?;)*
+            $($(#[$doc])* fn $name$(<$life>)?($($argument: $type),*) $(-> $result)?;)*
         }
         impl Lanewise for f64 {
-            $(fn $name($($argument: $type),*) $(-> $result)? $body)*
+            $(fn $name$(<$life>)?($($argument: $type),*) $(-> $result)? $body)*
         }
         impl Lanewise for f32 {
-            $(fn $name($($argument: $type),*) $(-> $result)? $body)*
+            $(fn $name$(<$life>)?($($argument: $type),*) $(-> $result)? $body)*
         }
     };
 }
@@ -67,9 +68,13 @@ compile! {
         check::well_computed(ws).lane(0) && check::well_moved(state)
     }
 
-    /// Returns the function that computes the sensors of one environment.
-    fn sensors() -> Sensors<SingleEnv<Self>> {
-        sensor::evaluate
+    /// Returns the context of a step of one environment.
+    fn context<'a>(
+        model: &'a Model,
+        params: &'a Params<SingleEnv<Self>>,
+        settings: &'a StepSettings,
+    ) -> StepContext<'a, SingleEnv<Self>> {
+        StepContext { model, params, settings, sensors: sensor::evaluate }
     }
 
     /// Appends an output of one environment to `out`.

@@ -1,6 +1,6 @@
 // Predicts the normal forces that a Newton step of Coulomb's law leads to. CPU counterparts:
-// `clench-solver/src/prediction.rs`, which explains it, and `sliding.rs`. Systems of more contacts than elimination is for
-// are not predicted.
+// `clench-solver/src/prediction.rs`, which explains it, and `sliding.rs`. Nothing is predicted with more than
+// MAX_ELIMINATED sliding contacts.
 
 // The numbers of a row of the system: its right-hand side comes last.
 const SYSTEM_WIDTH: u32 = MAX_ELIMINATED + 1u;
@@ -12,7 +12,7 @@ var<private> predicted: bool;
 
 // Returns true if another Newton step predicts λ first.
 fn can_predict() -> bool {
-    return NEWTON && COULOMB_CONTACTS && f32(updates) < MAX_UPDATES_BEFORE && f32(predictions) < MAX_PREDICTIONS;
+    return NEWTON && COULOMB_CONTACTS && f32(updates) < MAX_UPDATES && f32(predictions) < MAX_PREDICTIONS;
 }
 
 fn presses(b: u32) -> bool {

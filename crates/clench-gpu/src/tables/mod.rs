@@ -192,7 +192,7 @@ impl Tables {
         self.fixed_flag(name, value);
     }
 
-    /// Adds a flag that general kernels do not serve both values of: either takes them long to compile.
+    /// Adds a flag that is a constant in general kernels too: code for both of its values would take long to compile.
     fn fixed_flag(&mut self, name: &str, value: bool) {
         let _ = writeln!(self.constants, "const {name}: bool = {value};");
     }

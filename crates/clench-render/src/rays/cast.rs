@@ -166,7 +166,8 @@ impl<'a, T: Real<Scalar = f64>> Aim<'a, T> {
         }
     }
 
-    /// Returns the distance of the first front side: as in the pictures of a device, a camera in a shape looks out.
+    /// Returns the distance of the first front side: as in the pictures of a device, a camera in a shape looks out. A
+    /// round starts beyond the back side of the one before. Planes have no radius, and no back side.
     #[inline(always)]
     fn front(&self, line: &Ray<T>) -> T {
         let step = self.radius.unwrap_or(T::ZERO);

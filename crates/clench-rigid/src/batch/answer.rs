@@ -16,10 +16,10 @@ use clench_dynamics::state::State;
 use clench_dynamics::workspace::Workspace;
 use clench_math::{Mask, Real, Scalar, write_lane};
 
-/// The question of a call.
-pub enum Question<'a, S> {
+/// The query of a call.
+pub enum BatchQuery<'a, S> {
     /// A query of the table.
-    Query(Query<'a>),
+    Table(Query<'a>),
     /// Inverse kinematics. Input: goals, and optional start positions instead of the present ones.
     Kinematics {
         ik: &'a Ik,
@@ -27,12 +27,12 @@ pub enum Question<'a, S> {
     },
 }
 
-impl<S> Question<'_, S> {
+impl<S> BatchQuery<'_, S> {
     /// Returns the geoms without which there is no answer.
     pub(super) fn geoms(&self) -> Vec<usize> {
         match *self {
-            Question::Query(query) => query.geoms(),
-            Question::Kinematics { ik, .. } => {
+            BatchQuery::Table(query) => query.geoms(),
+            BatchQuery::Kinematics { ik, .. } => {
                 let tasks = ik.tasks().iter();
                 tasks
                     .filter_map(|task| geom_of(task.target.object()?))
@@ -42,12 +42,12 @@ impl<S> Question<'_, S> {
     }
 }
 
-/// A question about a group of environments.
+/// A query of a group of environments.
 pub struct QueryCall<'a, S: Scalar + Shared> {
     pub model: &'a Model,
     pub settings: &'a StepSettings,
     pub rows: EnvRows<'a, S>,
-    pub question: Question<'a, S>,
+    pub query: BatchQuery<'a, S>,
     pub input: QueryInput<'a, S>,
     /// The number of input values per environment.
     pub width: usize,
@@ -66,9 +66,9 @@ impl<S: Scalar + Shared> QueryCall<'_, S> {
         let QueryMemory { input, search } = memory;
         self.gather(group, &self.input, self.width, input);
         let everywhere = T::Mask::splat(true);
-        let query = match &self.question {
-            Question::Query(query) => *query,
-            Question::Kinematics { ik, start } => {
+        let query = match &self.query {
+            BatchQuery::Table(query) => *query,
+            BatchQuery::Kinematics { ik, start } => {
                 let memory = search.take().filter(|memory| memory.fits(self.model, ik));
                 let search = search.insert(memory.unwrap_or_else(|| Search::new(self.model, ik)));
                 search.state.copy_from(state);

@@ -5,7 +5,7 @@
 //! environment whose state is invalid, or whose model lacks a geom of the query, gets NaN. Environments that do not run
 //! are included.
 
-use super::answer::{QueryCall, Question};
+use super::answer::{BatchQuery, QueryCall};
 use super::cells::Cells;
 use super::env_rows::EnvRows;
 use super::run::for_each_group;
@@ -25,7 +25,7 @@ impl<S: Precision> Batch<S> {
     /// [`step`](Self::step) does.
     pub fn answer(&mut self, query: Query<'_>, input: QueryInput<S>) -> Result<Rows<S>, SimError> {
         let width = query.check(&self.model, &input, self.count())?;
-        self.ask(Question::Query(query), input, width)
+        self.run_query(BatchQuery::Table(query), input, width)
     }
 
     /// Returns the Jacobian of the centre of mass of a body's subtree (n, 3 × nv), see
@@ -99,14 +99,14 @@ impl<S: Precision> Batch<S> {
             start.check("start", self.model.nq, self.count())?;
         }
         let width = IkSolution::<S>::width(&self.model, ik);
-        let rows = self.ask(Question::Kinematics { ik, start }, goals, width)?;
+        let rows = self.run_query(BatchQuery::Kinematics { ik, start }, goals, width)?;
         let nq = self.model.nq;
         Ok(rows.iter().map(|row| IkSolution::read(row, nq)).collect())
     }
 
-    fn ask(
+    fn run_query(
         &mut self,
-        question: Question<S>,
+        query: BatchQuery<S>,
         input: QueryInput<S>,
         width: usize,
     ) -> Result<Rows<S>, SimError> {
@@ -115,7 +115,7 @@ impl<S: Precision> Batch<S> {
         let count = self.count();
         let mut answers = Rows::new(count, width, S::new(f64::NAN))?;
         self.order.clear();
-        let geoms = question.geoms();
+        let geoms = query.geoms();
         let models = 0..self.models().len();
         let answers_for = Vec::from_iter(models.map(|model| self.models.have(model, &geoms)));
         let envs = (0..count).filter(|&env| answers_for[self.models.of(env)]);
@@ -130,7 +130,7 @@ impl<S: Precision> Batch<S> {
                 models: &self.models,
                 params: &self.params,
             },
-            question,
+            query,
             width: input.width(count),
             input,
             answers: Cells::new(&mut answers),

@@ -2,7 +2,7 @@
 
 use super::{Sim, computed_state};
 use crate::Precision;
-use clench_dynamics::{Step, StepContext};
+use clench_dynamics::Step;
 
 impl<T: Precision> Sim<T> {
     /// Runs a step if everything is asleep as the last step left it. Returns true if it did; no further check is then
@@ -15,12 +15,7 @@ impl<T: Precision> Sim<T> {
         if !is_unchanged {
             return false;
         }
-        let context = StepContext {
-            model: &self.model,
-            params: &self.params,
-            settings: &self.settings,
-            sensors: T::sensors(),
-        };
+        let context = T::context(&self.model, &self.params, &self.settings);
         let ws = &mut self.ws;
         computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
             (Step::compiled().step_asleep)(context, state, ws)

@@ -53,12 +53,7 @@ impl<T: Precision> Sim<T> {
             &mut Workspace<T::SingleEnv>,
         ) + Send,
     ) {
-        let context = StepContext {
-            model: &self.model,
-            params: &self.params,
-            settings: &self.settings,
-            sensors: T::sensors(),
-        };
+        let context = T::context(&self.model, &self.params, &self.settings);
         let ws = &mut self.ws;
         let threads = ws.threads.clone();
         computed_state::change(&mut self.state, &mut self.lane_copy, |state| {
