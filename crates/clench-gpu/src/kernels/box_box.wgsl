@@ -91,11 +91,11 @@ fn opposing_face(axis: u32, side: f32, size: vec3f, rotation: mat3x3f, offset: v
     let center = offset + rotation[largest] * (other[largest] * facing);
     let u = rotation[(largest + 1u) % 3u] * other[(largest + 1u) % 3u];
     let v = rotation[(largest + 2u) % 3u] * other[(largest + 2u) % 3u];
+    polygon_count = 0u;
     for (var k = 0u; k < bound(4u); k++) {
         let p = center + u * select(f32(-1.0), f32(1.0), k == 0u || k == 3u) + v * select(f32(-1.0), f32(1.0), k < 2u);
-        polygon[k] = vec3f(p[(axis + 1u) % 3u], p[(axis + 2u) % 3u], side * p[axis] - size[axis]);
+        push_corner(vec3f(p[(axis + 1u) % 3u], p[(axis + 2u) % 3u], side * p[axis] - size[axis]));
     }
-    polygon_count = 4u;
 }
 
 // Adds the corners of the opposing face clipped to the owner's, each midway between the two faces. Returns the least
@@ -117,16 +117,16 @@ fn face_contacts(pair: u32, axis: u32, owner: Placed, other: Placed, rotation: m
     var least: f32 = 3e38;
     var accepted = 0u;
     for (var k = 0u; k < polygon_count; k++) {
-        let p = polygon[k];
+        let p = polygon_corner(k);
         var twin = p.z > range || accepted == 8u;
         for (var other_corner = 0u; other_corner < accepted; other_corner++) {
-            let between_them = polygon[other_corner].xy - p.xy;
+            let between_them = polygon_corner(other_corner).xy - p.xy;
             twin = twin || dot(between_them, between_them) < apart;
         }
         if (twin) {
             continue;
         }
-        polygon[accepted] = p;
+        polygon[polygon_begin + accepted] = p;
         accepted++;
         var local = vec3f();
         local[x] = p.x;

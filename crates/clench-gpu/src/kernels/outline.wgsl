@@ -15,8 +15,8 @@ fn is_near(p: vec2f, q: vec2f, same: f32) -> bool {
 // Drops corners from the end where the path to the next turns right or not at all.
 fn straighten(next: vec2f) {
     while (polygon_count >= 2u) {
-        let p = polygon[polygon_count - 2u].xy;
-        let q = polygon[polygon_count - 1u].xy;
+        let p = polygon_corner(polygon_count - 2u).xy;
+        let q = polygon_corner(polygon_count - 1u).xy;
         if (cross_2d(q - p, next - q) > 0.0) {
             break;
         }
@@ -27,25 +27,24 @@ fn straighten(next: vec2f) {
 // Reduces the polygon, which is star-shaped, to the corners of its convex hull (Graham 1972); corners nearer than
 // `same` to the previous one are dropped.
 fn make_convex(same: f32) {
-    var whole = polygon;
     let count = polygon_count;
+    let old = begin_polygon();
     var first = 0u;
     for (var k = 1u; k < count; k++) {
-        let p = whole[k];
-        let q = whole[first];
+        let p = polygon[old + k];
+        let q = polygon[old + first];
         if (p.x < q.x || (p.x == q.x && p.y < q.y)) {
             first = k;
         }
     }
-    polygon_count = 0u;
     // The first is repeated at the end, to straighten the path back to it.
     for (var k = 0u; k <= count; k++) {
-        let next = whole[(first + k) % count].xy;
+        let next = polygon[old + (first + k) % count].xy;
         if (k == count) {
-            while (polygon_count > 1u && is_near(polygon[polygon_count - 1u].xy, next, same)) {
+            while (polygon_count > 1u && is_near(polygon_corner(polygon_count - 1u).xy, next, same)) {
                 polygon_count--;
             }
-        } else if (polygon_count > 0u && is_near(polygon[max(polygon_count, 1u) - 1u].xy, next, same)) {
+        } else if (polygon_count > 0u && is_near(polygon_corner(max(polygon_count, 1u) - 1u).xy, next, same)) {
             continue;
         }
         straighten(next);
@@ -57,13 +56,13 @@ fn make_convex(same: f32) {
 
 // Finds the centroid and the moments of the polygon; harmless values if it has no area.
 fn find_moments() {
-    let origin = polygon[0].xy;
+    let origin = polygon_corner(0u).xy;
     var area: f32 = 0.0;
     var first = vec2f();
     var second = vec3f();
     for (var k = 1u; k + 1u < polygon_count; k++) {
-        let p = polygon[k].xy - origin;
-        let q = polygon[k + 1u].xy - origin;
+        let p = polygon_corner(k).xy - origin;
+        let q = polygon_corner(k + 1u).xy - origin;
         let twice = cross_2d(p, q);
         area += twice;
         first += (p + q) * twice;
@@ -98,7 +97,7 @@ fn furthest_corner(d: vec2f) -> u32 {
     var furthest = 0u;
     var height = -UNMOVABLE;
     for (var k = 0u; k < polygon_count; k++) {
-        let other = dot(polygon[k].xy, d);
+        let other = dot(polygon_corner(k).xy, d);
         if (other > height) {
             height = other;
             furthest = k;
@@ -119,8 +118,8 @@ fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
     var passed: f32 = 0.0;
     var edge_total = 0u;
     while (edge_total < polygon_count) {
-        let p = polygon[corner].xy;
-        let edge = polygon[next_corner(corner)].xy - p;
+        let p = polygon_corner(corner).xy;
+        let edge = polygon_corner(next_corner(corner)).xy - p;
         let at_start = dot(edge, start);
         let at_end = dot(edge, to);
         if (at_end <= 0.0) {
@@ -136,15 +135,15 @@ fn sector_point(start: vec2f, to: vec2f, begin: u32) -> vec3f {
         corner = next_corner(corner);
         edge_total++;
     }
-    mean += polygon[corner].xy * (1.0 - passed);
+    mean += polygon_corner(corner).xy * (1.0 - passed);
     // Outward from the centroid, to the first edge between those corners.
     let outward = mean - outline_middle;
     var reach = UNMOVABLE;
     var at = begin;
     for (var k = 0u; k < edge_total; k++) {
-        let p = polygon[at].xy;
+        let p = polygon_corner(at).xy;
         at = next_corner(at);
-        let side = polygon[at].xy - p;
+        let side = polygon_corner(at).xy - p;
         let across_side = vec2f(side.y, -side.x);
         let rise = dot(across_side, outward);
         if (rise > 0.0) {

@@ -1,4 +1,5 @@
-// Shapes on a plane, whose normal is its z axis. CPU counterpart: `clench-collide/src/narrow/plane.rs`.
+// Shapes on a plane, whose normal is its z axis. CPU counterpart: `clench-collide/src/narrow/plane.rs`. Loops have one
+// call that adds a contact, as drivers inline it.
 
 // Adds a point of a surface `distance` above the plane.
 fn add_on_plane(pair: u32, surface: vec3f, distance: f32, normal: vec3f, tangent: vec3f, range: f32) {
@@ -17,8 +18,10 @@ fn plane_capsule(pair: u32, normal: vec3f, above: f32, center: vec3f, axis: vec3
     let rise = dot(normal, axis) * size.y;
     let tangent = tangent_along(normal, axis);
     let middle = center - normal * size.x;
-    add_on_plane(pair, middle + axis * size.y, above + rise - size.x, normal, tangent, range);
-    add_on_plane(pair, middle - axis * size.y, above - rise - size.x, normal, tangent, range);
+    for (var k = 0u; k < bound(2u); k++) {
+        let side = select(f32(1.0), f32(-1.0), k == 1u);
+        add_on_plane(pair, middle + axis * (size.y * side), above + rise * side - size.x, normal, tangent, range);
+    }
 }
 
 // Adds the lowest point of an ellipsoid: its support point opposite to the normal.
@@ -47,13 +50,21 @@ fn plane_cylinder(pair: u32, normal: vec3f, above: f32, center: vec3f, axes: mat
         return;
     }
     let tangent = tangent_from_normal(normal);
-    add_on_plane(pair, center + axis + spoke, lowest, normal, tangent, range);
-    add_on_plane(pair, center - axis + spoke, above - axis_rise + spoke_rise, normal, tangent, range);
     let flank = above + axis_rise - spoke_rise * 0.5;
     let sideways = direction(cross(spoke, axis)).xyz * (size.x * 0.8660254037844386);
     let middle = center + axis - spoke * 0.5;
-    add_on_plane(pair, middle + sideways, flank, normal, tangent, range);
-    add_on_plane(pair, middle - sideways, flank, normal, tangent, range);
+    for (var k = 0u; k < bound(4u); k++) {
+        var surface = middle + select(sideways, -sideways, k == 3u);
+        var distance = flank;
+        if (k == 0u) {
+            surface = center + axis + spoke;
+            distance = lowest;
+        } else if (k == 1u) {
+            surface = center - axis + spoke;
+            distance = above - axis_rise + spoke_rise;
+        }
+        add_on_plane(pair, surface, distance, normal, tangent, range);
+    }
 }
 
 // Adds the corners of a box on its lower side, at most four.

@@ -49,24 +49,23 @@ fn capsule_capsule(pair: u32, a: Placed, b: Placed, range: f32) {
     let behind = dot(second, offset);
     let sine_squared = dot(across, across);
     let normal = across_axes(first, second);
-    if (sine_squared >= 1e-8) {
-        var s = clamp(dot(cross(offset, second), across) / sine_squared, -a.size.y, a.size.y);
-        let free = cosine * s - behind;
-        let t = clamp(free, -b.size.y, b.size.y);
-        if (free != t) {
-            s = clamp(ahead + cosine * t, -a.size.y, a.size.y);
-        }
-        ball_ball(pair, a.center + first * s, a.size.x, b.center + second * t, b.size.x, normal, range);
-        return;
-    }
+    let parallel = sine_squared < 1e-8;
     let end = select(b.size.y, -b.size.y, cosine < 0.0);
-    for (var k = 0u; k < 2u; k++) {
-        let side = select(f32(-1.0), f32(1.0), k == 1u);
-        let free = ahead + b.size.y * abs(cosine) * side;
-        let s = clamp(free, -a.size.y, a.size.y);
-        var t = clamp(cosine * s - behind, -b.size.y, b.size.y);
-        if (free == s) {
-            t = end * side;
+    for (var k = 0u; k < select(1u, 2u, parallel); k++) {
+        var s: f32 = 0.0;
+        var t: f32 = 0.0;
+        if (parallel) {
+            let side = select(f32(-1.0), f32(1.0), k == 1u);
+            let free = ahead + b.size.y * abs(cosine) * side;
+            s = clamp(free, -a.size.y, a.size.y);
+            t = select(clamp(cosine * s - behind, -b.size.y, b.size.y), end * side, free == s);
+        } else {
+            s = clamp(dot(cross(offset, second), across) / sine_squared, -a.size.y, a.size.y);
+            let free = cosine * s - behind;
+            t = clamp(free, -b.size.y, b.size.y);
+            if (free != t) {
+                s = clamp(ahead + cosine * t, -a.size.y, a.size.y);
+            }
         }
         ball_ball(pair, a.center + first * s, a.size.x, b.center + second * t, b.size.x, normal, range);
     }

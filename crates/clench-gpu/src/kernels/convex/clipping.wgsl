@@ -1,9 +1,23 @@
 // Features projected along the contact's normal, and clipping one against the other: x and y across the normal, z along
 // it. CPU counterparts: `clench-collide/src/narrow/convex/clipping.rs` and `polygon.rs`.
 
-// A polygon, or a segment (two corners).
-var<private> polygon: array<vec3f, POLYGON_CORNERS>;
+// A polygon, or a segment (two corners), from `polygon_begin` on. A function that makes new corners of all old ones
+// writes them to the other half: compilers unroll a copy of the array.
+var<private> polygon: array<vec3f, 2 * POLYGON_CORNERS>;
+var<private> polygon_begin: u32;
 var<private> polygon_count: u32;
+
+fn polygon_corner(k: u32) -> vec3f {
+    return polygon[polygon_begin + k];
+}
+
+// Empties the polygon, and returns where its corners were.
+fn begin_polygon() -> u32 {
+    let old = polygon_begin;
+    polygon_begin = POLYGON_CORNERS - old;
+    polygon_count = 0u;
+    return old;
+}
 
 // A projected edge or face: the offset and number of its corners, and the slope of its height. For a round cap also its
 // radius (else zero), two axes in its plane, and a point with its centre's coordinates along them.
@@ -51,7 +65,7 @@ fn cross_2d(u: vec2f, v: vec2f) -> f32 {
 // Adds a corner. Only rounding could exceed the capacity, and the excess corners coincide with others.
 fn push_corner(p: vec3f) {
     if (polygon_count < POLYGON_CORNERS) {
-        polygon[polygon_count] = p;
+        polygon[polygon_begin + polygon_count] = p;
         polygon_count++;
     }
 }
@@ -61,18 +75,17 @@ fn clip_polygon(outward: vec2f, limit: f32) {
     let count = polygon_count;
     var beyond = false;
     for (var k = 0u; k < count; k++) {
-        beyond = beyond || dot(outward, polygon[k].xy) > limit;
+        beyond = beyond || dot(outward, polygon_corner(k).xy) > limit;
     }
     if (!beyond) {
         return;
     }
-    var whole = polygon;
     // The second side of a segment would cross the line again.
     let sides = select(count, 1u, count == 2u);
-    polygon_count = 0u;
+    let old = begin_polygon();
     for (var k = 0u; k < count; k++) {
-        let p = whole[k];
-        let q = whole[select(k + 1u, 0u, k + 1u == count)];
+        let p = polygon[old + k];
+        let q = polygon[old + select(k + 1u, 0u, k + 1u == count)];
         let dp = dot(outward, p.xy) - limit;
         let dq = dot(outward, q.xy) - limit;
         if (dp <= 0.0) {
@@ -187,20 +200,21 @@ fn clip_to_cap(cap: Projected, cut: Projected, slack: f32) {
 fn sort_by_angle() {
     var sum = vec3f();
     for (var k = 0u; k < polygon_count; k++) {
-        sum += polygon[k];
+        sum += polygon_corner(k);
     }
     let center = sum.xy / f32(max(polygon_count, 1u));
-    let start = polygon[0].xy - center;
+    let start = polygon_corner(0u).xy - center;
     for (var k = 0u; k < polygon_count; k++) {
-        let arm = polygon[k].xy - center;
+        let p = polygon_corner(k).xy;
+        let arm = p - center;
         let along = dot(start, arm);
         let aside = cross_2d(start, arm);
         let size = max(abs(along) + abs(aside), SMALLEST);
         let pseudo_angle = 1.0 - along / size;
         // The key grows with the angle from the first corner, 0 to 4. Corners next to the first tie with it.
-        let corner = vec3f(polygon[k].xy, select(pseudo_angle, 4.0 - pseudo_angle, aside < -size * (EPSILON * 1e3)));
-        var index = k;
-        while (index > 0u && polygon[max(index, 1u) - 1u].z > corner.z) {
+        let corner = vec3f(p, select(pseudo_angle, 4.0 - pseudo_angle, aside < -size * (EPSILON * 1e3)));
+        var index = polygon_begin + k;
+        while (index > polygon_begin && polygon[max(index, 1u) - 1u].z > corner.z) {
             polygon[index] = polygon[index - 1u];
             index--;
         }

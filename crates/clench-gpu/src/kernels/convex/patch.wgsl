@@ -77,7 +77,7 @@ fn find_spots(a: Projected, b: Projected, beyond: f32) -> f32 {
     overlap(a, b, beyond);
     spot_count = polygon_count;
     for (var k = 0u; k < spot_count; k++) {
-        spots[k] = spot_at(a, b, polygon[k].xy);
+        spots[k] = spot_at(a, b, polygon_corner(k).xy);
     }
     return least_distance();
 }
@@ -95,7 +95,7 @@ fn sample_spots(a: Projected, b: Projected, first: vec2f, lowest: vec4f, slack: 
         if (few && attempt == 0u) {
             sampled_count = polygon_count;
             for (var k = 0u; k < sampled_count; k++) {
-                sampled[k] = polygon[k].xy;
+                sampled[k] = polygon_corner(k).xy;
             }
         } else {
             sample_outline(toward, same);

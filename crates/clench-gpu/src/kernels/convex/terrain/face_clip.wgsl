@@ -76,19 +76,20 @@ fn find_face_contacts(range: f32) {
     let view = transpose(mat3x3f(frame.e, frame.f, triangle_normal));
     polygon_count = 0u;
     for (var k = 0u; k < feature.count; k++) {
-        push_corner(view * feature_corners[first + k]);
+        let own = view * feature_corners[first + k];
+        feature_corners[first + k] = own;
+        push_corner(own);
     }
-    let own = polygon;
     for (var k = 0u; k < bound(3u); k++) {
         let line = side_of_triangle(k);
         clip_polygon(vec2f(dot(line.xyz, frame.e), dot(line.xyz, frame.f)), line.w);
     }
     for (var k = 0u; k < polygon_count; k++) {
-        let corner = polygon[k];
+        let corner = polygon_corner(k);
         let position = corner * view;
         var is_own = false;
         for (var other = 0u; other < feature.count; other++) {
-            is_own = is_own || all(own[other] == corner);
+            is_own = is_own || all(feature_corners[first + other] == corner);
         }
         if (is_own || face_ends_at(position)) {
             add_to_face(position, range);
