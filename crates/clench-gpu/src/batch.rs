@@ -136,7 +136,7 @@ impl<S: GpuReal> GpuBatch<S> {
         let preface = preface(&tables, &memory);
 
         let arrays = allocate::<S>(&device, (&tables, &preface.layout), sizes, count)?;
-        let pipelines = Pipelines::new::<S>(&device, preface, count, model.integrator)?;
+        let pipelines = Pipelines::new::<S>(&device, preface, count, &model)?;
         let queue = &device.queue;
         queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
         queue.write_buffer(&arrays.words, 4 * ENVS as u64, [count as u32].as_bytes());

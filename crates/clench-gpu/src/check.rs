@@ -4,7 +4,7 @@ use crate::error::{GpuError, Refusal};
 use crate::methods::points_of_pair;
 use crate::tables::is_read;
 use clench_rigid::contact::Candidate;
-use clench_rigid::model::{Integrator, Model, Sensor};
+use clench_rigid::model::{Model, Sensor};
 use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 use clench_solver::ConstraintSolver;
@@ -31,9 +31,6 @@ macro_rules! rules {
 
 rules! {
     "a model without degrees of freedom has nothing to step": |s| (s.model.nv == 0).then(|| "model".to_owned());
-    "the integrator `discrete` is not supported yet; `Euler`, `implicitfast`, `implicit` and `RK4` are": |s| {
-        (s.model.integrator == Integrator::Discrete).then(|| "option integrator".to_owned())
-    };
     "environments are not reset automatically yet: check the statuses": |s| {
         s.settings.autoreset.then(|| "option autoreset".to_owned())
     };

@@ -124,8 +124,23 @@ fields! {
     cfrc: 6 * m.nbody();
     /// Velocity derivatives of fluid forces on ellipsoids, by column.
     fluid_rates: if m.bodies.iter().any(|b| b.fluid_ellipsoids) { 36 * m.nbody() } else { 0 };
-    /// The mass matrix, in the pattern of the tree.
+    /// The mass matrix, in the pattern of the tree; with `discrete`, the metric, after the mass matrix itself is copied.
     qm: m.tree.nnz();
+    plain_mass: if c.in_metric { m.tree.nnz() } else { 0 };
+    /// −h K v, the diagonal that the metric adds to M, and 1 for dofs on which a tendon or actuator term acts.
+    shift: if c.in_metric { m.nv } else { 0 };
+    added: if c.in_metric { m.nv } else { 0 };
+    touched: if c.in_metric { m.nv } else { 0 };
+    /// s of the terms of tendons and actuators, and their share of −h K v along them.
+    along_scale: if c.in_metric { m.tendons.len() + m.nout() } else { 0 };
+    along_shift: if c.in_metric { m.tendons.len() + m.nout() } else { 0 };
+    /// M̂⁻¹Jᵀ of the couplings, the factor of I + J M̂⁻¹Jᵀ, and its product with J x.
+    coupling_response: c.couplings * m.nv;
+    coupling_gram: c.couplings * c.couplings;
+    coupling_pull: c.couplings;
+    /// The matrix of exact inverse inertias and no-slip sweeps in the metric, then its factor.
+    backbone: if c.has_backbone { m.tree.nnz() } else { 0 };
+    backbone_inverse: if c.has_backbone { m.nv } else { 0 };
     /// Its LᵀDL factor, or that of an implicit step.
     qld: m.tree.nnz();
     qld_inverse: m.nv;
@@ -206,6 +221,7 @@ fields! {
     velocity: c.rows;
     aref: c.rows;
     damping: c.rows;
+    stiffness: if c.in_metric { c.rows } else { 0 };
     /// The pull of a row whose force would otherwise be zero, if any contact adheres.
     pull: if c.adheres { c.rows } else { 0 };
     r: c.rows;

@@ -89,39 +89,45 @@ kernels! {
     /// Gathers contacts.
     CONTACTS = "contacts", Team: "team", "near_pairs", "contacts";
     /// Computes smooth forces and the resulting acceleration.
-    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_acceleration", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "passive", "tendon_forces", "muscle",
+    FORCES = "forces", Team: "team", "tree", "substitution", "chains", "velocity", "wrap", "tendon_acceleration", "tendon_armature", "contact_adhesion", "outputs", "adhesion", "ellipsoid", "spring", "polynomial", "passive", "tendon_forces", "muscle",
         "dc_motor", "activation", "setpoint", "circuit", "history", "gain", "orientation", "actuation", "forces";
+    /// Computes the metric of the integrator `discrete`, and the acceleration of smooth forces in it.
+    METRIC = "metric", Team: "team", "tree", "substitution", "chains", "outputs", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
+        "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
+        "along", "couplings", "metric";
     /// Finds active constraints and their softness.
     CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "constraints";
     /// Computes their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "along", "implicit_rows", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
-        "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "prediction", "newton", "precondition", "substitution", "cg", "descent";
+        "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "prediction", "newton", "precondition", "substitution", "cg", "descent";
+    /// Spins free bodies that nothing touches, with the integrator `discrete`.
+    SPIN = "spin", Team: "team", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
     /// Computes the duality gap of the solve, on request.
     GAP = "gap", Team: "team", "tree", "substitution", "articulated", "factor_m", "gap";
     /// Computes camera poses, on request.
     CAMERAS = "cameras", Thread: "cameras";
     /// Computes accelerations of bodies, forces between them and the energy, on request.
-    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "tendon_forces", "wrap", "tendon_acceleration", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
+    BODY_FORCES = "body_forces", Thread: "chains", "anchor_frames", "polynomial", "tendon_forces", "wrap", "tendon_acceleration", "contact_adhesion", "wrench", "external", "spring", "energy", "body_forces";
     /// Traces the rays of sensors, on request.
     RAYS = "rays", Rays: "chord", "optics", "shape_data", "rays/primitives", "rays/triangles", "rays/terrain", "rays/rays";
     /// Reads sensors, on request.
     SENSORS = "sensors", Thread: "chains", "chord", "site_volume", "contact_adhesion", "wrench", "contact_sensor", "distance_sensor", "clock", "sample_times", "history", "sensor_delay", "optics", "sensors";
     /// Checks that the results of a forward pass outside a step are within limits.
     CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
-    /// Advances the state by semi-implicit Euler.
-    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "euler";
+    /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
+    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
-        "outer", "derivatives", "gyroscopic", "implicit_fast";
+        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
+        "outer", "fluid_derivatives", "derivatives", "gyroscopic", "implicit_fast";
     /// Does the same with Coriolis forces.
     IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "ellipsoid", "ellipsoid_rates",
-        "outer", "derivatives", "coriolis", "lu", "implicit";
+        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
+        "outer", "fluid_derivatives", "derivatives", "coriolis", "lu", "implicit";
     /// Does the same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "rk4";
 }
 
 /// The inputs of the constants before every kernel, besides the tables.

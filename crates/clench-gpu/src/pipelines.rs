@@ -4,7 +4,8 @@ use crate::device::Device;
 use crate::error::GpuError;
 use crate::kernels::{self, Kernel, Preface};
 use crate::precision::Texts;
-use clench_rigid::model::Integrator;
+use clench_rigid::dynamics::gyroscopic::is_free_tree;
+use clench_rigid::model::{Integrator, Model};
 
 /// A compiled kernel.
 #[derive(Clone)]
@@ -93,27 +94,31 @@ impl Pipelines {
         device: &Device,
         preface: Preface,
         count: usize,
-        integrator: Integrator,
+        model: &Model,
     ) -> Result<Self, GpuError> {
         let compile = |kernel: &Kernel| compile::<S>(device, &preface, count, kernel);
+        let in_metric = model.integrator == Integrator::Discrete;
+        let spins = in_metric && (0..model.joints.len()).any(|j| is_free_tree(model, j));
         let forward = [
-            kernels::POSITIONS,
-            kernels::BROAD_PHASE,
-            kernels::NARROW_PHASE,
-            kernels::CONTACTS,
-            kernels::FORCES,
-            kernels::CONSTRAINTS,
-            kernels::ASSEMBLE,
-            kernels::SOLVE,
+            (kernels::POSITIONS, true),
+            (kernels::BROAD_PHASE, true),
+            (kernels::NARROW_PHASE, true),
+            (kernels::CONTACTS, true),
+            (kernels::FORCES, true),
+            (kernels::METRIC, in_metric),
+            (kernels::CONSTRAINTS, true),
+            (kernels::ASSEMBLE, true),
+            (kernels::SOLVE, true),
+            (kernels::SPIN, spins),
         ];
-        let advance = match integrator {
+        let advance = match model.integrator {
             Integrator::Rk4 => vec![compile(&kernels::RUNGE_KUTTA)?; 4],
             Integrator::ImplicitFast => vec![compile(&kernels::IMPLICIT_FAST)?],
             Integrator::Implicit => vec![compile(&kernels::IMPLICIT)?],
-            // A batch refuses the discrete integrator, see `check.rs`.
             Integrator::Euler | Integrator::Discrete => vec![compile(&kernels::EULER)?],
         };
-        let forward = forward.iter().map(compile);
+        let forward = forward.iter().filter(|(_, runs)| *runs);
+        let forward = forward.map(|(kernel, _)| compile(kernel));
         let forward = forward.collect::<Result<_, _>>()?;
         Ok(Pipelines {
             cameras: None,

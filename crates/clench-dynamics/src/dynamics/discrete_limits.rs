@@ -1,8 +1,8 @@
 //! The combinations that the integrator `discrete` does not support.
 
-use crate::dynamics::metric::Along;
+use crate::dynamics::metric::{Along, terms};
 use crate::error::NotDiscrete;
-use crate::model::{BiasKind, GainKind, Integrator, Model, SleepPolicy};
+use crate::model::{Integrator, Model, SleepPolicy};
 use clench_solver::Switch;
 
 /// Checks that a model can step in the metric: `sleep` is true if its trees may sleep, and `islands` if islands are
@@ -30,32 +30,6 @@ pub(crate) fn check_discrete(
         return refuse(format!("sleep and {}", name(model, along)), reason);
     }
     Ok(())
-}
-
-/// Returns the tendons and actuator lengths that may add to the metric.
-fn terms(model: &Model) -> impl Iterator<Item = Along> + '_ {
-    let tendons = (0..model.tendons.len()).filter(|&t| acts_on_tendon(model, t));
-    let outputs = (model.actuators.iter())
-        .filter(|actuator| {
-            let constant = matches!(
-                actuator.gain,
-                GainKind::Fixed | GainKind::User | GainKind::Pid
-            );
-            !constant || !matches!(actuator.bias, BiasKind::None | BiasKind::User)
-        })
-        .flat_map(|actuator| actuator.outputs.clone());
-    (tendons.map(Along::Tendon)).chain(outputs.map(Along::Output))
-}
-
-/// Returns true if tendon `t` has a spring or a damper.
-fn acts_on_tendon(model: &Model, t: usize) -> bool {
-    let p = &model.params;
-    let any = |linear: f64, higher: [f64; 2]| linear != 0.0 || higher != [0.0; 2];
-    let springs = model.flags.spring && any(p.tendon_stiffness[t], p.tendon_stiffnesspoly[t]);
-    let dampers = model.flags.damper
-        && (any(p.tendon_damping[t], p.tendon_dampingpoly[t])
-            || !model.tendons[t].reflecting.is_empty());
-    springs || dampers
 }
 
 /// Returns true if a term acts on several trees of which one may sleep.

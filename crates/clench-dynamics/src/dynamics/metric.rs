@@ -25,7 +25,7 @@ use crate::dynamics::spring::{
 };
 use crate::dynamics::tendon;
 use crate::dynamics::transmission::moment;
-use crate::model::{Integrator, Model, Params};
+use crate::model::{BiasKind, GainKind, Integrator, Model, Params};
 use crate::stages::{Forces, Positions, Velocities};
 use crate::state::State;
 use clench_math::{Mask, Real, Vec3, kernel};
@@ -150,6 +150,37 @@ impl<T: Real> Metric<T> {
     pub fn is_coupled(&self) -> bool {
         self.scales.iter().any(|scale| !scale.eq(T::ZERO).all())
     }
+}
+
+/// Returns the tendons and actuator lengths that may add to the metric.
+pub fn terms(model: &Model) -> impl Iterator<Item = Along> + '_ {
+    let tendons = (0..model.tendons.len()).filter(|&t| acts_on_tendon(model, t));
+    let outputs = (model.actuators.iter())
+        .filter(|actuator| {
+            let constant = matches!(
+                actuator.gain,
+                GainKind::Fixed | GainKind::User | GainKind::Pid
+            );
+            !constant || !matches!(actuator.bias, BiasKind::None | BiasKind::User)
+        })
+        .flat_map(|actuator| actuator.outputs.clone());
+    (tendons.map(Along::Tendon)).chain(outputs.map(Along::Output))
+}
+
+/// Returns true if tendon `t` has a spring or a damper.
+fn acts_on_tendon(model: &Model, t: usize) -> bool {
+    let p = &model.params;
+    let any = |linear: f64, higher: [f64; 2]| linear != 0.0 || higher != [0.0; 2];
+    let springs = model.flags.spring && any(p.tendon_stiffness[t], p.tendon_stiffnesspoly[t]);
+    let dampers = model.flags.damper
+        && (any(p.tendon_damping[t], p.tendon_dampingpoly[t])
+            || !model.tendons[t].reflecting.is_empty());
+    springs || dampers
+}
+
+/// Returns the terms that may couple dofs of different branches.
+pub fn couplings(model: &Model) -> impl Iterator<Item = Along> + '_ {
+    terms(model).filter(|along| !is_chain(&model.tree, along.dofs(model)))
 }
 
 /// Returns true if each of these ascending dofs is above the next.

@@ -40,7 +40,7 @@ pub mod inverse_derivatives;
 pub mod jacobian;
 pub mod kinematics;
 pub mod local;
-pub(crate) mod metric;
+pub mod metric;
 pub mod muscle;
 pub mod orientation;
 pub mod passive;

@@ -114,14 +114,31 @@ fn entry(a: u32, i: u32) -> f32 {
         case LIMIT: {
             return limit_entry(source, i);
         }
+        case METRIC_TERM: {
+            return arm_along(source, i);
+        }
         case CONTACT_NORMAL, CONTACT_PYRAMID, CONTACT_ELLIPTIC, default: {
             return contact_entry(source, a - block(b, BLOCK_ROW), i);
         }
     }
 }
 
+// Computes the reference acceleration of a term of the metric: J a_s.
+fn finish_term(a: u32) {
+    var aref: f32 = 0.0;
+    for (var i = 0u; i < bound(NV); i++) {
+        aref += row(COLUMNS + i * MAX_ROWS + a) * fetch(QACC_SMOOTH + i);
+    }
+    put_row(AREF + a, aref);
+    put_row(RAY + a, 0.0);
+}
+
 // Computes the velocity along a row, and its inverse inertia as if dofs were independent.
 fn finish_row(a: u32) {
+    if (IN_METRIC && block(u32(row(ROW_BLOCK + a)), BLOCK_KIND) == METRIC_TERM) {
+        finish_term(a);
+        return;
+    }
     var velocity = row(VELOCITY + a);
     var inertia: f32 = 0.0;
     for (var i = 0u; i < bound(NV); i++) {
@@ -130,7 +147,11 @@ fn finish_row(a: u32) {
         inertia += j * j * parameter(DOF_INVWEIGHT0 + i);
     }
     put_row(VELOCITY + a, velocity);
-    put_row(AREF + a, row(AREF + a) - row(DAMPING + a) * velocity);
+    if (IN_METRIC) {
+        put_row(AREF + a, reference_at_end(a, velocity));
+    } else {
+        put_row(AREF + a, row(AREF + a) - row(DAMPING + a) * velocity);
+    }
     put_row(RESIDUAL + a, inertia);
     // A step of length 0 along any finite ray is zero.
     put_row(RAY + a, 0.0);
@@ -165,8 +186,15 @@ fn finish_block(b: u32) {
     let kind = block(b, BLOCK_KIND);
     let first = block(b, BLOCK_ROW);
     let dim = block(b, BLOCK_DIM);
+    if (IN_METRIC && kind == METRIC_TERM) {
+        // D is s already.
+        return;
+    }
     if (EXACT_DIAGONAL) {
         regularize_exactly(kind, first, dim);
+    }
+    if (IN_METRIC) {
+        regularize_at_end(kind, first, dim);
     }
     if (kind == CONTACT_PYRAMID || kind == CONTACT_ELLIPTIC) {
         finish_cone(first, dim, kind == CONTACT_PYRAMID);

@@ -1,11 +1,12 @@
 // The circuits and forces of direct-current motors. CPU counterpart: `dynamics/dc_motor.rs`.
 
-// A motor's circuit at an instant: R, K, V and ∂V/∂ω.
+// A motor's circuit at an instant: R, K, V, ∂V/∂ω and ∂V/∂length.
 struct Circuit {
     resistance: f32,
     constant: f32,
     voltage: f32,
     voltage_slope: f32,
+    voltage_length_slope: f32,
 }
 
 fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circuit {
@@ -13,21 +14,25 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
     let constant = controller(u, CONTROLLER_GAIN + 1u);
     var voltage: f32 = 0.0;
     var slope: f32 = 0.0;
+    var length_slope: f32 = 0.0;
     if (words[ACTUATOR_CONTROLLED + u] == 1u) {
         let a = state_of(u, STATE_INTEGRAL);
         var integral: f32 = 0.0;
         if (a != NONE) {
             integral = fetch_state(ACT + a);
         }
+        let kp = controller(u, CONTROLLER_GAIN + 4u);
         let kd = controller(u, CONTROLLER_GAIN + 6u);
-        let torque = controller(u, CONTROLLER_GAIN + 4u) * (setpoints.position - length) + kd * (setpoints.velocity - velocity)
+        let torque = kp * (setpoints.position - length) + kd * (setpoints.velocity - velocity)
             + controller(u, CONTROLLER_GAIN + 5u) * integral + setpoints.feedforward;
         let per_torque = cold / constant;
         voltage = per_torque * torque + constant * velocity;
         slope = constant - per_torque * kd;
+        length_slope = -per_torque * kp;
         let limit = controller(u, CONTROLLER_GAIN + 7u);
         if (limit > 0.0) {
             slope = select(slope, 0.0, abs(voltage) >= limit);
+            length_slope = select(length_slope, 0.0, abs(voltage) >= limit);
             voltage = clamp(voltage, -limit, limit);
         }
     }
@@ -37,7 +42,7 @@ fn circuit_of(u: u32, setpoints: Setpoints, length: f32, velocity: f32) -> Circu
         let temperature = fetch_state(ACT + a) + controller(u, CONTROLLER_DYNAMICS + 4u);
         resistance = cold * (1.0 + controller(u, CONTROLLER_GAIN + 2u) * (temperature - controller(u, CONTROLLER_GAIN + 3u)));
     }
-    return Circuit(resistance, constant, voltage + setpoints.voltage, slope);
+    return Circuit(resistance, constant, voltage + setpoints.voltage, slope, length_slope);
 }
 
 // Returns the steady current of a voltage and back-EMF.
@@ -93,11 +98,16 @@ fn back_emf(u: u32, gain: f32, velocity: f32) -> f32 {
     return select(0.0, gain * controller(u, CONTROLLER_GAIN + 1u) * velocity, state_of(u, STATE_CURRENT) == NONE);
 }
 
-// Returns ∂force/∂velocity of a motor's gain, and of its back-EMF if its bias is a motor's. If the current is a state,
-// it follows the voltage within the step only with `actearly`.
+// Returns ∂force/∂velocity of a motor's gain, and of its back-EMF if its bias is a motor's.
 fn electrical_slope(u: u32, circuit: Circuit) -> f32 {
+    let no_back_emf = state_of(u, STATE_CURRENT) == NONE && words[BIAS_LAW + u] != LAW_DC_MOTOR;
+    return by_voltage(u, circuit, circuit.voltage_slope - select(circuit.constant, 0.0, no_back_emf));
+}
+
+// Returns the change of the force if the driving voltage changes by `net`. If the current is a state, it follows the
+// voltage within the step only with `actearly`.
+fn by_voltage(u: u32, circuit: Circuit, net: f32) -> f32 {
     let a = state_of(u, STATE_CURRENT);
-    let net = circuit.voltage_slope - select(circuit.constant, 0.0, a == NONE && words[BIAS_LAW + u] != LAW_DC_MOTOR);
     let steady = circuit.constant * net / max(circuit.resistance, TINY);
     if (a == NONE) {
         return steady;

@@ -26,7 +26,7 @@ fn begin_block(kind: u32, cost: u32, dim: u32, source: u32, impedance: f32) {
 
 // Adds a row to the block. The velocity part of aref, −damping · velocity, is added later. Until then VELOCITY holds
 // the part of the velocity other than J v, PULL the force that raises aref by R times itself, and D the impedance.
-fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
+fn add_row(position: f32, aref: f32, stiffness: f32, damping: f32, r: f32, shape: f32) {
     if (writes) {
         put_row(ROW_BLOCK + nrow, f32(nblock - 1u));
         put_row(POSITION + nrow, position);
@@ -36,6 +36,9 @@ fn add_row(position: f32, aref: f32, damping: f32, r: f32, shape: f32) {
         put_row(SHAPE + nrow, shape);
         put_row(VELOCITY + nrow, 0.0);
         put_row(D + nrow, block_impedance);
+    }
+    if (writes && IN_METRIC) {
+        put_row(STIFFNESS + nrow, stiffness);
     }
     if (writes && ANY_ADHESION) {
         put_row(PULL + nrow, 0.0);
@@ -48,7 +51,7 @@ fn push_friction(k: u32) {
     let soft = soften(prm + FRICTION_SOLREF, 0.0);
     begin_block(DRY_FRICTION, COST_HUBER, 1u, words[FRICTION_SOURCE + k], soft.impedance);
     let r = regularization(soft.impedance, parameter(prm + FRICTION_INVWEIGHT));
-    add_row(0.0, 0.0, soft.damping, r, parameter(prm + FRICTION_LOSS));
+    add_row(0.0, 0.0, 0.0, soft.damping, r, parameter(prm + FRICTION_LOSS));
 }
 
 // Adds one end of a coordinate's range. `source` is twice the coordinate, plus one at the upper end.
@@ -57,10 +60,11 @@ fn push_limit(prm: u32, distance: f32, source: u32) {
     if (distance >= margin) {
         return;
     }
-    let soft = soften(prm + LIMIT_SOLREF, distance - margin);
+    let soft = resolved(soften(prm + LIMIT_SOLREF, distance - margin), prm + LIMIT_SOLREF);
     begin_block(LIMIT, COST_ONE_SIDED, 1u, source, soft.impedance);
     let aref = -soft.stiffness * (distance - margin);
-    add_row(distance, aref, soft.damping, regularization(soft.impedance, parameter(prm + LIMIT_INVWEIGHT)), 0.0);
+    let r = regularization(soft.impedance, parameter(prm + LIMIT_INVWEIGHT));
+    add_row(distance, aref, soft.stiffness, soft.damping, r, 0.0);
 }
 
 // Adds both ends.
@@ -101,7 +105,7 @@ fn surface_velocity(contact: u32) -> vec3f {
 }
 
 // Adds the friction rows of a contact, after the normal's.
-fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: f32, friction_damping: f32) {
+fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, normal: Softness, friction_damping: f32) {
     let mu1 = parameter(friction);
     var drift = vec3f();
     if (writes && SURFACES_MOVE) {
@@ -111,9 +115,9 @@ fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: 
         let mu = parameter(friction + k - 1u);
         if (ELLIPTIC_CONES || COULOMB_CONTACTS) {
             let r = normal_r / IMPRATIO * mu1 * mu1 / (mu * mu);
-            add_row(0.0, 0.0, friction_damping, r, mu);
+            add_row(0.0, 0.0, 0.0, friction_damping, r, mu);
         } else {
-            add_row(0.0, 0.0, damping, normal_r, mu);
+            add_row(0.0, 0.0, normal.stiffness, normal.damping, normal_r, mu);
         }
         if (writes && SURFACES_MOVE && k < 4u) {
             put_row(VELOCITY + nrow - 1u, drift[k - 1u]);
@@ -122,8 +126,8 @@ fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, damping: 
 }
 
 // Adds the row along the normal, which pulls if the contact has adhesion.
-fn push_normal(distance: f32, aref: f32, damping: f32, r: f32, shape: f32, pull: f32) {
-    add_row(distance, aref, damping, r, shape);
+fn push_normal(distance: f32, aref: f32, soft: Softness, r: f32, shape: f32, pull: f32) {
+    add_row(distance, aref, soft.stiffness, soft.damping, r, shape);
     if (writes && ANY_ADHESION) {
         put_row(PULL + nrow - 1u, pull);
     }
@@ -143,33 +147,45 @@ fn push_contact(contact: u32) {
     }
     let a0 = parameter(prm + PAIR_INVWEIGHT);
     let friction = prm + PAIR_FRICTION;
-    let soft = soften(prm + PAIR_SOLREF, distance - margin);
+    let unresolved = soften(prm + PAIR_SOLREF, distance - margin);
+    let soft = resolved(unresolved, prm + PAIR_SOLREF);
     let aref = -soft.stiffness * (distance - margin);
     let dim = select(1u, words[PAIR_DIM + pair], touches);
     let plain = regularization(soft.impedance, a0);
     if (dim == 1u) {
         begin_block(CONTACT_NORMAL, COST_ONE_SIDED, 1u, contact, soft.impedance);
-        push_normal(distance, aref, soft.damping, plain, 0.0, adhesion);
+        push_normal(distance, aref, soft, plain, 0.0, adhesion);
         return;
     }
     let mu = parameter(friction);
     if (ELLIPTIC_CONES || COULOMB_CONTACTS) {
         begin_block(CONTACT_ELLIPTIC, select(COST_ELLIPTIC, COST_COULOMB, COULOMB_CONTACTS), dim, contact, soft.impedance);
-        push_normal(distance, aref, soft.damping, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
-        var damping = soft.damping;
+        push_normal(distance, aref, soft, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
+        var damping = unresolved.damping;
         let solref = vec2f(parameter(prm + PAIR_SOLREFFRICTION), parameter(prm + PAIR_SOLREFFRICTION + 1u));
         if (any(solref != vec2f()) && !is_mixed(solref)) {
             damping = spring_damper(solref, parameter(prm + PAIR_SOLIMP + 1u)).y;
         }
-        push_tangents(contact, dim, friction, plain, soft.damping, damping);
+        push_tangents(contact, dim, friction, plain, soft, damping);
         return;
     }
     let edge = regularization(soft.impedance, a0 + mu * mu * a0);
     let r = 2.0 * (mu * mu / IMPRATIO) * edge;
     begin_block(CONTACT_PYRAMID, COST_PYRAMID, dim, contact, soft.impedance);
     // The edges share the adhesion.
-    push_normal(distance, aref, soft.damping, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
-    push_tangents(contact, dim, friction, r, soft.damping, soft.damping);
+    push_normal(distance, aref, soft, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
+    push_tangents(contact, dim, friction, r, soft, soft.damping);
+}
+
+// Adds the couplings of the metric, ½ s (J a − J a_s)², as the last blocks.
+fn push_couplings() {
+    for (var k = 0u; k < NCOUPLING; k++) {
+        let scale = fetch(ALONG_SCALE + words[COUPLING_ALONG + k]);
+        if (scale > 0.0) {
+            begin_block(METRIC_TERM, COST_QUADRATIC, 1u, words[COUPLING_ALONG + k], scale);
+            add_row(0.0, 0.0, 0.0, 0.0, 1.0 / scale, 0.0);
+        }
+    }
 }
 
 // Adds the n-th constraint, if it is active.
@@ -219,8 +235,13 @@ fn constraints(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocatio
         }
     }
     if (lane == 0u) {
-        reports[NBLOCK * envs + env] = earlier.x;
-        reports[NROW * envs + env] = earlier.y;
+        nblock = earlier.x;
+        nrow = earlier.y;
+        if (IN_METRIC && nblock > 0u) {
+            push_couplings();
+        }
+        reports[NBLOCK * envs + env] = nblock;
+        reports[NROW * envs + env] = nrow;
     }
     check_loops();
 }

@@ -20,10 +20,10 @@ fn match_sign(s: u32, prm: u32, c: u32) -> f32 {
 }
 
 // Returns the force and torque of a contact on its second geom in its frame; zero if it is no constraint. Blocks of
-// contacts come last, in their order.
+// contacts come last, in their order, before the couplings of a metric.
 fn contact_wrench(c: u32) -> Spatial {
     let count = reports[NBLOCK * envs + env];
-    for (var b = count - min(count, reports[NCON * envs + env] - c); b < count; b++) {
+    for (var b = count - min(count, reports[NCON * envs + env] - c + NCOUPLING); b < count; b++) {
         if (block(b, BLOCK_KIND) >= CONTACT_NORMAL && block(b, BLOCK_SOURCE) == c) {
             return block_wrench(b);
         }

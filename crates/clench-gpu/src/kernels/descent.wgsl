@@ -284,6 +284,16 @@ fn minimise(nrow: u32, nblock: u32, inertia: f32) -> Convergence {
     return c;
 }
 
+// Returns the force of the metric's couplings along a dof, which is no constraint's. Their blocks are the last.
+fn pull_of_couplings(i: u32, nblock: u32) -> f32 {
+    var sum: f32 = 0.0;
+    for (var b = nblock; IN_METRIC && b > 0u && block(b - 1u, BLOCK_KIND) == METRIC_TERM; b--) {
+        let a = block(b - 1u, BLOCK_ROW);
+        sum += row(JACOBIAN + a * NV + i) * row(FORCE + a);
+    }
+    return sum;
+}
+
 @compute @workgroup_size(GROUP)
 fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) index: u32) {
     lane = index;
@@ -299,7 +309,7 @@ fn solve(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_inde
     }
     for (var i = lane; i < bound(NV); i += GROUP) {
         put(QACC + i, vector(QACC_AT + i));
-        put(QFRC_CONSTRAINT + i, vector(CONSTRAINT_AT + i));
+        put(QFRC_CONSTRAINT + i, vector(CONSTRAINT_AT + i) - pull_of_couplings(i, nblock));
         put(GRADIENT + i, select(vector(GRADIENT_AT + i), 0.0, c.status == SOLVE_UNCONSTRAINED));
     }
     if (lane == 0u) {

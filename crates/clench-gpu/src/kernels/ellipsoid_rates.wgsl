@@ -1,6 +1,6 @@
 // Velocity derivatives of the medium's forces on ellipsoids. CPU counterparts: `dynamics/ellipsoid.rs` and `fluid.rs`.
 
-// Returns the change of the force on the body for a change `motion` of its velocity.
+// Returns the change of the force on the body for a change `motion` of its velocity; in the metric only that of drag.
 fn ellipsoid_derivative(e: Ellipsoid, motion: Spatial) -> Spatial {
     let v = e.velocity.linear;
     let w = e.velocity.angular;
@@ -18,6 +18,9 @@ fn ellipsoid_derivative(e: Ellipsoid, motion: Spatial) -> Spatial {
     let size = length(resisted);
     let slope = dot(resisted, dw * angular_drag) / positive(size);
     let turning = -(w * slope) - dw * (parameter(e.prm + ELLIPSOID_VISCOUS_ANGULAR) + size);
+    if (IN_METRIC) {
+        return from_geom_frame(e.geom, turning, drag);
+    }
     let mass = parameter3(e.prm + ELLIPSOID_MASS);
     let inertia = parameter3(e.prm + ELLIPSOID_INERTIA);
     let turned = cross(flow.normal, v);

@@ -40,11 +40,12 @@ fn energy_of_weights() -> f32 {
 // Returns ½ vᵀ M v, with each pair of the lower triangle once.
 fn kinetic_energy() -> f32 {
     var sum: f32 = 0.0;
+    let mass = select(QM, PLAIN_MASS, IN_METRIC);
     for (var i = 0u; i < bound(NV); i++) {
         let last = words[TREE_START + i + 1u] - 1u;
-        var momentum = 0.5 * fetch(QM + last) * fetch_state(QVEL + i);
+        var momentum = 0.5 * fetch(mass + last) * fetch_state(QVEL + i);
         for (var p = words[TREE_START + i]; p < last; p++) {
-            momentum += fetch(QM + p) * fetch_state(QVEL + words[TREE_DOF + p]);
+            momentum += fetch(mass + p) * fetch_state(QVEL + words[TREE_DOF + p]);
         }
         sum += momentum * fetch_state(QVEL + i);
     }

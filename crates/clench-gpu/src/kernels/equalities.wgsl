@@ -19,7 +19,7 @@ fn push_coupling(equality: u32, prm: u32) {
     begin_block(COUPLING, COST_QUADRATIC, 1u, equality, soft.impedance);
     // The slope is stored as the cost's shape, which this cost does not use.
     let r = regularization(soft.impedance, parameter(prm + COUPLING_INVWEIGHT));
-    add_row(violation, -soft.stiffness * violation, soft.damping, r, slope);
+    add_row(violation, -soft.stiffness * violation, soft.stiffness, soft.damping, r, slope);
 }
 
 // Returns J̇ v of the last three rows of a weld, for bias accelerations with the difference `alpha`.
@@ -38,7 +38,7 @@ fn weld_bias(equality: u32, alpha: vec3f) -> vec3f {
 fn add_frame_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
     for (var k = 0u; k < 3u; k++) {
         let aref = -soft.stiffness * violation[k] - bias[k];
-        add_row(violation[k], aref, soft.damping, regularization(soft.impedance, a0), 0.0);
+        add_row(violation[k], aref, soft.stiffness, soft.damping, regularization(soft.impedance, a0), 0.0);
     }
 }
 

@@ -1,8 +1,11 @@
 // The inverse inertia of rows in the current configuration, instead of an estimate at the initial one. CPU counterpart:
 // `constraint/exact.rs`. D holds the impedance of the row's block until it is set.
 
-// Returns J M⁻¹ Jᵀ of row `a` plus `factor` times row `other`. Overwrites WEIGHED of the first.
+// Returns J M⁻¹ Jᵀ of row `a` plus `factor` times row `other`. Overwrites WEIGHED of the first. The metric's backbone
+// replaces M.
 fn inverse_inertia(a: u32, other: u32, factor: f32) -> f32 {
+    let lower = select(QLD, BACKBONE, HAS_BACKBONE);
+    let inverse = select(QLD_INVERSE, BACKBONE_INVERSE, HAS_BACKBONE);
     let x = WEIGHED + a * NV;
     for (var i = 0u; i < bound(NV); i++) {
         put_row(x + i, row(JACOBIAN + a * NV + i) + factor * row(JACOBIAN + other * NV + i));
@@ -11,10 +14,10 @@ fn inverse_inertia(a: u32, other: u32, factor: f32) -> f32 {
     for (var up = 0u; up < bound(NV); up++) {
         let i = NV - 1u - up;
         let value = row(x + i);
-        sum += value * value * fetch(QLD_INVERSE + i);
+        sum += value * value * fetch(inverse + i);
         for (var p = words[TREE_START + i]; p + 1u < words[TREE_START + i + 1u]; p++) {
             let above = x + words[TREE_DOF + p];
-            put_row(above, row(above) - fetch(QLD + p) * value);
+            put_row(above, row(above) - fetch(lower + p) * value);
         }
     }
     return sum;

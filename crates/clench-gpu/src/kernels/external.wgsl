@@ -58,7 +58,7 @@ fn tendon_constraint_force(t: u32) -> f32 {
                 sum += select(0.0, force, words[EQ_PAIR + 2u * source] == c);
                 sum -= select(0.0, row(SHAPE + first) * force, words[EQ_PAIR + 2u * source + 1u] == c);
             }
-            case FRAMES, CONTACT_NORMAL, CONTACT_PYRAMID, CONTACT_ELLIPTIC, default: {
+            case FRAMES, METRIC_TERM, CONTACT_NORMAL, CONTACT_PYRAMID, CONTACT_ELLIPTIC, default: {
             }
         }
     }

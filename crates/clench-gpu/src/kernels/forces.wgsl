@@ -34,7 +34,10 @@ fn smooth_acceleration() {
         put(QFRC_SMOOTH + i, force);
         put(QACC_SMOOTH + i, force);
     }
-    solve_tree(QACC_SMOOTH);
+    // `metric.wgsl` solves in the metric.
+    if (!IN_METRIC) {
+        solve_tree(QACC_SMOOTH);
+    }
 }
 
 // Runs everything that depends on velocities and controls. One team per environment.

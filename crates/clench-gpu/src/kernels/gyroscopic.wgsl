@@ -4,11 +4,11 @@
 // Six equations, each with its right side as the seventh number.
 var<private> equations: array<f32, 42>;
 
-// Reads the joint's part of M − h D from QLD, and of the forces from RATE.
-fn begin_equations(dof: u32) {
+// Reads the joint's part of the matrix at `matrix`, M − h D, and of the forces from RATE.
+fn begin_equations(matrix: u32, dof: u32) {
     for (var r = 0u; r < bound(6u); r++) {
         for (var c = 0u; c < bound(6u); c++) {
-            equations[7u * r + c] = fetch(QLD + words[TREE_START + dof + max(r, c)] + min(r, c));
+            equations[7u * r + c] = fetch(matrix + words[TREE_START + dof + max(r, c)] + min(r, c));
         }
         equations[7u * r + 6u] = fetch(RATE + dof + r);
     }
@@ -77,14 +77,14 @@ fn solve_equations() {
     }
 }
 
-// Computes the accelerations of all such bodies, in MEAN_RATE.
-fn gyroscopic_accelerations() {
+// Computes the accelerations of all such bodies, in MEAN_RATE. The metric has no skew part of D.
+fn gyroscopic_accelerations(matrix: u32) {
     for (var k = member; k < NFREE_TREE; k += TEAM) {
         let j = words[FREE_TREE_JNT + k];
         let dof = words[JNT_DOF + j];
-        begin_equations(dof);
+        begin_equations(matrix, dof);
         add_bias_derivative(j);
-        if (HAS_FLUID && ANY_FLUID_ELLIPSOID) {
+        if (HAS_FLUID && ANY_FLUID_ELLIPSOID && !IN_METRIC) {
             subtract_skew_drag(j);
         }
         solve_equations();

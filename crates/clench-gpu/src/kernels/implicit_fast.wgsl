@@ -6,7 +6,7 @@ fn implicit_fast(@builtin(global_invocation_id) id: vec3u) {
     begin_in_team(id);
     save_start();
     symmetric_inertia();
-    gyroscopic_accelerations();
+    gyroscopic_accelerations(QLD);
     join();
     if (!factor_tree()) {
         fail(SINGULAR);

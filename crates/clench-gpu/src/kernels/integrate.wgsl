@@ -119,12 +119,6 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     }
 }
 
-// Returns minus the velocity derivative of a damper's force.
-fn damping_slope(law: u32, velocity: f32) -> f32 {
-    let v = abs(velocity);
-    return parameter(law) + v * (2.0 * parameter(law + 1u) + v * 3.0 * parameter(law + 2u));
-}
-
 // Returns the damping term of M's diagonal.
 fn added_inertia(i: u32) -> f32 {
     return TIMESTEP * damping_slope(DOF_DAMPER + 3u * i, fetch_state(QVEL + i));

@@ -237,6 +237,13 @@ fn improve_friction(b: u32, start: u32) -> f32 {
 // Sweeps over dry friction, then over contacts, until convergence. `scale` converts costs to the units of the
 // tolerance.
 fn noslip(nrow: u32, nblock: u32, scale: f32) {
+    if (HAS_BACKBONE) {
+        if (!any_friction(nblock)) {
+            return;
+        }
+        exchange_factors();
+        accelerate(nblock, false);
+    }
     var cost: f32 = 0.0;
     for (var b = lane; b < nblock; b += GROUP) {
         cost += prepare_block(b);
@@ -258,4 +265,9 @@ fn noslip(nrow: u32, nblock: u32, scale: f32) {
         improvement = 0.0;
     }
     differentiate(nrow);
+    if (HAS_BACKBONE) {
+        exchange_factors();
+        accelerate(nblock, true);
+        differentiate(nrow);
+    }
 }

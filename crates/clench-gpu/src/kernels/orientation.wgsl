@@ -48,9 +48,18 @@ fn limit_torque(u: u32) {
     }
 }
 
+// Returns true if the limit of the torque is active.
+fn servo_is_at_limit(u: u32) -> bool {
+    let norm = length(fetch3(ACTUATOR_FORCE + output_of(u)));
+    return norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - max(1e-10, 16.0 * EPSILON));
+}
+
 // Returns ∂torque/∂ω, the same about each axis; zero if the limit is active.
 fn servo_slope(u: u32) -> f32 {
-    let norm = length(fetch3(ACTUATOR_FORCE + output_of(u)));
-    let held = norm >= parameter(FORCE_RANGE + 2u * u + 1u) * (1.0 - max(1e-10, 16.0 * EPSILON));
-    return select(parameter(ACTUATOR_BIAS + LAW_SIZE * u + AFFINE_VELOCITY), 0.0, held);
+    return select(parameter(ACTUATOR_BIAS + LAW_SIZE * u + AFFINE_VELOCITY), 0.0, servo_is_at_limit(u));
+}
+
+// Returns ∂torque/∂angle at small angles from the target, likewise.
+fn servo_length_slope(u: u32) -> f32 {
+    return select(-parameter(ACTUATOR_GAIN + LAW_SIZE * u), 0.0, servo_is_at_limit(u));
 }

@@ -82,6 +82,17 @@ fn soften(offset: u32, r: f32) -> Softness {
     return Softness(d, law.x * d, law.y);
 }
 
+// Returns the softness for steps that evaluate it at their end, with solref at `offset`: a spring that a step cannot
+// resolve becomes the stiffest that it can.
+fn resolved(soft: Softness, offset: u32) -> Softness {
+    let solref = vec2f(parameter(offset), parameter(offset + 1u));
+    let kappa = TIMESTEP * TIMESTEP * soft.stiffness;
+    if (!LIMITED_STIFFNESS || !(solref.x > 0.0 || is_mixed(solref)) || kappa <= 1.0) {
+        return soft;
+    }
+    return Softness(soft.impedance, 1.0 / (TIMESTEP * TIMESTEP), soft.damping * sqrt(1.0 / kappa));
+}
+
 // Returns R of a row with the inverse inertia `a`.
 fn regularization(d: f32, a: f32) -> f32 {
     return max((1.0 - d) * a / d, LEAST);

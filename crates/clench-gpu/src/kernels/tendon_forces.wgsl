@@ -10,11 +10,6 @@ fn tendon_stretch(t: u32) -> f32 {
     return length - clamp(length, parameter(TENDON_SPRING + 5u * t), parameter(TENDON_SPRING + 5u * t + 1u));
 }
 
-// Returns a + b x + c x².
-fn stiffness(coefficients: vec3f, x: f32) -> f32 {
-    return coefficients.x + x * (coefficients.y + x * coefficients.z);
-}
-
 // Returns the force of the spring and damper along a tendon.
 fn tendon_passive_force(t: u32) -> f32 {
     let x = tendon_stretch(t);

@@ -2,6 +2,7 @@
 
 use super::{NONE, Tables, starts};
 use crate::codes::{Code, codes};
+use clench_rigid::dynamics::gyroscopic::is_free_tree;
 use clench_rigid::model::{JointKind, Model};
 
 codes! {
@@ -77,12 +78,7 @@ impl Tables {
         self.words("JNT_BODY", joints.iter().map(|j| j.body));
         self.words("JNT_QPOS", joints.iter().map(|j| j.qpos));
         self.words("JNT_DOF", joints.iter().map(|j| j.dof).chain([m.nv]));
-        let tree_of = |dof: usize| m.tree.tree_of(dof);
-        let is_tree = |&j: &usize| {
-            let (free, dof) = (joints[j].kind == JointKind::Free, joints[j].dof);
-            free && (dof + 6 >= m.nv || tree_of(dof + 6) != tree_of(dof))
-        };
-        let free_trees = Vec::from_iter((0..joints.len()).filter(is_tree));
+        let free_trees = Vec::from_iter((0..joints.len()).filter(|&j| is_free_tree(m, j)));
         self.count("NFREE_TREE", free_trees.len());
         self.words("FREE_TREE_JNT", free_trees);
         self.numbers("QPOS0", m.params.qpos0.iter().copied());

@@ -13,6 +13,7 @@ codes! {
         Coupling = "COUPLING",
         DryFriction = "DRY_FRICTION",
         Limit = "LIMIT",
+        MetricTerm = "METRIC_TERM",
         ContactNormal = "CONTACT_NORMAL",
         ContactPyramid = "CONTACT_PYRAMID",
         ContactElliptic = "CONTACT_ELLIPTIC",

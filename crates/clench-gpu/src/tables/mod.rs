@@ -12,6 +12,7 @@ mod forces;
 mod gains;
 mod histories;
 mod hulls;
+mod metric;
 mod rays;
 mod sensors;
 mod tendons;
@@ -26,7 +27,7 @@ use crate::layout::Layout;
 use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
 use clench_rigid::dynamics::articulated::articulated_bodies;
-use clench_rigid::model::Model;
+use clench_rigid::model::{Integrator, Model};
 use clench_rigid::options::ContactModel;
 use clench_rigid::settings::StepSettings;
 use std::fmt::Write;
@@ -90,6 +91,12 @@ pub(crate) struct Capacity {
     pub adheres: bool,
     /// True with the contact model `coulomb`.
     pub coulomb: bool,
+    /// True with the integrator `discrete`.
+    pub in_metric: bool,
+    /// Terms of its metric that couple dofs of different branches.
+    pub couplings: usize,
+    /// True if inverse inertias and no-slip sweeps use another matrix.
+    pub has_backbone: bool,
 }
 
 impl Tables {
@@ -125,7 +132,7 @@ impl Tables {
         tables.rays::<S>(model);
         tables.settings(model, settings);
         let mut capacity = Capacity {
-            articulated: articulated_bodies::<S>(model).len(),
+            articulated: articulated_in::<S>(model),
             coulomb: settings.contact_model == ContactModel::Coulomb,
             ..Capacity::default()
         };
@@ -134,6 +141,7 @@ impl Tables {
         tables.friction(model, settings, &mut capacity);
         tables.limits(model, settings, &mut capacity);
         tables.pairs::<S>(model, settings, candidates, &mut capacity);
+        tables.metric(model, settings, &mut capacity);
         (tables, capacity)
     }
 
@@ -195,6 +203,16 @@ impl Tables {
     /// Adds a flag that is a constant in general kernels too: code for both of its values would take long to compile.
     fn fixed_flag(&mut self, name: &str, value: bool) {
         let _ = writeln!(self.constants, "const {name}: bool = {value};");
+    }
+}
+
+/// Returns the number of bodies whose articulated inertia a factorization stores. That of a metric has none.
+fn articulated_in<S: Scalar>(model: &Model) -> usize {
+    match model.integrator {
+        Integrator::Discrete => 0,
+        Integrator::Euler | Integrator::ImplicitFast | Integrator::Implicit | Integrator::Rk4 => {
+            articulated_bodies::<S>(model).len()
+        }
     }
 }
 

@@ -1,9 +1,8 @@
 //! Double precision: each stage equals its processor counterpart to rounding, a stricter test than single precision.
 
 use crate::common::{self, Random, general_batch, own, random_state, text};
+use clench_rigid::State;
 use clench_rigid::model::Model;
-use clench_rigid::{Sim, State};
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -16,32 +15,8 @@ fn agree(model: &Arc<Model>, count: usize, spread: f64, tolerance: f64) {
 
 /// Asserts the same of given states.
 fn agree_in(model: &Arc<Model>, states: &[State<f32>], tolerance: f64) {
-    let Some(mut batch) = general_batch::<f64>(model, states.len()) else {
-        return;
-    };
-    common::upload(&mut batch, states);
-    batch.forward().expect("a device");
-    common::assert_all_run(&batch);
-    let solves = batch.solves().expect("a device");
-    let mut sim = Sim::<f64>::new(model.clone()).expect("a good model");
-    let mut read = BTreeMap::new();
-    for (env, state) in states.iter().enumerate() {
-        sim.state = common::convert(model, state);
-        sim.forward().expect("a good state");
-        for (name, expected) in common::computed(&sim) {
-            let width = batch.width(name).expect("a field");
-            let values = read
-                .entry(name)
-                .or_insert_with(|| batch.read(name).expect("a device"));
-            let row = values[env * width..(env + 1) * width].to_vec();
-            let found = common::used(name, row, &solves[env], model.nv);
-            let far = common::difference(&found, &expected);
-            assert!(
-                far <= tolerance,
-                "{}: {name} of state {env}: {far:.1e}",
-                model.name
-            );
-        }
+    if let Some(mut batch) = general_batch(model, states.len()) {
+        common::doubles_agree(&mut batch, states, tolerance);
     }
 }
 
@@ -143,28 +118,12 @@ fn manipulators_agree() {
     }
 }
 
-/// Asserts that `steps` steps reach the state of the processor's double precision.
+/// Asserts that `steps` steps of a model reach the states of the processor's double precision.
 fn arrive(name: &str, integrator: &str, steps: usize) {
     let option = format!("<option integrator=\"{integrator}\" ");
     let model = text(&own(name).replace("<option ", &option));
-    let count = 8;
-    let Some(mut batch) = general_batch::<f64>(&model, count) else {
-        return;
-    };
-    let mut random = Random::new(3);
-    let states = Vec::from_iter((0..count).map(|_| random_state(&model, &mut random, 0.3)));
-    common::upload(&mut batch, &states);
-    batch.step(steps).expect("a device");
-    common::assert_all_run(&batch);
-    let qpos = batch.read("qpos").expect("a device");
-    let mut sim = Sim::<f64>::new(model.clone()).expect("a good model");
-    for (found, state) in qpos.chunks(model.nq).zip(&states) {
-        sim.state = common::convert(&model, state);
-        for _ in 0..steps {
-            sim.step().expect("a good state");
-        }
-        let far = common::difference(found, &sim.state.qpos);
-        assert!(far <= 1e-8, "{name} by {integrator}: {far:.1e}");
+    if let Some(mut batch) = general_batch(&model, 8) {
+        common::doubles_arrive(&mut batch, steps);
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod batch;
 mod common;
+mod discrete;
 mod dm_control;
 mod double;
 mod gymnasium;

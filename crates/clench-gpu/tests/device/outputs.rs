@@ -125,6 +125,11 @@ fn outputs_of_bodies_in_contact() {
 }
 
 #[test]
+fn those_of_bodies_in_contact_by_discrete() {
+    agree(&own("pressed").replace("implicitfast", "discrete"));
+}
+
+#[test]
 fn outputs_of_separate_bodies() {
     agree(&own("apart"));
 }

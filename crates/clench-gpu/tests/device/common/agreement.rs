@@ -131,3 +131,32 @@ pub fn forward_agrees(batch: &mut GpuBatch, tolerance: f64, strays: usize, sprea
         );
     }
 }
+
+/// Asserts that every field of the states is within `tolerance` of the processor's in double precision.
+pub fn doubles_agree(batch: &mut GpuBatch<f64>, states: &[State<f32>], tolerance: f64) {
+    let model = batch.model().clone();
+    upload(batch, states);
+    batch.forward().expect("a device");
+    assert_all_run(batch);
+    let solves = batch.solves().expect("a device");
+    let mut sim = Sim::<f64>::new(model.clone()).expect("a good model");
+    let mut read = BTreeMap::new();
+    for (env, state) in states.iter().enumerate() {
+        sim.state = convert(&model, state);
+        sim.forward().expect("a good state");
+        for (name, expected) in computed(&sim) {
+            let width = batch.width(name).expect("a field");
+            let values = read
+                .entry(name)
+                .or_insert_with(|| batch.read(name).expect("a device"));
+            let row = values[env * width..(env + 1) * width].to_vec();
+            let found = used(name, row, &solves[env], model.nv);
+            let far = difference(&found, &expected);
+            assert!(
+                far <= tolerance,
+                "{}: {name} of state {env}: {far:.1e}",
+                model.name
+            );
+        }
+    }
+}

@@ -89,13 +89,19 @@ fn row_numbers<S: Precision>(sim: &Sim<S>) -> Vec<(&'static str, Vec<f64>)> {
             jacobian.extend(dense);
         }
     }
-    let plain = |x: &[S::SingleEnv]| x.iter().copied().map(first).collect();
+    // The last rows may be terms of a metric, which are not recorded.
+    let recorded = |x: &[S::SingleEnv]| {
+        let mut numbers = Vec::from_iter(x.iter().copied().map(first));
+        numbers.resize(aref.len(), 0.0);
+        numbers
+    };
+    let (position, velocity) = (recorded(&ws.record.pos), recorded(&ws.record.vel));
     vec![
         ("aref", aref),
         ("r", r),
         ("jacobian", jacobian),
-        ("position", plain(&ws.record.pos)),
-        ("velocity", plain(&ws.record.vel)),
+        ("position", position),
+        ("velocity", velocity),
     ]
 }
 

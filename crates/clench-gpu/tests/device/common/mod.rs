@@ -38,6 +38,11 @@ pub fn text(file: &str) -> Arc<Model> {
 
 /// Returns a batch with kernels specialized for its model, the default; `None` if there is no device.
 pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
+    batch_in(model, count)
+}
+
+/// Returns such a batch in either precision.
+pub fn batch_in<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
     with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -1,0 +1,89 @@
+//! The integrator `discrete`: its metric, rows at the end of the step, and steps. Kernels are specialized for their
+//! models, which compile sooner.
+
+use crate::common::{
+    self, Random, batch, batch_drifts_alike, batch_in, doubles_agree, doubles_arrive, own,
+    random_state, text,
+};
+use clench_rigid::model::Model;
+use std::sync::Arc;
+
+/// Loads a test model with the integrator and additional attributes of `<option>`.
+fn discrete(name: &str, option: &str) -> Arc<Model> {
+    let option = format!("<option integrator=\"discrete\" {option} ");
+    text(&own(name).replacen("<option ", &option, 1))
+}
+
+/// Asserts that every field of 40 random states is near the processor's in single precision.
+fn agree(model: &Arc<Model>, spread: f64) {
+    if let Some(mut batch) = batch(model, 40) {
+        common::forward_agrees(&mut batch, 1e-4, 0, spread);
+    }
+}
+
+/// Asserts that every field of 20 random states is the processor's in double precision, and that 20 steps arrive at the
+/// same states.
+fn agree_exactly(model: &Arc<Model>) {
+    let mut random = Random::new(3);
+    let states = Vec::from_iter((0..20).map(|_| random_state(model, &mut random, 0.5)));
+    if let Some(mut batch) = batch_in(model, states.len()) {
+        doubles_agree(&mut batch, &states, 1e-9);
+        doubles_arrive(&mut batch, 20);
+    }
+}
+
+#[test]
+fn joints_and_constraints_agree() {
+    agree(&discrete("medley", "cone=\"elliptic\" impratio=\"2\""), 0.7);
+    agree_exactly(&discrete("medley", ""));
+}
+
+/// Tests terms of tendons and actuators over several branches.
+#[test]
+fn couplings_agree() {
+    agree(&discrete("linkage", ""), 0.5);
+    agree_exactly(&discrete("linkage", ""));
+}
+
+#[test]
+fn ellipsoids_in_a_medium_agree() {
+    agree(&discrete("swimmers", ""), 0.7);
+}
+
+#[test]
+fn controllers_and_orientation_servos_agree() {
+    agree(&discrete("controllers", ""), 0.5);
+    agree(&discrete("servos", ""), 0.5);
+}
+
+/// Without islands, since conjugate gradients on the whole problem need more iterations than the islands'.
+#[test]
+fn conjugate_gradients_agree_on_couplings() {
+    let option = "integrator=\"discrete\" solver=\"CG\" iterations=\"100\" tolerance=\"0\"";
+    let flag = "<option><flag island=\"disable\"/></option><default>";
+    let file = own("linkage").replacen("<option ", &format!("<option {option} "), 1);
+    if let Some(mut batch) = batch(&text(&file.replacen("<default>", flag, 1)), 20) {
+        common::forward_agrees(&mut batch, 1e-3, 0, 0.4);
+    }
+}
+
+/// Both use another matrix than the metric if a term has several dofs, as in the linkage.
+#[test]
+fn exact_inverse_inertias_and_friction_that_does_not_slip_agree() {
+    let option = "integrator=\"discrete\" noslip_iterations=\"3\" noslip_tolerance=\"0\"";
+    let flag = "<option><flag diagexact=\"enable\"/></option><default>";
+    for (name, cone) in [("medley", "elliptic"), ("linkage", "pyramidal")] {
+        let option = format!("<option {option} cone=\"{cone}\" ");
+        let file = own(name).replacen("<option ", &option, 1);
+        agree_exactly(&text(&file.replacen("<default>", flag, 1)));
+    }
+}
+
+#[test]
+fn steps_drift_as_on_the_processor() {
+    for name in ["medley", "linkage", "runner", "pliant"] {
+        if let Some(mut batch) = batch(&discrete(name, ""), 24) {
+            batch_drifts_alike(&mut batch, 100);
+        }
+    }
+}
