@@ -7,6 +7,7 @@ use crate::kernels::DivergedField;
 use crate::precision::GpuReal;
 use clench_math::Motion;
 use clench_rigid::batch::{Backend, Outcome, StepFailure};
+use clench_rigid::contact::Excess;
 use clench_rigid::model::Model;
 use clench_rigid::{Batch, BatchOptions, Output, SimError};
 use std::sync::Arc;
@@ -86,6 +87,7 @@ impl<S: GpuReal> GpuBatch<S> {
                 GpuFault::Singular => StepFailure::Singular,
                 GpuFault::Unfinished => StepFailure::Unfinished,
                 GpuFault::ContactOverflow { limit } => StepFailure::ContactOverflow { limit },
+                GpuFault::StickOverflow { .. } => StepFailure::OverBudget(Excess::StickPairs),
                 GpuFault::Diverged => {
                     let detail = |k: usize| details.as_ref().map_or(0, |all| all[k][env]);
                     let field = DivergedField::of(detail(0));

@@ -91,6 +91,7 @@ impl<S: GpuReal> GpuBatch<S> {
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
         let general_kernels = options.general_kernels;
         let settings = StepSettings::new::<S>(&model, options.options)?;
+        let model = settings.adapt(model);
         let collide = settings.flags.constraint && settings.flags.contact;
         let pairs = if collide {
             candidates(&model)
@@ -314,7 +315,9 @@ impl<S: GpuReal> GpuBatch<S> {
             let measured = pipelines.sensors.iter().filter(move |_| stage == 0);
             let shown = stage == last || measured.clone().count() > 0;
             let observed = pipelines.observed().filter(move |_| shown).chain(measured);
-            pipelines.forward.iter().chain(observed).chain([advance])
+            let dragged = pipelines.drag.iter().filter(move |_| stage == 0);
+            let forward = pipelines.forward.iter().chain(observed);
+            forward.chain(dragged).chain([advance])
         })
     }
 

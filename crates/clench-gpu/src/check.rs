@@ -39,7 +39,6 @@ rules! {
         let cg = s.settings.solver.constraint_solver == ConstraintSolver::Cg;
         (coulomb && cg).then(|| "option contact_model".to_owned())
     };
-    "stiction is not supported yet": |s| s.settings.stiction.then(|| "option stiction".to_owned());
     "sleep is not supported yet": |s| s.settings.flags.sleep.then(|| "flag sleep".to_owned());
     "a sensor of this kind is not supported yet, so it cannot have a delay": |s| {
         let late = |(_, sensor): &(usize, &Sensor)| sensor.history.is_some();

@@ -189,6 +189,12 @@ pub enum GpuFault {
         /// The maximum.
         limit: usize,
     },
+    /// More pairs of geoms stick than a state has slots for.
+    #[error("more than {limit} pairs of geoms stick (option max_stick_pairs)")]
+    StickOverflow {
+        /// The maximum.
+        limit: usize,
+    },
     /// The device terminated a loop early.
     #[error(
         "the device terminated a loop early (Mesa's software device stops after 65,535 iterations)"

@@ -4,6 +4,7 @@
 use crate::tables::{BLOCK_SIZE, CONTACT_SIZE, Capacity, has_sensor_history};
 use clench_rigid::dynamics::plastic::has_yielding_tendons;
 use clench_rigid::model::{Integrator, Model};
+use clench_rigid::state::kind::{Kind, Reference};
 use clench_solver::MAX_ELIMINATED;
 
 /// A field: `width` numbers per environment, from an offset.
@@ -48,6 +49,21 @@ fn takes_coriolis(m: &Model) -> bool {
     m.integrator == Integrator::Implicit
 }
 
+/// Returns the dofs and tendons whose dry friction may stick.
+fn friction_count(m: &Model) -> usize {
+    m.max_stick_pairs.map_or(0, |_| m.nv + m.tendons.len())
+}
+
+/// Returns the numbers of the stick references.
+fn reference_numbers(m: &Model) -> usize {
+    Reference::WIDTH * m.max_stick_pairs.unwrap_or(0)
+}
+
+/// Returns true if Runge–Kutta steps need the tendons at their start.
+fn saves_tendons(m: &Model) -> bool {
+    has_yielding_tendons(m) || m.max_stick_pairs.is_some()
+}
+
 macro_rules! fields {
     ($(#[$doc:meta])* $maker:ident($m:ident, $c:ident); $($(#[$field_doc:meta])* $name:ident: $width:expr;)*) => {
         $(#[$doc])*
@@ -71,6 +87,9 @@ fields! {
     /// The rest positions of springs that yield.
     plastic: m.nplastic;
     qacc_warmstart: m.nv;
+    /// The stick references, and the displacements of dry friction that sticks.
+    stick_references: reference_numbers(m);
+    stick_friction: friction_count(m);
     ctrl: m.nu();
     qfrc_applied: m.nv;
     /// The force, then the torque, of each body.
@@ -186,11 +205,15 @@ fields! {
     start_qvel: m.nv;
     start_act: m.na;
     start_actuator_velocity: m.nout();
-    /// The lengths of yielding tendons at the start of the step.
-    start_ten_length: if has_yielding_tendons(m) { m.tendons.len() } else { 0 };
-    start_ten_jacobian: if has_yielding_tendons(m) { m.tendon_dofs.len() } else { 0 };
+    /// The lengths of tendons that yield or stick, at the start of the step.
+    start_ten_length: if saves_tendons(m) { m.tendons.len() } else { 0 };
+    start_ten_jacobian: if saves_tendons(m) { m.tendon_dofs.len() } else { 0 };
     mean_act_dot: m.na;
     start_warmstart: m.nv;
+    start_stick_references: reference_numbers(m);
+    start_stick_friction: friction_count(m);
+    /// The slot of the stick reference of each contact's pair; beyond the last without one.
+    stick_slot: m.max_stick_pairs.map_or(0, |_| c.contacts);
 }
 
 fields! {
@@ -221,7 +244,8 @@ fields! {
     velocity: c.rows;
     aref: c.rows;
     damping: c.rows;
-    stiffness: if c.in_metric { c.rows } else { 0 };
+    /// The stiffness k d, for steps that evaluate rows at their end and for friction that sticks.
+    stiffness: if c.in_metric || m.max_stick_pairs.is_some() { c.rows } else { 0 };
     /// The pull of a row whose force would otherwise be zero, if any contact adheres.
     pull: if c.adheres { c.rows } else { 0 };
     r: c.rows;

@@ -96,14 +96,16 @@ kernels! {
         "orientation", "actuator_derivatives", "length_slopes", "ellipsoid", "ellipsoid_rates", "fluid_derivatives", "spring", "polynomial", "tendon_forces", "outer",
         "along", "couplings", "metric";
     /// Finds active constraints and their softness.
-    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "constraints";
+    CONSTRAINTS = "constraints", Workgroup: "group", "softness", "chains", "coordinate", "anchor_frames", "equalities", "contact_adhesion", "surface", "stiction/pairs", "stiction/displacement", "constraints";
     /// Computes their Jacobians.
-    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "along", "implicit_rows", "assembly";
+    ASSEMBLE = "assemble", Workgroup: "group", "chains", "coordinate", "anchor_frames", "softness", "exact", "along", "row_spring", "implicit_rows", "assembly";
     /// Solves the convex problem.
     SOLVE = "solve", Workgroup: "group", "mass", "iterate", "costs/quadratic", "costs/one_sided", "costs/huber", "costs/pyramid", "costs/slip", "costs/elliptic", "costs/coulomb", "costs/costs", "costs/hessian",
         "continuation", "normal_forces", "tiles", "factor_h", "line_search", "noslip", "noslip_metric", "along", "couplings", "prediction", "newton", "precondition", "substitution", "cg", "descent";
     /// Spins free bodies that nothing touches, with the integrator `discrete`.
     SPIN = "spin", Team: "team", "chains", "ellipsoid", "ellipsoid_rates", "gyroscopic", "spin";
+    /// Drags the stick references and the displacements of dry friction along, with the option `stiction`.
+    DRAG = "drag", Workgroup: "group", "surface", "row_spring", "stiction/pairs", "stiction/friction", "stiction/return_mapping", "stiction/drag";
     /// Computes the duality gap of the solve, on request.
     GAP = "gap", Team: "team", "tree", "substitution", "articulated", "factor_m", "gap";
     /// Computes camera poses, on request.
@@ -117,17 +119,17 @@ kernels! {
     /// Checks that the results of a forward pass outside a step are within limits.
     CHECK_FORWARD = "check_forward", Team: "team", "check_results", "check_forward";
     /// Advances the state by semi-implicit Euler; also by `discrete`, whose acceleration is that of the step.
-    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "euler";
+    EULER = "euler", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "euler";
     /// Does the same, implicit in velocity derivatives.
     IMPLICIT_FAST = "implicit_fast", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "gyroscopic", "implicit_fast";
     /// Does the same with Coriolis forces.
     IMPLICIT = "implicit", Team: "team", "tree", "substitution", "articulated", "chains", "muscle", "dc_motor", "activation", "setpoint", "circuit", "history", "gain",
-        "orientation", "actuator_derivatives", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
+        "orientation", "actuator_derivatives", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "ellipsoid", "ellipsoid_rates",
         "outer", "fluid_derivatives", "derivatives", "coriolis", "lu", "implicit";
     /// Does the same by Runge–Kutta, stage by stage.
-    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "plastic", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "rk4";
+    RUNGE_KUTTA = "runge_kutta", Team: "team", "tree", "substitution", "articulated", "dc_motor", "activation", "check_results", "tendon_rate", "plastic", "stiction/advance", "clock", "sample_times", "history_push", "outputs", "polynomial", "integrate", "rk4";
 }
 
 /// The inputs of the constants before every kernel, besides the tables.
@@ -152,6 +154,7 @@ codes! {
         Singular = "SINGULAR",
         Diverged = "DIVERGED",
         ContactOverflow = "CONTACT_OVERFLOW",
+        StickOverflow = "STICK_OVERFLOW",
         /// Excluded from a call by the host.
         Excluded = "EXCLUDED",
         Unfinished = "UNFINISHED",
@@ -230,6 +233,7 @@ pub(crate) fn preface(tables: &Tables, memory: &Memory) -> Preface {
         clench_solver::METHOD_CONSTANTS,
         clench_collide::SHAPE_CONSTANTS,
         clench_collide::CONVEX_CONSTANTS,
+        clench_rigid::stiction::STICTION_CONSTANTS,
     ];
     for (name, value) in constants.concat() {
         // Without a type, so that it suits both precisions.

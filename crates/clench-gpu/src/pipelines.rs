@@ -29,6 +29,8 @@ pub(crate) struct Pipelines {
     pub restart: Pipeline,
     /// The forward pass.
     pub forward: Vec<Pipeline>,
+    /// Drags the stick references along after the first forward pass of a step, with the option `stiction`.
+    pub drag: Option<Pipeline>,
     /// The duality gap of the last solve.
     pub gap: Pipeline,
     /// Checks the results of a forward pass outside a step.
@@ -117,6 +119,7 @@ impl Pipelines {
             Integrator::Implicit => vec![compile(&kernels::IMPLICIT)?],
             Integrator::Euler | Integrator::Discrete => vec![compile(&kernels::EULER)?],
         };
+        let drag = model.max_stick_pairs.map(|_| compile(&kernels::DRAG));
         let forward = forward.iter().filter(|(_, runs)| *runs);
         let forward = forward.map(|(kernel, _)| compile(kernel));
         let forward = forward.collect::<Result<_, _>>()?;
@@ -127,6 +130,7 @@ impl Pipelines {
             restart: compile(&kernels::RESTART)?,
             gap: compile(&kernels::GAP)?,
             check_forward: compile(&kernels::CHECK_FORWARD)?,
+            drag: drag.transpose()?,
             forward,
             advance,
             preface,

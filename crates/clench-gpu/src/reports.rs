@@ -46,10 +46,12 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Decodes a report field into faults.
     pub(crate) fn faults(&self, field: &str) -> Result<Vec<Option<GpuFault>>, GpuError> {
         let limit = self.capacity.contacts;
+        let slots = self.model().max_stick_pairs.unwrap_or(0);
         let fault = |&code: &u32| match Report::of(code) {
             Some(Report::Running | Report::Excluded) => None,
             Some(Report::Singular) => Some(GpuFault::Singular),
             Some(Report::ContactOverflow) => Some(GpuFault::ContactOverflow { limit }),
+            Some(Report::StickOverflow) => Some(GpuFault::StickOverflow { limit: slots }),
             Some(Report::Unfinished) => Some(GpuFault::Unfinished),
             // No kernel writes another code: its memory is corrupt.
             Some(Report::Diverged) | None => Some(GpuFault::Diverged),

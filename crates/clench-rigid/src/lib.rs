@@ -19,7 +19,7 @@ mod validity;
 pub use clench_builder as builder;
 pub use clench_dynamics::{
     budget, constraint, contact, dynamics, history, inverse, model, options, profile, settings,
-    sleep, state, workspace,
+    sleep, state, stiction, workspace,
 };
 
 pub use batch::{Batch, BatchOptions, EnvStatus};

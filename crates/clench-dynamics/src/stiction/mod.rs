@@ -25,3 +25,9 @@ mod return_mapping;
 pub(crate) use friction::advance_friction;
 pub use pairs::Stiction;
 pub(crate) use return_mapping::drag;
+
+/// The constants of the return mapping, by their names in the GPU kernels.
+pub const STICTION_CONSTANTS: &[(&str, f64)] = &[
+    ("MAX_STICK_ROTATION", return_mapping::MAX_ROTATION),
+    ("MIN_SQUARED_ARM", return_mapping::MIN_SQUARED_ARM),
+];

@@ -27,9 +27,9 @@ use crate::workspace::Workspace;
 use clench_math::{Mask, Quat, Real, Vec3, kernel};
 
 /// The rotation from which a reference is replaced, rad.
-const MAX_ROTATION: f64 = 0.01;
+pub(super) const MAX_ROTATION: f64 = 0.01;
 /// The minimum of squared lengths that determine a rotation, m².
-const MIN_SQUARED_ARM: f64 = 1e-12;
+pub(super) const MIN_SQUARED_ARM: f64 = 1e-12;
 
 /// A rigid motion: displacement at a centre, and rotation, in world axes.
 struct Twist<T> {

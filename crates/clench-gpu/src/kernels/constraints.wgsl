@@ -1,6 +1,6 @@
 // Blocks of rows of all active constraints: equalities, dry friction, limits, contacts, in this order. CPU
-// counterparts: `constraint/friction.rs`, `limit.rs` and `contact.rs`, and `contact/surface.rs`. Jacobians and
-// velocities are added by `assembly.wgsl`.
+// counterparts: `constraint/friction.rs`, `limit.rs` and `contact.rs`. Jacobians and velocities are added by
+// `assembly.wgsl`.
 //
 // A thread first counts the blocks and rows of its constraint, and writes them once it knows the counts before it.
 
@@ -37,7 +37,7 @@ fn add_row(position: f32, aref: f32, stiffness: f32, damping: f32, r: f32, shape
         put_row(VELOCITY + nrow, 0.0);
         put_row(D + nrow, block_impedance);
     }
-    if (writes && IN_METRIC) {
+    if (writes && (IN_METRIC || STICTION)) {
         put_row(STIFFNESS + nrow, stiffness);
     }
     if (writes && ANY_ADHESION) {
@@ -49,9 +49,13 @@ fn add_row(position: f32, aref: f32, stiffness: f32, damping: f32, r: f32, shape
 fn push_friction(k: u32) {
     let prm = FRICTION_PRM + FRICTION_SIZE * k;
     let soft = soften(prm + FRICTION_SOLREF, 0.0);
-    begin_block(DRY_FRICTION, COST_HUBER, 1u, words[FRICTION_SOURCE + k], soft.impedance);
+    let source = words[FRICTION_SOURCE + k];
+    begin_block(DRY_FRICTION, COST_HUBER, 1u, source, soft.impedance);
     let r = regularization(soft.impedance, parameter(prm + FRICTION_INVWEIGHT));
-    add_row(0.0, 0.0, 0.0, soft.damping, r, parameter(prm + FRICTION_LOSS));
+    add_row(0.0, 0.0, select(0.0, soft.stiffness, STICTION), soft.damping, r, parameter(prm + FRICTION_LOSS));
+    if (writes && STICTION) {
+        displace(nrow - 1u, fetch_state(STICK_FRICTION + source), soft.stiffness);
+    }
 }
 
 // Adds one end of a coordinate's range. `source` is twice the coordinate, plus one at the upper end.
@@ -84,43 +88,29 @@ fn push_limits(k: u32) {
     push_limit(prm, high - value, 2u * c + 1u);
 }
 
-// Returns the velocity of the second geom's surface relative to the first's at the contact: along both tangents, and
-// about the normal.
-fn surface_velocity(contact: u32) -> vec3f {
-    let offset = CONTACTS + CONTACT_SIZE * contact;
-    let pair = u32(fetch(offset));
-    let point = fetch3(offset + 2u);
-    var linear = vec3f();
-    var angular = vec3f();
-    for (var side = 0u; side < 2u; side++) {
-        let geom = words[PAIR_GEOM + 2u * pair + side];
-        let axes = fetch_matrix(GEOM_XMAT + 9u * geom);
-        let turning = axes * parameter3(GEOM_SURFACEVEL + 6u * geom + 3u);
-        let along = axes * parameter3(GEOM_SURFACEVEL + 6u * geom);
-        let sign = select(f32(-1.0), f32(1.0), side == 1u);
-        linear += (along + cross(turning, point - fetch3(GEOM_XPOS + 3u * geom))) * sign;
-        angular += turning * sign;
-    }
-    return vec3f(dot(fetch3(offset + 8u), linear), dot(fetch3(offset + 11u), linear), dot(fetch3(offset + 5u), angular));
-}
-
-// Adds the friction rows of a contact, after the normal's.
-fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, normal: Softness, friction_damping: f32) {
+// Adds the friction rows of a contact, after the normal's, with the stiffness and the damping of their springs.
+fn push_tangents(contact: u32, dim: u32, friction: u32, normal_r: f32, spring: vec2f) {
     let mu1 = parameter(friction);
     var drift = vec3f();
     if (writes && SURFACES_MOVE) {
         drift = surface_velocity(contact);
     }
+    var displacements = array<f32, 5>();
+    if (writes && STICTION) {
+        displacements = displacements_of(contact);
+    }
     for (var k = 1u; k < dim; k++) {
         let mu = parameter(friction + k - 1u);
+        var r = normal_r;
         if (ELLIPTIC_CONES || COULOMB_CONTACTS) {
-            let r = normal_r / IMPRATIO * mu1 * mu1 / (mu * mu);
-            add_row(0.0, 0.0, 0.0, friction_damping, r, mu);
-        } else {
-            add_row(0.0, 0.0, normal.stiffness, normal.damping, normal_r, mu);
+            r = normal_r / IMPRATIO * mu1 * mu1 / (mu * mu);
         }
+        add_row(0.0, 0.0, spring.x, spring.y, r, mu);
         if (writes && SURFACES_MOVE && k < 4u) {
             put_row(VELOCITY + nrow - 1u, drift[k - 1u]);
+        }
+        if (writes && STICTION) {
+            displace(nrow - 1u, displacements[k - 1u], spring.x);
         }
     }
 }
@@ -161,12 +151,17 @@ fn push_contact(contact: u32) {
     if (ELLIPTIC_CONES || COULOMB_CONTACTS) {
         begin_block(CONTACT_ELLIPTIC, select(COST_ELLIPTIC, COST_COULOMB, COULOMB_CONTACTS), dim, contact, soft.impedance);
         push_normal(distance, aref, soft, plain, mu * sqrt(1.0 / IMPRATIO), adhesion);
-        var damping = unresolved.damping;
+        var spring = vec2f(unresolved.stiffness, unresolved.damping);
+        if (STICTION) {
+            spring = vec2f(soft.stiffness, soft.damping);
+        }
         let solref = vec2f(parameter(prm + PAIR_SOLREFFRICTION), parameter(prm + PAIR_SOLREFFRICTION + 1u));
         if (any(solref != vec2f()) && !is_mixed(solref)) {
-            damping = spring_damper(solref, parameter(prm + PAIR_SOLIMP + 1u)).y;
+            spring = spring_damper(solref, parameter(prm + PAIR_SOLIMP + 1u)) * vec2f(soft.impedance, 1.0);
         }
-        push_tangents(contact, dim, friction, plain, soft, damping);
+        // Friction of a cone has no spring unless it sticks.
+        spring.x = select(0.0, spring.x, STICTION);
+        push_tangents(contact, dim, friction, plain, spring);
         return;
     }
     let edge = regularization(soft.impedance, a0 + mu * mu * a0);
@@ -174,7 +169,7 @@ fn push_contact(contact: u32) {
     begin_block(CONTACT_PYRAMID, COST_PYRAMID, dim, contact, soft.impedance);
     // The edges share the adhesion.
     push_normal(distance, aref, soft, r, 0.0, adhesion / (2.0 * (f32(dim) - 1.0)));
-    push_tangents(contact, dim, friction, r, soft, soft.damping);
+    push_tangents(contact, dim, friction, r, vec2f(soft.stiffness, soft.damping));
 }
 
 // Adds the couplings of the metric, ½ s (J a − J a_s)², as the last blocks.

@@ -3,11 +3,6 @@
 
 const MAX_IMPEDANCE: f32 = 0.9999;
 
-// Returns 1 + h b + h² k d of row `a`.
-fn beta(a: u32) -> f32 {
-    return 1.0 + TIMESTEP * row(DAMPING + a) + TIMESTEP * TIMESTEP * row(STIFFNESS + a);
-}
-
 // Returns the reference acceleration of a row at a velocity.
 fn reference_at_end(a: u32, velocity: f32) -> f32 {
     let rate = row(DAMPING + a) + TIMESTEP * row(STIFFNESS + a);

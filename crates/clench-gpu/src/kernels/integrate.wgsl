@@ -85,8 +85,8 @@ fn advance_activations(rates: u32, velocities: u32) {
     }
 }
 
-// Completes the step, or reverts it after a fault. Springs that yield need the velocity that moved the positions, and
-// lengths and gradients of tendons at the start (all in work).
+// Completes the step, or reverts it after a fault. Springs that yield and friction that sticks need the
+// velocity that moved the positions, and lengths and gradients of tendons at the start (all in work).
 fn finish_step(velocity: u32, length: u32, jacobian: u32) {
     end_in_team();
     check_results();
@@ -98,6 +98,9 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         if (ANY_PLASTIC) {
             yield_springs(velocity, length, jacobian);
         }
+        if (STICTION) {
+            advance_friction(velocity, jacobian);
+        }
         if (ANY_DELAY) {
             push_controls();
         }
@@ -108,6 +111,9 @@ fn finish_step(velocity: u32, length: u32, jacobian: u32) {
         restore_start();
         for (var i = member; i < bound(NV); i += TEAM) {
             put_state(QACC_WARMSTART + i, fetch(START_WARMSTART + i));
+        }
+        if (STICTION) {
+            restore_memory();
         }
     }
     // The time advances after its last use.

@@ -42,11 +42,7 @@ fn yield_springs(velocity: u32, length: u32, jacobian: u32) {
             continue;
         }
         let band = PLASTIC + words[TENDON_PLASTIC + t];
-        var rate: f32 = 0.0;
-        for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
-            rate += fetch(jacobian + k) * fetch(velocity + words[TENDON_DOF + k]);
-        }
-        let end = fetch(length + t) + TIMESTEP * rate;
+        let end = fetch(length + t) + TIMESTEP * tendon_rate(t, velocity, jacobian);
         let moved = beyond(end - clamp(end, fetch_state(band), fetch_state(band + 1u)), parameter(TENDON_YIELD + t));
         put_state(band, fetch_state(band) + moved);
         put_state(band + 1u, fetch_state(band + 1u) + moved);

@@ -65,9 +65,9 @@ fn go(rate: u32, qacc: u32, time: f32) {
     integrate_positions(rate, time);
 }
 
-// Saves the lengths and gradients of yielding tendons.
+// Saves the lengths and gradients of tendons that yield or stick.
 fn save_tendons() {
-    for (var t = member; YIELDING_TENDONS && t < NTENDON; t += TEAM) {
+    for (var t = member; (YIELDING_TENDONS || STICTION) && t < NTENDON; t += TEAM) {
         put(START_TEN_LENGTH + t, fetch(TEN_LENGTH + t));
         for (var k = words[TENDON_ROW + t]; k < words[TENDON_ROW + t + 1u]; k++) {
             put(START_TEN_JACOBIAN + k, fetch(TEN_JACOBIAN + k));

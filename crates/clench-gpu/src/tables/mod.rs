@@ -15,6 +15,7 @@ mod hulls;
 mod metric;
 mod rays;
 mod sensors;
+mod stiction;
 mod tendons;
 
 pub(crate) use constraints::BLOCK_SIZE;
@@ -131,6 +132,7 @@ impl Tables {
         tables.sensors(model);
         tables.rays::<S>(model);
         tables.settings(model, settings);
+        tables.stiction(model, settings);
         let mut capacity = Capacity {
             articulated: articulated_in::<S>(model),
             coulomb: settings.contact_model == ContactModel::Coulomb,

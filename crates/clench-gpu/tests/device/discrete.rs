@@ -2,8 +2,8 @@
 //! models, which compile sooner.
 
 use crate::common::{
-    self, Random, batch, batch_drifts_alike, batch_in, doubles_agree, doubles_arrive, own,
-    random_state, text,
+    self, Random, batch, batch_drifts_alike, doubles_arrive, forward_agrees_in_double, own,
+    own_batch, random_state, text,
 };
 use clench_rigid::model::Model;
 use std::sync::Arc;
@@ -26,8 +26,8 @@ fn agree(model: &Arc<Model>, spread: f64) {
 fn agree_exactly(model: &Arc<Model>) {
     let mut random = Random::new(3);
     let states = Vec::from_iter((0..20).map(|_| random_state(model, &mut random, 0.5)));
-    if let Some(mut batch) = batch_in(model, states.len()) {
-        doubles_agree(&mut batch, &states, 1e-9);
+    if let Some(mut batch) = own_batch(model, states.len()) {
+        forward_agrees_in_double(&mut batch, &states, 1e-9);
         doubles_arrive(&mut batch, 20);
     }
 }

@@ -15,9 +15,10 @@ fn agree(model: &Arc<Model>, count: usize, spread: f64, tolerance: f64) {
 
 /// Asserts the same of given states.
 fn agree_in(model: &Arc<Model>, states: &[State<f32>], tolerance: f64) {
-    if let Some(mut batch) = general_batch(model, states.len()) {
-        common::doubles_agree(&mut batch, states, tolerance);
-    }
+    let Some(mut batch) = general_batch::<f64>(model, states.len()) else {
+        return;
+    };
+    common::forward_agrees_in_double(&mut batch, states, tolerance);
 }
 
 /// The rounding error relative to the largest number of a field: sums have another order than on the processor.

@@ -15,3 +15,4 @@ mod sizes;
 mod solver;
 mod stages;
 mod steps;
+mod stiction;

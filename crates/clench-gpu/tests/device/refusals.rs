@@ -41,10 +41,6 @@ fn unsupported_features_are_refused_by_name() {
             "option contact_model: Coulomb's law needs Newton's method",
         ),
         (
-            model("<custom><text name='clench.stiction' data='true'/></custom>"),
-            "option stiction: stiction is not supported yet",
-        ),
-        (
             "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>".to_owned(),
             "model: a model without",
         ),

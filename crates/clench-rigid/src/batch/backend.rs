@@ -2,6 +2,7 @@
 //! uploaded, states and outputs downloaded. `on_device.rs` keeps host and device consistent.
 
 use crate::output::Output;
+use clench_dynamics::contact::Excess;
 use clench_dynamics::error::SimError;
 use clench_dynamics::model::Model;
 
@@ -96,6 +97,8 @@ pub enum StepFailure {
         /// The maximum number of contacts.
         limit: usize,
     },
+    /// A quantity exceeds its budget.
+    OverBudget(Excess),
     /// The device terminated a loop early.
     Unfinished,
 }

@@ -237,7 +237,9 @@ impl<S: Precision> Batch<S> {
             mirror.running[env] = false;
             let out_of_capacity = matches!(
                 failure,
-                StepFailure::ContactOverflow { .. } | StepFailure::Unfinished
+                StepFailure::ContactOverflow { .. }
+                    | StepFailure::OverBudget(_)
+                    | StepFailure::Unfinished
             );
             if may_restart && !out_of_capacity {
                 mirror.restarted[env] = true;
@@ -254,6 +256,15 @@ impl<S: Precision> Batch<S> {
             StepFailure::Singular => Fault::Singular { time, place: None },
             StepFailure::Unfinished => Fault::Unfinished { time },
             StepFailure::ContactOverflow { limit } => Fault::ContactOverflow { time, limit },
+            StepFailure::OverBudget(excess) => {
+                let (what, limit, remedy) = excess.describe(&self.model);
+                Fault::OverBudget {
+                    time,
+                    what,
+                    limit,
+                    remedy,
+                }
+            }
             StepFailure::Diverged {
                 field,
                 index,

@@ -114,10 +114,22 @@ pub fn forward_agrees(batch: &mut GpuBatch, tolerance: f64, strays: usize, sprea
     let count = batch.count();
     let mut random = Random::new(3);
     let states = Vec::from_iter((0..count).map(|_| random_state(&model, &mut random, spread)));
-    upload(batch, &states);
+    forward_agrees_in(batch, &states, tolerance, strays);
+}
+
+/// Asserts the same of given states.
+pub fn forward_agrees_in(
+    batch: &mut GpuBatch,
+    states: &[State<f32>],
+    tolerance: f64,
+    strays: usize,
+) {
+    let model = batch.model().clone();
+    let count = states.len();
+    upload(batch, states);
     batch.forward().expect("a device");
     assert_all_run(batch);
-    for (name, found) in distances(batch, &states) {
+    for (name, found) in distances(batch, states) {
         let usual = usual_noise(&found);
         let mut far = (0..count).filter(|&env| !found[env].is_near(usual, tolerance));
         if let Some(env) = far.nth(strays) {
@@ -132,8 +144,8 @@ pub fn forward_agrees(batch: &mut GpuBatch, tolerance: f64, strays: usize, sprea
     }
 }
 
-/// Asserts that every field of the states is within `tolerance` of the processor's in double precision.
-pub fn doubles_agree(batch: &mut GpuBatch<f64>, states: &[State<f32>], tolerance: f64) {
+/// Asserts that every field of every state is within `tolerance` of the processor's in double precision.
+pub fn forward_agrees_in_double(batch: &mut GpuBatch<f64>, states: &[State<f32>], tolerance: f64) {
     let model = batch.model().clone();
     upload(batch, states);
     batch.forward().expect("a device");

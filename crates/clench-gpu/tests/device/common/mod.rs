@@ -17,6 +17,7 @@ use clench_math::{Scalar, Vec3};
 use clench_rigid::State;
 use clench_rigid::batch::Precision;
 use clench_rigid::model::{JointKind, Model};
+use clench_rigid::state::kind::{Kind, Reference, StickReference};
 use std::sync::Arc;
 
 /// Loads a model of this repository.
@@ -38,11 +39,11 @@ pub fn text(file: &str) -> Arc<Model> {
 
 /// Returns a batch with kernels specialized for its model, the default; `None` if there is no device.
 pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
-    batch_in(model, count)
+    own_batch(model, count)
 }
 
-/// Returns such a batch in either precision.
-pub fn batch_in<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
+/// Returns such a batch of either precision.
+pub fn own_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
     with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -165,6 +166,7 @@ pub fn convert<S: Precision>(model: &Model, from: &State<f32>) -> State<S> {
         (&mut state.ctrl, &from.ctrl),
         (&mut state.act, &from.act),
         (&mut state.qfrc_applied, &from.qfrc_applied),
+        (&mut state.stick_friction, &from.stick_friction),
     ];
     for (to, from) in rows {
         for (to, &from) in to.iter_mut().zip(from) {
@@ -175,7 +177,21 @@ pub fn convert<S: Precision>(model: &Model, from: &State<f32>) -> State<S> {
         let wide = |v: Vec3<f32>| v.to_array().map(|x| S::new(f64::from(x)));
         *to = clench_math::Force::new(vector(wide(from.angular)), vector(wide(from.linear)));
     }
+    for (to, from) in state
+        .stick_references
+        .iter_mut()
+        .zip(&from.stick_references)
+    {
+        let numbers = Reference::cells(from, 0).map(|x| S::new(f64::from(x)));
+        Reference::set_cells(to, 0, numbers);
+    }
     state
+}
+
+/// Returns the numbers of stick references.
+pub fn reference_numbers<S: Scalar>(list: &[StickReference<S>]) -> Vec<f64> {
+    let cells = list.iter().flat_map(|one| Reference::cells(one, 0));
+    cells.map(|x: S| x.to_f64()).collect()
 }
 
 fn vector<S: Scalar>([x, y, z]: [S; 3]) -> Vec3<S> {
@@ -194,7 +210,12 @@ pub fn upload<S: GpuReal>(batch: &mut GpuBatch<S>, states: &[State<f32>]) {
     let wrenches = states.iter().flat_map(|s| &s.xfrc_applied);
     let wrenches =
         wrenches.flat_map(|f| f.linear.to_array().into_iter().chain(f.angular.to_array()));
+    let references = states
+        .iter()
+        .flat_map(|s| reference_numbers(&s.stick_references));
     for (name, values) in [
+        ("stick_references", references.map(S::new).collect()),
+        ("stick_friction", rows(|s| &s.stick_friction)),
         ("qpos", rows(|s| &s.qpos)),
         ("qvel", rows(|s| &s.qvel)),
         ("qacc_warmstart", rows(|s| &s.qacc_warmstart)),
