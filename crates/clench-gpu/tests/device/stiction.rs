@@ -10,8 +10,8 @@ use clench_rigid::state::kind::{Kind, Reference};
 use clench_rigid::{Batch, BatchOptions, Fault, Sim, State};
 use std::sync::Arc;
 
-/// Returns states with memory: those after some steps from random states, with every pair and every friction displaced a
-/// little further.
+/// Returns states with memory: those after some steps from random states, with every pair and every dry friction
+/// displaced a little further.
 fn states_with_memory(model: &Arc<Model>, count: usize) -> Vec<State<f32>> {
     let mut random = Random::new(5);
     let mut sim = Sim::<f32>::new(model.clone()).expect("a good model");
@@ -135,7 +135,7 @@ fn hand() -> Arc<Model> {
     text(&file.replacen("<worldbody>", sticking, 1))
 }
 
-/// Returns options with slots for so many pairs.
+/// Returns options with slots for a number of pairs.
 fn slots(pairs: usize) -> BatchOptions {
     BatchOptions {
         options: RigidOptions::new().max_stick_pairs(pairs),
