@@ -132,12 +132,22 @@ def test_environments_have_parameters_of_their_own() -> None:
     np.testing.assert_allclose(device.qpos, processor.qpos, atol=1e-4)
 
 
-def test_options_and_constraints_stay() -> None:
+def test_options_stay() -> None:
     device, _ = pair()
     with pytest.raises(clench.ClenchError, match="cannot be changed yet"):
         device.options = clench.RigidOptions(iterations=3)
-    with pytest.raises(clench.ClenchError, match="cannot be changed yet"):
-        device.add_weld("torso", "pelvis")
+
+
+def test_constraints_are_added_as_on_the_processor() -> None:
+    device, processor = pair()
+    for batch in (device, processor):
+        batch.step(3)
+        grips = batch.add_weld("torso", "left_forearm", [1, 4])
+        batch.step(3)
+        batch.remove(grips[:1], [1])
+        batch.step(3)
+    np.testing.assert_allclose(device.qpos, processor.qpos, atol=1e-4)
+    np.testing.assert_array_equal(device.dynamic_kind, processor.dynamic_kind)
 
 
 def test_derivatives_are_those_of_the_state_on_the_device() -> None:

@@ -155,6 +155,13 @@ impl<S: GpuReal> Backend<S> for GpuBatch<S> {
     }
 
     fn write(&mut self, field: &'static str, rows: &[S]) -> Result<(), SimError> {
+        // Slots are reserved when the first constraint is added. Until then all are empty.
+        if field.starts_with("dynamic_") && !self.has_slots() {
+            if rows.iter().all(|x| x.eq(&S::ZERO)) {
+                return Ok(());
+            }
+            self.enable_dynamic_constraints()?;
+        }
         Ok(self.write_unchecked(field, rows)?)
     }
 

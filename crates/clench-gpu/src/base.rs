@@ -1,5 +1,6 @@
 //! The data from which the kernels of a batch were built.
 
+use crate::kernel_options::KernelOptions;
 use crate::layout::Layout;
 use crate::tables::Tables;
 use clench_math::Scalar;
@@ -12,19 +13,18 @@ pub(crate) struct Base<S> {
     pub layout: Layout,
     pub parameters: Vec<S>,
     pub candidates: Vec<Candidate>,
-    /// True if the kernels serve any model.
-    pub general_kernels: bool,
+    pub kernels: KernelOptions,
 }
 
 impl<S: Scalar> Base<S> {
-    pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>) -> Self {
+    pub(crate) fn new(tables: &Tables, candidates: Vec<Candidate>, kernels: KernelOptions) -> Self {
         Base {
             words: tables.words.clone(),
             constants: tables.constants.clone(),
             layout: tables.layout.clone(),
             parameters: tables.numbers_in(),
             candidates,
-            general_kernels: tables.general_kernels,
+            kernels,
         }
     }
 }

@@ -5,13 +5,13 @@ use crate::check::{Simulation, check};
 use crate::clock::Clock;
 use crate::device::{Device, DeviceInfo};
 use crate::error::GpuError;
-use crate::fields::{self, Fields};
-use crate::kernels::{Memory, preface};
-use crate::layout::Layout;
+use crate::fields::Fields;
+use crate::kernel_options::KernelOptions;
 use crate::pipelines::{Arrays, Pipeline, Pipelines};
+use crate::plan::Plan;
 use crate::precision::GpuReal;
-use crate::solver_memory::{SolverMemory, check_dofs};
-use crate::tables::{Capacity, ENVS, MEASURES, Tables, has_sensor_history, is_read, ray_count};
+use crate::solver_memory::check_dofs;
+use crate::tables::{Capacity, ENVS, MEASURES, has_sensor_history, is_read};
 use clench_rigid::contact::candidates;
 use clench_rigid::model::Model;
 use clench_rigid::options::RigidOptions;
@@ -57,7 +57,7 @@ pub struct GpuBatch<S = f32> {
     pub(crate) pipelines: Pipelines,
     pub(crate) capacity: Capacity,
     pub(crate) settings: StepSettings,
-    model: Arc<Model>,
+    pub(crate) model: Arc<Model>,
     /// The last submitted steps, which may still be running.
     pending: Option<wgpu::SubmissionIndex>,
 }
@@ -89,7 +89,6 @@ impl<S: GpuReal> GpuBatch<S> {
     /// Returns an error if there is no device, the model is unsupported, an option is out of range, or memory is too
     /// small.
     pub fn new(model: Arc<Model>, count: usize, options: GpuOptions) -> Result<Self, GpuError> {
-        let general_kernels = options.general_kernels;
         let settings = StepSettings::new::<S>(&model, options.options)?;
         let model = settings.adapt(model);
         let collide = settings.flags.constraint && settings.flags.contact;
@@ -103,58 +102,34 @@ impl<S: GpuReal> GpuBatch<S> {
             settings: &settings,
             candidates: &pairs,
         })?;
-        let method = settings.solver.constraint_solver;
-        check_dofs(model.nv, method)?;
+        check_dofs(model.nv, settings.solver.constraint_solver)?;
         let device = Device::open(options.device.as_deref(), S::FEATURES)?;
-        let available = device.limits.max_compute_workgroup_storage_size as usize;
-        let solver = SolverMemory::new::<S>(model.nv, method, available, general_kernels);
-        let (mut tables, mut capacity) =
-            Tables::new::<S>(&model, &settings, &pairs, general_kernels);
-        solver.reserve(&mut capacity, model.tree.nnz(), model.nv);
-        let base = Base::new(&tables, pairs);
-        tables.shapes(&model, &base.candidates);
-        tables.ray_shapes(&model);
-        let state = fields::state_fields(&model, capacity);
-        let work = fields::work_fields(&model, capacity);
-        let thread = fields::thread_fields(&model, capacity);
-        let rows = fields::row_fields(&model, capacity);
-        let reports = fields::report_fields(&model, capacity);
-        tables.initial_state(&model, &state);
-        let each = size_of::<S>();
-        let sizes = [&state, &work, &rows].map(|fields| each * fields.size);
-        let sizes = [sizes[0], sizes[1], sizes[2], 4 * reports.size];
-        check_memory(&device, count, sizes)?;
-        let memory = Memory {
-            state: &state,
-            work: &work,
-            thread: &thread,
-            threads: capacity.threads,
-            rays: ray_count(&model),
-            rows: &rows,
-            reports: &reports,
-            solver,
+        let kernels = KernelOptions {
+            general: options.general_kernels,
+            slots: false,
         };
-        let preface = preface(&tables, &memory);
-
-        let arrays = allocate::<S>(&device, (&tables, &preface.layout), sizes, count)?;
-        let pipelines = Pipelines::new::<S>(&device, preface, count, &model)?;
+        let available = device.limits.max_compute_workgroup_storage_size as usize;
+        let plan = Plan::<S>::new(&model, &settings, pairs, kernels, available);
+        check_memory(&device, count, plan.sizes())?;
+        let arrays = allocate::<S>(&device, &plan, count)?;
         let queue = &device.queue;
-        queue.write_buffer(&arrays.words, 0, tables.words.as_bytes());
+        queue.write_buffer(&arrays.words, 0, plan.tables.words.as_bytes());
         queue.write_buffer(&arrays.words, 4 * ENVS as u64, [count as u32].as_bytes());
-        queue.write_buffer(&arrays.numbers, 0, tables.numbers_in::<S>().as_bytes());
+        queue.write_buffer(&arrays.numbers, 0, plan.tables.numbers_in::<S>().as_bytes());
+        let pipelines = Pipelines::new::<S>(&device, plan.preface, count, &model)?;
         let mut batch = GpuBatch {
             bindings: arrays.bind(&device),
             own: Vec::new(),
-            base,
+            base: plan.base,
             device,
             arrays,
-            state,
-            work,
-            rows,
-            reports,
+            state: plan.state,
+            work: plan.work,
+            rows: plan.rows,
+            reports: plan.reports,
             count,
             pipelines,
-            capacity,
+            capacity: plan.capacity,
             settings,
             model,
             pending: None,
@@ -400,41 +375,55 @@ impl<S: GpuReal> GpuBatch<S> {
     }
 }
 
-/// Allocates the arrays of `count` environments, of the given bytes each.
-fn allocate<S: GpuReal>(
+/// Allocates the arrays of a plan for `count` environments.
+fn allocate<S: GpuReal>(device: &Device, plan: &Plan<S>, count: usize) -> Result<Arrays, GpuError> {
+    let sizes = plan.sizes();
+    in_memory(device, count, sizes, || {
+        let array = |label, k: usize| device.array(label, (sizes[k] * count) as u64);
+        let tables = &plan.tables;
+        let numbers = device.array("numbers", (size_of::<S>() * tables.numbers.len()) as u64);
+        Arrays {
+            words: device.array("words", 4 * tables.words.len() as u64),
+            parameters: numbers.clone(),
+            numbers,
+            state: array("state", 0),
+            work: array("work", 1),
+            rows: array("rows", 2),
+            reports: array("reports", 3),
+            layout: device.constants("layout", &plan.preface.layout.bytes::<S>()),
+        }
+    })
+}
+
+/// Returns what `allocate` makes, unless the device runs out of memory for `count` environments of the given bytes.
+///
+/// # Errors
+/// Returns an error if it does.
+pub(crate) fn in_memory<R>(
     device: &Device,
-    (tables, layout): (&Tables, &Layout),
-    sizes: [usize; 4],
     count: usize,
-) -> Result<Arrays, GpuError> {
-    let scope = device
-        .device
-        .push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let array = |label, k: usize| device.array(label, (sizes[k] * count) as u64);
-    let numbers = device.array("numbers", (size_of::<S>() * tables.numbers.len()) as u64);
-    let arrays = Arrays {
-        words: device.array("words", 4 * tables.words.len() as u64),
-        parameters: numbers.clone(),
-        numbers,
-        state: array("state", 0),
-        work: array("work", 1),
-        rows: array("rows", 2),
-        reports: array("reports", 3),
-        layout: device.constants("layout", &layout.bytes::<S>()),
-    };
-    if pollster::block_on(scope.pop()).is_some() {
-        return Err(GpuError::OutOfMemory {
-            device: device.info.name.clone(),
-            count,
-            bytes: sizes.iter().sum::<usize>() as u64,
-            max: None,
-        });
+    sizes: [usize; 4],
+    allocate: impl FnOnce() -> R,
+) -> Result<R, GpuError> {
+    let scope = (device.device).push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let allocated = allocate();
+    if pollster::block_on(scope.pop()).is_none() {
+        return Ok(allocated);
     }
-    Ok(arrays)
+    Err(GpuError::OutOfMemory {
+        device: device.info.name.clone(),
+        count,
+        bytes: sizes.iter().sum::<usize>() as u64,
+        max: None,
+    })
 }
 
 /// Checks that the largest array of `count` environments of the given bytes each fits a buffer and can be indexed.
-fn check_memory(device: &Device, count: usize, sizes: [usize; 4]) -> Result<(), GpuError> {
+pub(crate) fn check_memory(
+    device: &Device,
+    count: usize,
+    sizes: [usize; 4],
+) -> Result<(), GpuError> {
     let largest = sizes.into_iter().max().unwrap_or(0).max(4) as u64;
     let bytes = device.max_buffer().min(4 * u64::from(u32::MAX));
     let max = bytes / largest;

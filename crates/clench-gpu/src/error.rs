@@ -99,6 +99,16 @@ pub enum GpuError {
         /// The number of dofs.
         nv: usize,
     },
+    /// The model has too many slots for constraints that are added at run time.
+    #[error(
+        "a graphics device has up to {max} slots for constraints at run time, but the model has {slots}: give it a smaller max_dynamic_constraints"
+    )]
+    TooManySlots {
+        /// The maximum.
+        max: usize,
+        /// The number of slots.
+        slots: usize,
+    },
     /// An option is out of range.
     #[error(transparent)]
     Option(#[from] OptionError),

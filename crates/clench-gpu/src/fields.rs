@@ -100,6 +100,14 @@ fields! {
     eq_active: m.equalities.len();
     /// The start time of the first counted step, s.
     start_time: 1;
+    /// The slots for constraints that are added at run time. They come last, so that they can be added.
+    dynamic_kind: c.slots;
+    dynamic_serial: c.slots;
+    dynamic_body1: c.slots;
+    dynamic_body2: c.slots;
+    dynamic_anchor1: 3 * c.slots;
+    dynamic_anchor2: 3 * c.slots;
+    dynamic_quat: 4 * c.slots;
 }
 
 fields! {

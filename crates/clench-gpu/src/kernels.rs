@@ -311,6 +311,7 @@ impl Kernel {
 mod tests {
     use super::{ALL, Kernel, Memory, Preface, preface};
     use crate::fields;
+    use crate::kernel_options::KernelOptions;
     use crate::precision::{Texts, words};
     use crate::solver_memory::SolverMemory;
     use crate::tables::Tables;
@@ -332,11 +333,16 @@ mod tests {
         "CONVEX",
     ];
 
+    const SPECIALIZED: KernelOptions = KernelOptions {
+        general: false,
+        slots: true,
+    };
+
     /// Returns the preface of a model without elements.
-    fn empty_preface(general_kernels: bool) -> Preface {
+    fn empty_preface(kernels: KernelOptions) -> Preface {
         let model = clench_formats::load_str("<mujoco/>").unwrap();
         let settings = StepSettings::new::<f64>(&model, RigidOptions::default()).unwrap();
-        let (mut tables, capacity) = Tables::new::<f64>(&model, &settings, &[], general_kernels);
+        let (mut tables, capacity) = Tables::new::<f64>(&model, &settings, &[], kernels);
         tables.shapes(&model, &[]);
         tables.ray_shapes(&model);
         let state = fields::state_fields(&model, capacity);
@@ -349,7 +355,7 @@ mod tests {
             rays: 0,
             rows: &fields::row_fields(&model, capacity),
             reports: &fields::report_fields(&model, capacity),
-            solver: SolverMemory::new::<f64>(0, ConstraintSolver::Newton, 1 << 15, general_kernels),
+            solver: SolverMemory::new::<f64>(0, ConstraintSolver::Newton, 1 << 15, kernels.general),
         };
         preface(&tables, &memory)
     }
@@ -368,7 +374,11 @@ mod tests {
 
     #[test]
     fn the_kernels_are_valid() {
-        for preface in [false, true].map(empty_preface) {
+        for general in [false, true] {
+            let preface = empty_preface(KernelOptions {
+                general,
+                slots: !general,
+            });
             for kernel in ALL {
                 check::<f32>(kernel, &preface);
                 check::<f64>(kernel, &preface);
@@ -378,7 +388,7 @@ mod tests {
 
     #[test]
     fn the_kernels_name_every_constant() {
-        let preface = empty_preface(false);
+        let preface = empty_preface(SPECIALIZED);
         let constants = preface
             .constants
             .lines()

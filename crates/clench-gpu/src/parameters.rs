@@ -19,7 +19,7 @@ impl<S: GpuReal> GpuBatch<S> {
             model,
             &self.settings,
             &self.base.candidates,
-            self.base.general_kernels,
+            self.base.kernels,
         );
         let base = &self.base;
         // Environments share meshes and height fields.

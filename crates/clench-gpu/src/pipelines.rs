@@ -40,6 +40,7 @@ pub(crate) struct Pipelines {
 }
 
 /// The arrays, in the order of the kernels' bindings.
+#[derive(Clone)]
 pub(crate) struct Arrays {
     pub words: wgpu::Buffer,
     pub numbers: wgpu::Buffer,
@@ -167,6 +168,25 @@ impl Pipelines {
                 self.sensors.push(compile(&kernels::RAYS)?);
             }
             self.sensors.push(compile(&kernels::SENSORS)?);
+        }
+        Ok(())
+    }
+
+    /// Compiles the kernels of outputs that another batch of kernels has.
+    ///
+    /// # Errors
+    /// Returns an error if the device refuses a kernel.
+    pub(crate) fn observe_as<S: Texts>(
+        &mut self,
+        other: &Pipelines,
+        device: &Device,
+        count: usize,
+    ) -> Result<(), GpuError> {
+        if other.cameras.is_some() {
+            self.compile_cameras::<S>(device, count)?;
+        }
+        if other.body_forces.is_some() {
+            self.observe::<S>(device, count, !other.sensors.is_empty())?;
         }
         Ok(())
     }

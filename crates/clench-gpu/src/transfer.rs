@@ -41,7 +41,7 @@ impl<S: GpuReal> GpuBatch<S> {
     /// `qacc_warmstart`, `stick_references`, `stick_friction`, `ctrl`, `qfrc_applied`, `xfrc_applied` (for each body
     /// the force at its centre of mass, then the torque, world axes), `mocap_pos`, `mocap_quat`, `eq_active` (zero if
     /// an equality is inactive), `start_time` (the time of the first of the [`steps`](Self::steps), s, from which
-    /// clock sensors count).
+    /// clock sensors count); and those of [`enable_dynamic_constraints`](Self::enable_dynamic_constraints).
     ///
     /// # Errors
     /// Returns an error if no such field exists, the length is wrong, a number is not finite, or a position or velocity

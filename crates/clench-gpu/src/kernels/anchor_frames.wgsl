@@ -1,18 +1,57 @@
-// Anchor frames of connects and welds on two bodies. CPU counterparts: `constraint/anchor_frames.rs`, `connect.rs` and
-// `weld.rs`, which derive the formulas.
+// Anchor frames of connects and welds on two bodies. CPU counterparts: `constraint/anchor_frames.rs`, `dynamic.rs`,
+// `connect.rs` and `weld.rs`, which derive the formulas.
+//
+// Equalities from FIRST_SLOT on were added at run time: their bodies and frames are in a slot of the state.
 
-// Returns the origin of the first or second frame of an equality, in the world.
+fn is_in_slot(equality: u32) -> bool {
+    return ANY_SLOTS && equality >= FIRST_SLOT;
+}
+
+// Returns a number of the state that is an index or a code; NONE if it is not a whole number.
+fn whole_number(x: f32) -> u32 {
+    let number = u32(x);
+    return select(NONE, number, f32(number) == x);
+}
+
+// Returns the first or second body of a connect or weld.
+fn anchor_body(equality: u32, side: u32) -> u32 {
+    if (is_in_slot(equality)) {
+        let bodies = select(DYNAMIC_BODY2, DYNAMIC_BODY1, side == 0u);
+        return whole_number(fetch_state(bodies + equality - FIRST_SLOT));
+    }
+    return words[EQ_PAIR + 2u * equality + side];
+}
+
+// Returns the parameters of an equality; those of a slot lack its frames.
+fn equality_parameters(equality: u32) -> u32 {
+    if (is_in_slot(equality)) {
+        return SLOT_PRM;
+    }
+    return words[EQ_PRM + equality];
+}
+
+// Returns the origin of the first or second frame, in the world.
 fn anchor_point(equality: u32, side: u32) -> vec3f {
-    let b = words[EQ_PAIR + 2u * equality + side];
-    let anchor = parameter3(words[EQ_PRM + equality] + select(FRAMES_ANCHOR2, FRAMES_ANCHOR1, side == 0u));
+    let b = anchor_body(equality, side);
+    var anchor: vec3f;
+    if (is_in_slot(equality)) {
+        anchor = fetch_state3(select(DYNAMIC_ANCHOR2, DYNAMIC_ANCHOR1, side == 0u) + 3u * (equality - FIRST_SLOT));
+    } else {
+        anchor = parameter3(words[EQ_PRM + equality] + select(FRAMES_ANCHOR2, FRAMES_ANCHOR1, side == 0u));
+    }
     return fetch3(XPOS + 3u * b) + fetch_matrix(XMAT + 9u * b) * anchor;
 }
 
-// Returns the orientation of a frame.
+// Returns the orientation of a frame. The second one of a slot has that of its body.
 fn anchor_quat(equality: u32, side: u32) -> vec4f {
-    let b = words[EQ_PAIR + 2u * equality + side];
-    let quat = words[EQ_PRM + equality] + select(FRAMES_QUAT2, FRAMES_QUAT1, side == 0u);
-    return quat_product(fetch4(XQUAT + 4u * b), parameter4(quat));
+    let q = fetch4(XQUAT + 4u * anchor_body(equality, side));
+    if (!is_in_slot(equality)) {
+        return quat_product(q, parameter4(words[EQ_PRM + equality] + select(FRAMES_QUAT2, FRAMES_QUAT1, side == 0u)));
+    }
+    if (side == 0u) {
+        return quat_product(q, fetch_state4(DYNAMIC_QUAT + 4u * (equality - FIRST_SLOT)));
+    }
+    return q;
 }
 
 // Returns the inverse of the second frame's orientation.
@@ -27,7 +66,7 @@ fn relative_quat(equality: u32) -> vec4f {
 }
 
 fn torquescale(equality: u32) -> f32 {
-    return parameter(words[EQ_PRM + equality] + FRAMES_TORQUESCALE);
+    return parameter(equality_parameters(equality) + FRAMES_TORQUESCALE);
 }
 
 // Returns the imaginary part of ½ (0, u) q.

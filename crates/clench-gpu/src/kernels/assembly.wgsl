@@ -29,8 +29,8 @@ fn axis_of(i: u32) -> Spatial {
 
 // Returns an entry of row `k` of a connect or weld: the points' separation, then the frames' rotation.
 fn frames_entry(equality: u32, k: u32, i: u32) -> f32 {
-    let first = words[EQ_PAIR + 2u * equality];
-    let second = words[EQ_PAIR + 2u * equality + 1u];
+    let first = anchor_body(equality, 0u);
+    let second = anchor_body(equality, 1u);
     var motion = Spatial(vec3f(), vec3f());
     if (moves(first, i)) {
         motion = motion_at(first, i, anchor_point(equality, 0u));

@@ -1,5 +1,5 @@
 // Equalities as blocks: connects, welds, and couplings of joints or tendons. CPU counterparts: `constraint/connect.rs`,
-// `weld.rs` and `joint_equality.rs`.
+// `weld.rs` and `joint_equality.rs`; of slots, `constraint/dynamic.rs` and `state/slots.rs`.
 
 fn push_coupling(equality: u32, prm: u32) {
     let follower = words[EQ_PAIR + 2u * equality];
@@ -24,8 +24,8 @@ fn push_coupling(equality: u32, prm: u32) {
 
 // Returns J̇ v of the last three rows of a weld, for bias accelerations with the difference `alpha`.
 fn weld_bias(equality: u32, alpha: vec3f) -> vec3f {
-    let omega1 = fetch3(CVEL + 6u * words[EQ_PAIR + 2u * equality]);
-    let omega2 = fetch3(CVEL + 6u * words[EQ_PAIR + 2u * equality + 1u]);
+    let omega1 = fetch3(CVEL + 6u * anchor_body(equality, 0u));
+    let omega2 = fetch3(CVEL + 6u * anchor_body(equality, 1u));
     let to_second = to_second_frame(equality);
     let rho = relative_quat(equality);
     let u = quat_rotate(to_second, omega1 - omega2);
@@ -42,35 +42,70 @@ fn add_frame_rows(violation: vec3f, bias: vec3f, soft: Softness, a0: f32) {
     }
 }
 
-fn push_frames(equality: u32, prm: u32, is_weld: bool) {
+// Returns the sum of the bodies' inverse weights: of translations (part 0) or rotations (part 1).
+fn frames_invweight(equality: u32, part: u32) -> f32 {
+    if (!is_in_slot(equality)) {
+        return parameter(words[EQ_PRM + equality] + FRAMES_INVWEIGHT + part);
+    }
+    let first = parameter(BODY_INVWEIGHT0 + 2u * anchor_body(equality, 0u) + part);
+    return first + parameter(BODY_INVWEIGHT0 + 2u * anchor_body(equality, 1u) + part);
+}
+
+fn push_frames(equality: u32, is_weld: bool) {
     let p = anchor_point(equality, 0u);
     let q = anchor_point(equality, 1u);
-    let first = bias_acceleration(words[EQ_PAIR + 2u * equality], p);
-    let second = bias_acceleration(words[EQ_PAIR + 2u * equality + 1u], q);
+    let first = bias_acceleration(anchor_body(equality, 0u), p);
+    let second = bias_acceleration(anchor_body(equality, 1u), q);
     let apart = p - q;
     var turned = vec3f();
     if (is_weld) {
         turned = relative_quat(equality).yzw * torquescale(equality);
     }
-    let soft = soften(prm + FRAMES_SOLREF, sqrt(dot(apart, apart) + dot(turned, turned)));
-    begin_block(FRAMES, COST_QUADRATIC, words[EQ_ROWS + equality], equality, soft.impedance);
-    add_frame_rows(apart, first.linear - second.linear, soft, parameter(prm + FRAMES_INVWEIGHT));
+    let soft = soften(equality_parameters(equality) + FRAMES_SOLREF, sqrt(dot(apart, apart) + dot(turned, turned)));
+    begin_block(FRAMES, COST_QUADRATIC, select(3u, 6u, is_weld), equality, soft.impedance);
+    add_frame_rows(apart, first.linear - second.linear, soft, frames_invweight(equality, 0u));
     if (is_weld) {
-        add_frame_rows(turned, weld_bias(equality, first.angular - second.angular), soft, parameter(prm + FRAMES_INVWEIGHT + 1u));
+        add_frame_rows(turned, weld_bias(equality, first.angular - second.angular), soft, frames_invweight(equality, 1u));
     }
 }
 
-fn push_equality(equality: u32) {
-    if (fetch_state(EQ_ACTIVE + equality) == 0.0) {
-        return;
+// Returns the kind of the constraint in a slot: static too if the slot is empty or does not name two bodies.
+fn kind_in_slot(equality: u32) -> u32 {
+    let kind = whole_number(fetch_state(DYNAMIC_KIND + equality - FIRST_SLOT));
+    let first = anchor_body(equality, 0u);
+    let second = anchor_body(equality, 1u);
+    if (max(first, second) >= NBODY || first == second || (move_together(first, 0u) && move_together(second, 0u))) {
+        return EQ_STATIC;
     }
-    let kind = words[EQ_KIND + equality];
+    switch kind {
+        case SLOT_CONNECT: {
+            return EQ_CONNECT;
+        }
+        case SLOT_WELD: {
+            return EQ_WELD;
+        }
+        default: {
+            return EQ_STATIC;
+        }
+    }
+}
+
+// Returns the kind of an equality; that of an inactive one is static.
+fn active_kind(equality: u32) -> u32 {
+    if (is_in_slot(equality)) {
+        return kind_in_slot(equality);
+    }
+    return select(words[EQ_KIND + equality], EQ_STATIC, fetch_state(EQ_ACTIVE + equality) == 0.0);
+}
+
+fn push_equality(equality: u32) {
+    let kind = active_kind(equality);
     switch kind {
         case EQ_COUPLING: {
             push_coupling(equality, words[EQ_PRM + equality]);
         }
         case EQ_CONNECT, EQ_WELD: {
-            push_frames(equality, words[EQ_PRM + equality], kind == EQ_WELD);
+            push_frames(equality, kind == EQ_WELD);
         }
         case EQ_STATIC, default: {
         }

@@ -34,8 +34,8 @@ fn push_frames(equality: u32, force: vec3f, rotation: vec3f) {
     let rho = relative_quat(equality);
     let turned = (rotation * rho.x + cross(rho.yzw, rotation)) * (0.5 * torquescale(equality));
     let couple = quat_rotate(anchor_quat(equality, 1u), turned);
-    push(words[EQ_PAIR + 2u * equality], 1.0, force, couple, anchor_point(equality, 0u));
-    push(words[EQ_PAIR + 2u * equality + 1u], -1.0, force, couple, anchor_point(equality, 1u));
+    push(anchor_body(equality, 0u), 1.0, force, couple, anchor_point(equality, 0u));
+    push(anchor_body(equality, 1u), -1.0, force, couple, anchor_point(equality, 1u));
 }
 
 // Returns the constraint force along tendon `t`.

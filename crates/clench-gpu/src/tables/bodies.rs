@@ -37,6 +37,10 @@ impl Tables {
         self.numbers("BODY_IQUAT", quats(&p.body_iquat));
         self.numbers("BODY_MASS", p.body_mass.iter().copied());
         self.numbers("BODY_SUBTREEMASS", p.body_subtreemass.iter().copied());
+        // Only constraints that are added at run time need the bodies' own.
+        let slots = m.max_dynamic_constraints > 0;
+        let weights = p.body_invweight0.iter().filter(|_| slots);
+        self.numbers("BODY_INVWEIGHT0", weights.flatten().copied());
         self.numbers("BODY_INERTIA", vectors(&p.body_inertia));
         self.numbers("GEOM_POS", vectors(&p.geom_pos));
         self.numbers("GEOM_QUAT", quats(&p.geom_quat));

@@ -2,6 +2,7 @@
 
 use super::{Capacity, NONE, Tables};
 use crate::codes::{Code, codes, row};
+use clench_rigid::constraint::dynamic::{CONNECT, WELD, softness};
 use clench_rigid::model::{EqualityTarget, Model};
 use clench_rigid::settings::StepSettings;
 
@@ -49,7 +50,7 @@ impl Tables {
         let on = s.flags.constraint && s.flags.equality;
         let count = if on { m.equalities.len() } else { 0 };
         let (mut kinds, mut pairs, mut places) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+        let mut numbers = Vec::new();
         for (i, equality) in m.equalities[..count].iter().enumerate() {
             // Frames of static bodies are unconstrained.
             let moves = |bodies: [usize; 2]| bodies.iter().any(|&b| m.bodies[b].last_dof.is_some());
@@ -76,7 +77,6 @@ impl Tables {
                 Kind::Connect | Kind::Weld | Kind::Coupling => equality.target.rows(),
             };
             kinds.push(kind.code());
-            rows.push(dim);
             pairs.extend(pair);
             places.push(numbers.len());
             match kind {
@@ -91,13 +91,41 @@ impl Tables {
         self.codes::<Kind>();
         self.row::<FramesNumbers>();
         self.row::<CouplingNumbers>();
-        self.count("NEQ", count);
         self.words("EQ_KIND", kinds);
-        self.words("EQ_ROWS", rows);
         self.words("EQ_PAIR", pairs);
         let start = self.numbers.len();
         self.words("EQ_PRM", places.into_iter().map(|place| start + place));
         self.numbers("EQ_NUMBERS", numbers);
+        self.slots(m, count, if on { capacity.slots } else { 0 }, capacity);
+    }
+
+    /// Adds slots for constraints that are added at run time; as equalities, they follow the first `count`.
+    fn slots(&mut self, m: &Model, count: usize, slots: usize, capacity: &mut Capacity) {
+        self.fixed_flag("ANY_SLOTS", slots > 0);
+        self.constant("SLOT_CONNECT", CONNECT as usize);
+        self.constant("SLOT_WELD", WELD as usize);
+        self.count("FIRST_SLOT", count);
+        self.count("NEQ", count + slots);
+        let row = (m.max_dynamic_constraints > 0).then(|| in_slot().numbers());
+        self.numbers("SLOT_PRM", row.into_iter().flatten());
+        let (body1, body2) = (0, 0);
+        capacity.blocks += slots;
+        capacity.rows += EqualityTarget::Weld { body1, body2 }.rows() * slots;
+    }
+}
+
+/// Returns the numbers that all constraints in slots share.
+fn in_slot() -> FramesNumbers {
+    let (solref, solimp) = softness::<f64>();
+    FramesNumbers {
+        anchor1: [0.0; 3],
+        anchor2: [0.0; 3],
+        quat1: [0.0; 4],
+        quat2: [0.0; 4],
+        torquescale: [1.0],
+        invweight: [0.0; 2],
+        solref,
+        solimp,
     }
 }
 

@@ -24,6 +24,7 @@ pub(crate) use rays::ray_count;
 pub(crate) use sensors::{has_sensor_history, is_read};
 
 use crate::codes::{Code, Row};
+use crate::kernel_options::KernelOptions;
 use crate::layout::Layout;
 use clench_math::Scalar;
 use clench_rigid::contact::Candidate;
@@ -76,6 +77,8 @@ pub(crate) struct Capacity {
     pub blocks: usize,
     /// Rows of the convex problem.
     pub rows: usize,
+    /// Slots for constraints that are added at run time.
+    pub slots: usize,
     /// Bodies whose articulated inertia is stored, if paths are long.
     pub articulated: usize,
     /// Vertices of the polytope of overlapping shapes, and its faces.
@@ -107,14 +110,14 @@ impl Tables {
         model: &Model,
         settings: &StepSettings,
         candidates: &[Candidate],
-        general_kernels: bool,
+        kernels: KernelOptions,
     ) -> (Tables, Capacity) {
         let mut tables = Tables {
             words: Vec::new(),
             numbers: Vec::new(),
             constants: String::new(),
             layout: Layout::default(),
-            general_kernels,
+            general_kernels: kernels.general,
         };
         tables.words("ZERO", [0]);
         tables.words("OWN_PARAMETERS", [0]);
@@ -136,6 +139,11 @@ impl Tables {
         let mut capacity = Capacity {
             articulated: articulated_in::<S>(model),
             coulomb: settings.contact_model == ContactModel::Coulomb,
+            slots: if kernels.slots {
+                model.max_dynamic_constraints
+            } else {
+                0
+            },
             ..Capacity::default()
         };
         tables.flag("LONG_PATHS", capacity.articulated > 0);

@@ -12,6 +12,7 @@ mod outputs;
 mod random;
 mod refusals;
 mod sizes;
+mod slots;
 mod solver;
 mod stages;
 mod steps;

@@ -93,7 +93,7 @@ impl<S: Precision> Batch<S> {
         envs: &[usize],
         mut act: impl FnMut(usize, &mut Sim<S>) -> Result<R, SimError>,
     ) -> Result<Vec<R>, SimError> {
-        self.check_changeable("the constraints")?;
+        self.check_held("dynamic_kind")?;
         self.check_envs(envs)?;
         let Some(&first) = envs.first() else {
             return Ok(Vec::new());

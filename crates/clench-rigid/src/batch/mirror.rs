@@ -37,6 +37,17 @@ impl<S: Precision> Mirror<S> {
         self.backend.name()
     }
 
+    /// Returns an error if the device does not hold a field of the state.
+    pub(super) fn check_held(&self, field: &str) -> Result<(), SimError> {
+        if self.backend.holds(field) {
+            return Ok(());
+        }
+        Err(SimError::Backend(format!(
+            "{} does not support {field} yet, but an environment has a value of it",
+            self.name(),
+        )))
+    }
+
     /// Lets the device compute these outputs from now on, except those that follow from the rows. Returns an error if
     /// it cannot.
     pub(super) fn request(&mut self, outputs: &[Output]) -> Result<(), SimError> {

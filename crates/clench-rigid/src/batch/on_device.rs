@@ -19,8 +19,8 @@ use std::sync::Arc;
 impl<S: Precision> Batch<S> {
     /// Creates `count` environments in the model's initial state that `backend` steps; its own environments may be in
     /// any state. Outputs can be recorded if the device computes them or they follow from the rows. The options are
-    /// those that `backend` was created with, and constraints at run time cannot be added. [`quality`](Self::quality),
-    /// [`divergence`](Self::divergence) and [`profile`](Self::profile) stay zero, as they cover only steps on the CPU.
+    /// those that `backend` was created with. [`quality`](Self::quality), [`divergence`](Self::divergence) and
+    /// [`profile`](Self::profile) stay zero, as they cover only steps on the CPU.
     ///
     /// # Errors
     /// See [`with_options`](Self::with_options).
@@ -66,6 +66,13 @@ impl<S: Precision> Batch<S> {
                 mirror.name()
             ))),
         }
+    }
+
+    /// Returns an error if the batch is on a device that does not hold a field of the state.
+    pub(super) fn check_held(&self, field: &'static str) -> Result<(), SimError> {
+        self.mirror
+            .as_ref()
+            .map_or(Ok(()), |mirror| mirror.check_held(field))
     }
 
     /// Runs a call on the device.
@@ -137,13 +144,7 @@ impl<S: Precision> Batch<S> {
             if mirror.numbers == mirror.fields[k] {
                 continue;
             }
-            if !mirror.backend.holds(field.name) {
-                return Err(SimError::Backend(format!(
-                    "{} does not support {} yet, but an environment has a value of it",
-                    mirror.name(),
-                    field.name
-                )));
-            }
+            mirror.check_held(field.name)?;
             swap(&mut mirror.numbers, &mut mirror.fields[k]);
             let width = field.numbers(&self.model);
             for env in 0..mirror.running.len() {

@@ -42,7 +42,7 @@ pub fn batch(model: &Arc<Model>, count: usize) -> Option<GpuBatch> {
     own_batch(model, count)
 }
 
-/// Returns such a batch of either precision.
+/// Returns such a batch in a given precision.
 pub fn own_batch<S: GpuReal>(model: &Arc<Model>, count: usize) -> Option<GpuBatch<S>> {
     with_options(model, count, GpuOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }

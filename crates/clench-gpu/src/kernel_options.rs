@@ -1,0 +1,10 @@
+//! The use of kernels.
+
+/// The use of the kernels of a batch, besides its model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct KernelOptions {
+    /// True if they serve any model: they read the layout for its features.
+    pub general: bool,
+    /// True if the state has slots for constraints that are added at run time.
+    pub slots: bool,
+}
